@@ -1,0 +1,8 @@
+include(CMakeFindDependencyMacro)
+find_dependency(Eigen3)
+find_dependency(ZLIB)
+find_dependency(LibLZMA)
+find_dependency(fmt)
+find_dependency(nlohmann_json)
+find_dependency(tomlplusplus)
+include(${CMAKE_CURRENT_LIST_DIR}/proofmass-targets.cmake)

@@ -1,0 +1,112 @@
+#include "proofmass/core/recording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace proofmass {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+/// A channel's name taken apart: "Acc_X" is axis x of "acc_"; axis is 0 where there is none.
+struct AxisName {
+  std::string sensor;
+  char axis = 0;
+};
+
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+
+/// The axis letter is the last x, y or z that no letter follows and that either starts a word
+/// ("x1", "Acc_X", "Accelerometer Z") or ends the usual short forms ("ax", "accx", "AccelY").
+AxisName axis_of(std::string_view name) {
+  const std::string text = lower(name);
+  for (std::size_t i = text.size(); i-- > 0;) {
+    const char c = text[i];
+    if (c < 'x' || c > 'z') continue;
+    if (i + 1 < text.size() && is_letter(text[i + 1])) continue;
+    std::size_t word = i;
+    while (word > 0 && is_letter(text[word - 1])) --word;
+    constexpr std::array<std::string_view, 8> stems{
+        "", "a", "acc", "accel", "accelerometer", "acceleration", "f", "ch"};
+    if (std::ranges::find(stems, std::string_view(text).substr(word, i - word)) == stems.end())
+      continue;
+    return {text.substr(0, i) + "?" + text.substr(i + 1), c};
+  }
+  return {};
+}
+
+bool may_be_accelerometer(const Channel& channel, bool any_acceleration) {
+  const Quantity quantity = channel.unit.quantity;
+  if (any_acceleration) return quantity == Quantity::acceleration;
+  return quantity == Quantity::voltage || quantity == Quantity::counts;
+}
+
+std::string tidy(std::string sensor) {
+  std::erase(sensor, '?');
+  while (!sensor.empty() && !std::isalnum(static_cast<unsigned char>(sensor.back())))
+    sensor.pop_back();
+  return sensor.empty() ? "accelerometer" : sensor;
+}
+
+}  // namespace
+
+const Channel* Recording::find(std::string_view name) const {
+  for (const Channel& channel : channels)
+    if (channel.name == name) return &channel;
+  const std::string wanted = lower(name);
+  for (const Channel& channel : channels)
+    if (lower(channel.name) == wanted) return &channel;
+  return nullptr;
+}
+
+Result<Recording> cut(const Recording& recording, double from_s, double to_s) {
+  if (!(from_s < to_s))
+    return Error{Errc::invalid_argument, "the window must begin before it ends"};
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < recording.samples(); ++k)
+    if (recording.time.at(k) >= from_s && recording.time.at(k) < to_s) kept.push_back(k);
+  if (kept.empty())
+    return Error{Errc::too_few_samples, "no sample lies in the window; the recording lasts " +
+                                            std::to_string(recording.duration_s()) + " s"};
+  Recording part{recording.source, recording.format, recording.time, {}, recording.notes, 0};
+  const double origin_s = recording.time.at(kept.front());
+  if (part.time.start_ns) *part.time.start_ns += static_cast<std::int64_t>(origin_s * 1e9);
+  part.time.stamps_s.clear();
+  if (!recording.time.is_uniform())
+    for (const std::size_t k : kept) part.time.stamps_s.push_back(recording.time.at(k) - origin_s);
+  for (const Channel& channel : recording.channels) {
+    Channel& copy = part.channels.emplace_back(Channel{channel.name, channel.unit, {}});
+    copy.values.reserve(kept.size());
+    for (const std::size_t k : kept) copy.values.push_back(channel.values[k]);
+  }
+  if (recording.first_line > 0) part.first_line = recording.first_line + kept.front();
+  return part;
+}
+
+std::vector<Triad> accelerometer_triads(const Recording& recording) {
+  const bool any_acceleration = std::ranges::any_of(recording.channels, [](const Channel& c) {
+    return c.unit.quantity == Quantity::acceleration;
+  });
+  std::vector<Triad> triads;
+  std::vector<std::string> sensors;
+  for (std::size_t i = 0; i < recording.channels.size(); ++i) {
+    if (!may_be_accelerometer(recording.channels[i], any_acceleration)) continue;
+    const AxisName name = axis_of(recording.channels[i].name);
+    if (name.axis == 0) continue;
+    auto at = static_cast<std::size_t>(std::ranges::find(sensors, name.sensor) - sensors.begin());
+    if (at == sensors.size()) {
+      sensors.push_back(name.sensor);
+      triads.push_back({tidy(name.sensor), {}, {}, {}});
+    }
+    auto& slot = name.axis == 'x' ? triads[at].x : name.axis == 'y' ? triads[at].y : triads[at].z;
+    if (!slot) slot = i;
+  }
+  return triads;
+}
+
+}  // namespace proofmass

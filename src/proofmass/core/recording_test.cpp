@@ -1,0 +1,58 @@
+#include "proofmass/core/recording.hpp"
+
+#include <gtest/gtest.h>
+
+namespace proofmass {
+namespace {
+
+Recording with_channels(const std::vector<std::string>& names, std::string_view unit) {
+  Recording recording;
+  for (const std::string& name : names)
+    recording.channels.push_back({name, parse_unit(unit).value(), {0.0, 1.0, 2.0, 3.0}});
+  recording.time = {.source = TimeSource::given_rate, .channel = "", .rate_hz = 10.0, .stamps_s = {}, .start_ns = 0};
+  return recording;
+}
+
+TEST(AccelerometerTriads, AreFoundByName) {
+  for (const auto& names : {std::vector<std::string>{"Acc_X", "Acc_Y", "Acc_Z"},
+                            {"ax", "ay", "az"},
+                            {"Accelerometer X", "Accelerometer Y", "Accelerometer Z"},
+                            {"acc_x_g", "acc_y_g", "acc_z_g"},
+                            {"x", "y", "z"}}) {
+    const auto triads = accelerometer_triads(with_channels(names, "g"));
+    ASSERT_EQ(triads.size(), 1U) << names[0];
+    EXPECT_EQ(triads[0].x, 0U);
+    EXPECT_EQ(triads[0].y, 1U);
+    EXPECT_EQ(triads[0].z, 2U);
+  }
+}
+
+TEST(AccelerometerTriads, OfTwoSensorsStayApart) {
+  for (const auto& names : {std::vector<std::string>{"x1", "y1", "x2", "y2"},
+                            {"acc1_x", "acc1_y", "acc2_x", "acc2_y"},
+                            {"ax1", "ay1", "ax2", "ay2"}}) {
+    const auto triads = accelerometer_triads(with_channels(names, "m/s^2"));
+    ASSERT_EQ(triads.size(), 2U) << names[0];
+    EXPECT_EQ(triads[1].x, 2U);
+    EXPECT_EQ(triads[1].y, 3U);
+    EXPECT_FALSE(triads[1].z);
+  }
+}
+
+TEST(AccelerometerTriads, LeaveOtherQuantitiesOut) {
+  Recording recording = with_channels({"Acc_X", "Acc_Y", "Acc_Z"}, "m/s^2");
+  recording.channels.push_back({"Gyr_X", parse_unit("deg/s").value(), {0, 0, 0, 0}});
+  EXPECT_EQ(accelerometer_triads(recording).size(), 1U);
+}
+
+TEST(Cut, KeepsTheWindowAndItsTime) {
+  const Recording part = cut(with_channels({"x"}, "g"), 0.1, 0.3).value();
+  ASSERT_EQ(part.samples(), 2U);
+  EXPECT_EQ(part.channels[0].values, (std::vector{1.0, 2.0}));
+  EXPECT_EQ(part.time.start_ns, 100'000'000);
+  EXPECT_FALSE(cut(with_channels({"x"}, "g"), 5.0, 6.0));
+  EXPECT_FALSE(cut(with_channels({"x"}, "g"), 0.3, 0.1));
+}
+
+}  // namespace
+}  // namespace proofmass

@@ -1,0 +1,7 @@
+#include "proofmass/core/version.hpp"
+
+namespace proofmass {
+
+std::string_view version() { return PROOFMASS_VERSION; }
+
+}  // namespace proofmass

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string_view>
+
+namespace proofmass {
+
+/// Version of this build, "0.1.0": stands at the head of every document.
+[[nodiscard]] std::string_view version();
+
+}  // namespace proofmass
