@@ -1,5 +1,8 @@
+# The libraries are static, so what they use privately is linked by whoever uses them: everything
+# that the root CMakeLists.txt finds has to be found here too. tests/install holds the two together.
 include(CMakeFindDependencyMacro)
-find_dependency(Eigen3)
+find_dependency(Eigen3 3.4 NO_MODULE)
+find_dependency(Boost 1.74)
 find_dependency(ZLIB)
 find_dependency(LibLZMA)
 find_dependency(fmt)

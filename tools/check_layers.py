@@ -1,49 +1,124 @@
 #!/usr/bin/env python3
-"""Holds every #include in src/proofmass to the USES lines of the modules' CMakeLists.txt.
+"""Holds src/proofmass to its walls. The truth is in the modules' CMakeLists.txt: what a module may
+include stands in its USES line, what of it is public in its HEADERS line.
 
-Exits 1 and lists the offending lines when a module includes one it does not name, or when the
-USES lines form a cycle; otherwise prints the modules by layer, lowest first.
+An offence is
+  - an #include of a module that USES does not name, or a USES that no source needs;
+  - a cycle among the USES lines;
+  - a public header that shows anything but std, Eigen/Core and public headers of Proofmass;
+  - another module's private header, or a path that is not written "proofmass/module/file.hpp";
+  - a listed header or source that does not exist, or one that exists and is not listed;
+  - in the library (tests apart), output, exit, the environment or the process's locale.
+
+Lists the offences and exits 1; otherwise prints the modules by layer, lowest first.
 """
 import re
 import sys
+from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent / "src" / "proofmass"
+ROOT = Path(__file__).resolve().parent.parent
+LIBRARY = ROOT / "src" / "proofmass"
 KEYWORDS = {"USES", "HEADERS", "SOURCES", "TESTS", "LINKS", "USES_PRIVATELY"}
+INCLUDE = re.compile(r'\s*#\s*include\s*(["<])([^">]+)[">]')
+STD_HEADER = re.compile(r"[a-z_]+")
+# A broken contract prints its place and aborts; nothing else in the library speaks for itself.
+MAY_PRINT = {"core/contract.cpp"}
+WORLD = re.compile(
+    r"\b(std::c(out|err|log)|f?printf\s*\(|fmt::print|puts\s*\(|(std::)?(exit|abort|getenv|setlocale)\s*\("
+    r"|std::locale::global)"
+)
 
 
-def declared_uses() -> dict[str, set[str]]:
-    uses = {}
-    for cmake in ROOT.glob("*/CMakeLists.txt"):
-        words = re.search(r"proofmass_module\((.*?)\)", cmake.read_text(), re.S)[1].split()
-        name, *rest = words
-        after = rest[rest.index("USES") + 1 :] if "USES" in rest else []
-        stop = next((i for i, word in enumerate(after) if word in KEYWORDS), len(after))
-        uses[name] = set(after[:stop])
-    return uses
+@dataclass
+class Module:
+    uses: set[str]
+    headers: set[str]
+    listed: set[str]
 
 
-def offences(uses: dict[str, set[str]]) -> list[str]:
+def read_module(cmake: Path) -> tuple[str, Module]:
+    text = re.sub(r"#.*", "", cmake.read_text())
+    name, *words = re.search(r"proofmass_module\((.*?)\)", text, re.S)[1].split()
+    lists = {keyword: set() for keyword in KEYWORDS}
+    current = None
+    for word in words:
+        if word in KEYWORDS:
+            current = lists[word]
+        else:
+            current.add(word)
+    listed = lists["HEADERS"] | lists["SOURCES"] | lists["TESTS"]
+    return name, Module(lists["USES"], lists["HEADERS"], listed)
+
+
+def files_offences(name: str, module: Module) -> list[str]:
+    present = {path.name for path in (LIBRARY / name).glob("*.[ch]pp")}
+    at = f"src/proofmass/{name}/CMakeLists.txt"
+    gone = [f"{at}: lists {file}, which does not exist" for file in module.listed - present]
+    # A private header needs no line; a source or test without one would silently not be built.
+    forgotten = {file for file in present - module.listed if file.endswith(".cpp")}
+    return sorted(gone) + [f"{at}: does not list {file}" for file in sorted(forgotten)]
+
+
+def include_offence(source: Path, quote: str, target: str, modules: dict[str, Module]) -> str | None:
+    own = source.parent.name
+    public = source.name in modules[own].headers
+    if ours := re.fullmatch(r"proofmass/(\w+)/(\w+\.hpp)", target):
+        other, file = ours.groups()
+        if other not in modules[own].uses | {own}:
+            return f"{own} may not include {other}: its USES line does not name it"
+        private = file not in modules[other].headers
+        if private and other != own:
+            return f"{target} is private to {other}"
+        if private and public:
+            return f"a public header shows {target}, which is private"
+        return None
+    if quote == '"':
+        return f'write "{target}" as "proofmass/{own}/{target}"'
+    if public and target != "Eigen/Core" and not STD_HEADER.fullmatch(target):
+        return f"a public header shows <{target}>; only std, Eigen/Core and Proofmass may be seen"
+    return None
+
+
+def source_offences(source: Path, modules: dict[str, Module]) -> list[str]:
     found = []
-    for source in sorted(ROOT.glob("*/*.[ch]pp")):
-        module = source.parent.name
-        for number, line in enumerate(source.read_text().splitlines(), 1):
-            include = re.match(r'\s*#\s*include\s*["<]proofmass/(\w+)/', line)
-            if include and include[1] not in uses[module] | {module}:
-                found.append(f"{source}:{number}: {module} may not include {include[1]}")
+    in_library = not source.name.endswith("_test.cpp")
+    in_library &= source.relative_to(LIBRARY).as_posix() not in MAY_PRINT
+    for number, line in enumerate(source.read_text().splitlines(), 1):
+        at = f"{source.relative_to(ROOT)}:{number}"
+        code = re.sub(r'//.*|"(\\.|[^"\\])*"', '""', line)
+        if include := INCLUDE.match(line):
+            if offence := include_offence(source, *include.groups(), modules):
+                found.append(f"{at}: {offence}")
+        elif in_library and (world := WORLD.search(code)):
+            found.append(f"{at}: the library may not use {world[0].strip(' (')}")
     return found
 
 
+def unneeded_uses(name: str, module: Module) -> list[str]:
+    text = "".join(path.read_text() for path in (LIBRARY / name).glob("*.[ch]pp"))
+    return [
+        f"src/proofmass/{name}/CMakeLists.txt: USES {other}, but no source includes it"
+        for other in sorted(module.uses)
+        if f'"proofmass/{other}/' not in text
+    ]
+
+
 def main() -> int:
-    uses = declared_uses()
+    modules = dict(read_module(cmake) for cmake in sorted(LIBRARY.glob("*/CMakeLists.txt")))
+    order = TopologicalSorter({name: module.uses for name, module in modules.items()})
     try:
-        order = TopologicalSorter(uses)
         order.prepare()
     except CycleError as error:
         print("cycle:", " -> ".join(error.args[1]))
         return 1
-    if found := offences(uses):
+    found = []
+    for name, module in modules.items():
+        found += files_offences(name, module) + unneeded_uses(name, module)
+        for source in sorted((LIBRARY / name).glob("*.[ch]pp")):
+            found += source_offences(source, modules)
+    if found:
         print("\n".join(found))
         return 1
     while order.is_active():

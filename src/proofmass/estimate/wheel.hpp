@@ -29,6 +29,9 @@ struct WheelOptions {
   std::optional<std::array<double, 3>> spin_axis;
   std::optional<double> radius_m;      ///< distance of each sensor from the axle, where known
   std::optional<double> rim_radius_m;  ///< of the circle whose path is the distance travelled
+  /// Radius on which the wheel rolls, where it carries a vehicle and this is known: its speeding up and
+  /// braking then no longer lean on the angle.
+  std::optional<double> rolling_radius_m;
   /// One standard deviation of the angle between a sensor's axes and the marks of the wheel, which no
   /// accelerometer can see: part of the band of every angle, none of the number of turns.
   double alignment_std_rad = 0.0;

@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "exit_status.hpp"
+#include "output.hpp"
+#include "proofmass/core/units.hpp"
+#include "proofmass/report/budget_report.hpp"
+#include "proofmass/sensor/grades.hpp"
+#include "proofmass/sensor/sensor_file.hpp"
+#include "verbs.hpp"
+
+namespace proofmass::app {
+namespace {
+
+// A calibrated axis: its bias is taken away, what is left is as large as its standard deviation.
+estimate::BudgetSensor axis_of(const sensor::SensorModel& model, std::size_t axis) {
+  const sensor::Figure& bias = *model.calibration.bias[axis];
+  const auto& scale = model.calibration.scale[axis];
+  // Of a bias in volts or counts the scale makes an acceleration.
+  const bool electric = bias.unit.si_symbol != "m/s^2";
+  const double per_mps2 = electric && scale ? scale->si() : 1.0;
+  const auto& white = model.noise.white[axis];
+  return {fmt::format("{} {}", model.name, "xyz"[axis]),
+          {0.0, *bias.std_si() / per_mps2},
+          white ? white->si() : 0.0};
+}
+
+std::vector<estimate::BudgetSensor> axes_of(const std::string& path, std::vector<Note>& notes) {
+  const sensor::SensorFile file = need(sensor::read_sensor_file(path), Stage::reading);
+  notes.insert(notes.end(), file.notes.begin(), file.notes.end());
+  std::vector<estimate::BudgetSensor> sensors;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto& bias = file.model.calibration.bias[axis];
+    if (bias && bias->std) sensors.push_back(axis_of(file.model, axis));
+  }
+  if (sensors.empty()) {
+    throw Failure(bad_input,
+                  path +
+                      ": calibration.bias: expected a figure with its std, from which the "
+                      "bias that is left follows: calibrate the sensor first, or give "
+                      "--bias-mg");
+  }
+  return sensors;
+}
+
+}  // namespace
+
+void run(const BudgetCommand& command) {
+  report::BudgetReport report;
+  std::vector<estimate::BudgetSensor> sensors;
+  for (const double mg : command.bias_mg) {
+    sensors.push_back(
+        {fmt::format("{:.6g} mg", mg), {mg * 1e-3 * standard_gravity_mps2, 0.0}, 0.0});
+  }
+  for (const std::string& path : command.sensors) {
+    for (auto& axis : axes_of(path, report.notes)) sensors.push_back(std::move(axis));
+  }
+  if (sensors.empty()) sensors = estimate::grade_sensors();
+  std::vector<double> times_s = command.times_s;
+  if (times_s.empty()) times_s.assign(sensor::grade_times_s.begin(), sensor::grade_times_s.end());
+  std::sort(times_s.begin(), times_s.end());
+  report.inputs = command.sensors;
+  report.rows = estimate::position_budget(sensors, times_s);
+  show_notes(report.notes, "", command.output);
+  publish({.text = [&] { return report::budget_text(report); },
+           .json = [&] { return report::budget_json(report); },
+           .html = [&] { return report::budget_html(report); }},
+          command.output);
+}
+
+}  // namespace proofmass::app

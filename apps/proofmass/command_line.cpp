@@ -1,0 +1,351 @@
+#include "command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <iostream>
+#include <memory>
+
+#include "config_file.hpp"
+#include "exit_status.hpp"
+#include "proofmass/core/version.hpp"
+
+namespace proofmass::app {
+namespace {
+
+// Names the positionals the way people do: "FILE...", "[RIG]".
+class Formatter : public CLI::Formatter {
+ public:
+  [[nodiscard]] std::string make_option_usage(const CLI::Option* option) const override {
+    const std::string name = option->get_name(true) + (option->get_expected_max() > 1 ? "..." : "");
+    return option->get_required() ? name : "[" + name + "]";
+  }
+};
+
+// CLI11's own validators print bounds of 309 digits.
+CLI::Validator number(const char* expected, bool (*fits)(double)) {
+  const auto check = [expected, fits](std::string& text) -> std::string {
+    double value = 0.0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error == std::errc() && stop == end && std::isfinite(value) && fits(value)) return {};
+    return fmt::format("expected {}, not '{}'", expected, text);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator positive() {
+  return number("a number above 0", [](double x) { return x > 0.0; });
+}
+CLI::Validator finite() {
+  return number("a number", [](double) { return true; });
+}
+CLI::Validator not_negative() {
+  return number("a number of 0 or more", [](double x) { return x >= 0.0; });
+}
+CLI::Validator latitude() {
+  return number("degrees from -90 to 90", [](double x) { return std::abs(x) <= 90.0; });
+}
+
+void add_input_flags(CLI::App& verb, InputFlags& flags) {
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type)->group("Input");
+  };
+  add("--rate", flags.rate_hz, "HZ", "sample rate, where the file has no time column")
+      ->check(positive());
+  add("--unit", flags.unit, "UNIT", "of the accelerometer channels: g, mg, m/s2, V, mV or counts")
+      ->check(CLI::IsMember({"g", "mg", "m/s2", "V", "mV", "counts"}));
+  add("--channel", flags.channels, "NAME", "use this channel; may be repeated (default: all)")
+      ->allow_extra_args(false);
+  add("--time", flags.time, "NAME", "the time column (default: found by name and content)");
+  add("--from", flags.from_s, "S", "leave out what comes before")->check(finite());
+  add("--to", flags.to_s, "S", "leave out what comes from here on")->check(finite());
+  add("--sensor", flags.sensors, "FILE.toml",
+      "apply this sensor file's calibration first; once for all sensors or once for each")
+      ->allow_extra_args(false);
+  CLI::Option* gravity =
+      add("--gravity", flags.gravity_mps2, "M_PER_S2", "local gravity (default 9.80665)");
+  gravity->check(positive());
+  CLI::Option* where = add("--latitude", flags.latitude_deg, "DEG", "gravity from the latitude");
+  where->check(latitude())->excludes(gravity);
+  add("--height", flags.height_m, "M", "and from the height above the ellipsoid")
+      ->check(finite())
+      ->needs(where);
+}
+
+void add_output_flags(CLI::App& verb, OutputFlags& flags) {
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type)->group("Output");
+  };
+  add("--json", flags.json, "FILE", "write the results as JSON; - is standard output, alone");
+  verb.add_flag("-q,--quiet", flags.quiet, "say nothing on standard error but an error")
+      ->group("Output");
+  verb.add_flag("-v,--verbose", flags.verbose, "tell what was found while reading")
+      ->group("Output");
+  verb.add_flag("--strict", flags.strict, "exit with status 5 if the data are bad")
+      ->group("Output");
+  // Read before all others, by config_path(); here it stands for --help.
+  verb.add_option("--config", "read flags from this file")->type_name("FILE.toml")->group("Output");
+}
+
+void add_report_flag(CLI::App& verb, OutputFlags& flags) {
+  verb.add_option("--report", flags.report, "write one self-contained page with the plots")
+      ->type_name("FILE.html")
+      ->group("Output");
+}
+
+CLI::Option* add_output_file(CLI::App& verb, OutputFlags& flags, const char* help) {
+  return verb.add_option("-o,--output", flags.output, help)->type_name("FILE.csv")->group("Output");
+}
+
+// The verbs, each bound to its command.
+struct Commands {
+  InspectCommand inspect;
+  ConvertCommand convert;
+  WheelCommand wheel;
+  SimulateCommand simulate;
+  BudgetCommand budget;
+};
+
+void add_inspect(CLI::App& app, InspectCommand& command) {
+  CLI::App& verb = *app.add_subcommand("inspect", "what is in a file and how good it is");
+  verb.add_option("FILE", command.files, "recordings; - is standard input (CSV)")
+      ->type_name("")
+      ->required();
+  add_input_flags(verb, command.input);
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass inspect wheel.csv --report wheel.html");
+}
+
+void add_convert(CLI::App& app, ConvertCommand& command) {
+  CLI::App& verb = *app.add_subcommand("convert", "between formats");
+  verb.add_option("FILE", command.file, "a recording; - is standard input (CSV)")
+      ->type_name("")
+      ->required();
+  add_output_file(verb, command.output, "the new file: .csv, .csv.gz or .npy; - is CSV")
+      ->required();
+  add_input_flags(verb, command.input);
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass convert log.csv.xz --unit mg -o log.npy");
+}
+
+void add_wheel(CLI::App& app, WheelCommand& command) {
+  CLI::App& verb = *app.add_subcommand(
+      "wheel", "angle, turns and speed from one or two accelerometers on a wheel");
+  verb.add_option("FILE", command.files, "one recording, or one for each of two sensors")
+      ->type_name("")
+      ->expected(1, 2)
+      ->required();
+  verb.add_option("--spin-axis", command.spin_axis,
+                  "x, y, z, -x, -y, -z or \"X,Y,Z\" in the sensor's axes (default: found)")
+      ->type_name("AXIS");
+  verb.add_option("--radius", command.radius_m, "of the sensor from the axle, where known")
+      ->type_name("M")
+      ->check(not_negative());
+  verb.add_option("--rim-radius", command.rim_radius_m, "of the rim, whose path is the distance")
+      ->type_name("M")
+      ->check(positive());
+  add_input_flags(verb, command.input);
+  add_output_file(verb, command.output, "write the whole time series with standard deviations");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass wheel hub.csv rim.csv --spin-axis z --report wheel.html");
+}
+
+void add_simulate(CLI::App& app, SimulateCommand& command) {
+  CLI::App& verb = *app.add_subcommand("simulate", "the rig as a digital twin");
+  verb.add_option("RIG", command.rig, "description of the rig, TOML (default: the thesis's rig)")
+      ->type_name("");
+  verb.add_option("--seed", command.seed, "same seed, same numbers")->type_name("N");
+  verb.add_option("--rpm", command.rpm, "turn at this speed throughout")
+      ->type_name("RPM")
+      ->check(finite());
+  verb.add_option("--rate", command.rate_hz, "samples a second")
+      ->type_name("HZ")
+      ->check(positive());
+  verb.add_option("--duration", command.duration_s, "length of the recording")
+      ->type_name("S")
+      ->check(positive());
+  verb.add_option("--gravity", command.gravity_mps2, "local gravity (default 9.80665)")
+      ->type_name("M_PER_S2")
+      ->check(positive());
+  verb.add_flag("--datasheet-errors", command.datasheet_errors,
+                "misalignment, cross-axis, scale and nonlinearity as the datasheet allows");
+  verb.add_option("--adc-bits", command.adc_bits, "of the converter")->type_name("N");
+  verb.add_flag("--print-config", command.print_config, "print the rig's description and stop");
+  add_output_file(verb, command.output,
+                  "the recording; the truth goes to FILE.truth.csv; - is standard output");
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass simulate --rpm 15 --seed 7 -o rig.csv");
+}
+
+void add_budget(CLI::App& app, BudgetCommand& command) {
+  CLI::App& verb = *app.add_subcommand("budget", "position error against time for a sensor");
+  CLI::Option* bias =
+      verb.add_option("--bias-mg", command.bias_mg, "bias that is left; may be repeated");
+  bias->type_name("MG")->delimiter(',')->allow_extra_args(false)->check(finite());
+  verb.add_option("--sensor", command.sensors, "take bias and noise from this sensor file")
+      ->type_name("FILE.toml")
+      ->allow_extra_args(false);
+  verb.add_option("--times", command.times_s, "after these times (default 1,10,60,3600)")
+      ->type_name("S,…")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(not_negative());
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass budget --bias-mg 3 --times 1,10,60");
+}
+
+// The value of --config, if it is given.
+std::string config_path(const std::vector<std::string>& arguments) {
+  constexpr std::string_view flag = "--config";
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    if (arguments[k] == flag && k + 1 < arguments.size()) return arguments[k + 1];
+    if (arguments[k].starts_with(std::string(flag) + "="))
+      return arguments[k].substr(flag.size() + 1);
+  }
+  return {};
+}
+
+bool is_given(const CLI::Option& option, const std::vector<std::string>& arguments) {
+  return std::any_of(arguments.begin(), arguments.end(), [&](const std::string& argument) {
+    const std::string name = argument.substr(0, argument.find('='));
+    if (name.starts_with("--")) return option.check_lname(name.substr(2));
+    return name.size() > 1 && name.front() == '-' && option.check_sname(name.substr(1, 1));
+  });
+}
+
+CLI::App* find_verb(CLI::App& app, const std::string& name) {
+  const auto verbs = app.get_subcommands([&](CLI::App* verb) { return verb->get_name() == name; });
+  return verbs.empty() ? nullptr : verbs.front();
+}
+
+bool known_to_any(CLI::App& app, const std::string& flag) {
+  const auto verbs = app.get_subcommands([](CLI::App*) { return true; });
+  return std::any_of(verbs.begin(), verbs.end(), [&](CLI::App* verb) {
+    return verb->get_option_no_throw("--" + flag) != nullptr;
+  });
+}
+
+// The flags that the configuration file adds to those given, which go before it.
+std::vector<std::string> configured(CLI::App& app,
+                                    CLI::App& verb,
+                                    const std::vector<std::string>& arguments) {
+  std::vector<std::string> more;
+  const std::string path = config_path(arguments);
+  if (path.empty()) return more;
+  for (const ConfigEntry& entry : read_config(path)) {
+    const std::string place = fmt::format("{}: line {}: ", path, entry.line);
+    if (!entry.verb.empty() && find_verb(app, entry.verb) == nullptr) {
+      throw Failure(usage, place + "[" + entry.verb + "] is no verb");
+    }
+    if (!entry.verb.empty() && entry.verb != verb.get_name()) continue;
+    const CLI::Option* option = verb.get_option_no_throw("--" + entry.flag);
+    if (option == nullptr && entry.verb.empty() && known_to_any(app, entry.flag)) continue;
+    if (option == nullptr || entry.flag == "config" || entry.flag == "help") {
+      throw Failure(usage, fmt::format("{}{} has no flag '{}': see proofmass {} --help", place,
+                                       verb.get_name(), entry.flag, verb.get_name()));
+    }
+    if (is_given(*option, arguments)) continue;
+    for (const std::string& value : entry.values) {
+      const bool is_switch = option->get_items_expected_max() == 0;
+      if (is_switch && value != "true" && value != "false") {
+        throw Failure(usage, place + entry.flag + ": expected true or false, not '" + value + "'");
+      }
+      if (is_switch && value == "true") more.push_back("--" + entry.flag);
+      if (!is_switch) more.push_back("--" + entry.flag + "=" + value);
+    }
+  }
+  return more;
+}
+
+std::vector<std::string> with_config(CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    CLI::App* verb = find_verb(app, arguments[k]);
+    if (verb == nullptr) continue;
+    const std::vector<std::string> more = configured(app, *verb, arguments);
+    arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(k) + 1, more.begin(),
+                     more.end());
+    break;
+  }
+  return arguments;
+}
+
+Command chosen(CLI::App& app, Commands& commands) {
+  if (app.got_subcommand("inspect")) return std::move(commands.inspect);
+  if (app.got_subcommand("convert")) return std::move(commands.convert);
+  if (app.got_subcommand("wheel")) return std::move(commands.wheel);
+  if (app.got_subcommand("simulate")) return std::move(commands.simulate);
+  return std::move(commands.budget);
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
+std::optional<Command> parse_command_line(int argc, char** argv) {
+  CLI::App app(
+      "Puts an accelerometer to the proof: from raw readings to angle, turns and speed with "
+      "honest error bars.",
+      "proofmass");
+  app.set_version_flag("--version", fmt::format("proofmass {}", version()));
+  app.require_subcommand(1);
+  app.formatter(std::make_shared<Formatter>());
+  app.get_formatter()->column_width(34);
+  app.footer("Each verb explains itself: proofmass VERB --help");
+  Commands commands;
+  add_inspect(app, commands.inspect);
+  add_convert(app, commands.convert);
+  add_wheel(app, commands.wheel);
+  add_simulate(app, commands.simulate);
+  add_budget(app, commands.budget);
+  std::vector<std::string> arguments = with_config(app, argc, argv);
+  std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+  try {
+    app.parse(std::move(arguments));
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {  // --help, --version
+      app.exit(error, std::cout, std::cerr);
+      return std::nullopt;
+    }
+    const auto used = app.get_subcommands();
+    const std::string verb = used.empty() ? "" : used.front()->get_name() + " ";
+    throw Failure(usage, fmt::format("{}: see proofmass {}--help", one_line(error.what()), verb));
+  }
+  return chosen(app, commands);
+}
+
+std::array<double, 3> parse_axis(const std::string& text) {
+  const bool minus = text.starts_with('-');
+  const std::string letter = text.substr(minus || text.starts_with('+') ? 1 : 0);
+  const double sign = minus ? -1.0 : 1.0;
+  if (letter == "x") return {sign, 0.0, 0.0};
+  if (letter == "y") return {0.0, sign, 0.0};
+  if (letter == "z") return {0.0, 0.0, sign};
+  std::array<double, 3> axis{};
+  const char* from = text.data();
+  const char* end = from + text.size();
+  bool good = true;
+  for (std::size_t k = 0; k < 3 && good; ++k) {
+    const auto [stop, error] = std::from_chars(from, end, axis[k]);
+    good = error == std::errc() && std::isfinite(axis[k]) &&
+           (k == 2 ? stop == end : stop != end && *stop == ',');
+    from = stop + 1;
+  }
+  if (!good || std::hypot(axis[0], axis[1], axis[2]) == 0.0) {
+    throw Failure(
+        usage,
+        "--spin-axis: expected x, y, z, -x, -y, -z or three numbers \"0,0,1\", not '" + text + "'");
+  }
+  return axis;
+}
+
+}  // namespace proofmass::app

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+// What the user asked for. No analysis begins before all of it has been read and found to make
+// sense.
+namespace proofmass::app {
+
+/// Flags of every verb that reads recordings.
+struct InputFlags {
+  std::optional<double> rate_hz;
+  std::string unit;
+  std::vector<std::string> channels;
+  std::string time;
+  std::optional<double> from_s, to_s;
+  std::vector<std::string> sensors;
+  std::optional<double> gravity_mps2, latitude_deg, height_m;
+};
+
+/// Flags of every verb.
+struct OutputFlags {
+  std::string json, report, output;
+  bool quiet = false, verbose = false, strict = false;
+};
+
+struct InspectCommand {
+  std::vector<std::string> files;
+  InputFlags input;
+  OutputFlags output;
+};
+
+struct ConvertCommand {
+  std::string file;
+  InputFlags input;
+  OutputFlags output;
+};
+
+struct WheelCommand {
+  std::vector<std::string> files;
+  std::string spin_axis;
+  std::optional<double> radius_m, rim_radius_m;
+  InputFlags input;
+  OutputFlags output;
+};
+
+struct SimulateCommand {
+  std::string rig;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> rpm, rate_hz, duration_s, gravity_mps2;
+  bool datasheet_errors = false, print_config = false;
+  std::optional<int> adc_bits;
+  OutputFlags output;
+};
+
+struct BudgetCommand {
+  std::vector<double> bias_mg, times_s;
+  std::vector<std::string> sensors;
+  OutputFlags output;
+};
+
+using Command =
+    std::variant<InspectCommand, ConvertCommand, WheelCommand, SimulateCommand, BudgetCommand>;
+
+/// Reads the command line and the configuration file that it may name. --help and --version are
+/// printed here, and have no command. Throws Failure.
+[[nodiscard]] std::optional<Command> parse_command_line(int argc, char** argv);
+
+/// "x", "-z", "0,0.1,1" as a vector. Throws Failure (usage).
+[[nodiscard]] std::array<double, 3> parse_axis(const std::string& text);
+
+}  // namespace proofmass::app

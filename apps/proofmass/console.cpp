@@ -1,0 +1,135 @@
+#include "console.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <memory>
+#include <string_view>
+#include <unistd.h>
+
+namespace proofmass::app {
+namespace {
+
+// What a signal handler may look at and set.
+volatile std::sig_atomic_t held_back = 0;    // while a file is being written
+volatile std::sig_atomic_t signal_seen = 0;  // the one that came meanwhile
+volatile std::sig_atomic_t bar_shown = 0;
+
+constexpr std::string_view wipe = "\r\033[K";
+
+// Calls nothing but what POSIX allows in a signal handler.
+[[noreturn]] void end_by(int signal_number) {
+  constexpr std::string_view text = "proofmass: interrupted\n";
+  // Whether that is heard makes no difference to how the process ends.
+  [[maybe_unused]] ssize_t written = 0;
+  if (bar_shown != 0) written = write(STDERR_FILENO, wipe.data(), wipe.size());
+  written = write(STDERR_FILENO, text.data(), text.size());
+  _exit(128 + signal_number);
+}
+
+extern "C" void on_signal(int signal_number) {
+  if (held_back == 0) end_by(signal_number);
+  signal_seen = signal_number;
+}
+
+bool on_terminal() {
+  const char* terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 &&
+         (terminal == nullptr || std::string_view(terminal) != "dumb");
+}
+
+// Source: https://no-color.org: set and not empty means none.
+bool in_colour() {
+  const char* no_colour = std::getenv("NO_COLOR");
+  return on_terminal() && (no_colour == nullptr || *no_colour == '\0');
+}
+
+std::string painted(std::string_view text, int colour) {
+  return in_colour() ? fmt::format("\033[{}m{}\033[0m", colour, text) : std::string(text);
+}
+
+void print(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+// Draws itself anew in place, and wipes itself away when it goes.
+class Bar {
+ public:
+  Bar() = default;
+  Bar(const Bar&) = delete;
+  Bar& operator=(const Bar&) = delete;
+  ~Bar() {
+    if (shown_ >= 0) print(std::string(wipe));
+    bar_shown = 0;
+  }
+  void show(std::string_view stage, double fraction) {
+    constexpr int width = 30, steps = 10 * width;
+    const int step =
+        static_cast<int>(std::clamp(std::isfinite(fraction) ? fraction : 0.0, 0.0, 1.0) * steps);
+    if (step == shown_) return;
+    shown_ = step;
+    bar_shown = 1;
+    const int full = step * width / steps;
+    print(fmt::format("\r\033[K[{:=<{}}{: <{}}] {:3d} %  {}", "", full, "", width - full,
+                      100 * step / steps, stage));
+  }
+
+ private:
+  int shown_ = -1;
+};
+
+}  // namespace
+
+void watch_for_interrupts() {
+  struct sigaction action{};
+  action.sa_handler = on_signal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+void without_interruption(const std::function<void()>& work) {
+  struct Hold {
+    Hold() { held_back = 1; }
+    ~Hold() { held_back = 0; }
+  };
+  {
+    const Hold hold;
+    work();
+  }
+  if (signal_seen != 0) end_by(signal_seen);
+}
+
+void show_notes(const std::vector<Note>& notes,
+                const std::string& where,
+                const OutputFlags& flags) {
+  constexpr int yellow = 33, red = 31, grey = 90;
+  if (flags.quiet) return;
+  for (const Note& note : notes) {
+    std::string word = painted("warning", yellow);
+    if (note.severity == Severity::bad) word = painted("bad data", red);
+    if (note.severity == Severity::info) word = painted("note", grey);
+    if (note.severity == Severity::info && !flags.verbose) continue;
+    print(fmt::format("{}: {}{}{}\n", word, where, where.empty() ? "" : ": ", note.text));
+  }
+}
+
+Progress progress_bar(const OutputFlags& flags) {
+  const std::shared_ptr<Bar> bar =
+      flags.quiet || !on_terminal() ? nullptr : std::make_shared<Bar>();
+  return [bar](std::string_view stage, double fraction) {
+    if (bar) bar->show(stage, fraction);
+  };
+}
+
+void show_error(const std::string& message) {
+  constexpr int red = 31;
+  print(fmt::format("{}: {}\n", painted("proofmass", red), message));
+}
+
+}  // namespace proofmass::app

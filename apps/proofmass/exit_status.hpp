@@ -1,0 +1,46 @@
+#pragma once
+
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "proofmass/core/result.hpp"
+
+namespace proofmass::app {
+
+/// What the command ends with: docs and scripts rely on these numbers. An interrupt ends it with
+/// 130 (console.hpp).
+enum ExitStatus : int {
+  done = 0,
+  failed = 1,
+  usage = 2,
+  bad_input = 3,
+  bad_device = 4,
+  bad_data = 5,  ///< done, but the data are bad: only with --strict
+};
+
+/// What ends a verb early: main() prints the one line and returns the status.
+class Failure : public std::exception {
+ public:
+  Failure(ExitStatus status, std::string message) : status_(status), message_(std::move(message)) {}
+  [[nodiscard]] ExitStatus status() const { return status_; }
+  [[nodiscard]] const char* what() const noexcept override { return message_.c_str(); }
+
+ private:
+  ExitStatus status_;
+  std::string message_;
+};
+
+/// At what an error arose, which decides what it means for the exit status.
+enum class Stage { reading, computing, writing };
+
+[[nodiscard]] ExitStatus status_of(const Error& error, Stage stage);
+
+/// The value, or a Failure.
+template <class T>
+[[nodiscard]] T need(Result<T> result, Stage stage) {
+  if (!result) throw Failure(status_of(result.error(), stage), result.error().message);
+  return std::move(result).value();
+}
+
+}  // namespace proofmass::app

@@ -1,0 +1,114 @@
+#include "input.hpp"
+
+#include <fmt/format.h>
+#include <limits>
+
+#include "exit_status.hpp"
+#include "proofmass/io/read_recording.hpp"
+#include "proofmass/sensor/calibration.hpp"
+#include "proofmass/sensor/gravity.hpp"
+
+namespace proofmass::app {
+namespace {
+
+std::vector<std::size_t> axes_of(const Triad& triad) {
+  std::vector<std::size_t> indices;
+  for (const auto& axis : {triad.x, triad.y, triad.z}) {
+    if (axis) indices.push_back(*axis);
+  }
+  return indices;
+}
+
+void bring_to_si(Channel& channel, const std::string& file) {
+  if (channel.unit.quantity != Quantity::acceleration) {
+    const bool raw =
+        channel.unit.quantity == Quantity::voltage || channel.unit.quantity == Quantity::counts;
+    throw Failure(usage,
+                  fmt::format("{}: channel {}: expected an acceleration, but it is in {}: give {}",
+                              file, channel.name,
+                              channel.unit.symbol.empty() ? "no known unit" : channel.unit.symbol,
+                              raw ? "a --sensor file with its sensitivity" : "--unit"));
+  }
+  const Unit unit = channel.unit;
+  for (double& value : channel.values) value = unit.si(value);
+  channel.unit = *parse_unit("m/s^2");
+}
+
+}  // namespace
+
+Recording load(const std::string& file, const InputFlags& flags, const Progress& progress) {
+  io::ReadOptions options;
+  options.rate_hz = flags.rate_hz;
+  if (!flags.unit.empty()) options.unit = parse_unit(flags.unit);
+  options.time_channel = flags.time;
+  options.channels = flags.channels;
+  options.progress = progress;
+  Recording recording = need(io::read_recording(file, options), Stage::reading);
+  if (!flags.from_s && !flags.to_s) return recording;
+  Result<Recording> part =
+      cut(recording, flags.from_s.value_or(-std::numeric_limits<double>::infinity()),
+          flags.to_s.value_or(std::numeric_limits<double>::infinity()));
+  if (!part) throw Failure(status_of(part.error(), Stage::reading), part.error().at(file).message);
+  return std::move(part).value();
+}
+
+std::vector<Accelerometer> accelerometers(const std::vector<Recording>& recordings) {
+  std::vector<Accelerometer> found;
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    const std::vector<Triad> triads = accelerometer_triads(recordings[k]);
+    for (const Triad& triad : triads) {
+      const std::string& file = recordings[k].source;
+      found.push_back({k, triad, triads.size() > 1 ? file + ": " + triad.name : file});
+    }
+    if (triads.empty()) {
+      throw Failure(usage, recordings[k].source +
+                               ": no accelerometer channel found: name them with "
+                               "--channel and say --unit");
+    }
+  }
+  return found;
+}
+
+std::vector<sensor::SensorModel> load_sensors(const InputFlags& flags, std::vector<Note>& notes) {
+  std::vector<sensor::SensorModel> models;
+  for (const std::string& path : flags.sensors) {
+    sensor::SensorFile file = need(sensor::read_sensor_file(path), Stage::reading);
+    notes.insert(notes.end(), file.notes.begin(), file.notes.end());
+    models.push_back(std::move(file.model));
+  }
+  return models;
+}
+
+void calibrate(const std::vector<sensor::SensorModel>& models,
+               const std::vector<Accelerometer>& found,
+               std::vector<Recording>& recordings) {
+  if (models.size() > 1 && models.size() != found.size()) {
+    throw Failure(usage,
+                  fmt::format("--sensor: {} files for {} accelerometers: give one for all or "
+                              "one for each",
+                              models.size(), found.size()));
+  }
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    Recording& recording = recordings[found[k].recording];
+    if (!models.empty()) {
+      const Status status =
+          sensor::apply(models[models.size() > 1 ? k : 0], found[k].triad, recording);
+      if (!status) {
+        throw Failure(status_of(status.error(), Stage::reading),
+                      status.error().at(found[k].name).message);
+      }
+    }
+    for (const std::size_t axis : axes_of(found[k].triad)) {
+      bring_to_si(recording.channels[axis], recording.source);
+    }
+  }
+}
+
+double gravity_mps2(const InputFlags& flags) {
+  if (flags.gravity_mps2) return *flags.gravity_mps2;
+  if (!flags.latitude_deg) return standard_gravity_mps2;
+  return sensor::gravity_mps2({.latitude_rad = *flags.latitude_deg * rad_per_deg,
+                               .height_m = flags.height_m.value_or(0.0)});
+}
+
+}  // namespace proofmass::app

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_line.hpp"
+#include "proofmass/core/progress.hpp"
+#include "proofmass/core/recording.hpp"
+#include "proofmass/sensor/sensor_file.hpp"
+
+// From the input flags to recordings.
+namespace proofmass::app {
+
+/// Reads a recording as the flags say, cut to --from and --to. Throws Failure.
+[[nodiscard]] Recording load(const std::string& file,
+                             const InputFlags& flags,
+                             const Progress& progress);
+
+/// One accelerometer of the input: its channels of a recording.
+struct Accelerometer {
+  std::size_t recording = 0;
+  Triad triad;
+  std::string name;  ///< the file's, with the triad's where the file has several
+};
+
+/// The accelerometers of all recordings, in their order. Throws Failure if there is none.
+[[nodiscard]] std::vector<Accelerometer> accelerometers(const std::vector<Recording>& recordings);
+
+/// The sensor files of --sensor. Their notes are added to `notes`. Throws Failure.
+[[nodiscard]] std::vector<sensor::SensorModel> load_sensors(const InputFlags& flags,
+                                                            std::vector<Note>& notes);
+
+/// Applies the sensor files, one for all accelerometers or one for each, and brings every
+/// accelerometer channel to m/s^2. Throws Failure where a channel's unit is not known.
+void calibrate(const std::vector<sensor::SensorModel>& models,
+               const std::vector<Accelerometer>& found,
+               std::vector<Recording>& recordings);
+
+/// Local gravity: --gravity, or by --latitude and --height, or the standard one.
+[[nodiscard]] double gravity_mps2(const InputFlags& flags);
+
+}  // namespace proofmass::app

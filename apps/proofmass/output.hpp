@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "command_line.hpp"
+#include "proofmass/core/recording.hpp"
+
+namespace proofmass::app {
+
+/// Writes a text file beside `path` first and then renames it, so that nobody sees half of it.
+/// Throws Failure (failed).
+void write_text(const std::string& path, const std::string& text);
+
+/// Writes to standard output. Throws Failure (failed) where that does not take it.
+void print_out(const std::string& text);
+
+/// The three shapes of a verb's results, made only if they are asked for. `html` may be empty.
+struct Results {
+  std::function<std::string()> text, json, html;
+};
+
+/// Writes what the flags ask for: with `--json -` the document alone to standard output.
+void publish(const Results& results, const OutputFlags& flags);
+
+/// io::write_recording, or Failure.
+void write_series(const Recording& recording, const std::string& path);
+
+/// Throws Failure (bad_data) if --strict was given and the data are bad.
+void hold_to_strict(const OutputFlags& flags, bool bad);
+
+}  // namespace proofmass::app

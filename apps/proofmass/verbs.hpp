@@ -1,0 +1,14 @@
+#pragma once
+
+#include "command_line.hpp"
+
+// The verbs: each reads, calls the library, and publishes. Throw Failure.
+namespace proofmass::app {
+
+void run(const InspectCommand& command);
+void run(const ConvertCommand& command);
+void run(const WheelCommand& command);
+void run(const SimulateCommand& command);
+void run(const BudgetCommand& command);
+
+}  // namespace proofmass::app

@@ -1,0 +1,19 @@
+#include "proofmass/core/chi_square.hpp"
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include "proofmass/core/contract.hpp"
+
+namespace proofmass {
+
+double chi_square_quantile(double p, double degrees_of_freedom) {
+  PM_EXPECTS(p > 0.0 && p < 1.0 && degrees_of_freedom > 0.0);
+  return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), p);
+}
+
+Bounds mean_chi_square_95(std::size_t count) {
+  const auto n = static_cast<double>(count);
+  return {chi_square_quantile(0.025, n) / n, chi_square_quantile(0.975, n) / n};
+}
+
+}  // namespace proofmass

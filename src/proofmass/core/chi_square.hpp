@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+
+namespace proofmass {
+
+/// The p-quantile of the chi-square distribution with k degrees of freedom, p in (0, 1), k > 0.
+[[nodiscard]] double chi_square_quantile(double p, double degrees_of_freedom);
+
+struct Bounds {
+  double lower = 0.0, upper = 0.0;
+};
+
+/// Between what the mean of `count` independent chi-square variables of one degree of freedom lies in
+/// 95 % of cases. Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section
+/// 5.4.2.
+[[nodiscard]] Bounds mean_chi_square_95(std::size_t count);
+
+}  // namespace proofmass

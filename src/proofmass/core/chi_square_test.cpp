@@ -1,0 +1,23 @@
+#include "proofmass/core/chi_square.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace proofmass {
+namespace {
+
+// Tables of the chi-square distribution, and its closed form for two degrees of freedom.
+TEST(ChiSquareQuantile, AgreesWithTables) {
+  EXPECT_NEAR(chi_square_quantile(0.95, 10.0), 18.307, 5e-4);
+  EXPECT_NEAR(chi_square_quantile(0.025, 1.0), 0.000982, 5e-7);
+  EXPECT_NEAR(chi_square_quantile(0.9, 2.0), -2.0 * std::log(0.1), 1e-12);
+}
+
+TEST(MeanChiSquare95, ClosesInOnOneWithTheRootOfTheCount) {
+  const Bounds thousand = mean_chi_square_95(1000);
+  EXPECT_NEAR(thousand.lower, 0.914, 5e-4);
+  EXPECT_NEAR(thousand.upper, 1.090, 5e-4);
+}
+
+}  // namespace
+}  // namespace proofmass

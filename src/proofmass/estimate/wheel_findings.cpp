@@ -1,0 +1,125 @@
+#include "proofmass/estimate/wheel_findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proofmass/core/linalg.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+/// Of the covariance that a figure had beforehand, the share of the standard deviation above which the
+/// recording has not told it.
+constexpr double untold = 0.5;
+
+std::optional<Uncertain> told(const WheelFit& fit, int at, double offset = 0.0) {
+  const double std = std::sqrt(fit.constants_cov(at, at));
+  if (!(std < untold * std::sqrt(fit.constants_prior_cov(at, at)))) return std::nullopt;
+  return Uncertain{fit.constants(at) + offset, std};
+}
+
+void describe_place(const WheelFit& fit, int at, WheelSensorFit& sensor) {
+  const Eigen::Vector2d r = fit.constants.segment<2>(at);
+  const Eigen::Matrix2d cov = fit.constants_cov.block<2, 2>(at, at);
+  const double radius = r.norm();
+  if (!(radius > 0.0)) return;
+  const Eigen::Vector2d outward = r / radius, forward(-outward(1), outward(0));
+  const double std = std::sqrt(outward.dot(cov * outward));
+  if (!(std < untold * std::sqrt(fit.constants_prior_cov(at, at)))) return;
+  sensor.radius_m = Uncertain{radius, std};
+  const double across = std::sqrt(forward.dot(cov * forward)) / radius;
+  if (across < 0.5) sensor.mounting_rad = Uncertain{-std::atan2(r(1), r(0)), across};
+}
+
+struct Constant {
+  std::size_t sensor;
+  int kind;  // wheel::bias …
+};
+
+std::vector<Constant> constants_of(const WheelFit& fit) {
+  std::vector<Constant> all;
+  for (Eigen::Index i = 0; i < fit.constants.size(); ++i) {
+    const std::size_t sensor = i < 7 ? 0 : 1;
+    all.push_back({sensor, static_cast<int>(i) - 7 * static_cast<int>(sensor)});
+  }
+  return all;
+}
+
+std::string name_of(int kind) {
+  switch (kind) {
+    case wheel::bias: return "bias along u";
+    case wheel::bias + 1: return "bias along v";
+    case wheel::place: return "distance from the axle along u";
+    case wheel::place + 1: return "distance from the axle along v";
+    case wheel::scale: return "scale along u";
+    case wheel::scale + 1: return "scale along v";
+    case wheel::skew: return "skew of the axes";
+    default: return "phase against the first sensor";
+  }
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+std::string sentence(const Eigen::VectorXd& direction, const std::vector<Constant>& constants,
+                     const std::vector<WheelSensorFit>& sensors) {
+  std::vector<std::string> names;
+  bool place = false, bias = false;
+  std::size_t sensor = sensors.size();
+  bool one_sensor = true;
+  for (std::size_t i = 0; i < constants.size(); ++i) {
+    if (std::abs(direction(static_cast<Eigen::Index>(i))) < 0.3) continue;
+    names.push_back(name_of(constants[i].kind));
+    place = place || constants[i].kind == wheel::place || constants[i].kind == wheel::place + 1;
+    bias = bias || constants[i].kind == wheel::bias || constants[i].kind == wheel::bias + 1;
+    one_sensor = one_sensor && (sensor == sensors.size() || sensor == constants[i].sensor);
+    sensor = constants[i].sensor;
+  }
+  const std::string whose = one_sensor ? sensors[sensor].name : "the two sensors";
+  const std::string what = joined(names) + " of " + whose;
+  if (place && bias)
+    return what + " cannot be told apart at one speed: record a second speed";
+  if (place)
+    return what + " does not show at this speed: the centripetal force is too small; turn faster";
+  return what + (names.size() > 1 ? " cannot be told apart" : " cannot be told") +
+         " from this recording: let the wheel turn at least one whole turn";
+}
+
+}  // namespace
+
+void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSensorFit>& sensors) {
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    const int first = 7 * static_cast<int>(s);
+    WheelSensorFit& sensor = sensors[s];
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto at = static_cast<std::size_t>(axis);
+      sensor.bias_mps2[at] = told(fit, first + wheel::bias + axis);
+      sensor.scale[at] = told(fit, first + wheel::scale + axis, 1.0);
+    }
+    sensor.skew_rad = told(fit, first + wheel::skew);
+    if (s > 0) sensor.phase_rad = told(fit, first + wheel::phase, phase_rad);
+    describe_place(fit, first + wheel::place, sensor);
+  }
+}
+
+std::vector<std::string> say_not_observable(const WheelFit& fit,
+                                            const std::vector<WheelSensorFit>& sensors) {
+  const Eigen::VectorXd scale = fit.constants_prior_cov.diagonal().cwiseSqrt().cwiseInverse();
+  const SymmetricEigen axes =
+      symmetric_eigen(scale.asDiagonal() * fit.constants_cov * scale.asDiagonal());
+  const std::vector<Constant> constants = constants_of(fit);
+  std::vector<std::string> sentences;
+  for (Eigen::Index i = axes.values.size(); i-- > 0 && axes.values(i) > untold * untold;) {
+    const std::string text = sentence(axes.vectors.col(i), constants, sensors);
+    if (std::ranges::find(sentences, text) == sentences.end()) sentences.push_back(text);
+  }
+  return sentences;
+}
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,205 @@
+#include "proofmass/estimate/wheel_fit.hpp"
+
+#include "proofmass/core/contract.hpp"
+#include "proofmass/core/linalg.hpp"
+#include "proofmass/estimate/wheel_passes.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+template <int S>
+struct Settled {
+  WheelNoise noise;
+  WheelPrior prior;
+  Eigen::MatrixXd places_cov;
+};
+
+/// One round: the readings' variance, the motion's noise and the sensors' places, all about the path
+/// found so far.
+template <int S>
+Settled<S> settle(WheelReadings& readings, const WheelTrack& track, const PlacesPrior& belief) {
+  auto model = wheel_model<S>(readings, track.noise);
+  model.about = &track.path;
+  Places places(2 * S);
+  for (int s = 0; s < S; ++s)
+    for (int axis = 0; axis < 2; ++axis)
+      places(2 * s + axis) = track.path.constants[static_cast<std::size_t>(s)]
+                                                 [static_cast<std::size_t>(wheel::place + axis)];
+  WheelPrior prior{track.beginning, constants_prior, places};
+  settle_variance(model, prior, readings);
+  const Excerpt<S> excerpt = liveliest(model, prior);
+  model.noise = tune_noise(model, excerpt);
+  const FoundPlaces found = find_places(model, excerpt, prior, belief);
+  prior.places = found.mean;
+  return {model.noise, prior, found.cov};
+}
+
+/// Moves the track to the smoother's under the settled figures.
+template <int S>
+void improve(const WheelReadings& readings, const Settled<S>& settled, WheelTrack& track) {
+  auto model = wheel_model<S>(readings, settled.noise);
+  model.about = &track.path;
+  WheelPath path = track.path;
+  const auto end = trace_path(model, prior_state<S>(settled.prior), path);
+  track.path = std::move(path);
+  track.noise = settled.noise;
+  track.beginning.angle_rad = end.mean(wheel::start);
+  track.beginning.speed_radps = track.path.moving.front()(wheel::speed);
+}
+
+void resize(WheelSeries& series, std::size_t size) {
+  for (std::vector<double>* column :
+       {&series.angle_rad, &series.angle_std_rad, &series.speed_radps, &series.speed_std_radps,
+        &series.accel_radps2, &series.accel_std_radps2, &series.filtered_angle_rad,
+        &series.filtered_angle_std_rad})
+    column->resize(size);
+  series.nis.resize(size);
+  series.channels_used.resize(size);
+  series.channels_gated.resize(size);
+}
+
+template <int S>
+void note_forward(std::size_t k, const StepOf<WheelModel<S>>& step, WheelFit& fit) {
+  double nis = 0.0;
+  unsigned char used = 0, gated = 0;
+  for (int i = 0; i < step.count; ++i) {
+    const auto& u = step.updates[static_cast<std::size_t>(i)];
+    nis += u.used ? u.nis() : 0.0;
+    ++(u.used ? used : gated);
+  }
+  fit.nis_sum += nis;
+  fit.innovations += used;
+  fit.series.nis[k] = static_cast<float>(nis);
+  fit.series.channels_used[k] = used;
+  fit.series.channels_gated[k] = gated;
+  fit.series.filtered_angle_rad[k] = step.filtered.mean(wheel::angle);
+  fit.series.filtered_angle_std_rad[k] = std::sqrt(step.filtered.cov(wheel::angle, wheel::angle));
+}
+
+template <int S>
+void note_backward(std::size_t k, const StepOf<WheelModel<S>>& step,
+                   const Hindsight<wheel::states(S)>& later, WheelFit& fit) {
+  WheelSeries& series = fit.series;
+  const Mat<wheel::moving> mean = later.mean(step.filtered).template head<wheel::moving>();
+  const auto cov = later.template cov<wheel::moving>(step.filtered);
+  const auto std_of = [&](int i) { return std::sqrt(std::max(cov(i, i), 0.0)); };
+  series.angle_rad[k] = mean(wheel::angle);
+  series.angle_std_rad[k] = std_of(wheel::angle);
+  series.speed_radps[k] = mean(wheel::speed);
+  series.speed_std_radps[k] = std_of(wheel::speed);
+  series.accel_radps2[k] = mean(wheel::accel);
+  series.accel_std_radps2[k] = std_of(wheel::accel);
+  fit.track.path.moving[k] = mean;
+}
+
+/// What filter and smoother say with the places held where they were found.
+template <int S>
+WheelFit smooth_at_places(const WheelReadings& readings, const Settled<S>& settled,
+                          const WheelPath& about, const Progress& progress) {
+  auto model = wheel_model<S>(readings, settled.noise);
+  model.about = &about;
+  const std::size_t size = model.size();
+  WheelFit fit;
+  resize(fit.series, size);
+  fit.series.time_s = readings.time_s;
+  fit.track = {settled.prior.beginning, settled.noise, about, 0.0};
+  const auto prior = prior_state<S>(settled.prior);
+  Gaussian<wheel::states(S)> end = prior.x;
+  const auto tell = [&](std::string_view stage, std::size_t done) {
+    if (progress && done % 65536 == 0)
+      progress(stage, static_cast<double>(done) / static_cast<double>(size));
+  };
+  smooth(
+      model, prior, wheel_gate,
+      [&](std::size_t k, const auto& step) {
+        if (k > 0 && readings.time_s[k] > readings.time_s.front() + 1.0) {
+          const Mat<3> from_angle = model.transition(end.mean, k).F.row(0).transpose();
+          const double variance =
+              from_angle.dot(end.cov.template topLeftCorner<3, 3>() * from_angle);
+          fit.widest_prediction_rad = std::max(fit.widest_prediction_rad, std::sqrt(variance));
+        }
+        end = step.filtered;
+        note_forward<S>(k, step, fit);
+        tell("filter", k);
+      },
+      [&](std::size_t k, const auto& step, const auto& later) {
+        note_backward<S>(k, step, later, fit);
+        tell("smoother", size - k);
+      });
+  constexpr int first = wheel::first_of(0), count = wheel::states(S) - first;
+  fit.constants = end.mean.template tail<count>();
+  fit.constants_cov = end.cov.template bottomRightCorner<count, count>();
+  const double variance = end.cov(wheel::angle, wheel::angle) + end.cov(wheel::start, wheel::start) -
+                          2.0 * end.cov(wheel::angle, wheel::start);
+  fit.turns = {(end.mean(wheel::angle) - end.mean(wheel::start)) / rad_per_turn,
+               std::sqrt(std::max(variance, 0.0)) / rad_per_turn};
+  fit.ekf_turns =
+      (fit.series.filtered_angle_rad.back() - fit.series.filtered_angle_rad.front()) / rad_per_turn;
+  return fit;
+}
+
+void add_in_square(double& std, double more) { std = std::hypot(std, more); }
+
+/// Adds what the places' uncertainty makes of everything else: each principal direction of their
+/// covariance by one standard deviation, and the whole smoothed again.
+template <int S>
+void add_places_uncertainty(const WheelReadings& readings, const Settled<S>& settled,
+                            const WheelPath& about, WheelFit& fit) {
+  const SymmetricEigen axes = symmetric_eigen(settled.places_cov);
+  for (Eigen::Index i = 0; i < axes.values.size(); ++i) {
+    Settled<S> moved = settled;
+    *moved.prior.places += std::sqrt(std::max(axes.values(i), 0.0)) * axes.vectors.col(i);
+    auto model = wheel_model<S>(readings, moved.noise);
+    model.about = &about;
+    WheelPath path = about;
+    const auto end = trace_path(model, prior_state<S>(moved.prior), path);
+    const Eigen::VectorXd change = end.mean.tail(fit.constants.size()) - fit.constants;
+    fit.constants_cov += change * change.transpose();
+    const double turns = (end.mean(wheel::angle) - end.mean(wheel::start)) / rad_per_turn;
+    add_in_square(fit.turns.std, turns - fit.turns.value);
+    for (std::size_t k = 0; k < path.moving.size(); ++k) {
+      const Mat<wheel::moving> difference = path.moving[k] - fit.track.path.moving[k];
+      add_in_square(fit.series.angle_std_rad[k], difference(wheel::angle));
+      add_in_square(fit.series.filtered_angle_std_rad[k], difference(wheel::angle));
+      add_in_square(fit.series.speed_std_radps[k], difference(wheel::speed));
+      add_in_square(fit.series.accel_std_radps2[k], difference(wheel::accel));
+    }
+  }
+}
+
+template <int S>
+WheelFit fit_sensors(WheelReadings& readings, WheelTrack track, const PlacesPrior& belief,
+                     const Progress& progress) {
+  constexpr int rounds = 3;
+  for (int round = 0; round < rounds; ++round) {
+    if (progress) progress("noise and constants", static_cast<double>(round) / rounds);
+    improve(readings, settle<S>(readings, track, belief), track);
+  }
+  const Settled<S> settled = settle<S>(readings, track, belief);
+  WheelFit fit = smooth_at_places(readings, settled, track.path, progress);
+  constexpr int first = wheel::first_of(0), count = wheel::states(S) - first;
+  WheelPrior vague = settled.prior;
+  vague.places.reset();
+  fit.constants_prior_cov =
+      prior_state<S>(vague).x.cov.template bottomRightCorner<count, count>();
+  for (int s = 0; s < S; ++s)
+    for (int axis = 0; axis < 2; ++axis) {
+      const int at = 7 * s + wheel::place + axis;
+      fit.constants_prior_cov(at, at) = belief.std_m * belief.std_m;
+    }
+  add_places_uncertainty(readings, settled, track.path, fit);
+  return fit;
+}
+
+}  // namespace
+
+WheelFit fit_wheel(WheelReadings& readings, WheelTrack track, const PlacesPrior& places_prior,
+                   const Progress& progress) {
+  PM_EXPECTS(!readings.sensors.empty() && readings.sensors.size() <= 2);
+  PM_EXPECTS(readings.instants.size() >= 2 && track.path.moving.size() == readings.instants.size());
+  if (readings.sensors.size() == 1)
+    return fit_sensors<1>(readings, std::move(track), places_prior, progress);
+  return fit_sensors<2>(readings, std::move(track), places_prior, progress);
+}
+
+}  // namespace proofmass::estimate

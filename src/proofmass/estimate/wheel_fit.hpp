@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "proofmass/core/progress.hpp"
+#include "proofmass/core/quantity.hpp"
+#include "proofmass/estimate/wheel.hpp"
+#include "proofmass/estimate/wheel_model.hpp"
+
+// From planar readings to the wheel's angle: where the motion starts, what the noise is, where the
+// sensors sit and what their constants are, then the smoother. The steps behind estimate_wheel().
+namespace proofmass::estimate {
+
+/// The readings of one or two sensors on one time line.
+struct WheelReadings {
+  double gravity_mps2 = standard_gravity_mps2;  ///< its component in the plane of the wheel
+  double rolling_radius_m = 0.0;
+  double phase_rad = 0.0;  ///< of the second sensor against the first, as known so far
+  std::vector<double> time_s;
+  std::vector<WheelInstant> instants;
+  std::vector<PlanarReadings> sensors;
+
+  /// 1 / median step; 0 if there is none.
+  [[nodiscard]] double rate_hz() const;
+};
+
+/// One standard deviation, about zero, of what is believed of a sensor before the recording speaks, in
+/// the order of the state: bias m/s², place m, scale error, skew rad, phase rad.
+using ConstantsPrior = std::array<double, 8>;
+inline constexpr ConstantsPrior constants_prior{0.5, 0.5, 0.3, 0.3, 0.03, 0.03, 0.02, 0.5};
+
+/// How the motion begins, for a filter that has seen nothing yet.
+struct Beginning {
+  double angle_rad = 0.0, angle_std_rad = 0.6;
+  double speed_radps = 0.0, speed_std_radps = 1.0;
+};
+
+/// A trajectory found so far, and what it was found with.
+struct WheelTrack {
+  Beginning beginning;
+  WheelNoise noise;
+  WheelPath path;
+  double lost = 1.0;  ///< share of the readings that it does not explain, 0 … 1
+};
+
+/// Follows a single sensor's phase through the recording with whatever noise figures keep it: from
+/// a grid of starting speeds and angles, since at speed and off the axle the first readings do not
+/// show where gravity is. Sets the readings' variance on the way.
+[[nodiscard]] WheelTrack find_track(WheelReadings& readings);
+
+struct WheelFit {
+  /// All constants, 7 of the first sensor and 8 of the second, with their covariance (the places'
+  /// uncertainty in it) and what it was before the recording spoke.
+  Eigen::VectorXd constants;
+  Eigen::MatrixXd constants_cov, constants_prior_cov;
+  WheelTrack track;
+  Uncertain turns;
+  double ekf_turns = 0.0;
+  double nis_sum = 0.0;
+  std::size_t innovations = 0;
+  double widest_prediction_rad = 0.0;  ///< std of the predicted angle, once past the first second
+  WheelSeries series;                  ///< what filter and smoother give; time_s too
+};
+
+/// What is known of the sensors' places beforehand: their mean, and how far they may be from it.
+struct PlacesPrior {
+  Eigen::VectorXd mean;  ///< (u, v) of each sensor, m
+  double std_m = constants_prior[wheel::place];
+};
+
+/// Settles noise, places and constants about the track, then smooths.
+[[nodiscard]] WheelFit fit_wheel(WheelReadings& readings,
+                                 WheelTrack track,
+                                 const PlacesPrior& places_prior,
+                                 const Progress& progress);
+
+}  // namespace proofmass::estimate

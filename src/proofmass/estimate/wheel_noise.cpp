@@ -1,0 +1,174 @@
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel_passes.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+/// Sums over one stretch of a sensor's readings: squared innovations, and the part of them that the
+/// state's own uncertainty explains. What is left is the noise of the readings there.
+struct NoiseStretch {
+  double innovation2 = 0.0, explained = 0.0, readings = 0.0;
+  [[nodiscard]] double variance() const {
+    return std::max(innovation2 - explained, 0.2 * innovation2) / readings;
+  }
+};
+
+/// A variance over time: its logarithm linear between the middles of stretches, or one figure for
+/// all where the stretches scatter no more than estimates of one figure do.
+class VarianceProfile {
+ public:
+  VarianceProfile(const std::vector<NoiseStretch>& stretches, double length_s) {
+    double count = 0.0;
+    for (std::size_t i = 0; i < stretches.size(); ++i) {
+      const NoiseStretch& stretch = stretches[i];
+      if (stretch.readings < 20.0) continue;
+      middle_s_.push_back((static_cast<double>(i) + 0.5) * length_s);
+      log_variance_.push_back(std::log(stretch.variance()));
+      overall_ += stretch.variance() * stretch.readings;
+      count += stretch.readings;
+    }
+    if (count == 0.0) return;
+    overall_ /= count;
+    const auto used = static_cast<double>(middle_s_.size());
+    const double expected = std::sqrt(2.0 * used / count);
+    steady_ = used < 3.0 || *robust_std(log_variance_) < 2.0 * expected;
+    widen();
+  }
+
+  [[nodiscard]] bool empty() const { return middle_s_.empty(); }
+
+  [[nodiscard]] double at(double t_s) const {
+    if (steady_) return overall_;
+    const auto above = std::ranges::upper_bound(middle_s_, t_s) - middle_s_.begin();
+    const auto i = std::clamp<std::size_t>(static_cast<std::size_t>(above), 1, middle_s_.size() - 1);
+    const double part = (t_s - middle_s_[i - 1]) / (middle_s_[i] - middle_s_[i - 1]);
+    return std::exp(std::lerp(log_variance_[i - 1], log_variance_[i], std::clamp(part, 0.0, 1.0)));
+  }
+
+ private:
+  /// A stretch takes the worst of itself and its neighbours: where quiet turns to shaking within
+  /// one, an average of the two would make the first knocks look impossible.
+  void widen() {
+    const std::vector<double> own = log_variance_;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (i > 0) log_variance_[i] = std::max(log_variance_[i], own[i - 1]);
+      if (i + 1 < own.size()) log_variance_[i] = std::max(log_variance_[i], own[i + 1]);
+    }
+  }
+
+  std::vector<double> middle_s_, log_variance_;
+  double overall_ = 0.0;
+  bool steady_ = true;
+};
+
+/// The channels of instant k that belong to each sensor stand in the order in which measure() wrote
+/// them: two for each sensor that was read.
+template <int S>
+void gather(const WheelReadings& readings, std::size_t k, const StepOf<WheelModel<S>>& step,
+            std::array<NoiseStretch*, 2> stretches) {
+  int channel = 0;
+  for (std::size_t s = 0; s < readings.sensors.size() && channel < step.count; ++s) {
+    const std::int64_t row = readings.instants[k].row[s];
+    if (row == WheelInstant::no_row) continue;
+    const auto at = static_cast<std::size_t>(row);
+    if (!readings.sensors[s].has(at)) continue;
+    for (int axis = 0; axis < 2; ++axis, ++channel) {
+      const auto& u = step.updates[static_cast<std::size_t>(channel)];
+      if (!u.used) continue;
+      // What the gate let pass with little weight says little of the noise.
+      stretches[s]->innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
+      stretches[s]->explained += u.expected - readings.sensors[s].variance_m2ps4[at];
+      stretches[s]->readings += 1.0;
+    }
+  }
+}
+
+/// Between these the motion's noise is looked for. A bias that walked faster could stand for gravity.
+constexpr WheelNoise lowest{1e-8, 1e-10}, highest{1e5, 1e-4};
+
+}  // namespace
+
+template <int S>
+void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings) {
+  const double start_s = readings.time_s.front();
+  const double length_s = std::max(0.5, 40.0 / std::max(readings.rate_hz(), 1e-9));
+  const auto count = static_cast<std::size_t>((readings.time_s.back() - start_s) / length_s) + 1;
+  std::array<std::vector<NoiseStretch>, 2> stretches;
+  for (auto& of_sensor : stretches) of_sensor.resize(count);
+  auto state = prior_state<S>(prior);
+  filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t k, const auto& step) {
+    const auto i = static_cast<std::size_t>((readings.time_s[k] - start_s) / length_s);
+    gather<S>(readings, k, step, {&stretches[0][i], &stretches[1][i]});
+  });
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
+    const VarianceProfile profile(stretches[s], length_s);
+    if (profile.empty()) continue;
+    for (std::size_t k = 0; k < readings.instants.size(); ++k) {
+      const std::int64_t row = readings.instants[k].row[s];
+      if (row != WheelInstant::no_row)
+        readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] =
+            profile.at(readings.time_s[k] - start_s);
+    }
+  }
+}
+
+template <int S>
+Excerpt<S> liveliest(const WheelModel<S>& model, const WheelPrior& prior) {
+  constexpr std::size_t most_instants = 20'000, parts = 4;
+  const std::size_t size = model.size();
+  auto state = prior_state<S>(prior);
+  Excerpt<S> best{0, std::min(size, most_instants), state};
+  if (best.last == size) return best;
+  const std::size_t stride = most_instants / parts;
+  std::vector<FilterState<wheel::states(S)>> states;
+  std::vector<double> restless;
+  for (std::size_t first = 0; first < size; first += stride) {
+    states.push_back(state);
+    double sum = 0.0;
+    filter(model, first, std::min(first + stride, size), wheel_gate, state,
+           [&](std::size_t, const auto& s) { sum += std::pow(s.filtered.mean(wheel::accel), 2); });
+    restless.push_back(sum);
+  }
+  double most = -1.0;
+  for (std::size_t i = 0; i + parts <= restless.size(); ++i) {
+    double sum = 0.0;
+    for (std::size_t part = 0; part < parts; ++part) sum += restless[i + part];
+    if (sum <= most) continue;
+    most = sum;
+    best = {i * stride, std::min(i * stride + most_instants, size), states[i]};
+  }
+  return best;
+}
+
+/// Each figure in turn by steps of a shrinking factor, from a decade down to a sixth of one.
+template <int S>
+WheelNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt) {
+  const auto likelihood = [&](const WheelNoise& noise) {
+    model.noise = noise;
+    return score_run(model, excerpt.state, excerpt.first, excerpt.last).log_likelihood;
+  };
+  WheelNoise best = model.noise;
+  double best_value = likelihood(best);
+  for (double factor = 10.0; factor > 1.4; factor = std::sqrt(factor))
+    for (double WheelNoise::*figure : {&WheelNoise::jerk_psd, &WheelNoise::bias_walk_psd})
+      for (const double step : {factor, 1.0 / factor})
+        for (int tries = 0; tries < 8; ++tries) {
+          WheelNoise candidate = best;
+          candidate.*figure *= step;
+          if (candidate.*figure < lowest.*figure || candidate.*figure > highest.*figure) break;
+          const double value = likelihood(candidate);
+          if (!(value > best_value)) break;
+          best = candidate;
+          best_value = value;
+        }
+  return best;
+}
+
+template void settle_variance(const WheelModel<1>&, const WheelPrior&, WheelReadings&);
+template void settle_variance(const WheelModel<2>&, const WheelPrior&, WheelReadings&);
+template Excerpt<1> liveliest(const WheelModel<1>&, const WheelPrior&);
+template Excerpt<2> liveliest(const WheelModel<2>&, const WheelPrior&);
+template WheelNoise tune_noise(WheelModel<1>, const Excerpt<1>&);
+template WheelNoise tune_noise(WheelModel<2>, const Excerpt<2>&);
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,163 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "proofmass/estimate/wheel_fit.hpp"
+
+// Passes of the filter over a wheel's readings that every step of the fit makes. Private to the
+// module's wheel_*.cpp.
+namespace proofmass::estimate {
+
+inline constexpr Gate wheel_gate{.huber = 3.0, .limit = 12.0, .patience = 40};
+
+/// Places of the sensors, (u, v) of each, m.
+using Places = Eigen::VectorXd;
+
+/// What is believed before the recording speaks. Places that are given are held fixed.
+struct WheelPrior {
+  Beginning beginning;
+  ConstantsPrior spread = constants_prior;
+  std::optional<Places> places;
+};
+
+template <int S>
+WheelModel<S> wheel_model(const WheelReadings& readings, const WheelNoise& noise) {
+  WheelModel<S> model;
+  model.gravity_mps2 = readings.gravity_mps2;
+  model.rolling_radius_m = readings.rolling_radius_m;
+  model.phase_rad = readings.phase_rad;
+  model.noise = noise;
+  model.instants = &readings.instants;
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s) model.readings[s] = &readings.sensors[s];
+  return model;
+}
+
+/// Puts the sensors' constants back to what is believed of them.
+template <int S>
+void reset_constants(const WheelPrior& prior, Gaussian<wheel::states(S)>& x) {
+  constexpr int first = wheel::first_of(0), count = wheel::states(S) - first;
+  x.mean.template tail<count>().setZero();
+  x.cov.template bottomRows<count>().setZero();
+  x.cov.template rightCols<count>().setZero();
+  for (int s = 0; s < S; ++s) {
+    for (int i = 0; i < wheel::constants_of(s); ++i) {
+      const int at = wheel::first_of(s) + i;
+      x.cov(at, at) = std::pow(prior.spread[static_cast<std::size_t>(i)], 2);
+    }
+    for (int axis = 0; prior.places && axis < 2; ++axis) {
+      const int at = wheel::first_of(s) + wheel::place + axis;
+      x.mean(at) = (*prior.places)(2 * s + axis);
+      x.cov(at, at) = 0.0;
+    }
+  }
+}
+
+/// The state before the first reading. The start angle stands twice in it, with one variance.
+template <int S>
+FilterState<wheel::states(S)> prior_state(const WheelPrior& prior) {
+  FilterState<wheel::states(S)> state;
+  auto& [x, P] = state.x;
+  reset_constants<S>(prior, state.x);
+  x(wheel::angle) = x(wheel::start) = prior.beginning.angle_rad;
+  x(wheel::speed) = prior.beginning.speed_radps;
+  for (const int i : {wheel::angle, wheel::start})
+    for (const int j : {wheel::angle, wheel::start})
+      P(i, j) = std::pow(prior.beginning.angle_std_rad, 2);
+  P(wheel::speed, wheel::speed) = std::pow(prior.beginning.speed_std_radps, 2);
+  P(wheel::accel, wheel::accel) = 25.0;
+  return state;
+}
+
+/// How well a forward run predicts. `lost` judges runs of different noise figures alike: mean of
+/// min(y²/c², 1) over the innovations y, c = 3 m/s², a third of the signal. A run that has the
+/// wheel's phase scores near 0, one that has lost it above a half.
+struct WheelScore {
+  double lost = 0.0;
+  double log_likelihood = 0.0;
+  std::size_t readings = 0;
+};
+
+/// Huber's ρ of ν standard deviations, with what is gated no dearer than the gate's limit.
+[[nodiscard]] inline double surprise(double off) {
+  constexpr double huber = wheel_gate.huber;
+  if (off <= huber) return off * off;
+  return 2.0 * huber * std::min(off, wheel_gate.limit) - huber * huber;
+}
+
+template <int S>
+WheelScore score_run(const WheelModel<S>& model, FilterState<wheel::states(S)> state,
+                     std::size_t first, std::size_t last) {
+  constexpr double c2 = 9.0;
+  WheelScore score;
+  filter(model, first, last, wheel_gate, state, [&](std::size_t, const auto& step) {
+    for (int i = 0; i < step.count; ++i) {
+      const auto& u = step.updates[static_cast<std::size_t>(i)];
+      ++score.readings;
+      score.lost += std::min(u.innovation * u.innovation / c2, 1.0);
+      score.log_likelihood -= 0.5 * (std::log(2.0 * std::numbers::pi * u.expected) +
+                                     surprise(std::sqrt(u.nis())));
+    }
+  });
+  if (score.readings > 0) score.lost /= static_cast<double>(score.readings);
+  if (std::isfinite(score.log_likelihood)) return score;
+  return {1.0, -std::numeric_limits<double>::infinity(), score.readings};
+}
+
+/// Smooths and keeps the trajectory; returns the state after the last instant.
+template <int S>
+Gaussian<wheel::states(S)> trace_path(const WheelModel<S>& model,
+                                      const FilterState<wheel::states(S)>& prior, WheelPath& path) {
+  using Model = WheelModel<S>;
+  Gaussian<Model::states> end = prior.x;
+  std::vector<Mat<wheel::moving>> moving(model.size());
+  smooth(
+      model, prior, wheel_gate,
+      [&](std::size_t, const StepOf<Model>& step) { end = step.filtered; },
+      [&](std::size_t k, const StepOf<Model>& step, const Hindsight<Model::states>& later) {
+        moving[k] = later.mean(step.filtered).template head<wheel::moving>();
+      });
+  path.moving = std::move(moving);
+  for (int s = 0; s < S; ++s)
+    for (int i = 0; i < wheel::constants_of(s); ++i)
+      path.constants[static_cast<std::size_t>(s)][static_cast<std::size_t>(i)] =
+          end.mean(wheel::first_of(s) + i);
+  return end;
+}
+
+/// Sets each reading's variance from the innovations around it.
+template <int S>
+void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings);
+
+/// A part of the recording to tune on: all of it, or of a long one the stretch of 20 000 instants in
+/// which the speed changes most, with the filter's state at its beginning.
+template <int S>
+struct Excerpt {
+  std::size_t first = 0, last = 0;
+  FilterState<wheel::states(S)> state;
+};
+
+template <int S>
+[[nodiscard]] Excerpt<S> liveliest(const WheelModel<S>& model, const WheelPrior& prior);
+
+/// The motion's noise figures of maximum likelihood on the excerpt.
+template <int S>
+[[nodiscard]] WheelNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt);
+
+struct FoundPlaces {
+  Places mean;
+  Eigen::MatrixXd cov;
+};
+
+/// The sensors' places of maximum likelihood, all else integrated out by the filter, with the inverse
+/// of the likelihood's curvature. The places are no states of the settled filter: their columns in
+/// the Jacobian are ω² and α, known only through the same readings, and a filter that takes such
+/// noisy columns for exact finds information where there is none.
+template <int S>
+[[nodiscard]] FoundPlaces find_places(const WheelModel<S>& model, const Excerpt<S>& excerpt,
+                                      WheelPrior prior, const PlacesPrior& belief);
+
+}  // namespace proofmass::estimate

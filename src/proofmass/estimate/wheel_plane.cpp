@@ -1,0 +1,179 @@
+#include "proofmass/estimate/wheel_plane.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "proofmass/core/linalg.hpp"
+#include "proofmass/core/statistics.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+constexpr double beyond_belief_mps2 = 1000.0 * standard_gravity_mps2;
+
+double component(const WheelSensor& sensor, std::size_t axis, std::size_t row) {
+  const std::vector<double>& values = sensor.accel_mps2[axis];
+  return values.empty() ? 0.0 : values[row];
+}
+
+/// Empty if the row can be used.
+const char* why_unusable(const WheelSensor& sensor, std::size_t row, double last_time_s) {
+  if (!std::isfinite(sensor.time_s[row]) || !(sensor.time_s[row] > last_time_s))
+    return "time does not rise";
+  bool all_zero = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = component(sensor, axis, row);
+    if (!std::isfinite(x)) return "not a finite number";
+    if (std::abs(x) > beyond_belief_mps2) return "beyond 1000 g";
+    if (x != 0.0 && std::abs(x) < 1e-30) return "denormal number";
+    all_zero = all_zero && x == 0.0;
+  }
+  return all_zero ? "all axes exactly zero" : nullptr;
+}
+
+double dot(const Axis& a, const Axis& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Axis cross(const Axis& a, const Axis& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Axis scaled(const Axis& a, double factor) { return {a[0] * factor, a[1] * factor, a[2] * factor}; }
+
+std::size_t largest(const Axis& a) {
+  std::size_t at = 0;
+  for (std::size_t i = 1; i < 3; ++i)
+    if (std::abs(a[i]) > std::abs(a[at])) at = i;
+  return at;
+}
+
+WheelPlane plane_about(const Axis& axis) {
+  WheelPlane plane;
+  plane.axis = scaled(axis, 1.0 / std::sqrt(dot(axis, axis)));
+  Axis next{};
+  next[(largest(axis) + 1) % 3] = 1.0;
+  const double along = dot(next, plane.axis);
+  for (std::size_t i = 0; i < 3; ++i) next[i] -= along * plane.axis[i];
+  plane.u = scaled(next, 1.0 / std::sqrt(dot(next, next)));
+  plane.v = cross(plane.axis, plane.u);
+  return plane;
+}
+
+/// Means of the force over stretches of a twentieth of a second: shaking averages out, turning stays.
+Eigen::MatrixX3d averaged(const WheelSensor& sensor, const std::vector<std::size_t>& rows) {
+  const double span_s = sensor.time_s[rows.back()] - sensor.time_s[rows.front()];
+  const double rate_hz = span_s > 0.0 ? static_cast<double>(rows.size()) / span_s : 0.0;
+  const auto each = static_cast<std::size_t>(std::clamp(0.05 * rate_hz, 1.0, 1e4));
+  const std::size_t count = rows.size() / each;
+  Eigen::MatrixX3d means = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(count), 3);
+  for (std::size_t i = 0; i < count * each; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      means(static_cast<Eigen::Index>(i / each), static_cast<Eigen::Index>(axis)) +=
+          component(sensor, axis, rows[i]) / static_cast<double>(each);
+  return means;
+}
+
+/// Draws each column's outermost thousandths in, so that no single bad row can turn the axis.
+void limit(Eigen::MatrixX3d& means) {
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const View<double> column(means.col(axis).data(), static_cast<std::size_t>(means.rows()));
+    const double low = *quantile(column, 0.001), high = *quantile(column, 0.999);
+    means.col(axis) = means.col(axis).cwiseMax(low).cwiseMin(high).eval();
+  }
+}
+
+/// The sensor axis most nearly level, for a wheel that does not turn.
+Result<WheelPlane> assume_plane(const Eigen::MatrixX3d& means) {
+  const Eigen::RowVector3d mean = means.colwise().mean();
+  Axis axis{};
+  std::size_t most_level = 2;
+  for (const std::size_t i : {std::size_t{1}, std::size_t{0}})
+    if (std::abs(mean(static_cast<Eigen::Index>(i))) <
+        0.8 * std::abs(mean(static_cast<Eigen::Index>(most_level))))
+      most_level = i;
+  axis[most_level] = 1.0;
+  WheelPlane plane = plane_about(axis);
+  plane.assumed = true;
+  return plane;
+}
+
+Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
+  const Eigen::MatrixX3d centred = means.rowwise() - means.colwise().mean();
+  const SymmetricEigen spread =
+      symmetric_eigen(centred.transpose() * centred / static_cast<double>(means.rows()));
+  const double least = std::max(spread.values(0), 0.0), next = spread.values(1);
+  if (next < 16.0 * least || next < 0.0025) return assume_plane(means);
+  Axis axis{spread.vectors(0, 0), spread.vectors(1, 0), spread.vectors(2, 0)};
+  if (axis[largest(axis)] < 0.0) axis = scaled(axis, -1.0);
+  return plane_about(axis);
+}
+
+}  // namespace
+
+Screened screen_rows(const WheelSensor& sensor) {
+  Screened screened{std::vector<bool>(sensor.time_s.size(), false), {}, 0};
+  double last_time_s = -std::numeric_limits<double>::infinity();
+  const char* open = nullptr;  // reason of the stretch that goes on
+  for (std::size_t row = 0; row < sensor.time_s.size(); ++row) {
+    const char* why = why_unusable(sensor, row, last_time_s);
+    if (why == nullptr) {
+      screened.usable[row] = true;
+      last_time_s = sensor.time_s[row];
+    } else {
+      const double t_s = std::isfinite(sensor.time_s[row]) ? sensor.time_s[row] : last_time_s;
+      if (why != open) screened.rejected.push_back({t_s, t_s, 0, why});
+      screened.rejected.back().end_s = t_s;
+      ++screened.rejected.back().rows;
+      ++screened.unusable;
+    }
+    open = why;
+  }
+  return screened;
+}
+
+Result<WheelPlane> find_plane(const WheelSensor& sensor, const Screened& screened,
+                              const std::optional<Axis>& given) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < screened.usable.size(); ++row)
+    if (screened.usable[row]) rows.push_back(row);
+  if (rows.size() < 10)
+    return Error{Errc::too_few_samples, sensor.name + ": only " + std::to_string(rows.size()) +
+                                            " usable rows; a wheel needs at least 10"};
+  if (given && !(dot(*given, *given) > 0.0))
+    return Error{Errc::invalid_argument, "the spin axis has length 0; give it as x, y, z or a vector"};
+  Eigen::MatrixX3d means = averaged(sensor, rows);
+  limit(means);
+  Result<WheelPlane> found = given                           ? Result<WheelPlane>(plane_about(*given))
+                             : sensor.accel_mps2[2].empty() ? plane_about({0.0, 0.0, 1.0})
+                                                            : plane_from(means);
+  if (!found) return found;
+  WheelPlane plane = *found;
+  const Eigen::Vector3d axis(plane.axis[0], plane.axis[1], plane.axis[2]);
+  const Eigen::VectorXd axial = means * axis;
+  plane.axial_mps2 = *median(View<double>(axial.data(), static_cast<std::size_t>(axial.size())));
+  return plane;
+}
+
+WheelPlane turned_over(const WheelPlane& plane) {
+  WheelPlane other = plane;
+  other.axis = scaled(plane.axis, -1.0);
+  other.v = scaled(plane.v, -1.0);
+  other.axial_mps2 = -plane.axial_mps2;
+  return other;
+}
+
+PlanarReadings project(const WheelSensor& sensor, const Screened& screened, const WheelPlane& plane) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const std::size_t size = sensor.time_s.size();
+  PlanarReadings readings{std::vector<double>(size, none), std::vector<double>(size, none),
+                          std::vector<double>(size, 1.0)};
+  for (std::size_t row = 0; row < size; ++row) {
+    if (!screened.usable[row]) continue;
+    const Axis f{component(sensor, 0, row), component(sensor, 1, row), component(sensor, 2, row)};
+    readings.u_mps2[row] = dot(f, plane.u);
+    readings.v_mps2[row] = dot(f, plane.v);
+  }
+  return readings;
+}
+
+}  // namespace proofmass::estimate

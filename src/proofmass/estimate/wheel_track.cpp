@@ -1,0 +1,110 @@
+#include <limits>
+
+#include "proofmass/core/contract.hpp"
+#include "proofmass/estimate/wheel_passes.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+/// Constants are held close while the phase is still being found: a free bias would swallow it.
+constexpr ConstantsPrior seeking_prior{0.2, 0.2, 0.15, 0.15, 0.003, 0.003, 0.003, 0.5};
+
+struct Seek {
+  double accel_std_mps2;  ///< of a reading at 120 Hz
+  WheelNoise noise;
+};
+
+/// Noise figures to follow a wheel with when nothing is known yet, from a car's wheel on the road to
+/// a bench that hardly shakes. The first that keeps the phase is taken.
+constexpr std::array seeks{Seek{1.5, {20.0, 1e-7}}, Seek{3.0, {100.0, 1e-7}},
+                           Seek{1.5, {500.0, 1e-7}}, Seek{0.5, {200.0, 1e-7}}};
+
+void set_variance(WheelReadings& readings, double accel_std_mps2) {
+  // The same density whatever the rate.
+  const double variance =
+      accel_std_mps2 * accel_std_mps2 * std::max(readings.rate_hz(), 1.0) / 120.0;
+  for (PlanarReadings& sensor : readings.sensors)
+    sensor.variance_m2ps4.assign(sensor.u_mps2.size(), variance);
+}
+
+/// Mean gravity phase of the first few readings.
+double first_phase(const PlanarReadings& sensor) {
+  double u = 0.0, v = 0.0;
+  int seen = 0;
+  for (std::size_t k = 0; k < sensor.u_mps2.size() && seen < 5; ++k) {
+    if (std::isnan(sensor.u_mps2[k]) || std::isnan(sensor.v_mps2[k])) continue;
+    u += sensor.u_mps2[k];
+    v += sensor.v_mps2[k];
+    ++seen;
+  }
+  return std::atan2(u, v);
+}
+
+/// From rest outwards: 0, 1.5, −1.5, 3, −3 … rad/s, up to what the rate can follow.
+std::vector<double> speeds_to_try(double rate_hz, double step_radps) {
+  std::vector<double> speeds{0.0};
+  const double top = std::min(0.4 * std::numbers::pi * rate_hz, 120.0);
+  for (double speed = step_radps; speed <= top; speed += step_radps) {
+    speeds.push_back(speed);
+    speeds.push_back(-speed);
+  }
+  return speeds;
+}
+
+/// The start that predicts the first four seconds best.
+Beginning seek_beginning(const WheelReadings& readings, const WheelNoise& noise) {
+  constexpr double window_s = 4.0, speed_step_radps = 1.5;
+  const auto model = wheel_model<1>(readings, noise);
+  const auto last = static_cast<std::size_t>(
+      std::ranges::upper_bound(readings.time_s, readings.time_s.front() + window_s) -
+      readings.time_s.begin());
+  const double phase = first_phase(readings.sensors.front());
+  Beginning best;
+  double best_lost = std::numeric_limits<double>::infinity();
+  for (const double speed : speeds_to_try(readings.rate_hz(), speed_step_radps))
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const Beginning candidate{phase + quarter * std::numbers::pi / 2.0, 0.6, speed,
+                                0.7 * speed_step_radps};
+      const auto prior = prior_state<1>({candidate, seeking_prior, {}});
+      const double lost = score_run(model, prior, 0, last).lost;
+      // A later candidate has to be clearly better: at rest, many explain little.
+      if (lost >= 0.95 * best_lost) continue;
+      best_lost = lost;
+      best = candidate;
+    }
+  return best;
+}
+
+}  // namespace
+
+double WheelReadings::rate_hz() const {
+  std::vector<double> steps;
+  steps.reserve(instants.size());
+  for (const WheelInstant& instant : instants)
+    if (instant.dt_s > 0.0) steps.push_back(instant.dt_s);
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::ranges::nth_element(steps, middle);
+  return 1.0 / *middle;
+}
+
+WheelTrack find_track(WheelReadings& readings) {
+  PM_EXPECTS(readings.sensors.size() == 1 && readings.instants.size() >= 2);
+  WheelTrack best;
+  double best_lost = std::numeric_limits<double>::infinity();
+  for (const Seek& seek : seeks) {
+    set_variance(readings, seek.accel_std_mps2);
+    const auto model = wheel_model<1>(readings, seek.noise);
+    const Beginning beginning = seek_beginning(readings, seek.noise);
+    const auto prior = prior_state<1>({beginning, seeking_prior, {}});
+    const double lost = score_run(model, prior, 0, model.size()).lost;
+    if (lost >= best_lost) continue;
+    best_lost = lost;
+    best = {beginning, seek.noise, {}, lost};
+    (void)trace_path(model, prior, best.path);
+    if (lost < 0.15) break;
+  }
+  return best;
+}
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,93 @@
+#include "proofmass/io/cell.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fast_float/fast_float.h>
+#include <limits>
+#include <string>
+
+#include "proofmass/io/decimal.hpp"
+
+namespace proofmass::io {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+bool same_word(std::string_view text, std::string_view lower) {
+  return std::ranges::equal(text, lower, [](char a, char b) {
+    return (a >= 'A' && a <= 'Z' ? static_cast<char>(a + 32) : a) == b;
+  });
+}
+
+bool is_word_for_nothing(std::string_view text) {
+  constexpr std::array<std::string_view, 14> words{"nan", "-nan",    "+nan",    "null", "none",
+                                                   "na",  "n/a",     "#n/a",    "#na",  "-",
+                                                   "--",  "1.#qnan", "-1.#ind", "nil"};
+  return std::ranges::any_of(words, [&](std::string_view word) { return same_word(text, word); });
+}
+
+/// Longer than any figure a program prints: a field beyond it is text.
+constexpr std::size_t longest_number = 800;
+
+Cell read_figure(std::string_view digits, bool negative, char point) {
+  constexpr Cell text{CellKind::text, nan};
+  if (digits.empty() || !(is_digit(digits[0]) || digits[0] == point)) return text;
+  if (digits.size() > longest_number) return text;
+  std::array<char, longest_number> buffer;
+  const auto* last = std::ranges::replace_copy(digits, buffer.begin(), point, '.').out;
+  if (point != '.' && digits.find('.') != std::string_view::npos) return text;
+  double value = 0.0;
+  const auto end = fast_float::from_chars(buffer.data(), last, value);
+  if (end.ptr != last) return text;
+  return {CellKind::number, negative ? -value : value};
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks{" \t\r\0", 4};
+  const auto strip = [&] {
+    const auto first = text.find_first_not_of(blanks);
+    text = first == std::string_view::npos
+               ? std::string_view{}
+               : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  };
+  strip();
+  const bool quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'') &&
+                      text.back() == text.front();
+  if (quoted) {
+    text = text.substr(1, text.size() - 2);
+    strip();
+  }
+  return text;
+}
+
+Cell read_cell(std::string_view field, char point) {
+  std::string_view text = trimmed(field);
+  if (text.empty() || is_word_for_nothing(text)) return {CellKind::missing, nan};
+  const bool negative = text[0] == '-';
+  if (text[0] == '-' || text[0] == '+') text.remove_prefix(1);
+  if (same_word(text, "inf") || same_word(text, "infinity") || same_word(text, "1.#inf") ||
+      text == "∞")
+    return {CellKind::number, negative ? -infinity : infinity};
+  return read_figure(text, negative, point);
+}
+
+double to_double(const Decimal& decimal) {
+  double value = 0.0;
+  if (to_double_exactly(decimal, value)) return value;
+  const auto binary = fast_float::compute_float<fast_float::binary_format<double>>(
+      decimal.exponent10, decimal.mantissa);
+  if (binary.power2 >= 0) {
+    fast_float::to_float(decimal.negative, binary, value);
+    return value;
+  }
+  // compute_float could not tell which neighbour is nearer: once in a blue moon.
+  const std::string text =
+      std::to_string(decimal.mantissa) + "e" + std::to_string(decimal.exponent10);
+  fast_float::from_chars(text.data(), text.data() + text.size(), value);
+  return decimal.negative ? -value : value;
+}
+
+}  // namespace proofmass::io

@@ -1,0 +1,235 @@
+#include "proofmass/io/channel_units.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/io/names.hpp"
+#include "proofmass/io/wording.hpp"
+#include "proofmass/signal/counter.hpp"
+
+namespace proofmass::io {
+namespace {
+
+/// Columns that an instrument names without their unit.
+struct KnownColumn {
+  std::string_view starts_with;
+  std::string_view unit;
+};
+struct Instrument {
+  std::string_view name;
+  std::array<std::string_view, 2> signature;  ///< columns that give it away
+  std::array<KnownColumn, 8> columns;
+};
+// A line for each instrument; a column is matched by the beginning of its bare name.
+constexpr std::array instruments = std::to_array<Instrument>({
+    // Source: Xsens DOT user manual, "Data output"; MT Manager export.
+    {"Xsens",
+     {"packetcounter", "sampletimefine"},
+     {{{"acc", "m/s^2"},
+       {"freeacc", "m/s^2"},
+       {"gyr", "deg/s"},
+       {"euler", "deg"},
+       {"roll", "deg"},
+       {"pitch", "deg"},
+       {"yaw", "deg"},
+       {"dv", "m/s"}}}},
+    // Source: Physics Toolbox Sensor Suite, "G-Force Meter".
+    {"Physics Toolbox", {"gfx", "gfy"}, {{{"gfx", "g"}, {"gfy", "g"}, {"gfz", "g"}}}},
+});
+
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+/// Whether a name is an accelerometer's: by "acc", or by an axis and nothing else ("x", "ay2").
+bool is_accelerometer_name(std::string_view name) {
+  std::string bare = bare_name(name);
+  if (contains(bare, "acc") && !contains(bare, "accuracy")) return true;
+  std::erase_if(bare, [](char c) { return c >= '0' && c <= '9'; });
+  constexpr std::array<std::string_view, 3> stems{"", "a", "gf"};
+  return !bare.empty() && bare.back() >= 'x' && bare.back() <= 'z' &&
+         std::ranges::find(stems, std::string_view(bare).substr(0, bare.size() - 1)) != stems.end();
+}
+
+bool is_unknown(const Channel& channel) {
+  return channel.unit.quantity == Quantity::unknown;
+}
+
+bool is_accelerometer(const Channel& channel) {
+  return channel.unit.quantity == Quantity::acceleration ||
+         ((is_unknown(channel) || channel.unit.quantity == Quantity::voltage ||
+           channel.unit.quantity == Quantity::counts) &&
+          is_accelerometer_name(channel.name));
+}
+
+void apply_given_unit(Recording& recording, const ReadOptions& options) {
+  std::string names;
+  const bool any = std::ranges::any_of(recording.channels, is_accelerometer);
+  for (Channel& channel : recording.channels) {
+    const bool named = std::ranges::any_of(
+        options.channels, [&](const std::string& n) { return lower(n) == lower(channel.name); });
+    const bool meant = any ? is_accelerometer(channel) : is_unknown(channel);
+    if (!(options.channels.empty() ? meant : named)) continue;
+    channel.unit = *options.unit;
+    names += (names.empty() ? "" : ", ") + channel.name;
+  }
+  recording.notes.push_back(
+      {Severity::info, fmt::format("{}: unit {} as given", names, options.unit->symbol)});
+}
+
+/// Some write G for g: a magnetic accelerometer there is not.
+void read_gauss_as_g(Recording& recording) {
+  for (Channel& channel : recording.channels)
+    if (channel.unit.quantity == Quantity::magnetic_field &&
+        contains(bare_name(channel.name), "acc") && channel.unit.symbol == "G") {
+      channel.unit = *parse_unit("g");
+      recording.notes.push_back(
+          {Severity::info,
+           fmt::format("{}: unit G read as g, being an acceleration", channel.name)});
+    }
+}
+
+void recognise_instrument(Recording& recording) {
+  const auto has = [&](std::string_view bare) {
+    return bare == bare_name(recording.time.channel) ||
+           std::ranges::any_of(recording.channels,
+                               [&](const Channel& c) { return bare_name(c.name) == bare; });
+  };
+  for (const Instrument& instrument : instruments) {
+    if (!std::ranges::all_of(instrument.signature, has)) continue;
+    bool any = false;
+    for (Channel& channel : recording.channels) {
+      if (!is_unknown(channel)) continue;
+      const std::string bare = bare_name(channel.name);
+      for (const KnownColumn& column : instrument.columns) {
+        if (column.starts_with.empty() || !bare.starts_with(column.starts_with)) continue;
+        channel.unit = *parse_unit(column.unit);
+        any = true;
+        break;
+      }
+    }
+    if (any)
+      recording.notes.push_back(
+          {Severity::info,
+           fmt::format("units as {} writes them, told by its columns {} and {}", instrument.name,
+                       instrument.signature[0], instrument.signature[1])});
+  }
+}
+
+struct QuietWindow {
+  double norm = 0.0;
+  double start_s = 0.0;
+  double spread = std::numeric_limits<double>::infinity();  ///< sum of the axes' variances
+  bool whole_numbers = true;
+};
+
+std::vector<const Channel*> axes_of(const Recording& recording, const Triad& triad) {
+  std::vector<const Channel*> axes;
+  for (const auto& axis : {triad.x, triad.y, triad.z})
+    if (axis) axes.push_back(&recording.channels[*axis]);
+  return axes;
+}
+
+/// The second in which the axes move least, of those that are whole.
+QuietWindow quietest_second(const Recording& recording, const std::vector<const Channel*>& axes) {
+  const double rate_hz = recording.time.rate_hz > 0.0 ? recording.time.rate_hz : 100.0;
+  const std::size_t samples = recording.samples();
+  const auto wanted = static_cast<std::size_t>(std::clamp(rate_hz, 16.0, 1e4));
+  const std::size_t length = std::min(samples, wanted);
+  QuietWindow quietest;
+  for (std::size_t begin = 0; length > 0 && begin + length <= samples; begin += length) {
+    QuietWindow window;
+    window.spread = 0.0;
+    for (const Channel* axis : axes) {
+      const auto values = std::span(axis->values).subspan(begin, length);
+      const Moments seen = moments(values);
+      const bool whole = seen.nonfinite == 0 && std::max(std::abs(seen.min), seen.max) < 1e9;
+      window.spread += whole ? seen.std() * seen.std() : std::numeric_limits<double>::infinity();
+      window.norm = std::hypot(window.norm, seen.mean);
+      window.whole_numbers = window.whole_numbers && std::ranges::all_of(values, [](double x) {
+                               return x == std::trunc(x);
+                             });
+    }
+    window.start_s = recording.time.at(begin);
+    // A sensor that is not yet awake writes zeros: quieter than any, and no gravity in it.
+    if (window.norm > 0.0 && window.spread < quietest.spread) quietest = window;
+  }
+  return quietest;
+}
+
+std::string_view unit_by_gravity(double norm) {
+  const auto is_near = [&](double gravity) {
+    return norm > 0.75 * gravity && norm < 1.3 * gravity;
+  };
+  if (is_near(standard_gravity_mps2)) return "m/s^2";
+  if (is_near(1.0)) return "g";
+  if (is_near(1000.0)) return "mg";
+  return {};
+}
+
+void settle_by_gravity(Recording& recording, const Triad& triad) {
+  const auto axes = axes_of(recording, triad);
+  const QuietWindow quiet = quietest_second(recording, axes);
+  std::string names;
+  for (const Channel* axis : axes) names += (names.empty() ? "" : ", ") + axis->name;
+  std::string_view symbol = std::isfinite(quiet.spread) ? unit_by_gravity(quiet.norm) : "";
+  const bool timed = recording.time.source != TimeSource::none;
+  std::string why = fmt::format("in the quietest {} they add up to {}",
+                                timed ? fmt::format("second ({} s)", in_words(quiet.start_s))
+                                      : fmt::format("stretch (sample {})", quiet.start_s),
+                                in_words(quiet.norm));
+  Severity severity = Severity::info;
+  if (symbol.empty() && quiet.whole_numbers && std::isfinite(quiet.spread)) {
+    symbol = "counts";
+    why += ", which is neither g, mg nor m/s^2, in whole numbers";
+  } else if (symbol == "mg" && quiet.whole_numbers) {
+    severity = Severity::warning;
+    why += " (counts of 1/1024 g would look alike)";
+  }
+  for (const auto& axis : {triad.x, triad.y, triad.z})
+    if (axis) recording.channels[*axis].unit = parse_unit(symbol).value_or(Unit{});
+  if (symbol.empty()) {
+    recording.notes.push_back(
+        {Severity::warning,
+         fmt::format("{}: unit not known: {}, which is neither g, mg nor m/s^2; give --unit", names,
+                     why)});
+    return;
+  }
+  recording.notes.push_back(
+      {severity, fmt::format("{}: unit taken to be {}: {}; --unit overrides", names, symbol, why)});
+}
+
+/// Sorts the accelerometers of unknown unit into sensors and settles each.
+void recognise_gravity(Recording& recording) {
+  Recording sketch;  // names only: which channels belong together is for core to say
+  std::vector<std::size_t> columns;
+  for (std::size_t i = 0; i < recording.channels.size(); ++i) {
+    const Channel& channel = recording.channels[i];
+    if (!is_unknown(channel) || !is_accelerometer_name(channel.name)) continue;
+    sketch.channels.push_back({channel.name, *parse_unit("m/s^2"), {}});
+    columns.push_back(i);
+  }
+  for (Triad triad : accelerometer_triads(sketch)) {
+    for (auto* axis : {&triad.x, &triad.y, &triad.z})
+      if (*axis) *axis = columns[**axis];
+    settle_by_gravity(recording, triad);
+  }
+}
+
+}  // namespace
+
+void settle_units(Recording& recording, const ReadOptions& options) {
+  for (Channel& channel : recording.channels)
+    if (is_unknown(channel) && signal::is_counter_name(channel.name))
+      channel.unit = *parse_unit("counts");
+  read_gauss_as_g(recording);
+  recognise_instrument(recording);
+  if (options.unit) apply_given_unit(recording, options);
+  recognise_gravity(recording);
+}
+
+}  // namespace proofmass::io

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/units.hpp"
+#include "proofmass/io/csv_layout.hpp"
+
+namespace proofmass::io {
+
+/// A column's heading taken apart.
+struct ColumnLabel {
+  std::string name;
+  Unit unit;  ///< Quantity::unknown where the heading names none
+};
+
+/// Reads one heading: "Acc X (m/s^2)", "acc_x [g]", "Acc X, g", "acc_x_g", "Gyr_X_deg_s".
+[[nodiscard]] ColumnLabel read_label(std::string_view heading);
+
+/// What the lines before the rows say about the columns.
+struct CsvHeader {
+  std::vector<ColumnLabel> labels;  ///< one a column, names unique
+  bool found = false;               ///< false: the names are made up
+  std::size_t line = 0;             ///< of the lowest line of it
+  std::optional<double> rate_hz;    ///< "SampleRate, 64,Hz"
+  std::vector<Note> notes;
+};
+
+/// Finds the header in one row or two (groups above, axes below), in a remark, with or without a
+/// row of units below it. Without one, columns are called x, y, z where there are three beside an
+/// ascending first, which is "time"; else "column 1", …
+[[nodiscard]] CsvHeader read_header(const CsvLayout& layout);
+
+}  // namespace proofmass::io

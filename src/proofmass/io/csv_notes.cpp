@@ -1,0 +1,75 @@
+#include "proofmass/io/csv_notes.hpp"
+
+#include <fmt/format.h>
+#include <iterator>
+
+namespace proofmass::io {
+namespace {
+
+std::string_view name_of_separator(char separator) {
+  switch (separator) {
+    case ',':
+      return "comma";
+    case ';':
+      return "semicolon";
+    case '\t':
+      return "tab";
+    case '|':
+      return "bar";
+    case ' ':
+      return "blanks";
+    default:
+      return "other";
+  }
+}
+
+std::string rows_from(const Seen& seen, std::string_view fault) {
+  return seen.count == 1
+             ? fmt::format("line {} {}", seen.first_line, fault)
+             : fmt::format("{} lines, the first {}, {}", seen.count, seen.first_line, fault);
+}
+
+}  // namespace
+
+void tell_layout(const CsvLayout& layout,
+                 const CsvHeader& header,
+                 const CsvColumns& columns,
+                 std::vector<Note>& notes) {
+  const std::string head =
+      header.found ? fmt::format("header on line {}", header.line) : "no header";
+  notes.push_back(
+      {Severity::info,
+       fmt::format("CSV: separator {}, decimal {}, {}, rows of {} fields from line {}",
+                   name_of_separator(layout.separator), layout.point == '.' ? "point" : "comma",
+                   head, layout.columns.size(), layout.first_line)});
+  notes.insert(notes.end(), header.notes.begin(), header.notes.end());
+  std::string words;
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < columns.uses.size(); ++c) {
+    if (columns.uses[c] != ColumnUse::skip || columns.date == c) continue;
+    if (++count <= 8) words += (words.empty() ? "" : ", ") + header.labels[c].name;
+  }
+  if (count > 0)
+    notes.push_back({Severity::info,
+                     fmt::format("{}{}: left out, being words", words, count > 8 ? ", …" : "")});
+}
+
+void tell_faults(const RowFaults& faults, const CsvHeader& header, std::vector<Note>& notes) {
+  const auto tell = [&](Severity severity, const Seen& seen, std::string_view fault) {
+    if (seen.count > 0) notes.push_back({severity, rows_from(seen, fault)});
+  };
+  tell(Severity::warning, faults.narrow, "too short: the missing fields are NaN");
+  tell(Severity::warning, faults.wide, "too long: fields beyond the last column are passed over");
+  tell(Severity::warning, faults.unreadable, "without a number: passed over");
+  tell(Severity::warning, faults.cut, "breaks off: its last field is not used");
+  tell(Severity::warning, faults.nul, "holding bytes of zero, as a power cut leaves them");
+  tell(Severity::info, faults.remarks, "a remark between the rows: passed over");
+  for (const auto& [column, seen] : faults.words)
+    notes.push_back({Severity::warning,
+                     fmt::format("{}: {} that are no number, the first \"{}\" on line {}: NaN",
+                                 header.labels[column].name,
+                                 seen.count == 1 ? "1 field" : fmt::format("{} fields", seen.count),
+                                 faults.first_word.at(column), seen.first_line)});
+}
+
+}  // namespace proofmass::io

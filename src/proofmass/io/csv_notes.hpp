@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/io/csv_columns.hpp"
+#include "proofmass/io/csv_header.hpp"
+#include "proofmass/io/csv_layout.hpp"
+#include "proofmass/io/csv_rows.hpp"
+
+namespace proofmass::io {
+
+/// Says which dialect was found and what was made of the columns.
+void tell_layout(const CsvLayout& layout,
+                 const CsvHeader& header,
+                 const CsvColumns& columns,
+                 std::vector<Note>& notes);
+
+/// Says what was wrong with the rows, each fault with its count and first line.
+void tell_faults(const RowFaults& faults, const CsvHeader& header, std::vector<Note>& notes);
+
+}  // namespace proofmass::io

@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "proofmass/io/recording_writers.hpp"
+#include "proofmass/io/stamp_reader.hpp"
+
+namespace proofmass::io {
+namespace {
+
+void append_figure(std::string& out, double value) {
+  if (std::isnan(value)) {
+    out += "nan";
+    return;
+  }
+  std::array<char, 32> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
+  out.append(text.data(), end.ptr);
+}
+
+void append_heading(std::string& out, std::string_view name, std::string_view unit) {
+  std::string heading(name);
+  if (!unit.empty()) heading += " (" + std::string(unit) + ")";
+  std::ranges::replace(heading, '"', '\'');
+  std::ranges::replace_if(heading, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  const bool quoted = heading.find_first_of(",;\t'#") != std::string::npos;
+  out += quoted ? '"' + heading + '"' : heading;
+}
+
+constexpr int finest = -27;  ///< decimals that a clock of 19 digits leaves room for in 128 bits
+
+/// The shortest decimal that reads back as `value` >= 0, to 10^finest; nullopt if it is finer.
+std::optional<Int128> shortest_decimal(double value) {
+  std::array<char, 32> text;
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific);
+  Int128 mantissa = 0;
+  int exponent = 0;
+  const char* p = text.data();
+  for (bool behind_point = false; p != end.ptr && *p != 'e'; ++p) {
+    if (*p == '.') {
+      behind_point = true;
+    } else {
+      mantissa = mantissa * 10 + (*p - '0');
+      if (behind_point) --exponent;
+    }
+  }
+  int power = 0;
+  std::from_chars(p + (p[1] == '+' ? 2 : 1), end.ptr, power);
+  exponent += power;
+  if (mantissa == 0) return Int128{0};
+  if (exponent < finest || power > 9) return std::nullopt;
+  for (; exponent > finest; --exponent) mantissa *= 10;
+  return mantissa;
+}
+
+/// Writes the time column: on the recording's own clock, digit for digit the sum of its first
+/// stamp and the seconds since; seconds since the first where it has no clock.
+class TimeWriter {
+ public:
+  explicit TimeWriter(const Recording& recording) : time_(recording.time) {
+    if (!time_.start_ns || *time_.start_ns == 0) return;
+    for (std::size_t k = 0; k < recording.samples(); ++k) {
+      const double t = time_.at(k);
+      if (!(t >= 0.0) || !shortest_decimal(t)) return;
+    }
+    on_own_clock_ = true;
+  }
+
+  void append(std::string& out, std::size_t k) const {
+    if (!on_own_clock_) {
+      append_figure(out, time_.at(k));
+      return;
+    }
+    Int128 start = *time_.start_ns;
+    for (int e = -9; e > finest; --e) start *= 10;
+    append_decimal(out, start + *shortest_decimal(time_.at(k)));
+  }
+
+ private:
+  static void append_decimal(std::string& out, Int128 value) {
+    if (value < 0) {
+      out += '-';
+      value = -value;
+    }
+    std::array<char, 48> digits;
+    std::size_t count = 0;
+    // Zeros behind the last decimal say nothing.
+    int decimals = -finest;
+    while (decimals > 0 && value % 10 == 0) {
+      value /= 10;
+      --decimals;
+    }
+    do {
+      digits[count++] = static_cast<char>('0' + static_cast<int>(value % 10));
+      value /= 10;
+      if (--decimals == 0) digits[count++] = '.';
+    } while (value != 0 || decimals >= 0);
+    while (count > 0) out += digits[--count];
+  }
+
+  const TimeBase& time_;
+  bool on_own_clock_ = false;
+};
+
+}  // namespace
+
+bool write_csv(const Recording& recording, const Sink& sink) {
+  const bool timed = recording.time.source != TimeSource::none;
+  std::string out;
+  if (timed) out += "time (s)";
+  for (const Channel& channel : recording.channels) {
+    if (!out.empty()) out += ',';
+    append_heading(out, channel.name, channel.unit.symbol);
+  }
+  out += '\n';
+  const TimeWriter time(recording);
+  for (std::size_t k = 0; k < recording.samples(); ++k) {
+    if (timed) time.append(out, k);
+    for (std::size_t c = 0; c < recording.channels.size(); ++c) {
+      if (c > 0 || timed) out += ',';
+      append_figure(out, recording.channels[c].values[k]);
+    }
+    out += '\n';
+    if (out.size() < (1u << 16)) continue;
+    if (!sink(out)) return false;
+    out.clear();
+  }
+  return sink(out);
+}
+
+}  // namespace proofmass::io

@@ -1,0 +1,56 @@
+#include "proofmass/io/foreign_formats.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace proofmass::io {
+namespace {
+
+using namespace std::literals;
+
+struct Foreign {
+  std::string_view magic;
+  std::string_view refusal;
+};
+constexpr std::array foreign = std::to_array<Foreign>({
+    {"TDSm"sv, "is a TDMS file, which is not read: export it as CSV"sv},
+    {"LabVIEW Measurement"sv,
+     "is a LabVIEW measurement file, which is not read: export it as CSV"sv},
+    {"MATLAB 5.0 MAT-file"sv, "is a MAT file, which is not read: use writematrix in MATLAB"sv},
+    {"MATLAB 7."sv, "is a MAT file, which is not read: use writematrix in MATLAB"sv},
+    {"\x89HDF\r\n\x1A\n"sv, "is an HDF5 file, which is not read: export the data set as CSV"sv},
+    {"\x89MCAP"sv, "is an MCAP file, which is not read: export the topic as CSV"sv},
+    {"#ROSBAG"sv, "is a ROS bag, which is not read: export the topic as CSV"sv},
+    {"RIFF"sv, "is a RIFF (WAV) file, which is not read: export it as CSV"sv},
+    {"PK\x03\x04"sv, "is a zip archive (npz, xlsx, …), which is not read: unpack it first"sv},
+    {"\x28\xB5\x2F\xFD"sv,
+     "is compressed by zstd, which is not read: unpack it, or use gzip or xz"sv},
+    {"BZh"sv, "is compressed by bzip2, which is not read: unpack it, or use gzip or xz"sv},
+    {"SQLite format 3"sv, "is an SQLite data base, which is not read: export the table as CSV"sv},
+    {"PAR1"sv, "is a Parquet file, which is not read: export it as CSV"sv},
+    {"%PDF"sv, "is a PDF: expected a recording"sv},
+    {"{"sv, "is a JSON document: expected a table, such as CSV"sv},
+    {"<"sv, "is an XML or HTML document: expected a table, such as CSV"sv},
+});
+
+const Foreign* find_foreign(std::string_view head) {
+  const auto* found =
+      std::ranges::find_if(foreign, [&](const Foreign& f) { return head.starts_with(f.magic); });
+  return found == foreign.end() ? nullptr : found;
+}
+
+}  // namespace
+
+bool claims_foreign(std::string_view head, std::string_view) {
+  return find_foreign(head) != nullptr;
+}
+
+Result<Recording> refuse_foreign(PeekSource& source, const ReadOptions&) {
+  const auto head = source.peek(64);
+  if (!head) return head.error();
+  const Foreign* found = find_foreign(*head);
+  return Error{Errc::unsupported,
+               std::string(found != nullptr ? found->refusal : "is of no format that is read"sv)};
+}
+
+}  // namespace proofmass::io

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string_view>
+
+#include "proofmass/io/byte_source.hpp"
+#include "proofmass/io/read_recording.hpp"
+
+namespace proofmass::io {
+
+/// Whether a file is of a format that is known by its first bytes but not read.
+[[nodiscard]] bool claims_foreign(std::string_view head, std::string_view file_name);
+
+/// Says which format it is and what to do. Errors: unsupported, always.
+[[nodiscard]] Result<Recording> refuse_foreign(PeekSource& source, const ReadOptions& options);
+
+}  // namespace proofmass::io

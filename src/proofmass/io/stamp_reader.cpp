@@ -1,0 +1,154 @@
+#include "proofmass/io/stamp_reader.hpp"
+
+#include <array>
+#include <cmath>
+#include <fast_float/fast_float.h>
+#include <limits>
+
+#include "proofmass/io/cell.hpp"
+#include "proofmass/io/clock_text.hpp"
+
+namespace proofmass::io {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t ns_per_day = 86'400'000'000'000;
+
+struct WideDecimal {
+  Int128 mantissa = 0;
+  int exponent10 = 0;
+};
+
+/// A plain decimal of up to 37 digits, which is what 128 bits hold.
+std::optional<WideDecimal> scan_wide(std::string_view text, char point) {
+  WideDecimal out;
+  const bool negative = text.starts_with('-');
+  if (negative || text.starts_with('+')) text.remove_prefix(1);
+  int digits = 0;
+  bool behind_point = false;
+  std::size_t i = 0;
+  for (; i < text.size(); ++i) {
+    if (text[i] == point && !behind_point) {
+      behind_point = true;
+    } else if (is_digit(text[i])) {
+      out.mantissa = out.mantissa * 10 + (text[i] - '0');
+      if (out.mantissa != 0 && ++digits > 37) return std::nullopt;
+      if (behind_point) --out.exponent10;
+    } else {
+      break;
+    }
+  }
+  if (i == 0 || (i == 1 && behind_point)) return std::nullopt;
+  if (negative) out.mantissa = -out.mantissa;
+  if (i == text.size()) return out;
+  const auto exponent = text.substr(i + 1);
+  if ((text[i] | 0x20) != 'e' || exponent.empty() || exponent.size() > 4) return std::nullopt;
+  const Cell power = read_cell(exponent, point);
+  if (power.kind != CellKind::number || power.value != std::trunc(power.value)) return std::nullopt;
+  out.exponent10 += static_cast<int>(power.value);
+  return out;
+}
+
+/// mantissa · 10^power, nullopt if it does not fit.
+std::optional<Int128> scaled(Int128 mantissa, int power) {
+  if (mantissa == 0) return Int128{0};
+  if (power > 38) return std::nullopt;
+  for (; power > 0; --power)
+    if (__builtin_mul_overflow(mantissa, Int128{10}, &mantissa)) return std::nullopt;
+  return mantissa;
+}
+
+double nearest_double(Int128 mantissa, int exponent10) {
+  const bool negative = mantissa < 0;
+  std::array<char, 64> text;
+  char* first = text.data() + 48;
+  char* last = first;
+  *last++ = 'e';
+  std::array<char, 8> power{};
+  int size = exponent10 < 0 ? -exponent10 : exponent10;
+  std::size_t digits = 0;
+  do {
+    power[digits++] = static_cast<char>('0' + size % 10);
+    size /= 10;
+  } while (size != 0 && digits < power.size());
+  if (exponent10 < 0) *last++ = '-';
+  while (digits > 0) *last++ = power[--digits];
+  do {
+    const int digit = static_cast<int>(mantissa % 10);
+    *--first = static_cast<char>('0' + (digit < 0 ? -digit : digit));
+    mantissa /= 10;
+  } while (mantissa != 0);
+  double value = 0.0;
+  fast_float::from_chars(first, last, value);
+  return negative ? -value : value;
+}
+
+}  // namespace
+
+double StampOrigin::value() const {
+  return nearest_double(mantissa, exponent10);
+}
+
+std::optional<std::int64_t> StampOrigin::ns(double unit_s) const {
+  const double power = std::log10(unit_s);
+  const double whole_power = std::round(power);
+  Int128 exact = mantissa;
+  int exponent = exponent10 + 9;
+  if (std::abs(power - whole_power) < 1e-9) {
+    exponent += static_cast<int>(whole_power);
+  } else if (std::abs(unit_s - std::round(unit_s)) < 1e-9 && unit_s < 1e6) {
+    if (__builtin_mul_overflow(exact, Int128{std::llround(unit_s)}, &exact)) return std::nullopt;
+  }
+  for (; exponent < -1 && exact != 0; ++exponent) exact /= 10;
+  if (exponent == -1) {
+    exact = (exact + (exact < 0 ? -5 : 5)) / 10;
+    exponent = 0;
+  }
+  const auto in_ns = scaled(exact, exact == 0 ? 0 : exponent);
+  constexpr Int128 limit = std::numeric_limits<std::int64_t>::max();
+  if (!in_ns || *in_ns > limit || *in_ns < -limit) return std::nullopt;
+  return static_cast<std::int64_t>(*in_ns);
+}
+
+double StampReader::difference(Int128 mantissa, int exponent10) {
+  if (!origin_) origin_ = StampOrigin{mantissa, exponent10};
+  const int common = std::min(exponent10, origin_->exponent10);
+  const auto stamp = scaled(mantissa, exponent10 - common);
+  const auto first = scaled(origin_->mantissa, origin_->exponent10 - common);
+  Int128 exact = 0;
+  if (!stamp || !first || __builtin_sub_overflow(*stamp, *first, &exact))
+    return nearest_double(mantissa, exponent10) - origin_->value();
+  return nearest_double(exact, common);
+}
+
+double StampReader::read_clock_fields(std::string_view field, std::string_view date) {
+  const auto clock = read_clock(field);
+  if (!clock || !clock->ns) return nan;
+  zone_missing_ = zone_missing_ || !clock->zone_given;
+  std::int64_t days = 0;
+  if (spelling_ == StampSpelling::date_then_clock) {
+    const auto day = read_clock(date);
+    if (!day || !day->days) return nan;
+    days = *day->days;
+  } else if (clock->days) {
+    days = *clock->days;
+  } else {
+    // Half a day back is midnight; less is a clock that was set.
+    if (*clock->ns < last_of_day_ - ns_per_day / 2) ++day_;
+    last_of_day_ = *clock->ns;
+    days = day_;
+  }
+  return difference(Int128{days} * ns_per_day + *clock->ns, -9);
+}
+
+double StampReader::read(std::string_view field, std::string_view date) {
+  if (spelling_ != StampSpelling::figures) return read_clock_fields(field, date);
+  const std::string_view text = trimmed(field);
+  const auto stamp = scan_wide(text, point_);
+  if (!stamp) return nan;
+  // A clock's reading is never of this size; taken for the first stamp it would spoil the rest.
+  if (std::abs(nearest_double(stamp->mantissa, stamp->exponent10)) > 1e20) return nan;
+  return difference(stamp->mantissa, stamp->exponent10);
+}
+
+}  // namespace proofmass::io

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "proofmass/io/decimal.hpp"
+
+namespace proofmass::io {
+
+__extension__ using Int128 = __int128;
+
+/// The first stamp of a file, exact: mantissa · 10^exponent10 in the column's own unit.
+struct StampOrigin {
+  Int128 mantissa = 0;
+  int exponent10 = 0;
+
+  [[nodiscard]] double value() const;
+  /// In nanoseconds, rounded, for a unit of `unit_s` seconds; nullopt beyond ±292 years.
+  [[nodiscard]] std::optional<std::int64_t> ns(double unit_s) const;
+};
+
+/// How the fields of a time column are spelt.
+enum class StampSpelling {
+  figures,          ///< numbers of any unit
+  clock,            ///< date and time, or time of day, in one field
+  date_then_clock,  ///< the date in one column, the time of day in the next
+};
+
+/// Turns a time column into differences from its first stamp, each the double nearest to the exact
+/// decimal difference: an epoch in nanoseconds has more digits than a double.
+class StampReader {
+ public:
+  StampReader(StampSpelling spelling, char point) : spelling_(spelling), point_(point) {}
+
+  [[nodiscard]] StampSpelling spelling() const { return spelling_; }
+  [[nodiscard]] const std::optional<StampOrigin>& origin() const { return origin_; }
+  [[nodiscard]] bool zone_missing() const { return zone_missing_; }
+
+  /// The usual case, figures of one and the same number of decimals; false for any other.
+  bool relative(const Decimal& stamp, double& out) const {
+    if (!origin_ || stamp.exponent10 != origin_->exponent10) return false;
+    constexpr std::uint64_t limit = std::uint64_t{1} << 62;
+    if (stamp.mantissa > limit || origin_->mantissa > limit || -origin_->mantissa > limit)
+      return false;
+    const auto size = static_cast<std::int64_t>(stamp.mantissa);
+    const std::int64_t difference =
+        (stamp.negative ? -size : size) - static_cast<std::int64_t>(origin_->mantissa);
+    const auto magnitude = static_cast<std::uint64_t>(difference < 0 ? -difference : difference);
+    return to_double_exactly({magnitude, stamp.exponent10, difference < 0}, out);
+  }
+  /// Any field; NaN where it is no stamp. `date` is the column before, where there is one.
+  double read(std::string_view field, std::string_view date = {});
+
+ private:
+  double read_clock_fields(std::string_view field, std::string_view date);
+  double difference(Int128 mantissa, int exponent10);
+
+  StampSpelling spelling_;
+  char point_;
+  std::optional<StampOrigin> origin_;
+  bool zone_missing_ = false;
+  std::int64_t day_ = 0;          ///< midnights passed, where only the time of day is given
+  std::int64_t last_of_day_ = 0;  ///< ns
+};
+
+}  // namespace proofmass::io

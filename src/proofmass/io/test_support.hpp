@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "proofmass/io/read_recording.hpp"
+
+namespace proofmass::io {
+
+/// Reads a text as if it were a file.
+inline Result<Recording> read_text(std::string_view text, const ReadOptions& options = {}) {
+  return read_recording(std::as_bytes(std::span(text)), "text", options);
+}
+
+/// Whether any note has `part` in it.
+inline bool is_noted(const Recording& recording, std::string_view part) {
+  for (const Note& note : recording.notes)
+    if (note.text.find(part) != std::string::npos) return true;
+  return false;
+}
+
+/// All notes, for a test's message.
+inline std::string notes_of(const Recording& recording) {
+  std::string all;
+  for (const Note& note : recording.notes) all += note.text + "\n";
+  return all;
+}
+
+/// The folder of published recordings, or an empty path where there is none.
+inline std::filesystem::path published_data() {
+  if (const char* given = std::getenv("PROOFMASS_DATA")) return given;
+  std::filesystem::path beside = std::filesystem::path(PROOFMASS_SOURCE_DIR) / "../shared/data";
+  return std::filesystem::exists(beside) ? beside : std::filesystem::path{};
+}
+
+}  // namespace proofmass::io

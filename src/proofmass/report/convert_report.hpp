@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+
+namespace proofmass::report {
+
+struct ConvertReport {
+  std::string input, output;  ///< files
+  const Recording& recording;
+  const std::vector<Note>& notes;
+};
+
+/// The document of `convert`: docs/schema/convert.schema.json.
+[[nodiscard]] std::string convert_json(const ConvertReport& report);
+
+/// One line: what went where.
+[[nodiscard]] std::string convert_text(const ConvertReport& report);
+
+}  // namespace proofmass::report

@@ -1,0 +1,73 @@
+#include "proofmass/report/document.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "proofmass/core/version.hpp"
+
+namespace proofmass::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Value& value);
+
+struct JsonOf {
+  Json operator()(std::monostate) const { return nullptr; }
+  Json operator()(const Array& items) const {
+    Json json = Json::array();
+    for (const Value& item : items) json.push_back(json_of(item));
+    return json;
+  }
+  Json operator()(const Object& members) const {
+    Json json = Json::object();
+    for (const Member& member : members) json[member.key] = json_of(member.value);
+    return json;
+  }
+  template <class Plain>
+  Json operator()(const Plain& plain) const {
+    return plain;
+  }
+};
+
+Json json_of(const Value& value) {
+  return std::visit(JsonOf{}, value.state());
+}
+
+}  // namespace
+
+Value::Value(double value) {
+  if (std::isfinite(value)) state_ = value;
+}
+
+Value::Value(Object members) : state_(std::move(members)) {}
+
+std::string to_json(const DocumentHead& head, const Object& body) {
+  Object document{{"proofmass", version()},
+                  {"verb", head.verb},
+                  {"input", array_of(head.input)},
+                  {"warnings", array_of(head.warnings)}};
+  document.insert(document.end(), body.begin(), body.end());
+  constexpr int indent = 2;
+  return json_of(document).dump(indent, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+Value quantity(const std::optional<Uncertain>& figure, std::string_view unit) {
+  if (!figure || !std::isfinite(figure->value) || !std::isfinite(figure->std)) return nullptr;
+  return Object{{"value", figure->value}, {"std", figure->std}, {"unit", unit}};
+}
+
+std::optional<Uncertain> scaled(const std::optional<Uncertain>& figure, double factor) {
+  if (!figure) return std::nullopt;
+  return Uncertain{figure->value * factor, figure->std * std::abs(factor)};
+}
+
+std::vector<std::string> texts(const std::vector<Note>& notes, Severity least) {
+  std::vector<std::string> found;
+  for (const Note& note : notes) {
+    if (note.severity >= least) found.push_back(note.text);
+  }
+  return found;
+}
+
+}  // namespace proofmass::report

@@ -1,0 +1,186 @@
+#include "proofmass/report/inspect_report.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "proofmass/report/document.hpp"
+#include "proofmass/report/wording.hpp"
+
+namespace proofmass::report {
+namespace {
+
+using signal::ChannelAudit;
+using signal::RecordingAudit;
+using signal::TimingAudit;
+
+const char* word(TimeSource source) {
+  switch (source) {
+    case TimeSource::stamps:
+      return "stamps";
+    case TimeSource::counter:
+      return "counter";
+    case TimeSource::given_rate:
+      return "given_rate";
+    case TimeSource::none:
+      break;
+  }
+  return "none";
+}
+
+Value optional(const std::optional<double>& figure) {
+  return figure ? Value(*figure) : Value();
+}
+
+// A statistic of a channel, null where the channel has no value at all.
+Value of_any(const Moments& moments, double figure) {
+  return moments.count > 0 ? Value(figure) : Value();
+}
+
+Value channel_value(const ChannelAudit& channel) {
+  const Moments& moments = channel.moments;
+  return Object{{"name", channel.name},
+                {"unit", channel.unit.symbol.empty() ? Value() : Value(channel.unit.symbol)},
+                {"quantity", name_of(channel.unit.quantity)},
+                {"mean", of_any(moments, moments.mean)},
+                {"std", of_any(moments, moments.std())},
+                {"min", of_any(moments, moments.min)},
+                {"max", of_any(moments, moments.max)},
+                {"lsb", optional(channel.lsb)},
+                {"nonfinite", channel.nonfinite},
+                {"clipped", channel.clipped},
+                {"absurd", channel.absurd},
+                {"denormal", channel.denormal},
+                {"longest_stuck", channel.longest_stuck},
+                {"longest_stuck_start_s", channel.longest_stuck_start_s}};
+}
+
+Value timing_value(const TimingAudit& timing) {
+  Array gaps;
+  for (const signal::Gap& gap : timing.gaps) {
+    gaps.push_back(Object{{"start_s", gap.start_s}, {"duration_s", gap.duration_s}});
+  }
+  return Object{{"source", word(timing.source)},
+                {"channel", timing.channel.empty() ? Value() : Value(timing.channel)},
+                {"jitter_s", optional(timing.jitter_s)},
+                {"gaps", std::move(gaps)},
+                {"backwards", timing.backwards},
+                {"repeated", timing.repeated},
+                {"mended", timing.mended},
+                {"lost", timing.lost ? Value(std::uint64_t{*timing.lost}) : Value()}};
+}
+
+bool has_rate(const RecordingAudit& audit) {
+  return audit.timing.rate_hz > 0.0;
+}
+
+Object file_members(const RecordingAudit& audit) {
+  Array channels;
+  for (const ChannelAudit& channel : audit.channels) channels.push_back(channel_value(channel));
+  return {{"format", audit.format},
+          {"samples", audit.samples},
+          {"duration_s", has_rate(audit) ? Value(audit.duration_s) : Value()},
+          {"rate_hz", has_rate(audit) ? Value(audit.timing.rate_hz) : Value()},
+          {"channels", std::move(channels)},
+          {"timing", timing_value(audit.timing)},
+          {"zero_rows", audit.zero_rows.size()},
+          {"bad", audit.is_bad()},
+          {"notes", array_of(texts(audit.notes, Severity::info))}};
+}
+
+// Why the nulls of a file are null.
+std::vector<std::string> reasons(const RecordingAudit& audit) {
+  std::vector<std::string> all;
+  if (!has_rate(audit)) {
+    all.emplace_back("rate_hz, duration_s: null: no time column and no --rate");
+  }
+  if (!audit.timing.jitter_s) {
+    all.emplace_back("timing.jitter_s: null: too few stamps to judge the steps between them");
+  }
+  if (audit.timing.channel.empty()) all.emplace_back("timing.channel: null: no time column");
+  if (!audit.timing.lost) all.emplace_back("timing.lost: null: no packet counter");
+  for (const ChannelAudit& channel : audit.channels) {
+    if (channel.unit.symbol.empty()) {
+      all.push_back(channel.name + ": unit: null: neither the file nor --unit says");
+    }
+    if (channel.moments.count == 0) {
+      all.push_back(channel.name + ": mean, std, min, max: null: no plausible value");
+    }
+    if (!channel.lsb) all.push_back(channel.name + ": lsb: null: no step that the values share");
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string inspect_json(const std::vector<InspectedFile>& files) {
+  DocumentHead head{"inspect", {}, {}};
+  Array all;
+  for (const InspectedFile& file : files) {
+    head.input.push_back(file.name);
+    std::vector<std::string> warnings = texts(file.audit.notes, Severity::warning);
+    for (std::string& reason : reasons(file.audit)) warnings.push_back(std::move(reason));
+    for (const std::string& text : warnings) {
+      head.warnings.push_back(files.size() > 1 ? file.name + ": " + text : text);
+    }
+    Object members{{"file", file.name}};
+    for (Member& member : file_members(file.audit)) members.push_back(std::move(member));
+    all.emplace_back(std::move(members));
+  }
+  Object body = files.empty() ? Object{} : file_members(files.front().audit);
+  if (files.size() > 1) body.push_back({"files", std::move(all)});
+  return to_json(head, body);
+}
+
+std::string jitter_words(const TimingAudit& timing) {
+  if (!timing.jitter_s) return "unknown";
+  constexpr double rounding_s = 1e-9;
+  return *timing.jitter_s < rounding_s ? "none" : compact(*timing.jitter_s * 1e3, 3) + " ms";
+}
+
+std::string inspect_conclusion(const InspectedFile& file) {
+  const RecordingAudit& audit = file.audit;
+  const std::string size = has_rate(audit)
+                               ? fmt::format("{} Hz for {}", compact(audit.timing.rate_hz, 4),
+                                             duration_words(audit.duration_s))
+                               : count_words(audit.samples, "sample") + " at an unknown rate";
+  const auto bad = texts(audit.notes, Severity::bad).size();
+  const auto warnings = texts(audit.notes, Severity::warning).size() - bad;
+  std::string verdict = "nothing wrong with it";
+  if (warnings > 0) verdict = count_words(warnings, "thing") + " to know";
+  if (bad > 0) verdict = count_words(bad, "fault") + " in the data";
+  return fmt::format("{}, {}: {}.", size, count_words(audit.channels.size(), "channel"), verdict);
+}
+
+std::string inspect_text(const InspectedFile& file) {
+  const RecordingAudit& audit = file.audit;
+  std::string text = fmt::format("{}: {}\n\n", file.name, inspect_conclusion(file));
+  const TimingAudit& timing = audit.timing;
+  text += aligned({{"format", audit.format},
+                   {"samples", std::to_string(audit.samples)},
+                   {"time", fmt::format("{}{}", word(timing.source),
+                                        timing.channel.empty() ? "" : " (" + timing.channel + ")")},
+                   {"rate", has_rate(audit) ? compact(timing.rate_hz, 7) + " Hz" : "unknown"},
+                   {"jitter", jitter_words(timing)},
+                   {"gaps", std::to_string(timing.gaps.size())},
+                   {"stamps", fmt::format("{} backwards, {} repeated, {} mended", timing.backwards,
+                                          timing.repeated, timing.mended)}});
+  std::vector<std::vector<std::string>> rows{
+      {"channel", "unit", "mean", "std", "min", "max", "lsb", "nonfinite", "clipped"}};
+  for (const ChannelAudit& channel : audit.channels) {
+    const Moments& moments = channel.moments;
+    const auto cell = [&](double x) { return moments.count > 0 ? significant(x, 5) : "none"; };
+    rows.push_back({channel.name, channel.unit.symbol.empty() ? "?" : channel.unit.symbol,
+                    cell(moments.mean), cell(moments.std()), cell(moments.min), cell(moments.max),
+                    channel.lsb ? significant(*channel.lsb, 4) : "-",
+                    std::to_string(channel.nonfinite), std::to_string(channel.clipped)});
+  }
+  text += '\n' + aligned(rows);
+  if (!audit.notes.empty()) text += '\n';
+  for (const Note& note : audit.notes) {
+    constexpr const char* marks[] = {"note", "warning", "BAD"};
+    text += fmt::format("  {}: {}\n", marks[static_cast<int>(note.severity)], note.text);
+  }
+  return text;
+}
+
+}  // namespace proofmass::report

@@ -1,0 +1,152 @@
+#include "proofmass/report/page.hpp"
+
+#include <fmt/format.h>
+#include <iterator>
+#include <string_view>
+
+#include "proofmass/core/version.hpp"
+#include "proofmass/report/wording.hpp"
+
+namespace proofmass::report {
+namespace {
+
+using Out = std::back_insert_iterator<std::string>;
+
+constexpr std::string_view page_css = R"(*{box-sizing:border-box}
+body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,sans-serif}
+main{max-width:60rem;margin:0 auto;padding:2.5rem 1.5rem 4rem}
+.from{margin:0;color:var(--soft);font-size:.85rem;letter-spacing:.04em}
+h1{font-size:1.05rem;font-weight:600;margin:.2rem 0 1.6rem;overflow-wrap:anywhere}
+.conclusion{font-size:1.55rem;line-height:1.35;font-weight:500;margin:0 0 1.6rem;max-width:46rem}
+dl.key{display:grid;grid-template-columns:repeat(auto-fit,minmax(15rem,1fr));gap:1px;margin:0 0 2rem;
+background:var(--rule);border:1px solid var(--rule);border-radius:6px;overflow:hidden}
+dl.key div{background:var(--panel);padding:.7rem .9rem}dl.key dt{color:var(--soft);font-size:.82rem}
+dl.key dd{margin:0;font-size:1.08rem;font-variant-numeric:tabular-nums}
+h2{font-size:1.15rem;margin:2.6rem 0 .6rem;padding-bottom:.3rem;border-bottom:1px solid var(--rule)}
+p{margin:.5rem 0;max-width:46rem}ul{margin:.5rem 0;padding-left:1.2rem;max-width:46rem}li{margin:.2rem 0}
+.notes{list-style:none;padding:0}.notes li{padding:.35rem .8rem;border-left:3px solid var(--rule);
+margin:.4rem 0;overflow-wrap:anywhere}.notes .warning{border-color:var(--orange)}
+.notes .bad{border-color:var(--red)}.notes b{font-weight:600}
+.warning b{color:var(--orange)}.bad b{color:var(--red)}.info b{color:var(--soft)}
+figure{margin:1.4rem 0 2.2rem;break-inside:avoid}
+figcaption{margin:0 0 .7rem}figcaption b{display:block;font-weight:600}
+figcaption span{color:var(--soft);font-size:.9rem}
+.wide{overflow-x:auto;margin:1rem 0 1.6rem;break-inside:avoid}
+table{border-collapse:collapse;width:100%;font-size:.92rem;font-variant-numeric:tabular-nums}
+caption{text-align:left;color:var(--soft);font-size:.9rem;padding-bottom:.4rem}
+th,td{padding:.35rem .9rem .35rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--rule)}
+th{font-weight:600}thead th{color:var(--soft);font-weight:500}tbody th{font-weight:500}
+footer{margin-top:3rem;color:var(--soft);font-size:.85rem}
+@media print{body{font-size:10.5pt}main{max-width:none;padding:0}.conclusion{font-size:15pt}}
+)";
+
+std::string_view word(Severity severity) {
+  switch (severity) {
+    case Severity::info:
+      return "info";
+    case Severity::warning:
+      return "warning";
+    case Severity::bad:
+      break;
+  }
+  return "bad";
+}
+
+void write_cells(std::string& text, const std::vector<std::string>& cells, bool head) {
+  text += "<tr>";
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const std::string_view tag = head || k == 0 ? "th" : "td";
+    const std::string_view scope = head ? " scope=\"col\"" : k == 0 ? " scope=\"row\"" : "";
+    fmt::format_to(Out(text), "<{0}{1}>{2}</{0}>", tag, scope, escaped(cells[k]));
+  }
+  text += "</tr>\n";
+}
+
+void write(std::string& text, const Table& table) {
+  text += "<div class=\"wide\"><table>\n";
+  if (!table.caption.empty()) {
+    fmt::format_to(Out(text), "<caption>{}</caption>\n", escaped(table.caption));
+  }
+  text += "<thead>";
+  write_cells(text, table.head, true);
+  text += "</thead><tbody>\n";
+  for (const std::vector<std::string>& cells : table.rows) write_cells(text, cells, false);
+  text += "</tbody></table></div>\n";
+}
+
+void write(std::string& text, const Section& section, int& figures) {
+  fmt::format_to(Out(text), "<section>\n<h2>{}</h2>\n", escaped(section.heading));
+  for (const std::string& paragraph : section.paragraphs) {
+    fmt::format_to(Out(text), "<p>{}</p>\n", escaped(paragraph));
+  }
+  if (!section.points.empty()) text += "<ul>\n";
+  for (const std::string& point : section.points) {
+    fmt::format_to(Out(text), "<li>{}</li>\n", escaped(point));
+  }
+  if (!section.points.empty()) text += "</ul>\n";
+  for (const Table& table : section.tables) write(text, table);
+  for (const Figure& figure : section.figures) {
+    ++figures;
+    fmt::format_to(Out(text),
+                   "<figure>\n<figcaption><b>Figure {0}. {1}</b><span>{2}</span></figcaption>\n"
+                   "{3}</figure>\n",
+                   figures, escaped(figure.title), escaped(figure.description),
+                   svg(figure, fmt::format("figure-{}", figures)));
+  }
+  text += "</section>\n";
+}
+
+void write(std::string& text, const std::vector<KeyFigure>& figures) {
+  if (figures.empty()) return;
+  text += "<dl class=\"key\">\n";
+  for (const KeyFigure& figure : figures) {
+    fmt::format_to(Out(text), "<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(figure.label),
+                   escaped(figure.value));
+  }
+  text += "</dl>\n";
+}
+
+// What is wrong stands at the top, what is merely so at the end.
+void write_notes(std::string& text, const std::vector<Note>& notes, bool graves) {
+  std::string items;
+  for (const Note& note : notes) {
+    if ((note.severity > Severity::info) != graves) continue;
+    fmt::format_to(Out(items), "<li class=\"{0}\">{1}{2}</li>\n", word(note.severity),
+                   graves ? fmt::format("<b>{}</b> ", word(note.severity)) : "",
+                   escaped(note.text));
+  }
+  if (items.empty()) return;
+  if (!graves) text += "<section>\n<h2>How the input was read</h2>\n";
+  text += "<ul class=\"notes\">\n" + items + "</ul>\n";
+  if (!graves) text += "</section>\n";
+}
+
+}  // namespace
+
+std::string html(const Page& page) {
+  std::string text = fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"generator\" content=\"Proofmass {0}\">\n"
+      "<title>{1} – proofmass {2}</title>\n<style>\n{3}{4}</style>\n</head>\n<body>\n<main>\n"
+      "<p class=\"from\">Proofmass {0} · {2}</p>\n<h1>{1}</h1>\n<p class=\"conclusion\">{5}</p>\n",
+      version(), escaped(page.title), escaped(page.verb), figure_css(), page_css,
+      escaped(page.conclusion));
+  write(text, page.key_figures);
+  write_notes(text, page.notes, true);
+  int figures = 0;
+  for (const Section& section : page.sections) write(text, section, figures);
+  write_notes(text, page.notes, false);
+  text += "<footer>\n";
+  for (const std::string& input : page.inputs) {
+    fmt::format_to(Out(text), "<p>Input: {}</p>\n", escaped(input));
+  }
+  fmt::format_to(
+      Out(text),
+      "<p>Made by Proofmass {}. A figure written a ± b carries its standard deviation b; "
+      "bands are 95 %.</p>\n</footer>\n</main>\n</body>\n</html>\n",
+      version());
+  return text;
+}
+
+}  // namespace proofmass::report

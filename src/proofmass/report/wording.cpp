@@ -1,0 +1,155 @@
+#include "proofmass/report/wording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace proofmass::report {
+namespace {
+
+// A true minus sign, and none at all before a zero.
+std::string with_minus(std::string text) {
+  if (text.empty() || text.front() != '-') return text;
+  text.erase(0, 1);
+  const bool zero =
+      std::all_of(text.begin(), text.end(), [](char c) { return c == '0' || c == '.'; });
+  return zero ? text : "−" + text;
+}
+
+// Decimals (negative: places before the point) at which to round so that std keeps its digits.
+int decimals_for(double std) {
+  const int exponent = static_cast<int>(std::floor(std::log10(std)));
+  const double leading = std::round(std / std::pow(10.0, exponent - 2));  // 100 … 1000
+  return leading < 355.0 ? 1 - exponent : -exponent;  // 950 … 999 rounds up to one more digit
+}
+
+}  // namespace
+
+std::string fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return "none";
+  if (decimals >= 0) return with_minus(fmt::format("{:.{}f}", value, decimals));
+  const double place = std::pow(10.0, -decimals);
+  return with_minus(fmt::format("{:.0f}", std::round(value / place) * place));
+}
+
+std::string significant(double value, int digits) {
+  if (!std::isfinite(value)) return "none";
+  if (value == 0.0) return "0";
+  const int exponent = static_cast<int>(std::floor(std::log10(std::abs(value))));
+  if (exponent < -4 || exponent >= 6) return with_minus(fmt::format("{:.{}e}", value, digits - 1));
+  return fixed(value, digits - 1 - exponent);
+}
+
+std::string compact(double value, int digits) {
+  return std::isfinite(value) ? with_minus(fmt::format("{:.{}g}", value, digits)) : "none";
+}
+
+std::string with_std(const Uncertain& figure, std::string_view unit) {
+  const std::string tail = (unit.empty() || unit == "°" ? "" : " ") + std::string(unit);
+  if (!std::isfinite(figure.value) || !std::isfinite(figure.std)) return "none";
+  if (figure.std <= 0.0) return significant(figure.value, 6) + tail;
+  const int decimals = decimals_for(figure.std);
+  constexpr int most_decimals = 9;
+  if (decimals > most_decimals) {
+    return fmt::format("{} ± {}{}", significant(figure.value, 9), significant(figure.std, 2), tail);
+  }
+  return fmt::format("{} ± {}{}", fixed(figure.value, decimals), fixed(figure.std, decimals), tail);
+}
+
+std::string with_std(const std::optional<Uncertain>& figure,
+                     std::string_view unit,
+                     std::string_view absent) {
+  return figure ? with_std(*figure, unit) : std::string(absent);
+}
+
+std::string length_words(double length_m) {
+  if (!std::isfinite(length_m)) return "none";
+  const double size = std::abs(length_m);
+  if (size >= 1000.0) return significant(length_m / 1000.0, 2) + " km";
+  if (size >= 1.0) return significant(length_m, 2) + " m";
+  if (size >= 1e-4 || size == 0.0) return significant(length_m * 1e3, 2) + " mm";
+  return significant(length_m * 1e6, 2) + " µm";
+}
+
+std::string duration_words(double duration_s) {
+  if (!std::isfinite(duration_s)) return "none";
+  if (duration_s < 600.0) return compact(duration_s, 3) + " s";
+  const auto whole = static_cast<long long>(std::llround(duration_s));
+  const bool short_one = whole < 3600;
+  const long long smaller = short_one ? whole : (whole + 30) / 60;  // seconds or minutes
+  std::string text = fmt::format("{} {}", smaller / 60, short_one ? "min" : "h");
+  if (smaller % 60 != 0) text += fmt::format(" {} {}", smaller % 60, short_one ? "s" : "min");
+  return text;
+}
+
+std::string count_words(std::size_t count, std::string_view noun) {
+  std::string digits = std::to_string(count);
+  // U+202F, a narrow space that does not break.
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, "\u202f");
+  return fmt::format("{} {}{}", digits, noun, count == 1 ? "" : "s");
+}
+
+std::string print_unit(std::string_view symbol) {
+  std::string text(symbol);
+  for (const std::string_view power : {"^2", "^3"}) {
+    for (std::size_t at = text.find(power); at != std::string::npos; at = text.find(power)) {
+      text.replace(at, power.size(), power == "^2" ? "²" : "³");
+    }
+  }
+  return text;
+}
+
+std::size_t letters(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // not a later byte of a letter
+  }));
+}
+
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& cells : rows) {
+    widths.resize(std::max(widths.size(), cells.size()));
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      widths[k] = std::max(widths[k], letters(cells[k]));
+    }
+  }
+  std::string text;
+  for (const auto& cells : rows) {
+    std::string line;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      line += "  " + cells[k] + std::string(widths[k] - letters(cells[k]), ' ');
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + '\n';
+  }
+  return text;
+}
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) >= 0x20 || c == '\n') out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace proofmass::report

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proofmass/core/quantity.hpp"
+
+// Figures as people read them. Never the process locale: the decimal mark is a point.
+namespace proofmass::report {
+
+/// "79.614 ± 0.002 turns": the standard deviation rounded to the one or two digits that mean
+/// something, the value to the same place; "−" for a minus sign. A std of 0 is left away.
+/// Source: Particle Data Group, Review of Particle Physics, Introduction, section 5.3 (rounding).
+[[nodiscard]] std::string with_std(const Uncertain& figure, std::string_view unit = "");
+
+/// The same, or `absent` where there is no figure.
+[[nodiscard]] std::string with_std(const std::optional<Uncertain>& figure,
+                                   std::string_view unit,
+                                   std::string_view absent);
+
+/// A number with so many significant digits, "−0.00123", "1.23e+08": scientific where plain digits
+/// would take more than a glance (below 1e-4, from 1e6). "none" if it is not finite.
+[[nodiscard]] std::string significant(double value, int digits);
+
+/// A number with at most so many significant digits and no zeros behind: "60", "91.6", "120.0048".
+[[nodiscard]] std::string compact(double value, int digits);
+
+/// A number with so many decimals and "−" for a minus sign; never "−0.00".
+[[nodiscard]] std::string fixed(double value, int decimals);
+
+/// A length in the unit that suits it: "0.12 mm", "15 mm", "1.6 m", "7900 km".
+[[nodiscard]] std::string length_words(double length_m);
+
+/// A duration: "0.52 s", "91.6 s", "12 min 5 s", "3 h 20 min", "1 h".
+[[nodiscard]] std::string duration_words(double duration_s);
+
+/// "1 sample", "12 000 samples": a count with its noun, thousands apart.
+[[nodiscard]] std::string count_words(std::size_t count, std::string_view noun);
+
+/// "m/s^2" as print has it: "m/s²".
+[[nodiscard]] std::string print_unit(std::string_view symbol);
+
+/// Letters (code points) of UTF-8 text.
+[[nodiscard]] std::size_t letters(std::string_view text);
+
+/// Rows of cells for a terminal: each line begins with two blanks, columns flush left and two
+/// blanks apart. Rows may be of different lengths.
+[[nodiscard]] std::string aligned(const std::vector<std::vector<std::string>>& rows);
+
+/// Text as it may stand inside HTML and SVG: & < > " ' escaped, control characters left away.
+[[nodiscard]] std::string escaped(std::string_view text);
+
+}  // namespace proofmass::report

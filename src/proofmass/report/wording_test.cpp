@@ -1,0 +1,87 @@
+#include "proofmass/report/wording.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace proofmass::report {
+namespace {
+
+// The three examples of the Review of Particle Physics, Introduction, section 5.3.
+TEST(WithStd, RoundsAsTheParticleDataGroupDoes) {
+  EXPECT_EQ(with_std({0.827, 0.119}), "0.83 ± 0.12");
+  EXPECT_EQ(with_std({0.827, 0.367}), "0.8 ± 0.4");
+  EXPECT_EQ(with_std({0.827, 0.952}), "0.8 ± 1.0");
+}
+
+TEST(WithStd, PutsTheUnitBehindAndADegreeSignCloseUp) {
+  EXPECT_EQ(with_std({79.6141, 0.0021}, "turns"), "79.6141 ± 0.0021 turns");
+  EXPECT_EQ(with_std({-12.34, 0.5}, "°"), "−12.3 ± 0.5°");
+}
+
+TEST(WithStd, RoundsLargeFiguresToWholeTens) {
+  EXPECT_EQ(with_std({12345.0, 400.0}), "12300 ± 400");
+}
+
+TEST(WithStd, LeavesAwayAStdOfZeroAndSaysNoneOfWhatIsNotFinite) {
+  EXPECT_EQ(with_std({1.5, 0.0}, "m"), "1.50000 m");
+  EXPECT_EQ(with_std({std::nan(""), 1.0}), "none");
+  EXPECT_EQ(with_std(std::nullopt, "m", "not determined"), "not determined");
+}
+
+TEST(Fixed, HasATrueMinusSignButNoneBeforeZero) {
+  EXPECT_EQ(fixed(-1.25, 1), "−1.2");
+  EXPECT_EQ(fixed(-0.001, 2), "0.00");
+  EXPECT_EQ(fixed(1234.0, -2), "1200");
+}
+
+TEST(Significant, TurnsToPowersOfTenWherePlainDigitsWouldNotBeRead) {
+  EXPECT_EQ(significant(120.0051, 4), "120.0");
+  EXPECT_EQ(significant(0.0021, 2), "0.0021");
+  EXPECT_EQ(significant(3.0e34, 3), "3.00e+34");
+  EXPECT_EQ(significant(-2.5e-7, 2), "−2.5e-07");
+  EXPECT_EQ(significant(0.0, 3), "0");
+}
+
+TEST(Compact, LeavesNoZerosBehind) {
+  EXPECT_EQ(compact(60.0, 7), "60");
+  EXPECT_EQ(compact(120.00482, 7), "120.0048");
+  EXPECT_EQ(compact(-0.5, 3), "−0.5");
+}
+
+// Cells of table 2.1 of the thesis, where "015 mm" is 15 mm.
+TEST(LengthWords, ChoosesTheUnitThatSuits) {
+  EXPECT_EQ(length_words(0.00012258), "0.12 mm");
+  EXPECT_EQ(length_words(0.0147), "15 mm");
+  EXPECT_EQ(length_words(5.3), "5.3 m");
+  EXPECT_EQ(length_words(7.943e6), "7900 km");
+  EXPECT_EQ(length_words(2.0e-6), "2.0 µm");
+}
+
+TEST(DurationWords, CarriesSecondsIntoMinutesAndMinutesIntoHours) {
+  EXPECT_EQ(duration_words(91.64), "91.6 s");
+  EXPECT_EQ(duration_words(725.0), "12 min 5 s");
+  EXPECT_EQ(duration_words(3599.9), "1 h");
+  EXPECT_EQ(duration_words(60.0), "60 s");
+  EXPECT_EQ(duration_words(12000.0), "3 h 20 min");
+}
+
+TEST(CountWords, KnowsOneFromManyAndPartsThousands) {
+  EXPECT_EQ(count_words(1, "row"), "1 row");
+  EXPECT_EQ(count_words(0, "row"), "0 rows");
+  EXPECT_EQ(count_words(1234567, "row"), "1\u202f234\u202f567 rows");
+}
+
+TEST(Escaped, LeavesNothingThatHtmlWouldTakeForMarkup) {
+  EXPECT_EQ(escaped("<a href='x'>&\"\x01</a>"), "&lt;a href=&#39;x&#39;&gt;&amp;&quot;&lt;/a&gt;");
+}
+
+TEST(Aligned, CountsLettersAndNotBytes) {
+  EXPECT_EQ(aligned({{"µm", "1"}, {"m", "22"}}), "  µm  1\n  m   22\n");
+}
+
+TEST(PrintUnit, RaisesPowers) {
+  EXPECT_EQ(print_unit("m/s^2"), "m/s²");
+}
+
+}  // namespace
+}  // namespace proofmass::report

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/result.hpp"
+#include "proofmass/sensor/sensor_model.hpp"
+
+namespace proofmass::sensor {
+
+/// Turns one sensor's channels into specific force in m/s^2: counts by the LSB, volts by
+/// sensitivity and zero (ratiometric: by the recorded supply, else the nominal one), and the
+/// reading by f = T diag(1/scale) (reading − bias); see Electrical and Calibration. Channels in an
+/// unit of acceleration skip the first two. An axis without a figure has bias 0, scale 1; where T
+/// needs an axis that was not recorded, that axis counts as 0 and a note says so.
+///
+/// Errors: invalid_argument (a figure is missing or zero that the channel's unit calls for, or bias
+/// and scale are in units that do not go together; the message names the channel). The recording is
+/// then as it was.
+[[nodiscard]] Status apply(const SensorModel& model, const Triad& triad, Recording& recording);
+
+/// The same for every accelerometer of the recording.
+/// Errors: as above, and invalid_argument if there is none.
+[[nodiscard]] Status apply(const SensorModel& model, Recording& recording);
+
+/// T diag(1/scale), row by row; SI.
+[[nodiscard]] std::array<std::array<double, 3>, 3> correction_matrix(
+    const Calibration& calibration);
+
+/// Standard deviation of the angle between the sensor's axes and its case, where the file gives it.
+[[nodiscard]] std::optional<double> alignment_std_rad(const SensorModel& model);
+
+}  // namespace proofmass::sensor

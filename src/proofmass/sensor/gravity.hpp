@@ -1,0 +1,24 @@
+#pragma once
+
+#include "proofmass/core/units.hpp"
+
+namespace proofmass::sensor {
+
+/// Where on Earth a recording was made.
+struct Place {
+  double latitude_rad = 0.0;  ///< geodetic, north positive
+  double height_m = 0.0;      ///< above the ellipsoid; above sea level is within 100 m of it
+};
+
+/// Normal gravity of the ellipsoid WGS 84: Somigliana's closed formula on the ellipsoid, and the
+/// second-order formula above it,
+///
+///     γ(φ) = γ_e (1 + k sin²φ) / √(1 − e² sin²φ),
+///     γ(φ, h) = γ(φ) (1 − (2/a)(1 + f + m − 2 f sin²φ) h + (3/a²) h²).
+///
+/// The gravity of a real place differs by its anomaly, seldom more than 1e-3 m/s².
+/// Source: NIMA TR8350.2, Department of Defense World Geodetic System 1984, 3rd ed. (2000),
+/// equations 4-1 and 4-3. Range: −500 m … 20 km.
+[[nodiscard]] double gravity_mps2(const Place& place);
+
+}  // namespace proofmass::sensor

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <initializer_list>
+#include <string_view>
+
+#include "proofmass/sensor/sensor_model.hpp"
+
+namespace proofmass::sensor {
+
+inline constexpr std::array<std::string_view, 5> sections{"sensor", "electrical", "calibration",
+                                                          "noise", "drift"};
+
+/// Every figure of a sensor file, once: section, key, SI units of which one must be its own,
+/// member. A figure is added by a line here. Model is SensorModel or const SensorModel.
+template <class Model, class Visit>
+void visit_figures(Model& model, Visit&& visit) {
+  using Units = std::initializer_list<std::string_view>;
+  auto& e = model.electrical;
+  visit("electrical", "supply", Units{"V"}, e.supply);
+  visit("electrical", "reference_supply", Units{"V"}, e.reference_supply);
+  visit("electrical", "sensitivity", Units{"V/(m/s^2)"}, e.sensitivity);
+  visit("electrical", "zero_g_fraction", Units{"1"}, e.zero_g_fraction);
+  visit("electrical", "bandwidth", Units{"Hz"}, e.bandwidth);
+  visit("electrical", "lsb", Units{"V", "m/s^2"}, e.lsb);
+  auto& c = model.calibration;
+  visit("calibration", "bias", Units{"m/s^2", "V", "counts"}, c.bias);
+  visit("calibration", "scale", Units{"1", "V/(m/s^2)", "counts/(m/s^2)"}, c.scale);
+  visit("calibration", "misalignment", Units{"rad"}, c.misalignment);
+  visit("calibration", "gravity", Units{"m/s^2"}, c.gravity);
+  visit("calibration", "temperature", Units{"K"}, c.temperature);
+  visit("calibration", "alignment_std", Units{"rad"}, c.alignment_std);
+  auto& n = model.noise;
+  visit("noise", "white", Units{"m/s^2/sqrt(Hz)"}, n.white);
+  visit("noise", "quantisation", Units{"m/s"}, n.quantisation);
+  visit("noise", "flicker", Units{"m/s^2"}, n.flicker);
+  visit("noise", "random_walk", Units{"m/s^2/sqrt(s)"}, n.random_walk);
+  visit("noise", "ramp", Units{"m/s^3"}, n.ramp);
+  auto& d = model.drift;
+  visit("drift", "a1", Units{"m/s^2"}, d.a1);
+  visit("drift", "a2", Units{"m/s^2"}, d.a2);
+  visit("drift", "T", Units{"s"}, d.time_constant);
+}
+
+/// The same for what is text.
+template <class Model, class Visit>
+void visit_texts(Model& model, Visit&& visit) {
+  visit("sensor", "name", model.name);
+  visit("sensor", "serial", model.serial);
+  visit("sensor", "date", model.date);
+  visit("electrical", "supply_channel", model.electrical.supply_channel);
+}
+
+}  // namespace proofmass::sensor

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/core/units.hpp"
+
+namespace proofmass::signal {
+
+/// Values beyond this size are no measurement but a decoder's accident: 3e34 and the like.
+inline constexpr double absurd_magnitude = 1e15;
+
+/// What one channel's figures look like. Moments, LSB and clipping are over the plausible values:
+/// the finite ones that are below absurd_magnitude and not denormal.
+struct ChannelAudit {
+  std::string name;
+  Unit unit;
+  Moments moments;            ///< mean, std(), min, max of the plausible values
+  std::optional<double> lsb;  ///< step of the converter, in the channel's unit; none if continuous
+  std::size_t nonfinite = 0;  ///< NaN and infinities, of which `infinite` are infinities
+  std::size_t infinite = 0;
+  std::size_t absurd = 0;    ///< |x| > absurd_magnitude
+  std::size_t denormal = 0;  ///< 0 < |x| < 1.2e-38, a float's smallest normal: bytes misread
+  std::size_t clipped = 0;   ///< samples in runs of three or more at the lowest or highest value
+  std::size_t longest_stuck = 0;  ///< samples of the longest run of one and the same value
+  double longest_stuck_start_s = 0.0;
+};
+
+/// A hole in the stamps: two samples further apart than 1.5 nominal steps.
+struct Gap {
+  double start_s = 0.0;     ///< time of the last sample before it, since the first sample
+  double duration_s = 0.0;  ///< from that sample to the next
+};
+
+/// How regular the sampling was.
+struct TimingAudit {
+  TimeSource source = TimeSource::none;
+  std::string channel;             ///< column behind the time base; empty if none
+  double rate_hz = 0.0;            ///< 0 if unknown
+  std::optional<double> jitter_s;  ///< std of the steps about the nominal one, gaps left out; none
+                                   ///< where there are no stamps
+  std::vector<Gap> gaps;
+  std::size_t backwards = 0;  ///< stamps below the one before, those that the reader mended too
+  std::size_t repeated = 0;   ///< stamps equal to the one before
+  std::size_t mended = 0;     ///< stamps that the reader replaced, being no number or far off
+  std::optional<std::size_t> lost;  ///< rows missing by the file's packet counter; none without one
+};
+
+/// What is in a recording and how good it is.
+struct RecordingAudit {
+  std::string format;
+  std::size_t samples = 0;
+  double duration_s = 0.0;
+  std::vector<ChannelAudit> channels;  ///< in the order of the recording
+  TimingAudit timing;
+  std::vector<std::size_t> zero_rows;  ///< samples at which every measured channel reads exactly 0
+  /// What the reader noted, then what the audit found, each a sentence with its place.
+  std::vector<Note> notes;
+
+  /// Whether any note is Severity::bad: what `--strict` asks.
+  [[nodiscard]] bool is_bad() const;
+};
+
+/// Judges a recording's channels and timing.
+/// Jitter is the root mean square of step − 1/rate over the steps within half a nominal step of it.
+/// The LSB is the step that the differences between neighbouring distinct values are whole
+/// multiples of, fitted over all of them; none if fewer than half of the values repeat one another.
+/// Values count as clipped where the exact extreme is read three times running or more, and more
+/// often than the fiftieth of the range next to it; only channels that a converter's range can
+/// clip. Cost: a few passes over each channel and a sort of at most a quarter of a million of its
+/// values.
+[[nodiscard]] RecordingAudit audit(const Recording& recording);
+
+}  // namespace proofmass::signal

@@ -1,0 +1,148 @@
+#include "proofmass/signal/channel_audit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace proofmass::signal {
+namespace {
+
+/// Least squares would be finer than needed: the sum of the differences over the sum of the whole
+/// multiples they are, and how many of them are such multiples.
+struct GridFit {
+  double step = 0.0;
+  double on_grid = 0.0;  ///< fraction of the differences within 15 % of a whole multiple
+};
+
+GridFit fit_grid(View<double> differences, double step) {
+  GridFit fit{step, 0.0};
+  for (int pass = 0; pass < 2; ++pass) {
+    double sum = 0.0;
+    double multiples = 0.0;
+    std::size_t on_grid = 0;
+    for (const double d : differences) {
+      const double n = std::round(d / fit.step);
+      if (n < 1.0 || std::abs(d / fit.step - n) > 0.15) continue;
+      ++on_grid;
+      // Large gaps say little about a step that is not yet known well.
+      if (n > 4.0) continue;
+      sum += d;
+      multiples += n;
+    }
+    fit.on_grid = static_cast<double>(on_grid) / static_cast<double>(differences.size());
+    if (multiples > 0.0) fit.step = sum / multiples;
+  }
+  return fit;
+}
+
+bool has_range(Quantity quantity) {
+  return quantity == Quantity::acceleration || quantity == Quantity::angular_rate ||
+         quantity == Quantity::voltage || quantity == Quantity::counts;
+}
+
+/// Samples in runs of three or more at exactly `rail`, if the signal piles up there: more often
+/// than in the fiftieth of the range beside it, and not just for once as a value that is held is.
+std::size_t count_clipped(View<double> series, double rail, double other_rail) {
+  constexpr std::size_t shortest_run = 3;
+  const double nearby = std::abs(rail - other_rail) / 50.0;
+  std::size_t in_runs = 0;
+  std::size_t runs = 0;
+  std::size_t longest_at_rail = 0;
+  std::size_t longest_elsewhere = 0;
+  std::size_t beside = 0;
+  for (std::size_t k = 0; k < series.size();) {
+    std::size_t end = k + 1;
+    while (end < series.size() && series[end] == series[k]) ++end;
+    const std::size_t run = end - k;
+    if (series[k] == rail) {
+      longest_at_rail = std::max(longest_at_rail, run);
+      if (run >= shortest_run) {
+        in_runs += run;
+        ++runs;
+      }
+    } else {
+      longest_elsewhere = std::max(longest_elsewhere, run);
+      if (std::abs(series[k] - rail) <= nearby) beside += run;
+    }
+    k = end;
+  }
+  const bool is_rail = runs >= 2 || longest_at_rail > longest_elsewhere;
+  return is_rail && in_runs > beside ? in_runs : 0;
+}
+
+void audit_clipping(const Channel& channel, ChannelAudit& out) {
+  const double low = out.moments.min;
+  const double high = out.moments.max;
+  if (!has_range(channel.unit.quantity) || !(high > low)) return;
+  // Of a handful of levels the outermost are no rails, only the ends of the noise.
+  constexpr double fewest_levels = 32.0;
+  if (out.lsb && high - low < fewest_levels * *out.lsb) return;
+  if (high != 0.0) out.clipped += count_clipped(channel.values, high, low);
+  if (low != 0.0) out.clipped += count_clipped(channel.values, low, high);
+}
+
+}  // namespace
+
+bool is_denormal(double value) {
+  return value != 0.0 && std::abs(value) < double{std::numeric_limits<float>::min()};
+}
+
+bool is_plausible(double value) {
+  return std::abs(value) <= absurd_magnitude && !is_denormal(value);
+}
+
+std::optional<double> find_lsb(View<double> series) {
+  constexpr std::size_t most = 1u << 18;
+  const std::size_t stride = series.size() / most + 1;
+  std::vector<double> values;
+  for (std::size_t k = 0; k < series.size(); k += stride)
+    if (is_plausible(series[k])) values.push_back(series[k]);
+  const std::size_t looked_at = values.size();
+  std::ranges::sort(values);
+  values.erase(std::ranges::unique(values).begin(), values.end());
+  if (values.size() < 2 || values.size() * 2 > looked_at) return std::nullopt;
+  std::vector<double> differences;
+  for (std::size_t i = 1; i < values.size(); ++i) differences.push_back(values[i] - values[i - 1]);
+  std::vector<double> sorted = differences;
+  std::ranges::sort(sorted);
+  // The smallest difference is the step unless a few values are off the grid: then look higher.
+  for (const double p : {0.0, 0.01, 0.05, 0.25, 0.5}) {
+    const auto at = static_cast<std::size_t>(p * static_cast<double>(sorted.size() - 1));
+    const GridFit fit = fit_grid(differences, sorted[at]);
+    if (fit.on_grid >= 0.98) return fit.step;
+  }
+  return std::nullopt;
+}
+
+ChannelAudit audit_channel(const Channel& channel, const TimeBase& time) {
+  ChannelAudit out;
+  out.name = channel.name;
+  out.unit = channel.unit;
+  std::size_t run = 0;
+  double last = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t k = 0; k < channel.values.size(); ++k) {
+    const double x = channel.values[k];
+    if (!std::isfinite(x)) {
+      ++out.nonfinite;
+      if (std::isinf(x)) ++out.infinite;
+    } else if (std::abs(x) > absurd_magnitude) {
+      ++out.absurd;
+    } else if (is_denormal(x)) {
+      ++out.denormal;
+    } else {
+      out.moments.add(x);
+    }
+    run = x == last ? run + 1 : 1;
+    last = x;
+    if (is_plausible(x) && run > out.longest_stuck) {
+      out.longest_stuck = run;
+      out.longest_stuck_start_s = time.at(k + 1 - run);
+    }
+  }
+  out.lsb = find_lsb(channel.values);
+  audit_clipping(channel, out);
+  return out;
+}
+
+}  // namespace proofmass::signal

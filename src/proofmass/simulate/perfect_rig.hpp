@@ -1,0 +1,38 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <string_view>
+#include <vector>
+
+#include "proofmass/simulate/rig.hpp"
+
+// What the tests of the rig share.
+namespace proofmass::simulate {
+
+inline constexpr double g = standard_gravity_mps2;
+
+/// The thesis's wheel with sensors that have no errors.
+inline RigOptions perfect() {
+  RigOptions options;
+  options.bias_spread_mps2 = 0.0;
+  options.wheel.profile = {{.duration_s = 4.0, .speed_radps = 11.0 * radps_per_rpm},
+                           {.duration_s = 4.0, .speed_radps = -21.0 * radps_per_rpm, .ramp_s = 2.0},
+                           {.duration_s = 2.0, .speed_radps = 0.0, .ramp_s = 0.5}};
+  for (RigSensor& sensor : options.sensors) {
+    sensor.warm_up_mps2 = {};
+    sensor.noise_rms_mps2 = {};
+  }
+  return options;
+}
+
+inline RigResult simulated(const RigOptions& options) {
+  return simulate_rig(options).value();
+}
+
+inline const std::vector<double>& column(const Recording& recording, std::string_view name) {
+  const Channel* channel = recording.find(name);
+  EXPECT_NE(channel, nullptr) << name;
+  return channel->values;
+}
+
+}  // namespace proofmass::simulate

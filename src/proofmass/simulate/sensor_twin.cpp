@@ -1,0 +1,192 @@
+#include "proofmass/simulate/sensor_twin.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace proofmass::simulate {
+namespace {
+
+/// An even draw within ± limit has this standard deviation, as a fraction of the limit.
+constexpr double even_std = 1.0 / std::numbers::sqrt3;
+
+void draw_bias(const RigOptions& options, std::size_t index, RigSensor& sensor) {
+  Random random(options.seed, "bias", index);
+  for (double& bias : sensor.bias_mps2) bias += options.bias_spread_mps2 * random.uniform();
+}
+
+void draw_datasheet_errors(const RigOptions& options, std::size_t index, RigSensor& sensor) {
+  const auto& sheet = sensor::adxl335;
+  const double scale_spread =
+      *sheet.sensitivity_v_per_mps2.max / *sheet.sensitivity_v_per_mps2.typ - 1.0;
+  Random random(options.seed, "datasheet errors", index);
+  for (double& a : sensor.misalignment_rad) a += sheet.interaxis_alignment_rad * random.uniform();
+  for (double& c : sensor.cross_axis) c += sheet.cross_axis * random.uniform();
+  for (double& s : sensor.scale) s *= 1.0 + scale_spread * random.uniform();
+  sensor.nonlinearity += sheet.nonlinearity * random.uniform();
+}
+
+Eigen::Matrix3d error_matrix(const RigSensor& sensor) {
+  const auto& [xy, xz, yx, yz, zx, zy] = sensor.cross_axis;
+  const auto& [a_yz, a_zy, a_zx] = sensor.misalignment_rad;
+  Eigen::Matrix3d cross, T;
+  cross << 1.0, xy, xz, yx, 1.0, yz, zx, zy, 1.0;
+  T << 1.0, -a_yz, a_zy, 0.0, 1.0, -a_zx, 0.0, 0.0, 1.0;
+  return cross * Eigen::Vector3d(sensor.scale.data()).asDiagonal() * T.inverse();
+}
+
+/// M⁻¹ = R U with R a rotation and U upper triangular with a positive diagonal: U is what a
+/// calibration against gravity finds, R what it cannot see.
+struct Split {
+  Eigen::Matrix3d R, U;
+};
+Split split(const Eigen::Matrix3d& M) {
+  const Eigen::HouseholderQR<Eigen::Matrix3d> qr(M.inverse());
+  Split parts{qr.householderQ(), qr.matrixQR().triangularView<Eigen::Upper>()};
+  const Eigen::Matrix3d signs = parts.U.diagonal().cwiseSign().asDiagonal();
+  parts.R = parts.R * signs;
+  parts.U = signs * parts.U;
+  return parts;
+}
+
+double rotation_angle(const Eigen::Matrix3d& R) {
+  const Eigen::Vector3d twice_sine(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+  return std::atan2(twice_sine.norm(), R.trace() - 1.0);
+}
+
+constexpr const char* origin = "simulated";
+
+sensor::Calibration calibration_of(const SensorTwin& twin, double gravity_mps2) {
+  const Eigen::Matrix3d U = split(twin.M).U;
+  const Eigen::Vector3d scale = U.diagonal().cwiseInverse();
+  sensor::Calibration calibration;
+  calibration.bias = sensor::make_axis_figures(twin.sensor.bias_mps2, "m/s^2", origin);
+  calibration.scale = sensor::make_axis_figures({scale(0), scale(1), scale(2)}, "1", origin);
+  calibration.misalignment = sensor::make_axis_figures(
+      {-U(0, 1) * scale(1), U(0, 2) * scale(2), -U(1, 2) * scale(2)}, "rad", origin);
+  calibration.gravity = sensor::make_figure(gravity_mps2, "m/s^2", origin);
+  calibration.alignment_std = sensor::make_figure(twin.alignment_std_rad, "rad", origin);
+  return calibration;
+}
+
+sensor::Electrical electrical_of(const RigSensor& sensor, const RigOptions& options) {
+  const auto same = [](double value, const char* unit) {
+    return sensor::make_axis_figures({value, value, value}, unit, origin);
+  };
+  sensor::Electrical electrical;
+  electrical.supply = sensor::make_figure(options.supply.nominal_v, "V", origin);
+  electrical.reference_supply = electrical.supply;
+  if (options.supply.recorded) electrical.supply_channel = "supply";
+  electrical.sensitivity = same(sensor.sensitivity_v_per_mps2, "V/(m/s^2)");
+  electrical.zero_g_fraction = same(sensor.zero_g_fraction, "1");
+  electrical.bandwidth = same(sensor.bandwidth_hz, "Hz");
+  if (options.daq.bits > 0)
+    electrical.lsb = sensor::make_figure(daq_lsb_v(options.daq), "V", origin);
+  return electrical;
+}
+
+}  // namespace
+
+SensorTwin::SensorTwin(const RigOptions& options, std::size_t index)
+    : sensor(options.sensors[index]) {
+  alignment_std_rad = rotation_angle(split(error_matrix(sensor)).R);
+  draw_bias(options, index, sensor);
+  if (options.datasheet_errors) {
+    draw_datasheet_errors(options, index, sensor);
+    alignment_std_rad = std::hypot(alignment_std_rad, even_std * sensor::adxl335.cross_axis,
+                                   even_std * sensor::adxl335.interaxis_alignment_rad);
+  }
+  position_m = sensor.radius_m *
+               Eigen::Vector3d(std::cos(sensor.position_rad), std::sin(sensor.position_rad), 0.0);
+  const Eigen::Matrix3d R_wheel_sensor =
+      (Eigen::AngleAxisd(sensor.mounting_rad, Eigen::Vector3d::UnitZ()) *
+       Eigen::AngleAxisd(sensor.tilt_y_rad, Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(sensor.tilt_x_rad, Eigen::Vector3d::UnitX()))
+          .toRotationMatrix();
+  R_sensor_wheel = R_wheel_sensor.transpose();
+  M = error_matrix(sensor);
+}
+
+AxisTwin::AxisTwin(const SensorTwin& twin,
+                   const RigOptions& options,
+                   std::size_t sensor,
+                   std::size_t axis)
+    : sensor_(&twin.sensor),
+      axis_(axis),
+      step_s_(1.0 / options.rate_hz),
+      filtered_rms_(sensor::filtered_noise_rms(twin.sensor.noise_density_mps2_rthz[axis],
+                                               twin.sensor.bandwidth_hz)),
+      white_(options.seed, "white noise", 3 * sensor + axis),
+      density_(options.seed, "filtered noise", 3 * sensor + axis),
+      walk_(options.seed, "bias walk", 3 * sensor + axis) {
+  // Stationary from the start.
+  filtered_mps2_ = filtered_rms_ * density_.normal();
+  memory_ = std::exp(-2.0 * std::numbers::pi * twin.sensor.bandwidth_hz * step_s_);
+}
+
+double AxisTwin::bias_mps2(double t_s) const {
+  const double warm_up = sensor_->warm_up_mps2[axis_] * -std::expm1(-t_s / sensor_->warm_up_time_s);
+  return sensor_->bias_mps2[axis_] + warm_up + walk_mps2_;
+}
+
+double AxisTwin::reading_mps2(double u_mps2, double t_s) const {
+  const double full_scale = sensor_->full_scale_mps2;
+  const double bent = u_mps2 + sensor_->nonlinearity * u_mps2 * u_mps2 / full_scale;
+  return std::clamp(bent + bias_mps2(t_s), -full_scale, full_scale);
+}
+
+// White noise behind one pole is a first-order autoregression at evenly spaced instants, exactly.
+double AxisTwin::next_noise_mps2() {
+  const double now = filtered_mps2_;
+  filtered_mps2_ = memory_ * filtered_mps2_ +
+                   std::sqrt(1.0 - memory_ * memory_) * filtered_rms_ * density_.normal();
+  return now + sensor_->noise_rms_mps2[axis_] * white_.normal();
+}
+
+void AxisTwin::step_walk() {
+  walk_mps2_ += sensor_->bias_walk_mps2_rts[axis_] * std::sqrt(step_s_) * walk_.normal();
+}
+
+OnePole::OnePole(double bandwidth_hz) : tau_s_(1.0 / (2.0 * std::numbers::pi * bandwidth_hz)) {}
+
+double OnePole::next(double t_s, double input) {
+  if (!started_) {
+    output_ = input;
+    started_ = true;
+  } else if (t_s > t_s_) {
+    const double lag = (input - input_) / (t_s - t_s_) * tau_s_;
+    output_ = input - lag + (output_ - input_ + lag) * std::exp((t_s_ - t_s) / tau_s_);
+  }
+  t_s_ = t_s;
+  input_ = input;
+  return output_;
+}
+
+double daq_lsb_v(const RigDaq& daq) {
+  return std::ldexp(daq.max_v - daq.min_v, -daq.bits);
+}
+
+sensor::SensorModel model_of(const SensorTwin& twin, const RigOptions& options, std::size_t index) {
+  const RigSensor& s = twin.sensor;
+  sensor::SensorModel model;
+  model.name = "simulated sensor " + std::to_string(index + 1);
+  model.serial = "seed " + std::to_string(options.seed);
+  model.electrical = electrical_of(s, options);
+  model.calibration = calibration_of(twin, options.gravity_mps2);
+  Axes white{};  // N: below the filter's corner both kinds are flat
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    white[axis] = std::hypot(s.noise_rms_mps2[axis] / std::sqrt(options.rate_hz),
+                             s.noise_density_mps2_rthz[axis] / std::numbers::sqrt2);
+  model.noise.white = sensor::make_axis_figures(white, "m/s^2/sqrt(Hz)", origin);
+  model.noise.random_walk =
+      sensor::make_axis_figures(s.bias_walk_mps2_rts, "m/s^2/sqrt(s)", origin);
+  model.drift.a1 = sensor::make_axis_figures(s.warm_up_mps2, "m/s^2", origin);
+  model.drift.a2 = sensor::make_axis_figures({0.0, 0.0, 0.0}, "m/s^2", "counted in the bias");
+  model.drift.time_constant = sensor::make_axis_figures(
+      {s.warm_up_time_s, s.warm_up_time_s, s.warm_up_time_s}, "s", origin);
+  return model;
+}
+
+}  // namespace proofmass::simulate

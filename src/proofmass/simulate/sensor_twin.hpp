@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "proofmass/simulate/random.hpp"
+#include "proofmass/simulate/rig.hpp"
+
+namespace proofmass::simulate {
+
+/// One sensor of the rig with everything that the seed draws for it.
+struct SensorTwin {
+  SensorTwin(const RigOptions& options, std::size_t index);
+
+  RigSensor sensor;            ///< the given one with the draws added
+  Eigen::Vector3d position_m;  ///< in the wheel's axes
+  Eigen::Matrix3d R_sensor_wheel;
+  Eigen::Matrix3d M;  ///< (I + C) diag(scale) T⁻¹
+  double alignment_std_rad = 0.0;
+};
+
+/// One axis of a sensor over time: what its bias does, its noise and its filter. Asked for at
+/// ascending times that are `step_s` apart.
+class AxisTwin {
+ public:
+  AxisTwin(const SensorTwin& twin, const RigOptions& options, std::size_t sensor, std::size_t axis);
+
+  /// Bias with warm-up and random walk, in m/s².
+  [[nodiscard]] double bias_mps2(double t_s) const;
+  /// Reading of the force along u = M f, in m/s², without noise, clipped at full scale.
+  [[nodiscard]] double reading_mps2(double u_mps2, double t_s) const;
+  /// Noise of the next sample, in m/s².
+  [[nodiscard]] double next_noise_mps2();
+  void step_walk();
+
+ private:
+  const RigSensor* sensor_;
+  std::size_t axis_;
+  double step_s_;
+  double walk_mps2_ = 0.0;
+  double filtered_mps2_ = 0.0;  ///< noise behind the RC filter
+  double filtered_rms_;
+  double memory_ = 0.0;  ///< e^(−2π bandwidth · step), of the filter from sample to sample
+  Random white_, density_, walk_;
+};
+
+/// A one-pole low-pass, exact for an input that is linear between the times it is told.
+class OnePole {
+ public:
+  explicit OnePole(double bandwidth_hz);
+  /// The output at t_s; the first call settles it at its input.
+  double next(double t_s, double input);
+
+ private:
+  double tau_s_;
+  bool started_ = false;
+  double t_s_ = 0.0, input_ = 0.0, output_ = 0.0;
+};
+
+/// What a bench would know of the sensor after a perfect calibration; see RigResult::sensors.
+[[nodiscard]] sensor::SensorModel model_of(const SensorTwin& twin,
+                                           const RigOptions& options,
+                                           std::size_t index);
+
+/// A step of the rig's converter in V; bits must not be 0.
+[[nodiscard]] double daq_lsb_v(const RigDaq& daq);
+
+}  // namespace proofmass::simulate

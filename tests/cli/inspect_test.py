@@ -1,0 +1,99 @@
+"""proofmass inspect."""
+import gzip
+import unittest
+
+from command import BAD_DATA, CommandTest, turning_csv
+
+
+class Inspect(CommandTest):
+    def test_the_document_has_what_the_contract_names(self):
+        self.write("a.csv", turning_csv())
+        document = self.document("inspect", "a.csv")
+        self.assertEqual(document["input"], ["a.csv"])
+        self.assertEqual(document["samples"], 2000)
+        self.assertAlmostEqual(document["rate_hz"], 100.0, places=3)
+        self.assertAlmostEqual(document["duration_s"], 19.99, places=6)
+        names = [channel["name"] for channel in document["channels"]]
+        self.assertEqual(names, ["acc_x", "acc_y", "acc_z"])
+        self.assertEqual({channel["unit"] for channel in document["channels"]}, {"m/s^2"})
+        self.assertEqual(document["timing"]["source"], "stamps")
+        self.assertEqual(document["timing"]["gaps"], [])
+
+    def test_gaps_and_dirt_are_counted(self):
+        lines = turning_csv(seconds=4).splitlines()
+        lines[50] = lines[50].split(",")[0] + ",nan,1,1"
+        del lines[200:250]
+        self.write("a.csv", "\n".join(lines) + "\n")
+        document = self.document("inspect", "a.csv")
+        self.assertEqual(len(document["timing"]["gaps"]), 1)
+        self.assertAlmostEqual(document["timing"]["gaps"][0]["duration_s"], 0.51, places=6)
+        self.assertEqual(document["channels"][0]["nonfinite"], 1)
+
+    def test_without_time_the_rate_is_null_and_given_it_is_there(self):
+        rows = "\n".join(f"{0.1 + k % 3},9.8" for k in range(100))
+        self.write("a.csv", "acc_x (g),acc_y (g)\n" + rows + "\n")
+        self.assertIsNone(self.document("inspect", "a.csv")["rate_hz"])
+        document = self.document("inspect", "a.csv", "--rate", "50")
+        self.assertEqual(document["rate_hz"], 50)
+        self.assertEqual(document["timing"]["source"], "given_rate")
+
+    def test_several_files_are_each_told(self):
+        self.write("a.csv", turning_csv(seconds=2))
+        self.write("b.csv", turning_csv(seconds=3))
+        document = self.document("inspect", "a.csv", "b.csv")
+        self.assertEqual([f["samples"] for f in document["files"]], [200, 300])
+        self.assertEqual(document["samples"], 200)
+        text = self.succeed("inspect", "a.csv", "b.csv")
+        self.assertIn("a.csv", text)
+        self.assertIn("b.csv", text)
+
+    def test_a_compressed_file_and_standard_input_read_the_same(self):
+        csv = turning_csv(seconds=2)
+        self.write("a.csv", csv)
+        self.write("a.csv.gz", gzip.compress(csv.encode()))
+        plain = self.document("inspect", "a.csv")
+        packed = self.document("inspect", "a.csv.gz")
+        piped = self.document("inspect", "-", stdin=csv.encode())
+        for other in (packed, piped):
+            self.assertEqual(other["channels"], plain["channels"])
+            self.assertEqual(other["timing"], plain["timing"])
+        self.assertEqual(piped["input"], ["-"])
+
+    def test_a_window_leaves_out_what_is_outside(self):
+        self.write("a.csv", turning_csv())
+        document = self.document("inspect", "a.csv", "--from", "5", "--to", "10")
+        self.assertEqual(document["samples"], 500)
+
+    def test_the_unit_given_holds(self):
+        self.write("a.csv", turning_csv(seconds=2).replace(" (m/s^2)", ""))
+        document = self.document("inspect", "a.csv", "--unit", "mg")
+        self.assertEqual({channel["unit"] for channel in document["channels"]}, {"mg"})
+
+    def test_channels_are_chosen_one_by_one(self):
+        self.write("a.csv", turning_csv(seconds=2))
+        document = self.document("inspect", "--channel", "acc_z", "--channel", "acc_x", "a.csv")
+        self.assertEqual([c["name"] for c in document["channels"]], ["acc_x", "acc_z"])
+
+    def test_strict_tells_bad_data_by_the_status_and_still_gives_the_result(self):
+        self.write("good.csv", turning_csv(seconds=2))
+        self.succeed("inspect", "good.csv", "--strict")
+        lines = turning_csv(seconds=4).splitlines()
+        for k in range(100, 130):
+            lines[k] = lines[k].split(",")[0] + ",3e34,nan,1"
+        self.write("bad.csv", "\n".join(lines) + "\n")
+        self.assertTrue(self.document("inspect", "bad.csv")["bad"])
+        ran = self.run_command("inspect", "bad.csv", "--strict")
+        self.assertEqual(ran.returncode, BAD_DATA)
+        self.assertIn("acc_x", ran.stdout.decode())
+
+    def test_the_report_is_one_page_with_every_channel(self):
+        self.write("a.csv", turning_csv(seconds=2))
+        self.succeed("inspect", "a.csv", "--report", "a.html")
+        page = (self.folder / "a.html").read_text()
+        self.assertIn("acc_x, acc_y, acc_z", page)
+        self.assertIn("</svg>", page)
+        self.assertNotIn("<script", page)
+
+
+if __name__ == "__main__":
+    unittest.main()

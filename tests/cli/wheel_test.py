@@ -1,0 +1,97 @@
+"""proofmass wheel, on the simulated rig and on made-up files."""
+import csv
+import unittest
+
+from command import BAD_DATA, USAGE, CommandTest, turning_csv
+
+
+class Wheel(CommandTest):
+    def simulate(self, name="rig.csv", *flags):
+        return self.document("simulate", "-o", name, "--duration", "30", "--rpm", "20", *flags)["truth"]
+
+    def test_two_sensors_of_one_file_tell_the_turns(self):
+        truth = self.simulate()
+        document = self.document("wheel", "rig.csv")
+        self.assertEqual(len(document["sensors"]), 2)
+        self.assertTrue(document["clocks_shared"])
+        turns = document["turns"]
+        self.assertAlmostEqual(abs(turns["value"]), abs(truth["turns"]), delta=0.005)
+        self.assertGreater(turns["std"], 0.0)
+        self.assertLess(turns["std"], 0.01)
+        self.assertAlmostEqual(document["methods"]["smoother"]["turns"], turns["value"])
+
+    def test_the_spin_axis_given_turned_round_turns_the_sign(self):
+        self.simulate()
+        one = self.document("wheel", "rig.csv", "--spin-axis", "z")["turns"]["value"]
+        other = self.document("wheel", "rig.csv", "--spin-axis", "-z")["turns"]["value"]
+        written = self.document("wheel", "rig.csv", "--spin-axis", "0,0,-2")["turns"]["value"]
+        self.assertAlmostEqual(one, -other, delta=0.005)
+        self.assertAlmostEqual(other, written, delta=1e-9)
+
+    def test_one_sensor_of_a_pair_can_be_chosen(self):
+        self.simulate()
+        flags = [f for axis in "xyz" for f in ("--channel", f"acc1_{axis}")]
+        self.assertEqual(len(self.document("wheel", "rig.csv", *flags)["sensors"]), 1)
+
+    def test_two_files_are_two_sensors(self):
+        truth = self.simulate()
+        for n in "12":
+            flags = [f for axis in "xyz" for f in ("--channel", f"acc{n}_{axis}")]
+            self.succeed("convert", "rig.csv", *flags, "-o", f"{n}.csv")
+        document = self.document("wheel", "1.csv", "2.csv")
+        self.assertEqual([s["file"] for s in document["sensors"]], ["1.csv", "2.csv"])
+        self.assertAlmostEqual(abs(document["turns"]["value"]), abs(truth["turns"]), delta=0.005)
+
+    def test_the_series_has_every_column_with_its_unit(self):
+        self.simulate()
+        self.succeed("wheel", "rig.csv", "--output", "series.csv")
+        with open(self.folder / "series.csv", newline="") as file:
+            rows = list(csv.reader(file))
+        for column in ("time (s)", "angle (rad)", "angle_std (rad)", "speed (rad/s)",
+                       "speed_std (rad/s)", "accel (rad/s^2)", "accel_std (rad/s^2)",
+                       "filtered_angle (rad)", "filtered_angle_std (rad)", "atan2_angle (rad)"):
+            self.assertIn(column, rows[0])
+        self.assertEqual(len(rows) - 1, self.document("inspect", "rig.csv")["samples"])
+
+    def test_the_report_opens_with_the_answer(self):
+        self.simulate()
+        text = self.succeed("wheel", "rig.csv", "--report", "r.html")
+        self.assertTrue(text.startswith("The wheel turned"))
+        page = (self.folder / "r.html").read_text()
+        self.assertIn("The wheel turned", page)
+        self.assertEqual(page.count("</svg>"), 6)
+
+    def test_a_distance_is_that_of_the_rim_where_it_is_given(self):
+        truth = self.simulate()
+        document = self.document("wheel", "rig.csv", "--rim-radius", "0.3")
+        self.assertEqual(document["distance_of"], "rim")
+        self.assertAlmostEqual(document["distance_m"]["value"],
+                               abs(truth["turns"]) * 2 * 3.14159265 * 0.3, delta=0.02)
+
+    def test_standard_input_will_do(self):
+        csv_text = self.succeed("simulate", "-o", "-", "--duration", "20", "--rpm", "20")
+        document = self.document("wheel", "-", stdin=csv_text.encode())
+        self.assertEqual(document["input"], ["-"])
+
+    def test_corrupt_rows_do_not_reach_the_answer_and_are_counted(self):
+        lines = turning_csv().splitlines()
+        for k in range(700, 720):
+            lines[k] = lines[k].split(",")[0] + ",3e34,nan,inf"
+        self.write("a.csv", "\n".join(lines) + "\n")
+        document = self.document("wheel", "a.csv")
+        self.assertAlmostEqual(abs(document["turns"]["value"]), 10.0, delta=0.02)
+        self.assertGreaterEqual(document["rejected_samples"], 20)
+        self.assertEqual(self.run_command("wheel", "a.csv", "--strict").returncode, BAD_DATA)
+
+    def test_latitude_sets_gravity(self):
+        self.simulate()
+        document = self.document("wheel", "rig.csv", "--latitude", "45")
+        self.assertAlmostEqual(document["gravity_mps2"], 9.80620, places=4)
+
+    def test_one_axis_alone_is_too_few(self):
+        self.write("a.csv", turning_csv(seconds=2))
+        self.expect_failure(USAGE, "wheel", "a.csv", "--channel", "acc_x")
+
+
+if __name__ == "__main__":
+    unittest.main()

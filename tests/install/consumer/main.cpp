@@ -1,0 +1,42 @@
+// Uses what every exported library hides (fmt, zlib, lzma, toml++, nlohmann), so that a dependency
+// missing from the package is a link error here.
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <iostream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "proofmass/core/version.hpp"
+#include "proofmass/estimate/wheel.hpp"
+#include "proofmass/io/read_recording.hpp"
+#include "proofmass/report/wheel_report.hpp"
+#include "proofmass/sensor/sensor_file.hpp"
+#include "proofmass/signal/audit.hpp"
+#include "proofmass/simulate/rig.hpp"
+
+namespace pm = proofmass;
+
+int main() {
+  const std::string table = "time (s),ax (g)\n0,1\n0.01,2\n0.02,1\n";
+  const auto recording =
+      pm::io::read_recording(std::as_bytes(std::span(table)), "table.csv", {}).value();
+  const auto audit = pm::signal::audit(recording);
+  const auto sensor = pm::sensor::parse_sensor_file("[sensor]\nname = \"A1\"\n", "a1.toml").value();
+
+  pm::simulate::RigOptions options;
+  options.wheel.profile.front().duration_s = 15.0;
+  const auto rig = pm::simulate::simulate_rig(options).value();
+  std::vector<pm::estimate::WheelSensor> sensors(1);
+  for (std::size_t k = 0; k < rig.recording.samples(); ++k)
+    sensors[0].time_s.push_back(rig.recording.time.at(k));
+  sensors[0].accel_mps2 = {
+      rig.recording.find("acc1_x")->values, rig.recording.find("acc1_y")->values, {}};
+  const auto wheel = pm::estimate::estimate_wheel(sensors, {}).value();
+  std::cout << pm::version() << '\n' << pm::report::wheel_conclusion(wheel) << '\n';
+
+  const bool right = audit.samples == 3 && sensor.model.name == "A1" && wheel.turns &&
+                     std::abs(wheel.turns->value - 2.75) < 0.1;
+  return right ? EXIT_SUCCESS : EXIT_FAILURE;
+}

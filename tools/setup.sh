@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Installs what `./run`, `./test` or `./test --long` needs and this machine lacks.
+#
+#   tools/setup.sh run|test|long
+#
+# Where everything is there it needs neither network nor root. Speaks on stderr only.
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+say() { printf 'setup: %s\n' "$*" >&2; }
+
+case ${1:-} in
+  run) groups='run' ;;
+  test) groups='run|test' ;;
+  long) groups='run|test|long' ;;
+  *)
+    say "expected run, test or long, got '${1:-}'"
+    exit 2
+    ;;
+esac
+
+if ! command -v dpkg-query >/dev/null; then
+  say "no dpkg here, so nothing is installed; the packages of tools/packages.txt have to be there"
+  exit 0
+fi
+
+mapfile -t wanted < <(awk -v groups="^($groups)\$" '$1 ~ groups { print $2 }' "$here/packages.txt")
+mapfile -t missing < <(
+  dpkg-query -W -f='${Package} ${Status}\n' "${wanted[@]}" 2>/dev/null |
+    awk '/ install ok installed$/ { print $1 }' | sort -u |
+    comm -13 - <(printf '%s\n' "${wanted[@]}" | sort -u)
+)
+((${#missing[@]})) || exit 0
+
+as_root=()
+if ((EUID != 0)); then
+  if ! command -v sudo >/dev/null; then
+    say "missing, and only root can install them: apt-get install ${missing[*]}"
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+
+# The lock of an unattended upgrade is waited for, and a mirror that stumbles is asked again.
+apt() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -y -qq \
+    -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3 "$@" </dev/null >&2
+}
+say "installing ${missing[*]}"
+apt update
+apt install --no-install-recommends "${missing[@]}"
