@@ -1,14 +1,14 @@
 include(GNUInstallDirs)
 include(GoogleTest)
 
-# proofmass_module(NAME [USES modules...] HEADERS ... SOURCES ... [TESTS ...] [LINKS targets...]
-#                  [USES_PRIVATELY targets...])
+# proofmass_module(NAME [USES modules...] HEADERS ... SOURCES ... [TESTS ...] [SLOW_TESTS ...]
+#                  [LINKS targets...] [USES_PRIVATELY targets...])
 #
-# One folder, one library, one test program. USES is the only place that says which modules this
+# One folder, one library, one test program; SLOW_TESTS are a second one, labelled slow. USES is the only place that says which modules this
 # one may include; tools/check_layers.py holds the #include lines to it. LINKS are libraries that
 # the headers show (Eigen); USES_PRIVATELY those that only .cpp files name.
 function(proofmass_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;HEADERS;SOURCES;TESTS;LINKS;USES_PRIVATELY")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;HEADERS;SOURCES;TESTS;SLOW_TESTS;LINKS;USES_PRIVATELY")
   set(target proofmass_${name})
   add_library(${target} ${arg_SOURCES})
   add_library(proofmass::${name} ALIAS ${target})
@@ -19,10 +19,19 @@ function(proofmass_module name)
   target_link_libraries(${target} PUBLIC ${arg_USES} ${arg_LINKS} PRIVATE ${arg_USES_PRIVATELY})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
   install(TARGETS ${target} EXPORT proofmass FILE_SET HEADERS)
-  if(PROOFMASS_TESTS AND arg_TESTS)
-    add_executable(${name}_test ${arg_TESTS})
-    target_link_libraries(${name}_test PRIVATE ${target} ${arg_USES_PRIVATELY} GTest::gtest_main)
-    target_compile_definitions(${name}_test PRIVATE PROOFMASS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-    gtest_discover_tests(${name}_test TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60)
-  endif()
+  foreach(kind IN ITEMS test slow_test)
+    string(TOUPPER ${kind}s tests)
+    if(PROOFMASS_TESTS AND arg_${tests})
+      add_executable(${name}_${kind} ${arg_${tests}})
+      target_link_libraries(${name}_${kind}
+        PRIVATE ${target} ${arg_USES_PRIVATELY} GTest::gtest_main)
+      target_compile_definitions(${name}_${kind}
+        PRIVATE PROOFMASS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+      set(labels)
+      if(kind STREQUAL slow_test)
+        set(labels PROPERTIES LABELS slow)
+      endif()
+      gtest_discover_tests(${name}_${kind} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 ${labels})
+    endif()
+  endforeach()
 endfunction()

@@ -8,7 +8,7 @@ An offence is
   - a public header that shows anything but std, Eigen/Core and public headers of Proofmass;
   - another module's private header, or a path that is not written "proofmass/module/file.hpp";
   - a listed header or source that does not exist, or one that exists and is not listed;
-  - in the library (tests apart), output, exit, the environment or the process's locale.
+  - in the library (tests and *test_support* apart), output, exit, the environment or the process's locale.
 
 Lists the offences and exits 1; otherwise prints the modules by layer, lowest first.
 """
@@ -20,7 +20,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 LIBRARY = ROOT / "src" / "proofmass"
-KEYWORDS = {"USES", "HEADERS", "SOURCES", "TESTS", "LINKS", "USES_PRIVATELY"}
+PARSED = re.search(r'PARSE_ARGV 1 arg "" "" "([A-Z_;]+)"', (ROOT / "cmake/ProofmassModule.cmake").read_text())
+KEYWORDS = set(PARSED[1].split(";"))
+TEST_LISTS = {"TESTS", "SLOW_TESTS"}
 INCLUDE = re.compile(r'\s*#\s*include\s*(["<])([^">]+)[">]')
 STD_HEADER = re.compile(r"[a-z_]+")
 # A broken contract prints its place and aborts; nothing else in the library speaks for itself.
@@ -35,6 +37,7 @@ WORLD = re.compile(
 class Module:
     uses: set[str]
     headers: set[str]
+    tests: set[str]
     listed: set[str]
 
 
@@ -48,8 +51,9 @@ def read_module(cmake: Path) -> tuple[str, Module]:
             current = lists[word]
         else:
             current.add(word)
-    listed = lists["HEADERS"] | lists["SOURCES"] | lists["TESTS"]
-    return name, Module(lists["USES"], lists["HEADERS"], listed)
+    tests = set().union(*(lists[keyword] for keyword in TEST_LISTS))
+    listed = lists["HEADERS"] | lists["SOURCES"] | tests
+    return name, Module(lists["USES"], lists["HEADERS"], tests, listed)
 
 
 def files_offences(name: str, module: Module) -> list[str]:
@@ -83,8 +87,8 @@ def include_offence(source: Path, quote: str, target: str, modules: dict[str, Mo
 
 def source_offences(source: Path, modules: dict[str, Module]) -> list[str]:
     found = []
-    in_library = not source.name.endswith("_test.cpp")
-    in_library &= source.relative_to(LIBRARY).as_posix() not in MAY_PRINT
+    is_test = source.name in modules[source.parent.name].tests or "test_support" in source.name
+    in_library = not is_test and source.relative_to(LIBRARY).as_posix() not in MAY_PRINT
     for number, line in enumerate(source.read_text().splitlines(), 1):
         at = f"{source.relative_to(ROOT)}:{number}"
         code = re.sub(r'//.*|"(\\.|[^"\\])*"', '""', line)

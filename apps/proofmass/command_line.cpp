@@ -231,6 +231,41 @@ bool known_to_any(CLI::App& app, const std::string& flag) {
   });
 }
 
+// The option that an entry is for; nullptr if it is none of this verb's business.
+const CLI::Option* option_for(CLI::App& app,
+                              CLI::App& verb,
+                              const ConfigEntry& entry,
+                              const std::string& place) {
+  if (!entry.verb.empty() && find_verb(app, entry.verb) == nullptr) {
+    throw Failure(usage, place + "[" + entry.verb + "] is no verb");
+  }
+  if (!entry.verb.empty() && entry.verb != verb.get_name()) return nullptr;
+  const bool about_itself = entry.flag == "config" || entry.flag == "help";
+  const CLI::Option* option = about_itself ? nullptr : verb.get_option_no_throw("--" + entry.flag);
+  const bool elsewhere = !about_itself && entry.verb.empty() && known_to_any(app, entry.flag);
+  if (option == nullptr && !elsewhere) {
+    throw Failure(usage, fmt::format("{}{} has no flag '{}': see proofmass {} --help", place,
+                                     verb.get_name(), entry.flag, verb.get_name()));
+  }
+  return option;
+}
+
+// The entry as it would stand on the command line.
+std::vector<std::string> as_arguments(const CLI::Option& option,
+                                      const ConfigEntry& entry,
+                                      const std::string& place) {
+  std::vector<std::string> arguments;
+  const bool is_switch = option.get_items_expected_max() == 0;
+  for (const std::string& value : entry.values) {
+    if (is_switch && value != "true" && value != "false") {
+      throw Failure(usage, place + entry.flag + ": expected true or false, not '" + value + "'");
+    }
+    if (!is_switch) arguments.push_back("--" + entry.flag + "=" + value);
+    if (is_switch && value == "true") arguments.push_back("--" + entry.flag);
+  }
+  return arguments;
+}
+
 // The flags that the configuration file adds to those given, which go before it.
 std::vector<std::string> configured(CLI::App& app,
                                     CLI::App& verb,
@@ -240,24 +275,10 @@ std::vector<std::string> configured(CLI::App& app,
   if (path.empty()) return more;
   for (const ConfigEntry& entry : read_config(path)) {
     const std::string place = fmt::format("{}: line {}: ", path, entry.line);
-    if (!entry.verb.empty() && find_verb(app, entry.verb) == nullptr) {
-      throw Failure(usage, place + "[" + entry.verb + "] is no verb");
-    }
-    if (!entry.verb.empty() && entry.verb != verb.get_name()) continue;
-    const CLI::Option* option = verb.get_option_no_throw("--" + entry.flag);
-    if (option == nullptr && entry.verb.empty() && known_to_any(app, entry.flag)) continue;
-    if (option == nullptr || entry.flag == "config" || entry.flag == "help") {
-      throw Failure(usage, fmt::format("{}{} has no flag '{}': see proofmass {} --help", place,
-                                       verb.get_name(), entry.flag, verb.get_name()));
-    }
-    if (is_given(*option, arguments)) continue;
-    for (const std::string& value : entry.values) {
-      const bool is_switch = option->get_items_expected_max() == 0;
-      if (is_switch && value != "true" && value != "false") {
-        throw Failure(usage, place + entry.flag + ": expected true or false, not '" + value + "'");
-      }
-      if (is_switch && value == "true") more.push_back("--" + entry.flag);
-      if (!is_switch) more.push_back("--" + entry.flag + "=" + value);
+    const CLI::Option* option = option_for(app, verb, entry, place);
+    if (option == nullptr || is_given(*option, arguments)) continue;
+    for (std::string& argument : as_arguments(*option, entry, place)) {
+      more.push_back(std::move(argument));
     }
   }
   return more;

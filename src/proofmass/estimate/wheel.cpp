@@ -268,7 +268,8 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
   solution.ekf.turns = Uncertain{fit.ekf_turns, fit.turns.std};
   const double filter_start_std = series.filtered_angle_std_rad.front() / rad_per_turn;
   solution.ekf.turns->std = std::hypot(fit.turns.std, filter_start_std);
-  solution.ekf.note = "counts from its own first guess of the angle, made with one reading";
+  solution.ekf.note =
+      "calibrated by the whole recording; counts from its first guess of the angle, from one reading";
   series.atan2_angle_rad = atan2_angle(readings);
   const auto first = std::ranges::find_if(series.atan2_angle_rad,
                                           [](double angle) { return !std::isnan(angle); });

@@ -70,7 +70,8 @@ struct WheelSeries {
   std::vector<double> angle_rad, angle_std_rad;              ///< smoother: given all readings
   std::vector<double> speed_radps, speed_std_radps;
   std::vector<double> accel_radps2, accel_std_radps2;
-  std::vector<double> filtered_angle_rad, filtered_angle_std_rad;  ///< given readings so far
+  /// Given the readings so far, with the sensors calibrated by the whole recording.
+  std::vector<double> filtered_angle_rad, filtered_angle_std_rad;
   std::vector<double> atan2_angle_rad;                       ///< plain gravity phase, unwrapped
   std::vector<double> double_integral_angle_rad;             ///< empty where there is no radius
   std::vector<float> nis;                                    ///< per instant, over its channels

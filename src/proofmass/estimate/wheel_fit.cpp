@@ -12,12 +12,14 @@ struct Settled {
   WheelNoise noise;
   WheelPrior prior;
   Eigen::MatrixXd places_cov;
+  double log_likelihood = 0.0;
 };
 
 /// One round: the readings' variance, the motion's noise and the sensors' places, all about the path
 /// found so far.
 template <int S>
-Settled<S> settle(WheelReadings& readings, const WheelTrack& track, const PlacesPrior& belief) {
+Settled<S> settle(WheelReadings& readings, const WheelTrack& track, const PlacesPrior& belief,
+                  double tuning_factor) {
   auto model = wheel_model<S>(readings, track.noise);
   model.about = &track.path;
   Places places(2 * S);
@@ -28,10 +30,10 @@ Settled<S> settle(WheelReadings& readings, const WheelTrack& track, const Places
   WheelPrior prior{track.beginning, constants_prior, places};
   settle_variance(model, prior, readings);
   const Excerpt<S> excerpt = liveliest(model, prior);
-  model.noise = tune_noise(model, excerpt);
+  model.noise = tune_noise(model, excerpt, tuning_factor).noise;
   const FoundPlaces found = find_places(model, excerpt, prior, belief);
   prior.places = found.mean;
-  return {model.noise, prior, found.cov};
+  return {model.noise, prior, found.cov, found.log_likelihood};
 }
 
 /// Moves the track to the smoother's under the settled figures.
@@ -72,8 +74,6 @@ void note_forward(std::size_t k, const StepOf<WheelModel<S>>& step, WheelFit& fi
   fit.series.nis[k] = static_cast<float>(nis);
   fit.series.channels_used[k] = used;
   fit.series.channels_gated[k] = gated;
-  fit.series.filtered_angle_rad[k] = step.filtered.mean(wheel::angle);
-  fit.series.filtered_angle_std_rad[k] = std::sqrt(step.filtered.cov(wheel::angle, wheel::angle));
 }
 
 template <int S>
@@ -81,7 +81,7 @@ void note_backward(std::size_t k, const StepOf<WheelModel<S>>& step,
                    const Hindsight<wheel::states(S)>& later, WheelFit& fit) {
   WheelSeries& series = fit.series;
   const Mat<wheel::moving> mean = later.mean(step.filtered).template head<wheel::moving>();
-  const auto cov = later.template cov<wheel::moving>(step.filtered);
+  const auto cov = later.template cov<wheel::jerk>(step.filtered);
   const auto std_of = [&](int i) { return std::sqrt(std::max(cov(i, i), 0.0)); };
   series.angle_rad[k] = mean(wheel::angle);
   series.angle_std_rad[k] = std_of(wheel::angle);
@@ -90,6 +90,22 @@ void note_backward(std::size_t k, const StepOf<WheelModel<S>>& step,
   series.accel_radps2[k] = mean(wheel::accel);
   series.accel_std_radps2[k] = std_of(wheel::accel);
   fit.track.path.moving[k] = mean;
+}
+
+/// The extended filter as it would run on calibrated sensors: the motion unknown at the start, the
+/// constants as the whole recording tells them for its first instant, as well as it does at its last.
+template <int S>
+void filter_calibrated(const WheelModel<S>& model, const WheelPrior& prior,
+                       const Gaussian<wheel::states(S)>& known, WheelSeries& series) {
+  constexpr int at = wheel::first_of(0), count = wheel::states(S) - at;
+  auto state = prior_state<S>(prior);
+  state.x.mean.template tail<count>() = known.mean.template tail<count>();
+  state.x.cov.template bottomRightCorner<count, count>() =
+      known.cov.template bottomRightCorner<count, count>();
+  filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t k, const auto& step) {
+    series.filtered_angle_rad[k] = step.filtered.mean(wheel::angle);
+    series.filtered_angle_std_rad[k] = std::sqrt(step.filtered.cov(wheel::angle, wheel::angle));
+  });
 }
 
 /// What filter and smoother say with the places held where they were found.
@@ -105,6 +121,7 @@ WheelFit smooth_at_places(const WheelReadings& readings, const Settled<S>& settl
   fit.track = {settled.prior.beginning, settled.noise, about, 0.0};
   const auto prior = prior_state<S>(settled.prior);
   Gaussian<wheel::states(S)> end = prior.x;
+  Mat<wheel::states(S)> first_mean = end.mean;
   const auto tell = [&](std::string_view stage, std::size_t done) {
     if (progress && done % 65536 == 0)
       progress(stage, static_cast<double>(done) / static_cast<double>(size));
@@ -113,9 +130,11 @@ WheelFit smooth_at_places(const WheelReadings& readings, const Settled<S>& settl
       model, prior, wheel_gate,
       [&](std::size_t k, const auto& step) {
         if (k > 0 && readings.time_s[k] > readings.time_s.front() + 1.0) {
-          const Mat<3> from_angle = model.transition(end.mean, k).F.row(0).transpose();
+          const Mat<wheel::moving> from_angle =
+              model.transition(end.mean, k).F.row(wheel::angle).transpose();
           const double variance =
-              from_angle.dot(end.cov.template topLeftCorner<3, 3>() * from_angle);
+              from_angle.dot(end.cov.template topLeftCorner<wheel::moving, wheel::moving>() *
+                             from_angle);
           fit.widest_prediction_rad = std::max(fit.widest_prediction_rad, std::sqrt(variance));
         }
         end = step.filtered;
@@ -124,8 +143,10 @@ WheelFit smooth_at_places(const WheelReadings& readings, const Settled<S>& settl
       },
       [&](std::size_t k, const auto& step, const auto& later) {
         note_backward<S>(k, step, later, fit);
+        if (k == 0) first_mean = later.mean(step.filtered);
         tell("smoother", size - k);
       });
+  filter_calibrated(model, settled.prior, {first_mean, end.cov}, fit.series);
   constexpr int first = wheel::first_of(0), count = wheel::states(S) - first;
   fit.constants = end.mean.template tail<count>();
   fit.constants_cov = end.cov.template bottomRightCorner<count, count>();
@@ -167,15 +188,75 @@ void add_places_uncertainty(const WheelReadings& readings, const Settled<S>& set
   }
 }
 
+/// Rounds until the likelihood has settled, at most `most`.
+template <int S>
+Settled<S> settle_rounds(WheelReadings& readings, WheelTrack& track, const PlacesPrior& belief,
+                         int most, const Progress& progress) {
+  double tuning_factor = 10.0;
+  Settled<S> settled = settle<S>(readings, track, belief, tuning_factor);
+  for (int round = 1; round < most; ++round) {
+    if (progress) progress("noise and constants", static_cast<double>(round) / most);
+    const double before = settled.log_likelihood;
+    improve(readings, settled, track);
+    tuning_factor = std::sqrt(10.0);
+    settled = settle<S>(readings, track, belief, tuning_factor);
+    if (round > 1 && std::abs(settled.log_likelihood - before) < 1.0) break;
+  }
+  return settled;
+}
+
+/// How many readings may be averaged before the wheel turns a twentieth of a radian meanwhile.
+std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack& track) {
+  double fastest = 0.0;
+  for (const Mat<wheel::moving>& at : track.path.moving)
+    fastest = std::max(fastest, std::abs(at(wheel::speed)));
+  return static_cast<std::size_t>(std::clamp(0.05 * readings.rate_hz() / fastest, 1.0, 64.0));
+}
+
+/// A track of the averaged readings, on the time line of all of them.
+WheelTrack spread_track(const WheelTrack& track, const WheelReadings& averaged,
+                        const WheelReadings& readings) {
+  WheelTrack out = track;
+  out.path.moving.clear();
+  std::size_t at = 0;
+  for (const double t : readings.time_s) {
+    while (at + 1 < averaged.time_s.size() && averaged.time_s[at + 1] <= t) ++at;
+    Mat<wheel::moving> moving = track.path.moving[at];
+    moving(wheel::angle) += (t - averaged.time_s[at]) * moving(wheel::speed);
+    out.path.moving.push_back(moving);
+  }
+  return out;
+}
+
+/// Gives each reading the variance that its average was found to have, times what averaging took off.
+void spread_variance(const WheelReadings& averaged, std::size_t each, WheelReadings& readings) {
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s)
+    for (std::size_t k = 0; k < readings.instants.size(); ++k) {
+      const std::int64_t row = readings.instants[k].row[s];
+      const std::int64_t block = averaged.instants[k / each].row[s];
+      if (row == WheelInstant::no_row || block == WheelInstant::no_row) continue;
+      readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] =
+          static_cast<double>(each) *
+          averaged.sensors[s].variance_m2ps4[static_cast<std::size_t>(block)];
+    }
+}
+
 template <int S>
 WheelFit fit_sensors(WheelReadings& readings, WheelTrack track, const PlacesPrior& belief,
                      const Progress& progress) {
-  constexpr int rounds = 3;
-  for (int round = 0; round < rounds; ++round) {
-    if (progress) progress("noise and constants", static_cast<double>(round) / rounds);
-    improve(readings, settle<S>(readings, track, belief), track);
-  }
-  const Settled<S> settled = settle<S>(readings, track, belief);
+  const std::size_t each = readings_to_average(readings, track);
+  WheelReadings coarse = averaged(readings, each);
+  WheelTrack coarse_track = spread_track(track, readings, coarse);
+  Settled<S> settled = settle_rounds<S>(coarse, coarse_track, belief, S == 1 ? 4 : 2, progress);
+  track = spread_track(coarse_track, coarse, readings);
+  track.noise = settled.noise;
+  auto model = wheel_model<S>(readings, settled.noise);
+  model.about = &track.path;
+  spread_variance(coarse, each, readings);
+  settle_variance(model, settled.prior, readings);
+  improve(readings, settled, track);
+  settled.prior.beginning = track.beginning;
+  settle_variance(model, settled.prior, readings);
   WheelFit fit = smooth_at_places(readings, settled, track.path, progress);
   constexpr int first = wheel::first_of(0), count = wheel::states(S) - first;
   WheelPrior vague = settled.prior;

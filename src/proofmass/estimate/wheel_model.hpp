@@ -26,13 +26,13 @@ namespace proofmass::estimate {
 
 /// Where each quantity sits in the state; what belongs to a sensor counts from first_of(sensor).
 namespace wheel {
-inline constexpr int angle = 0, speed = 1, accel = 2, moving = 3;
+inline constexpr int angle = 0, speed = 1, accel = 2, jerk = 3, moving = 4;
 /// The angle at the first instant rides along as a constant, so that the turns since then have
 /// their variance from one covariance.
-inline constexpr int start = 3;
+inline constexpr int start = 4;
 inline constexpr int bias = 0, place = 2, scale = 4, skew = 6, phase = 7;
 
-[[nodiscard]] constexpr int first_of(int sensor) { return 4 + 7 * sensor; }
+[[nodiscard]] constexpr int first_of(int sensor) { return 5 + 7 * sensor; }
 /// The second sensor's phase against the first comes after its skew.
 [[nodiscard]] constexpr int constants_of(int sensor) { return sensor == 0 ? 7 : 8; }
 [[nodiscard]] constexpr int states(int sensors) { return first_of(sensors) + (sensors - 1); }
@@ -40,7 +40,9 @@ inline constexpr int bias = 0, place = 2, scale = 4, skew = 6, phase = 7;
 
 /// What the filter is told of the noise; found from the recording by tune_wheel().
 struct WheelNoise {
-  double jerk_psd = 1.0;       ///< of the angular jerk, rad²/s⁵, two-sided
+  /// Two-sided densities of what drives the motion: white jerk, rad²/s⁵, for speeds that change
+  /// roughly, and white snap, rad²/s⁷, for those that change smoothly.
+  double jerk_psd = 1.0, snap_psd = 0.0;
   double bias_walk_psd = 0.0;  ///< of each bias, (m/s²)²/s
 };
 
@@ -90,16 +92,24 @@ struct WheelModel {
 
   [[nodiscard]] Transition<states, moving> transition(const State& x, std::size_t k) const {
     const double t = (*instants)[k].dt_s, t2 = t * t, t3 = t2 * t, t4 = t2 * t2, t5 = t4 * t;
+    const double t6 = t3 * t3, t7 = t4 * t3;
     Transition<states, moving> step;
     // clang-format off
-    step.F << 1, t, t2 / 2,
-              0, 1, t,
-              0, 0, 1;
-    step.Q << t5 / 20, t4 / 8, t3 / 6,
-              t4 / 8,  t3 / 3, t2 / 2,
-              t3 / 6,  t2 / 2, t;
+    step.F << 1, t, t2 / 2, t3 / 6,
+              0, 1, t,      t2 / 2,
+              0, 0, 1,      t,
+              0, 0, 0,      1;
+    step.Q << t7 / 252, t6 / 72, t5 / 30, t4 / 24,
+              t6 / 72,  t5 / 20, t4 / 8,  t3 / 6,
+              t5 / 30,  t4 / 8,  t3 / 3,  t2 / 2,
+              t4 / 24,  t3 / 6,  t2 / 2,  t;
+    Mat<3, 3> rough;
+    rough << t5 / 20, t4 / 8, t3 / 6,
+             t4 / 8,  t3 / 3, t2 / 2,
+             t3 / 6,  t2 / 2, t;
     // clang-format on
-    step.Q *= noise.jerk_psd;
+    step.Q *= noise.snap_psd;
+    step.Q.template topLeftCorner<3, 3>() += noise.jerk_psd * rough;
     step.mean = step.F * x.template head<moving>();
     step.walk.setZero();
     for (int s = 0; s < Sensors; ++s)
@@ -132,8 +142,8 @@ struct WheelModel {
   /// Gives up what is believed of the motion, not of the sensors: called when the gate has shut
   /// everything out for a while.
   void reopen(Gaussian<states>& x) const {
-    const Mat<3> open(1.0, 100.0, 100.0);  // (1 rad)², (10 rad/s)², (10 rad/s²)²
-    for (int i = 0; i < 3; ++i) {
+    const Mat<moving> open(1.0, 100.0, 100.0, 100.0);  // (1 rad)², (10 rad/s)², …
+    for (int i = 0; i < moving; ++i) {
       x.cov.row(i).setZero();
       x.cov.col(i).setZero();
       x.cov(i, i) = open(i);

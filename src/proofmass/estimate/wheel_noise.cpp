@@ -84,7 +84,7 @@ void gather(const WheelReadings& readings, std::size_t k, const StepOf<WheelMode
 }
 
 /// Between these the motion's noise is looked for. A bias that walked faster could stand for gravity.
-constexpr WheelNoise lowest{1e-8, 1e-10}, highest{1e5, 1e-4};
+constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e5, 1e6, 1e-4};
 
 }  // namespace
 
@@ -140,35 +140,55 @@ Excerpt<S> liveliest(const WheelModel<S>& model, const WheelPrior& prior) {
   return best;
 }
 
-/// Each figure in turn by steps of a shrinking factor, from a decade down to a sixth of one.
+namespace {
+
+/// Climbs from `best`: each figure in turn by steps of a shrinking factor.
+template <class Likelihood>
+TunedNoise climb(const Likelihood& likelihood, const WheelNoise& start, double first_factor) {
+  TunedNoise best{start, likelihood(start)};
+  for (double factor = first_factor; factor > 1.4; factor = std::sqrt(factor))
+    for (double WheelNoise::*figure :
+         {&WheelNoise::jerk_psd, &WheelNoise::snap_psd, &WheelNoise::bias_walk_psd}) {
+      bool upwards = false;
+      for (const double step : {factor, 1.0 / factor})
+        for (int tries = 0; tries < 8 && !(upwards && step < 1.0); ++tries) {
+          WheelNoise candidate = best.noise;
+          candidate.*figure *= step;
+          if (candidate.*figure < lowest.*figure || candidate.*figure > highest.*figure) break;
+          const double value = likelihood(candidate);
+          if (!(value > best.log_likelihood)) break;
+          best = {candidate, value};
+          upwards = step > 1.0;
+        }
+    }
+  return best;
+}
+
+}  // namespace
+
 template <int S>
-WheelNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt) {
+TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt, double first_factor) {
   const auto likelihood = [&](const WheelNoise& noise) {
     model.noise = noise;
     return score_run(model, excerpt.state, excerpt.first, excerpt.last).log_likelihood;
   };
-  WheelNoise best = model.noise;
-  double best_value = likelihood(best);
-  for (double factor = 10.0; factor > 1.4; factor = std::sqrt(factor))
-    for (double WheelNoise::*figure : {&WheelNoise::jerk_psd, &WheelNoise::bias_walk_psd})
-      for (const double step : {factor, 1.0 / factor})
-        for (int tries = 0; tries < 8; ++tries) {
-          WheelNoise candidate = best;
-          candidate.*figure *= step;
-          if (candidate.*figure < lowest.*figure || candidate.*figure > highest.*figure) break;
-          const double value = likelihood(candidate);
-          if (!(value > best_value)) break;
-          best = candidate;
-          best_value = value;
-        }
-  return best;
+  WheelNoise start = model.noise;
+  start.snap_psd = std::max(start.snap_psd, lowest.snap_psd);
+  const TunedNoise rough = climb(likelihood, start, first_factor);
+  // The likelihood has two hills, a motion driven by jerk and one by snap; the way between is low.
+  WheelNoise other = rough.noise;
+  const bool by_jerk = rough.noise.jerk_psd > rough.noise.snap_psd;
+  (by_jerk ? other.snap_psd : other.jerk_psd) = std::max(rough.noise.jerk_psd, rough.noise.snap_psd);
+  (by_jerk ? other.jerk_psd : other.snap_psd) = by_jerk ? lowest.jerk_psd : lowest.snap_psd;
+  const TunedNoise smooth = climb(likelihood, other, first_factor);
+  return smooth.log_likelihood > rough.log_likelihood ? smooth : rough;
 }
 
 template void settle_variance(const WheelModel<1>&, const WheelPrior&, WheelReadings&);
 template void settle_variance(const WheelModel<2>&, const WheelPrior&, WheelReadings&);
 template Excerpt<1> liveliest(const WheelModel<1>&, const WheelPrior&);
 template Excerpt<2> liveliest(const WheelModel<2>&, const WheelPrior&);
-template WheelNoise tune_noise(WheelModel<1>, const Excerpt<1>&);
-template WheelNoise tune_noise(WheelModel<2>, const Excerpt<2>&);
+template TunedNoise tune_noise(WheelModel<1>, const Excerpt<1>&, double);
+template TunedNoise tune_noise(WheelModel<2>, const Excerpt<2>&, double);
 
 }  // namespace proofmass::estimate

@@ -69,6 +69,7 @@ FilterState<wheel::states(S)> prior_state(const WheelPrior& prior) {
       P(i, j) = std::pow(prior.beginning.angle_std_rad, 2);
   P(wheel::speed, wheel::speed) = std::pow(prior.beginning.speed_std_radps, 2);
   P(wheel::accel, wheel::accel) = 25.0;
+  P(wheel::jerk, wheel::jerk) = 25.0;
   return state;
 }
 
@@ -143,13 +144,21 @@ struct Excerpt {
 template <int S>
 [[nodiscard]] Excerpt<S> liveliest(const WheelModel<S>& model, const WheelPrior& prior);
 
-/// The motion's noise figures of maximum likelihood on the excerpt.
+struct TunedNoise {
+  WheelNoise noise;
+  double log_likelihood = 0.0;
+};
+
+/// The motion's noise figures of maximum likelihood on the excerpt: each in turn by steps of a
+/// shrinking factor, from `first_factor` down.
 template <int S>
-[[nodiscard]] WheelNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt);
+[[nodiscard]] TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt,
+                                    double first_factor);
 
 struct FoundPlaces {
   Places mean;
   Eigen::MatrixXd cov;
+  double log_likelihood = 0.0;
 };
 
 /// The sensors' places of maximum likelihood, all else integrated out by the filter, with the inverse

@@ -1,41 +1,62 @@
+#include <optional>
+
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/estimate/wheel_passes.hpp"
 
 namespace proofmass::estimate {
 namespace {
 
-struct Curvature {
-  Eigen::VectorXd gradient;
-  Eigen::MatrixXd hessian;
-};
-
-/// Gradient and Hessian of f at x by central differences of the given steps.
+/// Gradient of f at x by central differences of the given steps.
 template <class Function>
-Curvature curvature(const Function& f, const Places& x, const Places& step) {
-  const Eigen::Index n = x.size();
-  const auto at = [&](Eigen::Index i, double di, Eigen::Index j, double dj) {
-    Places y = x;
-    y(i) += di * step(i);
-    y(j) += dj * step(j);
-    return f(y);
-  };
-  const double here = f(x);
-  Curvature c{Eigen::VectorXd(n), Eigen::MatrixXd(n, n)};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double up = at(i, 1.0, i, 0.0), down = at(i, -1.0, i, 0.0);
-    c.gradient(i) = (up - down) / (2.0 * step(i));
-    c.hessian(i, i) = (up - 2.0 * here + down) / (step(i) * step(i));
-    for (Eigen::Index j = 0; j < i; ++j) {
-      const double mixed = at(i, 1, j, 1) - at(i, 1, j, -1) - at(i, -1, j, 1) + at(i, -1, j, -1);
-      c.hessian(i, j) = c.hessian(j, i) = mixed / (4.0 * step(i) * step(j));
-    }
+Eigen::VectorXd gradient_of(const Function& f, const Places& x, const Places& step) {
+  Eigen::VectorXd gradient(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    Places up = x, down = x;
+    up(i) += step(i);
+    down(i) -= step(i);
+    gradient(i) = (f(up) - f(down)) / (2.0 * step(i));
   }
-  return c;
+  return gradient;
+}
+
+/// Hessian of f at x, from one-sided mixed differences and central second ones: 1 + 2 n + n (n − 1)/2
+/// values of f.
+template <class Function>
+Eigen::MatrixXd hessian_of(const Function& f, const Places& x, const Places& step) {
+  const Eigen::Index n = x.size();
+  const double here = f(x);
+  Eigen::MatrixXd hessian(n, n);
+  Eigen::VectorXd up(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Places y = x;
+    y(i) += step(i);
+    up(i) = f(y);
+    y(i) = x(i) - step(i);
+    hessian(i, i) = (up(i) - 2.0 * here + f(y)) / (step(i) * step(i));
+  }
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < i; ++j) {
+      Places y = x;
+      y(i) += step(i);
+      y(j) += step(j);
+      hessian(i, j) = hessian(j, i) = (f(y) - up(i) - up(j) + here) / (step(i) * step(j));
+    }
+  return hessian;
+}
+
+/// Inverse of −hessian, no direction known worse than beforehand; that also keeps the steps going up.
+std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& hessian,
+                                                   double prior_information) {
+  if (!hessian.allFinite()) return std::nullopt;
+  const SymmetricEigen axes = symmetric_eigen(-hessian);
+  const Eigen::VectorXd information = axes.values.cwiseMax(prior_information);
+  return axes.vectors * information.cwiseInverse().asDiagonal() * axes.vectors.transpose();
 }
 
 }  // namespace
 
-/// Newton's steps up the likelihood, halved where they overshoot.
+/// Newton's steps up the likelihood, halved where they overshoot; the curvature is taken anew only
+/// where a step has been long.
 template <int S>
 FoundPlaces find_places(const WheelModel<S>& model, const Excerpt<S>& excerpt, WheelPrior prior,
                         const PlacesPrior& belief) {
@@ -55,16 +76,23 @@ FoundPlaces find_places(const WheelModel<S>& model, const Excerpt<S>& excerpt, W
     best = value;
     found.mean = belief.mean;
   }
-  for (int round = 0; round < 4; ++round) {
+  bool curved = false;
+  for (int round = 0; round < 6; ++round) {
     const Places step = found.cov.diagonal().cwiseSqrt().cwiseMax(1e-6).cwiseMin(0.05);
-    const Curvature c = curvature(likelihood, found.mean, step);
-    if (!c.hessian.allFinite() || !c.gradient.allFinite()) break;
-    // No direction is known worse than beforehand; that also keeps the steps going up.
-    const SymmetricEigen axes = symmetric_eigen(-c.hessian);
-    const Eigen::VectorXd information = axes.values.cwiseMax(prior_information);
-    found.cov = axes.vectors * information.cwiseInverse().asDiagonal() * axes.vectors.transpose();
-    Places move = found.cov * c.gradient;
-    const double gain = c.gradient.dot(move);  // twice what a quadratic would gain
+    if (!curved) {
+      const auto cov =
+          inverse_information(hessian_of(likelihood, found.mean, step), prior_information);
+      if (!cov) break;
+      found.cov = *cov;
+    }
+    const Eigen::VectorXd gradient = gradient_of(likelihood, found.mean, step);
+    if (!gradient.allFinite()) break;
+    Places move = found.cov * gradient;
+    const double gain = gradient.dot(move);  // twice what a quadratic would gain
+    // Steps of the differences far from the figure's own scale have told the curvature badly.
+    const Places now = found.cov.diagonal().cwiseSqrt().cwiseMax(1e-6).cwiseMin(0.05);
+    curved = gain < 4.0 && (now.array() < 3.0 * step.array()).all() &&
+             (step.array() < 3.0 * now.array()).all();
     double value = likelihood(found.mean + move);
     for (int halvings = 0; !(value >= best) && halvings < 6; ++halvings) {
       move *= 0.5;
@@ -73,8 +101,9 @@ FoundPlaces find_places(const WheelModel<S>& model, const Excerpt<S>& excerpt, W
     if (!(value >= best)) break;
     best = value;
     found.mean += move;
-    if (gain < 0.01) break;
+    if (gain < 0.01 && curved) break;
   }
+  found.log_likelihood = best;
   return found;
 }
 

@@ -7,7 +7,7 @@ namespace proofmass::estimate {
 namespace {
 
 /// Constants are held close while the phase is still being found: a free bias would swallow it.
-constexpr ConstantsPrior seeking_prior{0.2, 0.2, 0.15, 0.15, 0.003, 0.003, 0.003, 0.5};
+constexpr ConstantsPrior seeking_prior{0.3, 0.3, 0.15, 0.15, 0.03, 0.03, 0.01, 0.5};
 
 struct Seek {
   double accel_std_mps2;  ///< of a reading at 120 Hz
@@ -16,8 +16,8 @@ struct Seek {
 
 /// Noise figures to follow a wheel with when nothing is known yet, from a car's wheel on the road to
 /// a bench that hardly shakes. The first that keeps the phase is taken.
-constexpr std::array seeks{Seek{1.5, {20.0, 1e-7}}, Seek{3.0, {100.0, 1e-7}},
-                           Seek{1.5, {500.0, 1e-7}}, Seek{0.5, {200.0, 1e-7}}};
+constexpr std::array seeks{Seek{1.5, {20.0, 0.0, 1e-7}}, Seek{3.0, {100.0, 0.0, 1e-7}},
+                           Seek{1.5, {500.0, 0.0, 1e-7}}, Seek{0.5, {200.0, 0.0, 1e-7}}};
 
 void set_variance(WheelReadings& readings, double accel_std_mps2) {
   // The same density whatever the rate.
@@ -86,6 +86,41 @@ double WheelReadings::rate_hz() const {
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::ranges::nth_element(steps, middle);
   return 1.0 / *middle;
+}
+
+WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
+  PM_EXPECTS(each >= 1);
+  WheelReadings out{readings.gravity_mps2, readings.rolling_radius_m, readings.phase_rad, {}, {}, {}};
+  out.sensors.resize(readings.sensors.size());
+  for (std::size_t first = 0; first < readings.instants.size(); first += each) {
+    const std::size_t last = std::min(first + each, readings.instants.size());
+    WheelInstant instant;
+    double time_s = 0.0;
+    for (std::size_t k = first; k < last; ++k)
+      time_s += readings.time_s[k] / static_cast<double>(last - first);
+    for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
+      const PlanarReadings& sensor = readings.sensors[s];
+      double u = 0.0, v = 0.0, variance = 0.0, count = 0.0;
+      for (std::size_t k = first; k < last; ++k) {
+        const std::int64_t row = readings.instants[k].row[s];
+        const auto at = static_cast<std::size_t>(row);
+        if (row == WheelInstant::no_row || !sensor.has(at)) continue;
+        u += sensor.u_mps2[at];
+        v += sensor.v_mps2[at];
+        variance += sensor.variance_m2ps4[at];
+        count += 1.0;
+      }
+      if (count == 0.0) continue;
+      instant.row[s] = static_cast<std::int64_t>(out.sensors[s].u_mps2.size());
+      out.sensors[s].u_mps2.push_back(u / count);
+      out.sensors[s].v_mps2.push_back(v / count);
+      out.sensors[s].variance_m2ps4.push_back(variance / (count * count));
+    }
+    instant.dt_s = out.time_s.empty() ? 0.0 : time_s - out.time_s.back();
+    out.time_s.push_back(time_s);
+    out.instants.push_back(instant);
+  }
+  return out;
 }
 
 WheelTrack find_track(WheelReadings& readings) {

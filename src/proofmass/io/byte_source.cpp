@@ -96,7 +96,7 @@ Result<std::size_t> PeekSource::read(std::span<char> into) {
   std::memcpy(into.data(), ahead_.data() + taken_, count);
   taken_ += count;
   if (taken_ == ahead_.size()) {
-    ahead_ = {};
+    std::string().swap(ahead_);
     taken_ = 0;
   }
   return count;

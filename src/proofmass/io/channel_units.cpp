@@ -134,14 +134,16 @@ std::vector<const Channel*> axes_of(const Recording& recording, const Triad& tri
   return axes;
 }
 
-/// The second in which the axes move least, of those that are whole.
+/// The second in which the axes move least, of a thousand at most that are spread over the
+/// recording and whole.
 QuietWindow quietest_second(const Recording& recording, const std::vector<const Channel*>& axes) {
   const double rate_hz = recording.time.rate_hz > 0.0 ? recording.time.rate_hz : 100.0;
   const std::size_t samples = recording.samples();
   const auto wanted = static_cast<std::size_t>(std::clamp(rate_hz, 16.0, 1e4));
   const std::size_t length = std::min(samples, wanted);
   QuietWindow quietest;
-  for (std::size_t begin = 0; length > 0 && begin + length <= samples; begin += length) {
+  const std::size_t stride = length * (samples / std::max<std::size_t>(1000 * length, 1) + 1);
+  for (std::size_t begin = 0; length > 0 && begin + length <= samples; begin += stride) {
     QuietWindow window;
     window.spread = 0.0;
     for (const Channel* axis : axes) {

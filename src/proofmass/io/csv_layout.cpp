@@ -106,34 +106,39 @@ std::size_t commonest(const std::vector<std::size_t>& widths) {
   return best;
 }
 
+/// Scores the rows, and settles what the columns are by the last half of them: a header of several
+/// lines may outnumber the rows of a short file.
+void tally_columns(const std::vector<std::vector<std::string_view>>& rows, Trial& trial) {
+  std::vector<Tally> all(trial.width);
+  trial.tallies.assign(trial.width, {});
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t c = 0; c < trial.width; ++c) {
+      all[c].add(rows[r][c], trial.point);
+      if (r >= rows.size() / 2) trial.tallies[c].add(rows[r][c], trial.point);
+    }
+  }
+  for (const Tally& tally : all)
+    trial.score +=
+        static_cast<double>(tally.number + tally.clocks()) - 1.5 * static_cast<double>(tally.text);
+}
+
 Trial attempt(const std::vector<Line>& sample, char separator, char point) {
   Trial trial{separator, point, 0, false, 0.0, {}};
-  std::vector<std::string_view> fields;
+  std::vector<std::vector<std::string_view>> split;
   std::vector<std::size_t> widths;
   for (const Line& line : sample) {
     if (is_remark(line.text, separator)) continue;
-    split_fields(line.text, separator, fields);
-    widths.push_back(width_of(fields));
+    split_fields(line.text, separator, split.emplace_back());
+    widths.push_back(width_of(split.back()));
   }
   trial.width = std::min(commonest(widths), most_columns + 1);
-  trial.tallies.resize(trial.width);
-  std::size_t trailing = 0;
-  std::size_t rows = 0;
-  for (const Line& line : sample) {
-    if (is_remark(line.text, separator)) continue;
-    split_fields(line.text, separator, fields);
-    if (width_of(fields) != trial.width) {
-      trial.score -= 1.0;
-      continue;
-    }
-    ++rows;
-    if (fields.size() > trial.width) ++trailing;
-    for (std::size_t c = 0; c < trial.width; ++c) trial.tallies[c].add(fields[c], point);
-  }
-  trial.trailing = trailing * 2 > rows;
-  for (const Tally& tally : trial.tallies)
-    trial.score +=
-        static_cast<double>(tally.number + tally.clocks()) - 1.5 * static_cast<double>(tally.text);
+  const std::size_t lines = split.size();
+  std::erase_if(split, [&](const auto& fields) { return width_of(fields) != trial.width; });
+  trial.score = -static_cast<double>(lines - split.size());
+  const auto trailing =
+      std::ranges::count_if(split, [&](const auto& fields) { return fields.size() > trial.width; });
+  trial.trailing = 2 * static_cast<std::size_t>(trailing) > split.size();
+  tally_columns(split, trial);
   return trial;
 }
 
@@ -156,6 +161,8 @@ Trial best_trial(const std::vector<Line>& lines,
     for (const char separator : separators) {
       if (separator == point || (given && separator != *given)) continue;
       Trial trial = attempt(sample, separator, point);
+      // A comma in a line without any separator is one, but for the exception below.
+      if (point == ',' && trial.width < 2) continue;
       if (trial.score > best.score) best = std::move(trial);
     }
   }
@@ -167,9 +174,9 @@ Trial best_trial(const std::vector<Line>& lines,
   return best;
 }
 
-/// Lines to judge by: the last half of those looked at, which are rows whatever precedes them.
+/// Lines to judge by: the last of those looked at, which are rows whatever precedes them.
 std::vector<Line> sample_of(const std::vector<Line>& lines) {
-  const std::size_t most = std::min<std::size_t>(200, (lines.size() + 1) / 2);
+  const std::size_t most = std::clamp<std::size_t>((lines.size() + 1) / 2, 20, 200);
   std::vector<Line> sample;
   for (auto line = lines.rbegin(); line != lines.rend() && sample.size() < most; ++line)
     if (!is_blank(line->text)) sample.push_back(*line);
@@ -178,7 +185,8 @@ std::vector<Line> sample_of(const std::vector<Line>& lines) {
 }
 
 bool is_row(const std::vector<std::string_view>& fields, const CsvLayout& layout) {
-  if (width_of(fields) != layout.columns.size()) return false;
+  if (width_of(fields) != layout.columns.size() && fields.size() != layout.columns.size())
+    return false;
   bool any = false;
   for (std::size_t c = 0; c < layout.columns.size(); ++c) {
     if (layout.columns[c] == ColumnKind::text) continue;

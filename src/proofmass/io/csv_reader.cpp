@@ -28,8 +28,8 @@ Result<std::string_view> peek_head(PeekSource& source) {
 
 std::size_t expected_rows(const PeekSource& source, const CsvLayout& layout) {
   if (!source.size() || layout.bytes_per_row <= 0.0) return 0;
-  // A tenth more than the first rows promise: what is reserved and not used costs nothing.
-  const double rows = 1.1 * static_cast<double>(*source.size()) / layout.bytes_per_row + 64.0;
+  // Half as many again as the first rows promise: what is reserved and not used costs nothing.
+  const double rows = 1.5 * static_cast<double>(*source.size()) / layout.bytes_per_row + 64.0;
   constexpr double most_values = 1 << 30;
   return static_cast<std::size_t>(
       std::min(rows, most_values / static_cast<double>(layout.columns.size())));
@@ -138,6 +138,8 @@ Result<Recording> read_csv(PeekSource& source, const ReadOptions& options) {
   const CsvHeader header = read_header(table);
   const auto columns = choose_columns(table, header, options);
   if (!columns) return columns.error();
+  if (std::ranges::count(columns->uses, ColumnUse::keep) == 0)
+    return Error{Errc::too_few_samples, "has no column of numbers beside the time"};
 
   std::optional<StampReader> stamps;
   if (columns->stamps) stamps.emplace(columns->spelling, table.point);

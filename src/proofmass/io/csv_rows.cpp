@@ -52,7 +52,7 @@ void CsvRows::flush() {
 
 void CsvRows::finish() {
   flush();
-  gathered_ = {};
+  std::vector<double>().swap(gathered_);
 }
 
 std::vector<double> CsvRows::take(std::size_t column) {

@@ -69,6 +69,9 @@ Result<NpyType> type_of(std::string_view text) {
   if (text.starts_with('>')) type.big_endian = true;
   if (!text.empty() && std::string_view("<>=|").find(text[0]) != std::string_view::npos)
     text.remove_prefix(1);
+  if (text.starts_with('O'))
+    return Error{Errc::unsupported,
+                 "holds pickled Python objects, which are not read: save plain numbers"};
   if (text.size() < 2) return damaged;
   type.kind = text[0];
   const auto end = std::from_chars(text.data() + 1, text.data() + text.size(), type.bytes);
@@ -86,9 +89,6 @@ Result<NpyType> type_of(std::string_view text) {
     case 'b':
       if (n == 1) return type;
       break;
-    case 'O':
-      return Error{Errc::unsupported,
-                   "holds pickled Python objects, which are not read: save plain numbers"};
     case 'U':
       type.bytes = 4 * n;
       [[fallthrough]];

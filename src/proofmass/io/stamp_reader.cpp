@@ -110,8 +110,15 @@ std::optional<std::int64_t> StampOrigin::ns(double unit_s) const {
   return static_cast<std::int64_t>(*in_ns);
 }
 
+void StampReader::set_origin(const StampOrigin& origin) {
+  origin_ = origin;
+  if (origin.mantissa > narrow_limit || origin.mantissa < -narrow_limit) return;
+  narrow_mantissa_ = static_cast<std::int64_t>(origin.mantissa);
+  narrow_exponent10_ = origin.exponent10;
+}
+
 double StampReader::difference(Int128 mantissa, int exponent10) {
-  if (!origin_) origin_ = StampOrigin{mantissa, exponent10};
+  if (!origin_) set_origin({mantissa, exponent10});
   const int common = std::min(exponent10, origin_->exponent10);
   const auto stamp = scaled(mantissa, exponent10 - common);
   const auto first = scaled(origin_->mantissa, origin_->exponent10 - common);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -39,13 +40,10 @@ class StampReader {
 
   /// The usual case, figures of one and the same number of decimals; false for any other.
   bool relative(const Decimal& stamp, double& out) const {
-    if (!origin_ || stamp.exponent10 != origin_->exponent10) return false;
-    constexpr std::uint64_t limit = std::uint64_t{1} << 62;
-    if (stamp.mantissa > limit || origin_->mantissa > limit || -origin_->mantissa > limit)
+    if (stamp.exponent10 != narrow_exponent10_ || stamp.mantissa > std::uint64_t{narrow_limit})
       return false;
     const auto size = static_cast<std::int64_t>(stamp.mantissa);
-    const std::int64_t difference =
-        (stamp.negative ? -size : size) - static_cast<std::int64_t>(origin_->mantissa);
+    const std::int64_t difference = (stamp.negative ? -size : size) - narrow_mantissa_;
     const auto magnitude = static_cast<std::uint64_t>(difference < 0 ? -difference : difference);
     return to_double_exactly({magnitude, stamp.exponent10, difference < 0}, out);
   }
@@ -55,10 +53,16 @@ class StampReader {
  private:
   double read_clock_fields(std::string_view field, std::string_view date);
   double difference(Int128 mantissa, int exponent10);
+  void set_origin(const StampOrigin& origin);
 
   StampSpelling spelling_;
   char point_;
   std::optional<StampOrigin> origin_;
+  // The origin again where 62 bits hold it; the exponent is one that no stamp has where they do
+  // not.
+  static constexpr std::int64_t narrow_limit = std::int64_t{1} << 62;
+  std::int64_t narrow_mantissa_ = 0;
+  int narrow_exponent10_ = std::numeric_limits<int>::min();
   bool zone_missing_ = false;
   std::int64_t day_ = 0;          ///< midnights passed, where only the time of day is given
   std::int64_t last_of_day_ = 0;  ///< ns

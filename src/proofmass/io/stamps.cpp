@@ -20,21 +20,25 @@ bool is_stamp(double value) {
   return std::abs(value) < largest_stamp;
 }
 
-/// The largest figure that all of `sorted`'s values near the median are multiples of, if it is more
+/// The largest figure that the steps up to five medians are multiples of, if it is more
 /// than 1 % of the median: then the clock was read, or written, that coarsely.
-double rounding_of(const std::vector<double>& sorted, double median) {
+double rounding_of(const std::vector<double>& steps, double median) {
+  constexpr std::size_t most = 4096;
+  std::vector<double> sorted;
+  for (std::size_t i = 0; i < steps.size(); i += steps.size() / most + 1)
+    if (steps[i] < 5.0 * median) sorted.push_back(steps[i]);
+  std::ranges::sort(sorted);
   const double noise = 1e-6 * median;
   double smallest = 0.0;
   double previous = 0.0;
   for (const double step : sorted) {
-    if (step > 5.0 * median) break;
     const double rise = step - previous;
     if (rise > noise && (smallest == 0.0 || rise < smallest)) smallest = rise;
     previous = step;
   }
   if (smallest < 0.01 * median || smallest > 0.99 * median) return 0.0;
   const auto off_grid = std::ranges::count_if(sorted, [&](double step) {
-    return step < 5.0 * median && std::abs(std::remainder(step, smallest)) > 1e-3 * median;
+    return std::abs(std::remainder(step, smallest)) > 1e-3 * median;
   });
   return static_cast<std::size_t>(off_grid) * 100 > sorted.size() ? 0.0 : smallest;
 }
@@ -49,7 +53,7 @@ class Onlooker {
   [[nodiscard]] bool leaps_alone(std::size_t k, double last) const {
     const auto next = following(k);
     const auto between = [&](double stamp) { return stamp >= last && stamp < stamps_[k]; };
-    if (next.empty()) return false;
+    if (next.empty() || goes_on(k, next)) return false;
     if (std::ranges::count_if(next, between) * 2 > std::ssize(next)) return true;
     return next.size() >= 2 && between(next[0]) && next[1] >= next[0] &&
            (next[1] < stamps_[k] || next[1] - next[0] <= 1.5 * step_);
@@ -74,6 +78,12 @@ class Onlooker {
 
  private:
   static constexpr std::size_t window = 8;
+
+  /// Whether the next two follow at the usual pace: a clock that was set, not an accident.
+  [[nodiscard]] bool goes_on(std::size_t k, std::span<const double> next) const {
+    const auto is_usual = [&](double step) { return step >= 0.0 && step < 1.5 * step_; };
+    return next.size() >= 2 && is_usual(next[0] - stamps_[k]) && is_usual(next[1] - next[0]);
+  }
 
   /// The next few stamps that are stamps.
   [[nodiscard]] std::span<const double> following(std::size_t k) const {
@@ -149,7 +159,7 @@ class Mender {
 }  // namespace
 
 StampSteps measure_steps(View<double> stamps) {
-  constexpr std::size_t most = 1u << 18;
+  constexpr std::size_t most = 1u << 16;
   StampSteps out;
   if (stamps.size() < 2) return out;
   const std::size_t stride = (stamps.size() - 1) / most + 1;
@@ -165,7 +175,6 @@ StampSteps measure_steps(View<double> stamps) {
     if (step > 0.0) steps.push_back(step);
   }
   if (steps.empty()) return out;
-  std::ranges::sort(steps);
   out.ascending = static_cast<double>(ascending) / static_cast<double>(out.finite);
   out.repeated = static_cast<double>(repeated) / static_cast<double>(out.finite);
   out.median = *median(steps);
@@ -175,6 +184,17 @@ StampSteps measure_steps(View<double> stamps) {
     if (std::abs(step - out.median) <= 1.001 * out.rounding) near.add(step);
   out.mean_near = near.count > 0 ? near.mean : out.median;
   return out;
+}
+
+bool are_regular(View<double> stamps, double step) {
+  // Without a branch, so that the compiler can take several at once.
+  std::size_t odd = 0;
+  for (std::size_t k = 1; k < stamps.size(); ++k) {
+    const double rise = stamps[k] - stamps[k - 1];
+    odd +=
+        static_cast<std::size_t>(!(rise >= 0.0)) + static_cast<std::size_t>(!(rise <= 1.5 * step));
+  }
+  return odd == 0;
 }
 
 std::size_t unroll(std::vector<double>& stamps, double origin, double step) {

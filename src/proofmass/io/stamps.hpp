@@ -8,7 +8,7 @@
 
 namespace proofmass::io {
 
-/// Steps of a column of stamps, from at most a quarter of a million of them spread over the file.
+/// Steps of a column of stamps, from at most 65 536 of them spread over the file.
 struct StampSteps {
   double median = 0.0;  ///< of the finite steps above zero; 0 if there are none
   double rounding =
@@ -19,6 +19,10 @@ struct StampSteps {
   std::size_t finite = 0;  ///< finite steps that were looked at
 };
 [[nodiscard]] StampSteps measure_steps(View<double> stamps);
+
+/// Whether every step is a number, not below zero and not above one and a half of `step`: then
+/// there is nothing to unroll and nothing to mend.
+[[nodiscard]] bool are_regular(View<double> stamps, double step);
 
 /// Undoes the running over of a counter of 16, 24, 31 or 32 bits; returns how often it did. The
 /// stamps are less `origin`, the counter's reading at the first.

@@ -97,44 +97,56 @@ void tell_rate_conflict(double rate_hz, const TimeEvidence& evidence, std::vecto
                    evidence.stamps->name, in_words(rate_hz), in_words(*evidence.header_rate_hz))});
 }
 
-/// Rate by the steps, in 1 / unit of the stamps.
-double rate_of(const StampSteps& steps, View<double> stamps, std::vector<Note>& notes) {
-  if (steps.repeated > 0.5) {
+/// Rate by the steps of stamps in units of `unit_s`.
+double rate_of(const StampSteps& steps,
+               View<double> stamps,
+               double unit_s,
+               std::vector<Note>& notes) {
+  if (steps.repeated > 0.5 && stamps.back() > stamps.front()) {
     notes.push_back({Severity::warning,
                      fmt::format("{:.0f} % of the stamps repeat the one before (sent in bursts): "
                                  "the rate is the number of samples over the duration",
                                  100.0 * steps.repeated)});
-    return static_cast<double>(stamps.size() - 1) / (stamps.back() - stamps.front());
+    return static_cast<double>(stamps.size() - 1) /
+           in_seconds(stamps.back() - stamps.front(), unit_s);
   }
-  return 1.0 / (steps.rounding > 0.0 ? steps.mean_near : steps.median);
+  return 1.0 / in_seconds(steps.rounding > 0.0 ? steps.mean_near : steps.median, unit_s);
 }
 
-/// Unrolls, mends and scales the stamps, and takes the base from them.
-void use_stamps(TimeEvidence& evidence, const StampSteps& rough, TimeBaseFound& found) {
+/// Unrolls and mends the stamps where they need it; returns their steps.
+StampSteps repair(TimeEvidence& evidence, const StampSteps& rough, TimeBaseFound& found) {
   StampColumn& stamps = *evidence.stamps;
-  const double unit_s = unit_of_stamps_s(stamps, rough.median, found.notes);
+  if (are_regular(stamps.values, rough.median)) return rough;
   if (const auto turns = unroll(stamps.values, stamps.origin.value(), rough.median); turns > 0)
     found.notes.push_back(
         {Severity::info, fmt::format("{}: counter ran over {}", stamps.name, times(turns))});
   const MendedStamps mended = mend(stamps.values, rough.median, evidence.counter);
   tell_mended(mended, evidence, found.notes);
+  found.base.mended = mended.samples.size();
+  found.base.mended_backwards = mended.backwards;
+  const StampSteps repaired = measure_steps(stamps.values);
+  return repaired.median > 0.0 ? repaired : rough;
+}
 
+/// Repairs and scales the stamps, and takes the base from them.
+void use_stamps(TimeEvidence& evidence, const StampSteps& rough, TimeBaseFound& found) {
+  StampColumn& stamps = *evidence.stamps;
+  const double unit_s = unit_of_stamps_s(stamps, rough.median, found.notes);
+  const StampSteps steps = repair(evidence, rough, found);
   TimeBase& base = found.base;
   base.source = TimeSource::stamps;
   base.channel = stamps.name;
-  base.mended = mended.samples.size();
-  base.mended_backwards = mended.backwards;
+  base.rate_hz = rate_of(steps, stamps.values, unit_s, found.notes);
   const double first = stamps.values.front();
   base.start_ns = stamps.origin.ns(unit_s);
   if (base.start_ns && first != 0.0) *base.start_ns += std::llround(first * unit_s * 1e9);
   base.stamps_s = std::move(stamps.values);
-  for (double& stamp : base.stamps_s) stamp = in_seconds(stamp - first, unit_s);
-  const StampSteps steps = measure_steps(base.stamps_s);
-  base.rate_hz = rate_of(steps, base.stamps_s, found.notes);
+  if (first != 0.0 || unit_s != 1.0)
+    for (double& stamp : base.stamps_s) stamp = in_seconds(stamp - first, unit_s);
   tell_rate_conflict(base.rate_hz, evidence, found.notes);
   if (const double rate_hz = uniform_rate_hz(base.stamps_s); rate_hz > 0.0) {
     base.rate_hz = rate_hz;
-    base.stamps_s = {};
+    std::vector<double>().swap(base.stamps_s);
   }
 }
 
@@ -179,7 +191,9 @@ TimeBaseFound find_time_base(TimeEvidence evidence, const ReadOptions& options) 
   if (evidence.stamps) {
     const StampSteps steps = measure_steps(evidence.stamps->values);
     const bool is_count = !evidence.stamps->is_named && steps.median == 1.0;
-    if (steps.median > 0.0 && steps.ascending >= 0.8 && !is_count) {
+    // No clock has steps beyond these, in whatever unit.
+    const bool is_step = steps.median > 1e-12 && steps.median < 1e15;
+    if (is_step && steps.ascending >= 0.8 && !is_count) {
       use_stamps(evidence, steps, found);
       return found;
     }

@@ -74,8 +74,9 @@ std::string conclusion(const BudgetReport& report) {
     return fmt::format("After {} the position of {} is off by {}.", when, best.name,
                        error_words(best.errors.back()));
   }
-  return fmt::format("After {} the position of {} is off by {}, that of {} by {}.", when, best.name,
-                     error_words(best.errors.back()), worst.name, error_words(worst.errors.back()));
+  return fmt::format("After {} the position is off by {} ({}) to {} ({}).", when,
+                     error_words(best.errors.back()), best.name, error_words(worst.errors.back()),
+                     worst.name);
 }
 
 }  // namespace

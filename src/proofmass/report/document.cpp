@@ -36,11 +36,25 @@ Json json_of(const Value& value) {
 
 }  // namespace
 
+Value::Value() = default;
+Value::Value(std::nullptr_t) {}
+Value::Value(bool value) : state_(value) {}
+Value::Value(int value) : state_(std::int64_t{value}) {}
+Value::Value(std::int64_t value) : state_(value) {}
+Value::Value(std::uint64_t value) : state_(value) {}
 Value::Value(double value) {
   if (std::isfinite(value)) state_ = value;
 }
-
+Value::Value(const char* text) : state_(std::string(text)) {}
+Value::Value(std::string text) : state_(std::move(text)) {}
+Value::Value(std::string_view text) : state_(std::string(text)) {}
+Value::Value(Array items) : state_(std::move(items)) {}
 Value::Value(Object members) : state_(std::move(members)) {}
+Value::Value(const Value& other) = default;
+Value::Value(Value&& other) noexcept = default;
+Value& Value::operator=(const Value& other) = default;
+Value& Value::operator=(Value&& other) noexcept = default;
+Value::~Value() = default;
 
 std::string to_json(const DocumentHead& head, const Object& body) {
   Object document{{"proofmass", version()},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,19 +23,24 @@ using Object = std::vector<Member>;  ///< keys keep the order in which they are 
 /// A JSON value. A double that is not finite becomes null: JSON has no NaN, and neither have we.
 class Value {
  public:
-  Value() = default;                                      // NOLINT(google-explicit-constructor)
-  Value(std::nullptr_t) {}                                // NOLINT(google-explicit-constructor)
-  Value(bool value) : state_(value) {}                    // NOLINT(google-explicit-constructor)
-  Value(int value) : state_(std::int64_t{value}) {}       // NOLINT(google-explicit-constructor)
-  Value(std::int64_t value) : state_(value) {}            // NOLINT(google-explicit-constructor)
-  Value(std::uint64_t value) : state_(value) {}           // NOLINT(google-explicit-constructor)
-  Value(double value);                                    // NOLINT(google-explicit-constructor)
-  Value(const char* text) : state_(std::string(text)) {}  // NOLINT(google-explicit-constructor)
-  Value(std::string text) : state_(std::move(text)) {}    // NOLINT(google-explicit-constructor)
-  Value(std::string_view text)
-      : state_(std::string(text)) {}                // NOLINT(google-explicit-constructor)
-  Value(Array items) : state_(std::move(items)) {}  // NOLINT(google-explicit-constructor)
-  Value(Object members);                            // NOLINT(google-explicit-constructor)
+  Value();
+  Value(std::nullptr_t);         // NOLINT(google-explicit-constructor)
+  Value(bool value);             // NOLINT(google-explicit-constructor)
+  Value(int value);              // NOLINT(google-explicit-constructor)
+  Value(std::int64_t value);     // NOLINT(google-explicit-constructor)
+  Value(std::uint64_t value);    // NOLINT(google-explicit-constructor)
+  Value(double value);           // NOLINT(google-explicit-constructor)
+  Value(const char* text);       // NOLINT(google-explicit-constructor)
+  Value(std::string text);       // NOLINT(google-explicit-constructor)
+  Value(std::string_view text);  // NOLINT(google-explicit-constructor)
+  Value(Array items);            // NOLINT(google-explicit-constructor)
+  Value(Object members);         // NOLINT(google-explicit-constructor)
+  // Defined where Member is complete, which the vector of them needs.
+  Value(const Value& other);
+  Value(Value&& other) noexcept;
+  Value& operator=(const Value& other);
+  Value& operator=(Value&& other) noexcept;
+  ~Value();
 
   [[nodiscard]] bool is_null() const { return state_.index() == 0; }
 

@@ -70,19 +70,24 @@ struct Extent {
   }
 };
 
+// Makes room about a single value.
+void widen(double& low, double& high, bool log) {
+  const double room = std::max(std::abs(low) * 1e-3, 1e-9);
+  low = log ? low / 2.0 : low - room;
+  high = log ? high * 2.0 : high + room;
+}
+
 // `margin` is the part of the range that stays free at either end which is not prescribed.
 Mapping mapping(const Axis& axis, const Extent& data, double margin) {
   const bool log = axis.scale == AxisScale::log;
   double low = axis.min.value_or(data.low), high = axis.max.value_or(data.high);
   if (!std::isfinite(low) || !std::isfinite(high)) return {log ? 0.1 : 0.0, 1.0, log};
-  if (!(high > low)) {
-    const double widen = std::max(std::abs(low) * 1e-3, 1e-9);
-    low = log ? low / 2.0 : low - widen;
-    high = log ? high * 2.0 : high + widen;
-  }
+  if (!(high > low)) widen(low, high, log);
   const double room = log ? std::pow(high / low, margin) : (high - low) * margin;
-  if (!axis.min) low = log ? low / room : low - room;
-  if (!axis.max) high = log ? high * room : high + room;
+  const auto below = [&](double value) { return log ? value / room : value - room; };
+  const auto above = [&](double value) { return log ? value * room : value + room; };
+  low = axis.min ? low : below(low);
+  high = axis.max ? high : above(high);
   return {low, high, log};
 }
 

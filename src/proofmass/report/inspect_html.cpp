@@ -131,11 +131,12 @@ std::vector<Figure> step_figures(const Recording& recording) {
 std::string inspect_html(const std::vector<InspectedFile>& files) {
   Page page{.verb = "inspect", .title = {}, .inputs = {}, .conclusion = {}};
   for (const InspectedFile& file : files) {
-    page.title += (page.title.empty() ? "" : ", ") + file.name;
+    page.title += (page.title.empty() ? "" : ", ") + file_name(file.name);
     page.inputs.push_back(file.name);
-    page.conclusion += (files.size() > 1 ? file.name + ": " : "") + inspect_conclusion(file) + " ";
+    page.conclusion +=
+        (files.size() > 1 ? file_name(file.name) + ": " : "") + inspect_conclusion(file) + " ";
     page.notes.insert(page.notes.end(), file.audit.notes.begin(), file.audit.notes.end());
-    page.sections.push_back({.heading = file.name,
+    page.sections.push_back({.heading = file_name(file.name),
                              .tables = {channels_table(file.audit), timing_table(file.audit)},
                              .figures = channel_figures(file)});
     for (Figure& figure : step_figures(file.recording)) {

@@ -52,12 +52,22 @@ std::string_view word(Severity severity) {
   return "bad";
 }
 
+// A figure and its standard deviation stay on one line.
+std::string unbroken(const std::string& cell) {
+  std::string text = escaped(cell);
+  const std::string plain = " ± ", firm = "\u00a0±\u00a0";
+  for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at)) {
+    text.replace(at, plain.size(), firm);
+  }
+  return text;
+}
+
 void write_cells(std::string& text, const std::vector<std::string>& cells, bool head) {
   text += "<tr>";
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const std::string_view tag = head || k == 0 ? "th" : "td";
     const std::string_view scope = head ? " scope=\"col\"" : k == 0 ? " scope=\"row\"" : "";
-    fmt::format_to(Out(text), "<{0}{1}>{2}</{0}>", tag, scope, escaped(cells[k]));
+    fmt::format_to(Out(text), "<{0}{1}>{2}</{0}>", tag, scope, unbroken(cells[k]));
   }
   text += "</tr>\n";
 }
@@ -101,7 +111,7 @@ void write(std::string& text, const std::vector<KeyFigure>& figures) {
   text += "<dl class=\"key\">\n";
   for (const KeyFigure& figure : figures) {
     fmt::format_to(Out(text), "<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(figure.label),
-                   escaped(figure.value));
+                   unbroken(figure.value));
   }
   text += "</dl>\n";
 }

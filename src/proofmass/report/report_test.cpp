@@ -97,7 +97,7 @@ TEST(WheelJson, PutsTheFirstSensorAtZeroAgainstItself) {
 TEST(WheelHtml, ShowsConclusionSensorsAndWhatCannotBeTold) {
   const std::string text = wheel_html(fake_report());
   EXPECT_NE(text.find("79.6141 ± 0.0021 times backwards"), std::string::npos);
-  EXPECT_NE(text.find("143.1 ± 0.8 mm"), std::string::npos);
+  EXPECT_NE(text.find("143.1\u00a0±\u00a00.8 mm"), std::string::npos);
   EXPECT_NE(text.find("are one number at one speed"), std::string::npos);
   EXPECT_NE(text.find("Figure 6."), std::string::npos);
 }

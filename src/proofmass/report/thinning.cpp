@@ -33,14 +33,12 @@ void keep_extremes(View<double> x, View<double> y, Range range, Polyline& out) {
     if (y[k] > y[high]) high = k;
     last = k;
   }
-  if (first != range.end) {
-    std::size_t previous = range.end;
-    for (const std::size_t k : {first, std::min(low, high), std::max(low, high), last}) {
-      if (k == previous) continue;
-      out.x.push_back(x[k]);
-      out.y.push_back(y[k]);
-      previous = k;
-    }
+  std::size_t previous = range.end;  // which is also what all four are if no value is finite
+  for (const std::size_t k : {first, std::min(low, high), std::max(low, high), last}) {
+    if (k == previous) continue;
+    out.x.push_back(x[k]);
+    out.y.push_back(y[k]);
+    previous = k;
   }
   if (gap) {
     out.x.push_back(x[range.end - 1]);

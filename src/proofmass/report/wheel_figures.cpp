@@ -43,8 +43,13 @@ std::vector<double> difference_deg(const std::vector<double>& angle,
   return times(shifted(angle, to, -1.0), deg_per_rad);
 }
 
-Axis time_axis() {
-  return {.label = "Time (s)"};
+// From zero, unless the recording begins well behind it.
+Axis time_axis(const WheelSeries& series) {
+  Axis axis{.label = "Time (s)"};
+  if (series.time_s.empty()) return axis;
+  const double begin = series.time_s.front(), end = series.time_s.back();
+  if (begin > 0.0 && begin < 0.02 * end) axis.min = 0.0;
+  return axis;
 }
 
 struct Range {
@@ -107,7 +112,7 @@ Figure turns_figure(const WheelSolution& solution) {
   const WheelSeries& series = solution.series;
   Figure figure{.title = "Turns against time",
                 .description = "The wheel's angle, counted on from turn to turn, by each method.",
-                .x = time_axis(),
+                .x = time_axis(series),
                 .y = {.label = "Turns"}};
   Range range;
   const auto add = [&](const char* label, const std::vector<double>& angle_rad, Ink ink) {
@@ -131,7 +136,7 @@ Figure plain_methods_figure(const WheelSolution& solution) {
                 .description =
                     "What the angle of gravity alone (atan2) and twice integrated "
                     "acceleration miss: their angle minus the smoother's.",
-                .x = time_axis(),
+                .x = time_axis(series),
                 .y = {.label = "Difference (°)"},
                 .levels = {{"", 0.0}}};
   Range range;
@@ -160,7 +165,7 @@ Figure filter_figure(const WheelSolution& solution) {
                     "The filter knows only what came before, the smoother all of the "
                     "recording. The filter's error should stay inside its band 95 % of "
                     "the time.",
-                .x = time_axis(),
+                .x = time_axis(series),
                 .y = {.label = "Difference (°)"}};
   Band filter = band_about_zero(series, series.filtered_angle_std_rad);
   filter.label = "filter, 95 %";
@@ -186,7 +191,7 @@ Figure angle_std_figure(const WheelSolution& solution) {
   return {
       .title = "Standard deviation of the angle",
       .description = "How sure each is of the angle, instant by instant.",
-      .x = time_axis(),
+      .x = time_axis(series),
       .y = {.label = "Standard deviation (°)", .scale = AxisScale::log},
       .curves = {
           {"filter", series.time_s, times(series.filtered_angle_std_rad, deg_per_rad), Ink::green},
@@ -199,7 +204,7 @@ Figure speed_figure(const WheelSolution& solution) {
   return {
       .title = "Speed",
       .description = "Speed of the wheel as the smoother has it, with its 95 % band.",
-      .x = time_axis(),
+      .x = time_axis(series),
       .y = {.label = "Speed (rpm)"},
       .bands = {{"95 % band", series.time_s,
                  times(shifted(series.speed_radps, series.speed_std_radps, -two_sided_95), rpm),
@@ -214,7 +219,7 @@ Figure innovations_figure(const WheelSolution& solution) {
                     "How surprising each reading was: the filter's innovations squared "
                     "over their variance. Of a filter whose noise figures are true, one "
                     "in twenty lies above the 95 % level.",
-                .x = time_axis(),
+                .x = time_axis(series),
                 .y = {.label = "NIS", .scale = AxisScale::log}};
   std::vector<double> nis(series.nis.begin(), series.nis.end());
   for (std::size_t k = 0; k < nis.size(); ++k) {

@@ -19,12 +19,13 @@ constexpr double deg_per_rad = 1.0 / rad_per_deg;
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : " and ") + name;
+  for (const std::string& name : names) text += (text.empty() ? "" : " and ") + file_name(name);
   return text;
 }
 
 std::vector<KeyFigure> key_figures(const WheelSolution& solution) {
-  const std::string of = solution.distance_of.empty() ? "" : ", path of " + solution.distance_of;
+  const std::string of =
+      solution.distance_of.empty() ? "" : ", path of " + file_name(solution.distance_of);
   return {{"Turns", with_std(solution.turns, "", absent)},
           {"Distance" + of, with_std(solution.distance_m, "m", absent)},
           {"Top speed",
@@ -42,7 +43,7 @@ Table methods_table(const WheelSolution& solution) {
     table.rows.push_back(
         {name, with_std(method.turns, "", "none"),
          both ? significant(method.turns->value - solution.smoother.turns->value, 2) : "",
-         method.note});
+         print_unit(method.note)});
   };
   add("Smoother", solution.smoother);
   add("Filter (EKF)", solution.ekf);
@@ -54,7 +55,7 @@ Table methods_table(const WheelSolution& solution) {
 std::vector<std::string> sensor_cells(const WheelSensorFit& fit, bool first, bool clocks_shared) {
   const auto& axis = fit.spin_axis;
   const std::string_view to_itself = first ? "0 by definition" : absent;
-  return {fit.name,
+  return {file_name(fit.name),
           with_std(scaled(fit.radius_m, 1e3), "mm", absent),
           with_std(fit.bias_mps2[0], "m/s²", absent),
           with_std(fit.bias_mps2[1], "m/s²", absent),

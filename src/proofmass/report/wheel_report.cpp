@@ -1,5 +1,6 @@
 #include "proofmass/report/wheel_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -31,16 +32,15 @@ std::vector<std::string> method_row(const char* name, const WheelMethod& method)
 Rows sensor_rows(const WheelSolution& solution) {
   Rows rows{{"sensor"}, {"radius"}, {"bias"}, {""}, {"scale"}, {""}, {"noise"}, {"rows used"}};
   for (const auto& sensor : solution.sensors) {
-    rows[0].push_back(sensor.name);
+    rows[0].push_back(file_name(sensor.name));
     rows[1].push_back(with_std(scaled(sensor.radius_m, 1e3), "mm", absent));
     rows[2].push_back(with_std(sensor.bias_mps2[0], "m/s²", absent));
     rows[3].push_back(with_std(sensor.bias_mps2[1], "m/s²", absent));
     rows[4].push_back(with_std(sensor.scale[0], "", absent));
     rows[5].push_back(with_std(sensor.scale[1], "", absent));
     rows[6].push_back(significant(sensor.noise_mps2, 2) + " m/s²");
-    rows[7].push_back(fmt::format(
-        "{} of {}", sensor.samples - std::min(sensor.samples, sensor.unusable + sensor.gated),
-        count_words(sensor.samples, "row")));
+    const std::size_t left_out = std::min(sensor.samples, sensor.unusable + sensor.gated);
+    rows[7].push_back(grouped(sensor.samples - left_out) + " of " + grouped(sensor.samples));
   }
   return rows;
 }
@@ -69,7 +69,8 @@ std::string wheel_conclusion(const WheelSolution& solution) {
 std::string wheel_text(const WheelReport& report) {
   const WheelSolution& solution = report.solution;
   std::string text = wheel_conclusion(solution) + "\n\n";
-  const std::string path_of = solution.distance_of.empty() ? "" : "path of " + solution.distance_of;
+  const std::string path_of =
+      solution.distance_of.empty() ? "" : "path of " + file_name(solution.distance_of);
   text += aligned(
       {{"turns", with_std(solution.turns, "", absent)},
        {"distance", with_std(solution.distance_m, "m", absent), path_of},

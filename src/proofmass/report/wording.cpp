@@ -82,11 +82,15 @@ std::string duration_words(double duration_s) {
   return text;
 }
 
-std::string count_words(std::size_t count, std::string_view noun) {
+std::string grouped(std::size_t count) {
   std::string digits = std::to_string(count);
   // U+202F, a narrow space that does not break.
   for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, "\u202f");
-  return fmt::format("{} {}{}", digits, noun, count == 1 ? "" : "s");
+  return digits;
+}
+
+std::string count_words(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", grouped(count), noun, count == 1 ? "" : "s");
 }
 
 std::string print_unit(std::string_view symbol) {
@@ -97,6 +101,12 @@ std::string print_unit(std::string_view symbol) {
     }
   }
   return text;
+}
+
+std::string file_name(std::string_view path) {
+  const std::size_t folder = path.find_last_of('/');
+  const bool inside = folder != std::string_view::npos && folder + 1 < path.size();
+  return std::string(inside ? path.substr(folder + 1) : path);
 }
 
 std::size_t letters(std::string_view text) {

@@ -37,11 +37,18 @@ namespace proofmass::report {
 /// A duration: "0.52 s", "91.6 s", "12 min 5 s", "3 h 20 min", "1 h".
 [[nodiscard]] std::string duration_words(double duration_s);
 
+/// "12 000": thousands apart.
+[[nodiscard]] std::string grouped(std::size_t count);
+
 /// "1 sample", "12 000 samples": a count with its noun, thousands apart.
 [[nodiscard]] std::string count_words(std::size_t count, std::string_view noun);
 
 /// "m/s^2" as print has it: "m/s²".
 [[nodiscard]] std::string print_unit(std::string_view symbol);
+
+/// A file's name without the folders before it, and whatever stands behind it ("a/b.csv: acc1" is
+/// "b.csv: acc1").
+[[nodiscard]] std::string file_name(std::string_view path);
 
 /// Letters (code points) of UTF-8 text.
 [[nodiscard]] std::size_t letters(std::string_view text);

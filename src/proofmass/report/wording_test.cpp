@@ -79,6 +79,12 @@ TEST(Aligned, CountsLettersAndNotBytes) {
   EXPECT_EQ(aligned({{"µm", "1"}, {"m", "22"}}), "  µm  1\n  m   22\n");
 }
 
+TEST(FileName, IsWhatStandsBehindTheFolders) {
+  EXPECT_EQ(file_name("/data/run 1/a.csv: acc1"), "a.csv: acc1");
+  EXPECT_EQ(file_name("a.csv"), "a.csv");
+  EXPECT_EQ(file_name("folder/"), "folder/");
+}
+
 TEST(PrintUnit, RaisesPowers) {
   EXPECT_EQ(print_unit("m/s^2"), "m/s²");
 }

@@ -68,11 +68,11 @@ struct RecordingAudit {
 /// Judges a recording's channels and timing.
 /// Jitter is the root mean square of step − 1/rate over the steps within half a nominal step of it.
 /// The LSB is the step that the differences between neighbouring distinct values are whole
-/// multiples of, fitted over all of them; none if fewer than half of the values repeat one another.
-/// Values count as clipped where the exact extreme is read three times running or more, and more
-/// often than the fiftieth of the range next to it; only channels that a converter's range can
-/// clip. Cost: a few passes over each channel and a sort of at most a quarter of a million of its
-/// values.
+/// multiples of, fitted by how often they are read; none if fewer than half of the values repeat
+/// one another. Values count as clipped where the exact extreme is read three times running or
+/// more, and more often than the fiftieth of the range next to it; only channels that a converter's
+/// range can clip. Cost: a few passes over each channel and a sort of at most a quarter of a
+/// million of its values.
 [[nodiscard]] RecordingAudit audit(const Recording& recording);
 
 }  // namespace proofmass::signal

@@ -8,29 +8,52 @@
 namespace proofmass::signal {
 namespace {
 
-/// Least squares would be finer than needed: the sum of the differences over the sum of the whole
-/// multiples they are, and how many of them are such multiples.
-struct GridFit {
-  double step = 0.0;
-  double on_grid = 0.0;  ///< fraction of the differences within 15 % of a whole multiple
+/// A difference between neighbouring distinct values, and how often the rarer of the two is read: a
+/// value that is off the grid once weighs little.
+struct Difference {
+  double size = 0.0;
+  double weight = 0.0;
 };
 
-GridFit fit_grid(View<double> differences, double step) {
+std::vector<Difference> differences_of(View<double> sorted) {
+  std::vector<Difference> out;
+  double last_count = 0.0;
+  for (std::size_t k = 0; k < sorted.size();) {
+    std::size_t end = k + 1;
+    while (end < sorted.size() && sorted[end] == sorted[k]) ++end;
+    const auto count = static_cast<double>(end - k);
+    if (k > 0) out.push_back({sorted[k] - sorted[k - 1], std::min(count, last_count)});
+    last_count = count;
+    k = end;
+  }
+  return out;
+}
+
+/// A step, and by weight how much of the differences are whole multiples of it to within 15 %.
+struct GridFit {
+  double step = 0.0;
+  double on_grid = 0.0;
+};
+
+/// Improves on a rough step: the sum of the differences over the sum of the multiples they are.
+GridFit fit_grid(const std::vector<Difference>& differences, double step) {
   GridFit fit{step, 0.0};
   for (int pass = 0; pass < 2; ++pass) {
     double sum = 0.0;
     double multiples = 0.0;
-    std::size_t on_grid = 0;
-    for (const double d : differences) {
-      const double n = std::round(d / fit.step);
-      if (n < 1.0 || std::abs(d / fit.step - n) > 0.15) continue;
-      ++on_grid;
+    double on_grid = 0.0;
+    double all = 0.0;
+    for (const auto& [size, weight] : differences) {
+      all += weight;
+      const double n = std::round(size / fit.step);
+      if (n < 1.0 || std::abs(size / fit.step - n) > 0.15) continue;
+      on_grid += weight;
       // Large gaps say little about a step that is not yet known well.
       if (n > 4.0) continue;
-      sum += d;
-      multiples += n;
+      sum += weight * size;
+      multiples += weight * n;
     }
-    fit.on_grid = static_cast<double>(on_grid) / static_cast<double>(differences.size());
+    fit.on_grid = on_grid / all;
     if (multiples > 0.0) fit.step = sum / multiples;
   }
   return fit;
@@ -98,18 +121,16 @@ std::optional<double> find_lsb(View<double> series) {
   std::vector<double> values;
   for (std::size_t k = 0; k < series.size(); k += stride)
     if (is_plausible(series[k])) values.push_back(series[k]);
-  const std::size_t looked_at = values.size();
   std::ranges::sort(values);
-  values.erase(std::ranges::unique(values).begin(), values.end());
-  if (values.size() < 2 || values.size() * 2 > looked_at) return std::nullopt;
-  std::vector<double> differences;
-  for (std::size_t i = 1; i < values.size(); ++i) differences.push_back(values[i] - values[i - 1]);
-  std::vector<double> sorted = differences;
-  std::ranges::sort(sorted);
+  const std::vector<Difference> differences = differences_of(values);
+  if (differences.empty() || (differences.size() + 1) * 2 > values.size()) return std::nullopt;
+  std::vector<double> sizes;
+  for (const Difference& difference : differences) sizes.push_back(difference.size);
+  std::ranges::sort(sizes);
   // The smallest difference is the step unless a few values are off the grid: then look higher.
   for (const double p : {0.0, 0.01, 0.05, 0.25, 0.5}) {
-    const auto at = static_cast<std::size_t>(p * static_cast<double>(sorted.size() - 1));
-    const GridFit fit = fit_grid(differences, sorted[at]);
+    const auto at = static_cast<std::size_t>(p * static_cast<double>(sizes.size() - 1));
+    const GridFit fit = fit_grid(differences, sizes[at]);
     if (fit.on_grid >= 0.98) return fit.step;
   }
   return std::nullopt;

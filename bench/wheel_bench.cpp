@@ -1,0 +1,203 @@
+// Samples a second of processor time of the wheel's filter and smoother, beside a textbook extended Kalman filter with
+// Rauch, Tung and Striebel's smoother: dense F over all states, all channels of an instant at once,
+// every state kept, the inverse by LDLᵀ. Both run the same WheelModel over the same readings; the
+// largest difference of their smoothed angles is printed, so that it is seen to be the same work.
+//
+//   wheel_bench [most instants, 1e6 if not given]
+#include <sys/resource.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <random>
+#include <vector>
+
+#include "proofmass/estimate/wheel_model.hpp"
+
+namespace {
+
+using namespace proofmass::estimate;
+
+constexpr double rate_hz = 200.0, gravity_mps2 = 9.80665, radius_m = 0.1;
+constexpr double noise_mps2 = 0.02, speed_radps = 1.5;
+
+/// Sensors at opposite places of a wheel whose speed swings by a fifth.
+struct Recording {
+  std::vector<WheelInstant> instants;
+  std::array<PlanarReadings, 2> sensors;
+};
+
+Recording record(std::size_t count) {
+  using namespace std::complex_literals;
+  std::mt19937_64 bits(1);
+  std::normal_distribution<double> noise(0.0, noise_mps2);
+  Recording recording;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double t = static_cast<double>(k) / rate_hz, swing = 0.3;
+    const double angle = speed_radps * t - 0.2 * speed_radps / swing * (std::cos(swing * t) - 1.0);
+    const double speed = speed_radps * (1.0 + 0.2 * std::sin(swing * t));
+    const double accel = speed_radps * 0.2 * swing * std::cos(swing * t);
+    for (std::size_t s = 0; s < 2; ++s) {
+      const double place = s == 0 ? radius_m : -radius_m;
+      const std::complex<double> f = (1i * accel - speed * speed) * place +
+                                     1i * gravity_mps2 * std::polar(1.0, -angle);
+      recording.sensors[s].u_mps2.push_back(f.real() + noise(bits));
+      recording.sensors[s].v_mps2.push_back(f.imag() + noise(bits));
+      recording.sensors[s].variance_m2ps4.push_back(noise_mps2 * noise_mps2);
+    }
+    const auto row = static_cast<std::int64_t>(k);
+    recording.instants.push_back({k == 0 ? 0.0 : 1.0 / rate_hz, {row, row}});
+  }
+  return recording;
+}
+
+template <int S>
+WheelModel<S> model_of(const Recording& recording) {
+  WheelModel<S> model;
+  model.gravity_mps2 = gravity_mps2;
+  model.noise = {0.1, 1e-9};
+  model.instants = &recording.instants;
+  for (std::size_t s = 0; s < S; ++s) model.readings[s] = &recording.sensors[s];
+  return model;
+}
+
+template <int S>
+FilterState<wheel::states(S)> start() {
+  FilterState<wheel::states(S)> state;
+  auto& [mean, cov] = state.x;
+  mean(wheel::speed) = speed_radps;
+  cov.diagonal().setConstant(1e-4);
+  cov(wheel::angle, wheel::start) = cov(wheel::start, wheel::angle) = 1e-4;
+  for (int s = 0; s < S; ++s) mean(wheel::first_of(s) + wheel::place) = s == 0 ? radius_m : -radius_m;
+  return state;
+}
+
+/// The textbook, with no more than one reserve() of cleverness.
+template <int S>
+std::vector<double> textbook_smoother(const WheelModel<S>& model) {
+  constexpr int N = wheel::states(S), M = 2 * S, D = wheel::moving;
+  struct Kept {
+    Gaussian<N> predicted, filtered;
+    Mat<N, N> F;
+  };
+  std::vector<Kept> run;
+  run.reserve(model.size());
+  Gaussian<N> x = start<S>().x;
+  for (std::size_t k = 0; k < model.size(); ++k) {
+    Kept& kept = run.emplace_back();
+    kept.F.setIdentity();
+    if (k > 0) {
+      const auto step = model.transition(x.mean, k);
+      kept.F.template topLeftCorner<D, D>() = step.F;
+      Mat<N, N> Q = step.walk.asDiagonal();
+      Q.template topLeftCorner<D, D>() = step.Q;
+      x.mean.template head<D>() = step.mean;
+      x.cov = (kept.F * x.cov * kept.F.transpose() + Q).eval();
+    }
+    kept.predicted = x;
+    Readings<N, M> readings;
+    model.measure(x.mean, k, readings);
+    Mat<M, N> H;
+    Mat<M> y;
+    Mat<M, M> R = Mat<M, M>::Zero();
+    for (int i = 0; i < M; ++i) {
+      const auto& reading = readings.rows[static_cast<std::size_t>(i)];
+      H.row(i) = reading.h.transpose();
+      y(i) = reading.value - reading.predicted;
+      R(i, i) = reading.variance;
+    }
+    const Mat<M, M> innovation_cov = H * x.cov * H.transpose() + R;
+    const Mat<N, M> K = innovation_cov.ldlt().solve(H * x.cov).transpose();
+    const Mat<N, N> rest = Mat<N, N>::Identity() - K * H;
+    x.mean += K * y;
+    x.cov = (rest * x.cov * rest.transpose() + K * R * K.transpose()).eval();
+    kept.filtered = x;
+  }
+  std::vector<double> angle(run.size());
+  angle.back() = x.mean(wheel::angle);
+  for (std::size_t k = run.size() - 1; k-- > 0;) {
+    const Kept &now = run[k], &next = run[k + 1];
+    const Mat<N, N> G = next.predicted.cov.ldlt().solve(next.F * now.filtered.cov).transpose();
+    x.mean = now.filtered.mean + G * (x.mean - next.predicted.mean);
+    x.cov = (now.filtered.cov + G * (x.cov - next.predicted.cov) * G.transpose()).eval();
+    angle[k] = x.mean(wheel::angle);
+  }
+  return angle;
+}
+
+template <int S>
+std::vector<double> our_smoother(const WheelModel<S>& model) {
+  std::vector<double> angle(model.size());
+  double std_sum = 0.0;
+  smooth(
+      model, start<S>(), Gate{}, [](std::size_t, const auto&) {},
+      [&](std::size_t k, const auto& step, const auto& later) {
+        angle[k] = later.mean(step.filtered)(wheel::angle);
+        std_sum += later.template cov<wheel::moving>(step.filtered)(0, 0);
+      });
+  if (!(std_sum > 0.0)) std::puts("the smoother gave no variance");
+  return angle;
+}
+
+template <class Work>
+double seconds(Work&& work) {
+  const std::clock_t began = std::clock();  // of this process: a busy neighbour does not count
+  work();
+  return static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
+}
+
+long peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss / 1024;
+}
+
+/// What smooth() holds: the state at every chunk's start, and one chunk of steps.
+template <int S>
+double working_bytes_per_sample(std::size_t count) {
+  constexpr int N = wheel::states(S);
+  constexpr double chunk = N > 12 ? 64.0 : 128.0;
+  return sizeof(FilterState<N>) / chunk +
+         chunk * sizeof(StepOf<WheelModel<S>>) / static_cast<double>(count);
+}
+
+template <int S>
+void compare(std::size_t most) {
+  std::printf("%d sensor%s, %d states, %d channels\n", S, S > 1 ? "s" : "", wheel::states(S), 2 * S);
+  std::printf("%10s %14s %16s %14s %14s %18s\n", "samples", "filter /s", "and smoother /s",
+              "bytes/sample", "peak RSS MB", "textbook /s");
+  for (std::size_t count = 10'000; count <= most; count *= 10) {
+    const Recording recording = record(count);
+    const auto model = model_of<S>(recording);
+    const auto n = static_cast<double>(count);
+    auto state = start<S>();
+    const double filter_s =
+        seconds([&] { filter(model, 0, count, Gate{}, state, [](std::size_t, const auto&) {}); });
+    std::vector<double> ours;
+    const double smoother_s = seconds([&] { ours = our_smoother(model); });
+    std::printf("%10zu %14.0f %16.0f %14.1f %14ld", count, n / filter_s, n / smoother_s,
+                working_bytes_per_sample<S>(count), peak_rss_mb());
+    // Its states of a longer recording would not fit in memory: 9 kB a sample.
+    if (count <= 10'000) {
+      std::vector<double> textbook;
+      const double textbook_s = seconds([&] { textbook = textbook_smoother(model); });
+      double difference = 0.0;
+      for (std::size_t k = 0; k < count; ++k)
+        difference = std::max(difference, std::abs(ours[k] - textbook[k]));
+      std::printf(" %18.0f   (smoothed angles differ by %.1e rad at most)", n / textbook_s, difference);
+    }
+    std::printf("\n");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto most = static_cast<std::size_t>(argc > 1 ? std::strtod(argv[1], nullptr) : 1e6);
+  compare<2>(most);
+  compare<1>(most);
+}

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <span>
+
+#include "proofmass/io/read_recording.hpp"
+#include "proofmass/signal/audit.hpp"
+
+/// Reads and audits bytes of any kind, and holds what comes back to what every reader promises.
+inline void check_reading(std::span<const std::byte> bytes) {
+  const auto require = [](bool kept) {
+    if (!kept) std::abort();
+  };
+  const auto read = proofmass::io::read_recording(bytes, "fuzz", {});
+  if (!read) {
+    require(!read.error().message.empty());
+    return;
+  }
+  require(!read->channels.empty());
+  for (const auto& channel : read->channels) {
+    require(channel.values.size() == read->samples());
+    require(!channel.name.empty());
+  }
+  const proofmass::TimeBase& time = read->time;
+  require(time.is_uniform() || time.stamps_s.size() == read->samples());
+  require(std::isfinite(time.rate_hz) && time.rate_hz >= 0.0);
+  for (const double stamp_s : time.stamps_s) require(std::isfinite(stamp_s));
+  const auto audit = proofmass::signal::audit(*read);
+  require(audit.channels.size() == read->channels.size());
+}

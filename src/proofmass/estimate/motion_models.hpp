@@ -1,0 +1,51 @@
+#pragma once
+
+#include "proofmass/estimate/linear_gaussian.hpp"
+
+// Motion along one axis, seen through an accelerometer.
+namespace proofmass::estimate {
+
+/// Where each quantity sits in the state of a PVA model: x.mean[pva::velocity_mps].
+namespace pva {
+inline constexpr int position_m = 0;
+inline constexpr int velocity_mps = 1;
+inline constexpr int accel_mps2 = 2;
+inline constexpr int bias_mps2 = 3;  ///< in pva_bias_model() only
+}  // namespace pva
+
+struct PvaOptions {
+  double dt_s;                  ///< time between samples, not negative
+  double jerk_psd_m2ps5;        ///< two-sided density of the white jerk that drives the model
+  double accel_variance_m2ps4;  ///< variance of one accelerometer reading
+};
+
+/// Position, velocity and acceleration along one axis, driven by white jerk and seen through an
+/// accelerometer that reads the acceleration. Exact discretisation, for any dt.
+/// Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 6.2.3.
+[[nodiscard]] LinearModel<3, 1> pva_model(const PvaOptions& options);
+
+struct PvaBiasOptions {
+  PvaOptions motion;
+  double time_constant_s;   ///< T of the sensor's warm-up, positive
+  double bias_psd_m2ps5;    ///< two-sided density of the white noise that drives the bias, ≥ 0
+};
+
+/// The same with the sensor's bias ε, which settles exponentially after power-up:
+///   ε[k] = φ ε[k−1] + (1 − φ)(a₁ + a₂),   φ = exp(−dt/T),   z = a + ε + v.
+/// The known input u of each epoch is what the bias settles at, a₁ + a₂ in m/s²; ε(0) = a₂ gives the
+/// fitted warm-up a₁(1 − exp(−t/T)) + a₂. From accelerations alone position and velocity are not
+/// observable; the prior, or readings of them, must say where they start.
+/// Source: M. A. Lele (2010), section 4.3; the discretisation of the bias is that of an
+/// Ornstein–Uhlenbeck process, exact for any dt.
+[[nodiscard]] LinearModel<4, 1, 1> pva_bias_model(const PvaBiasOptions& options);
+
+extern template LinearRun<3, 1> filter_linear(LinearSeries<3, 1>, const Gaussian<3>&, const Gate&);
+extern template LinearRun<3, 1> smooth_linear(LinearSeries<3, 1>, const Gaussian<3>&, const Gate&);
+extern template LinearRun<4, 1> filter_linear(LinearSeries<4, 1, 1>,
+                                              const Gaussian<4>&,
+                                              const Gate&);
+extern template LinearRun<4, 1> smooth_linear(LinearSeries<4, 1, 1>,
+                                              const Gaussian<4>&,
+                                              const Gate&);
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,49 @@
+// Every specimen of the fuzzers, broken off at every byte: each piece is read or refused in one
+// line, and never more than the whole holds.
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+
+#include "proofmass/io/test_support.hpp"
+
+namespace proofmass::io {
+namespace {
+
+void break_off_everywhere(const std::string& folder, const std::vector<std::string>& magics) {
+  std::size_t specimens = 0;
+  const auto path = std::filesystem::path(PROOFMASS_SOURCE_DIR) / "fuzz/corpus" / folder;
+  for (const auto& entry : std::filesystem::directory_iterator(path)) {
+    ++specimens;
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(file), {});
+    for (const std::string& magic : magics) {
+      for (std::size_t size = 0; size <= bytes.size(); ++size) {
+        const auto read = read_text(magic + bytes.substr(0, size));
+        if (read) {
+          ASSERT_FALSE(read->channels.empty()) << entry.path() << " at " << size;
+          for (const Channel& channel : read->channels)
+            ASSERT_EQ(channel.values.size(), read->samples()) << entry.path() << " at " << size;
+        } else {
+          ASSERT_EQ(read.error().message.find('\n'), std::string::npos);
+          ASSERT_TRUE(read.error().message.starts_with("text: ")) << read.error().message;
+        }
+      }
+    }
+  }
+  EXPECT_GT(specimens, 3u);
+}
+
+TEST(BrokenOff, CsvIsReadOrRefused) {
+  break_off_everywhere("csv", {""});
+}
+
+TEST(BrokenOff, NpyIsReadOrRefused) {
+  break_off_everywhere("npy", {"\x93NUMPY"});
+}
+
+TEST(BrokenOff, CompressedIsReadOrRefused) {
+  break_off_everywhere("compressed", {"\x1F\x8B\x08", std::string("\xFD\x37zXZ\0", 6)});
+}
+
+}  // namespace
+}  // namespace proofmass::io

@@ -1,0 +1,201 @@
+#include "proofmass/signal/audit.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+
+#include "proofmass/signal/channel_audit.hpp"
+
+namespace proofmass::signal {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+/// One accelerometer channel at 100 Hz, from a file whose rows begin on line 2.
+Recording recording_of(std::vector<double> values) {
+  Recording recording;
+  recording.time = {TimeSource::given_rate, "", 100.0, {}, {}};
+  recording.first_line = 2;
+  recording.channels.push_back({"Acc_X", *parse_unit("m/s^2"), std::move(values)});
+  return recording;
+}
+
+/// The same with one value a stamp.
+Recording stamped(std::vector<double> stamps_s, double rate_hz) {
+  Recording recording = recording_of(std::vector<double>(stamps_s.size(), 1.0));
+  recording.time = {TimeSource::stamps, "t", rate_hz, std::move(stamps_s), {}};
+  return recording;
+}
+
+std::vector<double> noise(std::size_t count, double std) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal(0.0, std);
+  std::vector<double> out(count);
+  for (double& x : out) x = normal(random);
+  return out;
+}
+
+std::string notes_of(const RecordingAudit& audit) {
+  std::string all;
+  for (const Note& note : audit.notes) all += note.text + "\n";
+  return all;
+}
+
+TEST(Audit, CountsWhatIsNoMeasurementAndLeavesItOutOfTheMoments) {
+  const RecordingAudit found =
+      audit(recording_of({9.0, nan, 11.0, inf, -inf, 3e34, -3e34, 1e-45, 5e-324, 10.0, 0.0}));
+  const ChannelAudit& channel = found.channels.at(0);
+  EXPECT_EQ(channel.nonfinite, 3u);
+  EXPECT_EQ(channel.infinite, 2u);
+  EXPECT_EQ(channel.absurd, 2u);
+  EXPECT_EQ(channel.denormal, 2u);
+  EXPECT_EQ(channel.moments.count, 4u);
+  EXPECT_EQ(channel.moments.mean, 7.5);
+  EXPECT_EQ(channel.moments.max, 11.0);
+  EXPECT_TRUE(found.is_bad());
+}
+
+TEST(Audit, SaysWhereTheValuesAre) {
+  const std::string notes =
+      notes_of(audit(recording_of({9.0, nan, 11.0, 3e34, -3e34, 1.0, 1e-45})));
+  EXPECT_NE(notes.find("Acc_X: 1 value missing or no number (NaN) at 0.01 s (line 3)"),
+            std::string::npos)
+      << notes;
+  EXPECT_NE(notes.find("(3e34 and the like) at 0.03 s … 0.04 s (lines 5 … 6)"), std::string::npos)
+      << notes;
+  EXPECT_NE(notes.find("denormal (as bytes read wrongly are) at 0.06 s (line 8)"),
+            std::string::npos)
+      << notes;
+}
+
+TEST(Audit, OfACleanRecordingHasNothingToSay) {
+  const RecordingAudit found = audit(recording_of(noise(5000, 0.1)));
+  EXPECT_TRUE(found.notes.empty()) << notes_of(found);
+  EXPECT_FALSE(found.is_bad());
+  EXPECT_EQ(found.samples, 5000u);
+  EXPECT_NEAR(found.duration_s, 49.99, 1e-9);
+}
+
+TEST(Lsb, IsTheStepOfTheConverter) {
+  for (const double lsb : {0.00333, 1.0, 1.0 / 4096.0, 0.0048828125}) {
+    std::vector<double> values = noise(20'000, 3.0 * lsb);
+    for (double& x : values) x = std::round(x / lsb) * lsb;
+    EXPECT_NEAR(find_lsb(values).value(), lsb, 1e-9 * lsb);
+    // Written with few decimals, and with a few values that are off the grid.
+    for (double& x : values) x = std::round(x / (0.02 * lsb)) * 0.02 * lsb;
+    values[7] = 0.37 * lsb;
+    EXPECT_NEAR(find_lsb(values).value(), lsb, 0.02 * lsb);
+  }
+}
+
+TEST(Lsb, IsNoneOfAContinuousSeries) {
+  EXPECT_FALSE(find_lsb(noise(20'000, 1.0)).has_value());
+  EXPECT_FALSE(find_lsb(std::vector<double>(100, 2.5)).has_value());
+  EXPECT_FALSE(find_lsb({}).has_value());
+}
+
+TEST(Clipping, CountsTheSamplesAtTheRails) {
+  std::vector<double> values;
+  std::size_t clipped = 0;
+  for (int k = 0; k < 5000; ++k) {
+    const double x = 3.0 * std::sin(0.01 * k);
+    if (std::abs(x) >= 2.0) ++clipped;
+    values.push_back(std::clamp(x, -2.0, 2.0));
+  }
+  const RecordingAudit found = audit(recording_of(values));
+  EXPECT_EQ(found.channels[0].clipped, clipped);
+  EXPECT_TRUE(found.is_bad());
+}
+
+TEST(Clipping, IsNotSeenInASineOrInAFewLevelsOfNoise) {
+  std::vector<double> sine;
+  for (int k = 0; k < 5000; ++k) sine.push_back(std::round(1000.0 * std::sin(0.01 * k)));
+  EXPECT_EQ(audit(recording_of(sine)).channels[0].clipped, 0u);
+  std::vector<double> levels = noise(5000, 0.8);
+  for (double& x : levels) x = std::round(x);
+  EXPECT_EQ(audit(recording_of(levels)).channels[0].clipped, 0u);
+}
+
+TEST(Clipping, IsNotSeenInAValueThatIsHeldForOnce) {
+  std::vector<double> values = noise(2000, 1.0);
+  for (std::size_t k = 100; k < 110; ++k) values[k] = 0.5;
+  for (std::size_t k = 300; k < 306; ++k) values[k] = 6.0;
+  EXPECT_EQ(audit(recording_of(values)).channels[0].clipped, 0u);
+}
+
+TEST(Audit, NoticesAChannelThatIsStuck) {
+  std::vector<double> values = noise(2000, 1.0);
+  for (std::size_t k = 500; k < 900; ++k) values[k] = 0.25;
+  const RecordingAudit found = audit(recording_of(values));
+  EXPECT_EQ(found.channels[0].longest_stuck, 400u);
+  EXPECT_DOUBLE_EQ(found.channels[0].longest_stuck_start_s, 5.0);
+  EXPECT_NE(notes_of(found).find("one and the same value for 400 samples from 5 s on"),
+            std::string::npos)
+      << notes_of(found);
+}
+
+TEST(Audit, NoticesRowsOfZeros) {
+  Recording recording = recording_of(noise(50, 1.0));
+  recording.channels.push_back({"Acc_Y", *parse_unit("m/s^2"), noise(50, 1.0)});
+  recording.channels.push_back({"Gyr_X", *parse_unit("deg/s"), noise(50, 1.0)});
+  recording.channels.push_back({"Temp", *parse_unit("degC"), std::vector<double>(50, 20.0)});
+  for (Channel& channel : recording.channels)
+    if (channel.name != "Temp") channel.values[0] = 0.0;
+  EXPECT_EQ(audit(recording).zero_rows, (std::vector<std::size_t>{0}));
+}
+
+TEST(Timing, FindsGapsRepeatsAndStepsBack) {
+  const RecordingAudit found =
+      audit(stamped({0.0, 0.1, 0.2, 0.7, 0.8, 0.8, 0.9, 0.85, 0.95, 1.05}, 10.0));
+  ASSERT_EQ(found.timing.gaps.size(), 1u);
+  EXPECT_DOUBLE_EQ(found.timing.gaps[0].start_s, 0.2);
+  EXPECT_DOUBLE_EQ(found.timing.gaps[0].duration_s, 0.5);
+  EXPECT_EQ(found.timing.repeated, 1u);
+  EXPECT_EQ(found.timing.backwards, 1u);
+  EXPECT_TRUE(found.is_bad()) << "time ran backwards, and nobody mended it";
+}
+
+TEST(Timing, CountsTheStampsThatAReaderMended) {
+  Recording recording = stamped({0.0, 0.1, 0.2, 0.3}, 10.0);
+  recording.time.mended = 2;
+  recording.time.mended_backwards = 1;
+  const RecordingAudit found = audit(recording);
+  EXPECT_EQ(found.timing.mended, 2u);
+  EXPECT_EQ(found.timing.backwards, 1u);
+  EXPECT_FALSE(found.is_bad());
+}
+
+TEST(Timing, JitterIsTheSpreadOfTheStepsWithoutTheGaps) {
+  const std::vector<double> deviations_s = noise(20'000, 1e-4);
+  std::vector<double> stamps_s{0.0};
+  for (std::size_t k = 0; k < deviations_s.size(); ++k)
+    stamps_s.push_back(stamps_s.back() + 0.01 + deviations_s[k] + (k % 5000 == 4999 ? 3.0 : 0.0));
+  const RecordingAudit found = audit(stamped(stamps_s, 100.0));
+  EXPECT_NEAR(found.timing.jitter_s.value(), 1e-4, 2e-6);
+  EXPECT_EQ(found.timing.gaps.size(), 4u);
+}
+
+TEST(Timing, OfAUniformBaseHasNoJitter) {
+  Recording recording = recording_of({1.0, 2.0, 3.0});
+  EXPECT_FALSE(audit(recording).timing.jitter_s.has_value()) << "a given rate says nothing of it";
+  recording.time.source = TimeSource::stamps;
+  EXPECT_EQ(audit(recording).timing.jitter_s, 0.0);
+}
+
+TEST(Timing, CountsLostRowsByThePacketCounter) {
+  Recording recording = recording_of(std::vector<double>(40, 1.0));
+  std::vector<double> counter;
+  for (int k = 0; counter.size() < 40; ++k)
+    if (k != 7 && k != 21 && k != 22) counter.push_back(k);
+  counter[12] = nan;
+  counter[30] = 3e34;
+  recording.channels.push_back({"PacketCounter", *parse_unit("counts"), counter});
+  EXPECT_EQ(audit(recording).timing.lost, 3u);
+  recording.channels[1].name = "Battery";
+  EXPECT_FALSE(audit(recording).timing.lost.has_value());
+}
+
+}  // namespace
+}  // namespace proofmass::signal
