@@ -15,6 +15,13 @@ struct Settled {
   double log_likelihood = 0.0;
 };
 
+/// What may be believed of the constants, by how far the wheel turns.
+const ConstantsPrior& prior_for(const WheelPath& path) {
+  const auto angle = [](const Mat<wheel::moving>& at) { return at(wheel::angle); };
+  const auto [lowest, highest] = std::ranges::minmax_element(path.moving, {}, angle);
+  return angle(*highest) - angle(*lowest) < rad_per_turn ? short_way_prior : constants_prior;
+}
+
 /// One round: the readings' variance, the motion's noise and the sensors' places, all about the path
 /// found so far.
 template <int S>
@@ -27,7 +34,7 @@ Settled<S> settle(WheelReadings& readings, const WheelTrack& track, const Places
     for (int axis = 0; axis < 2; ++axis)
       places(2 * s + axis) = track.path.constants[static_cast<std::size_t>(s)]
                                                  [static_cast<std::size_t>(wheel::place + axis)];
-  WheelPrior prior{track.beginning, constants_prior, places};
+  WheelPrior prior{track.beginning, prior_for(track.path), places};
   settle_variance(model, prior, readings);
   const Excerpt<S> excerpt = liveliest(model, prior);
   model.noise = tune_noise(model, excerpt, tuning_factor).noise;

@@ -35,6 +35,10 @@ struct WheelReadings {
 using ConstantsPrior = std::array<double, 8>;
 inline constexpr ConstantsPrior constants_prior{0.5, 0.5, 0.3, 0.3, 0.1, 0.1, 0.03, 0.5};
 
+/// The same for a wheel that turns less than once: gravity shows no more than a piece of its circle, on
+/// which bias, scale and angle stand for each other, so more has to be believed.
+inline constexpr ConstantsPrior short_way_prior{0.2, 0.2, 0.1, 0.1, 0.01, 0.01, 0.01, 0.5};
+
 /// How the motion begins, for a filter that has seen nothing yet.
 struct Beginning {
   double angle_rad = 0.0, angle_std_rad = 0.6;
@@ -48,6 +52,9 @@ struct WheelTrack {
   WheelPath path;
   double lost = 1.0;  ///< share of the readings that it does not explain, 0 … 1
 };
+
+/// Eight readings a turn: no faster wheel is looked for, nor believed.
+[[nodiscard]] constexpr double fastest_radps(double rate_hz) { return rate_hz * rad_per_turn / 8.0; }
 
 /// Follows a single sensor's phase through the recording with whatever noise figures keep it: from
 /// a grid of starting speeds and angles, since at speed and off the axle the first readings do not

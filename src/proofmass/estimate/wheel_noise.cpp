@@ -84,7 +84,7 @@ void gather(const WheelReadings& readings, std::size_t k, const StepOf<WheelMode
 }
 
 /// Between these the motion's noise is looked for. A bias that walked faster could stand for gravity.
-constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e5, 1e6, 1e-4};
+constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e4, 1e6, 1e-4};
 
 }  // namespace
 

@@ -102,7 +102,8 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
   const SymmetricEigen spread =
       symmetric_eigen(centred.transpose() * centred / static_cast<double>(means.rows()));
   const double least = std::max(spread.values(0), 0.0), next = spread.values(1);
-  if (next < 16.0 * least || next < 0.0025) return assume_plane(means);
+  // 0.3 m/s² of spread: gravity that has turned by some 25 degrees. Less may be shaking.
+  if (next < 16.0 * least || next < 0.09) return assume_plane(means);
   Axis axis{spread.vectors(0, 0), spread.vectors(1, 0), spread.vectors(2, 0)};
   if (axis[largest(axis)] < 0.0) axis = scaled(axis, -1.0);
   return plane_about(axis);

@@ -281,6 +281,12 @@ TEST(EstimateWheel, OfAnUprightAxleIsNotObservable) {
   EXPECT_NE(upright.error().message.find("axle upright"), std::string::npos);
 }
 
+TEST(EstimateWheel, OfAnUprightAxleIsNotObservableEvenWhereTheAxisIsLookedFor) {
+  const auto upright = estimate_wheel({record(lively, {}, 60.0, 12, {.axle_tilt_rad = test::pi / 2})}, {});
+  ASSERT_FALSE(upright.has_value());
+  EXPECT_EQ(upright.error().code, Errc::not_observable);
+}
+
 TEST(EstimateWheel, OnATiltedAxleTakesTheGravityThatIsLeft) {
   const auto solution = solve({record(lively, {}, 60.0, 12, {.axle_tilt_rad = 0.4})});
   expect_turns(solution, lively.turns(0.0, 9.0), 0.004);

@@ -43,7 +43,7 @@ double first_phase(const PlanarReadings& sensor) {
 /// From rest outwards: 0, 1.5, −1.5, 3, −3 … rad/s, up to what the rate can follow.
 std::vector<double> speeds_to_try(double rate_hz, double step_radps) {
   std::vector<double> speeds{0.0};
-  const double top = std::min(0.4 * std::numbers::pi * rate_hz, 120.0);
+  const double top = std::min(fastest_radps(rate_hz), 120.0);
   for (double speed = step_radps; speed <= top; speed += step_radps) {
     speeds.push_back(speed);
     speeds.push_back(-speed);
@@ -133,11 +133,12 @@ WheelTrack find_track(WheelReadings& readings) {
     const Beginning beginning = seek_beginning(readings, seek.noise);
     const auto prior = prior_state<1>({beginning, seeking_prior, {}});
     const double lost = score_run(model, prior, 0, model.size()).lost;
-    if (lost >= best_lost) continue;
+    // What follows every shake predicts a little better, and is no better for it.
+    if (lost >= 0.6 * best_lost) continue;
     best_lost = lost;
     best = {beginning, seek.noise, {}, lost};
     (void)trace_path(model, prior, best.path);
-    if (lost < 0.15) break;
+    if (lost < 0.3) break;
   }
   return best;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <map>
 #include <set>
 
 #include "proofmass/io/cell.hpp"
@@ -120,7 +121,7 @@ class HeaderFinder {
     if (!plain.empty()) use_plain(plain);
     if (!header_.found) use_remark();
     if (!header_.found) make_up_names();
-    make_unique();
+    complete_names(header_.labels, header_.notes);
     return std::move(header_);
   }
 
@@ -204,7 +205,6 @@ class HeaderFinder {
                        names.size(), width())});
     for (std::size_t c = 0; c < width(); ++c) {
       ColumnLabel label = c < names.size() ? read_label(names[c]) : ColumnLabel{};
-      if (label.name.empty()) label.name = fmt::format("column {}", c + 1);
       if (c < units.size())
         if (const auto unit = unit_in(units[c])) label.unit = *unit;
       header_.labels.push_back(std::move(label));
@@ -224,19 +224,6 @@ class HeaderFinder {
       header_.labels.push_back({std::move(name), {}});
     }
     header_.notes.push_back({Severity::info, "no header: columns named by their place"});
-  }
-
-  void make_unique() {
-    std::set<std::string> seen;
-    for (ColumnLabel& label : header_.labels) {
-      std::string name = label.name;
-      for (int n = 2; !seen.insert(name).second; ++n) name = fmt::format("{} {}", label.name, n);
-      if (name != label.name)
-        header_.notes.push_back(
-            {Severity::warning,
-             fmt::format("two columns are called {}: the later is {} here", label.name, name)});
-      label.name = name;
-    }
   }
 
   const CsvLayout& layout_;
@@ -275,6 +262,25 @@ ColumnLabel read_label(std::string_view heading) {
       return {std::string(trimmed(text.substr(0, at))), *unit};
   }
   return {std::string(text), {}};
+}
+
+void complete_names(std::vector<ColumnLabel>& labels, std::vector<Note>& notes) {
+  std::set<std::string> taken;
+  std::map<std::string, int> next;  // number for the next column of a name that is taken
+  std::size_t renamed = 0;
+  for (std::size_t c = 0; c < labels.size(); ++c) {
+    const std::string wanted =
+        labels[c].name.empty() ? fmt::format("column {}", c + 1) : labels[c].name;
+    std::string name = wanted;
+    for (int& n = next.try_emplace(wanted, 2).first->second; !taken.insert(name).second; ++n)
+      name = fmt::format("{} {}", wanted, n);
+    constexpr std::size_t most_notes = 8;
+    if (name != wanted && ++renamed <= most_notes)
+      notes.push_back(
+          {Severity::warning,
+           fmt::format("two columns are called {}: the later is {} here", wanted, name)});
+    labels[c].name = name;
+  }
 }
 
 CsvHeader read_header(const CsvLayout& layout) {

@@ -21,6 +21,9 @@ struct ColumnLabel {
 /// Reads one heading: "Acc X (m/s^2)", "acc_x [g]", "Acc X, g", "acc_x_g", "Gyr_X_deg_s".
 [[nodiscard]] ColumnLabel read_label(std::string_view heading);
 
+/// Gives columns without a name one by their place, and a number to those of the same name.
+void complete_names(std::vector<ColumnLabel>& labels, std::vector<Note>& notes);
+
 /// What the lines before the rows say about the columns.
 struct CsvHeader {
   std::vector<ColumnLabel> labels;  ///< one a column, names unique

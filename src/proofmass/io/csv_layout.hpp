@@ -41,7 +41,7 @@ struct CsvLayout {
 };
 
 /// More columns than any instrument has: beyond it a file is no table.
-inline constexpr std::size_t most_columns = 100'000;
+inline constexpr std::size_t most_columns = 16'384;
 
 /// Takes a line apart; quotes hold separators together. Views into `line`, blanks and quotes left
 /// on.

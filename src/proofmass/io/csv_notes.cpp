@@ -64,12 +64,21 @@ void tell_faults(const RowFaults& faults, const CsvHeader& header, std::vector<N
   tell(Severity::warning, faults.cut, "breaks off: its last field is not used");
   tell(Severity::warning, faults.nul, "holding bytes of zero, as a power cut leaves them");
   tell(Severity::info, faults.remarks, "a remark between the rows: passed over");
-  for (const auto& [column, seen] : faults.words)
-    notes.push_back({Severity::warning,
-                     fmt::format("{}: {} that are no number, the first \"{}\" on line {}: NaN",
-                                 header.labels[column].name,
-                                 seen.count == 1 ? "1 field" : fmt::format("{} fields", seen.count),
-                                 faults.first_word.at(column), seen.first_line)});
+  constexpr std::size_t most_columns_told = 16;
+  std::size_t told = 0;
+  for (const auto& [column, seen] : faults.words) {
+    if (++told > most_columns_told) break;
+    notes.push_back(
+        {Severity::warning,
+         fmt::format("{}: {} no number, the first \"{}\" on line {}: NaN",
+                     header.labels[column].name,
+                     seen.count == 1 ? "1 field is" : fmt::format("{} fields are", seen.count),
+                     faults.first_word.at(column), seen.first_line)});
+  }
+  if (told > most_columns_told)
+    notes.push_back(
+        {Severity::warning,
+         fmt::format("{} columns in all have fields that are no number", faults.words.size())});
 }
 
 }  // namespace proofmass::io

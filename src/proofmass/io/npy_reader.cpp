@@ -283,6 +283,7 @@ CsvHeader header_of(const Table& table, bool first_is_time) {
   CsvHeader header;
   header.found = true;
   for (const Cursor& column : table.columns) header.labels.push_back(read_label(column.name));
+  complete_names(header.labels, header.notes);
   return header;
 }
 
@@ -327,6 +328,7 @@ Result<Recording> read_npy(PeekSource& source, const ReadOptions& options) {
   CsvLayout layout;
   layout.columns.assign(table.columns.size(), ColumnKind::number);
   layout.first_ascends = header.labels[0].name == "time";
+  recording.notes.insert(recording.notes.end(), header.notes.begin(), header.notes.end());
   const auto columns = choose_columns(layout, header, options);
   if (!columns) return columns.error();
   std::optional<StampColumn> stamps;

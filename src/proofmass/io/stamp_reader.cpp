@@ -1,6 +1,7 @@
 #include "proofmass/io/stamp_reader.hpp"
 
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <fast_float/fast_float.h>
 #include <limits>
@@ -41,11 +42,13 @@ std::optional<WideDecimal> scan_wide(std::string_view text, char point) {
   if (i == 0 || (i == 1 && behind_point)) return std::nullopt;
   if (negative) out.mantissa = -out.mantissa;
   if (i == text.size()) return out;
-  const auto exponent = text.substr(i + 1);
-  if ((text[i] | 0x20) != 'e' || exponent.empty() || exponent.size() > 4) return std::nullopt;
-  const Cell power = read_cell(exponent, point);
-  if (power.kind != CellKind::number || power.value != std::trunc(power.value)) return std::nullopt;
-  out.exponent10 += static_cast<int>(power.value);
+  std::string_view exponent = text.substr(i + 1);
+  if (exponent.starts_with('+')) exponent.remove_prefix(1);
+  int power = 0;
+  const auto end = std::from_chars(exponent.data(), exponent.data() + exponent.size(), power);
+  const bool whole = end.ec == std::errc{} && end.ptr == exponent.data() + exponent.size();
+  if ((text[i] | 0x20) != 'e' || !whole || power > 9999 || power < -9999) return std::nullopt;
+  out.exponent10 += power;
   return out;
 }
 
