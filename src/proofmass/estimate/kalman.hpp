@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "proofmass/estimate/dense_kernels.hpp"
 #include "proofmass/estimate/gaussian.hpp"
 
 // The one Kalman filter and the one fixed-interval smoother under every model of this module,
@@ -57,6 +58,16 @@ concept StateSpaceModel = requires(const Model& model, const Mat<Model::states>&
   model.reopen(lost);
 };
 
+/// How many of a model's states the filter runs on: all, unless the model says by active() that those
+/// from there on are held, without variance.
+template <StateSpaceModel Model>
+[[nodiscard]] int active_states(const Model& model) {
+  if constexpr (requires { model.active(); })
+    return model.active();
+  else
+    return Model::states;
+}
+
 /// What one channel's reading did to the state: all that the backward pass and the tests need.
 template <int N>
 struct Update {
@@ -90,8 +101,9 @@ template <int N, int D>
 void predict(Gaussian<N>& x, const Transition<N, D>& step) {
   x.mean.template head<D>() = step.mean;
   const Mat<D, N> FP = step.F * x.cov.template topRows<D>();
-  x.cov.template topLeftCorner<D, D>() =
-      FP.template leftCols<D>() * step.F.transpose() + step.Q;
+  // Symmetric to the last bit: corrections do not reach what is not, and F would make it grow.
+  const Mat<D, D> FPF = FP.template leftCols<D>() * step.F.transpose();
+  x.cov.template topLeftCorner<D, D>() = 0.5 * (FPF + FPF.transpose()) + step.Q;
   if constexpr (D < N) {
     constexpr int S = N - D;
     x.cov.template topRightCorner<D, S>() = FP.template rightCols<S>();
@@ -102,11 +114,14 @@ void predict(Gaussian<N>& x, const Transition<N, D>& step) {
 
 /// x̂ given one more reading: Kalman's gain, the covariance in Joseph's form,
 /// P ← (I − K h) P (I − K h)ᵀ + K R Kᵀ, in O(N²) because h is one row.
-/// `predicted` is h(x̂) at the state as it stands. Source: G. J. Bierman, Factorization Methods for
+/// `predicted` is h(x̂) at the state as it stands. States from `active` on are held: their variances
+/// and covariances are zero, and are not touched. Source: G. J. Bierman, Factorization Methods for
 /// Discrete Sequential Estimation (1977), section II.
 template <int N>
-[[nodiscard]] Update<N> correct(Gaussian<N>& x, const Reading<N>& reading, const Gate& gate) {
-  const Mat<N> Ph = x.cov * reading.h;
+[[nodiscard]] Update<N> correct(Gaussian<N>& x, const Reading<N>& reading, const Gate& gate,
+                                int active = N) {
+  Mat<N> Ph = Mat<N>::Zero();
+  symmetric_times(x.cov.data(), reading.h.data(), Ph.data(), {active, N});
   Update<N> update;
   update.h = reading.h;
   update.innovation = reading.value - reading.predicted;
@@ -125,8 +140,7 @@ template <int N>
   const Mat<N> rest = Ph - update.gain * hPh;  // (I − K h) P hᵀ
   // P − K (P hᵀ)ᵀ − rest Kᵀ + R K Kᵀ, written so that an entry and its mirror round alike.
   const Mat<N> both = 0.5 * (Ph + rest - noise * update.gain);
-  x.cov.noalias() -= update.gain * both.transpose();
-  x.cov.noalias() -= both * update.gain.transpose();
+  subtract_symmetric_pair(x.cov.data(), update.gain.data(), both.data(), {active, N});
   return update;
 }
 
@@ -166,7 +180,7 @@ void advance(const Model& model, std::size_t k, const Gate& gate, FilterState<Mo
     Reading<N>& reading = readings.rows[static_cast<std::size_t>(i)];
     reading.predicted += reading.h.dot(state.x.mean - linearised_at);
     const Update<N>& update = step.updates[static_cast<std::size_t>(i)] =
-        correct(state.x, reading, gate);
+        correct(state.x, reading, gate, active_states(model));
     any_used = any_used || update.used;
   }
   if (readings.count > 0) state.instants_gated = any_used ? 0 : state.instants_gated + 1;
@@ -183,6 +197,7 @@ template <int N>
 struct Hindsight {
   Mat<N> lambda = Mat<N>::Zero();
   Mat<N, N> Lambda = Mat<N, N>::Zero();
+  int active = N;  ///< of the states; those held learn nothing
 
   [[nodiscard]] Mat<N> mean(const Gaussian<N>& filtered) const {
     return filtered.mean - filtered.cov * lambda;
@@ -190,9 +205,11 @@ struct Hindsight {
   /// Covariance of the first B states given every reading.
   template <int B>
   [[nodiscard]] Mat<B, B> cov(const Gaussian<N>& filtered) const {
-    const Mat<B, N> P = filtered.cov.template topRows<B>();
-    const Mat<B, N> PL = P * Lambda;
-    return filtered.cov.template topLeftCorner<B, B>() - PL * P.transpose();
+    Mat<N, B> LP = Mat<N, B>::Zero();  // P is symmetric: its first rows are its first columns
+    for (int i = 0; i < B; ++i)
+      symmetric_times(Lambda.data(), filtered.cov.col(i).data(), LP.col(i).data(), {active, N});
+    return filtered.cov.template topLeftCorner<B, B>() -
+           filtered.cov.template leftCols<B>().transpose() * LP;
   }
 };
 
@@ -202,17 +219,18 @@ void look_back(Hindsight<N>& later, const Step<N, D, M>& step) {
   for (int i = step.count; i-- > 0;) {
     const Update<N>& u = step.updates[static_cast<std::size_t>(i)];
     if (!u.used) continue;
-    const Mat<N> LK = later.Lambda * u.gain;
+    Mat<N> LK = Mat<N>::Zero();
+    symmetric_times(later.Lambda.data(), u.gain.data(), LK.data(), {later.active, N});
     later.lambda -= u.h * (u.gain.dot(later.lambda) + u.innovation / u.variance);
     const Mat<N> half = LK - 0.5 * (u.gain.dot(LK) + 1.0 / u.variance) * u.h;
-    later.Lambda.noalias() -= u.h * half.transpose();
-    later.Lambda.noalias() -= half * u.h.transpose();
+    subtract_symmetric_pair(later.Lambda.data(), u.h.data(), half.data(), {later.active, N});
   }
   later.lambda.template head<D>() = (step.F.transpose() * later.lambda.template head<D>()).eval();
   const Mat<D, N> FL = step.F.transpose() * later.Lambda.template topRows<D>();
   later.Lambda.template topRows<D>() = FL;
   later.Lambda.template leftCols<D>() = FL.transpose();
-  later.Lambda.template topLeftCorner<D, D>() = FL.template leftCols<D>() * step.F;
+  const Mat<D, D> FLF = FL.template leftCols<D>() * step.F;
+  later.Lambda.template topLeftCorner<D, D>() = 0.5 * (FLF + FLF.transpose());
 }
 
 /// Filters instants [first, last) from `state`, telling each to visit(k, step).
@@ -247,6 +265,7 @@ void smooth(const Model& model, const FilterState<Model::states>& prior, const G
   }
   std::vector<StepOf<Model>> steps(std::min(chunk, size));
   Hindsight<N> later;
+  later.active = active_states(model);
   for (std::size_t c = starts.size(); c-- > 0;) {
     const std::size_t first = c * chunk, last = std::min(first + chunk, size);
     state = starts[c];

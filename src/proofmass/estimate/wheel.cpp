@@ -93,10 +93,7 @@ PlacesPrior places_prior(const WheelOptions& options, const Eigen::VectorXd& see
 }
 
 Eigen::VectorXd places_in(const WheelFit& fit, std::size_t sensors) {
-  Eigen::VectorXd places(static_cast<Eigen::Index>(2 * sensors));
-  for (Eigen::Index s = 0; s < static_cast<Eigen::Index>(sensors); ++s)
-    places.segment<2>(2 * s) = fit.constants.segment<2>(7 * s + wheel::place);
-  return places;
+  return fit.constants.tail(static_cast<Eigen::Index>(2 * sensors));
 }
 
 /// Fits once without the radius and, where one is given, again with it.
@@ -203,8 +200,9 @@ Joint fit_jointly(const std::vector<WheelSensor>& sensors, const Pair& pair,
     moving(wheel::angle) += dt * moving(wheel::speed);
     track.path.moving.push_back(moving);
   }
-  track.path.constants[1] = two.fit.track.path.constants[0];
-  track.path.constants[1][wheel::phase] = 0.0;
+  const Eigen::VectorXd &first = one.fit.track.path.standing, &second = two.fit.track.path.standing;
+  track.path.standing.resize(wheel::standing(2));
+  track.path.standing << first.head<5>(), second.head<5>(), 0.0, first.tail<2>(), second.tail<2>();
   track.beginning.angle_rad = track.path.moving.front()(wheel::angle);
   joint.fit = fit_with_radius(joint.readings, track, options);
   return joint;

@@ -31,31 +31,39 @@ void describe_place(const WheelFit& fit, int at, WheelSensorFit& sensor) {
   if (across < 0.5) sensor.mounting_rad = Uncertain{-std::atan2(r(1), r(0)), across};
 }
 
+enum class Kind { bias, scale, skew, phase, place };
+
+/// One of the constants of a fit: whose, what, and along which axis.
 struct Constant {
-  std::size_t sensor;
-  int kind;  // wheel::bias …
+  std::size_t sensor = 0;
+  Kind kind = Kind::bias;
+  int axis = 0;
 };
 
-std::vector<Constant> constants_of(const WheelFit& fit) {
+/// In the state's order.
+std::vector<Constant> constants_of(std::size_t sensors) {
   std::vector<Constant> all;
-  for (Eigen::Index i = 0; i < fit.constants.size(); ++i) {
-    const std::size_t sensor = i < 7 ? 0 : 1;
-    all.push_back({sensor, static_cast<int>(i) - 7 * static_cast<int>(sensor)});
+  for (std::size_t s = 0; s < sensors; ++s) {
+    for (const Kind kind : {Kind::bias, Kind::scale})
+      for (const int axis : {0, 1}) all.push_back({s, kind, axis});
+    all.push_back({s, Kind::skew, 0});
   }
+  if (sensors == 2) all.push_back({1, Kind::phase, 0});
+  for (std::size_t s = 0; s < sensors; ++s)
+    for (const int axis : {0, 1}) all.push_back({s, Kind::place, axis});
   return all;
 }
 
-std::string name_of(int kind) {
-  switch (kind) {
-    case wheel::bias: return "bias along u";
-    case wheel::bias + 1: return "bias along v";
-    case wheel::place: return "distance from the axle along u";
-    case wheel::place + 1: return "distance from the axle along v";
-    case wheel::scale: return "scale along u";
-    case wheel::scale + 1: return "scale along v";
-    case wheel::skew: return "skew of the axes";
-    default: return "phase against the first sensor";
+std::string name_of(const Constant& constant) {
+  const std::string along = constant.axis == 0 ? " along u" : " along v";
+  switch (constant.kind) {
+    case Kind::bias: return "bias" + along;
+    case Kind::scale: return "scale" + along;
+    case Kind::skew: return "skew of the axes";
+    case Kind::phase: return "phase against the first sensor";
+    case Kind::place: return "distance from the axle" + along;
   }
+  return "";
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -75,9 +83,9 @@ std::string sentence(const Eigen::VectorXd& direction, const std::vector<Constan
   bool one_sensor = true;
   for (std::size_t i = 0; i < constants.size(); ++i) {
     if (std::abs(direction(static_cast<Eigen::Index>(i))) < 0.3) continue;
-    names.push_back(name_of(constants[i].kind));
-    place = place || constants[i].kind == wheel::place || constants[i].kind == wheel::place + 1;
-    bias = bias || constants[i].kind == wheel::bias || constants[i].kind == wheel::bias + 1;
+    names.push_back(name_of(constants[i]));
+    place = place || constants[i].kind == Kind::place;
+    bias = bias || constants[i].kind == Kind::bias;
     one_sensor = one_sensor && (sensor == sensors.size() || sensor == constants[i].sensor);
     sensor = constants[i].sensor;
   }
@@ -95,7 +103,7 @@ std::string sentence(const Eigen::VectorXd& direction, const std::vector<Constan
 
 void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSensorFit>& sensors) {
   for (std::size_t s = 0; s < sensors.size(); ++s) {
-    const int first = 7 * static_cast<int>(s);
+    const int first = wheel::first_of(static_cast<int>(s)) - wheel::first_of(0);
     WheelSensorFit& sensor = sensors[s];
     for (int axis = 0; axis < 2; ++axis) {
       const auto at = static_cast<std::size_t>(axis);
@@ -103,8 +111,9 @@ void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSe
       sensor.scale[at] = told(fit, first + wheel::scale + axis, 1.0);
     }
     sensor.skew_rad = told(fit, first + wheel::skew);
-    if (s > 0) sensor.phase_rad = told(fit, first + wheel::phase, phase_rad);
-    describe_place(fit, first + wheel::place, sensor);
+    if (s > 0) sensor.phase_rad = told(fit, wheel::phase - wheel::first_of(0), phase_rad);
+    const auto count = static_cast<int>(sensors.size());
+    describe_place(fit, wheel::places(count) - wheel::first_of(0) + 2 * static_cast<int>(s), sensor);
   }
 }
 
@@ -113,7 +122,7 @@ std::vector<std::string> say_not_observable(const WheelFit& fit,
   const Eigen::VectorXd scale = fit.constants_prior_cov.diagonal().cwiseSqrt().cwiseInverse();
   const SymmetricEigen axes =
       symmetric_eigen(scale.asDiagonal() * fit.constants_cov * scale.asDiagonal());
-  const std::vector<Constant> constants = constants_of(fit);
+  const std::vector<Constant> constants = constants_of(sensors.size());
   std::vector<std::string> sentences;
   for (Eigen::Index i = axes.values.size(); i-- > 0 && axes.values(i) > untold * untold;) {
     const std::string text = sentence(axes.vectors.col(i), constants, sensors);

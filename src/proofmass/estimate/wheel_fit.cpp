@@ -15,11 +15,21 @@ struct Settled {
   double log_likelihood = 0.0;
 };
 
+/// The model of the settled passes: linear about a path, the places held.
+template <int S>
+WheelModel<S> held_model(const WheelReadings& readings, const WheelNoise& noise,
+                         const WheelPath& about) {
+  auto model = wheel_model<S>(readings, noise);
+  model.about = &about;
+  model.places_held = true;
+  return model;
+}
+
 /// What may be believed of the constants, by how far the wheel turns.
-const ConstantsPrior& prior_for(const WheelPath& path) {
+ConstantsPrior prior_for(const WheelPath& path) {
   const auto angle = [](const Mat<wheel::moving>& at) { return at(wheel::angle); };
   const auto [lowest, highest] = std::ranges::minmax_element(path.moving, {}, angle);
-  return angle(*highest) - angle(*lowest) < rad_per_turn ? short_way_prior : constants_prior;
+  return angle(*highest) - angle(*lowest) < rad_per_turn ? short_way_prior : ConstantsPrior{};
 }
 
 /// One round: the readings' variance, the motion's noise and the sensors' places, all about the path
@@ -27,13 +37,8 @@ const ConstantsPrior& prior_for(const WheelPath& path) {
 template <int S>
 Settled<S> settle(WheelReadings& readings, const WheelTrack& track, const PlacesPrior& belief,
                   double tuning_factor) {
-  auto model = wheel_model<S>(readings, track.noise);
-  model.about = &track.path;
-  Places places(2 * S);
-  for (int s = 0; s < S; ++s)
-    for (int axis = 0; axis < 2; ++axis)
-      places(2 * s + axis) = track.path.constants[static_cast<std::size_t>(s)]
-                                                 [static_cast<std::size_t>(wheel::place + axis)];
+  auto model = held_model<S>(readings, track.noise, track.path);
+  const Places places = track.path.standing.tail<2 * S>();
   WheelPrior prior{track.beginning, prior_for(track.path), places};
   settle_variance(model, prior, readings);
   const Excerpt<S> excerpt = liveliest(model, prior);
@@ -46,8 +51,7 @@ Settled<S> settle(WheelReadings& readings, const WheelTrack& track, const Places
 /// Moves the track to the smoother's under the settled figures.
 template <int S>
 void improve(const WheelReadings& readings, const Settled<S>& settled, WheelTrack& track) {
-  auto model = wheel_model<S>(readings, settled.noise);
-  model.about = &track.path;
+  const auto model = held_model<S>(readings, settled.noise, track.path);
   WheelPath path = track.path;
   const auto end = trace_path(model, prior_state<S>(settled.prior), path);
   track.path = std::move(path);
@@ -104,7 +108,7 @@ void note_backward(std::size_t k, const StepOf<WheelModel<S>>& step,
 template <int S>
 void filter_calibrated(const WheelModel<S>& model, const WheelPrior& prior,
                        const Gaussian<wheel::states(S)>& known, WheelSeries& series) {
-  constexpr int at = wheel::first_of(0), count = wheel::states(S) - at;
+  constexpr int count = wheel::standing(S);
   auto state = prior_state<S>(prior);
   state.x.mean.template tail<count>() = known.mean.template tail<count>();
   state.x.cov.template bottomRightCorner<count, count>() =
@@ -119,8 +123,7 @@ void filter_calibrated(const WheelModel<S>& model, const WheelPrior& prior,
 template <int S>
 WheelFit smooth_at_places(const WheelReadings& readings, const Settled<S>& settled,
                           const WheelPath& about, const Progress& progress) {
-  auto model = wheel_model<S>(readings, settled.noise);
-  model.about = &about;
+  const auto model = held_model<S>(readings, settled.noise, about);
   const std::size_t size = model.size();
   WheelFit fit;
   resize(fit.series, size);
@@ -154,7 +157,7 @@ WheelFit smooth_at_places(const WheelReadings& readings, const Settled<S>& settl
         tell("smoother", size - k);
       });
   filter_calibrated(model, settled.prior, {first_mean, end.cov}, fit.series);
-  constexpr int first = wheel::first_of(0), count = wheel::states(S) - first;
+  constexpr int count = wheel::standing(S);
   fit.constants = end.mean.template tail<count>();
   fit.constants_cov = end.cov.template bottomRightCorner<count, count>();
   const double variance = end.cov(wheel::angle, wheel::angle) + end.cov(wheel::start, wheel::start) -
@@ -177,8 +180,7 @@ void add_places_uncertainty(const WheelReadings& readings, const Settled<S>& set
   for (Eigen::Index i = 0; i < axes.values.size(); ++i) {
     Settled<S> moved = settled;
     *moved.prior.places += std::sqrt(std::max(axes.values(i), 0.0)) * axes.vectors.col(i);
-    auto model = wheel_model<S>(readings, moved.noise);
-    model.about = &about;
+    const auto model = held_model<S>(readings, moved.noise, about);
     WheelPath path = about;
     const auto end = trace_path(model, prior_state<S>(moved.prior), path);
     const Eigen::VectorXd change = end.mean.tail(fit.constants.size()) - fit.constants;
@@ -257,24 +259,17 @@ WheelFit fit_sensors(WheelReadings& readings, WheelTrack track, const PlacesPrio
   Settled<S> settled = settle_rounds<S>(coarse, coarse_track, belief, S == 1 ? 4 : 2, progress);
   track = spread_track(coarse_track, coarse, readings);
   track.noise = settled.noise;
-  auto model = wheel_model<S>(readings, settled.noise);
-  model.about = &track.path;
+  const auto model = held_model<S>(readings, settled.noise, track.path);
   spread_variance(coarse, each, readings);
   settle_variance(model, settled.prior, readings);
   improve(readings, settled, track);
   settled.prior.beginning = track.beginning;
   settle_variance(model, settled.prior, readings);
   WheelFit fit = smooth_at_places(readings, settled, track.path, progress);
-  constexpr int first = wheel::first_of(0), count = wheel::states(S) - first;
-  WheelPrior vague = settled.prior;
-  vague.places.reset();
+  constexpr int count = wheel::standing(S);
   fit.constants_prior_cov =
-      prior_state<S>(vague).x.cov.template bottomRightCorner<count, count>();
-  for (int s = 0; s < S; ++s)
-    for (int axis = 0; axis < 2; ++axis) {
-      const int at = 7 * s + wheel::place + axis;
-      fit.constants_prior_cov(at, at) = belief.std_m * belief.std_m;
-    }
+      prior_state<S>(settled.prior).x.cov.template bottomRightCorner<count, count>();
+  fit.constants_prior_cov.diagonal().tail<2 * S>().setConstant(belief.std_m * belief.std_m);
   add_places_uncertainty(readings, settled, track.path, fit);
   return fit;
 }

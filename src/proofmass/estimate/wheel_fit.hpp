@@ -30,14 +30,14 @@ struct WheelReadings {
 /// little within, at a fraction of the cost.
 [[nodiscard]] WheelReadings averaged(const WheelReadings& readings, std::size_t each);
 
-/// One standard deviation, about zero, of what is believed of a sensor before the recording speaks, in
-/// the order of the state: bias m/s², place m, scale error, skew rad, phase rad.
-using ConstantsPrior = std::array<double, 8>;
-inline constexpr ConstantsPrior constants_prior{0.5, 0.5, 0.3, 0.3, 0.1, 0.1, 0.03, 0.5};
+/// One standard deviation, about zero, of what is believed of a sensor before the recording speaks.
+struct ConstantsPrior {
+  double bias_mps2 = 0.5, scale = 0.1, skew_rad = 0.03, phase_rad = 0.5, place_m = 0.3;
+};
 
 /// The same for a wheel that turns less than once: gravity shows no more than a piece of its circle, on
 /// which bias, scale and angle stand for each other, so more has to be believed.
-inline constexpr ConstantsPrior short_way_prior{0.2, 0.2, 0.1, 0.1, 0.01, 0.01, 0.01, 0.5};
+inline constexpr ConstantsPrior short_way_prior{0.2, 0.01, 0.01, 0.5, 0.1};
 
 /// How the motion begins, for a filter that has seen nothing yet.
 struct Beginning {
@@ -62,8 +62,8 @@ struct WheelTrack {
 [[nodiscard]] WheelTrack find_track(WheelReadings& readings);
 
 struct WheelFit {
-  /// All constants, 7 of the first sensor and 8 of the second, with their covariance (the places'
-  /// uncertainty in it) and what it was before the recording spoke.
+  /// All that stands, in the state's order from wheel::first_of(0) on, with its covariance (the
+  /// places' uncertainty in it) and what that was before the recording spoke.
   Eigen::VectorXd constants;
   Eigen::MatrixXd constants_cov, constants_prior_cov;
   WheelTrack track;
@@ -78,7 +78,7 @@ struct WheelFit {
 /// What is known of the sensors' places beforehand: their mean, and how far they may be from it.
 struct PlacesPrior {
   Eigen::VectorXd mean;  ///< (u, v) of each sensor, m
-  double std_m = constants_prior[wheel::place];
+  double std_m = ConstantsPrior{}.place_m;
 };
 
 /// Settles noise, places and constants about the track, then smooths.

@@ -30,12 +30,16 @@ inline constexpr int angle = 0, speed = 1, accel = 2, jerk = 3, moving = 4;
 /// The angle at the first instant rides along as a constant, so that the turns since then have
 /// their variance from one covariance.
 inline constexpr int start = 4;
-inline constexpr int bias = 0, place = 2, scale = 4, skew = 6, phase = 7;
+inline constexpr int bias = 0, scale = 2, skew = 4;  ///< of a sensor, from first_of on
 
-[[nodiscard]] constexpr int first_of(int sensor) { return 5 + 7 * sensor; }
-/// The second sensor's phase against the first comes after its skew.
-[[nodiscard]] constexpr int constants_of(int sensor) { return sensor == 0 ? 7 : 8; }
-[[nodiscard]] constexpr int states(int sensors) { return first_of(sensors) + (sensors - 1); }
+[[nodiscard]] constexpr int first_of(int sensor) { return 5 + 5 * sensor; }
+/// Of the second sensor against the first.
+inline constexpr int phase = first_of(2);
+/// The places come last: once found they are held, and the filter runs on the states before them.
+[[nodiscard]] constexpr int places(int sensors) { return first_of(sensors) + (sensors - 1); }
+[[nodiscard]] constexpr int states(int sensors) { return places(sensors) + 2 * sensors; }
+/// What stands from first_of(0) on: the sensors' constants, the phase, the places.
+[[nodiscard]] constexpr int standing(int sensors) { return states(sensors) - first_of(0); }
 }  // namespace wheel
 
 /// What the filter is told of the noise; found from the recording by tune_wheel().
@@ -62,7 +66,7 @@ struct PlanarReadings {
 /// Jacobian that share their noise with the readings bias what is fitted to them.
 struct WheelPath {
   std::vector<Mat<wheel::moving>> moving;
-  std::array<std::array<double, 8>, 2> constants{};  ///< of each sensor, in the state's order
+  Eigen::VectorXd standing;  ///< in the state's order from wheel::first_of(0) on
 };
 
 /// One instant of the merged time line and the row of each sensor that was read then.
@@ -88,7 +92,10 @@ struct WheelModel {
   std::array<const PlanarReadings*, 2> readings{};
   const WheelPath* about = nullptr;  ///< nullptr: the plain extended filter
 
+  bool places_held = false;          ///< they have no variance and learn nothing
+
   [[nodiscard]] std::size_t size() const { return instants->size(); }
+  [[nodiscard]] int active() const { return places_held ? wheel::places(Sensors) : states; }
 
   [[nodiscard]] Transition<states, moving> transition(const State& x, std::size_t k) const {
     const double t = (*instants)[k].dt_s, t2 = t * t, t3 = t2 * t, t4 = t2 * t2, t5 = t4 * t;
@@ -155,20 +162,18 @@ struct WheelModel {
     State at = x;
     if (std::abs(x(wheel::angle) - about->moving[k](wheel::angle)) > 0.5)
       at.template head<moving>() = about->moving[k];
-    for (int s = 0; s < Sensors; ++s)
-      for (int i = 0; i < wheel::constants_of(s); ++i)
-        if (i != wheel::place && i != wheel::place + 1)
-          at(wheel::first_of(s) + i) =
-              about->constants[static_cast<std::size_t>(s)][static_cast<std::size_t>(i)];
+    constexpr int first = wheel::first_of(0), count = wheel::places(Sensors) - first;
+    at.template segment<count>(first) = about->standing.head<count>();
     return at;
   }
 
   void read_sensor(const State& x, int s, Readings<states, channels>& out) const {
     const int at = wheel::first_of(s);
-    const double phi = x(wheel::angle) + (s > 0 ? phase_rad + x(at + wheel::phase) : 0.0);
+    const double phi = x(wheel::angle) + (s > 0 ? phase_rad + x(wheel::phase) : 0.0);
     const double sin_phi = std::sin(phi), cos_phi = std::cos(phi);
     const double w = x(wheel::speed), al = x(wheel::accel);
-    const double ru = x(at + wheel::place), rv = x(at + wheel::place + 1);
+    const int place = wheel::places(Sensors) + 2 * s;
+    const double ru = x(place), rv = x(place + 1);
     const double g = gravity_mps2, hub = -rolling_radius_m * al;
     // Forces and their derivatives in the sensor's true axes.
     const double turn_u = g * cos_phi - hub * sin_phi;   // ∂f_u/∂φ
@@ -183,12 +188,12 @@ struct WheelModel {
     du(wheel::accel) = -rv - rolling_radius_m * cos_phi;
     dv(wheel::accel) = ru + rolling_radius_m * sin_phi;
     if (s > 0) {
-      du(at + wheel::phase) = turn_u;
-      dv(at + wheel::phase) = turn_v;
+      du(wheel::phase) = turn_u;
+      dv(wheel::phase) = turn_v;
     }
-    du(at + wheel::place) = dv(at + wheel::place + 1) = -w * w;
-    du(at + wheel::place + 1) = -al;
-    dv(at + wheel::place) = al;
+    du(place) = dv(place + 1) = -w * w;
+    du(place + 1) = -al;
+    dv(place) = al;
     // Through scale, skew and bias to what is read.
     const double su = 1.0 + x(at + wheel::scale), sv = 1.0 + x(at + wheel::scale + 1);
     const double skew = x(at + wheel::skew);

@@ -20,7 +20,7 @@ using Places = Eigen::VectorXd;
 /// What is believed before the recording speaks. Places that are given are held fixed.
 struct WheelPrior {
   Beginning beginning;
-  ConstantsPrior spread = constants_prior;
+  ConstantsPrior spread;
   std::optional<Places> places;
 };
 
@@ -39,21 +39,23 @@ WheelModel<S> wheel_model(const WheelReadings& readings, const WheelNoise& noise
 /// Puts the sensors' constants back to what is believed of them.
 template <int S>
 void reset_constants(const WheelPrior& prior, Gaussian<wheel::states(S)>& x) {
-  constexpr int first = wheel::first_of(0), count = wheel::states(S) - first;
+  constexpr int count = wheel::standing(S), places = wheel::places(S);
   x.mean.template tail<count>().setZero();
   x.cov.template bottomRows<count>().setZero();
   x.cov.template rightCols<count>().setZero();
+  auto variance = x.cov.diagonal();
+  const ConstantsPrior& spread = prior.spread;
   for (int s = 0; s < S; ++s) {
-    for (int i = 0; i < wheel::constants_of(s); ++i) {
-      const int at = wheel::first_of(s) + i;
-      x.cov(at, at) = std::pow(prior.spread[static_cast<std::size_t>(i)], 2);
-    }
-    for (int axis = 0; prior.places && axis < 2; ++axis) {
-      const int at = wheel::first_of(s) + wheel::place + axis;
-      x.mean(at) = (*prior.places)(2 * s + axis);
-      x.cov(at, at) = 0.0;
-    }
+    const int at = wheel::first_of(s);
+    variance.template segment<2>(at + wheel::bias).setConstant(spread.bias_mps2 * spread.bias_mps2);
+    variance.template segment<2>(at + wheel::scale).setConstant(spread.scale * spread.scale);
+    variance(at + wheel::skew) = spread.skew_rad * spread.skew_rad;
   }
+  if (S == 2) variance(wheel::phase) = spread.phase_rad * spread.phase_rad;
+  if (prior.places)
+    x.mean.template segment<2 * S>(places) = *prior.places;
+  else
+    variance.template segment<2 * S>(places).setConstant(spread.place_m * spread.place_m);
 }
 
 /// The state before the first reading. The start angle stands twice in it, with one variance.
@@ -122,10 +124,7 @@ Gaussian<wheel::states(S)> trace_path(const WheelModel<S>& model,
         moving[k] = later.mean(step.filtered).template head<wheel::moving>();
       });
   path.moving = std::move(moving);
-  for (int s = 0; s < S; ++s)
-    for (int i = 0; i < wheel::constants_of(s); ++i)
-      path.constants[static_cast<std::size_t>(s)][static_cast<std::size_t>(i)] =
-          end.mean(wheel::first_of(s) + i);
+  path.standing = end.mean.template tail<wheel::standing(S)>();
   return end;
 }
 

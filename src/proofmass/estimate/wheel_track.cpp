@@ -7,7 +7,7 @@ namespace proofmass::estimate {
 namespace {
 
 /// Constants are held close while the phase is still being found: a free bias would swallow it.
-constexpr ConstantsPrior seeking_prior{0.3, 0.3, 0.15, 0.15, 0.03, 0.03, 0.01, 0.5};
+constexpr ConstantsPrior seeking_prior{0.3, 0.03, 0.01, 0.5, 0.15};
 
 struct Seek {
   double accel_std_mps2;  ///< of a reading at 120 Hz

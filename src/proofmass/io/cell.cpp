@@ -32,7 +32,7 @@ constexpr std::size_t longest_number = 800;
 
 Cell read_figure(std::string_view digits, bool negative, char point) {
   constexpr Cell text{CellKind::text, nan};
-  if (digits.empty() || !(is_digit(digits[0]) || digits[0] == point)) return text;
+  if (digits.empty() || (!is_digit(digits[0]) && digits[0] != point)) return text;
   if (digits.size() > longest_number) return text;
   std::array<char, longest_number> buffer;
   const auto* last = std::ranges::replace_copy(digits, buffer.begin(), point, '.').out;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <set>
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/io/names.hpp"
@@ -93,31 +94,38 @@ void read_gauss_as_g(Recording& recording) {
     }
 }
 
-void recognise_instrument(Recording& recording) {
-  const auto has = [&](std::string_view bare) {
-    return bare == bare_name(recording.time.channel) ||
-           std::ranges::any_of(recording.channels,
-                               [&](const Channel& c) { return bare_name(c.name) == bare; });
+/// The unit an instrument writes a column in, by the beginning of the column's bare name.
+std::string_view unit_of(const Instrument& instrument, const std::string& bare) {
+  const auto matches = [&](const KnownColumn& column) {
+    return !column.starts_with.empty() && bare.starts_with(column.starts_with);
   };
-  for (const Instrument& instrument : instruments) {
-    if (!std::ranges::all_of(instrument.signature, has)) continue;
-    bool any = false;
-    for (Channel& channel : recording.channels) {
-      if (!is_unknown(channel)) continue;
-      const std::string bare = bare_name(channel.name);
-      for (const KnownColumn& column : instrument.columns) {
-        if (column.starts_with.empty() || !bare.starts_with(column.starts_with)) continue;
-        channel.unit = *parse_unit(column.unit);
-        any = true;
-        break;
-      }
-    }
-    if (any)
-      recording.notes.push_back(
-          {Severity::info,
-           fmt::format("units as {} writes them, told by its columns {} and {}", instrument.name,
-                       instrument.signature[0], instrument.signature[1])});
+  const auto column = std::ranges::find_if(instrument.columns, matches);
+  return column == instrument.columns.end() ? std::string_view{} : column->unit;
+}
+
+void apply_instrument(Recording& recording, const Instrument& instrument) {
+  bool any = false;
+  for (Channel& channel : recording.channels) {
+    if (!is_unknown(channel)) continue;
+    const std::string_view symbol = unit_of(instrument, bare_name(channel.name));
+    if (symbol.empty()) continue;
+    channel.unit = *parse_unit(symbol);
+    any = true;
   }
+  if (any)
+    recording.notes.push_back(
+        {Severity::info,
+         fmt::format("units as {} writes them, told by its columns {} and {}", instrument.name,
+                     instrument.signature[0], instrument.signature[1])});
+}
+
+void recognise_instrument(Recording& recording) {
+  std::set<std::string> names{bare_name(recording.time.channel)};
+  for (const Channel& channel : recording.channels) names.insert(bare_name(channel.name));
+  for (const Instrument& instrument : instruments)
+    if (names.contains(std::string(instrument.signature[0])) &&
+        names.contains(std::string(instrument.signature[1])))
+      apply_instrument(recording, instrument);
 }
 
 struct QuietWindow {

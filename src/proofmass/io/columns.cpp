@@ -1,8 +1,30 @@
 #include "proofmass/io/columns.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <sys/mman.h>
 
 namespace proofmass::io {
+namespace {
+
+/// Reserves, and asks the system for large pages where there is much: giving out small ones one by
+/// one takes a quarter of the time in which a table is read. Only a hint: nothing hangs on it.
+void reserve(std::vector<double>& piece, std::size_t count) {
+  piece.reserve(count);
+  constexpr std::uintptr_t large_page = std::uintptr_t{2} << 20;
+  const auto begin = reinterpret_cast<std::uintptr_t>(piece.data());
+  const std::uintptr_t end = begin + piece.capacity() * sizeof(double);
+  const std::uintptr_t first = (begin + large_page - 1) / large_page * large_page;
+  const std::uintptr_t last = end / large_page * large_page;
+  if (last > first + 2 * large_page)
+    ::madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+}
+
+}  // namespace
+
+GrowingColumn::GrowingColumn(std::size_t expected) {
+  reserve(pieces_.emplace_back(), expected);
+}
 
 void GrowingColumn::append(std::span<const double> values) {
   constexpr std::size_t smallest_piece = 4096;
@@ -12,14 +34,14 @@ void GrowingColumn::append(std::span<const double> values) {
     last.insert(last.end(), part.begin(), part.end());
     size_ += part.size();
     values = values.subspan(part.size());
-    if (!values.empty()) pieces_.emplace_back().reserve(std::max(smallest_piece, size_ / 8));
+    if (!values.empty()) reserve(pieces_.emplace_back(), std::max(smallest_piece, size_ / 8));
   }
 }
 
 std::vector<double> GrowingColumn::take() {
   if (pieces_.size() == 1) return std::move(pieces_.front());
   std::vector<double> all;
-  all.reserve(size_);
+  reserve(all, size_);
   for (std::vector<double>& piece : pieces_) {
     all.insert(all.end(), piece.begin(), piece.end());
     std::vector<double>().swap(piece);  // assigning {} would keep its memory

@@ -11,7 +11,7 @@ namespace proofmass::io {
 /// length that was foreseen costs no copy; memory reserved but not written costs nothing.
 class GrowingColumn {
  public:
-  explicit GrowingColumn(std::size_t expected) { pieces_.emplace_back().reserve(expected); }
+  explicit GrowingColumn(std::size_t expected);
 
   void append(std::span<const double> values);
   /// All values in one; the column is empty afterwards.

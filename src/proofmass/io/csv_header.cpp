@@ -47,20 +47,27 @@ std::string without(std::string_view text, std::size_t begin, std::size_t end) {
   return std::string(before) + (before.empty() || after.empty() ? "" : " ") + std::string(after);
 }
 
+/// A heading whose last brackets of a kind hold a unit; brackets inside brackets belong to the
+/// unit:
+/// "(m/(s^2))".
+std::optional<ColumnLabel> label_with_bracket(std::string_view text,
+                                              std::size_t open,
+                                              char closing) {
+  for (const std::size_t close : {text.find(closing, open), text.rfind(closing)}) {
+    if (close == std::string_view::npos || close < open) continue;
+    if (const auto unit = unit_in(text.substr(open + 1, close - open - 1)))
+      return ColumnLabel{without(text, open, close + 1), *unit};
+  }
+  return std::nullopt;
+}
+
 std::optional<ColumnLabel> label_with_brackets(std::string_view text) {
-  constexpr std::array<std::string_view, 3> pairs{"()", "[]", "{}"};
-  for (const std::string_view pair : pairs) {
-    for (std::size_t open = text.rfind(pair[0]); open != std::string_view::npos;
-         open = open == 0 ? std::string_view::npos : text.rfind(pair[0], open - 1)) {
-      // Brackets inside brackets belong to the unit: "(m/(s^2))".
-      const std::size_t close = text.rfind(pair[1]);
-      const std::size_t nearest = text.find(pair[1], open);
-      for (const std::size_t end : {nearest, close}) {
-        if (end == std::string_view::npos || end < open) continue;
-        if (const auto unit = unit_in(text.substr(open + 1, end - open - 1)))
-          return ColumnLabel{without(text, open, end + 1), *unit};
-      }
-    }
+  constexpr std::string_view opening = "([{";
+  constexpr std::string_view closing = ")]}";
+  for (std::size_t i = text.size(); i-- > 0;) {
+    const std::size_t kind = opening.find(text[i]);
+    if (kind == std::string_view::npos) continue;
+    if (const auto label = label_with_bracket(text, i, closing[kind])) return label;
   }
   return std::nullopt;
 }
@@ -245,7 +252,8 @@ std::optional<double> rate_in(const std::string& line) {
   const std::size_t last = std::min(text.find_first_not_of("0123456789.e", first), text.size());
   const Cell cell = read_cell(std::string_view(text).substr(first, last - first), '.');
   const double rate_hz = cell.value * (text.find("khz", last) != std::string::npos ? 1e3 : 1.0);
-  if (cell.kind != CellKind::number || !(rate_hz > 0.01 && rate_hz < 1e7)) return std::nullopt;
+  const bool is_rate = cell.kind == CellKind::number && rate_hz > 0.01 && rate_hz < 1e7;
+  if (!is_rate) return std::nullopt;
   return rate_hz;
 }
 

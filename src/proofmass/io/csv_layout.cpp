@@ -17,6 +17,12 @@ struct Line {
   std::size_t number = 1;
 };
 
+std::string_view trimmed_blanks(std::string_view line) {
+  const auto first = line.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return line.substr(first, line.find_last_not_of(" \t") - first + 1);
+}
+
 bool is_blank(std::string_view line) {
   return line.find_first_not_of(std::string_view(" \t\r\0", 4)) == std::string_view::npos;
 }
@@ -152,21 +158,24 @@ bool header_is_one_wide(const std::vector<Line>& lines) {
   return false;
 }
 
+/// The separators to try: the one that the file names, else the usual.
+std::string separators_of(std::optional<char> given) {
+  return given ? std::string(1, *given) : std::string(",;\t| ");
+}
+
 Trial best_trial(const std::vector<Line>& lines,
                  const std::vector<Line>& sample,
                  std::optional<char> given) {
-  constexpr std::array<char, 5> separators{',', ';', '\t', '|', ' '};
   Trial best;
   for (const char point : {'.', ','}) {
-    for (const char separator : separators) {
-      if (separator == point || (given && separator != *given)) continue;
+    for (const char separator : separators_of(given)) {
+      if (separator == point) continue;
       Trial trial = attempt(sample, separator, point);
       // A comma in a line without any separator is one, but for the exception below.
-      if (point == ',' && trial.width < 2) continue;
-      if (trial.score > best.score) best = std::move(trial);
+      const bool separates = point != ',' || trial.width > 1;
+      if (separates && trial.score > best.score) best = std::move(trial);
     }
   }
-  if (given && best.width == 0) best = attempt(sample, *given, '.');
   if (!given && best.separator == ',' && best.width == 2 && header_is_one_wide(lines)) {
     Trial halves = attempt(sample, ';', ',');
     if (halves.width == 1 && halves.score > 0.0) best = std::move(halves);
@@ -226,38 +235,37 @@ bool first_column_ascends(const std::vector<Line>& rows, const CsvLayout& layout
 }
 
 bool looks_binary(std::string_view head) {
-  const auto odd = std::ranges::count_if(head, [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return byte < 32 && c != '\t' && c != '\n' && c != '\r' && c != '\0' && c != '\f' &&
-           c != '\x1A';
+  constexpr std::string_view usual("\t\n\r\0\f\x1A", 6);
+  const auto odd = std::ranges::count_if(head, [&](char c) {
+    return static_cast<unsigned char>(c) < 32 && usual.find(c) == std::string_view::npos;
   });
   return static_cast<std::size_t>(odd) * 50 > head.size();
 }
 
-/// Fills in where the rows begin and what stands before them; false if there is no row.
-bool find_first_row(const std::vector<Line>& lines, CsvLayout& layout) {
+/// Takes the lines up to the first row for the preamble; returns the rows.
+std::vector<Line> find_rows(const std::vector<Line>& lines, CsvLayout& layout) {
   std::vector<std::string_view> fields;
   std::vector<Line> rows;
   for (const Line& line : lines) {
-    if (is_blank(line.text)) continue;
+    if (is_blank(line.text) || (line.number == 1 && separator_line(line.text))) continue;
     const bool remark = is_remark(line.text, layout.separator);
-    bool row = false;
-    if (!remark) {
-      split_fields(line.text, layout.separator, fields);
-      row = is_row(fields, layout);
-    }
-    if (row) {
-      if (rows.empty()) {
-        layout.data_offset = line.offset;
-        layout.first_line = line.number;
-      }
+    split_fields(line.text, layout.separator, fields);
+    if (!remark && is_row(fields, layout)) {
       rows.push_back(line);
-    } else if (rows.empty() && !(line.number == 1 && separator_line(line.text))) {
+    } else if (rows.empty()) {
       layout.preamble.push_back(
           {line.number, remark, remark ? without_mark(line.text) : std::string(line.text)});
     }
   }
+  return rows;
+}
+
+/// Fills in where the rows begin and what stands before them; false if there is no row.
+bool place_rows(const std::vector<Line>& lines, CsvLayout& layout) {
+  const std::vector<Line> rows = find_rows(lines, layout);
   if (rows.empty()) return false;
+  layout.data_offset = rows.front().offset;
+  layout.first_line = rows.front().number;
   std::size_t bytes = 0;
   for (const Line& row : rows) bytes += row.text.size() + 1;
   layout.bytes_per_row = static_cast<double>(bytes) / static_cast<double>(rows.size());
@@ -265,35 +273,30 @@ bool find_first_row(const std::vector<Line>& lines, CsvLayout& layout) {
   return true;
 }
 
+/// Where the field that begins at `begin` ends; quotes hold separators together.
+std::size_t end_of_field(std::string_view line, std::size_t begin, char separator) {
+  const std::string_view separators = separator == ' ' ? " \t" : std::string_view(&separator, 1);
+  std::size_t i = begin;
+  while (i < line.size() && line[i] == ' ') ++i;
+  if (i < line.size() && line[i] == '"') {
+    const std::size_t close = line.find('"', i + 1);
+    if (close != std::string_view::npos) i = close;
+  }
+  return std::min(line.find_first_of(separators, i), line.size());
+}
+
 }  // namespace
 
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
-  const bool blanks = separator == ' ';
-  const auto separates = [&](char c) { return c == separator || (blanks && c == '\t'); };
-  std::size_t i = 0;
-  const auto skip_blanks = [&] {
-    while (i < line.size() && separates(line[i])) ++i;
-  };
-  if (blanks) skip_blanks();
-  std::size_t begin = i;
-  for (; i < line.size(); ++i) {
-    if (line[i] == '"' && trimmed(line.substr(begin, i - begin)).empty()) {
-      const std::size_t close = line.find('"', i + 1);
-      if (close != std::string_view::npos) i = close;
-      continue;
-    }
-    if (!separates(line[i])) continue;
-    fields.push_back(line.substr(begin, i - begin));
-    if (fields.size() > most_columns) return;
-    begin = i + 1;
-    if (!blanks) continue;
-    skip_blanks();
-    begin = i;
-    if (i == line.size()) return;
-    --i;
+  if (separator == ' ') line = trimmed_blanks(line);
+  for (std::size_t begin = 0; fields.size() <= most_columns;) {
+    const std::size_t end = end_of_field(line, begin, separator);
+    fields.push_back(line.substr(begin, end - begin));
+    if (end == line.size()) return;
+    begin = end + 1;
+    if (separator == ' ') begin = line.find_first_not_of(" \t", begin);
   }
-  fields.push_back(line.substr(std::min(begin, line.size())));
 }
 
 bool is_remark(std::string_view line, char separator) {
@@ -322,7 +325,7 @@ Result<CsvLayout> infer_layout(std::string_view head, bool is_whole_text) {
   layout.point = trial.point;
   layout.trailing_separator = trial.trailing;
   for (const Tally& tally : trial.tallies) layout.columns.push_back(tally.kind());
-  if (!find_first_row(lines, layout))
+  if (!place_rows(lines, layout))
     return Error{
         Errc::too_few_samples,
         "no row of numbers in its first " + std::to_string(lines.size()) +

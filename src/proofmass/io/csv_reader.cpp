@@ -143,8 +143,7 @@ Result<Recording> read_csv(PeekSource& source, const ReadOptions& options) {
 
   std::optional<StampReader> stamps;
   if (columns->stamps) stamps.emplace(columns->spelling, table.point);
-  CsvRows rows(table, columns->uses, std::move(stamps), columns->date,
-               expected_rows(source, table));
+  CsvRows rows(table, columns->uses, stamps, columns->date, expected_rows(source, table));
   if (const Status fed = LineFeed(source, rows, table, options.progress).run(); !fed)
     return fed.error();
   rows.finish();

@@ -43,6 +43,7 @@ struct RowFaults {
 /// Turns lines of a known layout into columns of doubles.
 class CsvRows {
  public:
+  /// The layout must outlive the rows; `uses` says of each of its columns what becomes of it.
   CsvRows(const CsvLayout& layout,
           std::vector<ColumnUse> uses,
           std::optional<StampReader> stamps,
@@ -65,12 +66,14 @@ class CsvRows {
   [[nodiscard]] std::vector<double> take(std::size_t column);
 
  private:
-  template <bool blanks>
+  template <bool is_blank_separated>
   const char* parse_plain(const char* p);
-  template <bool blanks>
+  template <bool is_blank_separated>
   void parse_lines(const char* begin, const char* end);
   void parse_any(std::string_view line, bool is_cut);
   void parse_fields(std::string_view line, bool is_cut);
+  std::size_t usable_fields(bool is_cut);
+  [[nodiscard]] bool is_figure(std::size_t column) const;
   double read_field(std::size_t column, std::size_t fields);
   void commit();
   void flush();

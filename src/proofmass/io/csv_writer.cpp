@@ -30,6 +30,15 @@ void append_heading(std::string& out, std::string_view name, std::string_view un
   out += quoted ? '"' + heading + '"' : heading;
 }
 
+std::string header_of(const Recording& recording, bool timed) {
+  std::string out = timed ? "time (s)" : "";
+  for (const Channel& channel : recording.channels) {
+    if (!out.empty()) out += ',';
+    append_heading(out, channel.name, channel.unit.symbol);
+  }
+  return out + '\n';
+}
+
 constexpr int finest = -27;  ///< decimals that a clock of 19 digits leaves room for in 128 bits
 
 /// The shortest decimal that reads back as `value` >= 0, to 10^finest; nullopt if it is finer.
@@ -110,19 +119,14 @@ class TimeWriter {
 
 bool write_csv(const Recording& recording, const Sink& sink) {
   const bool timed = recording.time.source != TimeSource::none;
-  std::string out;
-  if (timed) out += "time (s)";
-  for (const Channel& channel : recording.channels) {
-    if (!out.empty()) out += ',';
-    append_heading(out, channel.name, channel.unit.symbol);
-  }
-  out += '\n';
   const TimeWriter time(recording);
+  std::string out = header_of(recording, timed);
   for (std::size_t k = 0; k < recording.samples(); ++k) {
+    const std::size_t row = out.size();
     if (timed) time.append(out, k);
-    for (std::size_t c = 0; c < recording.channels.size(); ++c) {
-      if (c > 0 || timed) out += ',';
-      append_figure(out, recording.channels[c].values[k]);
+    for (const Channel& channel : recording.channels) {
+      if (out.size() > row) out += ',';
+      append_figure(out, channel.values[k]);
     }
     out += '\n';
     if (out.size() < (1u << 16)) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
+#include <set>
 
 #include "proofmass/io/channel_units.hpp"
 #include "proofmass/signal/counter.hpp"
@@ -34,25 +35,34 @@ void attach_time(Recording& recording,
                             {column.name, column.unit, std::move(column.values)});
 }
 
+/// "ax, ay, az"
+std::string names_of(const Recording& recording) {
+  std::string names;
+  for (const Channel& channel : recording.channels) {
+    if (names.size() > 200) return names + ", …";
+    names += (names.empty() ? "" : ", ") + channel.name;
+  }
+  return names;
+}
+
 Status keep_chosen(Recording& recording, const std::vector<std::string>& names) {
-  if (names.empty()) return Done{};
-  std::vector<const Channel*> chosen;
+  std::set<const Channel*> chosen;
   for (const std::string& name : names) {
     const Channel* channel = recording.find(name);
-    if (channel == nullptr) {
-      std::string there;
-      for (const Channel& c : recording.channels)
-        if (there.size() < 200) there += (there.empty() ? "" : ", ") + c.name;
+    if (channel == nullptr)
       return Error{Errc::invalid_argument,
-                   fmt::format("has no channel {}; it has {}", name, there)};
-    }
-    chosen.push_back(channel);
+                   fmt::format("has no channel {}; it has {}", name, names_of(recording))};
+    chosen.insert(channel);
   }
   std::vector<Channel> kept;
   for (Channel& channel : recording.channels)
-    if (std::ranges::find(chosen, &channel) != chosen.end()) kept.push_back(std::move(channel));
+    if (names.empty() || chosen.contains(&channel)) kept.push_back(std::move(channel));
   recording.channels = std::move(kept);
   return Done{};
+}
+
+bool is_positive(double rate_hz) {
+  return rate_hz > 0.0 && rate_hz < 1e12;
 }
 
 }  // namespace
@@ -61,7 +71,7 @@ Result<Recording> finish_recording(Recording recording,
                                    std::optional<StampColumn> stamps,
                                    std::optional<double> header_rate_hz,
                                    const ReadOptions& options) {
-  if (options.rate_hz && !(*options.rate_hz > 0.0 && *options.rate_hz < 1e12))
+  if (options.rate_hz && !is_positive(*options.rate_hz))
     return Error{Errc::invalid_argument, "the rate must be above zero"};
   attach_time(recording, std::move(stamps), header_rate_hz, options);
   if (recording.channels.empty())

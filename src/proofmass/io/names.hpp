@@ -16,7 +16,7 @@ namespace proofmass::io {
 /// The letters and digits of a name in lower case: "Sample-Time fine" is "sampletimefine".
 [[nodiscard]] inline std::string bare_name(std::string_view text) {
   std::string out = lower(text);
-  std::erase_if(out, [](char c) { return !((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')); });
+  std::erase_if(out, [](char c) { return (c < 'a' || c > 'z') && (c < '0' || c > '9'); });
   return out;
 }
 

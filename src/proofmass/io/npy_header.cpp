@@ -1,5 +1,7 @@
 #include "proofmass/io/npy_header.hpp"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 
@@ -64,11 +66,26 @@ const Error damaged{Errc::corrupt,
                     "the .npy header is damaged: expected {'descr': …, 'fortran_order': …, "
                     "'shape': …}"};
 
+/// Whether NumPy's letter and size are a figure that is read here.
+bool is_figure(char kind, std::size_t bytes) {
+  const bool whole = bytes == 1 || bytes == 2 || bytes == 4 || bytes == 8;
+  switch (kind) {
+    case 'i':
+    case 'u':
+      return whole;
+    case 'f':
+      return whole && bytes > 1;
+    case 'b':
+      return bytes == 1;
+    default:
+      return false;
+  }
+}
+
 Result<NpyType> type_of(std::string_view text) {
   NpyType type;
-  if (text.starts_with('>')) type.big_endian = true;
-  if (!text.empty() && std::string_view("<>=|").find(text[0]) != std::string_view::npos)
-    text.remove_prefix(1);
+  type.big_endian = text.starts_with('>');
+  text.remove_prefix(std::min(text.find_first_not_of("<>=|"), text.size()));
   if (text.starts_with('O'))
     return Error{Errc::unsupported,
                  "holds pickled Python objects, which are not read: save plain numbers"};
@@ -76,71 +93,63 @@ Result<NpyType> type_of(std::string_view text) {
   type.kind = text[0];
   const auto end = std::from_chars(text.data() + 1, text.data() + text.size(), type.bytes);
   if (end.ec != std::errc{} || type.bytes > (1u << 16)) return damaged;
-  const std::size_t n = type.bytes;
-  const bool whole = n == 1 || n == 2 || n == 4 || n == 8;
-  switch (type.kind) {
-    case 'i':
-    case 'u':
-      if (whole) return type;
-      break;
-    case 'f':
-      if (whole && n > 1) return type;
-      break;
-    case 'b':
-      if (n == 1) return type;
-      break;
-    case 'U':
-      type.bytes = 4 * n;
-      [[fallthrough]];
-    case 'S':
-    case 'V':
-    case 'M':
-    case 'm':
-    case 'c':
-      type.kind = 0;
-      return type;
-    default:
-      break;
-  }
-  return Error{Errc::unsupported,
-               "holds figures of type " + std::string(text) + ", which are not read: save float64"};
+  if (is_figure(type.kind, type.bytes)) return type;
+  constexpr std::string_view passed_over = "USVMmc";
+  if (passed_over.find(type.kind) == std::string_view::npos)
+    return Error{Errc::unsupported, "holds figures of type " + std::string(text) +
+                                        ", which are not read: save float64"};
+  if (type.kind == 'U') type.bytes *= 4;
+  type.kind = 0;
+  return type;
 }
 
-Result<std::vector<NpyField>> fields_of(LiteralScanner& scanner) {
-  std::vector<NpyField> fields;
-  while (!scanner.take("]")) {
-    if (fields.size() > 10'000 || !scanner.take("(")) return damaged;
-    NpyField field;
-    const auto name = scanner.string();
-    if (!name || !scanner.take(",")) return damaged;
-    const auto text = scanner.string();
-    if (!text) return damaged;
-    const auto type = type_of(*text);
-    if (!type) return type.error();
-    field.name = *name;
-    field.type = *type;
-    if (scanner.take(",")) {
-      const auto shape = scanner.tuple();
-      if (!shape) return damaged;
-      for (const std::size_t length : *shape)
-        if (__builtin_mul_overflow(field.count, length, &field.count)) return damaged;
-    }
-    if (!scanner.take(")") || field.count == 0) return damaged;
-    fields.push_back(std::move(field));
-    scanner.take(",");
+/// The product of the lengths; nullopt if it is zero or does not fit.
+std::optional<std::size_t> product(const std::vector<std::size_t>& lengths) {
+  std::size_t all = 1;
+  for (const std::size_t length : lengths)
+    if (__builtin_mul_overflow(all, length, &all)) return std::nullopt;
+  return all == 0 ? std::nullopt : std::optional(all);
+}
+
+/// ('name', '<f8') or ('name', '<f8', (3,))
+Result<NpyField> read_field(LiteralScanner& scanner) {
+  NpyField field;
+  const bool opened = scanner.take("(");
+  const auto name = scanner.string();
+  const bool parted = scanner.take(",");
+  const auto text = scanner.string();
+  if (!opened || !name || !parted || !text) return damaged;
+  const auto type = type_of(*text);
+  if (!type) return type.error();
+  field.name = *name;
+  field.type = *type;
+  if (scanner.take(",")) {
+    const auto shape = scanner.tuple();
+    const auto count = shape ? product(*shape) : std::nullopt;
+    if (!count) return damaged;
+    field.count = *count;
   }
-  if (fields.empty()) return damaged;
-  return fields;
+  if (!scanner.take(")")) return damaged;
+  return field;
+}
+
+Status read_fields(LiteralScanner& scanner, NpyHeader& header) {
+  constexpr std::size_t most_fields = 10'000;
+  while (!scanner.take("]")) {
+    auto field = read_field(scanner);
+    if (!field) return field.error();
+    header.fields.push_back(*field);
+    scanner.take(",");
+    if (header.fields.size() > most_fields) return damaged;
+  }
+  if (header.fields.empty()) return damaged;
+  return Done{};
 }
 
 Status read_description(LiteralScanner& scanner, NpyHeader& header) {
+  header.fields.clear();
   header.is_structured = scanner.take("[");
-  if (header.is_structured) {
-    auto fields = fields_of(scanner);
-    if (!fields) return fields.error();
-    header.fields = *fields;
-    return Done{};
-  }
+  if (header.is_structured) return read_fields(scanner, header);
   const auto text = scanner.string();
   if (!text) return damaged;
   const auto type = type_of(*text);
@@ -151,33 +160,41 @@ Status read_description(LiteralScanner& scanner, NpyHeader& header) {
   return Done{};
 }
 
+Status read_shape(LiteralScanner& scanner, NpyHeader& header) {
+  const auto shape = scanner.tuple();
+  if (!shape) return damaged;
+  header.shape = *shape;
+  return Done{};
+}
+
+Status read_order(LiteralScanner& scanner, NpyHeader& header) {
+  header.fortran_order = scanner.take("True");
+  if (!header.fortran_order && !scanner.take("False")) return damaged;
+  return Done{};
+}
+
 }  // namespace
 
 Result<NpyHeader> read_npy_header(std::string_view dictionary) {
+  struct Entry {
+    std::string_view key;
+    Status (*read)(LiteralScanner&, NpyHeader&);
+    bool seen = false;
+  };
+  std::array<Entry, 3> entries{
+      {{"descr", read_description}, {"fortran_order", read_order}, {"shape", read_shape}}};
   LiteralScanner scanner(dictionary);
   NpyHeader header;
-  bool shaped = false;
   if (!scanner.take("{")) return damaged;
-  while (!scanner.take("}")) {
+  do {
     const auto key = scanner.string();
-    if (!key || !scanner.take(":")) return damaged;
-    if (*key == "descr") {
-      if (const Status read = read_description(scanner, header); !read) return read.error();
-    } else if (*key == "fortran_order") {
-      header.fortran_order = scanner.take("True");
-      if (!header.fortran_order && !scanner.take("False")) return damaged;
-    } else if (*key == "shape") {
-      const auto shape = scanner.tuple();
-      if (!shape) return damaged;
-      header.shape = *shape;
-      shaped = true;
-    } else {
-      return damaged;
-    }
-    if (scanner.take("}")) break;
-    if (!scanner.take(",")) return damaged;
-  }
-  if (!shaped || header.fields.empty()) return damaged;
+    if (!key) break;  // the comma behind the last entry
+    auto* entry = std::ranges::find(entries, *key, &Entry::key);
+    if (entry == entries.end() || !scanner.take(":")) return damaged;
+    if (const Status read = entry->read(scanner, header); !read) return read.error();
+    entry->seen = true;
+  } while (scanner.take(","));
+  if (!scanner.take("}") || !std::ranges::all_of(entries, &Entry::seen)) return damaged;
   return header;
 }
 

@@ -182,8 +182,10 @@ class TableReader {
  public:
   TableReader(PeekSource& source, const Table& table, const Progress& progress)
       : source_(source), table_(table), progress_(progress) {
-    // Only what the header can be believed for is reserved: see check_size.
-    const std::size_t expected = source.size() ? table.rows : 0;
+    // Only what the file has room for is reserved, whatever the header claims.
+    const std::size_t most =
+        static_cast<std::size_t>(source.size().value_or(0)) / table.row_bytes + 1;
+    const std::size_t expected = std::min(table.rows, most);
     for (std::size_t c = 0; c < table.columns.size(); ++c) columns_.emplace_back(expected);
   }
 
@@ -273,13 +275,8 @@ bool ascends(View<double> values) {
 }
 
 /// Names for the columns of a plain array as for a CSV without a header.
-CsvHeader header_of(const Table& table, bool first_is_time) {
-  if (!table.is_structured) {
-    CsvLayout layout;
-    layout.columns.assign(table.columns.size(), ColumnKind::number);
-    layout.first_ascends = first_is_time;
-    return read_header(layout);
-  }
+CsvHeader header_of(const Table& table, const CsvLayout& layout) {
+  if (!table.is_structured) return read_header(layout);
   CsvHeader header;
   header.found = true;
   for (const Cursor& column : table.columns) header.labels.push_back(read_label(column.name));
@@ -289,14 +286,57 @@ CsvHeader header_of(const Table& table, bool first_is_time) {
 
 StampColumn stamps_of(const ColumnLabel& label, std::vector<double> values, bool is_named) {
   StampColumn stamps{label.name, label.unit, {}, std::move(values), is_named};
-  const double first = stamps.values.front();
-  if (std::abs(first) < 9e9) {
-    stamps.origin = {std::llround(first * 1e9), -9};
-  } else if (std::abs(first) < 9e18) {
-    stamps.origin = {std::llround(first), 0};
-  }
+  const auto sane =
+      std::ranges::find_if(stamps.values, [](double stamp) { return std::abs(stamp) < 9e18; });
+  if (sane == stamps.values.end()) return stamps;
+  const double first = *sane;
+  stamps.origin = std::abs(first) < 9e9 ? StampOrigin{std::llround(first * 1e9), -9}
+                                        : StampOrigin{std::llround(first), 0};
   for (double& stamp : stamps.values) stamp -= first;
   return stamps;
+}
+
+/// What went wrong with the rows, and what was made of them.
+std::vector<Note> notes_of(const Table& table,
+                           const TableReader& reader,
+                           const PeekSource& source) {
+  std::vector<Note> notes;
+  if (reader.rows_read() < table.rows)
+    notes.push_back({Severity::bad, fmt::format("breaks off after {} of {} samples: those are kept",
+                                                reader.rows_read(), table.rows)});
+  if (table.is_turned) notes.push_back({Severity::info, "the array is channels x samples: turned"});
+  std::ranges::move(source.notes(), std::back_inserter(notes));
+  return notes;
+}
+
+/// Names the columns that were read and sorts out the time.
+Result<Recording> assemble(const Table& table,
+                           TableReader& reader,
+                           std::vector<Note> notes,
+                           const ReadOptions& options) {
+  Recording recording;
+  recording.format = "npy";
+  recording.notes = std::move(notes);
+  std::vector<std::vector<double>> values;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) values.push_back(reader.take(c));
+  CsvLayout layout;
+  layout.columns.assign(values.size(), ColumnKind::number);
+  layout.first_ascends = !table.is_structured && values.size() > 1 && ascends(values[0]);
+  const CsvHeader header = header_of(table, layout);
+  recording.notes.insert(recording.notes.end(), header.notes.begin(), header.notes.end());
+  const auto columns = choose_columns(layout, header, options);
+  if (!columns) return columns.error();
+  std::optional<StampColumn> stamps;
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    ColumnLabel label = header.labels[c];
+    if (columns->stamps != c) {
+      recording.channels.push_back({label.name, label.unit, std::move(values[c])});
+      continue;
+    }
+    if (!header.found) label.unit = *parse_unit("s");
+    stamps = stamps_of(label, std::move(values[c]), header.found);
+  }
+  return finish_recording(std::move(recording), std::move(stamps), std::nullopt, options);
 }
 
 }  // namespace
@@ -304,45 +344,13 @@ StampColumn stamps_of(const ColumnLabel& label, std::vector<double> values, bool
 Result<Recording> read_npy(PeekSource& source, const ReadOptions& options) {
   const auto preface = read_preface(source);
   if (!preface) return preface.error();
-  auto shaped = table_of(preface->header);
-  if (!shaped) return shaped.error();
-  Table table = *shaped;
-  if (const Status fits = check_size(source, table, preface->bytes); !fits) return fits.error();
-  if (source.size()) table.rows = std::min<std::size_t>(table.rows, *source.size());
-  TableReader reader(source, table, options.progress);
+  const auto table = table_of(preface->header);
+  if (!table) return table.error();
+  if (const Status fits = check_size(source, *table, preface->bytes); !fits) return fits.error();
+  TableReader reader(source, *table, options.progress);
   if (const Status read = reader.run(); !read) return read.error();
   if (reader.rows_read() == 0) return Error{Errc::corrupt, "breaks off before the first sample"};
-
-  Recording recording;
-  recording.format = "npy";
-  if (reader.rows_read() < table.rows)
-    recording.notes.push_back(
-        {Severity::bad, fmt::format("breaks off after {} of {} samples: those are kept",
-                                    reader.rows_read(), table.rows)});
-  if (table.is_turned)
-    recording.notes.push_back({Severity::info, "the array is channels x samples: turned"});
-  std::ranges::move(source.notes(), std::back_inserter(recording.notes));
-  std::vector<double> first = reader.take(0);
-  const CsvHeader header =
-      header_of(table, !table.is_structured && table.columns.size() > 1 && ascends(first));
-  CsvLayout layout;
-  layout.columns.assign(table.columns.size(), ColumnKind::number);
-  layout.first_ascends = header.labels[0].name == "time";
-  recording.notes.insert(recording.notes.end(), header.notes.begin(), header.notes.end());
-  const auto columns = choose_columns(layout, header, options);
-  if (!columns) return columns.error();
-  std::optional<StampColumn> stamps;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    std::vector<double> values = c == 0 ? std::move(first) : reader.take(c);
-    ColumnLabel label = header.labels[c];
-    if (columns->stamps == c) {
-      if (!header.found) label.unit = *parse_unit("s");
-      stamps = stamps_of(label, std::move(values), header.found);
-    } else {
-      recording.channels.push_back({label.name, label.unit, std::move(values)});
-    }
-  }
-  return finish_recording(std::move(recording), std::move(stamps), std::nullopt, options);
+  return assemble(*table, reader, notes_of(*table, reader, source), options);
 }
 
 }  // namespace proofmass::io

@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <fast_float/fast_float.h>
 #include <limits>
 
@@ -20,35 +21,37 @@ struct WideDecimal {
   int exponent10 = 0;
 };
 
+/// "e-9" behind a mantissa; 0 where there is nothing.
+std::optional<int> scan_power(std::string_view text) {
+  if (text.empty()) return 0;
+  if ((text[0] | 0x20) != 'e') return std::nullopt;
+  text.remove_prefix(1);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  int power = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), power);
+  const bool whole = end.ec == std::errc{} && end.ptr == text.data() + text.size();
+  return whole && std::abs(power) < 10'000 ? std::optional(power) : std::nullopt;
+}
+
 /// A plain decimal of up to 37 digits, which is what 128 bits hold.
 std::optional<WideDecimal> scan_wide(std::string_view text, char point) {
   WideDecimal out;
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
-  int digits = 0;
-  bool behind_point = false;
-  std::size_t i = 0;
-  for (; i < text.size(); ++i) {
-    if (text[i] == point && !behind_point) {
-      behind_point = true;
-    } else if (is_digit(text[i])) {
-      out.mantissa = out.mantissa * 10 + (text[i] - '0');
-      if (out.mantissa != 0 && ++digits > 37) return std::nullopt;
-      if (behind_point) --out.exponent10;
-    } else {
-      break;
-    }
+  const std::size_t size = std::min(text.find_first_of("eE"), text.size());
+  int significant = 0;
+  int points = 0;
+  for (const char c : text.substr(0, size)) {
+    if (c == point && ++points == 1) continue;
+    if (!is_digit(c)) return std::nullopt;
+    out.mantissa = out.mantissa * 10 + (c - '0');
+    out.exponent10 -= points;
+    if (out.mantissa != 0 && ++significant > 37) return std::nullopt;
   }
-  if (i == 0 || (i == 1 && behind_point)) return std::nullopt;
+  const auto power = scan_power(text.substr(size));
+  if (static_cast<int>(size) == points || !power) return std::nullopt;
   if (negative) out.mantissa = -out.mantissa;
-  if (i == text.size()) return out;
-  std::string_view exponent = text.substr(i + 1);
-  if (exponent.starts_with('+')) exponent.remove_prefix(1);
-  int power = 0;
-  const auto end = std::from_chars(exponent.data(), exponent.data() + exponent.size(), power);
-  const bool whole = end.ec == std::errc{} && end.ptr == exponent.data() + exponent.size();
-  if ((text[i] | 0x20) != 'e' || !whole || power > 9999 || power < -9999) return std::nullopt;
-  out.exponent10 += power;
+  out.exponent10 += *power;
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -41,6 +42,15 @@ double rounding_of(const std::vector<double>& steps, double median) {
     return std::abs(std::remainder(step, smallest)) > 1e-3 * median;
   });
   return static_cast<std::size_t>(off_grid) * 100 > sorted.size() ? 0.0 : smallest;
+}
+
+/// Steps from one stamp to the next, at most 65 536 of them spread over the file.
+std::vector<double> sampled_steps(View<double> stamps) {
+  constexpr std::size_t most = 1u << 16;
+  std::vector<double> steps;
+  for (std::size_t k = 0; k + 1 < stamps.size(); k += stamps.size() / most + 1)
+    if (is_stamp(stamps[k]) && is_stamp(stamps[k + 1])) steps.push_back(stamps[k + 1] - stamps[k]);
+  return steps;
 }
 
 /// Where sample k's stamp belongs among what follows it.
@@ -98,30 +108,33 @@ class Onlooker {
   mutable std::array<double, window> next_{};
 };
 
+/// Whether sample k's stamp, a number at all, can stand behind that of sample `last`.
+bool can_follow(View<double> stamps, double step, std::size_t k, std::size_t last) {
+  const Onlooker onlooker(stamps, step);
+  const double rise = stamps[k] - stamps[last];
+  if (rise < 0.0) return !onlooker.falls_alone(k, stamps[last]);
+  const bool usual = rise <= 1.5 * step * static_cast<double>(k - last);
+  return usual || !onlooker.leaps_alone(k, stamps[last]);
+}
+
 /// Samples whose stamps are to be replaced, and how many of them stepped back.
 std::pair<std::vector<std::size_t>, std::size_t> find_bad(View<double> stamps, double step) {
-  const Onlooker onlooker(stamps, step);
+  // If none of so many can be the first, the next that is a number has to be.
+  constexpr std::size_t most_bad_at_first = 64;
   std::vector<std::size_t> bad;
   std::size_t backwards = 0;
   std::optional<std::size_t> last;
   for (std::size_t k = 0; k < stamps.size(); ++k) {
-    bool good = is_stamp(stamps[k]);
-    if (good && !last) {
-      good = k > 64 || onlooker.can_be_first(k);
-    } else if (good) {
-      const double rise = stamps[k] - stamps[*last];
-      const double usual = 1.5 * step * static_cast<double>(k - *last);
-      if (rise < 0.0) {
-        good = !onlooker.falls_alone(k, stamps[*last]);
-        if (!good) ++backwards;
-      } else if (rise > usual) {
-        good = !onlooker.leaps_alone(k, stamps[*last]);
-      }
-    }
-    if (good)
+    const bool number = is_stamp(stamps[k]);
+    const bool fits =
+        last ? number && can_follow(stamps, step, k, *last)
+             : number && (k > most_bad_at_first || Onlooker(stamps, step).can_be_first(k));
+    if (fits) {
       last = k;
-    else
-      bad.push_back(k);
+      continue;
+    }
+    if (number && last && stamps[k] < stamps[*last]) ++backwards;
+    bad.push_back(k);
   }
   return {std::move(bad), backwards};
 }
@@ -159,28 +172,22 @@ class Mender {
 }  // namespace
 
 StampSteps measure_steps(View<double> stamps) {
-  constexpr std::size_t most = 1u << 16;
   StampSteps out;
-  if (stamps.size() < 2) return out;
-  const std::size_t stride = (stamps.size() - 1) / most + 1;
-  std::vector<double> steps;
-  std::size_t ascending = 0;
-  std::size_t repeated = 0;
-  for (std::size_t k = 0; k + 1 < stamps.size(); k += stride) {
-    if (!is_stamp(stamps[k]) || !is_stamp(stamps[k + 1])) continue;
-    const double step = stamps[k + 1] - stamps[k];
-    ++out.finite;
-    if (step >= 0.0) ++ascending;
-    if (step == 0.0) ++repeated;
-    if (step > 0.0) steps.push_back(step);
-  }
-  if (steps.empty()) return out;
-  out.ascending = static_cast<double>(ascending) / static_cast<double>(out.finite);
-  out.repeated = static_cast<double>(repeated) / static_cast<double>(out.finite);
-  out.median = *median(steps);
-  out.rounding = rounding_of(steps, out.median);
+  const std::vector<double> all = sampled_steps(stamps);
+  if (all.empty()) return out;
+  const auto fraction = [&](auto is_such) {
+    return static_cast<double>(std::ranges::count_if(all, is_such)) /
+           static_cast<double>(all.size());
+  };
+  out.ascending = fraction([](double step) { return step >= 0.0; });
+  out.repeated = fraction([](double step) { return step == 0.0; });
+  std::vector<double> up;
+  std::ranges::copy_if(all, std::back_inserter(up), [](double step) { return step > 0.0; });
+  if (up.empty()) return out;
+  out.median = *median(up);
+  out.rounding = rounding_of(up, out.median);
   Moments near;
-  for (const double step : steps)
+  for (const double step : up)
     if (std::abs(step - out.median) <= 1.001 * out.rounding) near.add(step);
   out.mean_near = near.count > 0 ? near.mean : out.median;
   return out;

@@ -16,7 +16,6 @@ struct StampSteps {
   double mean_near = 0.0;  ///< mean of the steps within one rounding of the median
   double ascending = 0.0;  ///< fraction of the finite steps that are not below zero
   double repeated = 0.0;   ///< fraction of the finite steps that are zero
-  std::size_t finite = 0;  ///< finite steps that were looked at
 };
 [[nodiscard]] StampSteps measure_steps(View<double> stamps);
 

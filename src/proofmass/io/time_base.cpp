@@ -156,7 +156,8 @@ bool counts_samples(View<double> counter) {
   std::size_t ones = 0;
   for (std::size_t k = 1; k < counter.size(); ++k) {
     const double step = counter[k] - counter[k - 1];
-    if (!(step >= 1.0 && step < 1e6)) return false;
+    const bool is_usual = step >= 1.0 && step < 1e6;
+    if (!is_usual) return false;
     if (step == 1.0) ++ones;
   }
   return ones * 10 >= (counter.size() - 1) * 9 && ones < counter.size() - 1;

@@ -64,34 +64,39 @@ bool has_range(Quantity quantity) {
          quantity == Quantity::voltage || quantity == Quantity::counts;
 }
 
+/// Runs of equal values: those at a rail, and the longest elsewhere.
+struct RailRuns {
+  std::size_t samples = 0;  ///< in runs of three or more at the rail
+  std::size_t runs = 0;     ///< of these
+  std::size_t longest_at_rail = 0;
+  std::size_t longest_elsewhere = 0;
+  std::size_t beside = 0;  ///< samples near the rail, but not at it
+
+  void add(double distance, double nearby, std::size_t run) {
+    constexpr std::size_t shortest_run = 3;
+    if (distance > 0.0) {
+      longest_elsewhere = std::max(longest_elsewhere, run);
+      beside += distance <= nearby ? run : 0;
+      return;
+    }
+    longest_at_rail = std::max(longest_at_rail, run);
+    samples += run >= shortest_run ? run : 0;
+    runs += run >= shortest_run ? 1 : 0;
+  }
+};
+
 /// Samples in runs of three or more at exactly `rail`, if the signal piles up there: more often
 /// than in the fiftieth of the range beside it, and not just for once as a value that is held is.
 std::size_t count_clipped(View<double> series, double rail, double other_rail) {
-  constexpr std::size_t shortest_run = 3;
-  const double nearby = std::abs(rail - other_rail) / 50.0;
-  std::size_t in_runs = 0;
-  std::size_t runs = 0;
-  std::size_t longest_at_rail = 0;
-  std::size_t longest_elsewhere = 0;
-  std::size_t beside = 0;
+  RailRuns seen;
   for (std::size_t k = 0; k < series.size();) {
     std::size_t end = k + 1;
     while (end < series.size() && series[end] == series[k]) ++end;
-    const std::size_t run = end - k;
-    if (series[k] == rail) {
-      longest_at_rail = std::max(longest_at_rail, run);
-      if (run >= shortest_run) {
-        in_runs += run;
-        ++runs;
-      }
-    } else {
-      longest_elsewhere = std::max(longest_elsewhere, run);
-      if (std::abs(series[k] - rail) <= nearby) beside += run;
-    }
+    seen.add(std::abs(series[k] - rail), std::abs(rail - other_rail) / 50.0, end - k);
     k = end;
   }
-  const bool is_rail = runs >= 2 || longest_at_rail > longest_elsewhere;
-  return is_rail && in_runs > beside ? in_runs : 0;
+  const bool is_rail = seen.runs >= 2 || seen.longest_at_rail > seen.longest_elsewhere;
+  return is_rail && seen.samples > seen.beside ? seen.samples : 0;
 }
 
 void audit_clipping(const Channel& channel, ChannelAudit& out) {
@@ -125,6 +130,7 @@ std::optional<double> find_lsb(View<double> series) {
   const std::vector<Difference> differences = differences_of(values);
   if (differences.empty() || (differences.size() + 1) * 2 > values.size()) return std::nullopt;
   std::vector<double> sizes;
+  sizes.reserve(differences.size());
   for (const Difference& difference : differences) sizes.push_back(difference.size);
   std::ranges::sort(sizes);
   // The smallest difference is the step unless a few values are off the grid: then look higher.
