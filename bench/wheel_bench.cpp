@@ -59,7 +59,8 @@ template <int S>
 WheelModel<S> model_of(const Recording& recording) {
   WheelModel<S> model;
   model.gravity_mps2 = gravity_mps2;
-  model.noise = {0.1, 1e-9};
+  model.noise = {.jerk_psd = 0.1, .snap_psd = 0.1, .bias_walk_psd = 1e-9};
+  model.places_held = true;  // as in the fit's last passes
   model.instants = &recording.instants;
   for (std::size_t s = 0; s < S; ++s) model.readings[s] = &recording.sensors[s];
   return model;
@@ -72,7 +73,8 @@ FilterState<wheel::states(S)> start() {
   mean(wheel::speed) = speed_radps;
   cov.diagonal().setConstant(1e-4);
   cov(wheel::angle, wheel::start) = cov(wheel::start, wheel::angle) = 1e-4;
-  for (int s = 0; s < S; ++s) mean(wheel::first_of(s) + wheel::place) = s == 0 ? radius_m : -radius_m;
+  for (int s = 0; s < S; ++s) mean(wheel::places(S) + 2 * s) = s == 0 ? radius_m : -radius_m;
+  cov.diagonal().template tail<2 * S>().setZero();
   return state;
 }
 
@@ -167,7 +169,8 @@ double working_bytes_per_sample(std::size_t count) {
 
 template <int S>
 void compare(std::size_t most) {
-  std::printf("%d sensor%s, %d states, %d channels\n", S, S > 1 ? "s" : "", wheel::states(S), 2 * S);
+  std::printf("%d sensor%s, %d states (%d places held), %d channels\n", S, S > 1 ? "s" : "",
+              wheel::states(S), 2 * S, 2 * S);
   std::printf("%10s %14s %16s %14s %14s %18s\n", "samples", "filter /s", "and smoother /s",
               "bytes/sample", "peak RSS MB", "textbook /s");
   for (std::size_t count = 10'000; count <= most; count *= 10) {

@@ -43,7 +43,7 @@ struct ConvertCommand {
 struct WheelCommand {
   std::vector<std::string> files;
   std::string spin_axis;
-  std::optional<double> radius_m, rim_radius_m;
+  std::optional<double> radius_m, rim_radius_m, rolling_radius_m;
   InputFlags input;
   OutputFlags output;
 };

@@ -127,6 +127,7 @@ void run(const WheelCommand& command) {
   if (!command.spin_axis.empty()) report.options.spin_axis = parse_axis(command.spin_axis);
   report.options.radius_m = command.radius_m;
   report.options.rim_radius_m = command.rim_radius_m;
+  report.options.rolling_radius_m = command.rolling_radius_m;
   report.options.gravity_mps2 = gravity_mps2(command.input);
   WheelInput input = prepare(command);
   report.notes = std::move(input.notes);

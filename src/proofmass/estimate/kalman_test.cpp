@@ -132,6 +132,41 @@ TEST(Smoother, StandingStatesAreStatesWithAnIdentityTransition) {
   }
 }
 
+// The offset stands at 0.25 and is not to learn: left out of the arithmetic, or in it without variance.
+struct HeldGauge : Gauge {
+  [[nodiscard]] int active() const { return 3; }
+  [[nodiscard]] Transition<4, 2> transition(const Mat<4>& x, std::size_t k) const {
+    auto step = Gauge::transition(x, k);
+    step.walk(3) = 0.0;
+    return step;
+  }
+};
+struct WholeGauge : HeldGauge {
+  [[nodiscard]] int active() const { return 4; }
+};
+
+TEST(Smoother, OnTheActiveStatesEqualsThatOnAllWithoutVarianceOfTheOthers) {
+  FilterState<4> begin = start();
+  begin.x.mean(3) = 0.25;
+  begin.x.cov(3, 3) = 0.0;
+  const auto run = [&](const auto& model) {
+    Path path{std::vector<Mat<4>>(model.size()), std::vector<Mat<4, 4>>(model.size())};
+    smooth(
+        model, begin, {}, [](std::size_t, const auto&) {},
+        [&](std::size_t k, const auto& step, const Hindsight<4>& later) {
+          path.means[k] = later.mean(step.filtered);
+          path.covs[k] = later.template cov<4>(step.filtered);
+        });
+    return path;
+  };
+  const Path held = run(HeldGauge{}), whole = run(WholeGauge{});
+  for (std::size_t k = 0; k < held.means.size(); ++k) {
+    EXPECT_TRUE(held.means[k].isApprox(whole.means[k], 1e-10)) << "k = " << k;
+    EXPECT_TRUE(held.covs[k].isApprox(whole.covs[k], 1e-10)) << "k = " << k;
+    EXPECT_EQ(held.means[k](3), 0.25);
+  }
+}
+
 TEST(Filter, AStepAllocatesNothing) {
   const Gauge model;
   std::vector<Step<4, 2, 2>> steps(model.size());

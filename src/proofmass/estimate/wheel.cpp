@@ -29,11 +29,11 @@ Status check(const std::vector<WheelSensor>& sensors, const WheelOptions& option
       if (sensor.accel_mps2[axis].size() != sensor.time_s.size() &&
           !(axis == 2 && sensor.accel_mps2[axis].empty()))
         return Error{Errc::invalid_argument, sensor.name + ": channels of different lengths"};
-  const bool positive = options.gravity_mps2 > 0.0 && options.radius_m.value_or(1.0) > 0.0 &&
+  const bool positive = options.gravity_mps2 > 0.0 && options.radius_m.value_or(0.0) >= 0.0 &&
                         options.rim_radius_m.value_or(1.0) > 0.0 &&
                         options.rolling_radius_m.value_or(1.0) > 0.0 &&
                         options.alignment_std_rad >= 0.0;
-  if (!positive) return Error{Errc::invalid_argument, "gravity and radii must be positive"};
+  if (!positive) return Error{Errc::invalid_argument, "gravity and radii must be positive (the sensor's may be 0)"};
   return Done{};
 }
 
@@ -82,10 +82,10 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
 PlacesPrior places_prior(const WheelOptions& options, const Eigen::VectorXd& seen) {
   PlacesPrior prior{Eigen::VectorXd::Zero(seen.size())};
   if (!options.radius_m) return prior;
-  prior.std_m = 0.02 * *options.radius_m;
+  prior.std_m = std::max(0.02 * *options.radius_m, 2e-4);
   for (Eigen::Index s = 0; s < seen.size(); s += 2) {
     const Eigen::Vector2d direction = seen.segment<2>(s);
-    prior.mean.segment<2>(s) = direction.norm() > 0.3 * *options.radius_m
+    prior.mean.segment<2>(s) = direction.norm() > std::max(0.3 * *options.radius_m, 1e-6)
                                    ? Eigen::Vector2d(direction.normalized() * *options.radius_m)
                                    : Eigen::Vector2d(*options.radius_m, 0.0);
   }
@@ -96,16 +96,26 @@ Eigen::VectorXd places_in(const WheelFit& fit, std::size_t sensors) {
   return fit.constants.tail(static_cast<Eigen::Index>(2 * sensors));
 }
 
+Uncertain radius_in(const WheelFit& fit, std::size_t sensors, std::size_t sensor) {
+  const auto at = fit.constants.size() - static_cast<Eigen::Index>(2 * (sensors - sensor));
+  const Eigen::Vector2d place = fit.constants.segment<2>(at);
+  const Eigen::Vector2d outward = place / std::max(place.norm(), 1e-9);
+  return {place.norm(), std::sqrt(outward.dot(fit.constants_cov.block<2, 2>(at, at) * outward))};
+}
+
 /// Fits once without the radius and, where one is given, again with it.
 WheelFit fit_with_radius(WheelReadings& readings, const WheelTrack& track,
                          const WheelOptions& options) {
-  const auto count = static_cast<Eigen::Index>(2 * readings.sensors.size());
-  const WheelFit free =
+  const std::size_t sensors = readings.sensors.size();
+  const auto count = static_cast<Eigen::Index>(2 * sensors);
+  WheelFit free =
       fit_wheel(readings, track, PlacesPrior{Eigen::VectorXd::Zero(count)}, options.progress);
   if (!options.radius_m) return free;
-  return fit_wheel(readings, free.track,
-                   places_prior(options, places_in(free, readings.sensors.size())),
-                   options.progress);
+  WheelFit held = fit_wheel(readings, free.track,
+                            places_prior(options, places_in(free, sensors)), options.progress);
+  for (std::size_t s = 0; s < sensors; ++s)
+    held.free_radius_m.push_back(radius_in(free, sensors, s));
+  return held;
 }
 
 struct Single {
@@ -366,6 +376,19 @@ void note_travel(const WheelReadings& readings, const WheelOptions& options,
            "two rests do not change"});
 }
 
+void check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolution& solution) {
+  for (std::size_t s = 0; s < fit.free_radius_m.size(); ++s) {
+    const Uncertain& found = fit.free_radius_m[s];
+    const double off = std::abs(found.value - *options.radius_m);
+    if (off < 5.0 * std::hypot(found.std, 0.02 * *options.radius_m)) continue;
+    solution.notes.push_back(
+        {Severity::bad, solution.sensors[s].name + ": --radius contradicts the recording, which says " +
+                            std::to_string(std::lround(found.value * 1e3)) + " mm +- " +
+                            std::to_string(std::lround(std::ceil(found.std * 1e3))) +
+                            " mm: leave it out or mend it"});
+  }
+}
+
 WheelSolution conclude(const WheelReadings& readings, WheelFit fit, const WheelOptions& options,
                        WheelSolution solution) {
   describe_sensors(fit, readings.phase_rad, solution.sensors);
@@ -385,6 +408,7 @@ WheelSolution conclude(const WheelReadings& readings, WheelFit fit, const WheelO
   solution.not_observable = say_not_observable(fit, solution.sensors);
   add_gated(solution);
   note_travel(readings, options, solution);
+  check_radius(fit, options, solution);
   judge_turns(fit, solution);
   return solution;
 }

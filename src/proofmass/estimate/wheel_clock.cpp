@@ -91,6 +91,13 @@ Slope slope_of(const std::vector<double>& speed, const std::vector<double>& diff
 
 Result<ClockFit> fit_clocks(const WheelMotion& first, const WheelMotion& second,
                             bool clocks_shared) {
+  // Stamps that both begin at nought look like one clock and need not be: the speeds tell.
+  constexpr double same_speed_radps = 0.3;
+  const double apart = speed_mismatch(first, second, 0.0);
+  if (apart > same_speed_radps * same_speed_radps) {
+    const double elsewhere = coarse_offset(first, second);
+    if (speed_mismatch(first, second, elsewhere) < 0.25 * apart) clocks_shared = false;
+  }
   double offset_s = clocks_shared ? 0.0 : coarse_offset(first, second);
   Slope slope;
   for (int round = 0; round < 4; ++round) {

@@ -23,7 +23,7 @@ struct ClockFit {
 /// Lays the second sensor's angle over the first's. At one speed an offset of the clocks and a phase
 /// between the sensors are the same thing; where the speed changes, the difference of the angles goes
 /// with the speed, and its slope is the offset. With `clocks_shared` only offsets up to a tenth of a
-/// second are looked for. The offset's standard deviation is from the scatter between tenths of the
+/// second are looked for, unless the speeds agree far better elsewhere. The offset's standard deviation is from the scatter between tenths of the
 /// recording. Errors: not_observable (they share no time, or the speed hardly changes).
 [[nodiscard]] Result<ClockFit> fit_clocks(const WheelMotion& first, const WheelMotion& second,
                                           bool clocks_shared);

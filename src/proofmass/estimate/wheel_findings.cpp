@@ -25,7 +25,10 @@ void describe_place(const WheelFit& fit, int at, WheelSensorFit& sensor) {
   if (!(radius > 0.0)) return;
   const Eigen::Vector2d outward = r / radius, forward(-outward(1), outward(0));
   const double std = std::sqrt(outward.dot(cov * outward));
-  if (!(std < untold * std::sqrt(fit.constants_prior_cov(at, at)))) return;
+  const double before = std::sqrt(fit.constants_prior_cov(at, at));
+  const bool given = before < 0.2 * radius;
+  // Stricter than for the rest: the size of a vector is never below zero, so a poor one looks large.
+  if (!given && !(std < 0.5 * untold * before)) return;
   sensor.radius_m = Uncertain{radius, std};
   const double across = std::sqrt(forward.dot(cov * forward)) / radius;
   if (across < 0.5) sensor.mounting_rad = Uncertain{-std::atan2(r(1), r(0)), across};
@@ -119,7 +122,10 @@ void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSe
 
 std::vector<std::string> say_not_observable(const WheelFit& fit,
                                             const std::vector<WheelSensorFit>& sensors) {
-  const Eigen::VectorXd scale = fit.constants_prior_cov.diagonal().cwiseSqrt().cwiseInverse();
+  Eigen::VectorXd scale = fit.constants_prior_cov.diagonal().cwiseSqrt().cwiseInverse();
+  // A radius that was given is known, however little the recording adds to it.
+  const auto places = static_cast<Eigen::Index>(2 * sensors.size());
+  scale.tail(places) = scale.tail(places).cwiseMin(1.0 / short_way_prior.place_m);
   const SymmetricEigen axes =
       symmetric_eigen(scale.asDiagonal() * fit.constants_cov * scale.asDiagonal());
   const std::vector<Constant> constants = constants_of(sensors.size());

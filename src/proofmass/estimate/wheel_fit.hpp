@@ -72,6 +72,8 @@ struct WheelFit {
   double nis_sum = 0.0;
   std::size_t innovations = 0;
   double widest_prediction_rad = 0.0;  ///< std of the predicted angle, once past the first second
+  /// Of each sensor, where a radius was given: what the recording alone says of it.
+  std::vector<Uncertain> free_radius_m;
   WheelSeries series;                  ///< what filter and smoother give; time_s too
 };
 

@@ -14,6 +14,9 @@ using test::Turning;
 template <int S>
 using State = Mat<wheel::states(S)>;
 
+/// Where the place of a sensor, along its u, stands in the state.
+int place_of(int sensors, int s) { return wheel::places(sensors) + 2 * s; }
+
 /// A model with one instant at which every sensor was read.
 template <int S>
 struct OneInstant {
@@ -52,11 +55,11 @@ State<S> any_state(Normal& normal) {
     const int at = wheel::first_of(s);
     for (int i = 0; i < 2; ++i) {
       x(at + wheel::bias + i) = normal();
-      x(at + wheel::place + i) = 0.6 * (normal.uniform() - 0.5);
+      x(place_of(S, s) + i) = 0.6 * (normal.uniform() - 0.5);
       x(at + wheel::scale + i) = 0.1 * normal();
     }
     x(at + wheel::skew) = 0.1 * normal();
-    if (s > 0) x(at + wheel::phase) = normal();
+    if (s > 0) x(wheel::phase) = normal();
   }
   return x;
 }
@@ -101,9 +104,9 @@ TEST(WheelModel, PredictsExactlyWhatTheKinematicsOfAPointSay) {
       for (int s = 0; s < 2; ++s) {
         const int at = wheel::first_of(s);
         Mount mount;
-        mount.turned_rad = s == 0 ? 0.0 : 0.4 + x(at + wheel::phase);
+        mount.turned_rad = s == 0 ? 0.0 : 0.4 + x(wheel::phase);
         // The model has the place in the sensor's own axes, the mount in the wheel's.
-        mount.place_m = std::complex(x(at + wheel::place), x(at + wheel::place + 1)) *
+        mount.place_m = std::complex(x(place_of(2, s)), x(place_of(2, s) + 1)) *
                         std::polar(1.0, mount.turned_rad);
         mount.bias_mps2 = {x(at + wheel::bias), x(at + wheel::bias + 1)};
         mount.scale = {1.0 + x(at + wheel::scale), 1.0 + x(at + wheel::scale + 1)};
@@ -127,8 +130,8 @@ TEST(WheelModel, OfAnOppositePairSumIsGravityAndDifferenceIsTheMotion) {
   x(wheel::angle) = 0.6;
   x(wheel::speed) = 3.0;
   x(wheel::accel) = -5.0;
-  x(wheel::first_of(0) + wheel::place) = R;
-  x(wheel::first_of(1) + wheel::place) = -R;
+  x(place_of(2, 0)) = R;
+  x(place_of(2, 1)) = -R;
   const auto& rows = instant.at(x).rows;
   EXPECT_NEAR(0.5 * (rows[0].predicted + rows[2].predicted), 9.8 * std::sin(0.6), 1e-14);
   EXPECT_NEAR(0.5 * (rows[1].predicted + rows[3].predicted), 9.8 * std::cos(0.6), 1e-14);
@@ -162,9 +165,9 @@ TEST(WheelModel, TwoStepsEqualOneOfTwiceTheLength) {
   std::vector<WheelInstant> instants{{0.0, {}}, {0.013, {}}, {0.026, {}}};
   WheelModel<2> model;
   model.instants = &instants;
-  model.noise = {3.0, 1e-5};
+  model.noise = {.jerk_psd = 3.0, .snap_psd = 7.0, .bias_walk_psd = 1e-5};
   State<2> x = State<2>::Zero();
-  x.head<3>() << 0.5, -1.2, 3.0;
+  x.head<wheel::moving>() << 0.5, -1.2, 3.0, 0.7;
   const auto one = model.transition(x, 1), two = model.transition(x, 2);
   EXPECT_TRUE(two.F.isApprox(one.F * one.F, 1e-14));
   EXPECT_TRUE(two.Q.isApprox(one.F * one.Q * one.F.transpose() + one.Q, 1e-14));
@@ -172,11 +175,25 @@ TEST(WheelModel, TwoStepsEqualOneOfTwiceTheLength) {
   EXPECT_TRUE(two.mean.isApprox(two.F * x.head<wheel::moving>(), 1e-14));
 }
 
+TEST(WheelModel, EachOfTheTwoDrivesIsThatOfItsOwnModel) {
+  std::vector<WheelInstant> instants{{0.0, {}}, {0.1, {}}};
+  WheelModel<1> model;
+  model.instants = &instants;
+  model.noise = {.jerk_psd = 3.0, .snap_psd = 0.0};
+  const auto rough = model.transition(State<1>::Zero(), 1);
+  EXPECT_DOUBLE_EQ(rough.Q(wheel::accel, wheel::accel), 3.0 * 0.1);
+  EXPECT_EQ(rough.Q(wheel::jerk, wheel::jerk), 0.0);
+  model.noise = {.jerk_psd = 0.0, .snap_psd = 3.0};
+  const auto smooth_drive = model.transition(State<1>::Zero(), 1);
+  EXPECT_DOUBLE_EQ(smooth_drive.Q(wheel::jerk, wheel::jerk), 3.0 * 0.1);
+  EXPECT_DOUBLE_EQ(smooth_drive.Q(wheel::accel, wheel::accel), 3.0 * 0.001 / 3.0);
+}
+
 TEST(WheelModel, OnlyTheBiasesWalk) {
   std::vector<WheelInstant> instants{{0.0, {}}, {0.01, {}}};
   WheelModel<2> model;
   model.instants = &instants;
-  model.noise = {1.0, 0.5};
+  model.noise = {.jerk_psd = 1.0, .snap_psd = 2.0, .bias_walk_psd = 0.5};
   const auto step = model.transition(State<2>::Zero(), 1);
   for (int i = wheel::moving; i < wheel::states(2); ++i) {
     const int one = i - wheel::first_of(0), two = i - wheel::first_of(1);
@@ -193,7 +210,7 @@ TEST(WheelModel, AboutAPathTheConstantsEnterLinearly) {
   const State<1> x = any_state<1>(normal);
   WheelPath path;
   path.moving.push_back(x.head<wheel::moving>());
-  for (std::size_t i = 0; i < 7; ++i) path.constants[0][i] = x(wheel::first_of(0) + static_cast<int>(i));
+  path.standing = x.tail<wheel::standing(1)>();
   const auto exact = instant.at(x);
   instant.model.about = &path;
   const auto at_path = instant.at(x);
@@ -218,8 +235,8 @@ TEST(WheelModel, ReopeningForgetsTheMotionAndKeepsTheConstants) {
   model.reopen(x);
   constexpr int moving = wheel::moving, rest = wheel::states(1) - wheel::moving;
   EXPECT_EQ((x.cov.bottomRightCorner<rest, rest>()), (before.bottomRightCorner<rest, rest>()));
-  EXPECT_TRUE((x.cov.topRightCorner<3, rest>().isZero()));
-  EXPECT_TRUE((x.cov.bottomLeftCorner<rest, 3>().isZero()));
+  EXPECT_TRUE((x.cov.topRightCorner<moving, rest>().isZero()));
+  EXPECT_TRUE((x.cov.bottomLeftCorner<rest, moving>().isZero()));
   EXPECT_EQ(x.cov(moving, moving), 1.1);
   EXPECT_GE(x.cov(wheel::angle, wheel::angle), 1.0);
   EXPECT_EQ(x.cov, x.cov.transpose());

@@ -148,14 +148,18 @@ Trial attempt(const std::vector<Line>& sample, char separator, char point) {
   return trial;
 }
 
-/// "0,5" below one name is half, not two columns: a header one field wide settles it.
 bool header_is_one_wide(const std::vector<Line>& lines) {
-  for (const Line& line : lines) {
-    if (is_blank(line.text) || is_remark(line.text, ',')) continue;
-    if (line.text.find(',') == std::string_view::npos) return true;
-    return false;
-  }
+  for (const Line& line : lines)
+    if (!is_blank(line.text) && !is_remark(line.text, ','))
+      return line.text.find(',') == std::string_view::npos;
   return false;
+}
+
+/// "0,5" below one name is half, not two columns.
+Trial halves_instead(const std::vector<Line>& lines, const std::vector<Line>& sample, Trial best) {
+  if (best.separator != ',' || best.width != 2 || !header_is_one_wide(lines)) return best;
+  Trial halves = attempt(sample, ';', ',');
+  return halves.width == 1 && halves.score > 0.0 ? halves : best;
 }
 
 /// The separators to try: the one that the file names, else the usual.
@@ -176,11 +180,7 @@ Trial best_trial(const std::vector<Line>& lines,
       if (separates && trial.score > best.score) best = std::move(trial);
     }
   }
-  if (!given && best.separator == ',' && best.width == 2 && header_is_one_wide(lines)) {
-    Trial halves = attempt(sample, ';', ',');
-    if (halves.width == 1 && halves.score > 0.0) best = std::move(halves);
-  }
-  return best;
+  return given ? best : halves_instead(lines, sample, std::move(best));
 }
 
 /// Lines to judge by: the last of those looked at, which are rows whatever precedes them.

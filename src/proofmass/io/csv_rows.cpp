@@ -11,9 +11,9 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-template <bool is_blank_separated>
+template <bool BlankSeparated>
 const char* skip_blanks(const char* p) {
-  while (*p == ' ' || (is_blank_separated && *p == '\t')) ++p;
+  while (*p == ' ' || (BlankSeparated && *p == '\t')) ++p;
   return p;
 }
 
@@ -32,18 +32,18 @@ const char* scan_words(const char* p, char separator, char line_end) {
 }
 
 /// Where the next field begins; nullptr if there is none.
-template <bool is_blank_separated>
+template <bool BlankSeparated>
 const char* scan_separator(const char* p, char separator) {
-  if constexpr (is_blank_separated) return *p == ' ' || *p == '\t' ? p : nullptr;
+  if constexpr (BlankSeparated) return *p == ' ' || *p == '\t' ? p : nullptr;
   p = skip_blanks<false>(p);
   return *p == separator ? p + 1 : nullptr;
 }
 
 /// Where the next line begins, behind one separator at most; nullptr if the row goes on.
-template <bool is_blank_separated>
+template <bool BlankSeparated>
 const char* scan_row_end(const char* p, char separator, char line_end) {
-  p = skip_blanks<is_blank_separated>(p);
-  if (!is_blank_separated && *p == separator) p = skip_blanks<false>(p + 1);
+  p = skip_blanks<BlankSeparated>(p);
+  if (!BlankSeparated && *p == separator) p = skip_blanks<false>(p + 1);
   if (*p == '\r' && line_end == '\n') ++p;
   return *p == line_end ? p + 1 : nullptr;
 }
@@ -117,14 +117,14 @@ std::vector<double> CsvRows::take(std::size_t column) {
 
 /// One row of plain figures, straight from the text; nullptr, with nothing changed that matters, if
 /// there is anything else in it. This loop is the reader's speed.
-template <bool is_blank_separated>
+template <bool BlankSeparated>
 const char* CsvRows::parse_plain(const char* p) {
   const Marks marks{layout_.separator, layout_.point, layout_.line_end,
-                    !is_blank_separated && uses_.size() > 1};
+                    !BlankSeparated && uses_.size() > 1};
   double* out = gathered_.data() + gathered_rows_;
   const std::size_t width = uses_.size();
   for (std::size_t c = 0;;) {
-    p = skip_blanks<is_blank_separated>(p);
+    p = skip_blanks<BlankSeparated>(p);
     const ColumnUse use = uses_[c];
     if (use == ColumnUse::skip) {
       p = scan_words(p, marks.separator, marks.line_end);
@@ -133,16 +133,16 @@ const char* CsvRows::parse_plain(const char* p) {
       out += block;
     }
     if (p == nullptr) return nullptr;
-    if (++c == width) return scan_row_end<is_blank_separated>(p, marks.separator, marks.line_end);
-    p = scan_separator<is_blank_separated>(p, marks.separator);
+    if (++c == width) return scan_row_end<BlankSeparated>(p, marks.separator, marks.line_end);
+    p = scan_separator<BlankSeparated>(p, marks.separator);
     if (p == nullptr) return nullptr;
   }
 }
 
-template <bool is_blank_separated>
+template <bool BlankSeparated>
 void CsvRows::parse_lines(const char* begin, const char* end) {
   while (begin < end) {
-    const char* next = plain_ ? parse_plain<is_blank_separated>(begin) : nullptr;
+    const char* next = plain_ ? parse_plain<BlankSeparated>(begin) : nullptr;
     if (next != nullptr) {
       commit();
     } else {

@@ -66,9 +66,9 @@ class CsvRows {
   [[nodiscard]] std::vector<double> take(std::size_t column);
 
  private:
-  template <bool is_blank_separated>
+  template <bool BlankSeparated>
   const char* parse_plain(const char* p);
-  template <bool is_blank_separated>
+  template <bool BlankSeparated>
   void parse_lines(const char* begin, const char* end);
   void parse_any(std::string_view line, bool is_cut);
   void parse_fields(std::string_view line, bool is_cut);

@@ -318,6 +318,7 @@ Result<Recording> assemble(const Table& table,
   recording.format = "npy";
   recording.notes = std::move(notes);
   std::vector<std::vector<double>> values;
+  values.reserve(table.columns.size());
   for (std::size_t c = 0; c < table.columns.size(); ++c) values.push_back(reader.take(c));
   CsvLayout layout;
   layout.columns.assign(values.size(), ColumnKind::number);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
 
+#include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/report/thinning.hpp"
@@ -85,11 +85,6 @@ Curve double_integral(const WheelSeries& series, const Range& range) {
 
 bool has(const WheelSeries& series, const std::vector<double>& values) {
   return !values.empty() && values.size() == series.time_s.size();
-}
-
-// The 95 % point of χ² with so many degrees of freedom.
-double chi_square_95(int freedom) {
-  return 2.0 * boost::math::gamma_p_inv(0.5 * freedom, 0.95);
 }
 
 // How many instants used so many channels.
@@ -231,7 +226,7 @@ Figure innovations_figure(const WheelSolution& solution) {
   const std::array<std::size_t, 256> instants = channels_histogram(series);
   for (int channels = 1; channels < 256; ++channels) {
     if (instants[static_cast<std::size_t>(channels)] * 20 < nis.size() || nis.empty()) continue;
-    const double level = chi_square_95(channels);
+    const double level = chi_square_quantile(0.95, channels);
     figure.levels.push_back(
         {fmt::format("95 % level for {}: {}",
                      count_words(static_cast<std::size_t>(channels), "channel"), fixed(level, 2)),

@@ -74,7 +74,7 @@ struct RailRuns {
 
   void add(double distance, double nearby, std::size_t run) {
     constexpr std::size_t shortest_run = 3;
-    if (distance > 0.0) {
+    if (distance != 0.0) {
       longest_elsewhere = std::max(longest_elsewhere, run);
       beside += distance <= nearby ? run : 0;
       return;
