@@ -1,11 +1,10 @@
-// Samples a second of processor time of the wheel's filter and smoother, beside a textbook extended Kalman filter with
-// Rauch, Tung and Striebel's smoother: dense F over all states, all channels of an instant at once,
-// every state kept, the inverse by LDLᵀ. Both run the same WheelModel over the same readings; the
-// largest difference of their smoothed angles is printed, so that it is seen to be the same work.
+// Samples a second of processor time of the wheel's filter and smoother, beside a textbook extended
+// Kalman filter with Rauch, Tung and Striebel's smoother: dense F over all states, all channels of
+// an instant at once, every state kept, the inverse by LDLᵀ. Both run the same WheelModel over the
+// same readings; the largest difference of their smoothed angles is printed, so that it is seen to
+// be the same work.
 //
 //   wheel_bench [most instants, 1e6 if not given]
-#include <sys/resource.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <random>
+#include <sys/resource.h>
 #include <vector>
 
 #include "proofmass/estimate/wheel_model.hpp"
@@ -43,8 +43,8 @@ Recording record(std::size_t count) {
     const double accel = speed_radps * 0.2 * swing * std::cos(swing * t);
     for (std::size_t s = 0; s < 2; ++s) {
       const double place = s == 0 ? radius_m : -radius_m;
-      const std::complex<double> f = (1i * accel - speed * speed) * place +
-                                     1i * gravity_mps2 * std::polar(1.0, -angle);
+      const std::complex<double> f =
+          (1i * accel - speed * speed) * place + 1i * gravity_mps2 * std::polar(1.0, -angle);
       recording.sensors[s].u_mps2.push_back(f.real() + noise(bits));
       recording.sensors[s].v_mps2.push_back(f.imag() + noise(bits));
       recording.sensors[s].variance_m2ps4.push_back(noise_mps2 * noise_mps2);
@@ -191,7 +191,8 @@ void compare(std::size_t most) {
       double difference = 0.0;
       for (std::size_t k = 0; k < count; ++k)
         difference = std::max(difference, std::abs(ours[k] - textbook[k]));
-      std::printf(" %18.0f   (smoothed angles differ by %.1e rad at most)", n / textbook_s, difference);
+      std::printf(" %18.0f   (smoothed angles differ by %.1e rad at most)", n / textbook_s,
+                  difference);
     }
     std::printf("\n");
   }

@@ -1,5 +1,5 @@
-// A car's wheels with two units on each, at the hub and at a radius (trials 06 and 10). The turns are
-// those counted from gravity's phase by two other methods, good to about 0.015 turn.
+// A car's wheels with two units on each, at the hub and at a radius (trials 06 and 10). The turns
+// are those counted from gravity's phase by two other methods, good to about 0.015 turn.
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -29,7 +29,9 @@ struct Wheel {
   double radial_radius_m;
 };
 
-void PrintTo(const Wheel& wheel, std::ostream* out) { *out << wheel.trial << " wheel " << wheel.number; }
+void PrintTo(const Wheel& wheel, std::ostream* out) {
+  *out << wheel.trial << " wheel " << wheel.number;
+}
 
 std::filesystem::path file_of(const Wheel& wheel, const char* place) {
   return published_data() / "wid-car-wheels" / wheel.trial /
@@ -41,7 +43,8 @@ WheelSensor sensor_of(const std::filesystem::path& file, std::int64_t origin_ns)
   const Recording recording = io::read_recording(file.string(), {}).value();
   WheelSensor sensor;
   sensor.name = file.stem().stem().string();
-  const double begin_s = 1e-9 * static_cast<double>(recording.time.start_ns.value_or(0) - origin_ns);
+  const double begin_s =
+      1e-9 * static_cast<double>(recording.time.start_ns.value_or(0) - origin_ns);
   for (std::size_t k = 0; k < recording.samples(); ++k)
     sensor.time_s.push_back(begin_s + recording.time.at(k));
   const std::array names{"Acc_X", "Acc_Y", "Acc_Z"};

@@ -31,8 +31,8 @@ AxisName axis_of(std::string_view name) {
     if (i + 1 < text.size() && is_letter(text[i + 1])) continue;
     std::size_t word = i;
     while (word > 0 && is_letter(text[word - 1])) --word;
-    constexpr std::array<std::string_view, 8> stems{
-        "", "a", "acc", "accel", "accelerometer", "acceleration", "f", "ch"};
+    constexpr std::array<std::string_view, 9> stems{
+        "", "a", "acc", "accel", "accelerometer", "acceleration", "f", "gf", "ch"};
     if (std::ranges::find(stems, std::string_view(text).substr(word, i - word)) == stems.end())
       continue;
     return {text.substr(0, i) + "?" + text.substr(i + 1), c};

@@ -9,7 +9,8 @@ namespace proofmass::estimate {
 namespace {
 
 // Position and speed that move, a gain and an offset that stand, the offset walking: readings of
-// (1 + gain) · position + offset, and of the speed. Not linear, so only advance()'s own rules apply.
+// (1 + gain) · position + offset, and of the speed. Not linear, so only advance()'s own rules
+// apply.
 struct Gauge {
   static constexpr int states = 4, moving = 2, channels = 2;
   std::size_t instants = 300;
@@ -132,7 +133,8 @@ TEST(Smoother, StandingStatesAreStatesWithAnIdentityTransition) {
   }
 }
 
-// The offset stands at 0.25 and is not to learn: left out of the arithmetic, or in it without variance.
+// The offset stands at 0.25 and is not to learn: left out of the arithmetic, or in it without
+// variance.
 struct HeldGauge : Gauge {
   [[nodiscard]] int active() const { return 3; }
   [[nodiscard]] Transition<4, 2> transition(const Mat<4>& x, std::size_t k) const {
@@ -186,7 +188,9 @@ Gaussian<1> unit_normal() {
   return x;
 }
 
-Reading<1> reads(double value) { return {value, 0.0, 3.0, Mat<1>(1.0)}; }  // S = 4
+Reading<1> reads(double value) {
+  return {value, 0.0, 3.0, Mat<1>(1.0)};
+}  // S = 4
 
 TEST(Gate, BeyondHuberNoReadingPullsHarderThanOneJustThere) {
   const Gate gate{.huber = 2.0, .limit = 10.0};
@@ -204,9 +208,9 @@ TEST(Gate, AReadingOfLittleWeightIsAReadingOfLargerVariance) {
   const Update<1> update = correct(x, reads(6.0), {.huber = 2.0, .limit = 10.0});
   EXPECT_TRUE(update.used);
   EXPECT_DOUBLE_EQ(update.expected, 4.0);
-  EXPECT_DOUBLE_EQ(update.variance, 6.0);       // S · ν / huber
+  EXPECT_DOUBLE_EQ(update.variance, 6.0);          // S · ν / huber
   EXPECT_DOUBLE_EQ(x.cov(0, 0), 1.0 - 1.0 / 6.0);  // P − P² / S
-  EXPECT_DOUBLE_EQ(update.nis(), 9.0);          // judged by the variance the model states
+  EXPECT_DOUBLE_EQ(update.nis(), 9.0);             // judged by the variance the model states
 }
 
 TEST(Gate, BeyondTheLimitAReadingIsLeftOut) {
@@ -229,8 +233,8 @@ TEST(Gate, ANotANumberIsLeftOut) {
   EXPECT_EQ(x.mean(0), 0.0);
 }
 
-// Only the position jumps; the speed's reading still fits, so it is left out where it would keep the
-// patience from running out.
+// Only the position jumps; the speed's reading still fits, so it is left out where it would keep
+// the patience from running out.
 struct JumpingLevel {
   static constexpr int states = 1, moving = 1, channels = 1;
   std::vector<double> z;

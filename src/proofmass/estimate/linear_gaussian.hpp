@@ -20,28 +20,28 @@
 //   readings  z[k] = H x[k] + v,              v ~ N(0, diag R)  M-vector, NaN where there is none
 //
 // This is kalman.hpp's one filter and one smoother with all N states moving. A model that is not
-// linear needs nothing more: whatever satisfies StateSpaceModel (kalman.hpp) with a Transition whose F
-// and Readings whose h are Jacobians is the extended filter and its smoother; WheelModel is one.
-// Symbols follow S. Särkkä, Bayesian Filtering and Smoothing (2013), with F, H for its A, H.
+// linear needs nothing more: whatever satisfies StateSpaceModel (kalman.hpp) with a Transition
+// whose F and Readings whose h are Jacobians is the extended filter and its smoother; WheelModel is
+// one. Symbols follow S. Särkkä, Bayesian Filtering and Smoothing (2013), with F, H for its A, H.
 namespace proofmass::estimate {
 
 /// What leads from one epoch to the next and what is read there. F, Q and B belong to the step that
 /// ends at the epoch.
 template <int N, int M, int U = 0>
 struct LinearModel {
-  Mat<N, N> F;                        ///< state transition
-  Mat<N, N> Q;                        ///< process noise, positive semi-definite
-  Mat<M, N> H;                        ///< measurement matrix
-  Mat<M> R;                           ///< variance of each channel, positive
-  Mat<N, U> B = Mat<N, U>::Zero();    ///< what a known input does to the state
+  Mat<N, N> F;                      ///< state transition
+  Mat<N, N> Q;                      ///< process noise, positive semi-definite
+  Mat<M, N> H;                      ///< measurement matrix
+  Mat<M> R;                         ///< variance of each channel, positive
+  Mat<N, U> B = Mat<N, U>::Zero();  ///< what a known input does to the state
 };
 
 /// One instant: how long after the one before, what was put in meanwhile, what was read.
 template <int M, int U = 0>
 struct Epoch {
-  double dt_s = 0.0;              ///< since the epoch before, ≥ 0; nothing moves on the way to the first
-  Mat<M> z;                       ///< NaN where a channel has no reading
-  Mat<U> u = Mat<U>::Zero();      ///< known input over the step
+  double dt_s = 0.0;  ///< since the epoch before, ≥ 0; nothing moves on the way to the first
+  Mat<M> z;           ///< NaN where a channel has no reading
+  Mat<U> u = Mat<U>::Zero();  ///< known input over the step
 };
 
 /// Epochs with the models between them: what filter_linear() and smooth_linear() run over.
@@ -52,8 +52,9 @@ class LinearSeries {
   using Model = LinearModel<N, M, U>;
 
   /// `model_at(dt_s)` gives the model of a step; it is asked again only where dt_s changes.
-  /// Errors: invalid_argument (a dt_s below 0 or not finite), not_finite (an infinite reading or input),
-  /// not_positive_definite (a variance in R that is not positive), with the number of the epoch.
+  /// Errors: invalid_argument (a dt_s below 0 or not finite), not_finite (an infinite reading or
+  /// input), not_positive_definite (a variance in R that is not positive), with the number of the
+  /// epoch.
   template <class ModelAt>
     requires std::is_invocable_r_v<Model, ModelAt&, double>
   [[nodiscard]] static Result<LinearSeries> make(std::vector<Epoch<M, U>> epochs,
@@ -184,8 +185,7 @@ void note(const LinearSeries<N, M, U>& series,
     if (!update.used) continue;
     ++out.readings;
     out.nis += update.nis();
-    run.log_likelihood -=
-        0.5 * (std::log(2.0 * std::numbers::pi * update.expected) + update.nis());
+    run.log_likelihood -= 0.5 * (std::log(2.0 * std::numbers::pi * update.expected) + update.nis());
   }
   run.nis += out.nis;
   run.readings += static_cast<std::size_t>(out.readings);

@@ -43,8 +43,8 @@ std::vector<Epoch<2, 1>> epochs() {
   const auto at = [](double dt_s, double z0, double z1, double u) {
     return Epoch<2, 1>{dt_s, Mat<2>(z0, z1), Mat<1>(u)};
   };
-  return {at(0.1, 0.2, -0.1, 9.0),  at(0.1, 0.4, none, 0.3),  at(0.37, none, 0.9, -0.5),
-          at(0.05, 0.1, 0.2, 1.0),  at(1.9, none, none, 0.7), at(0.1, -0.6, 0.3, 0.0),
+  return {at(0.1, 0.2, -0.1, 9.0),   at(0.1, 0.4, none, 0.3),  at(0.37, none, 0.9, -0.5),
+          at(0.05, 0.1, 0.2, 1.0),   at(1.9, none, none, 0.7), at(0.1, -0.6, 0.3, 0.0),
           at(0.1, none, -1.4, -2.0), at(0.8, 0.7, 0.05, 0.4)};
 }
 
@@ -94,7 +94,8 @@ TEST(LinearGaussian, SmootherEqualsBatchLeastSquaresOfEverything) {
   const Batch batch = least_squares(epochs(), epochs().size());
   for (std::size_t k = 0; k < epochs().size(); ++k) {
     const auto at = static_cast<Eigen::Index>(3 * k);
-    EXPECT_TRUE(run.steps[k].smoothed.mean.isApprox(batch.mean.segment<3>(at), 1e-10)) << "k = " << k;
+    EXPECT_TRUE(run.steps[k].smoothed.mean.isApprox(batch.mean.segment<3>(at), 1e-10))
+        << "k = " << k;
     EXPECT_TRUE((run.steps[k].smoothed.cov.isApprox(batch.cov.block<3, 3>(at, at), 1e-10)))
         << "k = " << k;
   }
@@ -119,7 +120,8 @@ Textbook textbook(const std::vector<Epoch<2, 1>>& all) {
       if (!std::isnan(e.z(i))) there.push_back(i);
     if (!there.empty()) {
       const Eigen::MatrixXd H = m.H(there, Eigen::all);
-      const Eigen::MatrixXd S = H * x.cov * H.transpose() + Eigen::MatrixXd(m.R(there).asDiagonal());
+      const Eigen::MatrixXd S =
+          H * x.cov * H.transpose() + Eigen::MatrixXd(m.R(there).asDiagonal());
       const Eigen::VectorXd y = e.z(there) - H * x.mean;
       const Eigen::MatrixXd K = x.cov * H.transpose() * S.inverse();
       x = {x.mean + K * y, x.cov - K * S * K.transpose()};
@@ -226,8 +228,8 @@ TEST(LinearGaussian, NoEpochsGiveNoStepsAndLikelihoodOne) {
 
 // The local level of the package KFAS (J. Helske, Journal of Statistical Software 78 (2017)), by R.
 // Its start is exactly diffuse. Given the first reading, a diffuse level is N(y₀, R): that is where
-// this run begins, and the first reading, to whose diffuse likelihood the package gives the logarithm
-// 0, is not read again.
+// this run begins, and the first reading, to whose diffuse likelihood the package gives the
+// logarithm 0, is not read again.
 TEST(LinearGaussian, AgreesWithAnIndependentPackageOnALocalLevel) {
   static constexpr double reading_variance = 1.993, level_variance = 8.253, first = 10.2394;
   const auto level = [](double) {

@@ -26,17 +26,17 @@ struct PvaOptions {
 
 struct PvaBiasOptions {
   PvaOptions motion;
-  double time_constant_s;   ///< T of the sensor's warm-up, positive
-  double bias_psd_m2ps5;    ///< two-sided density of the white noise that drives the bias, ≥ 0
+  double time_constant_s;  ///< T of the sensor's warm-up, positive
+  double bias_psd_m2ps5;   ///< two-sided density of the white noise that drives the bias, ≥ 0
 };
 
 /// The same with the sensor's bias ε, which settles exponentially after power-up:
 ///   ε[k] = φ ε[k−1] + (1 − φ)(a₁ + a₂),   φ = exp(−dt/T),   z = a + ε + v.
-/// The known input u of each epoch is what the bias settles at, a₁ + a₂ in m/s²; ε(0) = a₂ gives the
-/// fitted warm-up a₁(1 − exp(−t/T)) + a₂. From accelerations alone position and velocity are not
-/// observable; the prior, or readings of them, must say where they start.
-/// Source: M. A. Lele (2010), section 4.3; the discretisation of the bias is that of an
-/// Ornstein–Uhlenbeck process, exact for any dt.
+/// The known input u of each epoch is what the bias settles at, a₁ + a₂ in m/s²; ε(0) = a₂ gives
+/// the fitted warm-up a₁(1 − exp(−t/T)) + a₂. From accelerations alone position and velocity are
+/// not observable; the prior, or readings of them, must say where they start. Source: M. A. Lele
+/// (2010), section 4.3; the discretisation of the bias is that of an Ornstein–Uhlenbeck process,
+/// exact for any dt.
 [[nodiscard]] LinearModel<4, 1, 1> pva_bias_model(const PvaBiasOptions& options);
 
 extern template LinearRun<3, 1> filter_linear(LinearSeries<3, 1>, const Gaussian<3>&, const Gate&);

@@ -6,7 +6,8 @@ namespace proofmass::estimate {
 namespace {
 
 const PvaOptions options{.dt_s = 0.1, .jerk_psd_m2ps5 = 0.3, .accel_variance_m2ps4 = 0.04};
-const PvaBiasOptions bias_options{.motion = options, .time_constant_s = 20.0, .bias_psd_m2ps5 = 0.02};
+const PvaBiasOptions bias_options{
+    .motion = options, .time_constant_s = 20.0, .bias_psd_m2ps5 = 0.02};
 
 PvaOptions of_length(double dt_s) {
   PvaOptions other = options;
@@ -75,8 +76,8 @@ TEST(PvaBias, AfterManyTimeConstantsTheBiasHasItsStationaryVariance) {
                    0.5 * bias_options.bias_psd_m2ps5 * bias_options.time_constant_s);
 }
 
-// At rest the acceleration is known to be small, so what the accelerometer reads is the bias, and the
-// filter that knows its warm-up ends nearer than the one that takes it for still.
+// At rest the acceleration is known to be small, so what the accelerometer reads is the bias, and
+// the filter that knows its warm-up ends nearer than the one that takes it for still.
 TEST(PvaBias, KnowingTheWarmUpKeepsItOutOfTheAcceleration) {
   constexpr double a1 = 0.1, a2 = -0.03;
   const auto run_with = [&](double settles_at) {

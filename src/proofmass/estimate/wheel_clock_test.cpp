@@ -15,7 +15,11 @@ using test::rpm;
 struct Seen {
   std::vector<double> time_s, angle_rad, speed_radps;
 
-  Seen(const Drive& drive, double clock_offset_s, double phase_rad, double error, std::uint64_t seed) {
+  Seen(const Drive& drive,
+       double clock_offset_s,
+       double phase_rad,
+       double error,
+       std::uint64_t seed) {
     Normal normal(seed);
     for (double t = 0.0; t <= drive.duration_s(); t += 0.01) {
       const test::Turning now = drive.at(t);
@@ -43,7 +47,8 @@ TEST(FitClocks, RecoversTheOffsetAndThePhaseOfTwoClocks) {
 
 TEST(FitClocks, OffsetIsWhatToTakeFromTheSecondsStamps) {
   const Seen first(changing, 0.0, 0.0, 0.0, 1), second(changing, 0.05, 0.0, 0.0, 2);
-  EXPECT_NEAR(fit_clocks(first.motion(), second.motion(), false).value().offset_s.value, 0.05, 1e-5);
+  EXPECT_NEAR(fit_clocks(first.motion(), second.motion(), false).value().offset_s.value, 0.05,
+              1e-5);
 }
 
 TEST(FitClocks, OfOneClockFindsASmallOffsetAndLeavesALargeOneAlone) {
@@ -55,7 +60,8 @@ TEST(FitClocks, OfOneClockFindsASmallOffsetAndLeavesALargeOneAlone) {
 }
 
 TEST(FitClocks, PhaseIsWithinHalfATurnWhateverTheCountOfTurns) {
-  const Seen first(changing, 0.0, 0.0, 0.0, 1), second(changing, 0.0, 3.0 + 14.0 * test::pi, 0.0, 2);
+  const Seen first(changing, 0.0, 0.0, 0.0, 1),
+      second(changing, 0.0, 3.0 + 14.0 * test::pi, 0.0, 2);
   EXPECT_NEAR(fit_clocks(first.motion(), second.motion(), true).value().phase_rad, 3.0, 1e-6);
 }
 
@@ -78,10 +84,20 @@ TEST(FitClocks, AtOneSpeedOneClockGivesThePhaseAndNoOffset) {
   EXPECT_NEAR(fit->phase_rad, 0.3, 1e-3);
 }
 
-TEST(FitClocks, SaysThatNoTimeIsShared) {
-  const Seen first(changing, 0.0, 0.0, 0.0, 1), second(changing, 1000.0, 0.0, 0.0, 2);
+TEST(FitClocks, FindsThatStampsOnOneClockAreNot) {
+  const Seen first(changing, 0.0, 0.0, 1e-4, 1), second(changing, 2.5, 0.4, 1e-4, 2);
+  const auto fit = fit_clocks(first.motion(), second.motion(), true);
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_NEAR(fit->offset_s.value, 2.5, 1e-3);
+  EXPECT_NEAR(fit->phase_rad, 0.4, 1e-3);
+}
+
+TEST(FitClocks, SaysThatTooLittleTimeIsShared) {
+  const Drive brief{{0.0, 0.0}, {{0.5, 60 * rpm}}};
+  const Seen first(brief, 0.0, 0.0, 0.0, 1), second(brief, 0.0, 0.0, 0.0, 2);
   const auto fit = fit_clocks(first.motion(), second.motion(), true);
   ASSERT_FALSE(fit.has_value());
+  EXPECT_EQ(fit.error().code, Errc::not_observable);
   EXPECT_EQ(fit.error().message, "the two recordings share less than a second");
 }
 

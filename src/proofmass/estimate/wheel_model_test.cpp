@@ -15,7 +15,9 @@ template <int S>
 using State = Mat<wheel::states(S)>;
 
 /// Where the place of a sensor, along its u, stands in the state.
-int place_of(int sensors, int s) { return wheel::places(sensors) + 2 * s; }
+int place_of(int sensors, int s) {
+  return wheel::places(sensors) + 2 * s;
+}
 
 /// A model with one instant at which every sensor was read.
 template <int S>
@@ -87,9 +89,15 @@ void expect_jacobian_of_differences(double rolling_radius_m) {
   }
 }
 
-TEST(WheelModel, JacobianOfOneSensorEqualsDifferences) { expect_jacobian_of_differences<1>(0.0); }
-TEST(WheelModel, JacobianOfTwoSensorsEqualsDifferences) { expect_jacobian_of_differences<2>(0.0); }
-TEST(WheelModel, JacobianOnARollingWheelEqualsDifferences) { expect_jacobian_of_differences<2>(0.3); }
+TEST(WheelModel, JacobianOfOneSensorEqualsDifferences) {
+  expect_jacobian_of_differences<1>(0.0);
+}
+TEST(WheelModel, JacobianOfTwoSensorsEqualsDifferences) {
+  expect_jacobian_of_differences<2>(0.0);
+}
+TEST(WheelModel, JacobianOnARollingWheelEqualsDifferences) {
+  expect_jacobian_of_differences<2>(0.3);
+}
 
 // The same force by differentiating a point on the complex plane twice (wheel_test_support.hpp).
 TEST(WheelModel, PredictsExactlyWhatTheKinematicsOfAPointSay) {
@@ -120,8 +128,8 @@ TEST(WheelModel, PredictsExactlyWhatTheKinematicsOfAPointSay) {
   }
 }
 
-// Lele (2010), section 4.4: sensors at ±R with parallel axes; half the sum is gravity's phase, half the
-// difference −R ω² and R α.
+// Lele (2010), section 4.4: sensors at ±R with parallel axes; half the sum is gravity's phase, half
+// the difference −R ω² and R α.
 TEST(WheelModel, OfAnOppositePairSumIsGravityAndDifferenceIsTheMotion) {
   constexpr double R = 0.1;
   const OneInstant<2> instant(0.0, 0.0);
@@ -202,8 +210,8 @@ TEST(WheelModel, OnlyTheBiasesWalk) {
   }
 }
 
-// About a path the readings are linear in the constants, exactly, and their slope owes nothing to what
-// the filter makes of them.
+// About a path the readings are linear in the constants, exactly, and their slope owes nothing to
+// what the filter makes of them.
 TEST(WheelModel, AboutAPathTheConstantsEnterLinearly) {
   Normal normal(5);
   OneInstant<1> instant(0.0, 0.0);

@@ -22,8 +22,8 @@ WheelReadings planar(const Drive& drive, const std::vector<Mount>& mounts, doubl
   }
   for (std::size_t k = 0; k < readings.time_s.size(); ++k) {
     const auto row = static_cast<std::int64_t>(k);
-    readings.instants.push_back({k == 0 ? 0.0 : 1.0 / rate_hz,
-                                 {row, mounts.size() > 1 ? row : WheelInstant::no_row}});
+    readings.instants.push_back(
+        {k == 0 ? 0.0 : 1.0 / rate_hz, {row, mounts.size() > 1 ? row : WheelInstant::no_row}});
   }
   return readings;
 }
@@ -50,8 +50,7 @@ TEST(Atan2Angle, OnTheAxleIsTheAngleAndCountsTurnsEitherWay) {
 TEST(Atan2Angle, OfAnOppositePairCancelsTheMotion) {
   const Drive drive{{0.0, 0.0}, {{2.0, 120 * rpm}, {2.0, -30 * rpm}}};
   for (const double turned : {0.0, test::pi}) {
-    auto readings =
-        planar(drive, {noise_free({0.1, 0.0}), noise_free({-0.1, 0.0}, turned)}, 200.0);
+    auto readings = planar(drive, {noise_free({0.1, 0.0}), noise_free({-0.1, 0.0}, turned)}, 200.0);
     readings.phase_rad = turned;
     const auto angle = atan2_angle(readings);
     for (std::size_t k = 0; k < angle.size(); ++k)
@@ -79,9 +78,9 @@ TEST(Atan2Angle, WaitsForTheFirstReadingAndKeepsTheLastThroughAGap) {
 
 TEST(DoubleIntegral, OfANoiseFreeOppositePairGivesTheAngleBack) {
   const Drive drive{{0.4, 15 * rpm}, {{3.0, -40 * rpm}, {3.0, 60 * rpm}}};
-  const auto readings =
-      planar(drive, {noise_free({0.1, 0.0}), noise_free({-0.1, 0.0})}, 1000.0);
-  const auto angle = double_integral_angle(readings, Eigen::Vector4d(0.1, 0.0, -0.1, 0.0), 0.4, 15 * rpm);
+  const auto readings = planar(drive, {noise_free({0.1, 0.0}), noise_free({-0.1, 0.0})}, 1000.0);
+  const auto angle =
+      double_integral_angle(readings, Eigen::Vector4d(0.1, 0.0, -0.1, 0.0), 0.4, 15 * rpm);
   ASSERT_EQ(angle.size(), readings.time_s.size());
   for (std::size_t k = 0; k < angle.size(); ++k)
     EXPECT_NEAR(angle[k], drive.at(readings.time_s[k]).angle_rad, 2e-5) << "k = " << k;

@@ -14,7 +14,9 @@ using test::rpm;
 
 const Drive turning{{0.3, 20 * rpm}, {{8.0, 30 * rpm}}};
 
-double dot(const Axis& a, const Axis& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double dot(const Axis& a, const Axis& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 WheelPlane plane_of(const WheelSensor& sensor, const std::optional<Axis>& given = {}) {
   return find_plane(sensor, screen_rows(sensor), given).value();
@@ -28,16 +30,17 @@ void expect_right_handed(const WheelPlane& plane) {
   EXPECT_NEAR(dot(plane.axis, plane.u), 0.0, 1e-12);
   const Axis& u = plane.u;
   const Axis& v = plane.v;
-  EXPECT_NEAR((u[0] * v[1] - u[1] * v[0]) * plane.axis[2] + (u[1] * v[2] - u[2] * v[1]) * plane.axis[0] +
+  EXPECT_NEAR((u[0] * v[1] - u[1] * v[0]) * plane.axis[2] +
+                  (u[1] * v[2] - u[2] * v[1]) * plane.axis[0] +
                   (u[2] * v[0] - u[0] * v[2]) * plane.axis[1],
               1.0, 1e-12);
 }
 
 TEST(WheelPlane, IsFoundWhicheverSensorAxisPointsAlongTheAxle) {
   const std::array<std::array<std::array<double, 3>, 3>, 3> turned{
-      {{{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}},     // axle along x
-       {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}},     // along y
-       {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}};   // along z
+      {{{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}},    // axle along x
+       {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}},    // along y
+       {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}};  // along z
   for (std::size_t along = 0; along < 3; ++along) {
     Mount mount;
     mount.axes = turned[along];
@@ -155,8 +158,10 @@ INSTANTIATE_TEST_SUITE_P(
     ScreenRows,
     testing::Values(Spoilt{std::numeric_limits<double>::quiet_NaN(), "not a finite number"},
                     Spoilt{-std::numeric_limits<double>::infinity(), "not a finite number"},
-                    Spoilt{3e34, "beyond 1000 g"}, Spoilt{-9900.0, "beyond 1000 g"},
-                    Spoilt{1e-40, "denormal number"}, Spoilt{0.0, "all axes exactly zero"}));
+                    Spoilt{3e34, "beyond 1000 g"},
+                    Spoilt{-9900.0, "beyond 1000 g"},
+                    Spoilt{1e-40, "denormal number"},
+                    Spoilt{0.0, "all axes exactly zero"}));
 
 TEST(ScreenRows, OneBadAxisSpoilsTheRow) {
   WheelSensor sensor = record(turning, {}, 100.0, 1);

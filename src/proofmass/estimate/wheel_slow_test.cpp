@@ -54,8 +54,8 @@ TEST(Filter, CovarianceStaysSymmetricAndPositiveDefiniteOverAMillionSteps) {
   EXPECT_LT(asymmetry, 1e-12);
 }
 
-/// The thesis's rig at 11 rpm: two sensors at R = 0.1 m with parallel axes, 60 s at 200 Hz, 0.0184 m/s²
-/// of noise, biases within ±0.3 m/s², a warm-up of 0.1 m/s², and a ripple of 2 % once a turn.
+/// The thesis's rig at 11 rpm: two sensors at R = 0.1 m with parallel axes, 60 s at 200 Hz, 0.0184
+/// m/s² of noise, biases within ±0.3 m/s², a warm-up of 0.1 m/s², and a ripple of 2 % once a turn.
 struct Rig {
   Drive drive{{0.0, 11 * rpm}, {{60.0, 11 * rpm}}};
   std::vector<WheelSensor> sensors;
@@ -88,8 +88,8 @@ RigScore score(const Rig& rig) {
   options.radius_m = 0.1;
   const auto solution = estimate_wheel(rig.sensors, options).value();
   const WheelSeries& s = solution.series;
-  // Which way the axes point against the wheel's marks no accelerometer can tell: here they are parallel,
-  // and the angle is the rig's but for whole turns.
+  // Which way the axes point against the wheel's marks no accelerometer can tell: here they are
+  // parallel, and the angle is the rig's but for whole turns.
   const double whole = std::round((s.angle_rad.front() - rig.drive.start.angle_rad) / rad_per_turn);
   RigScore sum;
   double count = 0.0;

@@ -57,7 +57,8 @@ struct Drive {
     Turning now = start;
     double left = t_s;
     for (const Stage& stage : stages) {
-      const double T = stage.duration_s, t = std::min(left, T), half = 0.5 * (stage.to_radps - now.speed_radps);
+      const double T = stage.duration_s, t = std::min(left, T),
+                   half = 0.5 * (stage.to_radps - now.speed_radps);
       now.angle_rad += (now.speed_radps + half) * t - half * T / pi * std::sin(pi * t / T);
       now.accel_radps2 = half * pi / T * std::sin(pi * t / T);
       now.speed_radps += half * (1.0 - std::cos(pi * t / T));
@@ -104,7 +105,8 @@ inline std::complex<double> force(const Turning& now, const Mount& mount, const 
   using namespace std::complex_literals;
   const std::complex<double> turn = std::polar(1.0, now.angle_rad);
   const double w = now.speed_radps, al = now.accel_radps2;
-  const std::complex<double> p_ddot = (1i * al - w * w) * mount.place_m * turn - site.rolling_radius_m * al;
+  const std::complex<double> p_ddot =
+      (1i * al - w * w) * mount.place_m * turn - site.rolling_radius_m * al;
   const double g = site.gravity_mps2 * std::cos(site.axle_tilt_rad);
   return (p_ddot + 1i * g) * std::conj(turn * std::polar(1.0, mount.turned_rad));
 }
@@ -115,7 +117,10 @@ inline std::array<double, 2> reading(const std::complex<double>& f, const Mount&
           mount.scale[1] * (f.imag() + mount.skew_rad * f.real()) + mount.bias_mps2[1]};
 }
 
-inline WheelSensor record(const Drive& drive, const Mount& mount, double rate_hz, std::uint64_t seed,
+inline WheelSensor record(const Drive& drive,
+                          const Mount& mount,
+                          double rate_hz,
+                          std::uint64_t seed,
                           const Site& site = {}) {
   Normal normal(seed);
   WheelSensor sensor;
@@ -126,10 +131,9 @@ inline WheelSensor record(const Drive& drive, const Mount& mount, double rate_hz
     sensor.time_s.push_back(t + mount.clock_offset_s);
     const auto uv = reading(force(drive.at(t), mount, site), mount);
     const double warm = mount.warm_up_mps2 * (1.0 - std::exp(-t / mount.warm_up_s));
-    const std::array<double, 3> f{uv[0] + warm + mount.noise_mps2 * normal(),
-                                  uv[1] + warm + mount.noise_mps2 * normal(),
-                                  site.gravity_mps2 * std::sin(site.axle_tilt_rad) +
-                                      mount.noise_mps2 * normal()};
+    const std::array<double, 3> f{
+        uv[0] + warm + mount.noise_mps2 * normal(), uv[1] + warm + mount.noise_mps2 * normal(),
+        site.gravity_mps2 * std::sin(site.axle_tilt_rad) + mount.noise_mps2 * normal()};
     for (std::size_t axis = 0; axis < (mount.two_axes ? 2U : 3U); ++axis)
       sensor.accel_mps2[axis].push_back(f[0] * mount.axes[0][axis] + f[1] * mount.axes[1][axis] +
                                         f[2] * mount.axes[2][axis]);

@@ -33,7 +33,8 @@ struct ReadOptions {
 /// damaged headers), unsupported (a format that is known but not read), too_few_samples (no row of
 /// numbers), invalid_argument (a channel or time column that is not there; a rate not above zero).
 /// Each names the file and, where there is one, the line or byte.
-/// Cost: one pass; memory 1.3 × the values kept at most, for plain tables.
+/// Cost: one pass; memory at the peak 1.02 to 1.15 × the table's doubles, the time column counted
+/// although it is dropped where it turns out to be uniform.
 [[nodiscard]] Result<Recording> read_recording(const std::string& path, const ReadOptions& options);
 
 /// The same for bytes that are in memory already; `name` stands for the file in errors and notes.
