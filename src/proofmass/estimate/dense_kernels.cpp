@@ -22,6 +22,16 @@ PM_VECTOR_CLONES void symmetric_times(const double* __restrict A, const double* 
     for (int i = 0; i < n; ++i) y[i] += A[j * stride + i] * x[j];
 }
 
+PM_VECTOR_CLONES void subtract_square(double* __restrict A, const double* __restrict w,
+                                      SquareExtent extent) {
+  const int n = extent.n, stride = extent.stride;
+  for (int j = 0; j < n; ++j) {
+    double* column = A + j * stride;
+    const double wj = w[j];
+    for (int i = 0; i < n; ++i) column[i] -= w[i] * wj;
+  }
+}
+
 PM_VECTOR_CLONES void subtract_symmetric_pair(double* __restrict A, const double* __restrict a,
                                               const double* __restrict b, SquareExtent extent) {
   const int n = extent.n, stride = extent.stride;

@@ -100,7 +100,7 @@ struct FilterState {
 template <int N, int D>
 void predict(Gaussian<N>& x, const Transition<N, D>& step) {
   x.mean.template head<D>() = step.mean;
-  const Mat<D, N> FP = step.F * x.cov.template topRows<D>();
+  const Mat<D, N> FP = step.F.lazyProduct(x.cov.template topRows<D>());
   // Symmetric to the last bit: corrections do not reach what is not, and F would make it grow.
   const Mat<D, D> FPF = FP.template leftCols<D>() * step.F.transpose();
   x.cov.template topLeftCorner<D, D>() = 0.5 * (FPF + FPF.transpose()) + step.Q;
@@ -112,8 +112,17 @@ void predict(Gaussian<N>& x, const Transition<N, D>& step) {
   }
 }
 
-/// x̂ given one more reading: Kalman's gain, the covariance in Joseph's form,
-/// P ← (I − K h) P (I − K h)ᵀ + K R Kᵀ, in O(N²) because h is one row.
+/// Joseph's form with I − K h written out, in O(N³): for a prior so much wider than the reading that
+/// differences of its entries hold nothing of the answer.
+template <int N>
+[[gnu::noinline]] void correct_diffuse(Mat<N, N>& P, const Mat<N>& h, const Mat<N>& K, double R) {
+  const Mat<N, N> I_Kh = Mat<N, N>::Identity() - K * h.transpose();
+  const Mat<N, N> reduced = I_Kh * P * I_Kh.transpose() + R * K * K.transpose();
+  P = 0.5 * (reduced + reduced.transpose());
+}
+
+/// x̂ given one more reading: Kalman's gain, and P ← P − (P hᵀ)(P hᵀ)ᵀ / S, of which an entry and its
+/// mirror round alike; Joseph's form instead where the start is diffuse. Cost: O(N²).
 /// `predicted` is h(x̂) at the state as it stands. States from `active` on are held: their variances
 /// and covariances are zero, and are not touched. Source: G. J. Bierman, Factorization Methods for
 /// Discrete Sequential Estimation (1977), section II.
@@ -134,13 +143,15 @@ template <int N>
     return update;
   }
   if (off > gate.huber) update.variance *= off / gate.huber;
-  const double noise = update.variance - hPh;
   update.gain = Ph / update.variance;
   x.mean += update.gain * update.innovation;
-  const Mat<N> rest = Ph - update.gain * hPh;  // (I − K h) P hᵀ
-  // P − K (P hᵀ)ᵀ − rest Kᵀ + R K Kᵀ, written so that an entry and its mirror round alike.
-  const Mat<N> both = 0.5 * (Ph + rest - noise * update.gain);
-  subtract_symmetric_pair(x.cov.data(), update.gain.data(), both.data(), {active, N});
+  if (const double noise = reading.variance + (update.variance - update.expected);
+      hPh > 1e8 * noise) {
+    correct_diffuse(x.cov, reading.h, update.gain, noise);
+  } else {
+    const Mat<N> w = Ph / std::sqrt(update.variance);
+    subtract_square(x.cov.data(), w.data(), {active, N});
+  }
   return update;
 }
 
@@ -209,7 +220,7 @@ struct Hindsight {
     for (int i = 0; i < B; ++i)
       symmetric_times(Lambda.data(), filtered.cov.col(i).data(), LP.col(i).data(), {active, N});
     return filtered.cov.template topLeftCorner<B, B>() -
-           filtered.cov.template leftCols<B>().transpose() * LP;
+           filtered.cov.template leftCols<B>().transpose().lazyProduct(LP);
   }
 };
 
@@ -226,7 +237,7 @@ void look_back(Hindsight<N>& later, const Step<N, D, M>& step) {
     subtract_symmetric_pair(later.Lambda.data(), u.h.data(), half.data(), {later.active, N});
   }
   later.lambda.template head<D>() = (step.F.transpose() * later.lambda.template head<D>()).eval();
-  const Mat<D, N> FL = step.F.transpose() * later.Lambda.template topRows<D>();
+  const Mat<D, N> FL = step.F.transpose().lazyProduct(later.Lambda.template topRows<D>());
   later.Lambda.template topRows<D>() = FL;
   later.Lambda.template leftCols<D>() = FL.transpose();
   const Mat<D, D> FLF = FL.template leftCols<D>() * step.F;

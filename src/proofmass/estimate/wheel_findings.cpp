@@ -84,8 +84,14 @@ std::string sentence(const Eigen::VectorXd& direction, const std::vector<Constan
   bool place = false, bias = false;
   std::size_t sensor = sensors.size();
   bool one_sensor = true;
+  const auto share = [&](std::size_t i) { return std::abs(direction(static_cast<Eigen::Index>(i))); };
+  bool any_bias = false;
+  for (std::size_t i = 0; i < constants.size(); ++i)
+    any_bias = any_bias || (constants[i].kind == Kind::bias && share(i) >= 0.3);
   for (std::size_t i = 0; i < constants.size(); ++i) {
-    if (std::abs(direction(static_cast<Eigen::Index>(i))) < 0.3) continue;
+    // On a fast wheel a little way from the axle weighs as much as all the bias that is believed.
+    const bool trades = any_bias && constants[i].kind == Kind::place;
+    if (share(i) < (trades ? 0.05 : 0.3)) continue;
     names.push_back(name_of(constants[i]));
     place = place || constants[i].kind == Kind::place;
     bias = bias || constants[i].kind == Kind::bias;

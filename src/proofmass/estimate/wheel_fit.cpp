@@ -171,24 +171,29 @@ WheelFit smooth_at_places(const WheelReadings& readings, const Settled<S>& settl
 
 void add_in_square(double& std, double more) { std = std::hypot(std, more); }
 
-/// Adds what the places' uncertainty makes of everything else: each principal direction of their
-/// covariance by one standard deviation, and the whole smoothed again.
+/// Adds what the places' uncertainty makes of everything else: the whole smoothed again a little way
+/// along each principal direction of their covariance, and the differences drawn out to one standard
+/// deviation. Not that far at once: where the recording hardly tells the places, that is no small step.
 template <int S>
 void add_places_uncertainty(const WheelReadings& readings, const Settled<S>& settled,
                             const WheelPath& about, WheelFit& fit) {
+  constexpr double longest_step_m = 2e-3;
   const SymmetricEigen axes = symmetric_eigen(settled.places_cov);
   for (Eigen::Index i = 0; i < axes.values.size(); ++i) {
+    const double std_m = std::sqrt(std::max(axes.values(i), 1e-16));
+    const double step_m = std::min(std_m, longest_step_m), reach = std_m / step_m;
     Settled<S> moved = settled;
-    *moved.prior.places += std::sqrt(std::max(axes.values(i), 0.0)) * axes.vectors.col(i);
+    *moved.prior.places += step_m * axes.vectors.col(i);
     const auto model = held_model<S>(readings, moved.noise, about);
     WheelPath path = about;
     const auto end = trace_path(model, prior_state<S>(moved.prior), path);
-    const Eigen::VectorXd change = end.mean.tail(fit.constants.size()) - fit.constants;
+    const Eigen::VectorXd change = reach * (end.mean.tail(fit.constants.size()) - fit.constants);
     fit.constants_cov += change * change.transpose();
     const double turns = (end.mean(wheel::angle) - end.mean(wheel::start)) / rad_per_turn;
-    add_in_square(fit.turns.std, turns - fit.turns.value);
+    add_in_square(fit.turns.std, reach * (turns - fit.turns.value));
     for (std::size_t k = 0; k < path.moving.size(); ++k) {
-      const Mat<wheel::moving> difference = path.moving[k] - fit.track.path.moving[k];
+      const Mat<wheel::moving> difference =
+          reach * (path.moving[k] - fit.track.path.moving[k]);
       add_in_square(fit.series.angle_std_rad[k], difference(wheel::angle));
       add_in_square(fit.series.filtered_angle_std_rad[k], difference(wheel::angle));
       add_in_square(fit.series.speed_std_radps[k], difference(wheel::speed));
@@ -258,6 +263,8 @@ WheelFit fit_sensors(WheelReadings& readings, WheelTrack track, const PlacesPrio
   WheelTrack coarse_track = spread_track(track, readings, coarse);
   Settled<S> settled = settle_rounds<S>(coarse, coarse_track, belief, S == 1 ? 4 : 2, progress);
   track = spread_track(coarse_track, coarse, readings);
+  // A warm-up is no random walk: it drifts fastest at the start, where the turns begin to be counted.
+  settled.noise.bias_walk_psd *= 3.0;
   track.noise = settled.noise;
   const auto model = held_model<S>(readings, settled.noise, track.path);
   spread_variance(coarse, each, readings);

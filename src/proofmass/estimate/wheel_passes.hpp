@@ -76,7 +76,7 @@ FilterState<wheel::states(S)> prior_state(const WheelPrior& prior) {
 }
 
 /// How well a forward run predicts. `lost` judges runs of different noise figures alike: mean of
-/// min(y²/c², 1) over the innovations y, c = 3 m/s², a third of the signal. A run that has the
+/// min(y²/c², 1) over the innovations y, c = 0.3 g, g gravity in the plane of the wheel. A run that has the
 /// wheel's phase scores near 0, one that has lost it above a half.
 struct WheelScore {
   double lost = 0.0;
@@ -94,7 +94,7 @@ struct WheelScore {
 template <int S>
 WheelScore score_run(const WheelModel<S>& model, FilterState<wheel::states(S)> state,
                      std::size_t first, std::size_t last) {
-  constexpr double c2 = 9.0;
+  const double c2 = std::pow(0.3 * model.gravity_mps2, 2);
   WheelScore score;
   filter(model, first, last, wheel_gate, state, [&](std::size_t, const auto& step) {
     for (int i = 0; i < step.count; ++i) {

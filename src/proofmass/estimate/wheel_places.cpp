@@ -68,7 +68,7 @@ FoundPlaces find_places(const WheelModel<S>& model, const Excerpt<S>& excerpt, W
     return score_run(model, state, excerpt.first, excerpt.last).log_likelihood -
            0.5 * prior_information * (places - belief.mean).squaredNorm();
   };
-  FoundPlaces found{*prior.places, Eigen::MatrixXd::Identity(2 * S, 2 * S) * 1e-4};
+  FoundPlaces found{*prior.places, Eigen::MatrixXd::Identity(2 * S, 2 * S) / prior_information};
   double best = likelihood(found.mean);
   // Far from the truth the surface is ragged; where the recording says little, the truth is near what
   // was believed.
@@ -76,9 +76,9 @@ FoundPlaces find_places(const WheelModel<S>& model, const Excerpt<S>& excerpt, W
     best = value;
     found.mean = belief.mean;
   }
-  bool curved = false;
-  for (int round = 0; round < 6; ++round) {
-    const Places step = found.cov.diagonal().cwiseSqrt().cwiseMax(1e-6).cwiseMin(0.05);
+  Places step = Places::Constant(2 * S, 0.01);
+  bool curved = false;  // found.cov was taken with steps of its own size
+  for (int round = 0; round < 8; ++round) {
     if (!curved) {
       const auto cov =
           inverse_information(hessian_of(likelihood, found.mean, step), prior_information);
@@ -89,19 +89,20 @@ FoundPlaces find_places(const WheelModel<S>& model, const Excerpt<S>& excerpt, W
     if (!gradient.allFinite()) break;
     Places move = found.cov * gradient;
     const double gain = gradient.dot(move);  // twice what a quadratic would gain
-    // Steps of the differences far from the figure's own scale have told the curvature badly.
-    const Places now = found.cov.diagonal().cwiseSqrt().cwiseMax(1e-6).cwiseMin(0.05);
-    curved = gain < 4.0 && (now.array() < 3.0 * step.array()).all() &&
-             (step.array() < 3.0 * now.array()).all();
     double value = likelihood(found.mean + move);
-    for (int halvings = 0; !(value >= best) && halvings < 6; ++halvings) {
+    for (int halvings = 0; !(value >= best) && halvings < 3; ++halvings) {
       move *= 0.5;
       value = likelihood(found.mean + move);
     }
-    if (!(value >= best)) break;
-    best = value;
-    found.mean += move;
-    if (gain < 0.01 && curved) break;
+    if (value >= best) {
+      best = value;
+      found.mean += move;
+    }
+    const Places own = found.cov.diagonal().cwiseSqrt().cwiseMax(1e-6).cwiseMin(0.05);
+    curved = (own.array() < 3.0 * step.array()).all() && (step.array() < 3.0 * own.array()).all();
+    if (curved && (gain < 0.01 || !(value >= best))) break;
+    // Where no way leads up, the differences were taken over more than the surface's own scale.
+    step = value >= best ? own : Places(0.2 * step);
   }
   found.log_likelihood = best;
   return found;

@@ -17,10 +17,33 @@ double component(const WheelSensor& sensor, std::size_t axis, std::size_t row) {
   return values.empty() ? 0.0 : values[row];
 }
 
-/// Empty if the row can be used.
-const char* why_unusable(const WheelSensor& sensor, std::size_t row, double last_time_s) {
-  if (!std::isfinite(sensor.time_s[row]) || !(sensor.time_s[row] > last_time_s))
-    return "time does not rise";
+/// The longest rising subsequence of the stamps: a stamp far ahead costs itself and not all that come
+/// after it. Source: C. Schensted, Canadian Journal of Mathematics 13 (1961) 179. Cost: O(N log N).
+std::vector<bool> rising(const std::vector<double>& time_s) {
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> ends;  // of the rising runs of length 1, 2, …, the one that ends lowest
+  std::vector<std::size_t> before(time_s.size(), none);
+  for (std::size_t row = 0; row < time_s.size(); ++row) {
+    if (!std::isfinite(time_s[row])) continue;
+    auto at = ends.end();
+    if (!ends.empty() && time_s[row] <= time_s[ends.back()])
+      at = std::ranges::lower_bound(ends, time_s[row], {}, [&](std::size_t k) { return time_s[k]; });
+    if (at != ends.end() && time_s[row] == time_s[*at]) continue;
+    if (at != ends.begin()) before[row] = *(at - 1);
+    if (at == ends.end())
+      ends.push_back(row);
+    else
+      *at = row;
+  }
+  std::vector<bool> keep(time_s.size(), false);
+  for (std::size_t row = ends.empty() ? none : ends.back(); row != none; row = before[row])
+    keep[row] = true;
+  return keep;
+}
+
+/// nullptr if the row can be used.
+const char* why_unusable(const WheelSensor& sensor, std::size_t row, bool time_rises) {
+  if (!time_rises) return "time does not rise";
   bool all_zero = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double x = component(sensor, axis, row);
@@ -59,26 +82,30 @@ WheelPlane plane_about(const Axis& axis) {
   return plane;
 }
 
-/// Means of the force over stretches of a twentieth of a second: shaking averages out, turning stays.
+/// Medians of the force over stretches of a twentieth of a second: shaking and single bad rows fall
+/// out, turning stays.
 Eigen::MatrixX3d averaged(const WheelSensor& sensor, const std::vector<std::size_t>& rows) {
   const double span_s = sensor.time_s[rows.back()] - sensor.time_s[rows.front()];
   const double rate_hz = span_s > 0.0 ? static_cast<double>(rows.size()) / span_s : 0.0;
   const auto each = static_cast<std::size_t>(std::clamp(0.05 * rate_hz, 1.0, 1e4));
   const std::size_t count = rows.size() / each;
-  Eigen::MatrixX3d means = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(count), 3);
-  for (std::size_t i = 0; i < count * each; ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      means(static_cast<Eigen::Index>(i / each), static_cast<Eigen::Index>(axis)) +=
-          component(sensor, axis, rows[i]) / static_cast<double>(each);
-  return means;
+  Eigen::MatrixX3d medians(static_cast<Eigen::Index>(count), 3);
+  std::vector<double> stretch(each);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t k = 0; k < each; ++k) stretch[k] = component(sensor, axis, rows[i * each + k]);
+      medians(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(axis)) = *median(stretch);
+    }
+  return medians;
 }
 
-/// Draws each column's outermost thousandths in, so that no single bad row can turn the axis.
+/// Draws in what lies further outside the middle nine tenths of a column than those are wide, so that
+/// no few bad stretches can turn the axis.
 void limit(Eigen::MatrixX3d& means) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const View<double> column(means.col(axis).data(), static_cast<std::size_t>(means.rows()));
-    const double low = *quantile(column, 0.001), high = *quantile(column, 0.999);
-    means.col(axis) = means.col(axis).cwiseMax(low).cwiseMin(high).eval();
+    const double low = *quantile(column, 0.05), high = *quantile(column, 0.95), span = high - low;
+    means.col(axis) = means.col(axis).cwiseMax(low - span).cwiseMin(high + span).eval();
   }
 }
 
@@ -103,7 +130,12 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
       symmetric_eigen(centred.transpose() * centred / static_cast<double>(means.rows()));
   const double least = std::max(spread.values(0), 0.0), next = spread.values(1);
   // 0.3 m/s² of spread: gravity that has turned by some 25 degrees. Less may be shaking.
-  if (next < 16.0 * least || next < 0.09) return assume_plane(means);
+  if (next < 16.0 * least || next < 0.09) {
+    if (spread.values(2) < 1.0) return assume_plane(means);
+    return Error{Errc::not_observable,
+                 "the force changes along one direction only: a wheel that rocks, or one whose axle is "
+                 "upright; give --spin-axis, or record a whole turn"};
+  }
   Axis axis{spread.vectors(0, 0), spread.vectors(1, 0), spread.vectors(2, 0)};
   if (axis[largest(axis)] < 0.0) axis = scaled(axis, -1.0);
   return plane_about(axis);
@@ -113,15 +145,16 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
 
 Screened screen_rows(const WheelSensor& sensor) {
   Screened screened{std::vector<bool>(sensor.time_s.size(), false), {}, 0};
-  double last_time_s = -std::numeric_limits<double>::infinity();
+  const std::vector<bool> time_rises = rising(sensor.time_s);
+  double last_time_s = sensor.time_s.empty() ? 0.0 : sensor.time_s.front();
   const char* open = nullptr;  // reason of the stretch that goes on
   for (std::size_t row = 0; row < sensor.time_s.size(); ++row) {
-    const char* why = why_unusable(sensor, row, last_time_s);
+    const char* why = why_unusable(sensor, row, time_rises[row]);
     if (why == nullptr) {
       screened.usable[row] = true;
       last_time_s = sensor.time_s[row];
     } else {
-      const double t_s = std::isfinite(sensor.time_s[row]) ? sensor.time_s[row] : last_time_s;
+      const double t_s = time_rises[row] ? sensor.time_s[row] : last_time_s;
       if (why != open) screened.rejected.push_back({t_s, t_s, 0, why});
       screened.rejected.back().end_s = t_s;
       ++screened.rejected.back().rows;

@@ -35,7 +35,8 @@ struct WheelPlane {
 /// The axis along which the force changes least: gravity turns about it and the centripetal force is
 /// square to it. Its sign is that of its largest component, so that it lies near +x, +y or +z; u is
 /// the next sensor axis in the order x, y, z, x, made square to it.
-/// Errors: too_few_samples (fewer than 10 usable rows), invalid_argument (`given` has length 0).
+/// Errors: too_few_samples (fewer than 10 usable rows), invalid_argument (`given` has length 0),
+/// not_observable (the force changes along one direction only).
 
 [[nodiscard]] Result<WheelPlane> find_plane(const WheelSensor& sensor, const Screened& screened,
                                             const std::optional<Axis>& given);

@@ -50,7 +50,7 @@ struct RigSensor {
 struct RigWheel {
   double start_angle_rad = 0.0;  ///< of the mark on the wheel; 0 = horizontal
   std::vector<SpeedSegment> profile{{.duration_s = 60.0, .speed_radps = 11.0 * radps_per_rpm}};
-  SpeedRipple ripple{.fraction_rms = 0.02 / std::numbers::sqrt2};  ///< 2 % at its crest
+  SpeedRipple ripple{.fraction = 0.02};
   double axle_tilt_rad = 0.0;  ///< of the spin axis above the horizontal
   /// The wheel rolls on the ground below it without slip, and its hub accelerates with it: by
   /// −rolling_radius · α along the horizontal that the angle is counted from. 0 = hub at rest.

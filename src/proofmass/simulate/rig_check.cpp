@@ -46,7 +46,7 @@ void check_wheel(const RigWheel& wheel, Verdict& verdict) {
     require(segment.ramp_s >= 0.0 && segment.ramp_s <= segment.duration_s, "ramp_s",
             "of a segment must lie between 0 and its duration");
   }
-  require(wheel.ripple.fraction_rms >= 0.0, "fraction_rms", "must not be negative");
+  require(wheel.ripple.fraction >= 0.0, "fraction", "must not be negative");
   require(wheel.ripple.random_fraction_rms >= 0.0, "random_fraction_rms", "must not be negative");
   require(wheel.ripple.order > 0.0, "order", "must be positive");
   require(wheel.ripple.random_max_order > 0.0, "random_max_order", "must be positive");

@@ -33,7 +33,7 @@ void visit_wheel(Wheel& w, Visit&& visit) {
 
 template <class Ripple, class Visit>
 void visit_ripple(Ripple& r, Visit&& visit) {
-  visit("fraction_rms", r.fraction_rms, 1.0, "of the speed, as one sine ...");
+  visit("fraction", r.fraction, 1.0, "of the speed, at the crest of one sine ...");
   visit("order", r.order, 1.0, "... of so many cycles per revolution, phase by the seed");
   visit("random_fraction_rms", r.random_fraction_rms, 1.0, "of the speed, as noise ...");
   visit("random_max_order", r.random_max_order, 1.0, "... up to so many cycles per revolution");

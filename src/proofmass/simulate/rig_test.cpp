@@ -21,7 +21,7 @@ TEST(Rig, DefaultIsTheThesissWheel) {
   EXPECT_EQ(rig.recording.channels[0].unit, parse_unit("m/s^2").value());
   EXPECT_NEAR(column(rig.truth, "angle").back() / rad_per_turn, 11.0, 0.02);
   EXPECT_NEAR(moments(column(rig.truth, "speed")).mean, 1.1519, 0.001);
-  EXPECT_NEAR(moments(column(rig.truth, "speed")).std(), 0.02 * 1.1519, 0.001);
+  EXPECT_NEAR(moments(column(rig.truth, "speed")).std(), 0.02 / std::numbers::sqrt2 * 1.1519, 0.0005);
   EXPECT_EQ(rig.sensors.size(), 2U);
 }
 
@@ -93,7 +93,7 @@ TEST(Rig, AngleOfTheTruthIsThatOfTheFirstSensorsXAxis) {
 // Second computation, from the path of the proof mass: f = p̈ − gravity by second differences.
 TEST(Rig, ForceIsThePathsSecondDerivativeLessGravity) {
   RigOptions options = perfect();
-  options.wheel.ripple = {.fraction_rms = 0.05, .order = 2.0};
+  options.wheel.ripple = {.fraction = 0.07, .order = 2.0};
   options.wheel.profile = {{.duration_s = 6.0, .speed_radps = 3.0, .ramp_s = 6.0}};
   options.wheel.rolling_radius_m = 0.31;
   options.wheel.start_angle_rad = 0.4;
@@ -263,7 +263,7 @@ TEST(Rig, SaysWhichOptionMakesNoSense) {
   refuses("duration_s", [](RigOptions& o) { o.wheel.profile[0].duration_s = 1e9; });
   refuses("ramp_s", [](RigOptions& o) { o.wheel.profile[0].ramp_s = 61.0; });
   refuses("order", [](RigOptions& o) { o.wheel.ripple.order = 0.0; });
-  refuses("fraction_rms", [](RigOptions& o) { o.wheel.ripple.fraction_rms = -0.1; });
+  refuses("fraction", [](RigOptions& o) { o.wheel.ripple.fraction = -0.1; });
   refuses("shake_bandwidth_hz", [](RigOptions& o) { o.wheel.shake_bandwidth_hz = 0.0; });
   refuses("bias_mps2", [=](RigOptions& o) { o.sensors[1].bias_mps2[2] = nan; });
   refuses("scale", [](RigOptions& o) { o.sensors[0].scale[1] = 0.0; });

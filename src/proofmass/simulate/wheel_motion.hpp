@@ -19,7 +19,7 @@ struct SpeedSegment {
 /// ω = ω0 (1 + Σ a_i sin(n_i Φ + φ_i)), phases by the seed. In terms of Φ it integrates in closed
 /// form, dies with the speed and repeats with the turns as that of a motor or gear does.
 struct SpeedRipple {
-  double fraction_rms = 0.0;         ///< of one sine at `order`
+  double fraction = 0.0;             ///< of one sine at `order`, at its crest
   double order = 1.0;                ///< n, cycles per revolution
   double random_fraction_rms = 0.0;  ///< of noise with an even spectrum of orders
   double random_max_order = 10.0;    ///< from 0 to this

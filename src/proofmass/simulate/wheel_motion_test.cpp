@@ -11,7 +11,7 @@ namespace {
 
 const SpeedRipple no_ripple{};
 const SpeedRipple every_ripple{
-    .fraction_rms = 0.03, .order = 3.0, .random_fraction_rms = 0.02, .random_max_order = 8.0};
+    .fraction = 0.04, .order = 3.0, .random_fraction_rms = 0.02, .random_max_order = 8.0};
 /// Rest, start, run, step, reversal, stop.
 const std::vector<SpeedSegment> profile{{.duration_s = 2.0},
                                         {.duration_s = 5.0, .speed_radps = 2.0, .ramp_s = 1.0},
@@ -80,7 +80,7 @@ TEST(WheelMotion, AngleIsTheIntegralOfTheSpeedToANanoradian) {
 TEST(WheelMotion, RippleHasItsRmsAndRepeatsWithTheTurns) {
   const double speed = 2.0;
   const WheelMotion motion(0.0, {{.duration_s = 600.0, .speed_radps = speed}},
-                           {.fraction_rms = 0.02, .order = 1.0}, 9);
+                           {.fraction = 0.02 * std::numbers::sqrt2, .order = 1.0}, 9);
   Moments seen;
   const double turn_s = rad_per_turn / speed;
   for (int k = 0; k < 1000; ++k) seen.add(motion.at(k * turn_s / 1000).speed_radps / speed - 1.0);
