@@ -139,7 +139,7 @@ std::vector<double> our_smoother(const WheelModel<S>& model) {
       model, start<S>(), Gate{}, [](std::size_t, const auto&) {},
       [&](std::size_t k, const auto& step, const auto& later) {
         angle[k] = later.mean(step.filtered)(wheel::angle);
-        std_sum += later.template cov<wheel::moving>(step.filtered)(0, 0);
+        std_sum += later.template cov<wheel::jerk>(step.filtered)(0, 0);
       });
   if (!(std_sum > 0.0)) std::puts("the smoother gave no variance");
   return angle;

@@ -145,8 +145,9 @@ void add_wheel(CLI::App& app, WheelCommand& command) {
   verb.add_option("--radius", command.radius_m, "of the sensor from the axle, where known")
       ->type_name("M")
       ->check(not_negative());
-  verb.add_option("--rolling-radius", command.rolling_radius_m,
-                  "on which the wheel rolls under a vehicle: takes its speeding up out of the angle")
+  verb.add_option(
+          "--rolling-radius", command.rolling_radius_m,
+          "on which the wheel rolls under a vehicle: takes its speeding up out of the angle")
       ->type_name("M")
       ->check(positive());
   verb.add_option("--rim-radius", command.rim_radius_m, "of the rim, whose path is the distance")

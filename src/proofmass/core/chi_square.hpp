@@ -11,9 +11,9 @@ struct Bounds {
   double lower = 0.0, upper = 0.0;
 };
 
-/// Between what the mean of `count` independent chi-square variables of one degree of freedom lies in
-/// 95 % of cases. Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section
-/// 5.4.2.
+/// Between what the mean of `count` independent chi-square variables of one degree of freedom lies
+/// in 95 % of cases. Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001),
+/// section 5.4.2.
 [[nodiscard]] Bounds mean_chi_square_95(std::size_t count);
 
 }  // namespace proofmass

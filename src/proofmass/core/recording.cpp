@@ -19,7 +19,9 @@ struct AxisName {
   char axis = 0;
 };
 
-bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+bool is_letter(char c) {
+  return std::isalpha(static_cast<unsigned char>(c)) != 0;
+}
 
 /// The axis letter is the last x, y or z that no letter follows and that either starts a word
 /// ("x1", "Acc_X", "Accelerometer Z") or ends the usual short forms ("ax", "accx", "AccelY").

@@ -31,18 +31,19 @@ struct Channel {
 
 /// Where the time of the samples comes from.
 enum class TimeSource {
-  stamps,        ///< a time column of the file
-  counter,       ///< a sample counter with a known rate
-  given_rate,    ///< --rate, or a rate in the file's header
-  none,          ///< nothing says: time is the sample's number and rate_hz is 0
+  stamps,      ///< a time column of the file
+  counter,     ///< a sample counter with a known rate
+  given_rate,  ///< --rate, or a rate in the file's header
+  none,        ///< nothing says: time is the sample's number and rate_hz is 0
 };
 
 /// When each sample was taken: either evenly, from rate_hz alone, or by stamps.
 struct TimeBase {
   TimeSource source = TimeSource::none;
-  std::string channel;           ///< name of the column behind it, empty if none
-  double rate_hz = 0.0;          ///< nominal rate: given, or 1 / median step of the stamps; 0 unknown
-  std::vector<double> stamps_s;  ///< seconds since the first sample; empty where the base is uniform
+  std::string channel;   ///< name of the column behind it, empty if none
+  double rate_hz = 0.0;  ///< nominal rate: given, or 1 / median step of the stamps; 0 unknown
+  std::vector<double>
+      stamps_s;  ///< seconds since the first sample; empty where the base is uniform
   /// The first sample's time on the file's own clock (its origin may be an epoch, a power-up or
   /// nothing at all): what two recordings of one clock are laid beside each other with.
   std::optional<std::int64_t> start_ns;
@@ -71,9 +72,7 @@ struct Recording {
   [[nodiscard]] std::size_t samples() const {
     return channels.empty() ? 0 : channels.front().values.size();
   }
-  [[nodiscard]] double duration_s() const {
-    return samples() < 2 ? 0.0 : time.at(samples() - 1);
-  }
+  [[nodiscard]] double duration_s() const { return samples() < 2 ? 0.0 : time.at(samples() - 1); }
   /// nullptr if there is none of that name (exact, then ignoring case).
   [[nodiscard]] const Channel* find(std::string_view name) const;
 };
@@ -85,7 +84,7 @@ struct Recording {
 /// Up to three accelerometer channels that belong to one sensor, as indices into
 /// Recording::channels.
 struct Triad {
-  std::string name;                              ///< what the three names share: "acc1", "Acc"
+  std::string name;  ///< what the three names share: "acc1", "Acc"
   std::optional<std::size_t> x, y, z;
   [[nodiscard]] std::size_t axes() const {
     return std::size_t{x.has_value()} + std::size_t{y.has_value()} + std::size_t{z.has_value()};

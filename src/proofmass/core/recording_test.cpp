@@ -9,7 +9,11 @@ Recording with_channels(const std::vector<std::string>& names, std::string_view 
   Recording recording;
   for (const std::string& name : names)
     recording.channels.push_back({name, parse_unit(unit).value(), {0.0, 1.0, 2.0, 3.0}});
-  recording.time = {.source = TimeSource::given_rate, .channel = "", .rate_hz = 10.0, .stamps_s = {}, .start_ns = 0};
+  recording.time = {.source = TimeSource::given_rate,
+                    .channel = "",
+                    .rate_hz = 10.0,
+                    .stamps_s = {},
+                    .start_ns = 0};
   return recording;
 }
 

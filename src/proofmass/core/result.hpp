@@ -12,14 +12,14 @@ namespace proofmass {
 
 /// What went wrong, coarse enough for a caller to branch on.
 enum class Errc {
-  invalid_argument,       ///< what the caller asked for makes no sense
-  unreadable,             ///< no such file, no permission, a failing disk
-  corrupt,                ///< bytes that cannot be what they claim to be
-  unsupported,            ///< understood, but not built in
+  invalid_argument,  ///< what the caller asked for makes no sense
+  unreadable,        ///< no such file, no permission, a failing disk
+  corrupt,           ///< bytes that cannot be what they claim to be
+  unsupported,       ///< understood, but not built in
   too_few_samples,
   not_finite,
   not_positive_definite,
-  not_observable,         ///< the data cannot tell, however long one computes
+  not_observable,  ///< the data cannot tell, however long one computes
 };
 
 /// A failure that data or the outside world can cause. A bug is not an Error: see contract.hpp.

@@ -35,7 +35,8 @@ std::optional<double> quantile(View<double> series, double p) {
   PM_EXPECTS(p >= 0.0 && p <= 1.0);
   std::vector<double> finite;
   finite.reserve(series.size());
-  std::ranges::copy_if(series, std::back_inserter(finite), [](double x) { return std::isfinite(x); });
+  std::ranges::copy_if(series, std::back_inserter(finite),
+                       [](double x) { return std::isfinite(x); });
   if (finite.empty()) return std::nullopt;
   const double at = p * static_cast<double>(finite.size() - 1);
   const auto below = finite.begin() + static_cast<std::ptrdiff_t>(std::floor(at));

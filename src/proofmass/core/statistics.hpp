@@ -32,8 +32,8 @@ struct Moments {
   return quantile(series, 0.5);
 }
 
-/// Standard deviation of a normal distribution from the median absolute deviation, 1.4826 · MAD: half
-/// the values may be anything. nullopt if no value is finite.
+/// Standard deviation of a normal distribution from the median absolute deviation, 1.4826 · MAD:
+/// half the values may be anything. nullopt if no value is finite.
 [[nodiscard]] std::optional<double> robust_std(View<double> series);
 
 }  // namespace proofmass

@@ -120,7 +120,7 @@ constexpr std::array folds = std::to_array<std::pair<std::string_view, std::stri
     {"⋅", "*"},
     {"∕", "/"},
     {"**", "^"},
-    {"\xB5", "u"},    // the same in Latin-1, which many loggers write
+    {"\xB5", "u"},  // the same in Latin-1, which many loggers write
     {"\xB2", "^2"},
     {"\xB0", "deg"},
 });
@@ -176,18 +176,30 @@ std::optional<Unit> parse_unit(std::string_view text) {
 
 std::string_view name_of(Quantity quantity) {
   switch (quantity) {
-    case Quantity::unknown: return "unknown";
-    case Quantity::counts: return "counts";
-    case Quantity::time: return "time";
-    case Quantity::acceleration: return "acceleration";
-    case Quantity::angular_rate: return "angular rate";
-    case Quantity::angle: return "angle";
-    case Quantity::voltage: return "voltage";
-    case Quantity::temperature: return "temperature";
-    case Quantity::length: return "length";
-    case Quantity::speed: return "speed";
-    case Quantity::pressure: return "pressure";
-    case Quantity::magnetic_field: return "magnetic field";
+    case Quantity::unknown:
+      return "unknown";
+    case Quantity::counts:
+      return "counts";
+    case Quantity::time:
+      return "time";
+    case Quantity::acceleration:
+      return "acceleration";
+    case Quantity::angular_rate:
+      return "angular rate";
+    case Quantity::angle:
+      return "angle";
+    case Quantity::voltage:
+      return "voltage";
+    case Quantity::temperature:
+      return "temperature";
+    case Quantity::length:
+      return "length";
+    case Quantity::speed:
+      return "speed";
+    case Quantity::pressure:
+      return "pressure";
+    case Quantity::magnetic_field:
+      return "magnetic field";
   }
   return "unknown";
 }

@@ -6,7 +6,8 @@ namespace proofmass {
 namespace {
 
 TEST(ParseUnit, KnowsTheSpellingsOfHeaders) {
-  for (const char* text : {"m/s^2", "m/s²", "(m/s2)", "[mps2]", " m/s^2 ", "m/s**2", "M/S^2", "m·s⁻²"})
+  for (const char* text :
+       {"m/s^2", "m/s²", "(m/s2)", "[mps2]", " m/s^2 ", "m/s**2", "M/S^2", "m·s⁻²"})
     EXPECT_EQ(parse_unit(text).value().symbol, "m/s^2") << text;
   for (const char* text : {"µs", "μs", "us", "\xB5s", "usec"})
     EXPECT_DOUBLE_EQ(parse_unit(text).value().to_si, 1e-6) << text;

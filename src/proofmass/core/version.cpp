@@ -2,6 +2,8 @@
 
 namespace proofmass {
 
-std::string_view version() { return PROOFMASS_VERSION; }
+std::string_view version() {
+  return PROOFMASS_VERSION;
+}
 
 }  // namespace proofmass

@@ -1,8 +1,8 @@
 #pragma once
 
 // The inner loops that a filter's and a smoother's time goes into, compiled for the vector units of
-// several processors and chosen when the program starts. No fused multiply-add: every processor gets
-// the same digits.
+// several processors and chosen when the program starts. No fused multiply-add: every processor
+// gets the same digits.
 namespace proofmass::estimate {
 
 /// The first n rows and columns of a symmetric matrix whose columns stand `stride` doubles apart.

@@ -26,10 +26,10 @@ namespace proofmass::estimate {
 /// that came in.
 template <int N, int D>
 struct Transition {
-  Mat<D> mean;     ///< f(x) of the moving states
-  Mat<D, D> F;     ///< ∂f/∂x among the moving states; the others neither move nor push
-  Mat<D, D> Q;     ///< process noise of the moving states
-  Mat<N> walk;     ///< variance added to each standing state; its first D are not read
+  Mat<D> mean;  ///< f(x) of the moving states
+  Mat<D, D> F;  ///< ∂f/∂x among the moving states; the others neither move nor push
+  Mat<D, D> Q;  ///< process noise of the moving states
+  Mat<N> walk;  ///< variance added to each standing state; its first D are not read
 };
 
 /// One channel's reading and what the model makes of it at the predicted state.
@@ -49,7 +49,9 @@ struct Readings {
 
 /// What a model offers: sizes, the step that leads to instant k, and the readings of instant k.
 template <class Model>
-concept StateSpaceModel = requires(const Model& model, const Mat<Model::states>& x, std::size_t k,
+concept StateSpaceModel = requires(const Model& model,
+                                   const Mat<Model::states>& x,
+                                   std::size_t k,
                                    Readings<Model::states, Model::channels>& readings,
                                    Gaussian<Model::states>& lost) {
   { model.size() } -> std::convertible_to<std::size_t>;
@@ -58,8 +60,8 @@ concept StateSpaceModel = requires(const Model& model, const Mat<Model::states>&
   model.reopen(lost);
 };
 
-/// How many of a model's states the filter runs on: all, unless the model says by active() that those
-/// from there on are held, without variance.
+/// How many of a model's states the filter runs on: all, unless the model says by active() that
+/// those from there on are held, without variance.
 template <StateSpaceModel Model>
 [[nodiscard]] int active_states(const Model& model) {
   if constexpr (requires { model.active(); })
@@ -80,10 +82,11 @@ struct Update {
 };
 
 /// What is done with readings that the model did not expect, ν = |y|/√S standard deviations off.
-/// Beyond `huber` they lose weight as huber/ν, so that none pulls harder than one just there; beyond
-/// `limit` they are left out. After `patience` instants in a row with nothing but such readings the
-/// filter has lost the state, not the sensor its mind: the model reopens the covariance and what
-/// comes is believed again. Source: P. J. Huber, Robust Statistics (1981), section 4.5.
+/// Beyond `huber` they lose weight as huber/ν, so that none pulls harder than one just there;
+/// beyond `limit` they are left out. After `patience` instants in a row with nothing but such
+/// readings the filter has lost the state, not the sensor its mind: the model reopens the
+/// covariance and what comes is believed again. Source: P. J. Huber, Robust Statistics (1981),
+/// section 4.5.
 struct Gate {
   double huber = std::numeric_limits<double>::infinity();
   double limit = std::numeric_limits<double>::infinity();
@@ -112,8 +115,8 @@ void predict(Gaussian<N>& x, const Transition<N, D>& step) {
   }
 }
 
-/// Joseph's form with I − K h written out, in O(N³): for a prior so much wider than the reading that
-/// differences of its entries hold nothing of the answer.
+/// Joseph's form with I − K h written out, in O(N³): for a prior so much wider than the reading
+/// that differences of its entries hold nothing of the answer.
 template <int N>
 [[gnu::noinline]] void correct_diffuse(Mat<N, N>& P, const Mat<N>& h, const Mat<N>& K, double R) {
   const Mat<N, N> I_Kh = Mat<N, N>::Identity() - K * h.transpose();
@@ -121,13 +124,15 @@ template <int N>
   P = 0.5 * (reduced + reduced.transpose());
 }
 
-/// x̂ given one more reading: Kalman's gain, and P ← P − (P hᵀ)(P hᵀ)ᵀ / S, of which an entry and its
-/// mirror round alike; Joseph's form instead where the start is diffuse. Cost: O(N²).
+/// x̂ given one more reading: Kalman's gain, and P ← P − (P hᵀ)(P hᵀ)ᵀ / S, of which an entry and
+/// its mirror round alike; Joseph's form instead where the start is diffuse. Cost: O(N²).
 /// `predicted` is h(x̂) at the state as it stands. States from `active` on are held: their variances
 /// and covariances are zero, and are not touched. Source: G. J. Bierman, Factorization Methods for
 /// Discrete Sequential Estimation (1977), section II.
 template <int N>
-[[nodiscard]] Update<N> correct(Gaussian<N>& x, const Reading<N>& reading, const Gate& gate,
+[[nodiscard]] Update<N> correct(Gaussian<N>& x,
+                                const Reading<N>& reading,
+                                const Gate& gate,
                                 int active = N) {
   Mat<N> Ph = Mat<N>::Zero();
   symmetric_times(x.cov.data(), reading.h.data(), Ph.data(), {active, N});
@@ -143,13 +148,14 @@ template <int N>
     return update;
   }
   if (off > gate.huber) update.variance *= off / gate.huber;
-  update.gain = Ph / update.variance;
+  const double weight = 1.0 / update.variance;
+  update.gain = Ph * weight;
   x.mean += update.gain * update.innovation;
   if (const double noise = reading.variance + (update.variance - update.expected);
       hPh > 1e8 * noise) {
     correct_diffuse(x.cov, reading.h, update.gain, noise);
   } else {
-    const Mat<N> w = Ph / std::sqrt(update.variance);
+    const Mat<N> w = Ph * std::sqrt(weight);
     subtract_square(x.cov.data(), w.data(), {active, N});
   }
   return update;
@@ -169,7 +175,10 @@ using StepOf = Step<Model::states, Model::moving, Model::channels>;
 
 /// Takes the state from instant k − 1 to k (at k = 0: only its readings) and says how in `step`.
 template <StateSpaceModel Model>
-void advance(const Model& model, std::size_t k, const Gate& gate, FilterState<Model::states>& state,
+void advance(const Model& model,
+             std::size_t k,
+             const Gate& gate,
+             FilterState<Model::states>& state,
              StepOf<Model>& step) {
   constexpr int N = Model::states;
   if (k > 0) {
@@ -246,8 +255,12 @@ void look_back(Hindsight<N>& later, const Step<N, D, M>& step) {
 
 /// Filters instants [first, last) from `state`, telling each to visit(k, step).
 template <StateSpaceModel Model, class Visit>
-void filter(const Model& model, std::size_t first, std::size_t last, const Gate& gate,
-            FilterState<Model::states>& state, Visit&& visit) {
+void filter(const Model& model,
+            std::size_t first,
+            std::size_t last,
+            const Gate& gate,
+            FilterState<Model::states>& state,
+            Visit&& visit) {
   StepOf<Model> step;
   for (std::size_t k = first; k < last; ++k) {
     advance(model, k, gate, state, step);
@@ -255,15 +268,18 @@ void filter(const Model& model, std::size_t first, std::size_t last, const Gate&
   }
 }
 
-/// Filter and fixed-interval smoother over all instants of a model. The forward pass keeps the state
-/// at every `chunk`-th instant; the backward pass runs each chunk again, so that memory is
+/// Filter and fixed-interval smoother over all instants of a model. The forward pass keeps the
+/// state at every `chunk`-th instant; the backward pass runs each chunk again, so that memory is
 /// O(instants / chunk + chunk) states instead of one for each instant.
 ///
 /// forward(k, step) is called in rising k, backward(k, step, hindsight) in falling k: hindsight is
 /// what instants after k say. Cost: two forward passes and one backward, O(instants · M · N²).
 template <StateSpaceModel Model, class Forward, class Backward>
-void smooth(const Model& model, const FilterState<Model::states>& prior, const Gate& gate,
-            Forward&& forward, Backward&& backward) {
+void smooth(const Model& model,
+            const FilterState<Model::states>& prior,
+            const Gate& gate,
+            Forward&& forward,
+            Backward&& backward) {
   constexpr int N = Model::states;
   constexpr std::size_t chunk = N > 12 ? 64 : 128;
   const std::size_t size = model.size();

@@ -17,13 +17,14 @@ namespace {
 
 /// Above this share of unexplained readings there is no wheel turning in gravity to be seen.
 constexpr double not_a_wheel = 0.5;
-/// Rows of two sensors this close share one instant: 50 rad/s move the phase by 0.25 mrad meanwhile.
+/// Rows of two sensors this close share one instant: 50 rad/s move the phase by 0.25 mrad
+/// meanwhile.
 constexpr double same_instant_s = 5e-6;
 
 Status check(const std::vector<WheelSensor>& sensors, const WheelOptions& options) {
   if (sensors.empty() || sensors.size() > 2)
-    return Error{Errc::invalid_argument, "a wheel takes one or two sensors, not " +
-                                             std::to_string(sensors.size())};
+    return Error{Errc::invalid_argument,
+                 "a wheel takes one or two sensors, not " + std::to_string(sensors.size())};
   for (const WheelSensor& sensor : sensors)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (sensor.accel_mps2[axis].size() != sensor.time_s.size() &&
@@ -33,7 +34,9 @@ Status check(const std::vector<WheelSensor>& sensors, const WheelOptions& option
                         options.rim_radius_m.value_or(1.0) > 0.0 &&
                         options.rolling_radius_m.value_or(1.0) > 0.0 &&
                         options.alignment_std_rad >= 0.0;
-  if (!positive) return Error{Errc::invalid_argument, "gravity and radii must be positive (the sensor's may be 0)"};
+  if (!positive)
+    return Error{Errc::invalid_argument,
+                 "gravity and radii must be positive (the sensor's may be 0)"};
   return Done{};
 }
 
@@ -45,7 +48,8 @@ struct Prepared {
 
 /// The time line of one or two sensors; the second's stamps are late by offset_s.
 WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
-                    const std::vector<const Prepared*>& prepared, double offset_s,
+                    const std::vector<const Prepared*>& prepared,
+                    double offset_s,
                     const WheelOptions& options) {
   WheelReadings readings;
   double level2 = options.gravity_mps2 * options.gravity_mps2;
@@ -77,8 +81,8 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
   }
 }
 
-/// What is believed of the places: nothing but their size, or the radius that was given, outward along
-/// the direction that the recording shows, else along u.
+/// What is believed of the places: nothing but their size, or the radius that was given, outward
+/// along the direction that the recording shows, else along u.
 PlacesPrior places_prior(const WheelOptions& options, const Eigen::VectorXd& seen) {
   PlacesPrior prior{Eigen::VectorXd::Zero(seen.size())};
   if (!options.radius_m) return prior;
@@ -104,15 +108,16 @@ Uncertain radius_in(const WheelFit& fit, std::size_t sensors, std::size_t sensor
 }
 
 /// Fits once without the radius and, where one is given, again with it.
-WheelFit fit_with_radius(WheelReadings& readings, const WheelTrack& track,
+WheelFit fit_with_radius(WheelReadings& readings,
+                         const WheelTrack& track,
                          const WheelOptions& options) {
   const std::size_t sensors = readings.sensors.size();
   const auto count = static_cast<Eigen::Index>(2 * sensors);
   WheelFit free =
       fit_wheel(readings, track, PlacesPrior{Eigen::VectorXd::Zero(count)}, options.progress);
   if (!options.radius_m) return free;
-  WheelFit held = fit_wheel(readings, free.track,
-                            places_prior(options, places_in(free, sensors)), options.progress);
+  WheelFit held = fit_wheel(readings, free.track, places_prior(options, places_in(free, sensors)),
+                            options.progress);
   for (std::size_t s = 0; s < sensors; ++s)
     held.free_radius_m.push_back(radius_in(free, sensors, s));
   return held;
@@ -124,7 +129,9 @@ struct Single {
   WheelFit fit;
 };
 
-Result<Single> fit_single(const WheelSensor& sensor, Prepared prepared, const WheelOptions& options) {
+Result<Single> fit_single(const WheelSensor& sensor,
+                          Prepared prepared,
+                          const WheelOptions& options) {
   Single single{std::move(prepared), {}, {}};
   single.readings = merge({&sensor}, {&single.prepared}, 0.0, options);
   if (single.readings.instants.size() < 10)
@@ -133,8 +140,9 @@ Result<Single> fit_single(const WheelSensor& sensor, Prepared prepared, const Wh
   const WheelTrack track = find_track(single.readings);
   if (track.lost > not_a_wheel)
     return Error{Errc::not_observable,
-                 sensor.name + ": no gravity turning in the plane of the wheel (axle upright, "
-                               "readings not in m/s^2, or not a wheel); check --unit and --spin-axis"};
+                 sensor.name +
+                     ": no gravity turning in the plane of the wheel (axle upright, "
+                     "readings not in m/s^2, or not a wheel); check --unit and --spin-axis"};
   single.fit = fit_with_radius(single.readings, track, options);
   return single;
 }
@@ -178,8 +186,8 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
   if (!clocks) return clocks.error().at("two sensors");
   pair.clocks = *clocks;
   // On one clock an offset has to show clearly before the stamps are called wrong.
-  if (options.clocks_shared && std::abs(pair.clocks.offset_s.value) <
-                                   std::max(5.0 * pair.clocks.offset_s.std, 2e-4))
+  if (options.clocks_shared &&
+      std::abs(pair.clocks.offset_s.value) < std::max(5.0 * pair.clocks.offset_s.std, 2e-4))
     pair.clocks.offset_s.value = 0.0;
   return pair;
 }
@@ -190,7 +198,8 @@ struct Joint {
   WheelFit fit;
 };
 
-Joint fit_jointly(const std::vector<WheelSensor>& sensors, const Pair& pair,
+Joint fit_jointly(const std::vector<WheelSensor>& sensors,
+                  const Pair& pair,
                   const WheelOptions& options) {
   const Single &one = pair.singles[0], &two = pair.singles[1];
   Joint joint;
@@ -267,7 +276,8 @@ void add_peak_speed(WheelSolution& solution) {
   std::size_t at = 0;
   for (std::size_t k = 1; k < series.speed_radps.size(); ++k)
     if (std::abs(series.speed_radps[k]) > std::abs(series.speed_radps[at])) at = k;
-  solution.peak_speed_radps = Uncertain{std::abs(series.speed_radps[at]), series.speed_std_radps[at]};
+  solution.peak_speed_radps =
+      Uncertain{std::abs(series.speed_radps[at]), series.speed_std_radps[at]};
 }
 
 void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSolution& solution) {
@@ -277,13 +287,13 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
   const double filter_start_std = series.filtered_angle_std_rad.front() / rad_per_turn;
   solution.ekf.turns->std = std::hypot(fit.turns.std, filter_start_std);
   solution.ekf.note =
-      "calibrated by the whole recording; counts from its first guess of the angle, from one reading";
+      "calibrated by the whole recording; counts from its first guess of the angle, from one "
+      "reading";
   series.atan2_angle_rad = atan2_angle(readings);
-  const auto first = std::ranges::find_if(series.atan2_angle_rad,
-                                          [](double angle) { return !std::isnan(angle); });
+  const auto first =
+      std::ranges::find_if(series.atan2_angle_rad, [](double angle) { return !std::isnan(angle); });
   if (first != series.atan2_angle_rad.end())
-    solution.atan2.turns =
-        Uncertain{(series.atan2_angle_rad.back() - *first) / rad_per_turn, 0.0};
+    solution.atan2.turns = Uncertain{(series.atan2_angle_rad.back() - *first) / rad_per_turn, 0.0};
   solution.atan2.note = "readings as they are: bias and centripetal force stay in";
   const bool radii_known = std::ranges::all_of(
       solution.sensors, [](const WheelSensorFit& s) { return s.radius_m.has_value(); });
@@ -301,10 +311,13 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
           rad_per_turn,
       0.0};
   solution.double_integration.note =
-      "starts from the smoother's first angle and speed; an error of b m/s^2 grows as b t^2 / (2 r)";
+      "starts from the smoother's first angle and speed; an error of b m/s^2 grows as b t^2 / (2 "
+      "r)";
 }
 
-void add_sensor(const WheelSensor& sensor, const Single& single, bool axis_given,
+void add_sensor(const WheelSensor& sensor,
+                const Single& single,
+                bool axis_given,
                 WheelSolution& solution) {
   WheelSensorFit& fit = solution.sensors.emplace_back();
   fit.name = sensor.name;
@@ -324,8 +337,9 @@ void add_sensor(const WheelSensor& sensor, const Single& single, bool axis_given
   }
   if (single.prepared.plane.assumed)
     solution.notes.push_back(
-        {Severity::warning, sensor.name + ": the wheel hardly turned, so its axle cannot be found; "
-                                          "took the most level of the sensor's axes (--spin-axis)"});
+        {Severity::warning, sensor.name +
+                                ": the wheel hardly turned, so its axle cannot be found; "
+                                "took the most level of the sensor's axes (--spin-axis)"});
 }
 
 /// Instants at which the gate shut out every channel there was, in stretches.
@@ -352,13 +366,15 @@ void judge_turns(const WheelFit& fit, WheelSolution& solution) {
   solution.smoother.turns.reset();
   solution.smoother.note = "the angle was lost in between";
   solution.notes.push_back(
-      {Severity::bad, "turns: readings are missing or spoilt for so long that the angle is unknown by "
-                      "more than 45 degrees in between: a turn more or less cannot be told"});
+      {Severity::bad,
+       "turns: readings are missing or spoilt for so long that the angle is unknown by "
+       "more than 45 degrees in between: a turn more or less cannot be told"});
 }
 
-/// A wheel that shakes more when it turns is most likely under a vehicle, whose speeding up leans on
-/// the apparent gravity.
-void note_travel(const WheelReadings& readings, const WheelOptions& options,
+/// A wheel that shakes more when it turns is most likely under a vehicle, whose speeding up leans
+/// on the apparent gravity.
+void note_travel(const WheelReadings& readings,
+                 const WheelOptions& options,
                  WheelSolution& solution) {
   const auto& variance = readings.sensors.front().variance_m2ps4;
   const auto loud = quantile(variance, 0.9), quiet = quantile(variance, 0.05);
@@ -367,13 +383,14 @@ void note_travel(const WheelReadings& readings, const WheelOptions& options,
   for (const double accel : solution.series.accel_radps2)
     strongest = std::max(strongest, std::abs(accel));
   const double lean_deg = 0.3 * strongest / options.gravity_mps2 / rad_per_deg;
-  solution.notes.push_back(
-      {Severity::info,
-       "the wheel shakes as if it carried a vehicle: while that speeds up or brakes, the angle leans by "
-       "rolling radius x acceleration / g, at most " +
-           std::to_string(static_cast<int>(std::ceil(lean_deg))) +
-           " degrees here for 0.3 m, and comes back; --rolling-radius takes it out. The turns between "
-           "two rests do not change"});
+  solution.notes.push_back({Severity::info,
+                            "the wheel shakes as if it carried a vehicle: while that speeds up or "
+                            "brakes, the angle leans by "
+                            "rolling radius x acceleration / g, at most " +
+                                std::to_string(static_cast<int>(std::ceil(lean_deg))) +
+                                " degrees here for 0.3 m, and comes back; --rolling-radius takes "
+                                "it out. The turns between "
+                                "two rests do not change"});
 }
 
 void check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolution& solution) {
@@ -382,20 +399,23 @@ void check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolutio
     const double off = std::abs(found.value - *options.radius_m);
     if (off < 5.0 * std::hypot(found.std, 0.02 * *options.radius_m)) continue;
     solution.notes.push_back(
-        {Severity::bad, solution.sensors[s].name + ": --radius contradicts the recording, which says " +
+        {Severity::bad, solution.sensors[s].name +
+                            ": --radius contradicts the recording, which says " +
                             std::to_string(std::lround(found.value * 1e3)) + " mm +- " +
                             std::to_string(std::lround(std::ceil(found.std * 1e3))) +
                             " mm: leave it out or mend it"});
   }
 }
 
-WheelSolution conclude(const WheelReadings& readings, WheelFit fit, const WheelOptions& options,
+WheelSolution conclude(const WheelReadings& readings,
+                       WheelFit fit,
+                       const WheelOptions& options,
                        WheelSolution solution) {
   describe_sensors(fit, readings.phase_rad, solution.sensors);
   solution.series = std::move(fit.series);
   solution.turns = fit.turns;
-  for (std::vector<double>* std : {&solution.series.angle_std_rad,
-                                   &solution.series.filtered_angle_std_rad})
+  for (std::vector<double>* std :
+       {&solution.series.angle_std_rad, &solution.series.filtered_angle_std_rad})
     for (double& value : *std) value = std::hypot(value, options.alignment_std_rad);
   solution.angle_final_rad =
       Uncertain{solution.series.angle_rad.back(), solution.series.angle_std_rad.back()};
@@ -403,8 +423,9 @@ WheelSolution conclude(const WheelReadings& readings, WheelFit fit, const WheelO
   add_distance(options, solution);
   add_peak_speed(solution);
   const Bounds bounds = mean_chi_square_95(std::max<std::size_t>(fit.innovations, 1));
-  solution.consistency = {fit.nis_sum / static_cast<double>(std::max<std::size_t>(fit.innovations, 1)),
-                          bounds.lower, bounds.upper, fit.innovations};
+  solution.consistency = {
+      fit.nis_sum / static_cast<double>(std::max<std::size_t>(fit.innovations, 1)), bounds.lower,
+      bounds.upper, fit.innovations};
   solution.not_observable = say_not_observable(fit, solution.sensors);
   add_gated(solution);
   note_travel(readings, options, solution);

@@ -17,7 +17,9 @@ double interpolated(const std::vector<double>& x, const std::vector<double>& y, 
 }
 
 /// The first's times on a grid of 20 Hz for which the second, shifted, has readings too.
-std::vector<double> common_times(const WheelMotion& first, const WheelMotion& second, double offset_s) {
+std::vector<double> common_times(const WheelMotion& first,
+                                 const WheelMotion& second,
+                                 double offset_s) {
   const double start = std::max(first.time_s->front(), second.time_s->front() - offset_s);
   const double end = std::min(first.time_s->back(), second.time_s->back() - offset_s);
   std::vector<double> times;
@@ -61,9 +63,9 @@ struct Slope {
   double speed_spread = 0.0;
 };
 
-/// Difference of the angles against the speed: slope −δ, level the phase. The differences are far from
-/// independent, so the slope's scatter is the jackknife's over ten blocks.
-/// Source: B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans (1982), chapter 3.
+/// Difference of the angles against the speed: slope −δ, level the phase. The differences are far
+/// from independent, so the slope's scatter is the jackknife's over ten blocks. Source: B. Efron,
+/// The Jackknife, the Bootstrap and Other Resampling Plans (1982), chapter 3.
 Slope slope_of(const std::vector<double>& speed, const std::vector<double>& difference) {
   constexpr std::size_t blocks = 10;
   const auto fit = [&](std::size_t without) {
@@ -89,7 +91,8 @@ Slope slope_of(const std::vector<double>& speed, const std::vector<double>& diff
 
 }  // namespace
 
-Result<ClockFit> fit_clocks(const WheelMotion& first, const WheelMotion& second,
+Result<ClockFit> fit_clocks(const WheelMotion& first,
+                            const WheelMotion& second,
                             bool clocks_shared) {
   // Stamps that both begin at nought look like one clock and need not be: the speeds tell.
   constexpr double same_speed_radps = 0.3;

@@ -8,8 +8,8 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Of the covariance that a figure had beforehand, the share of the standard deviation above which the
-/// recording has not told it.
+/// Of the covariance that a figure had beforehand, the share of the standard deviation above which
+/// the recording has not told it.
 constexpr double untold = 0.5;
 
 std::optional<Uncertain> told(const WheelFit& fit, int at, double offset = 0.0) {
@@ -27,7 +27,8 @@ void describe_place(const WheelFit& fit, int at, WheelSensorFit& sensor) {
   const double std = std::sqrt(outward.dot(cov * outward));
   const double before = std::sqrt(fit.constants_prior_cov(at, at));
   const bool given = before < 0.2 * radius;
-  // Stricter than for the rest: the size of a vector is never below zero, so a poor one looks large.
+  // Stricter than for the rest: the size of a vector is never below zero, so a poor one looks
+  // large.
   if (!given && !(std < 0.5 * untold * before)) return;
   sensor.radius_m = Uncertain{radius, std};
   const double across = std::sqrt(forward.dot(cov * forward)) / radius;
@@ -60,11 +61,16 @@ std::vector<Constant> constants_of(std::size_t sensors) {
 std::string name_of(const Constant& constant) {
   const std::string along = constant.axis == 0 ? " along u" : " along v";
   switch (constant.kind) {
-    case Kind::bias: return "bias" + along;
-    case Kind::scale: return "scale" + along;
-    case Kind::skew: return "skew of the axes";
-    case Kind::phase: return "phase against the first sensor";
-    case Kind::place: return "distance from the axle" + along;
+    case Kind::bias:
+      return "bias" + along;
+    case Kind::scale:
+      return "scale" + along;
+    case Kind::skew:
+      return "skew of the axes";
+    case Kind::phase:
+      return "phase against the first sensor";
+    case Kind::place:
+      return "distance from the axle" + along;
   }
   return "";
 }
@@ -78,13 +84,16 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string sentence(const Eigen::VectorXd& direction, const std::vector<Constant>& constants,
+std::string sentence(const Eigen::VectorXd& direction,
+                     const std::vector<Constant>& constants,
                      const std::vector<WheelSensorFit>& sensors) {
   std::vector<std::string> names;
   bool place = false, bias = false;
   std::size_t sensor = sensors.size();
   bool one_sensor = true;
-  const auto share = [&](std::size_t i) { return std::abs(direction(static_cast<Eigen::Index>(i))); };
+  const auto share = [&](std::size_t i) {
+    return std::abs(direction(static_cast<Eigen::Index>(i)));
+  };
   bool any_bias = false;
   for (std::size_t i = 0; i < constants.size(); ++i)
     any_bias = any_bias || (constants[i].kind == Kind::bias && share(i) >= 0.3);
@@ -100,8 +109,7 @@ std::string sentence(const Eigen::VectorXd& direction, const std::vector<Constan
   }
   const std::string whose = one_sensor ? sensors[sensor].name : "the two sensors";
   const std::string what = joined(names) + " of " + whose;
-  if (place && bias)
-    return what + " cannot be told apart at one speed: record a second speed";
+  if (place && bias) return what + " cannot be told apart at one speed: record a second speed";
   if (place)
     return what + " does not show at this speed: the centripetal force is too small; turn faster";
   return what + (names.size() > 1 ? " cannot be told apart" : " cannot be told") +
@@ -122,7 +130,8 @@ void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSe
     sensor.skew_rad = told(fit, first + wheel::skew);
     if (s > 0) sensor.phase_rad = told(fit, wheel::phase - wheel::first_of(0), phase_rad);
     const auto count = static_cast<int>(sensors.size());
-    describe_place(fit, wheel::places(count) - wheel::first_of(0) + 2 * static_cast<int>(s), sensor);
+    describe_place(fit, wheel::places(count) - wheel::first_of(0) + 2 * static_cast<int>(s),
+                   sensor);
   }
 }
 

@@ -13,9 +13,10 @@ namespace proofmass::estimate {
 /// deviation the recording has not brought below half of what was believed beforehand stays absent.
 void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSensorFit>& sensors);
 
-/// One sentence for each direction in which the constants are hardly better known after the recording
-/// than before: the eigenvectors of the covariance, in units of what was believed, whose value is
-/// above a quarter. Says which quantities trade against each other and what would tell them apart.
+/// One sentence for each direction in which the constants are hardly better known after the
+/// recording than before: the eigenvectors of the covariance, in units of what was believed, whose
+/// value is above a quarter. Says which quantities trade against each other and what would tell
+/// them apart.
 [[nodiscard]] std::vector<std::string> say_not_observable(
     const WheelFit& fit, const std::vector<WheelSensorFit>& sensors);
 

@@ -17,7 +17,8 @@ struct Settled {
 
 /// The model of the settled passes: linear about a path, the places held.
 template <int S>
-WheelModel<S> held_model(const WheelReadings& readings, const WheelNoise& noise,
+WheelModel<S> held_model(const WheelReadings& readings,
+                         const WheelNoise& noise,
                          const WheelPath& about) {
   auto model = wheel_model<S>(readings, noise);
   model.about = &about;
@@ -32,10 +33,12 @@ ConstantsPrior prior_for(const WheelPath& path) {
   return angle(*highest) - angle(*lowest) < rad_per_turn ? short_way_prior : ConstantsPrior{};
 }
 
-/// One round: the readings' variance, the motion's noise and the sensors' places, all about the path
-/// found so far.
+/// One round: the readings' variance, the motion's noise and the sensors' places, all about the
+/// path found so far.
 template <int S>
-Settled<S> settle(WheelReadings& readings, const WheelTrack& track, const PlacesPrior& belief,
+Settled<S> settle(WheelReadings& readings,
+                  const WheelTrack& track,
+                  const PlacesPrior& belief,
                   double tuning_factor) {
   auto model = held_model<S>(readings, track.noise, track.path);
   const Places places = track.path.standing.tail<2 * S>();
@@ -88,8 +91,10 @@ void note_forward(std::size_t k, const StepOf<WheelModel<S>>& step, WheelFit& fi
 }
 
 template <int S>
-void note_backward(std::size_t k, const StepOf<WheelModel<S>>& step,
-                   const Hindsight<wheel::states(S)>& later, WheelFit& fit) {
+void note_backward(std::size_t k,
+                   const StepOf<WheelModel<S>>& step,
+                   const Hindsight<wheel::states(S)>& later,
+                   WheelFit& fit) {
   WheelSeries& series = fit.series;
   const Mat<wheel::moving> mean = later.mean(step.filtered).template head<wheel::moving>();
   const auto cov = later.template cov<wheel::jerk>(step.filtered);
@@ -104,10 +109,13 @@ void note_backward(std::size_t k, const StepOf<WheelModel<S>>& step,
 }
 
 /// The extended filter as it would run on calibrated sensors: the motion unknown at the start, the
-/// constants as the whole recording tells them for its first instant, as well as it does at its last.
+/// constants as the whole recording tells them for its first instant, as well as it does at its
+/// last.
 template <int S>
-void filter_calibrated(const WheelModel<S>& model, const WheelPrior& prior,
-                       const Gaussian<wheel::states(S)>& known, WheelSeries& series) {
+void filter_calibrated(const WheelModel<S>& model,
+                       const WheelPrior& prior,
+                       const Gaussian<wheel::states(S)>& known,
+                       WheelSeries& series) {
   constexpr int count = wheel::standing(S);
   auto state = prior_state<S>(prior);
   state.x.mean.template tail<count>() = known.mean.template tail<count>();
@@ -121,8 +129,10 @@ void filter_calibrated(const WheelModel<S>& model, const WheelPrior& prior,
 
 /// What filter and smoother say with the places held where they were found.
 template <int S>
-WheelFit smooth_at_places(const WheelReadings& readings, const Settled<S>& settled,
-                          const WheelPath& about, const Progress& progress) {
+WheelFit smooth_at_places(const WheelReadings& readings,
+                          const Settled<S>& settled,
+                          const WheelPath& about,
+                          const Progress& progress) {
   const auto model = held_model<S>(readings, settled.noise, about);
   const std::size_t size = model.size();
   WheelFit fit;
@@ -142,9 +152,8 @@ WheelFit smooth_at_places(const WheelReadings& readings, const Settled<S>& settl
         if (k > 0 && readings.time_s[k] > readings.time_s.front() + 1.0) {
           const Mat<wheel::moving> from_angle =
               model.transition(end.mean, k).F.row(wheel::angle).transpose();
-          const double variance =
-              from_angle.dot(end.cov.template topLeftCorner<wheel::moving, wheel::moving>() *
-                             from_angle);
+          const double variance = from_angle.dot(
+              end.cov.template topLeftCorner<wheel::moving, wheel::moving>() * from_angle);
           fit.widest_prediction_rad = std::max(fit.widest_prediction_rad, std::sqrt(variance));
         }
         end = step.filtered;
@@ -160,7 +169,8 @@ WheelFit smooth_at_places(const WheelReadings& readings, const Settled<S>& settl
   constexpr int count = wheel::standing(S);
   fit.constants = end.mean.template tail<count>();
   fit.constants_cov = end.cov.template bottomRightCorner<count, count>();
-  const double variance = end.cov(wheel::angle, wheel::angle) + end.cov(wheel::start, wheel::start) -
+  const double variance = end.cov(wheel::angle, wheel::angle) +
+                          end.cov(wheel::start, wheel::start) -
                           2.0 * end.cov(wheel::angle, wheel::start);
   fit.turns = {(end.mean(wheel::angle) - end.mean(wheel::start)) / rad_per_turn,
                std::sqrt(std::max(variance, 0.0)) / rad_per_turn};
@@ -169,14 +179,19 @@ WheelFit smooth_at_places(const WheelReadings& readings, const Settled<S>& settl
   return fit;
 }
 
-void add_in_square(double& std, double more) { std = std::hypot(std, more); }
+void add_in_square(double& std, double more) {
+  std = std::hypot(std, more);
+}
 
-/// Adds what the places' uncertainty makes of everything else: the whole smoothed again a little way
-/// along each principal direction of their covariance, and the differences drawn out to one standard
-/// deviation. Not that far at once: where the recording hardly tells the places, that is no small step.
+/// Adds what the places' uncertainty makes of everything else: the whole smoothed again a little
+/// way along each principal direction of their covariance, and the differences drawn out to one
+/// standard deviation. Not that far at once: where the recording hardly tells the places, that is
+/// no small step.
 template <int S>
-void add_places_uncertainty(const WheelReadings& readings, const Settled<S>& settled,
-                            const WheelPath& about, WheelFit& fit) {
+void add_places_uncertainty(const WheelReadings& readings,
+                            const Settled<S>& settled,
+                            const WheelPath& about,
+                            WheelFit& fit) {
   constexpr double longest_step_m = 2e-3;
   const SymmetricEigen axes = symmetric_eigen(settled.places_cov);
   for (Eigen::Index i = 0; i < axes.values.size(); ++i) {
@@ -192,8 +207,7 @@ void add_places_uncertainty(const WheelReadings& readings, const Settled<S>& set
     const double turns = (end.mean(wheel::angle) - end.mean(wheel::start)) / rad_per_turn;
     add_in_square(fit.turns.std, reach * (turns - fit.turns.value));
     for (std::size_t k = 0; k < path.moving.size(); ++k) {
-      const Mat<wheel::moving> difference =
-          reach * (path.moving[k] - fit.track.path.moving[k]);
+      const Mat<wheel::moving> difference = reach * (path.moving[k] - fit.track.path.moving[k]);
       add_in_square(fit.series.angle_std_rad[k], difference(wheel::angle));
       add_in_square(fit.series.filtered_angle_std_rad[k], difference(wheel::angle));
       add_in_square(fit.series.speed_std_radps[k], difference(wheel::speed));
@@ -204,8 +218,11 @@ void add_places_uncertainty(const WheelReadings& readings, const Settled<S>& set
 
 /// Rounds until the likelihood has settled, at most `most`.
 template <int S>
-Settled<S> settle_rounds(WheelReadings& readings, WheelTrack& track, const PlacesPrior& belief,
-                         int most, const Progress& progress) {
+Settled<S> settle_rounds(WheelReadings& readings,
+                         WheelTrack& track,
+                         const PlacesPrior& belief,
+                         int most,
+                         const Progress& progress) {
   double tuning_factor = 10.0;
   Settled<S> settled = settle<S>(readings, track, belief, tuning_factor);
   for (int round = 1; round < most; ++round) {
@@ -228,7 +245,8 @@ std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack&
 }
 
 /// A track of the averaged readings, on the time line of all of them.
-WheelTrack spread_track(const WheelTrack& track, const WheelReadings& averaged,
+WheelTrack spread_track(const WheelTrack& track,
+                        const WheelReadings& averaged,
                         const WheelReadings& readings) {
   WheelTrack out = track;
   out.path.moving.clear();
@@ -242,7 +260,8 @@ WheelTrack spread_track(const WheelTrack& track, const WheelReadings& averaged,
   return out;
 }
 
-/// Gives each reading the variance that its average was found to have, times what averaging took off.
+/// Gives each reading the variance that its average was found to have, times what averaging took
+/// off.
 void spread_variance(const WheelReadings& averaged, std::size_t each, WheelReadings& readings) {
   for (std::size_t s = 0; s < readings.sensors.size(); ++s)
     for (std::size_t k = 0; k < readings.instants.size(); ++k) {
@@ -256,14 +275,17 @@ void spread_variance(const WheelReadings& averaged, std::size_t each, WheelReadi
 }
 
 template <int S>
-WheelFit fit_sensors(WheelReadings& readings, WheelTrack track, const PlacesPrior& belief,
+WheelFit fit_sensors(WheelReadings& readings,
+                     WheelTrack track,
+                     const PlacesPrior& belief,
                      const Progress& progress) {
   const std::size_t each = readings_to_average(readings, track);
   WheelReadings coarse = averaged(readings, each);
   WheelTrack coarse_track = spread_track(track, readings, coarse);
   Settled<S> settled = settle_rounds<S>(coarse, coarse_track, belief, S == 1 ? 4 : 2, progress);
   track = spread_track(coarse_track, coarse, readings);
-  // A warm-up is no random walk: it drifts fastest at the start, where the turns begin to be counted.
+  // A warm-up is no random walk: it drifts fastest at the start, where the turns begin to be
+  // counted.
   settled.noise.bias_walk_psd *= 3.0;
   track.noise = settled.noise;
   const auto model = held_model<S>(readings, settled.noise, track.path);
@@ -283,7 +305,9 @@ WheelFit fit_sensors(WheelReadings& readings, WheelTrack track, const PlacesPrio
 
 }  // namespace
 
-WheelFit fit_wheel(WheelReadings& readings, WheelTrack track, const PlacesPrior& places_prior,
+WheelFit fit_wheel(WheelReadings& readings,
+                   WheelTrack track,
+                   const PlacesPrior& places_prior,
                    const Progress& progress) {
   PM_EXPECTS(!readings.sensors.empty() && readings.sensors.size() <= 2);
   PM_EXPECTS(readings.instants.size() >= 2 && track.path.moving.size() == readings.instants.size());

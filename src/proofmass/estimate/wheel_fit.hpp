@@ -26,8 +26,8 @@ struct WheelReadings {
   [[nodiscard]] double rate_hz() const;
 };
 
-/// The readings averaged over `each` instants at a time: as good as all of them where the wheel turns
-/// little within, at a fraction of the cost.
+/// The readings averaged over `each` instants at a time: as good as all of them where the wheel
+/// turns little within, at a fraction of the cost.
 [[nodiscard]] WheelReadings averaged(const WheelReadings& readings, std::size_t each);
 
 /// One standard deviation, about zero, of what is believed of a sensor before the recording speaks.
@@ -35,8 +35,8 @@ struct ConstantsPrior {
   double bias_mps2 = 0.5, scale = 0.1, skew_rad = 0.03, phase_rad = 0.5, place_m = 0.3;
 };
 
-/// The same for a wheel that turns less than once: gravity shows no more than a piece of its circle, on
-/// which bias, scale and angle stand for each other, so more has to be believed.
+/// The same for a wheel that turns less than once: gravity shows no more than a piece of its
+/// circle, on which bias, scale and angle stand for each other, so more has to be believed.
 inline constexpr ConstantsPrior short_way_prior{0.2, 0.01, 0.01, 0.5, 0.1};
 
 /// How the motion begins, for a filter that has seen nothing yet.
@@ -54,7 +54,9 @@ struct WheelTrack {
 };
 
 /// Eight readings a turn: no faster wheel is looked for, nor believed.
-[[nodiscard]] constexpr double fastest_radps(double rate_hz) { return rate_hz * rad_per_turn / 8.0; }
+[[nodiscard]] constexpr double fastest_radps(double rate_hz) {
+  return rate_hz * rad_per_turn / 8.0;
+}
 
 /// Follows a single sensor's phase through the recording with whatever noise figures keep it: from
 /// a grid of starting speeds and angles, since at speed and off the axle the first readings do not
@@ -74,7 +76,7 @@ struct WheelFit {
   double widest_prediction_rad = 0.0;  ///< std of the predicted angle, once past the first second
   /// Of each sensor, where a radius was given: what the recording alone says of it.
   std::vector<Uncertain> free_radius_m;
-  WheelSeries series;                  ///< what filter and smoother give; time_s too
+  WheelSeries series;  ///< what filter and smoother give; time_s too
 };
 
 /// What is known of the sensors' places beforehand: their mean, and how far they may be from it.

@@ -10,18 +10,18 @@
 //
 // Each sensor has two axes u, v in the plane of the wheel, v a quarter turn ahead of u. With φ the
 // angle of u from the horizontal, r = (r_u, r_v) the place of the sensor as seen in its own axes,
-// ω and α speed and acceleration of the wheel, and a_h = −ρ α the axle's acceleration where the wheel
-// rolls on a radius ρ (0 on a bench),
+// ω and α speed and acceleration of the wheel, and a_h = −ρ α the axle's acceleration where the
+// wheel rolls on a radius ρ (0 on a bench),
 //
 //   f_u = g sin φ + a_h cos φ − ω² r_u − α r_v
 //   f_v = g cos φ − a_h sin φ − ω² r_v + α r_u
 //   z_u = (1 + s_u)(f_u + κ f_v) + b_u,   z_v = (1 + s_v)(f_v + κ f_u) + b_v,
 //
-// with biases b, scale errors s and a skew κ of the two axes. Sensor 1 has φ = θ, the wheel's angle;
-// sensor 2 has φ = θ + μ. A common turn of both axes of sensor 1 against the wheel's marks is in no
-// reading, and so in no state. Nor is ρ: a_h shifts the apparent gravity by −ρ α / g, which is what a
-// shift of φ does. Source: kinematics of a rigid body in a plane; for two opposite sensors with
-// parallel axes, M. A. Lele (2010), section 4.4, with α = a_t / R.
+// with biases b, scale errors s and a skew κ of the two axes. Sensor 1 has φ = θ, the wheel's
+// angle; sensor 2 has φ = θ + μ. A common turn of both axes of sensor 1 against the wheel's marks
+// is in no reading, and so in no state. Nor is ρ: a_h shifts the apparent gravity by −ρ α / g,
+// which is what a shift of φ does. Source: kinematics of a rigid body in a plane; for two opposite
+// sensors with parallel axes, M. A. Lele (2010), section 4.4, with α = a_t / R.
 namespace proofmass::estimate {
 
 /// Where each quantity sits in the state; what belongs to a sensor counts from first_of(sensor).
@@ -32,14 +32,22 @@ inline constexpr int angle = 0, speed = 1, accel = 2, jerk = 3, moving = 4;
 inline constexpr int start = 4;
 inline constexpr int bias = 0, scale = 2, skew = 4;  ///< of a sensor, from first_of on
 
-[[nodiscard]] constexpr int first_of(int sensor) { return 5 + 5 * sensor; }
+[[nodiscard]] constexpr int first_of(int sensor) {
+  return 5 + 5 * sensor;
+}
 /// Of the second sensor against the first.
 inline constexpr int phase = first_of(2);
 /// The places come last: once found they are held, and the filter runs on the states before them.
-[[nodiscard]] constexpr int places(int sensors) { return first_of(sensors) + (sensors - 1); }
-[[nodiscard]] constexpr int states(int sensors) { return places(sensors) + 2 * sensors; }
+[[nodiscard]] constexpr int places(int sensors) {
+  return first_of(sensors) + (sensors - 1);
+}
+[[nodiscard]] constexpr int states(int sensors) {
+  return places(sensors) + 2 * sensors;
+}
 /// What stands from first_of(0) on: the sensors' constants, the phase, the places.
-[[nodiscard]] constexpr int standing(int sensors) { return states(sensors) - first_of(0); }
+[[nodiscard]] constexpr int standing(int sensors) {
+  return states(sensors) - first_of(0);
+}
 }  // namespace wheel
 
 /// What the filter is told of the noise; found from the recording by tune_wheel().
@@ -52,8 +60,8 @@ struct WheelNoise {
 
 /// The readings of one sensor in the plane of the wheel, SI.
 struct PlanarReadings {
-  std::vector<double> u_mps2, v_mps2;      ///< NaN where there is no reading
-  std::vector<double> variance_m2ps4;      ///< of each reading, both axes alike
+  std::vector<double> u_mps2, v_mps2;  ///< NaN where there is no reading
+  std::vector<double> variance_m2ps4;  ///< of each reading, both axes alike
 
   [[nodiscard]] bool has(std::size_t row) const {
     return !std::isnan(u_mps2[row]) && !std::isnan(v_mps2[row]);
@@ -92,7 +100,7 @@ struct WheelModel {
   std::array<const PlanarReadings*, 2> readings{};
   const WheelPath* about = nullptr;  ///< nullptr: the plain extended filter
 
-  bool places_held = false;          ///< they have no variance and learn nothing
+  bool places_held = false;  ///< they have no variance and learn nothing
 
   [[nodiscard]] std::size_t size() const { return instants->size(); }
   [[nodiscard]] int active() const { return places_held ? wheel::places(Sensors) : states; }

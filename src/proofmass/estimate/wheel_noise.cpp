@@ -40,7 +40,8 @@ class VarianceProfile {
   [[nodiscard]] double at(double t_s) const {
     if (steady_) return overall_;
     const auto above = std::ranges::upper_bound(middle_s_, t_s) - middle_s_.begin();
-    const auto i = std::clamp<std::size_t>(static_cast<std::size_t>(above), 1, middle_s_.size() - 1);
+    const auto i =
+        std::clamp<std::size_t>(static_cast<std::size_t>(above), 1, middle_s_.size() - 1);
     const double part = (t_s - middle_s_[i - 1]) / (middle_s_[i] - middle_s_[i - 1]);
     return std::exp(std::lerp(log_variance_[i - 1], log_variance_[i], std::clamp(part, 0.0, 1.0)));
   }
@@ -64,7 +65,9 @@ class VarianceProfile {
 /// The channels of instant k that belong to each sensor stand in the order in which measure() wrote
 /// them: two for each sensor that was read.
 template <int S>
-void gather(const WheelReadings& readings, std::size_t k, const StepOf<WheelModel<S>>& step,
+void gather(const WheelReadings& readings,
+            std::size_t k,
+            const StepOf<WheelModel<S>>& step,
             std::array<NoiseStretch*, 2> stretches) {
   int channel = 0;
   for (std::size_t s = 0; s < readings.sensors.size() && channel < step.count; ++s) {
@@ -83,7 +86,8 @@ void gather(const WheelReadings& readings, std::size_t k, const StepOf<WheelMode
   }
 }
 
-/// Between these the motion's noise is looked for. A bias that walked faster could stand for gravity.
+/// Between these the motion's noise is looked for. A bias that walked faster could stand for
+/// gravity.
 constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e4, 1e6, 1e-4};
 
 }  // namespace
@@ -147,7 +151,7 @@ template <class Likelihood>
 TunedNoise climb(const Likelihood& likelihood, const WheelNoise& start, double first_factor) {
   TunedNoise best{start, likelihood(start)};
   for (double factor = first_factor; factor > 1.4; factor = std::sqrt(factor))
-    for (double WheelNoise::*figure :
+    for (double WheelNoise::* figure :
          {&WheelNoise::jerk_psd, &WheelNoise::snap_psd, &WheelNoise::bias_walk_psd}) {
       bool upwards = false;
       for (const double step : {factor, 1.0 / factor})
@@ -178,7 +182,8 @@ TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt, double fir
   // The likelihood has two hills, a motion driven by jerk and one by snap; the way between is low.
   WheelNoise other = rough.noise;
   const bool by_jerk = rough.noise.jerk_psd > rough.noise.snap_psd;
-  (by_jerk ? other.snap_psd : other.jerk_psd) = std::max(rough.noise.jerk_psd, rough.noise.snap_psd);
+  (by_jerk ? other.snap_psd : other.jerk_psd) =
+      std::max(rough.noise.jerk_psd, rough.noise.snap_psd);
   (by_jerk ? other.jerk_psd : other.snap_psd) = by_jerk ? lowest.jerk_psd : lowest.snap_psd;
   const TunedNoise smooth = climb(likelihood, other, first_factor);
   return smooth.log_likelihood > rough.log_likelihood ? smooth : rough;

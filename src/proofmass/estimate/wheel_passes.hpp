@@ -32,7 +32,8 @@ WheelModel<S> wheel_model(const WheelReadings& readings, const WheelNoise& noise
   model.phase_rad = readings.phase_rad;
   model.noise = noise;
   model.instants = &readings.instants;
-  for (std::size_t s = 0; s < readings.sensors.size(); ++s) model.readings[s] = &readings.sensors[s];
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s)
+    model.readings[s] = &readings.sensors[s];
   return model;
 }
 
@@ -76,8 +77,8 @@ FilterState<wheel::states(S)> prior_state(const WheelPrior& prior) {
 }
 
 /// How well a forward run predicts. `lost` judges runs of different noise figures alike: mean of
-/// min(y²/c², 1) over the innovations y, c = 0.3 g, g gravity in the plane of the wheel. A run that has the
-/// wheel's phase scores near 0, one that has lost it above a half.
+/// min(y²/c², 1) over the innovations y, c = 0.3 g, g gravity in the plane of the wheel. A run that
+/// has the wheel's phase scores near 0, one that has lost it above a half.
 struct WheelScore {
   double lost = 0.0;
   double log_likelihood = 0.0;
@@ -92,8 +93,10 @@ struct WheelScore {
 }
 
 template <int S>
-WheelScore score_run(const WheelModel<S>& model, FilterState<wheel::states(S)> state,
-                     std::size_t first, std::size_t last) {
+WheelScore score_run(const WheelModel<S>& model,
+                     FilterState<wheel::states(S)> state,
+                     std::size_t first,
+                     std::size_t last) {
   const double c2 = std::pow(0.3 * model.gravity_mps2, 2);
   WheelScore score;
   filter(model, first, last, wheel_gate, state, [&](std::size_t, const auto& step) {
@@ -101,8 +104,8 @@ WheelScore score_run(const WheelModel<S>& model, FilterState<wheel::states(S)> s
       const auto& u = step.updates[static_cast<std::size_t>(i)];
       ++score.readings;
       score.lost += std::min(u.innovation * u.innovation / c2, 1.0);
-      score.log_likelihood -= 0.5 * (std::log(2.0 * std::numbers::pi * u.expected) +
-                                     surprise(std::sqrt(u.nis())));
+      score.log_likelihood -=
+          0.5 * (std::log(2.0 * std::numbers::pi * u.expected) + surprise(std::sqrt(u.nis())));
     }
   });
   if (score.readings > 0) score.lost /= static_cast<double>(score.readings);
@@ -113,7 +116,8 @@ WheelScore score_run(const WheelModel<S>& model, FilterState<wheel::states(S)> s
 /// Smooths and keeps the trajectory; returns the state after the last instant.
 template <int S>
 Gaussian<wheel::states(S)> trace_path(const WheelModel<S>& model,
-                                      const FilterState<wheel::states(S)>& prior, WheelPath& path) {
+                                      const FilterState<wheel::states(S)>& prior,
+                                      WheelPath& path) {
   using Model = WheelModel<S>;
   Gaussian<Model::states> end = prior.x;
   std::vector<Mat<wheel::moving>> moving(model.size());
@@ -132,8 +136,8 @@ Gaussian<wheel::states(S)> trace_path(const WheelModel<S>& model,
 template <int S>
 void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings);
 
-/// A part of the recording to tune on: all of it, or of a long one the stretch of 20 000 instants in
-/// which the speed changes most, with the filter's state at its beginning.
+/// A part of the recording to tune on: all of it, or of a long one the stretch of 20 000 instants
+/// in which the speed changes most, with the filter's state at its beginning.
 template <int S>
 struct Excerpt {
   std::size_t first = 0, last = 0;
@@ -151,7 +155,8 @@ struct TunedNoise {
 /// The motion's noise figures of maximum likelihood on the excerpt: each in turn by steps of a
 /// shrinking factor, from `first_factor` down.
 template <int S>
-[[nodiscard]] TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt,
+[[nodiscard]] TunedNoise tune_noise(WheelModel<S> model,
+                                    const Excerpt<S>& excerpt,
                                     double first_factor);
 
 struct FoundPlaces {
@@ -160,12 +165,14 @@ struct FoundPlaces {
   double log_likelihood = 0.0;
 };
 
-/// The sensors' places of maximum likelihood, all else integrated out by the filter, with the inverse
-/// of the likelihood's curvature. The places are no states of the settled filter: their columns in
-/// the Jacobian are ω² and α, known only through the same readings, and a filter that takes such
-/// noisy columns for exact finds information where there is none.
+/// The sensors' places of maximum likelihood, all else integrated out by the filter, with the
+/// inverse of the likelihood's curvature. The places are no states of the settled filter: their
+/// columns in the Jacobian are ω² and α, known only through the same readings, and a filter that
+/// takes such noisy columns for exact finds information where there is none.
 template <int S>
-[[nodiscard]] FoundPlaces find_places(const WheelModel<S>& model, const Excerpt<S>& excerpt,
-                                      WheelPrior prior, const PlacesPrior& belief);
+[[nodiscard]] FoundPlaces find_places(const WheelModel<S>& model,
+                                      const Excerpt<S>& excerpt,
+                                      WheelPrior prior,
+                                      const PlacesPrior& belief);
 
 }  // namespace proofmass::estimate

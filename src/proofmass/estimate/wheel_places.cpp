@@ -19,8 +19,8 @@ Eigen::VectorXd gradient_of(const Function& f, const Places& x, const Places& st
   return gradient;
 }
 
-/// Hessian of f at x, from one-sided mixed differences and central second ones: 1 + 2 n + n (n − 1)/2
-/// values of f.
+/// Hessian of f at x, from one-sided mixed differences and central second ones: 1 + 2 n + n (n −
+/// 1)/2 values of f.
 template <class Function>
 Eigen::MatrixXd hessian_of(const Function& f, const Places& x, const Places& step) {
   const Eigen::Index n = x.size();
@@ -44,7 +44,8 @@ Eigen::MatrixXd hessian_of(const Function& f, const Places& x, const Places& ste
   return hessian;
 }
 
-/// Inverse of −hessian, no direction known worse than beforehand; that also keeps the steps going up.
+/// Inverse of −hessian, no direction known worse than beforehand; that also keeps the steps going
+/// up.
 std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& hessian,
                                                    double prior_information) {
   if (!hessian.allFinite()) return std::nullopt;
@@ -58,7 +59,9 @@ std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& hessia
 /// Newton's steps up the likelihood, halved where they overshoot; the curvature is taken anew only
 /// where a step has been long.
 template <int S>
-FoundPlaces find_places(const WheelModel<S>& model, const Excerpt<S>& excerpt, WheelPrior prior,
+FoundPlaces find_places(const WheelModel<S>& model,
+                        const Excerpt<S>& excerpt,
+                        WheelPrior prior,
                         const PlacesPrior& belief) {
   const double prior_information = 1.0 / (belief.std_m * belief.std_m);
   const auto likelihood = [&](const Places& places) {
@@ -70,8 +73,8 @@ FoundPlaces find_places(const WheelModel<S>& model, const Excerpt<S>& excerpt, W
   };
   FoundPlaces found{*prior.places, Eigen::MatrixXd::Identity(2 * S, 2 * S) / prior_information};
   double best = likelihood(found.mean);
-  // Far from the truth the surface is ragged; where the recording says little, the truth is near what
-  // was believed.
+  // Far from the truth the surface is ragged; where the recording says little, the truth is near
+  // what was believed.
   if (const double value = likelihood(belief.mean); !(best >= value)) {
     best = value;
     found.mean = belief.mean;
@@ -108,9 +111,13 @@ FoundPlaces find_places(const WheelModel<S>& model, const Excerpt<S>& excerpt, W
   return found;
 }
 
-template FoundPlaces find_places(const WheelModel<1>&, const Excerpt<1>&, WheelPrior,
+template FoundPlaces find_places(const WheelModel<1>&,
+                                 const Excerpt<1>&,
+                                 WheelPrior,
                                  const PlacesPrior&);
-template FoundPlaces find_places(const WheelModel<2>&, const Excerpt<2>&, WheelPrior,
+template FoundPlaces find_places(const WheelModel<2>&,
+                                 const Excerpt<2>&,
+                                 WheelPrior,
                                  const PlacesPrior&);
 
 }  // namespace proofmass::estimate

@@ -43,7 +43,8 @@ std::vector<double> atan2_angle(const WheelReadings& readings) {
   at_each_instant(
       readings,
       [&](std::size_t s, Planar f) {
-        // Sensor 2 sees the phase θ + μ; turning its vector back by μ gives what sensor 1 would see.
+        // Sensor 2 sees the phase θ + μ; turning its vector back by μ gives what sensor 1 would
+        // see.
         if (s == 0) return f;
         return Planar{f.u * cos_phase - f.v * sin_phase, f.u * sin_phase + f.v * cos_phase};
       },
@@ -57,7 +58,8 @@ std::vector<double> atan2_angle(const WheelReadings& readings) {
 }
 
 std::vector<double> double_integral_angle(const WheelReadings& readings,
-                                          const Eigen::VectorXd& places, double start_angle_rad,
+                                          const Eigen::VectorXd& places,
+                                          double start_angle_rad,
                                           double start_speed_radps) {
   for (Eigen::Index s = 0; s < places.size() / 2; ++s)
     if (places.segment(2 * s, 2).norm() < 1e-6) return {};

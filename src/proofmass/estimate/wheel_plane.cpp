@@ -17,8 +17,9 @@ double component(const WheelSensor& sensor, std::size_t axis, std::size_t row) {
   return values.empty() ? 0.0 : values[row];
 }
 
-/// The longest rising subsequence of the stamps: a stamp far ahead costs itself and not all that come
-/// after it. Source: C. Schensted, Canadian Journal of Mathematics 13 (1961) 179. Cost: O(N log N).
+/// The longest rising subsequence of the stamps: a stamp far ahead costs itself and not all that
+/// come after it. Source: C. Schensted, Canadian Journal of Mathematics 13 (1961) 179. Cost: O(N
+/// log N).
 std::vector<bool> rising(const std::vector<double>& time_s) {
   constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> ends;  // of the rising runs of length 1, 2, …, the one that ends lowest
@@ -27,7 +28,8 @@ std::vector<bool> rising(const std::vector<double>& time_s) {
     if (!std::isfinite(time_s[row])) continue;
     auto at = ends.end();
     if (!ends.empty() && time_s[row] <= time_s[ends.back()])
-      at = std::ranges::lower_bound(ends, time_s[row], {}, [&](std::size_t k) { return time_s[k]; });
+      at =
+          std::ranges::lower_bound(ends, time_s[row], {}, [&](std::size_t k) { return time_s[k]; });
     if (at != ends.end() && time_s[row] == time_s[*at]) continue;
     if (at != ends.begin()) before[row] = *(at - 1);
     if (at == ends.end())
@@ -55,13 +57,17 @@ const char* why_unusable(const WheelSensor& sensor, std::size_t row, bool time_r
   return all_zero ? "all axes exactly zero" : nullptr;
 }
 
-double dot(const Axis& a, const Axis& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double dot(const Axis& a, const Axis& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 Axis cross(const Axis& a, const Axis& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-Axis scaled(const Axis& a, double factor) { return {a[0] * factor, a[1] * factor, a[2] * factor}; }
+Axis scaled(const Axis& a, double factor) {
+  return {a[0] * factor, a[1] * factor, a[2] * factor};
+}
 
 std::size_t largest(const Axis& a) {
   std::size_t at = 0;
@@ -93,14 +99,15 @@ Eigen::MatrixX3d averaged(const WheelSensor& sensor, const std::vector<std::size
   std::vector<double> stretch(each);
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t k = 0; k < each; ++k) stretch[k] = component(sensor, axis, rows[i * each + k]);
+      for (std::size_t k = 0; k < each; ++k)
+        stretch[k] = component(sensor, axis, rows[i * each + k]);
       medians(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(axis)) = *median(stretch);
     }
   return medians;
 }
 
-/// Draws in what lies further outside the middle nine tenths of a column than those are wide, so that
-/// no few bad stretches can turn the axis.
+/// Draws in what lies further outside the middle nine tenths of a column than those are wide, so
+/// that no few bad stretches can turn the axis.
 void limit(Eigen::MatrixX3d& means) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const View<double> column(means.col(axis).data(), static_cast<std::size_t>(means.rows()));
@@ -132,9 +139,10 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
   // 0.3 m/s² of spread: gravity that has turned by some 25 degrees. Less may be shaking.
   if (next < 16.0 * least || next < 0.09) {
     if (spread.values(2) < 1.0) return assume_plane(means);
-    return Error{Errc::not_observable,
-                 "the force changes along one direction only: a wheel that rocks, or one whose axle is "
-                 "upright; give --spin-axis, or record a whole turn"};
+    return Error{
+        Errc::not_observable,
+        "the force changes along one direction only: a wheel that rocks, or one whose axle is "
+        "upright; give --spin-axis, or record a whole turn"};
   }
   Axis axis{spread.vectors(0, 0), spread.vectors(1, 0), spread.vectors(2, 0)};
   if (axis[largest(axis)] < 0.0) axis = scaled(axis, -1.0);
@@ -165,7 +173,8 @@ Screened screen_rows(const WheelSensor& sensor) {
   return screened;
 }
 
-Result<WheelPlane> find_plane(const WheelSensor& sensor, const Screened& screened,
+Result<WheelPlane> find_plane(const WheelSensor& sensor,
+                              const Screened& screened,
                               const std::optional<Axis>& given) {
   std::vector<std::size_t> rows;
   for (std::size_t row = 0; row < screened.usable.size(); ++row)
@@ -174,10 +183,11 @@ Result<WheelPlane> find_plane(const WheelSensor& sensor, const Screened& screene
     return Error{Errc::too_few_samples, sensor.name + ": only " + std::to_string(rows.size()) +
                                             " usable rows; a wheel needs at least 10"};
   if (given && !(dot(*given, *given) > 0.0))
-    return Error{Errc::invalid_argument, "the spin axis has length 0; give it as x, y, z or a vector"};
+    return Error{Errc::invalid_argument,
+                 "the spin axis has length 0; give it as x, y, z or a vector"};
   Eigen::MatrixX3d means = averaged(sensor, rows);
   limit(means);
-  Result<WheelPlane> found = given                           ? Result<WheelPlane>(plane_about(*given))
+  Result<WheelPlane> found = given ? Result<WheelPlane>(plane_about(*given))
                              : sensor.accel_mps2[2].empty() ? plane_about({0.0, 0.0, 1.0})
                                                             : plane_from(means);
   if (!found) return found;
@@ -196,7 +206,9 @@ WheelPlane turned_over(const WheelPlane& plane) {
   return other;
 }
 
-PlanarReadings project(const WheelSensor& sensor, const Screened& screened, const WheelPlane& plane) {
+PlanarReadings project(const WheelSensor& sensor,
+                       const Screened& screened,
+                       const WheelPlane& plane) {
   const double none = std::numeric_limits<double>::quiet_NaN();
   const std::size_t size = sensor.time_s.size();
   PlanarReadings readings{std::vector<double>(size, none), std::vector<double>(size, none),

@@ -21,30 +21,33 @@ struct Screened {
 };
 
 /// Leaves out rows that no accelerometer on a wheel can have meant: not finite, beyond 1000 g,
-/// denormal (below 1e-30 and not 0: bits that were no number), all axes exactly 0, or with a time that
-/// does not rise.
+/// denormal (below 1e-30 and not 0: bits that were no number), all axes exactly 0, or with a time
+/// that does not rise.
 [[nodiscard]] Screened screen_rows(const WheelSensor& sensor);
 
-/// The plane of the wheel in a sensor's axes: u, v span it, v a quarter turn ahead of u about `axis`.
+/// The plane of the wheel in a sensor's axes: u, v span it, v a quarter turn ahead of u about
+/// `axis`.
 struct WheelPlane {
   Axis axis{}, u{}, v{};
-  bool assumed = false;          ///< the wheel hardly turned: any level axis would do as well
-  double axial_mps2 = 0.0;       ///< mean force along the axis: gravity's, where the axle is not level
+  bool assumed = false;     ///< the wheel hardly turned: any level axis would do as well
+  double axial_mps2 = 0.0;  ///< mean force along the axis: gravity's, where the axle is not level
 };
 
-/// The axis along which the force changes least: gravity turns about it and the centripetal force is
-/// square to it. Its sign is that of its largest component, so that it lies near +x, +y or +z; u is
-/// the next sensor axis in the order x, y, z, x, made square to it.
-/// Errors: too_few_samples (fewer than 10 usable rows), invalid_argument (`given` has length 0),
-/// not_observable (the force changes along one direction only).
+/// The axis along which the force changes least: gravity turns about it and the centripetal force
+/// is square to it. Its sign is that of its largest component, so that it lies near +x, +y or +z; u
+/// is the next sensor axis in the order x, y, z, x, made square to it. Errors: too_few_samples
+/// (fewer than 10 usable rows), invalid_argument (`given` has length 0), not_observable (the force
+/// changes along one direction only).
 
-[[nodiscard]] Result<WheelPlane> find_plane(const WheelSensor& sensor, const Screened& screened,
+[[nodiscard]] Result<WheelPlane> find_plane(const WheelSensor& sensor,
+                                            const Screened& screened,
                                             const std::optional<Axis>& given);
 
 /// The same plane seen from its other side: the wheel turns the other way.
 [[nodiscard]] WheelPlane turned_over(const WheelPlane& plane);
 
-[[nodiscard]] PlanarReadings project(const WheelSensor& sensor, const Screened& screened,
+[[nodiscard]] PlanarReadings project(const WheelSensor& sensor,
+                                     const Screened& screened,
                                      const WheelPlane& plane);
 
 }  // namespace proofmass::estimate

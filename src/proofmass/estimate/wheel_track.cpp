@@ -14,8 +14,8 @@ struct Seek {
   WheelNoise noise;
 };
 
-/// Noise figures to follow a wheel with when nothing is known yet, from a car's wheel on the road to
-/// a bench that hardly shakes. The first that keeps the phase is taken.
+/// Noise figures to follow a wheel with when nothing is known yet, from a car's wheel on the road
+/// to a bench that hardly shakes. The first that keeps the phase is taken.
 constexpr std::array seeks{Seek{1.5, {20.0, 0.0, 1e-7}}, Seek{3.0, {100.0, 0.0, 1e-7}},
                            Seek{1.5, {500.0, 0.0, 1e-7}}, Seek{0.5, {200.0, 0.0, 1e-7}}};
 
@@ -90,7 +90,8 @@ double WheelReadings::rate_hz() const {
 
 WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
   PM_EXPECTS(each >= 1);
-  WheelReadings out{readings.gravity_mps2, readings.rolling_radius_m, readings.phase_rad, {}, {}, {}};
+  WheelReadings out{
+      readings.gravity_mps2, readings.rolling_radius_m, readings.phase_rad, {}, {}, {}};
   out.sensors.resize(readings.sensors.size());
   for (std::size_t first = 0; first < readings.instants.size(); first += each) {
     const std::size_t last = std::min(first + each, readings.instants.size());

@@ -59,9 +59,8 @@ TEST(RigFile, ComesBackTheSame) {
 
 TEST(RigFile, PrintsWhatAPersonWouldWrite) {
   const std::string text = format_rig_file(RigOptions{});
-  for (const char* line :
-       {"\nspeed_rpm = 11 ", "\nrate_hz = 200 ", "\nposition_deg = 180 ",
-        "\nnoise_rms_mps2 = [0.0184, 0.0184, 0.0184] ", "\nfraction = 0.02 "})
+  for (const char* line : {"\nspeed_rpm = 11 ", "\nrate_hz = 200 ", "\nposition_deg = 180 ",
+                           "\nnoise_rms_mps2 = [0.0184, 0.0184, 0.0184] ", "\nfraction = 0.02 "})
     EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
 }
 

@@ -21,7 +21,8 @@ TEST(Rig, DefaultIsTheThesissWheel) {
   EXPECT_EQ(rig.recording.channels[0].unit, parse_unit("m/s^2").value());
   EXPECT_NEAR(column(rig.truth, "angle").back() / rad_per_turn, 11.0, 0.02);
   EXPECT_NEAR(moments(column(rig.truth, "speed")).mean, 1.1519, 0.001);
-  EXPECT_NEAR(moments(column(rig.truth, "speed")).std(), 0.02 / std::numbers::sqrt2 * 1.1519, 0.0005);
+  EXPECT_NEAR(moments(column(rig.truth, "speed")).std(), 0.02 / std::numbers::sqrt2 * 1.1519,
+              0.0005);
   EXPECT_EQ(rig.sensors.size(), 2U);
 }
 

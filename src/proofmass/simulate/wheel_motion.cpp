@@ -33,8 +33,7 @@ WheelMotion::WheelMotion(double start_angle_rad,
   PM_EXPECTS(!pieces_.empty());
 
   Random random(seed, "speed ripple");
-  if (ripple.fraction > 0.0)
-    ripple_.push_back({ripple.order, ripple.fraction, random.phase()});
+  if (ripple.fraction > 0.0) ripple_.push_back({ripple.order, ripple.fraction, random.phase()});
   // The noise's "frequency" is in cycles per revolution, its "time" Φ in revolutions.
   const BandLimitedNoise noise(ripple.random_fraction_rms, ripple.random_max_order,
                                Random(seed, "random speed ripple"));
