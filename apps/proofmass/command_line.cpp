@@ -105,8 +105,10 @@ struct Commands {
   InspectCommand inspect;
   ConvertCommand convert;
   WheelCommand wheel;
+  NoiseCommand noise;
   SimulateCommand simulate;
   BudgetCommand budget;
+  SensorCommand sensor;
 };
 
 void add_inspect(CLI::App& app, InspectCommand& command) {
@@ -160,6 +162,42 @@ void add_wheel(CLI::App& app, WheelCommand& command) {
   verb.footer("Example:\n  proofmass wheel hub.csv rim.csv --spin-axis z --report wheel.html");
 }
 
+void add_noise(CLI::App& app, NoiseCommand& command) {
+  CLI::App& verb = *app.add_subcommand(
+      "noise", "Allan deviation, spectrum and noise figures of a sensor at rest");
+  verb.add_option("FILE", command.files, "recordings at rest; - is standard input (CSV)")
+      ->type_name("")
+      ->required();
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type);
+  };
+  add("--statistic", command.statistic, "NAME",
+      "oadev (default), adev, mdev, tdev, hdev, ohdev, totdev, mtotdev, ttotdev, htotdev, theo1 or "
+      "pdev");
+  add("--taus", command.taus, "LIST",
+      "octave, decade, all, N-per-decade (default 16) or seconds \"1,2,10\"");
+  add("--stop-ratio", command.stop_ratio, "X",
+      "length of the recording over the longest averaging time (default: the statistic's)")
+      ->check(number("a number of 1 or more", [](double x) { return x >= 1.0; }));
+  add("--data", command.data, "KIND", "rate (default), or phase: the integral of it over time")
+      ->check(CLI::IsMember({"rate", "phase"}));
+  add("--confidence", command.confidence, "P", "of the deviation's limits (default 0.683)")
+      ->check(number("a number between 0 and 1", [](double x) { return x > 0.0 && x < 1.0; }));
+  add("--noise-type", command.noise_type, "TYPE",
+      "on which the limits hang: auto (default), lag1, or the power of f from -4 to 2");
+  verb.add_flag("--exclude-events", command.exclude_events,
+                "leave out knocks and take steps of level out");
+  add("--temperature", command.temperature, "NAME",
+      "take out what follows this channel, by least squares");
+  add("--update-sensor", command.update_sensor, "FILE.toml",
+      "write the figures into this sensor file");
+  add_input_flags(verb, command.input);
+  add_output_file(verb, command.output, "write the deviation curves");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass noise rest.csv --rate 100 --unit g --report noise.html");
+}
+
 void add_simulate(CLI::App& app, SimulateCommand& command) {
   CLI::App& verb = *app.add_subcommand("simulate", "the rig as a digital twin");
   verb.add_option("RIG", command.rig, "description of the rig, TOML (default: the thesis's rig)")
@@ -203,6 +241,31 @@ void add_budget(CLI::App& app, BudgetCommand& command) {
   add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer("Example:\n  proofmass budget --bias-mg 3 --times 1,10,60");
+}
+
+void add_sensor(CLI::App& app, SensorCommand& command) {
+  CLI::App& verb = *app.add_subcommand("sensor", "a sensor file for programs that read others");
+  verb.add_option("ACTION", command.action, "export")
+      ->type_name("")
+      ->check(CLI::IsMember({"export"}))
+      ->required();
+  verb.add_option("FILE", command.file, "a sensor file, TOML")->type_name("")->required();
+  verb.add_option("--format", command.format,
+                  "imu-yaml, for visual-inertial calibration, or c-header, for firmware")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"imu-yaml", "c-header"}))
+      ->required();
+  verb.add_option("--rate", command.rate_hz, "imu-yaml: of the recordings to come")
+      ->type_name("HZ")
+      ->check(positive());
+  verb.add_option("--rostopic", command.rostopic, "imu-yaml: their topic (default /imu0)")
+      ->type_name("NAME");
+  verb.add_option("-o,--output", command.output.output, "the new file (default: standard output)")
+      ->type_name("FILE")
+      ->group("Output");
+  add_output_flags(verb, command.output);
+  verb.footer(
+      "Example:\n  proofmass sensor export rim.toml --format imu-yaml --rate 100 -o imu.yaml");
 }
 
 // The value of --config, if it is given.
@@ -306,7 +369,9 @@ Command chosen(CLI::App& app, Commands& commands) {
   if (app.got_subcommand("inspect")) return std::move(commands.inspect);
   if (app.got_subcommand("convert")) return std::move(commands.convert);
   if (app.got_subcommand("wheel")) return std::move(commands.wheel);
+  if (app.got_subcommand("noise")) return std::move(commands.noise);
   if (app.got_subcommand("simulate")) return std::move(commands.simulate);
+  if (app.got_subcommand("sensor")) return std::move(commands.sensor);
   return std::move(commands.budget);
 }
 
@@ -331,8 +396,10 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
   add_inspect(app, commands.inspect);
   add_convert(app, commands.convert);
   add_wheel(app, commands.wheel);
+  add_noise(app, commands.noise);
   add_simulate(app, commands.simulate);
   add_budget(app, commands.budget);
+  add_sensor(app, commands.sensor);
   std::vector<std::string> arguments = with_config(app, argc, argv);
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
   try {

@@ -48,6 +48,17 @@ struct WheelCommand {
   OutputFlags output;
 };
 
+struct NoiseCommand {
+  std::vector<std::string> files;
+  std::string statistic = "oadev", taus, data = "rate", noise_type = "auto";
+  std::string temperature, update_sensor;
+  double confidence = 0.683;
+  std::optional<double> stop_ratio;
+  bool exclude_events = false;
+  InputFlags input;
+  OutputFlags output;
+};
+
 struct SimulateCommand {
   std::string rig;
   std::optional<std::uint64_t> seed;
@@ -63,8 +74,19 @@ struct BudgetCommand {
   OutputFlags output;
 };
 
-using Command =
-    std::variant<InspectCommand, ConvertCommand, WheelCommand, SimulateCommand, BudgetCommand>;
+struct SensorCommand {
+  std::string action, file, format, rostopic;
+  std::optional<double> rate_hz;
+  OutputFlags output;
+};
+
+using Command = std::variant<InspectCommand,
+                             ConvertCommand,
+                             WheelCommand,
+                             NoiseCommand,
+                             SimulateCommand,
+                             BudgetCommand,
+                             SensorCommand>;
 
 /// Reads the command line and the configuration file that it may name. --help and --version are
 /// printed here, and have no command. Throws Failure.

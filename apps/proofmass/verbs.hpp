@@ -8,7 +8,9 @@ namespace proofmass::app {
 void run(const InspectCommand& command);
 void run(const ConvertCommand& command);
 void run(const WheelCommand& command);
+void run(const NoiseCommand& command);
 void run(const SimulateCommand& command);
 void run(const BudgetCommand& command);
+void run(const SensorCommand& command);
 
 }  // namespace proofmass::app

@@ -1,6 +1,7 @@
 #include "proofmass/core/chi_square.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/students_t.hpp>
 
 #include "proofmass/core/contract.hpp"
 
@@ -9,6 +10,10 @@ namespace proofmass {
 double chi_square_quantile(double p, double degrees_of_freedom) {
   PM_EXPECTS(p > 0.0 && p < 1.0 && degrees_of_freedom > 0.0);
   return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), p);
+}
+
+double student_t_quantile(double p, double degrees_of_freedom) {
+  return boost::math::quantile(boost::math::students_t(degrees_of_freedom), p);
 }
 
 Bounds mean_chi_square_95(std::size_t count) {

@@ -7,6 +7,9 @@ namespace proofmass {
 /// The p-quantile of the chi-square distribution with k degrees of freedom, p in (0, 1), k > 0.
 [[nodiscard]] double chi_square_quantile(double p, double degrees_of_freedom);
 
+/// The p-quantile of Student's t distribution with k degrees of freedom, p in (0, 1), k > 0.
+[[nodiscard]] double student_t_quantile(double p, double degrees_of_freedom);
+
 struct Bounds {
   double lower = 0.0, upper = 0.0;
 };

@@ -1,15 +1,99 @@
 #include "proofmass/core/linalg.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "proofmass/core/contract.hpp"
 
 namespace proofmass {
+namespace {
+
+using Index = Eigen::Index;
+
+// A and b brought to a unit diagonal, so that one tolerance suits all unknowns.
+struct ScaledProblem {
+  Eigen::MatrixXd A;
+  Eigen::VectorXd b, scale;
+};
+
+ScaledProblem scaled(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  ScaledProblem problem{A, b, A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()};
+  problem.A = problem.scale.asDiagonal() * A * problem.scale.asDiagonal();
+  problem.A.diagonal().array() += 1e-14;
+  problem.b = problem.scale.asDiagonal() * b;
+  return problem;
+}
+
+// The minimiser with all unknowns zero but those listed.
+Eigen::VectorXd solved_on(const ScaledProblem& problem, const std::vector<Index>& free) {
+  const auto n = static_cast<Index>(free.size());
+  Eigen::MatrixXd A(n, n);
+  Eigen::VectorXd b(n);
+  for (Index i = 0; i < n; ++i) {
+    b(i) = problem.b(free[static_cast<std::size_t>(i)]);
+    for (Index j = 0; j < n; ++j)
+      A(i, j) = problem.A(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(j)]);
+  }
+  const Eigen::VectorXd part = A.llt().solve(b);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.b.size());
+  for (Index i = 0; i < n; ++i) x(free[static_cast<std::size_t>(i)]) = part(i);
+  return x;
+}
+
+// How far from x towards `to` until the first unknown reaches zero, 1 if none does.
+double feasible_step(const Eigen::VectorXd& x,
+                     const Eigen::VectorXd& to,
+                     const std::vector<Index>& free) {
+  double step = 1.0;
+  for (const Index i : free) {
+    if (to(i) <= 0.0 && x(i) > to(i)) step = std::min(step, x(i) / (x(i) - to(i)));
+  }
+  return step;
+}
+
+}  // namespace
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A) {
   PM_EXPECTS(A.rows() == A.cols() && A.allFinite());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);
   return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+Eigen::VectorXd non_negative_minimiser(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  PM_EXPECTS(A.rows() == A.cols() && A.rows() == b.size());
+  const ScaledProblem problem = scaled(A, b);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());
+  std::vector<Index> free;
+  for (Index rounds = 0; rounds < 3 * b.size() + 3; ++rounds) {
+    Eigen::VectorXd downhill = problem.b - problem.A * x;
+    for (const Index i : free) downhill(i) = 0.0;
+    Index best = 0;
+    if (downhill.maxCoeff(&best) <= 1e-12 * problem.b.cwiseAbs().maxCoeff()) break;
+    free.push_back(best);
+    for (;;) {
+      const Eigen::VectorXd to = solved_on(problem, free);
+      const double step = feasible_step(x, to, free);
+      x += step * (to - x);
+      if (step >= 1.0) break;
+      std::erase_if(free, [&](Index i) { return x(i) <= 1e-15 * x.maxCoeff() && to(i) <= 0.0; });
+      for (Index i = 0; i < x.size(); ++i) {
+        if (std::find(free.begin(), free.end(), i) == free.end()) x(i) = 0.0;
+      }
+      if (free.empty()) break;
+    }
+  }
+  return problem.scale.asDiagonal() * x;
+}
+
+Eigen::MatrixXd positive_inverse(const Eigen::MatrixXd& A) {
+  PM_EXPECTS(A.rows() == A.cols());
+  const ScaledProblem problem = scaled(A, Eigen::VectorXd::Zero(A.rows()));
+  const Eigen::MatrixXd inverse =
+      problem.A.llt().solve(Eigen::MatrixXd::Identity(A.rows(), A.cols()));
+  return problem.scale.asDiagonal() * inverse * problem.scale.asDiagonal();
 }
 
 }  // namespace proofmass

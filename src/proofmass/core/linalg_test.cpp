@@ -1,6 +1,7 @@
 #include "proofmass/core/linalg.hpp"
 
 #include <gtest/gtest.h>
+#include <random>
 
 namespace proofmass {
 namespace {
@@ -13,6 +14,38 @@ TEST(SymmetricEigen, RebuildsTheMatrixWithValuesAscending) {
       (eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose()).isApprox(A, 1e-12));
   EXPECT_LE(eigen.values(0), eigen.values(1));
   EXPECT_LE(eigen.values(1), eigen.values(2));
+}
+
+// Lagrange: nothing to gain by moving along any unknown.
+TEST(NonNegativeMinimiser, MeetsItsConditionsWhateverTheProblem) {
+  std::mt19937_64 rng(5);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 300; ++trial) {
+    Eigen::MatrixXd X(12, 5);
+    for (auto& value : X.reshaped()) value = normal(rng);
+    // Unknowns of very different sizes, as the terms of a spectrum are.
+    for (int j = 0; j < 5; ++j) X.col(j) *= std::pow(10.0, 4 * j - 8);
+    Eigen::VectorXd y(12);
+    for (auto& value : y) value = normal(rng);
+    const Eigen::MatrixXd A = X.transpose() * X;
+    const Eigen::VectorXd b = X.transpose() * y;
+    const Eigen::VectorXd x = non_negative_minimiser(A, b);
+    const Eigen::VectorXd uphill = A * x - b;
+    for (int i = 0; i < 5; ++i) {
+      const double unit = std::sqrt(A(i, i));
+      EXPECT_GE(x(i), 0.0);
+      EXPECT_GE(uphill(i) / unit, -1e-9);
+      if (x(i) > 0.0) {
+        EXPECT_NEAR(uphill(i) / unit, 0.0, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(PositiveInverse, UndoesTheMatrix) {
+  Eigen::MatrixXd A(2, 2);
+  A << 4.0e3, 1.0, 1.0, 3.0e-3;
+  EXPECT_TRUE((A * positive_inverse(A)).isApprox(Eigen::MatrixXd::Identity(2, 2), 1e-9));
 }
 
 }  // namespace

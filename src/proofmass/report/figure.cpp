@@ -117,11 +117,19 @@ void point(Out out, const Mappings& map, double x, double y) {
   fmt::format_to(out, "{:.1f},{:.1f} ", map.x(x), map.y(y));
 }
 
+double text_width(std::string_view text) {
+  return letter * static_cast<double>(letters(text));
+}
+
+std::string_view stroke(Mark mark) {
+  if (mark == Mark::dashes) return "pm-line pm-dashes";
+  return mark == Mark::thin ? "pm-line pm-thin" : "pm-line";
+}
+
 void draw_line(std::string& text, const Mappings& map, const Curve& curve) {
   const Polyline line = thinned(curve.x, curve.y);
   const Out out(text);
-  fmt::format_to(out, "<path class=\"pm-line pm-{}{}\" d=\"", colour(curve.ink),
-                 curve.mark == Mark::dashes ? " pm-dashes" : "");
+  fmt::format_to(out, "<path class=\"{} pm-{}\" d=\"", stroke(curve.mark), colour(curve.ink));
   bool pen_down = false;
   for (std::size_t k = 0; k < line.x.size(); ++k) {
     if (!map.x.shows(line.x[k]) || !map.y.shows(line.y[k])) {
@@ -165,6 +173,7 @@ void draw(std::string& text, const Mappings& map, const Curve& curve) {
   switch (curve.mark) {
     case Mark::line:
     case Mark::dashes:
+    case Mark::thin:
       draw_line(text, map, curve);
       break;
     case Mark::points:
@@ -203,12 +212,46 @@ void draw(std::string& text, const Mappings& map, const Level& level) {
                  map.y(level.y), map.x.to);
 }
 
+// A word that would run out of the plot goes to the other side of its dot.
+void draw(std::string& text, const Mappings& map, const Callout& callout) {
+  if (!map.x.holds(callout.x) || !map.y.holds(callout.y)) return;
+  const double x = map.x(callout.x), y = map.y(callout.y);
+  const double wide = 10.0 + text_width(callout.text);
+  const bool turned = x + wide > map.x.to || (callout.left && x - wide > map.x.from);
+  fmt::format_to(Out(text),
+                 "<circle class=\"pm-fill pm-{0}\" cx=\"{1:.1f}\" cy=\"{2:.1f}\" r=\"3.5\"/>"
+                 "<text class=\"pm-callout{3} pm-{0}\" x=\"{4:.1f}\" y=\"{5:.1f}\">{6}</text>\n",
+                 colour(callout.ink), x, y, turned ? " pm-end" : "", turned ? x - 7.0 : x + 7.0,
+                 callout.below ? y + 17.0 : y - 7.0, escaped(callout.text));
+}
+
 std::vector<Tick> ticks_of(const Mapping& map, int most) {
   return map.log ? log_ticks(map.low, map.high, most) : linear_ticks(map.low, map.high, most);
 }
 
+// Faint lines at 2 … 9 times each power of ten, without which a log scale is hard to read.
+void draw_minor_grid(std::string& text, const Mapping& map, const Mapping& across, bool upright) {
+  constexpr double most_decades = 8.0;
+  if (!map.log || std::log10(map.high / map.low) > most_decades) return;
+  text += "<path class=\"pm-grid pm-minor\" d=\"";
+  const auto last = static_cast<int>(std::floor(std::log10(map.high)));
+  for (auto power = static_cast<int>(std::floor(std::log10(map.low))); power <= last; ++power) {
+    for (int digit = 2; digit < 10; ++digit) {
+      const double value = digit * std::pow(10.0, power);
+      if (!map.holds(value)) continue;
+      if (upright)
+        fmt::format_to(Out(text), "M{:.1f},{:.1f}V{:.1f}", map(value), across.from, across.to);
+      else
+        fmt::format_to(Out(text), "M{:.1f},{:.1f}H{:.1f}", across.from, map(value), across.to);
+    }
+  }
+  text += "\"/>\n";
+}
+
 void draw_axes(std::string& text, const Mappings& map, const Figure& figure) {
   const Out out(text);
+  draw_minor_grid(text, map.x, map.y, true);
+  draw_minor_grid(text, map.y, map.x, false);
   for (const Tick& tick : ticks_of(map.y, std::max(3, static_cast<int>(figure.height / 48.0)))) {
     const double y = map.y(tick.value);
     fmt::format_to(out,
@@ -240,12 +283,11 @@ std::vector<Entry> legend(const Figure& figure) {
   std::vector<Entry> entries;
   for (const Curve& curve : figure.curves) {
     if (curve.label.empty()) continue;
-    std::string_view shape = "<path class=\"pm-line pm-{}\" d=\"M0,0H{}\"/>";
-    if (curve.mark == Mark::dashes)
-      shape = "<path class=\"pm-line pm-dashes pm-{}\" d=\"M0,0H{}\"/>";
-    if (curve.mark == Mark::points) shape = "<circle class=\"pm-fill pm-{}\" cx=\"12\" r=\"3\"/>";
-    if (curve.mark == Mark::ticks) shape = "<path class=\"pm-line pm-{}\" d=\"M12,-5v10\"/>";
-    entries.push_back({curve.label, fmt::format(fmt::runtime(shape), colour(curve.ink), swatch)});
+    std::string_view shape = "<path class=\"{2} pm-{0}\" d=\"M0,0H{1}\"/>";
+    if (curve.mark == Mark::points) shape = "<circle class=\"pm-fill pm-{0}\" cx=\"12\" r=\"3\"/>";
+    if (curve.mark == Mark::ticks) shape = "<path class=\"pm-line pm-{0}\" d=\"M12,-5v10\"/>";
+    entries.push_back({curve.label, fmt::format(fmt::runtime(shape), colour(curve.ink), swatch,
+                                                stroke(curve.mark))});
   }
   for (const Band& band : figure.bands) {
     if (band.label.empty()) continue;
@@ -259,10 +301,6 @@ std::vector<Entry> legend(const Figure& figure) {
         {level.label, fmt::format("<path class=\"pm-level\" d=\"M0,0H{}\"/>", swatch)});
   }
   return entries;
-}
-
-double text_width(std::string_view text) {
-  return letter * static_cast<double>(letters(text));
 }
 
 // Draws the legend in as many rows as it needs, above the plot where it covers nothing, and returns
@@ -303,6 +341,7 @@ std::string svg(const Figure& figure, const std::string& id) {
   for (const Band& band : figure.bands) draw(body, map, band);
   for (const Level& level : figure.levels) draw(body, map, level);
   for (const Curve& curve : figure.curves) draw(body, map, curve);
+  for (const Callout& callout : figure.callouts) draw(body, map, callout);
   return fmt::format(
       "<svg class=\"pm-figure\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" "
       "aria-labelledby=\"{}-title {}-desc\" xmlns=\"http://www.w3.org/2000/svg\">\n"
@@ -323,11 +362,12 @@ font-variant-numeric:tabular-nums}
 .pm-blue{--c:var(--blue)}.pm-orange{--c:var(--orange)}.pm-green{--c:var(--green)}
 .pm-purple{--c:var(--purple)}.pm-red{--c:var(--red)}.pm-grey{--c:var(--grey)}
 .pm-line{fill:none;stroke:var(--c);stroke-width:1.5;stroke-linejoin:round;stroke-linecap:round}
-.pm-dashes{stroke-dasharray:7 5;stroke-linecap:butt}
+.pm-thin{stroke-width:1;stroke-opacity:.8}.pm-dashes{stroke-dasharray:7 5;stroke-linecap:butt}
 .pm-band{fill:var(--c);fill-opacity:.2;stroke:none}.pm-fill{fill:var(--c)}
 .pm-level{fill:none;stroke:var(--soft);stroke-width:1.2;stroke-dasharray:2 3}
-.pm-grid{fill:none;stroke:var(--grid);stroke-width:1}.pm-axis{fill:none;stroke:var(--soft)}
+.pm-grid{fill:none;stroke:var(--grid);stroke-width:1}.pm-minor{stroke-opacity:.55}.pm-axis{fill:none;stroke:var(--soft)}
 .pm-tick,.pm-label{fill:var(--soft)}.pm-key{fill:var(--ink)}
+.pm-callout{fill:var(--c);stroke:var(--paper);stroke-width:4px;paint-order:stroke}
 .pm-end{text-anchor:end}.pm-mid{text-anchor:middle}
 )";
 }

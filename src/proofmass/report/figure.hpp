@@ -23,6 +23,7 @@ enum class Ink { blue, orange, green, purple, red, grey };
 enum class Mark {
   line,
   dashes,
+  thin,    ///< a hairline: what a curve is made of
   points,  ///< a dot at each value, for few values
   ticks,   ///< a short stroke at the foot of the plot at each x: events
 };
@@ -48,6 +49,15 @@ struct Level {
   double y = 0.0;
 };
 
+/// A dot on the plot with a word beside it; what lies outside the plot is left away.
+struct Callout {
+  std::string text;
+  double x = 0.0, y = 0.0;
+  Ink ink = Ink::grey;
+  bool below = false;  ///< the word stands under its dot, not above
+  bool left = false;   ///< and before it, not behind, if there is room
+};
+
 struct Figure {
   std::string title;
   std::string description;  ///< what it shows, in a sentence or two: for readers, seeing or not
@@ -55,6 +65,7 @@ struct Figure {
   std::vector<Band> bands = {};
   std::vector<Curve> curves = {};
   std::vector<Level> levels = {};
+  std::vector<Callout> callouts = {};
   double height = 300.0;  ///< of the plot's box, in units of which the width has 900
 };
 

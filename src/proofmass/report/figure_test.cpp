@@ -67,6 +67,23 @@ TEST(Svg, EscapesLabels) {
   EXPECT_EQ(text.find("curve <1>"), std::string::npos);
 }
 
+TEST(Svg, WritesACalloutInsideThePlotAndLeavesOneOutsideAway) {
+  Figure figure = plot({1.0, 2.0, 3.0});
+  figure.callouts = {
+      {"N <1 s>", 0.5, 2.0}, {"a rather long name", 2.0, 2.0}, {"far off", 9.0, 2.0}};
+  const std::string text = svg(figure, "f");
+  EXPECT_NE(text.find("N &lt;1 s&gt;"), std::string::npos);
+  EXPECT_EQ(text.find("far off"), std::string::npos);
+  EXPECT_EQ(count(text, "class=\"pm-callout pm-end"), 1);  // the one at the right margin
+}
+
+TEST(Svg, RulesALogAxisBetweenThePowersOfTen) {
+  Figure figure = plot({1.0, 10.0, 1000.0});
+  EXPECT_EQ(count(svg(figure, "f"), "pm-minor"), 0);
+  figure.y.scale = AxisScale::log;
+  EXPECT_EQ(count(svg(figure, "f"), "pm-minor"), 1);
+}
+
 TEST(Svg, KeepsTheLegendAboveThePlot) {
   Figure figure = plot({1.0, 2.0});
   for (int k = 0; k < 12; ++k) figure.levels.push_back({"a rather long name of a level", 1.5});

@@ -154,7 +154,7 @@ std::string html(const Page& page) {
   fmt::format_to(
       Out(text),
       "<p>Made by Proofmass {}. A figure written a ± b carries its standard deviation b; "
-      "bands are 95 %.</p>\n</footer>\n</main>\n</body>\n</html>\n",
+      "bands are 95 % where they do not say otherwise.</p>\n</footer>\n</main>\n</body>\n</html>\n",
       version());
   return text;
 }

@@ -37,6 +37,25 @@ std::string with_power(double value, int power, int decimals) {
   return fixed(value / std::pow(10.0, power), decimals) + "·10" + superscript(power);
 }
 
+// "0.02": digit · 10^exponent in plain figures.
+std::string plain_power(int exponent, int digit) {
+  return fixed(digit * std::pow(10.0, exponent), std::max(0, -exponent));
+}
+
+// 1, 2 and 5 times each power of ten inside.
+std::vector<Tick> one_two_five(double low, double high) {
+  std::vector<Tick> ticks;
+  const auto last = static_cast<int>(std::floor(std::log10(high)));
+  for (auto power = static_cast<int>(std::floor(std::log10(low))); power <= last; ++power) {
+    for (const int digit : {1, 2, 5}) {
+      const double value = digit * std::pow(10.0, power);
+      if (value < low * (1.0 - 1e-9) || value > high * (1.0 + 1e-9)) continue;
+      ticks.push_back({value, plain_power(power, digit)});
+    }
+  }
+  return ticks;
+}
+
 }  // namespace
 
 std::vector<Tick> linear_ticks(double low, double high, int most) {
@@ -63,15 +82,16 @@ std::vector<Tick> log_ticks(double low, double high, int most) {
   if (!(low > 0.0) || !(high > low) || !std::isfinite(high)) return {};
   const int first = static_cast<int>(std::ceil(std::log10(low) - 1e-9));
   const int last = static_cast<int>(std::floor(std::log10(high) + 1e-9));
+  const bool plain = first >= -2 && last <= 4;
+  const std::vector<Tick> between = plain ? one_two_five(low, high) : std::vector<Tick>{};
+  if (between.size() >= 3 && between.size() <= static_cast<std::size_t>(most) + 1) return between;
   if (last - first < 1) return linear_ticks(low, high, most);
   const int every = std::max(1, (last - first + most) / most);
   std::vector<Tick> ticks;
   for (int exponent = first; exponent <= last; ++exponent) {
     if (exponent % every != 0) continue;
-    const bool plain = exponent >= -2 && exponent <= 4 && first >= -2 && last <= 4;
-    ticks.push_back(
-        {std::pow(10.0, exponent), plain ? fixed(std::pow(10.0, exponent), std::max(0, -exponent))
-                                         : "10" + superscript(exponent)});
+    ticks.push_back({std::pow(10.0, exponent),
+                     plain ? plain_power(exponent, 1) : "10" + superscript(exponent)});
   }
   return ticks;
 }

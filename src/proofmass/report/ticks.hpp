@@ -16,8 +16,9 @@ struct Tick {
 /// ones. Empty if the range is empty, not finite, or too narrow for doubles to tell its ends apart.
 [[nodiscard]] std::vector<Tick> linear_ticks(double low, double high, int most);
 
-/// Powers of ten within [low, high], both positive, "10⁻³"; every second, third … one where there
-/// are more than `most`. Where fewer than two lie inside, linear_ticks of the same range.
+/// Powers of ten within [low, high], both positive, "10⁻³"; 2 and 5 times them too where there is
+/// room, and every second, third … power where there are more than `most`. Where fewer than two lie
+/// inside, linear_ticks of the same range.
 [[nodiscard]] std::vector<Tick> log_ticks(double low, double high, int most);
 
 }  // namespace proofmass::report

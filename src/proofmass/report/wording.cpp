@@ -100,6 +100,10 @@ std::string print_unit(std::string_view symbol) {
       text.replace(at, power.size(), power == "^2" ? "²" : "³");
     }
   }
+  for (const std::string_view root : {"sqrt(Hz)", "sqrt(s)"}) {
+    const std::size_t at = text.find(root);
+    if (at != std::string::npos) text.replace(at, root.size(), root == "sqrt(s)" ? "√s" : "√Hz");
+  }
   return text;
 }
 

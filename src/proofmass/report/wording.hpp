@@ -43,7 +43,7 @@ namespace proofmass::report {
 /// "1 sample", "12 000 samples": a count with its noun, thousands apart.
 [[nodiscard]] std::string count_words(std::size_t count, std::string_view noun);
 
-/// "m/s^2" as print has it: "m/s²".
+/// "m/s^2/sqrt(Hz)" as print has it: "m/s²/√Hz".
 [[nodiscard]] std::string print_unit(std::string_view symbol);
 
 /// A file's name without the folders before it, and whatever stands behind it ("a/b.csv: acc1" is

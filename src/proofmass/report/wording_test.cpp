@@ -85,8 +85,10 @@ TEST(FileName, IsWhatStandsBehindTheFolders) {
   EXPECT_EQ(file_name("folder/"), "folder/");
 }
 
-TEST(PrintUnit, RaisesPowers) {
+TEST(PrintUnit, RaisesPowersAndDrawsRoots) {
   EXPECT_EQ(print_unit("m/s^2"), "m/s²");
+  EXPECT_EQ(print_unit("m/s^2/sqrt(Hz)"), "m/s²/√Hz");
+  EXPECT_EQ(print_unit("V/sqrt(s)"), "V/√s");
 }
 
 }  // namespace

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "proofmass/characterise/statistic.hpp"
+
+namespace proofmass::characterise {
+
+/// The expectation of a variance as estimated, over the true one, where the rate's spectrum is
+/// f^α; divide an estimate by it:
+///
+///     totdev            1 − a τ/T          a = 0, 1/(3 ln 2), 3/4  of α = 0, −1, −2
+///     mtotdev ttotdev   0.94, 0.83, 0.73, 0.70, 0.69               of α = 2, 1, 0, −1, −2
+///     htotdev           0.995, 0.851, 0.771, 0.717, 0.679          of α = 0, −1, −2, −3, −4; m > 1
+///     theo1             1 / (a + b/m^c)                            1 for α = 0
+///
+/// with τ/T = m/(N − 1), N the number of phase points. 1 for all others, and for the laws that a
+/// table lacks; the true variance of theo1 is the Allan variance at 0.75 m τ0.
+/// Source: W. J. Riley, NIST SP 1065 (2008), sections 5.2.11–5.2.15 and 5.4; D. A. Howe, Total
+/// variance explained, Proc. EFTF–IEEE IFCS (1999), table 1; D. A. Howe et al., A total estimator
+/// of the Hadamard function used for GPS operations, Proc. 32nd PTTI (2000); D. A. Howe, T. N.
+/// Tasset, Theo1: characterization of very long-term frequency stability, Proc. 18th EFTF (2004).
+/// Needs: −4 ≤ α ≤ 2, 1 ≤ m < N.
+[[nodiscard]] double variance_bias(Statistic statistic,
+                                   int alpha,
+                                   std::size_t m,
+                                   std::size_t phase_points);
+
+/// In words, what dividing by variance_bias corrects; empty where there is nothing to correct.
+[[nodiscard]] std::string bias_correction(Statistic statistic);
+
+}  // namespace proofmass::characterise

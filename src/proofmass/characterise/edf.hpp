@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "proofmass/characterise/statistic.hpp"
+
+namespace proofmass::characterise {
+
+/// What decides how well a variance of differences of order d is known.
+struct EdfCase {
+  int alpha = 0;      ///< exponent of the rate's spectrum, S_y(f) ∝ f^α: 2 down to 2 − 2d
+  int d = 2;          ///< 1: first differences, 2: Allan, 3: Hadamard
+  std::size_t m = 1;  ///< averaging factor, τ = m τ0
+  std::size_t phase_points = 0;  ///< N, one more than there are rates
+  std::size_t stride = 1;        ///< samples between the starts of terms: 1 is full overlap, m none
+  bool modified = false;         ///< whether each term is averaged over m starts
+  /// F = m · this, of unmodified terms. 1 as in the paper, which takes the phase as averaged over
+  /// each sample; large for samples that are means of the rate, which make those of white noise
+  /// independent (edf 667 instead of 782 of 999 terms at m = 1).
+  double points_per_sample = 1.0;
+};
+
+/// Equivalent degrees of freedom of the mean square of M differences z of order d:
+///
+///     1/edf = Σ_{|j|<M} (1 − |j|/M) s_z(j/S)² / (M s_z(0)²),
+///
+/// where S = m/stride, M = 1 + ⌊(N − L)/stride⌋, L = m d + (modified ? m : 1), and s_z is the
+/// autocovariance of z, t in units of τ:
+///
+///     s_z(t) = Σ_k (−1)^k C(2d, d+k) s_x(t + k),  k = −d … d
+///     s_x(t) = F² [2 s_w(t) − s_w(t − 1/F) − s_w(t + 1/F)],  F = modified ? 1 : m (but see points_per_sample)
+///     s_w(t) = −|t|, t² ln|t|, |t|³, −t⁴ ln|t|, −|t|⁵, t⁶ ln|t|, |t|⁷  for α = 2, 1, … −4.
+///
+/// Lags beyond J = min(M, (d+1) S) are left out. Long sums are taken in blocks of lags that grow
+/// with the distance from the kinks of s_z (within 0.1 % of the sum over all lags).
+/// The paper's phase is averaged over each sample. For white rates independent from sample to
+/// sample the exact edf is 0.85 of this at m = 1, 1.12 at m = 5, 1.05 at m = 20, 1.02 at m = 50.
+/// Source: C. A. Greenhall, W. J. Riley, Uncertainty of stability variances based on finite
+/// differences, Proc. 35th PTTI (2003).
+/// Needs: N ≥ L, and α > 1 − 2d, below which the variance does not converge (the Allan variance
+/// for α ≤ −3); both are the caller's to see to. Cost: O(log m).
+[[nodiscard]] double greenhall_riley_edf(const EdfCase& known);
+
+/// The share of the variance at one τ that each power law has: [0] of α = +2 … [6] of α = −4.
+using AlphaShares = std::array<double, 7>;
+
+/// The same for a mixture of power laws; known.alpha is ignored, shares are taken relative to
+/// their sum. The autocovariance is linear in the spectrum, so s_z(t)/s_z(0) of a mixture is the
+/// mean of the pure ones by their shares. Needs: no share where a pure law may not be.
+[[nodiscard]] double mixed_edf(const EdfCase& known, const AlphaShares& shares);
+
+/// The lowest α for which a statistic converges: −4 of the Hadamard kind, −2 of all others.
+[[nodiscard]] int lowest_alpha(Statistic statistic);
+
+/// Equivalent degrees of freedom of a statistic over all phase points, at full overlap where it has
+/// one; T/τ = N/m, and b, c, b0, b1 depend on α:
+///
+///     adev oadev mdev tdev hdev ohdev   greenhall_riley_edf
+///     totdev                            b T/τ − c;  m = 1: oadev
+///     mtotdev ttotdev                   b T/τ − c;  m < 10: mdev
+///     htotdev                           T/τ / (b0 + b1 τ/T);  m < 16 or α > 0: see below
+///     theo1                             five rational functions of N and 0.75 m
+///     pdev                              Greenhall and Riley's sum with parabolic weights
+///
+/// htotdev takes the edf of oadev where it has no fit, of ohdev if m = 1 or α < −2.
+/// The fits come within 20 % of the exact value from m = 4 to τ = T/10 (totdev at m = 2 has a
+/// third too many); towards T/3 those of mtotdev (α < 0: too many) and theo1 may be off by half.
+/// Where another statistic stands in, and in totdev for α > 0, which takes α = 0, there are too
+/// few rather than too many. At least 1.
+/// Source: W. J. Riley, NIST SP 1065 (2008), sections 5.4.1–5.4.5; of the weights: F. Vernotte,
+/// M. Lenczner, P.-Y. Bourgeois, E. Rubiola, The parabolic variance, IEEE Trans. UFFC 63 (2016).
+/// Needs: lowest_alpha ≤ α ≤ 2, and room for one term. Cost: O(log m).
+[[nodiscard]] double edf(Statistic statistic, int alpha, std::size_t m, std::size_t phase_points);
+
+}  // namespace proofmass::characterise

@@ -1,0 +1,218 @@
+#include "proofmass/characterise/noise_analysis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include "proofmass/characterise/deviation_curve.hpp"
+#include "proofmass/characterise/low_band.hpp"
+#include "proofmass/characterise/noise_fit.hpp"
+#include "proofmass/core/statistics.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+constexpr std::size_t fewest_samples = 3;
+// A spectrum is averaged over at least so many segments, as long as these keep 64 samples.
+constexpr std::size_t segments_wanted = 16, shortest_segment = 64;
+// Evaluating every factor of a long record would take hours.
+constexpr double most_work = 4e10;
+
+Status check(View<double> series, const NoiseOptions& options) {
+  if (!(std::isfinite(options.rate_hz) && options.rate_hz > 0.0))
+    return Error{Errc::invalid_argument, "rate_hz must be positive and finite"};
+  if (!(options.confidence > 0.0 && options.confidence < 1.0))
+    return Error{Errc::invalid_argument, "confidence must lie between 0 and 1"};
+  if (options.noise_type == NoiseTypeSource::fixed && (options.alpha > 2 || options.alpha < -4))
+    return Error{Errc::invalid_argument, "the noise type must be one of 2, 1, 0, -1, -2, -3, -4"};
+  if (series.size() < fewest_samples)
+    return Error{Errc::too_few_samples, fmt::format("{} samples, expected at least {}",
+                                                    series.size(), fewest_samples)};
+  if (options.taus.kind == TauGrid::Kind::all &&
+      static_cast<double>(series.size()) * static_cast<double>(series.size()) / 4.0 > most_work)
+    return Error{Errc::invalid_argument,
+                 fmt::format("every τ of {} samples would take hours: ask for so many per decade, "
+                             "or cut the recording",
+                             series.size())};
+  return Done{};
+}
+
+std::size_t segment_for(std::size_t samples, std::size_t longest) {
+  std::size_t segment = longest;
+  while (segment > shortest_segment && samples / segment < segments_wanted) segment /= 2;
+  return segment;
+}
+
+// The spread about the means of blocks short enough for drift not to count.
+double short_term_std(View<double> series) {
+  constexpr std::size_t block = 64;
+  double squares = 0.0, freedom = 0.0;
+  for (std::size_t from = 0; from < series.size(); from += block) {
+    const Moments part = moments(series.subspan(from, std::min(block, series.size() - from)));
+    if (part.count < 2) continue;
+    squares += part.squares;
+    freedom += static_cast<double>(part.count - 1);
+  }
+  return freedom > 0.0 ? std::sqrt(squares / freedom) : 0.0;
+}
+
+// Noise of half a step is what still makes rounding a white noise of its own, of variance step²/12:
+// B. Widrow, I. Kollár, Quantization Noise (2008), section 4.
+Status check_resolution(double spread, double lsb) {
+  const double added = lsb * lsb / 12.0, least = 0.25 * lsb * lsb;
+  if (spread * spread - added >= least) return Done{};
+  return Error{Errc::not_observable,
+               fmt::format("the readings spread by {:.2f} steps of the converter, of which the "
+                           "steps themselves make 0.29: noise below half a step cannot be told "
+                           "from rounding: record with a finer converter or more gain",
+                           spread / lsb)};
+}
+
+void note_resolution(NoiseAnalysis& analysis, double spread) {
+  if (!analysis.lsb) return;
+  const double density = *analysis.lsb / std::sqrt(12.0 * analysis.rate_hz);
+  const bool coarse = spread < 2.0 * *analysis.lsb;
+  analysis.notes.push_back(
+      {coarse ? Severity::warning : Severity::info,
+       fmt::format("the converter's step is {:.3g} of the readings' spread: rounding makes a white "
+                   "noise of {:.3g} per √Hz, {:.0f} % of that found",
+                   *analysis.lsb / spread, density,
+                   analysis.model.white.value > 0.0 ? 100.0 * density / analysis.model.white.value
+                                                    : 0.0)});
+}
+
+// Steps of level are taken out where they stand; knocks and the edges of steps go missing.
+std::vector<double> without_events(View<double> series,
+                                   const std::vector<signal::Event>& events,
+                                   double rate_hz) {
+  std::vector<double> kept(series.begin(), series.end());
+  signal::drop_events(kept, events, rate_hz);
+  double level = 0.0;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    while (next < events.size() && events[next].first <= k) {
+      if (events[next].kind == signal::EventKind::step) level += events[next].size;
+      ++next;
+    }
+    kept[k] -= level;
+  }
+  return kept;
+}
+
+void note_events(NoiseAnalysis& analysis, bool excluded) {
+  std::size_t steps = 0;
+  for (const signal::Event& event : analysis.events)
+    steps += event.kind == signal::EventKind::step ? 1 : 0;
+  const std::size_t knocks = analysis.events.size() - steps;
+  if (analysis.events.empty()) return;
+  const auto count = [](std::size_t n, const char* noun) {
+    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+  };
+  analysis.notes.push_back(
+      {Severity::warning,
+       excluded ? fmt::format("{} and {} left out of everything", count(knocks, "knock"),
+                              count(steps, "step"))
+                : fmt::format("{} and {} are in the figures, and are no noise of the sensor: leave "
+                              "them out with --exclude-events",
+                              count(knocks, "knock"), count(steps, "step"))});
+}
+
+void note_missing(NoiseAnalysis& analysis, std::size_t left_out) {
+  if (left_out > analysis.samples / 100)
+    analysis.notes.push_back(
+        {Severity::warning,
+         fmt::format("this statistic needs one piece without gaps: {} of {} samples are left out",
+                     left_out, analysis.samples)});
+  if (analysis.missing == 0) return;
+  const double share = static_cast<double>(analysis.missing) / static_cast<double>(analysis.samples);
+  analysis.notes.push_back(
+      {share > 0.05 ? Severity::warning : Severity::info,
+       fmt::format("{} of {} samples are missing: the deviation counts the terms that are complete",
+                   analysis.missing, analysis.samples)});
+}
+
+void note_model(NoiseAnalysis& analysis) {
+  const NoiseModelFit& model = analysis.model;
+  if (model.ordinates == 0) {
+    analysis.notes.push_back(
+        {Severity::warning, "too short for coefficients: limits are those of white noise"});
+    return;
+  }
+  if (model.misfit > 0.0)
+    analysis.notes.push_back(
+        {Severity::info, fmt::format("the spectrum departs from the model by {:.0f} % beyond its "
+                                     "scatter; standard deviations are widened for it",
+                                     100.0 * model.misfit)});
+  const auto ambiguous = [](const Coefficient& c) {
+    return c.verdict == Verdict::identified && c.lower_95 == 0.0;
+  };
+  if (ambiguous(model.random_walk) || ambiguous(model.flicker))
+    analysis.notes.push_back(
+        {Severity::warning,
+         "there is slow noise beyond the white, but this recording is too short to tell flicker "
+         "from random walk: the simpler reading is given, its interval reaches down to zero"});
+}
+
+// Spectrum, lines and model, where the record is long enough for them.
+void fit(NoiseAnalysis& analysis, View<double> series, std::size_t longest_segment) {
+  const double rate_hz = analysis.rate_hz;
+  auto spectrum = signal::welch(
+      series, {.rate_hz = rate_hz, .segment = segment_for(series.size(), longest_segment)});
+  if (!spectrum) return;
+  analysis.spectrum = std::move(spectrum).value();
+  analysis.lines = signal::find_lines(analysis.spectrum);
+  BlockMeans slow(rate_hz);
+  slow.add(series);
+  auto model = fit_noise_model({slow, analysis.spectrum, analysis.lines, analysis.duration_s});
+  if (model) analysis.model = std::move(model).value();
+}
+
+}  // namespace
+
+Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& options) {
+  if (Status checked = check(series, options); !checked) return checked.error();
+  std::vector<double> changed;
+  if (options.kind == SeriesKind::phase) {
+    changed.resize(series.size() - 1);
+    for (std::size_t k = 0; k < changed.size(); ++k)
+      changed[k] = (series[k + 1] - series[k]) * options.rate_hz;
+    series = changed;
+  }
+  NoiseAnalysis analysis;
+  analysis.rate_hz = options.rate_hz;
+  analysis.samples = series.size();
+  analysis.duration_s = static_cast<double>(series.size()) / options.rate_hz;
+  analysis.lsb = options.lsb;
+  const double spread = short_term_std(series);
+  if (!(spread > 0.0)) {
+    const bool none = moments(series).count == 0;
+    return Error{none ? Errc::not_finite : Errc::not_observable,
+                 none ? "no sample is a number" : "the samples do not vary"};
+  }
+  if (options.lsb) {
+    if (Status fine = check_resolution(spread, *options.lsb); !fine) return fine.error();
+  }
+  if (options.progress) options.progress("knocks and steps", 0.0);
+  analysis.events = signal::find_events(series, {.rate_hz = options.rate_hz});
+  if (options.exclude_events && !analysis.events.empty()) {
+    changed = without_events(series, analysis.events, options.rate_hz);
+    series = changed;
+  }
+  const Moments all = moments(series);
+  analysis.mean = all.mean;
+  analysis.missing = all.nonfinite;
+  if (options.progress) options.progress("spectrum and coefficients", 0.2);
+  fit(analysis, series, options.segment);
+  if (options.progress) options.progress("deviations", 0.6);
+  const CurveVariances variances = curve_variances(series, options);
+  analysis.deviation = deviation_curve(variances, analysis.model, series, options);
+  note_missing(analysis, variances.left_out);
+  note_events(analysis, options.exclude_events);
+  note_resolution(analysis, spread);
+  note_model(analysis);
+  if (options.progress) options.progress("done", 1.0);
+  return analysis;
+}
+
+}  // namespace proofmass::characterise

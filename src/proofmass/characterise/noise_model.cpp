@@ -1,0 +1,92 @@
+#include "proofmass/characterise/noise_model.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "proofmass/characterise/term_spectra.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+double square(double x) {
+  return x * x;
+}
+
+// σ²(τ) τ / S(0) of an exponentially correlated process of time constant T.
+// Source: IEEE Std 952-1997, equation C.23, by expm1 where τ ≪ T would cancel.
+double relaxation_share(double tau_s, double time_constant_s) {
+  const double x = tau_s / time_constant_s;
+  if (x < 1e-3) return x * x / 3.0 * (1.0 - 0.75 * x);
+  return 1.0 - (3.0 - 4.0 * std::exp(-x) + std::exp(-2.0 * x)) / (2.0 * x);
+}
+
+}  // namespace
+
+const char* name_of(Term term) {
+  constexpr const char* names[] = {"quantisation", "white", "flicker", "random_walk", "markov"};
+  return names[static_cast<int>(term)];
+}
+
+double MarkovNoise::std_of_process() const {
+  return strength.value * std::sqrt(0.5 * time_constant_s.value);
+}
+
+double NoiseModelFit::allan_variance(Term term, double tau_s) const {
+  switch (term) {
+    case Term::quantisation:
+      return 3.0 * square(quantisation.value / tau_s);
+    case Term::white: {
+      const double flat = square(white.value) / tau_s;
+      if (!bandwidth_hz) return flat;
+      return flat * relaxation_share(tau_s, 1.0 / (2.0 * pi * bandwidth_hz->value));
+    }
+    case Term::flicker:
+      return 2.0 * std::numbers::ln2 / pi * square(flicker.value);
+    case Term::random_walk:
+      return square(random_walk.value) * tau_s / 3.0;
+    case Term::markov:
+      break;
+  }
+  if (!markov) return 0.0;
+  const double T = markov->time_constant_s.value;
+  return square(markov->strength.value * T) / tau_s * relaxation_share(tau_s, T);
+}
+
+double NoiseModelFit::ramp_allan_variance(double tau_s) const {
+  return 0.5 * square(ramp.value * tau_s);
+}
+
+double NoiseModelFit::allan_variance(double tau_s) const {
+  double sum = ramp_allan_variance(tau_s);
+  for (std::size_t k = 0; k < term_count; ++k) sum += allan_variance(static_cast<Term>(k), tau_s);
+  return sum;
+}
+
+double NoiseModelFit::density(double frequency_hz) const {
+  const Sampling sampling{rate_hz, 1};
+  double sum = 0.0;
+  for (const Term term : {Term::quantisation, Term::flicker, Term::random_walk}) {
+    const double value = term == Term::quantisation ? quantisation.value
+                         : term == Term::flicker    ? flicker.value
+                                                    : random_walk.value;
+    if (value > 0.0) sum += square(value) * term_density(term, frequency_hz, sampling);
+  }
+  const double white_shape =
+      bandwidth_hz ? relaxation_density(1.0 / (2.0 * pi * bandwidth_hz->value), frequency_hz, sampling)
+                   : 1.0;
+  sum += square(white.value) * white_shape;
+  if (markov) {
+    const double T = markov->time_constant_s.value;
+    sum += square(markov->strength.value * T) * relaxation_density(T, frequency_hz, sampling);
+  }
+  return sum;
+}
+
+double sine_allan_variance(double amplitude, double frequency_hz, double tau_s) {
+  const double phase = pi * frequency_hz * tau_s;
+  return square(amplitude * square(std::sin(phase)) / phase);
+}
+
+}  // namespace proofmass::characterise

@@ -1,0 +1,84 @@
+#include "proofmass/characterise/term_spectra.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "proofmass/core/contract.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+double square(double x) {
+  return x * x;
+}
+
+// |sin(π f τ0 D) / (D sin(π f τ0))|², the means' transfer function.
+double mean_transfer(double frequency_hz, const Sampling& sampling) {
+  const auto D = static_cast<double>(sampling.block);
+  const double phase = pi * frequency_hz / sampling.rate_hz;
+  return square(std::sin(D * phase) / (D * std::sin(phase)));
+}
+
+double flicker(double frequency_hz, const Sampling& sampling) {
+  const auto sampled = [&](double f) {
+    return 1.0 / (2.0 * sampling.rate_hz * std::abs(std::sin(pi * f / sampling.rate_hz)));
+  };
+  if (sampling.block == 1) return sampled(frequency_hz);
+  // The aliases fall with the cube of their number.
+  constexpr int aliases = 6;
+  const int last = std::min(aliases, static_cast<int>(sampling.block - 1) / 2);
+  double sum = 0.0;
+  for (int j = -last; j <= last; ++j) {
+    const double f = frequency_hz + j / sampling.step_s();
+    sum += sampled(f) * mean_transfer(f, sampling);
+  }
+  return sum;
+}
+
+double random_walk(double omega, const Sampling& sampling) {
+  const auto D = static_cast<double>(sampling.block);
+  const double variance = (2.0 * D * D + 1.0) / (3.0 * D), covariance = (D * D - 1.0) / (6.0 * D);
+  return sampling.step_s() / sampling.rate_hz * (variance + 2.0 * covariance * std::cos(omega)) /
+         square(2.0 * std::sin(0.5 * omega));
+}
+
+}  // namespace
+
+double term_density(Term term, double frequency_hz, const Sampling& sampling) {
+  PM_EXPECTS(frequency_hz > 0.0 && term != Term::markov);
+  const double omega = 2.0 * pi * frequency_hz * sampling.step_s();
+  switch (term) {
+    case Term::quantisation:
+      return square(2.0 * std::sin(0.5 * omega)) / sampling.step_s();
+    case Term::flicker:
+      return flicker(frequency_hz, sampling);
+    case Term::random_walk:
+      return random_walk(omega, sampling);
+    default:
+      return 1.0;
+  }
+}
+
+double relaxation_density(double time_constant_s, double frequency_hz, const Sampling& sampling) {
+  const double decay = 1.0 / (time_constant_s * sampling.rate_hz);
+  const double phi = std::exp(-decay), one_less_phi = -std::expm1(-decay);
+  const double cosine = std::cos(2.0 * pi * frequency_hz * sampling.step_s());
+  const double sine = std::sin(pi * frequency_hz * sampling.step_s());
+  const auto D = static_cast<double>(sampling.block);
+  // Of a process of variance 1: the sum of D samples has variance `own`, and correlates with the
+  // next but k by across · ρ^k.
+  const double rho = std::exp(-D * decay), one_less_rho = -std::expm1(-D * decay);
+  const double across = phi * square(one_less_rho / one_less_phi);
+  const double own =
+      D * (1.0 + phi) / one_less_phi - 2.0 * phi * one_less_rho / square(one_less_phi);
+  const double distance = square(one_less_rho) + 4.0 * rho * square(sine);
+  const double sum = own + 2.0 * across * (cosine - rho) / distance;
+  const double unit_variance = std::max(sum, 0.0) / (D * D) * sampling.step_s();
+  // Its density at zero, sampled: τ0 (1 + φ) / (1 − φ).
+  return unit_variance * sampling.rate_hz * one_less_phi / (1.0 + phi);
+}
+
+}  // namespace proofmass::characterise

@@ -1,0 +1,171 @@
+#include "proofmass/characterise/whittle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "proofmass/core/contract.hpp"
+#include "proofmass/core/linalg.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int most_steps = 60;
+constexpr double converged = 1e-8;  // in log-likelihood: far below what an interval could show
+
+MatrixXd chosen(const MatrixXd& columns, const std::vector<int>& active) {
+  MatrixXd X(columns.rows(), static_cast<Index>(active.size()));
+  for (std::size_t k = 0; k < active.size(); ++k)
+    X.col(static_cast<Index>(k)) = columns.col(active[k]);
+  return X;
+}
+
+}  // namespace
+
+WhittleLikelihood::WhittleLikelihood(std::vector<SpectralGroup> groups, MatrixXd columns)
+    : groups_(std::move(groups)), columns_(std::move(columns)) {
+  const auto n = static_cast<Index>(groups_.size());
+  PM_EXPECTS(n > 0 && columns_.rows() == n);
+  dof_.resize(n);
+  raw_.resize(n);
+  amplitude_.resize(n);
+  of_ramp_.resize(n);
+  for (Index g = 0; g < n; ++g) {
+    const SpectralGroup& group = groups_[static_cast<std::size_t>(g)];
+    dof_(g) = group.dof;
+    raw_(g) = group.density;
+    amplitude_(g) = group.amplitude;
+    of_ramp_(g) = group.of_ramp;
+    if (group.of_ramp != 0.0) ramp_rows_ = g + 1;
+  }
+  rough_ = smoothed();
+}
+
+// A first guess of S: the mean over a factor of two in frequency to either side.
+ArrayXd WhittleLikelihood::smoothed() const {
+  const ArrayXd p = expected_densities({});
+  ArrayXd S(p.size());
+  for (Index g = 0; g < p.size(); ++g) {
+    const double f = groups_[static_cast<std::size_t>(g)].frequency_hz;
+    double sum = 0.0, weight = 0.0;
+    const auto take = [&](Index k) {
+      const double other = groups_[static_cast<std::size_t>(k)].frequency_hz;
+      if (other < 0.5 * f || other > 2.0 * f) return false;
+      sum += dof_(k) * p(k);
+      weight += dof_(k);
+      return true;
+    };
+    for (Index k = g; k < p.size() && take(k); ++k) {}
+    for (Index k = g; k > 0 && take(k - 1); --k) {}
+    S(g) = sum / weight;
+  }
+  return S.max(1e-12 * S.maxCoeff()).max(1e-300);
+}
+
+WhittleLikelihood::Ramp WhittleLikelihood::ramp(const ArrayXd& S) const {
+  if (ramp_rows_ == 0) return {};
+  const ArrayXd weighted = of_ramp_.head(ramp_rows_) / S.head(ramp_rows_);
+  const double information = (weighted * of_ramp_.head(ramp_rows_)).sum();
+  return {(weighted * amplitude_.head(ramp_rows_)).sum() / information, 1.0 / information};
+}
+
+// What the densities without the ramp are expected to be, given that its slope is uncertain: the
+// expectation step that leads to the restricted likelihood's maximum.
+ArrayXd WhittleLikelihood::expected_densities(const Ramp& ramp) const {
+  ArrayXd p = raw_;
+  if (ramp_rows_ > 0 && ramp.variance > 0.0) {
+    const auto r = of_ramp_.head(ramp_rows_);
+    const ArrayXd rest = amplitude_.head(ramp_rows_) - ramp.slope * r;
+    p.head(ramp_rows_) =
+        (r != 0.0).select(rest.square() + ramp.variance * r.square(), p.head(ramp_rows_));
+  }
+  return p;
+}
+
+ArrayXd WhittleLikelihood::densities(const WhittleFit& fit) const {
+  ArrayXd p = raw_;
+  const auto r = of_ramp_.head(ramp_rows_);
+  const ArrayXd rest = amplitude_.head(ramp_rows_) - fit.slope * r;
+  p.head(ramp_rows_) = (r != 0.0).select(rest.square(), p.head(ramp_rows_));
+  return p;
+}
+
+double WhittleLikelihood::log_likelihood(const ArrayXd& S) const {
+  const Ramp found = ramp(S);
+  WhittleFit fit;
+  fit.slope = found.slope;
+  const double data = -0.5 * (dof_ * (S.log() + densities(fit) / S)).sum();
+  return ramp_rows_ > 0 ? data + 0.5 * std::log(found.variance) : data;
+}
+
+WhittleFit WhittleLikelihood::maximise(const std::vector<int>& active,
+                                       const std::optional<Held>& held,
+                                       const VectorXd& start) const {
+  const MatrixXd X = chosen(columns_, active);
+  ArrayXd fixed = ArrayXd::Zero(X.rows());
+  if (held) fixed = columns_.col(held->column).array() * held->strength;
+  const ArrayXd least = 1e-9 * rough_;  // keeps S off zero where all that reaches is gone
+  VectorXd theta(X.cols());
+  ArrayXd S = rough_;
+  double best = -std::numeric_limits<double>::infinity();
+  if (start.size() > 0) {
+    for (std::size_t k = 0; k < active.size(); ++k) theta(static_cast<Index>(k)) = start(active[k]);
+    S = (fixed + (X * theta).array()).max(least);
+    best = log_likelihood(S);
+  }
+  for (int step = 0; step < most_steps && X.cols() > 0; ++step) {
+    const ArrayXd weight = 0.5 * dof_ / S.square();
+    const ArrayXd p = expected_densities(ramp(S));
+    const MatrixXd WX = weight.matrix().asDiagonal() * X;
+    const VectorXd next =
+        non_negative_minimiser(X.transpose() * WX, WX.transpose() * (p - fixed).matrix());
+    const VectorXd from = std::isfinite(best) ? theta : next;
+    double value = best, fraction = 1.0;
+    for (int halving = 0; halving < 12; ++halving, fraction *= 0.5) {
+      theta = from + fraction * (next - from);
+      S = (fixed + (X * theta).array()).max(least);
+      value = log_likelihood(S);
+      if (!(value < best)) break;
+    }
+    if (value < best) {  // no way up: this is the top
+      theta = from;
+      S = (fixed + (X * theta).array()).max(least);
+      break;
+    }
+    const bool done = value - best < converged;
+    best = value;
+    if (done) break;
+  }
+  if (X.cols() == 0) S = fixed.max(least);
+  WhittleFit fit;
+  fit.strength = VectorXd::Zero(columns_.cols());
+  for (std::size_t k = 0; k < active.size(); ++k) fit.strength(active[k]) = theta(static_cast<Index>(k));
+  if (held) fit.strength(held->column) = held->strength;
+  fit.density = S.matrix();
+  fit.log_likelihood = log_likelihood(S);
+  const Ramp found = ramp(S);
+  fit.slope = found.slope;
+  fit.slope_variance = found.variance;
+  return fit;
+}
+
+MatrixXd WhittleLikelihood::information(const WhittleFit& fit,
+                                        const std::vector<int>& active) const {
+  const MatrixXd X = chosen(columns_, active);
+  const ArrayXd weight = 0.5 * dof_ / fit.density.array().square();
+  return X.transpose() * (weight.matrix().asDiagonal() * X);
+}
+
+void WhittleLikelihood::allow_misfit(double relative_variance) {
+  for (Index g = 0; g < dof_.size(); ++g) {
+    const double own = groups_[static_cast<std::size_t>(g)].dof;
+    dof_(g) = 1.0 / (1.0 / own + 0.5 * relative_variance);
+  }
+}
+
+}  // namespace proofmass::characterise

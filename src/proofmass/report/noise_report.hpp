@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proofmass/characterise/noise_analysis.hpp"
+#include "proofmass/core/quantity.hpp"
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/units.hpp"
+
+namespace proofmass::report {
+
+/// What was taken out of a channel because it follows the temperature.
+struct TemperatureEffect {
+  std::string channel;    ///< that holds the temperature
+  Uncertain coefficient;  ///< unit of the series per `per`
+  std::string per = "K";  ///< unit of the temperature channel; "1" if unknown
+};
+
+/// One channel at rest: its analysis, or why there is none.
+struct ChannelNoise {
+  std::string name;
+  Unit unit;  ///< of the series analysed: SI where known, else counts or none
+  std::optional<characterise::NoiseAnalysis> analysis;
+  std::string refused;  ///< the reason, where there is no analysis
+  std::optional<TemperatureEffect> temperature;
+};
+
+/// The noise of a recording and what it was computed from.
+struct NoiseReport {
+  std::vector<std::string> inputs;  ///< files, as the user named them
+  std::vector<ChannelNoise> channels;
+  std::vector<Note> notes;  ///< of reading and preparing; those of the analyses are added
+  bool events_excluded = false;
+};
+
+/// The document of `noise`: docs/schema/noise.schema.json.
+[[nodiscard]] std::string noise_json(const NoiseReport& report);
+
+/// The page: conclusion, key figures, and for each channel the deviation with what it is made of,
+/// the spectrum, coefficients, lines and events.
+[[nodiscard]] std::string noise_html(const NoiseReport& report);
+
+/// For a terminal, without colour, closed by a newline: per channel a table and plain sentences.
+[[nodiscard]] std::string noise_text(const NoiseReport& report);
+
+/// "White noise 75.2 ± 0.3 µg/√Hz. No random walk seen: …", or of several channels their white
+/// noise side by side.
+[[nodiscard]] std::string noise_conclusion(const NoiseReport& report);
+
+/// All notes: the report's own, then each channel's with its name, refusals as Severity::bad.
+[[nodiscard]] std::vector<Note> noise_notes(const NoiseReport& report);
+
+/// The deviation curves as a table without a time base: tau_s, then for each channel value, lower
+/// and upper limit; NaN where a channel has no such τ. What `--output` writes.
+[[nodiscard]] Recording noise_series(const NoiseReport& report);
+
+}  // namespace proofmass::report

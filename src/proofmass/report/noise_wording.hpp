@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proofmass/report/noise_report.hpp"
+
+// How the results of a noise analysis read: units, figures, sentences.
+namespace proofmass::report {
+
+/// What a figure of noise is to the unit u of its series.
+enum class NoiseScale {
+  level,     ///< u
+  density,   ///< u/√Hz
+  walk,      ///< u/√s
+  integral,  ///< u·s
+  slope,     ///< u/s
+};
+
+/// "m/s^2/sqrt(Hz)": as documents name the unit.
+[[nodiscard]] std::string noise_unit(const Unit& unit, NoiseScale scale);
+
+/// "m^2/s^3": of a two-sided density of power, scale as for its root: density u²/Hz, walk u²/s
+/// (per Hz of its derivative), level u².
+[[nodiscard]] std::string squared_unit(const Unit& unit, NoiseScale scale);
+
+/// A unit in which people read figures of about some size.
+struct ShownUnit {
+  double per_si = 1.0;  ///< shown = SI · per_si
+  std::string symbol;   ///< "µg/√Hz"
+};
+
+/// Accelerations in ng, µg, mg or g; volts and the like with a prefix; counts as they are.
+[[nodiscard]] ShownUnit shown_unit(const Unit& unit, NoiseScale scale, double size);
+
+/// "75.2 ± 0.3 µg/√Hz"
+[[nodiscard]] std::string noise_words(const Uncertain& figure, const Unit& unit, NoiseScale scale);
+
+/// "75.2 µg/√Hz", to two or three digits.
+[[nodiscard]] std::string noise_words(double value, const Unit& unit, NoiseScale scale);
+
+/// One of the five coefficients, as documents and people call it.
+struct NamedCoefficient {
+  const char* key;   ///< "random_walk"
+  const char* name;  ///< "Random walk K"
+  NoiseScale scale;
+  characterise::Coefficient characterise::NoiseModelFit::* figure;
+};
+extern const std::array<NamedCoefficient, 5> named_coefficients;
+
+/// Whether there are coefficients: not of a refused channel, nor of a record too short for them.
+[[nodiscard]] bool has_coefficients(const ChannelNoise& channel);
+
+/// "75.2 ± 0.3 µg/√Hz" or "0, below 1.2 µg/√s (95 %)"
+[[nodiscard]] std::string coefficient_words(const characterise::Coefficient& coefficient,
+                                            const Unit& unit,
+                                            NoiseScale scale);
+
+/// "identified", or how long a recording would show it.
+[[nodiscard]] std::string verdict_words(const characterise::Coefficient& coefficient);
+
+/// The curve whose points may be laid beside the fitted Allan variance.
+[[nodiscard]] bool estimates_allan(characterise::Statistic statistic);
+
+/// Of the curve's values: of tdev and ttotdev u·s, of all others u.
+[[nodiscard]] NoiseScale curve_scale(characterise::Statistic statistic);
+
+/// Averaging time about which flicker noise shows: the minimum of the fitted variance, or where it
+/// falls to the end the middle, on a log scale, of where white noise meets flicker and the end.
+/// nullopt if flicker is not identified.
+[[nodiscard]] std::optional<double> flicker_tau_s(const characterise::NoiseAnalysis& analysis);
+
+/// By how much a line raises the deviation above the fitted model, as a fraction, at most, and
+/// where. Within the times of the curve.
+struct LineEffect {
+  double tau_s = 0.0;
+  double raise = 0.0;
+};
+[[nodiscard]] LineEffect line_effect(const characterise::NoiseAnalysis& analysis,
+                                     const signal::SpectralLine& line);
+
+/// What the analysis comes to, sentence by sentence, the most important first; of a refused channel
+/// why.
+[[nodiscard]] std::vector<std::string> noise_findings(const ChannelNoise& channel);
+
+/// "12.4 s … 12.6 s", "12.4 s"
+[[nodiscard]] std::string event_time_words(const signal::Event& event, double rate_hz);
+
+}  // namespace proofmass::report

@@ -1,0 +1,136 @@
+#include "proofmass/sensor/noise_update.hpp"
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "proofmass/core/contract.hpp"
+#include "proofmass/sensor/sensor_file.hpp"
+
+namespace proofmass::sensor {
+namespace {
+
+/// 95 % of a normal distribution lies below this many standard deviations.
+constexpr double one_sided_95 = 1.6448536269514722;
+
+/// One coefficient: its name, its unit, where it is measured and where it goes.
+struct Term {
+  std::string_view name, unit;
+  MeasuredCoefficient MeasuredNoise::* measured;
+  AxisFigures NoiseModel::* figures;
+};
+
+constexpr std::array<Term, 5> terms{{
+    {"white", "m/s^2/sqrt(Hz)", &MeasuredNoise::white, &NoiseModel::white},
+    {"quantisation", "m/s", &MeasuredNoise::quantisation, &NoiseModel::quantisation},
+    {"flicker", "m/s^2", &MeasuredNoise::flicker, &NoiseModel::flicker},
+    {"random_walk", "m/s^2/sqrt(s)", &MeasuredNoise::random_walk, &NoiseModel::random_walk},
+    {"ramp", "m/s^3", &MeasuredNoise::ramp, &NoiseModel::ramp},
+}};
+
+std::string joined(std::string_view origin, const std::string& text) {
+  return origin.empty() ? text : fmt::format("{}: {}", origin, text);
+}
+
+Status check(const Uncertain& figure) {
+  if (!std::isfinite(figure.value) || !std::isfinite(figure.std))
+    return Error{Errc::not_finite, "must be a finite number with a finite standard deviation"};
+  if (figure.value < 0.0 || figure.std < 0.0)
+    return Error{Errc::invalid_argument, "must not be negative"};
+  return Done{};
+}
+
+/// What is known of a coefficient; nullopt if nothing is.
+std::optional<Uncertain> known(const MeasuredCoefficient& coefficient) {
+  if (coefficient.identified) return coefficient.identified;
+  if (coefficient.upper_95) return Uncertain{0.0, *coefficient.upper_95 / one_sided_95};
+  return std::nullopt;
+}
+
+std::string origin_of(const MeasuredCoefficient& coefficient,
+                      const Term& term,
+                      std::string_view origin) {
+  if (coefficient.identified) return std::string(origin);
+  return joined(origin, fmt::format("below {:.3g} {} (95 %)", *coefficient.upper_95, term.unit));
+}
+
+Status put(const MeasuredNoise& measured, const Term& term, NoiseModel& noise) {
+  const MeasuredCoefficient& coefficient = measured.*term.measured;
+  const auto figure = known(coefficient);
+  if (!figure) return Done{};
+  if (const Status fits = check(*figure); !fits)
+    return fits.error().at(fmt::format("noise.{} of axis {}", term.name, "xyz"[measured.axis]));
+  Figure entry =
+      make_figure(figure->value, term.unit, origin_of(coefficient, term, measured.origin));
+  entry.std = figure->std;
+  (noise.*term.figures)[measured.axis] = std::move(entry);
+  return Done{};
+}
+
+Status put_bandwidth(const MeasuredNoise& measured, Electrical& electrical) {
+  auto& bandwidth = electrical.bandwidth[measured.axis];
+  if (!measured.bandwidth_hz || bandwidth) return Done{};
+  if (const Status fits = check(*measured.bandwidth_hz); !fits)
+    return fits.error().at("electrical.bandwidth");
+  bandwidth = make_figure(measured.bandwidth_hz->value, "Hz", measured.origin);
+  bandwidth->std = measured.bandwidth_hz->std;
+  return Done{};
+}
+
+Status put_lsb(const MeasuredNoise& measured, Electrical& electrical) {
+  if (!measured.lsb || electrical.lsb) return Done{};
+  const Figure& lsb = *measured.lsb;
+  if (lsb.unit.si_symbol != "V" && lsb.unit.si_symbol != "m/s^2")
+    return Error{Errc::invalid_argument,
+                 fmt::format("electrical.lsb: is in {}; expected V or m/s^2", lsb.unit.symbol)};
+  if (const Status fits = check({lsb.value, lsb.std.value_or(0.0)}); !fits)
+    return fits.error().at("electrical.lsb");
+  electrical.lsb = lsb;
+  return Done{};
+}
+
+Status put(const MeasuredNoise& measured, SensorModel& model) {
+  for (const Term& term : terms)
+    if (const Status done = put(measured, term, model.noise); !done) return done;
+  if (const Status done = put_bandwidth(measured, model.electrical); !done) return done;
+  return put_lsb(measured, model.electrical);
+}
+
+}  // namespace
+
+Status update_noise(SensorModel& model, View<MeasuredNoise> measured) {
+  SensorModel updated = model;
+  std::array<bool, 3> seen{};
+  for (const MeasuredNoise& axis : measured) {
+    PM_EXPECTS(axis.axis < 3);
+    if (std::exchange(seen[axis.axis], true))
+      return Error{Errc::invalid_argument,
+                   fmt::format("axis {} is there twice, but a sensor file is of one sensor: choose "
+                               "its channels",
+                               "xyz"[axis.axis])};
+    if (const Status done = put(axis, updated); !done) return done;
+  }
+  model = std::move(updated);
+  return Done{};
+}
+
+Status update_sensor_file(const std::string& path, View<MeasuredNoise> measured) {
+  SensorModel model;
+  std::error_code unknown;
+  // Where it cannot be told whether there is a file, there may be one that must not be lost.
+  if (std::filesystem::exists(path, unknown) || unknown) {
+    auto file = read_sensor_file(path);
+    if (!file) return file.error();
+    model = std::move(file).value().model;
+  } else {
+    model.name = std::filesystem::path(path).stem().string();
+  }
+  if (const Status done = update_noise(model, measured); !done) return done.error().at(path);
+  return write_sensor_file(model, path);
+}
+
+}  // namespace proofmass::sensor

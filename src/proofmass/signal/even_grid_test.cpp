@@ -1,0 +1,114 @@
+#include "proofmass/signal/even_grid.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace proofmass::signal {
+namespace {
+
+TimeBase stamped(std::vector<double> stamps_s, double rate_hz) {
+  TimeBase time;
+  time.source = TimeSource::stamps;
+  time.rate_hz = rate_hz;
+  time.stamps_s = std::move(stamps_s);
+  return time;
+}
+
+std::vector<double> ramp(std::size_t n) {
+  std::vector<double> values(n);
+  for (std::size_t k = 0; k < n; ++k) values[k] = static_cast<double>(k + 1);
+  return values;
+}
+
+TEST(EvenGrid, OfAUniformTimeBaseIsTheSamplesThemselves) {
+  TimeBase time;
+  time.rate_hz = 100.0;
+  const auto grid = even_grid(time, 5);
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->missing, 0U);
+  EXPECT_EQ(grid->rate_hz, 100.0);
+  EXPECT_EQ(on_even_grid(ramp(5), *grid), ramp(5));
+}
+
+TEST(EvenGrid, PutsNaNWhereSamplesAreMissing) {
+  std::vector<double> stamps_s;
+  for (int k = 0; k < 40; ++k) stamps_s.push_back(0.01 * (k < 10 ? k : k + 3));
+  const auto grid = even_grid(stamped(stamps_s, 100.0), stamps_s.size());
+  ASSERT_TRUE(grid);
+  ASSERT_EQ(grid->holes.size(), 1U);
+  EXPECT_EQ(grid->holes[0].before, 10U);
+  EXPECT_EQ(grid->holes[0].missing, 3U);
+  const std::vector<double> series = on_even_grid(ramp(40), *grid);
+  ASSERT_EQ(series.size(), 43U);
+  EXPECT_EQ(series[9], 10.0);
+  for (std::size_t k = 10; k < 13; ++k) EXPECT_TRUE(std::isnan(series[k]));
+  EXPECT_EQ(series[13], 11.0);
+  EXPECT_NEAR(grid->rate_hz, 100.0, 1e-9);
+}
+
+TEST(EvenGrid, LeavesJitterAlone) {
+  std::vector<double> stamps_s;
+  for (int k = 0; k < 1000; ++k) stamps_s.push_back(0.01 * (k + 0.2 * std::sin(1.9 * k)));
+  const auto grid = even_grid(stamped(stamps_s, 100.0), 1000);
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->missing, 0U);
+  EXPECT_GT(grid->relative_jitter, 0.1);
+}
+
+TEST(EvenGrid, TakesAStampThatWasLateForNoHole) {
+  std::vector<double> stamps_s;
+  for (int k = 0; k < 100; ++k) stamps_s.push_back(0.01 * k);
+  // Five samples held up by 40 ms and handed over at once.
+  for (std::size_t k = 50; k < 55; ++k) stamps_s[k] = 0.01 * 54 + 1e-4 * static_cast<double>(k);
+  const auto grid = even_grid(stamped(stamps_s, 100.0), 100);
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->missing, 0U);
+}
+
+TEST(EvenGrid, FindsTwoHolesCloseToEachOther) {
+  std::vector<double> stamps_s;
+  for (int k = 0; k < 40; ++k)
+    stamps_s.push_back(0.01 * (k + (k >= 10 ? 2 : 0) + (k >= 13 ? 5 : 0)));
+  const auto grid = even_grid(stamped(stamps_s, 100.0), 40);
+  ASSERT_TRUE(grid);
+  ASSERT_EQ(grid->holes.size(), 2U);
+  EXPECT_EQ(grid->holes[0].missing, 2U);
+  EXPECT_EQ(grid->holes[1].missing, 5U);
+}
+
+TEST(EvenGrid, TakesTheRateThatTheWholeRecordHas) {
+  std::vector<double> stamps_s;
+  for (int k = 0; k < 5000; ++k) stamps_s.push_back(k / 99.9);
+  const auto grid = even_grid(stamped(stamps_s, 100.0), 5000);
+  ASSERT_TRUE(grid);
+  EXPECT_NEAR(grid->rate_hz, 99.9, 1e-6);
+}
+
+TEST(EvenGrid, KeepsSamplesWhoseStampsRepeatOrGoBack) {
+  std::vector<double> stamps_s{0.0, 0.01, 0.01, 0.03, 0.02, 0.05, 0.06, 0.07, 0.08, 0.09};
+  const auto grid = even_grid(stamped(stamps_s, 100.0), stamps_s.size());
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->missing, 0U);
+}
+
+TEST(EvenGrid, HasNaNForWhatIsNoMeasurement) {
+  TimeBase time;
+  time.rate_hz = 1.0;
+  const auto grid = even_grid(time, 5);
+  ASSERT_TRUE(grid);
+  const std::vector<double> series = on_even_grid(
+      std::vector{3e34, std::numeric_limits<double>::infinity(), 1e-40, 0.0, std::nan("")}, *grid);
+  for (const std::size_t k : {0U, 1U, 2U, 4U}) EXPECT_TRUE(std::isnan(series[k])) << k;
+  EXPECT_EQ(series[3], 0.0);
+}
+
+TEST(EvenGrid, SaysWhyItCannot) {
+  EXPECT_EQ(even_grid(TimeBase{}, 5).error().code, Errc::invalid_argument);
+  const auto hours = even_grid(stamped({0.0, 0.01, 0.02, 7200.0, 7200.01}, 100.0), 5);
+  ASSERT_FALSE(hours);
+  EXPECT_EQ(hours.error().code, Errc::corrupt);
+}
+
+}  // namespace
+}  // namespace proofmass::signal

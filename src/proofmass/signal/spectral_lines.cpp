@@ -1,0 +1,304 @@
+#include "proofmass/signal/spectral_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/signal/spectral_background.hpp"
+
+namespace proofmass::signal {
+namespace {
+
+constexpr double false_alarm_probability = 1e-3;  ///< of a whole spectrum
+constexpr double least_excess = 1.259;            ///< 1 dB
+constexpr double least_skirt = 1.06;              ///< the background is known to about 3 %
+constexpr std::size_t smoothed_bins = 5;
+constexpr std::size_t fewest_bins = 33;
+constexpr std::size_t wide_bins = 12;
+constexpr double least_prominence = 1.12;  ///< 0.5 dB
+constexpr std::size_t half_lobe = 2;       ///< bins from a line's middle to its first zero
+
+/// Bins [first, last).
+struct Region {
+  std::size_t first, last;
+};
+
+/// A spectrum and the background it is judged by.
+struct Judged {
+  const Spectrum& spectrum;
+  const std::vector<double>& background;
+
+  [[nodiscard]] double excess(std::size_t k) const {
+    return spectrum.one_sided_psd[k] - background[k];
+  }
+  [[nodiscard]] double ratio(std::size_t k) const {
+    return spectrum.one_sided_psd[k] / background[k];
+  }
+  [[nodiscard]] std::size_t end() const { return end_of_judged_bins(spectrum); }
+  [[nodiscard]] double bin_hz() const {
+    return spectrum.rate_hz / static_cast<double>(spectrum.segment);
+  }
+
+  /// Mean of the ratio over the bins about k.
+  [[nodiscard]] double smoothed_ratio(std::size_t k) const {
+    const std::size_t first = std::max(k, first_judged_bin + half_lobe) - half_lobe;
+    const std::size_t last = std::min(k + half_lobe + 1, end());
+    double sum = 0.0;
+    for (std::size_t i = first; i < last; ++i) sum += ratio(i);
+    return sum / static_cast<double>(last - first);
+  }
+
+  [[nodiscard]] std::size_t peak(Region region) const {
+    std::size_t best = region.first;
+    for (std::size_t k = region.first; k < region.last; ++k)
+      if (ratio(k) > ratio(best)) best = k;
+    return best;
+  }
+
+  /// The bins about the peak in which the excess is at least half of the peak's.
+  [[nodiscard]] Region half_height(Region region) const {
+    const std::size_t top = peak(region);
+    Region half{top, top + 1};
+    while (half.first > region.first && excess(half.first - 1) >= 0.5 * excess(top)) --half.first;
+    while (half.last < region.last && excess(half.last) >= 0.5 * excess(top)) ++half.last;
+    return half;
+  }
+};
+
+/// Ratios to the background that a line's peak and its skirt exceed.
+struct Thresholds {
+  double peak, skirt;
+};
+
+Thresholds thresholds_of(const Judged& judged) {
+  const double edf = judged.spectrum.edf_per_bin;
+  const auto bins = static_cast<double>(judged.end() - first_judged_bin);
+  const double smoothed_edf = edf * smoothed_bins / bins_per_independent_bin;
+  return {
+      std::max(least_excess, chi_square_quantile(1.0 - false_alarm_probability / bins, edf) / edf),
+      std::max(least_skirt, chi_square_quantile(0.95, smoothed_edf) / smoothed_edf)};
+}
+
+/// Bins above the threshold, each grown to where it meets the background, neighbours joined.
+std::vector<Region> regions_above(const Judged& judged, const Thresholds& thresholds) {
+  std::vector<Region> regions;
+  for (std::size_t k = first_judged_bin; k < judged.end(); ++k) {
+    if (judged.ratio(k) <= thresholds.peak) continue;
+    Region region{std::max(k, first_judged_bin + half_lobe) - half_lobe,
+                  std::min(k + half_lobe + 1, judged.end())};
+    while (region.first > first_judged_bin &&
+           judged.smoothed_ratio(region.first - 1) > thresholds.skirt)
+      --region.first;
+    while (region.last < judged.end() && judged.smoothed_ratio(region.last) > thresholds.skirt)
+      ++region.last;
+    if (!regions.empty() && region.first <= regions.back().last + half_lobe)
+      regions.back().last = std::max(regions.back().last, region.last);
+    else
+      regions.push_back(region);
+    k = std::max(k, regions.back().last - 1);
+  }
+  return regions;
+}
+
+/// Narrower than an octave at half its height; a few bins near zero always are.
+bool is_narrow(const Judged& judged, Region region) {
+  const Region half = judged.half_height(region);
+  return half.last - half.first <= 2 * half_lobe || half.last < 2 * half.first;
+}
+
+/// The bins next to a region that are in no region themselves, as many as `count`.
+std::vector<std::size_t> flank(const Judged& judged,
+                               const std::vector<Region>& regions,
+                               std::size_t from,
+                               int step) {
+  const std::size_t count = 12;
+  std::vector<std::size_t> bins;
+  for (std::size_t k = from; bins.size() < count; k += static_cast<std::size_t>(step)) {
+    if (k < first_judged_bin || k >= judged.end()) break;
+    if (std::ranges::none_of(regions, [k](Region r) { return r.first <= k && k < r.last; }))
+      bins.push_back(k);
+  }
+  return bins;
+}
+
+/// Tells a line from the shoulder of a filter, which the background cuts short: a wide one must be
+/// higher than the spectrum on both sides of it, a narrow one stand out of its neighbours too.
+bool is_peak(const Judged& judged,
+             const std::vector<Region>& regions,
+             const Thresholds& thresholds,
+             Region region) {
+  const std::vector<std::size_t> left = flank(judged, regions, region.first - 1, -1),
+                                 right = flank(judged, regions, region.last, 1);
+  const bool is_wide = region.last - region.first > wide_bins;
+  if (is_wide && (left.empty() || right.empty())) return false;
+  const std::size_t top = judged.peak(region);
+  if (is_wide) {
+    const auto mean_psd = [&](const std::vector<std::size_t>& bins) {
+      double sum = 0.0;
+      for (const std::size_t k : bins) sum += judged.spectrum.one_sided_psd[k];
+      return sum / static_cast<double>(bins.size());
+    };
+    const double smooth = judged.smoothed_ratio(top) * judged.background[top];
+    return smooth > least_prominence * std::max(mean_psd(left), mean_psd(right));
+  }
+  double sum = 0.0;
+  for (const std::size_t k : left) sum += judged.ratio(k);
+  for (const std::size_t k : right) sum += judged.ratio(k);
+  const auto count = static_cast<double>(left.size() + right.size());
+  return judged.ratio(top) > thresholds.peak * std::max(1.0, sum / std::max(count, 1.0));
+}
+
+std::vector<Region> find_regions(const Judged& judged) {
+  const Thresholds thresholds = thresholds_of(judged);
+  const std::vector<Region> all = regions_above(judged, thresholds);
+  std::vector<Region> found;
+  std::ranges::copy_if(all, std::back_inserter(found), [&](Region region) {
+    return is_narrow(judged, region) && is_peak(judged, all, thresholds, region);
+  });
+  return found;
+}
+
+SpectralLine measure_line(const Judged& judged, Region region) {
+  const double bin_hz = judged.bin_hz(), edf = judged.spectrum.edf_per_bin;
+  const Region half = judged.half_height(region);
+  const bool is_tone = half.last - half.first <= 3;
+  double power = 0.0, variance = 0.0;
+  for (std::size_t k = region.first; k < region.last; ++k) {
+    const double psd = judged.spectrum.one_sided_psd[k], excess = std::max(judged.excess(k), 0.0);
+    power += judged.excess(k);
+    // A steady tone does not fluctuate, only the noise on it: non-central chi-square.
+    variance += (psd * psd - (is_tone ? excess * excess : 0.0)) * 2.0 / edf;
+  }
+  power = std::max(power, 0.0) * bin_hz;
+  const double power_std = std::sqrt(variance * bins_per_independent_bin) * bin_hz;
+
+  double weights = 0.0, moment = 0.0;
+  const std::size_t last = std::min(half.last + 1, judged.end());
+  for (std::size_t k = std::max(half.first, first_judged_bin) - 1; k < last; ++k) {
+    const double weight = std::max(judged.excess(k), 0.0);
+    weights += weight;
+    moment += weight * static_cast<double>(k);
+  }
+  SpectralLine line;
+  line.frequency_hz = moment / weights * bin_hz;
+  line.low_hz = (static_cast<double>(region.first) - 0.5) * bin_hz;
+  line.high_hz = (static_cast<double>(region.last) - 0.5) * bin_hz;
+  line.amplitude = std::sqrt(2.0 * power);
+  line.amplitude_std = power > 0.0 ? power_std / line.amplitude : std::sqrt(2.0 * power_std);
+  line.excess_db = 10.0 * std::log10(judged.ratio(judged.peak(region)));
+  return line;
+}
+
+/// A stretch of the background that may hold the floor.
+struct Stretch {
+  Region bins;
+  double level;  ///< PSD
+  double std;
+};
+
+std::optional<Stretch> read_stretch(const Judged& judged,
+                                    const std::vector<bool>& in_line,
+                                    Region bins) {
+  std::vector<double> psd;
+  for (std::size_t k = bins.first; k < bins.last; ++k)
+    if (!in_line[k]) psd.push_back(judged.spectrum.one_sided_psd[k]);
+  if (2 * psd.size() < bins.last - bins.first || psd.empty()) return std::nullopt;
+  const double edf = judged.spectrum.edf_per_bin;
+  const double level = *median(psd) * edf / chi_square_quantile(0.5, edf);
+  // π/2: a median is that much less certain than a mean.
+  const double relative =
+      std::sqrt(2.0 / edf * bins_per_independent_bin * 1.5708 / static_cast<double>(psd.size()));
+  return Stretch{bins, level, level * relative};
+}
+
+/// Highest over lowest background of some bins, in dB.
+double unevenness_db(const Judged& judged, Region bins) {
+  const auto begin = judged.background.begin();
+  const auto [low, high] = std::minmax_element(begin + static_cast<std::ptrdiff_t>(bins.first),
+                                               begin + static_cast<std::ptrdiff_t>(bins.last));
+  return 10.0 * std::log10(*high / *low);
+}
+
+/// Half an octave of a flat stretch differs by less: a power law of exponent 0.1.
+constexpr double flat_db = 0.15;
+/// A stretch goes on while the background stays this close.
+constexpr double near_db = 0.3;
+
+/// The stretch as far as the background stays close to its level.
+Stretch extended(const Judged& judged, const std::vector<bool>& in_line, const Stretch& stretch) {
+  const double near = near_db + 10.0 * std::log10(1.0 + stretch.std / stretch.level);
+  const auto is_near = [&](std::size_t k) {
+    return std::abs(10.0 * std::log10(judged.background[k] / stretch.level)) < near;
+  };
+  Region bins = stretch.bins;
+  while (bins.first > first_judged_bin && is_near(bins.first - 1)) --bins.first;
+  while (bins.last < judged.end() && is_near(bins.last)) ++bins.last;
+  return read_stretch(judged, in_line, bins).value_or(stretch);
+}
+
+/// The stretch that is lowest and flat: each dB of unevenness of its first half octave, beyond what
+/// is flat, counts as ten dB of level. The top fifth of the band is left to filters.
+std::optional<Stretch> quietest_stretch(const Judged& judged, const std::vector<bool>& in_line) {
+  const auto end = static_cast<std::size_t>(0.8 * static_cast<double>(judged.end()));
+  std::optional<Stretch> best;
+  double least = 0.0;
+  for (std::size_t first = first_judged_bin; first < end; first += 1 + first / 16) {
+    const Region bins{first, first + 1 + static_cast<std::size_t>(0.4142 * double(first))};
+    if (bins.last > end) break;
+    const auto start = read_stretch(judged, in_line, bins);
+    if (!start) continue;
+    const Stretch stretch = extended(judged, in_line, *start);
+    const double uneven_db = std::max(unevenness_db(judged, bins) - flat_db, 0.0);
+    const double cost = 10.0 * std::log10(stretch.level + 2.0 * stretch.std) + 10.0 * uneven_db;
+    if (best && cost >= least) continue;
+    best = stretch;
+    least = cost;
+  }
+  return best ? best : read_stretch(judged, in_line, {first_judged_bin, judged.end()});
+}
+
+SpectralFloor measure_floor(const Judged& judged, const std::vector<bool>& in_line) {
+  const auto stretch = quietest_stretch(judged, in_line);
+  if (!stretch) return {};
+  SpectralFloor floor;
+  floor.one_sided_density = std::sqrt(stretch->level);
+  floor.std = 0.5 * stretch->std / floor.one_sided_density;
+  floor.low_hz = static_cast<double>(stretch->bins.first) * judged.bin_hz();
+  floor.high_hz = static_cast<double>(stretch->bins.last - 1) * judged.bin_hz();
+  return floor;
+}
+
+}  // namespace
+
+LineReport find_lines(const Spectrum& spectrum) {
+  LineReport report;
+  const std::size_t bins = spectrum.one_sided_psd.size();
+  report.in_line.assign(bins, false);
+  report.background = spectrum.one_sided_psd;
+  const bool is_silent =
+      std::ranges::all_of(spectrum.one_sided_psd, [](double p) { return p <= 0.0; });
+  if (bins < fewest_bins || is_silent) return report;
+
+  std::vector<Region> found;
+  // Lines lift the background that is fitted with them in it; without them it shows more of them.
+  for (int pass = 0; pass < 4; ++pass) {
+    report.background = spectral_background(spectrum, report.in_line);
+    const Judged judged{spectrum, report.background};
+    found = find_regions(judged);
+    std::vector<bool> in_line(bins, false);
+    for (const Region& region : found)
+      for (std::size_t k = region.first; k < region.last; ++k) in_line[k] = true;
+    const bool settled = in_line == report.in_line;
+    report.in_line = std::move(in_line);
+    if (settled) break;
+  }
+  const Judged judged{spectrum, report.background};
+  for (const Region& region : found) report.lines.push_back(measure_line(judged, region));
+  report.floor = measure_floor(judged, report.in_line);
+  return report;
+}
+
+}  // namespace proofmass::signal
