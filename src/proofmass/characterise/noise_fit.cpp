@@ -102,8 +102,6 @@ Misfit find_misfit(const Search& search) {
 // smoothly over about a third of an octave, which is eight groups: they say one thing, not eight.
 Misfit weigh_misfit(Search& search) {
   constexpr double groups_that_go_together = 8.0;
-  search.likelihood.allow_misfit(0.0);
-  search.fit = search.likelihood.maximise(search.active, {}, search.fit.strength);
   const Misfit misfit = find_misfit(search);
   if (misfit.relative > 0.0) {
     search.likelihood.allow_misfit(groups_that_go_together * misfit.relative * misfit.relative);
@@ -178,6 +176,21 @@ std::optional<Uncertain> find_bandwidth(Search& search) {
   search.fit = search.likelihood.maximise(search.active, {}, search.fit.strength);
   const double bandwidth_hz = corner(best.time_constant_s);
   return Uncertain{bandwidth_hz, bandwidth_hz * std_of_log(search, best.time_constant_s, set)};
+}
+
+// A filter that the widened weights no longer ask for goes again.
+void reconsider_bandwidth(Search& search, std::optional<Uncertain>& bandwidth_hz) {
+  if (!bandwidth_hz) return;
+  const VectorXd filtered = search.likelihood.column(column_of_white);
+  const WhittleFit with = search.fit;
+  search.likelihood.set_column(column_of_white, VectorXd::Ones(filtered.size()));
+  search.fit = search.likelihood.maximise(search.active, {}, search.fit.strength);
+  if (2.0 * (with.log_likelihood - search.fit.log_likelihood) < needed_gain) {
+    bandwidth_hz.reset();
+    return;
+  }
+  search.likelihood.set_column(column_of_white, filtered);
+  search.fit = with;
 }
 
 // Takes exponentially correlated noise in, if the spectrum asks for it.
@@ -363,10 +376,10 @@ Result<NoiseModelFit> fit_noise_model(const NoiseEvidence& evidence) {
   model.rate_hz = evidence.spectrum.rate_hz;
   model.duration_s = evidence.duration_s;
   model.ordinates = search.evidence.groups.size();
-  weigh_misfit(search);
   model.bandwidth_hz = find_bandwidth(search);
   const auto time_constant = find_markov(search, evidence.duration_s);
   const Misfit misfit = weigh_misfit(search);
+  reconsider_bandwidth(search, model.bandwidth_hz);
   model.misfit = misfit.relative;
   model.misfit_p = misfit.p;
   eliminate(search);

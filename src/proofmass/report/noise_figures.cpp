@@ -212,7 +212,8 @@ Figure spectrum_figure(const ChannelNoise& channel) {
   const signal::Spectrum& spectrum = analysis.spectrum;
   Curve curve{"spectrum", {}, {}};
   Curve fitted{"fitted density, lines left out", {}, {}, Ink::orange};
-  for (std::size_t k = 1; k < spectrum.frequency_hz.size(); ++k) {
+  // The ends stand for half a band each, and are no densities like the others.
+  for (std::size_t k = 1; k + 1 < spectrum.frequency_hz.size(); ++k) {
     curve.x.push_back(spectrum.frequency_hz[k]);
     curve.y.push_back(std::sqrt(spectrum.one_sided_psd[k]));
     fitted.y.push_back(std::sqrt(2.0 * analysis.model.density(spectrum.frequency_hz[k])));

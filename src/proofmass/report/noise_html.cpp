@@ -12,18 +12,23 @@ namespace {
 using characterise::Coefficient;
 using characterise::NoiseAnalysis;
 
+// White noise, flicker and random walk; of many channels the white noise alone.
+std::vector<NamedCoefficient> key_coefficients(std::size_t channels) {
+  constexpr std::size_t most_channels = 3;
+  const auto all = named_coefficients.begin();
+  return {all, all + (channels > most_channels ? 1 : 3)};
+}
+
 std::vector<KeyFigure> key_figures(const NoiseReport& report) {
   std::vector<KeyFigure> figures;
-  constexpr std::size_t most_channels = 3;  // of which more than the white noise is a key figure
+  const std::vector<NamedCoefficient> terms = key_coefficients(report.channels.size());
   for (const ChannelNoise& channel : report.channels) {
     if (!has_coefficients(channel)) {
       figures.push_back({channel.name, channel.analysis ? "too short" : "not analysed"});
       continue;
     }
     const std::string before = report.channels.size() > 1 ? channel.name + ": " : "";
-    for (const NamedCoefficient& term : named_coefficients) {
-      if (term.scale == NoiseScale::integral || term.scale == NoiseScale::slope) continue;
-      if (report.channels.size() > most_channels && term.scale != NoiseScale::density) continue;
+    for (const NamedCoefficient& term : terms) {
       figures.push_back({before + term.name, coefficient_words(channel.analysis->model.*term.figure,
                                                                channel.unit, term.scale)});
     }
@@ -117,7 +122,6 @@ Section channel_section(const ChannelNoise& channel, bool events_excluded) {
       .heading = fmt::format("{}: {} at {} Hz", channel.name, duration_words(analysis.duration_s),
                              compact(analysis.rate_hz, 6)),
       .points = noise_findings(channel),
-      .tables = {coefficients_table(channel)},
       .figures = {deviation_figure(channel)}};
   if (has_coefficients(channel)) section.tables.push_back(coefficients_table(channel));
   if (analysis.spectrum.frequency_hz.size() > 1) {
@@ -137,8 +141,9 @@ Section method_section(const NoiseReport& report) {
       "finite differences, PTTI 2003; W. J. Riley, NIST SP 1065, 2008).",
       "The coefficients N, B, K, Q and R are those of IEEE Std 952-1997, annex C. They are fitted "
       "to the spectrum, with lines left out, so that a swaying building or the mains is not taken "
-      "for noise of the sensor. A coefficient whose 95 % interval reaches zero is reported as 0 "
-      "with the bound that the recording puts on it; no slope is forced on the curve.",
+      "for noise of the sensor. A coefficient that the recording can be explained without is "
+      "reported as 0, with the bound that the recording puts on it; no slope is forced on the "
+      "curve.",
       "N is two-sided, so that it is the deviation at 1 s where all noise is white; the density of "
       "a data sheet is one-sided, √2 N. B is 1/0.664 of the curve's flat part. A minimum of the "
       "curve alone is no bias instability: white noise that meets a random walk has one too."};

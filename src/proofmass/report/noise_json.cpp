@@ -81,7 +81,8 @@ struct ThinnedSpectrum {
 ThinnedSpectrum thinned_spectrum(const NoiseAnalysis& analysis) {
   const signal::Spectrum& spectrum = analysis.spectrum;
   const std::vector<bool>& in_line = analysis.lines.in_line;
-  const std::size_t bins = spectrum.frequency_hz.size();
+  // The ends stand for half a band each, and are no densities like the others.
+  const std::size_t bins = std::max<std::size_t>(spectrum.frequency_hz.size(), 1) - 1;
   const auto marked = [&](std::size_t k) { return k < in_line.size() && in_line[k]; };
   const double ratio =
       std::pow(static_cast<double>(std::max<std::size_t>(bins, 2)), 1.0 / most_spectral_points);
@@ -201,8 +202,9 @@ void add_coefficients(const ChannelNoise& found, Object& item) {
 void add_spectrum(const ChannelNoise& found, Object& item) {
   const auto floor = one_sided_floor(*found.analysis);
   const std::string density = noise_unit(found.unit, NoiseScale::density);
-  item.push_back({"spectrum_floor", quantity(scaled(floor, 1.0 / std::numbers::sqrt2), density)});
-  item.push_back({"spectrum_floor_one_sided", quantity(floor, density)});
+  item.push_back({"spectrum_floor", quantity(floor, density)});
+  item.push_back(
+      {"spectrum_floor_two_sided", quantity(scaled(floor, 1.0 / std::numbers::sqrt2), density)});
   const bool any = found.analysis->spectrum.frequency_hz.size() > 1;
   item.push_back({"spectrum", any ? spectrum(*found.analysis, found.unit) : Value()});
 }

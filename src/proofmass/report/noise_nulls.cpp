@@ -72,7 +72,7 @@ void explain_nulls(const ChannelNoise& found, const Say& say) {
     say("null for " + lacking + ": the recording is too short for coefficients");
   }
   if (!one_sided_floor(analysis)) {
-    say("spectrum_floor and spectrum_floor_one_sided: null: no stretch of the spectrum is flat");
+    say("spectrum_floor and spectrum_floor_two_sided: null: no stretch of the spectrum is flat");
   }
   if (analysis.spectrum.frequency_hz.size() < 2) {
     say("spectrum: null: the recording is too short for one");

@@ -82,6 +82,20 @@ TEST(NoiseFindings, OfARefusedChannelAreTheReason) {
             (std::vector<std::string>{"Not analysed: the values do not vary."}));
 }
 
+TEST(EventTime, IsToldToTheSample) {
+  EXPECT_EQ(event_time_words({signal::EventKind::knock, 1240, 1263, 1.0, 9.0}, 100.0),
+            "12.40 … 12.63 s");
+  EXPECT_EQ(event_time_words({signal::EventKind::step, 5, 5, 1.0, 9.0}, 1.0), "5 s");
+}
+
+TEST(NoiseFindings, TellADriftAndWhatItComesToOverTheRecording) {
+  ChannelNoise channel = fake_channel("acc_x");
+  channel.analysis->model.ramp = identified(0.02 * ug, 0.001 * ug);
+  channel.analysis->model.slope_per_s = -0.02 * ug;
+  EXPECT_TRUE(says(noise_findings(channel),
+                   "A steady drift of 20.0 ± 1.0 ng/s, −200 µg over the recording"));
+}
+
 TEST(LineEffect, IsWhereASineRaisesTheAllanVarianceMost) {
   const ChannelNoise channel = fake_channel("acc_x");
   const signal::SpectralLine& line = channel.analysis->lines.lines.front();
@@ -120,8 +134,8 @@ TEST(NoiseJson, HasTheCurveTheCoefficientsAndBothDensities) {
   EXPECT_EQ(channel["parameters"]["random_walk"]["verdict"], "not_observable");
   EXPECT_EQ(channel["parameters"]["random_walk"]["value"], 0.0);
   EXPECT_EQ(channel["parameters"]["random_walk"]["record_needed_s"], 10'800.0);
-  EXPECT_DOUBLE_EQ(channel["spectrum_floor"]["value"].get<double>() * std::numbers::sqrt2,
-                   channel["spectrum_floor_one_sided"]["value"].get<double>());
+  EXPECT_DOUBLE_EQ(channel["spectrum_floor_two_sided"]["value"].get<double>() * std::numbers::sqrt2,
+                   channel["spectrum_floor"]["value"].get<double>());
   EXPECT_EQ(channel["lines"][0]["frequency_hz"], 0.562);
   EXPECT_EQ(channel["events"][0]["start_s"], 1200.0);
 }

@@ -117,11 +117,11 @@ void add_rarer_terms(const ChannelNoise& channel, std::vector<std::string>& sent
                     coefficient_words(model.quantisation, unit, NoiseScale::integral)));
   }
   if (is_identified(model.ramp)) {
-    const double hour = std::copysign(model.ramp.value, model.slope_per_s) * 3600.0;
+    const double whole = std::copysign(model.ramp.value, model.slope_per_s) * model.duration_s;
     sentences.push_back(
-        fmt::format("A steady drift of {}, {} in an hour: warming up, or temperature.",
+        fmt::format("A steady drift of {}, {} over the recording: warming up, or temperature.",
                     coefficient_words(model.ramp, unit, NoiseScale::slope),
-                    noise_words(hour, unit, NoiseScale::level)));
+                    noise_words(whole, unit, NoiseScale::level)));
   }
   if (model.markov) {
     sentences.push_back(
@@ -331,10 +331,13 @@ std::vector<std::string> noise_findings(const ChannelNoise& channel) {
 }
 
 std::string event_time_words(const signal::Event& event, double rate_hz) {
-  const double first_s = static_cast<double>(event.first) / rate_hz;
-  const double last_s = static_cast<double>(event.last) / rate_hz;
-  if (event.first == event.last) return compact(first_s, 7) + " s";
-  return compact(first_s, 7) + " s … " + compact(last_s, 7) + " s";
+  // As many decimals as tell neighbouring samples apart.
+  const int decimals = std::max(0, static_cast<int>(std::ceil(std::log10(rate_hz))));
+  const auto time = [&](std::size_t sample) {
+    return fixed(static_cast<double>(sample) / rate_hz, decimals);
+  };
+  if (event.first == event.last) return time(event.first) + " s";
+  return time(event.first) + " … " + time(event.last) + " s";
 }
 
 }  // namespace proofmass::report

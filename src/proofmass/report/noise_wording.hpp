@@ -86,7 +86,7 @@ struct LineEffect {
 /// why.
 [[nodiscard]] std::vector<std::string> noise_findings(const ChannelNoise& channel);
 
-/// "12.4 s … 12.6 s", "12.4 s"
+/// "12.40 … 12.63 s", "12.40 s": to the sample.
 [[nodiscard]] std::string event_time_words(const signal::Event& event, double rate_hz);
 
 }  // namespace proofmass::report

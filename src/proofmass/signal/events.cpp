@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <optional>
 
 #include "proofmass/core/contract.hpp"
 
@@ -66,8 +64,8 @@ struct Source {
       const double x = series[static_cast<std::size_t>(k)];
       out[static_cast<std::size_t>(k - first)] = x - x == 0.0 ? x : nan;
     }
-    auto gap = std::ranges::lower_bound(missing, static_cast<std::size_t>(begin), {},
-                                        &Stretch::last);
+    auto gap =
+        std::ranges::lower_bound(missing, static_cast<std::size_t>(begin), {}, &Stretch::last);
     for (; gap != missing.end() && static_cast<std::ptrdiff_t>(gap->first) < end; ++gap) {
       const auto from = std::max(begin, static_cast<std::ptrdiff_t>(gap->first));
       const auto to = std::min(end, static_cast<std::ptrdiff_t>(gap->last) + 1);
@@ -87,6 +85,23 @@ struct Grain {
   std::vector<Stretch> stuck;  // runs of one value 20 times as long as the mean run
 };
 
+/// The least |difference| of neighbours, NaN left out; ∞ if there is none.
+double least_difference(View<double> series) {
+  std::array<double, 4> least;
+  least.fill(std::numeric_limits<double>::infinity());
+  std::size_t k = 1;
+  for (; k + least.size() <= series.size(); k += least.size())
+    for (std::size_t lane = 0; lane < least.size(); ++lane) {
+      const double difference = std::abs(series[k + lane] - series[k + lane - 1]);
+      least[lane] = difference < least[lane] ? difference : least[lane];
+    }
+  for (; k < series.size(); ++k) {
+    const double difference = std::abs(series[k] - series[k - 1]);
+    least[0] = difference < least[0] ? difference : least[0];
+  }
+  return *std::ranges::min_element(least);
+}
+
 Grain grain_of(View<double> series) {
   constexpr std::size_t shortest = 20;
   double quantum = std::numeric_limits<double>::infinity();
@@ -98,11 +113,24 @@ Grain grain_of(View<double> series) {
     if (k - run_first >= shortest) runs.push_back({run_first, k - 1});
     run_first = k;
   };
-  for (std::size_t k = 1; k < series.size(); ++k) {
-    const double difference = std::abs(series[k] - series[k - 1]);
-    if (difference == 0.0) continue;
-    quantum = difference < quantum ? difference : quantum;
-    change_at(k);
+  constexpr std::size_t block = 64;
+  for (std::size_t k = 1; k < series.size();) {
+    const std::size_t end = std::min(k + block, series.size());
+    // Most often no two neighbours are equal, which is quickly seen.
+    if (const double least = least_difference(series.subspan(k - 1, end - k + 1)); least > 0.0) {
+      quantum = std::min(quantum, least);
+      change_at(k);
+      changes += end - k - 1;
+      run_first = end - 1;
+      k = end;
+      continue;
+    }
+    for (; k < end; ++k) {
+      const double difference = std::abs(series[k] - series[k - 1]);
+      if (difference == 0.0) continue;
+      quantum = difference < quantum ? difference : quantum;
+      change_at(k);
+    }
   }
   change_at(series.size());
   std::erase_if(runs, [&](const Stretch& run) {
@@ -150,7 +178,8 @@ struct Bar {
   [[nodiscard]] double at(std::size_t block) const { return sigmas * scale_at(block); }
 };
 
-std::vector<double> group_scales(const std::vector<Tally>& blocks, std::size_t group,
+std::vector<double> group_scales(const std::vector<Tally>& blocks,
+                                 std::size_t group,
                                  double floor) {
   constexpr double sigma_per_mean = 1.2533141373155003;  // √(π/2)
   std::vector<double> all;
@@ -168,8 +197,8 @@ std::vector<double> group_scales(const std::vector<Tally>& blocks, std::size_t g
   }
   std::vector<double> scale(own.size());
   for (std::size_t g = 0; g < own.size(); ++g)
-    scale[g] = std::max({overall, own[g], own[g > 0 ? g - 1 : 0],
-                         own[std::min(g + 1, own.size() - 1)]});
+    scale[g] =
+        std::max({overall, own[g], own[g > 0 ? g - 1 : 0], own[std::min(g + 1, own.size() - 1)]});
   return scale;
 }
 
@@ -184,8 +213,7 @@ double gumbel_reach(std::vector<double> largest, std::size_t blocks) {
   return middle + beta * (std::log(100.0 * static_cast<double>(blocks)) - 0.3665);
 }
 
-Bar bar_of(const std::vector<Tally>& blocks, std::size_t group, double floor,
-           std::size_t outputs) {
+Bar bar_of(const std::vector<Tally>& blocks, std::size_t group, double floor, std::size_t outputs) {
   Bar bar{group, group_scales(blocks, group, floor), 0.0};
   std::vector<double> largest;
   for (std::size_t b = 0; b < blocks.size(); b += stride_of(blocks.size()))
@@ -327,7 +355,8 @@ FineTallies tally_fine_scales(const Source& source) {
 }
 
 /// Looks again, with a level that the knock itself does not move, where a block stood out.
-std::vector<Hit> hits_on_fine_scales(const Source& source, const FineTallies& blocks,
+std::vector<Hit> hits_on_fine_scales(const Source& source,
+                                     const FineTallies& blocks,
                                      const std::array<Bar, FineScales::scales>& bars) {
   constexpr std::size_t per_stretch = FineScales::stretch / FineScales::block;
   std::vector<Hit> hits;
@@ -343,8 +372,7 @@ std::vector<Hit> hits_on_fine_scales(const Source& source, const FineTallies& bl
         open = true;
         while (fine.window() < (std::size_t{1} << scale)) fine.widen();
         for (std::size_t k = 0; k < FineScales::block; ++k) {
-          const double size =
-              std::abs(fine.departure_at((b - begin) * FineScales::block + k));
+          const double size = std::abs(fine.departure_at((b - begin) * FineScales::block + k));
           const std::size_t at = b * FineScales::block + k;
           if (size > bars[scale].at(b))
             hits.push_back({{at, at + fine.window() - 1}, size / bars[scale].scale_at(b)});
@@ -407,7 +435,7 @@ Level halved(const Level& level) {
 std::vector<double> windows(const Level& level, std::size_t width) {
   if (level.mean.size() < width) return {};
   std::vector<double> m(level.mean.size() - width + 1);
-  const double enough = (width * level.block < 256 ? 0.75 : 0.9) * static_cast<double>(width);
+  const double enough = (width * level.block < 256 ? 0.75 : 0.85) * static_cast<double>(width);
   for (std::size_t k = 0; k < m.size(); ++k) {
     double sum = 0.0;
     double weight = 0.0;
@@ -507,16 +535,19 @@ bool is_peak(View<double> outputs, std::size_t k, std::size_t width) {
 }
 
 /// Steps that windows of `width` blocks show, added to those known.
-void find_steps(const Record& record, const Level& level, View<double> m, std::size_t width,
+void find_steps(const Record& record,
+                const Level& level,
+                View<double> m,
+                std::size_t width,
                 std::vector<Step>& steps) {
   if (m.size() < 4 * width) return;
   std::vector<double> outputs(m.size() - 3 * width);
   for (std::size_t k = 0; k < outputs.size(); ++k)
     outputs[k] = 0.5 * ((m[k] - m[k + 3 * width]) + 3.0 * (m[k + 2 * width] - m[k + width]));
   const std::size_t w = width * level.block;
-  const Bar bar = bar_of(tallies(outputs, coarse_block),
-                         group_of(record.rate_hz, coarse_block * level.block), record.step_floor,
-                         outputs.size());
+  const Bar bar =
+      bar_of(tallies(outputs, coarse_block), group_of(record.rate_hz, coarse_block * level.block),
+             record.step_floor, outputs.size());
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     const double size = std::abs(outputs[k]);
     if (!(size > bar.at(k / coarse_block)) || !is_peak(outputs, k, width) ||
@@ -533,7 +564,7 @@ void find_steps(const Record& record, const Level& level, View<double> m, std::s
   }
 }
 
-/// Takes the steps from `known` on out of the level.
+/// Takes the steps out of the level; a block that holds one is missing.
 void level_out(Level& level, View<Step> steps) {
   std::vector<Step> sorted(steps.begin(), steps.end());
   std::ranges::sort(sorted, {}, &Step::at);
@@ -549,13 +580,13 @@ void level_out(Level& level, View<Step> steps) {
 }
 
 /// Knocks that windows of `width` blocks show, which then are missing from the level.
-void find_knocks(const Record& record, Level& level, View<double> m, std::size_t width,
-                 std::vector<Hit>& hits) {
+void find_knocks(
+    const Record& record, Level& level, View<double> m, std::size_t width, std::vector<Hit>& hits) {
   if (m.size() < 5 * width) return;
   std::vector<double> outputs(m.size(), nan);
   for (std::size_t k = 2 * width; k + 2 * width < m.size(); ++k)
-    outputs[k] = m[k] - 0.25 * ((m[k - 2 * width] + m[k - width]) +
-                                (m[k + width] + m[k + 2 * width]));
+    outputs[k] =
+        m[k] - 0.25 * ((m[k - 2 * width] + m[k - width]) + (m[k + width] + m[k + 2 * width]));
   const std::vector<Tally> blocks = tallies(outputs, coarse_block);
   const Bar bar = bar_of(blocks, group_of(record.rate_hz, coarse_block * level.block),
                          record.knock_floor, outputs.size());
@@ -626,7 +657,6 @@ double size_of_knock(View<double> series, const Stretch& at, double rate_hz) {
 
 /// Two steps that cancel within seconds are a knock.
 void pair_steps(std::vector<Step>& steps, std::vector<Hit>& hits, double rate_hz) {
-  std::ranges::sort(steps, {}, &Step::at);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < steps.size(); ++k) {
     if (k + 1 < steps.size() && steps[k + 1].at - steps[k].at <= samples(5.0, rate_hz) &&
@@ -647,26 +677,32 @@ double size_of_step(const Source& source, View<Step> steps, std::size_t k, doubl
   const std::size_t before = step.at - (k > 0 ? steps[k - 1].at : 0);
   const std::size_t after =
       (k + 1 < steps.size() ? steps[k + 1].at : source.series.size()) - step.at;
-  const std::size_t side =
-      std::min({std::max(step.window, samples(2.0, rate_hz)), before, after});
+  const std::size_t side = std::min({std::max(step.window, samples(2.0, rate_hz)), before, after});
   const double size = mean_of(source, step.at, side) - mean_of(source, step.at - side, side);
   return std::isnan(size) ? step.size : size;
 }
 
-std::vector<Event> assemble(const Source& source, std::vector<Hit> hits, std::vector<Step> steps,
+std::vector<Event> assemble(const Source& source,
+                            std::vector<Hit> hits,
+                            std::vector<Step> steps,
                             double rate_hz) {
   const View<double> series = source.series;
+  std::ranges::sort(steps, {}, &Step::at);
+  std::vector<double> sizes;
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    sizes.push_back(size_of_step(source, steps, k, rate_hz));
+  for (std::size_t k = 0; k < steps.size(); ++k) steps[k].size = sizes[k];
   pair_steps(steps, hits, rate_hz);
   merge(hits, std::max<std::size_t>(4, samples(0.2, rate_hz)));
   std::vector<Event> events;
-  for (std::size_t k = 0; k < steps.size(); ++k)
-    events.push_back({EventKind::step, steps[k].at, steps[k].at,
-                      size_of_step(source, steps, k, rate_hz), steps[k].sigmas});
+  for (const Step& step : steps)
+    events.push_back({EventKind::step, step.at, step.at, step.size, step.sigmas});
   for (const Hit& hit : hits) {
     const Stretch at{hit.at.first, std::min(hit.at.last, series.size() - 1)};
     // A step sets the knock filter off beside it, in a window as long as that it was seen through.
     const auto owner = std::ranges::find_if(steps, [&](const Step& step) {
-      const std::size_t reach = std::max<std::size_t>(32, 2 * std::min(step.window, samples(0.5, rate_hz)));
+      const std::size_t reach =
+          std::max<std::size_t>(32, 2 * std::min(step.window, samples(0.5, rate_hz)));
       return at.first <= step.at + reach && step.at <= at.last + reach;
     });
     if (owner == steps.end()) {

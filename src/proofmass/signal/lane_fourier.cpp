@@ -5,12 +5,7 @@
 #include <cstring>
 #include <numbers>
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define PM_VECTOR_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define PM_VECTOR_CLONES
-#endif
+#include "proofmass/core/vector_clones.hpp"
 
 namespace proofmass::signal {
 namespace {

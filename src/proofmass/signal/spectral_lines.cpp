@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <optional>
 
 #include "proofmass/core/chi_square.hpp"
-#include "proofmass/core/statistics.hpp"
 #include "proofmass/signal/spectral_background.hpp"
+#include "proofmass/signal/spectral_floor.hpp"
 
 namespace proofmass::signal {
 namespace {
@@ -192,85 +191,6 @@ SpectralLine measure_line(const Judged& judged, Region region) {
   return line;
 }
 
-/// A stretch of the background that may hold the floor.
-struct Stretch {
-  Region bins;
-  double level;  ///< PSD
-  double std;
-};
-
-std::optional<Stretch> read_stretch(const Judged& judged,
-                                    const std::vector<bool>& in_line,
-                                    Region bins) {
-  std::vector<double> psd;
-  for (std::size_t k = bins.first; k < bins.last; ++k)
-    if (!in_line[k]) psd.push_back(judged.spectrum.one_sided_psd[k]);
-  if (2 * psd.size() < bins.last - bins.first || psd.empty()) return std::nullopt;
-  const double edf = judged.spectrum.edf_per_bin;
-  const double level = *median(psd) * edf / chi_square_quantile(0.5, edf);
-  // π/2: a median is that much less certain than a mean.
-  const double relative =
-      std::sqrt(2.0 / edf * bins_per_independent_bin * 1.5708 / static_cast<double>(psd.size()));
-  return Stretch{bins, level, level * relative};
-}
-
-/// Highest over lowest background of some bins, in dB.
-double unevenness_db(const Judged& judged, Region bins) {
-  const auto begin = judged.background.begin();
-  const auto [low, high] = std::minmax_element(begin + static_cast<std::ptrdiff_t>(bins.first),
-                                               begin + static_cast<std::ptrdiff_t>(bins.last));
-  return 10.0 * std::log10(*high / *low);
-}
-
-/// Half an octave of a flat stretch differs by less: a power law of exponent 0.1.
-constexpr double flat_db = 0.15;
-/// A stretch goes on while the background stays this close.
-constexpr double near_db = 0.3;
-
-/// The stretch as far as the background stays close to its level.
-Stretch extended(const Judged& judged, const std::vector<bool>& in_line, const Stretch& stretch) {
-  const double near = near_db + 10.0 * std::log10(1.0 + stretch.std / stretch.level);
-  const auto is_near = [&](std::size_t k) {
-    return std::abs(10.0 * std::log10(judged.background[k] / stretch.level)) < near;
-  };
-  Region bins = stretch.bins;
-  while (bins.first > first_judged_bin && is_near(bins.first - 1)) --bins.first;
-  while (bins.last < judged.end() && is_near(bins.last)) ++bins.last;
-  return read_stretch(judged, in_line, bins).value_or(stretch);
-}
-
-/// The stretch that is lowest and flat: each dB of unevenness of its first half octave, beyond what
-/// is flat, counts as ten dB of level. The top fifth of the band is left to filters.
-std::optional<Stretch> quietest_stretch(const Judged& judged, const std::vector<bool>& in_line) {
-  const auto end = static_cast<std::size_t>(0.8 * static_cast<double>(judged.end()));
-  std::optional<Stretch> best;
-  double least = 0.0;
-  for (std::size_t first = first_judged_bin; first < end; first += 1 + first / 16) {
-    const Region bins{first, first + 1 + static_cast<std::size_t>(0.4142 * double(first))};
-    if (bins.last > end) break;
-    const auto start = read_stretch(judged, in_line, bins);
-    if (!start) continue;
-    const Stretch stretch = extended(judged, in_line, *start);
-    const double uneven_db = std::max(unevenness_db(judged, bins) - flat_db, 0.0);
-    const double cost = 10.0 * std::log10(stretch.level + 2.0 * stretch.std) + 10.0 * uneven_db;
-    if (best && cost >= least) continue;
-    best = stretch;
-    least = cost;
-  }
-  return best ? best : read_stretch(judged, in_line, {first_judged_bin, judged.end()});
-}
-
-SpectralFloor measure_floor(const Judged& judged, const std::vector<bool>& in_line) {
-  const auto stretch = quietest_stretch(judged, in_line);
-  if (!stretch) return {};
-  SpectralFloor floor;
-  floor.one_sided_density = std::sqrt(stretch->level);
-  floor.std = 0.5 * stretch->std / floor.one_sided_density;
-  floor.low_hz = static_cast<double>(stretch->bins.first) * judged.bin_hz();
-  floor.high_hz = static_cast<double>(stretch->bins.last - 1) * judged.bin_hz();
-  return floor;
-}
-
 }  // namespace
 
 LineReport find_lines(const Spectrum& spectrum) {
@@ -297,7 +217,7 @@ LineReport find_lines(const Spectrum& spectrum) {
   }
   const Judged judged{spectrum, report.background};
   for (const Region& region : found) report.lines.push_back(measure_line(judged, region));
-  report.floor = measure_floor(judged, report.in_line);
+  report.floor = measure_floor(spectrum, report.background, report.in_line);
   return report;
 }
 

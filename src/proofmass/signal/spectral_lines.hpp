@@ -6,7 +6,7 @@
 
 namespace proofmass::signal {
 
-/// The white level of a spectrum, read where it is flat and lowest.
+/// The level of a spectrum, read where it is lowest and even.
 struct SpectralFloor {
   double one_sided_density = 0.0;  ///< unit/√Hz
   double std = 0.0;                ///< its standard deviation, unit/√Hz
@@ -45,10 +45,9 @@ struct LineReport {
 /// their corners pass, so do filters of one or two poles. A filter of four poles close to half the
 /// rate can show a line at its edge in a spectrum of few segments.
 ///
-/// The floor is the median, corrected for its bias, over the stretch that is lowest and flat:
-/// within 0.15 dB over half an octave, then on while it stays within 0.3 dB. Where nothing is flat
-/// (pure 1/f) it is the least steep and low stretch. Picked as the lowest, it reads low by 1 % at
-/// 60 degrees of freedom and 6 % at 6.
+/// The floor is the lowest level that the spectrum keeps for an octave, even within 2 dB, below 0.8
+/// of half the rate: the median of its bins, corrected for its bias. A filter whose roll-off begins
+/// in that octave lowers it by up to a fifth.
 ///
 /// Below 33 bins nothing is looked for: the background is the spectrum, the floor zero.
 /// Cost: about 3 ms for 2049 bins.
