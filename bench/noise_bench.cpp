@@ -73,8 +73,7 @@ double plain_loop(const std::vector<double>& y, const std::vector<std::size_t>& 
 // Seconds of numpy, 0 without it.
 double numpy_s(std::size_t samples, std::size_t taus) {
   const std::string command = "python3 '" PROOFMASS_BENCH_DIR "/numpy_oadev.py' " +
-                              std::to_string(samples) + " " + std::to_string(taus) +
-                              " 2>/dev/null";
+                              std::to_string(samples) + " " + std::to_string(taus) + " 2>/dev/null";
   std::FILE* pipe = popen(command.c_str(), "r");
   double seconds = 0.0;
   if (pipe == nullptr) return seconds;
@@ -120,11 +119,12 @@ int main(int argc, char** argv) {
   const double fit = best_of(5, [&] {
     BlockMeans slow(rate_hz);
     slow.add(y);
-    sink = fit_noise_model({slow, spectrum, lines, static_cast<double>(n) / rate_hz}).value().white.value;
+    sink = fit_noise_model({slow, spectrum, lines, static_cast<double>(n) / rate_hz})
+               .value()
+               .white.value;
   });
-  const double events = best_of(3, [&] {
-    sink = static_cast<double>(signal::find_events(y, {.rate_hz = rate_hz}).size());
-  });
+  const double events = best_of(
+      3, [&] { sink = static_cast<double>(signal::find_events(y, {.rate_hz = rate_hz}).size()); });
   line("deviations", deviations, numpy);
   line("spectrum", spectra, numpy);
   line("lines and floor", search, numpy);
@@ -133,7 +133,8 @@ int main(int argc, char** argv) {
   line("knocks and steps", events, numpy);
   const double before_mib = peak_mib();
   line("all of it, with limits",
-       best_of(3, [&] { sink = analyse_noise(y, options).value().deviation.points.back().value; }), numpy);
+       best_of(3, [&] { sink = analyse_noise(y, options).value().deviation.points.back().value; }),
+       numpy);
   std::printf("  memory: %.0f MiB of data, the analysis adds %.0f MiB\n", data_mib,
               peak_mib() - before_mib);
   const double read = best_of(5, [&] {
@@ -142,7 +143,8 @@ int main(int argc, char** argv) {
       for (std::size_t j = 0; j < 8; ++j) sums[j] += y[k + j];
     sink = sums[0] + sums[1] + sums[2] + sums[3] + sums[4] + sums[5] + sums[6] + sums[7];
   });
-  std::printf("  one read of the data takes %.4f s: the deviations take %.0f of them, all but the "
-              "events %.0f\n",
-              read, deviations / read, (deviations + spectra + search + fit) / read);
+  std::printf(
+      "  one read of the data takes %.4f s: the deviations take %.0f of them, all but the "
+      "events %.0f\n",
+      read, deviations / read, (deviations + spectra + search + fit) / read);
 }

@@ -30,10 +30,9 @@ std::size_t longest(Statistic statistic, std::size_t samples) {
 
 // At most five leading bits, so that all but them can be left to decimation.
 std::size_t with_few_bits(double m) {
-  auto whole = static_cast<std::size_t>(std::llround(m));
-  std::size_t unit = 1;
-  while (whole / unit >= 32) unit *= 2;
-  return (whole + unit / 2) / unit * unit;
+  double unit = 1.0;
+  while (m >= 32.0 * unit) unit *= 2.0;
+  return static_cast<std::size_t>(std::llround(m / unit) * std::llround(unit));
 }
 
 std::vector<std::size_t> per_decade(int count, std::size_t last) {

@@ -19,7 +19,7 @@ struct TauGrid {
   Kind kind = Kind::per_decade;
   int per_decade = 16;
   std::vector<double> times_s = {};  ///< with Kind::given
-  double stop_ratio = 0.0;  ///< longest τ is the record over this; 0: the statistic's own
+  double stop_ratio = 0.0;           ///< longest τ is the record over this; 0: the statistic's own
 };
 
 /// Record over longest τ where nothing else is asked: 4, for the total statistics 2 (3 where the

@@ -18,8 +18,8 @@ struct DeviationPoint {
   double uncorrected = 0.0;  ///< before the correction for the statistic's bias
   double lower = 0.0;        ///< limits of σ at the curve's confidence
   double upper = 0.0;
-  double edf = 0.0;             ///< equivalent degrees of freedom of σ²
-  int alpha = 0;                ///< noise type, S_y ∝ f^α: 2 … −4; that of the largest share
+  double edf = 0.0;               ///< equivalent degrees of freedom of σ²
+  int alpha = 0;                  ///< noise type, S_y ∝ f^α: 2 … −4; that of the largest share
   std::optional<int> alpha_lag1;  ///< the same by lag-1 autocorrelation, where it was asked for
 };
 

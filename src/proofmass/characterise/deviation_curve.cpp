@@ -17,16 +17,7 @@
 namespace proofmass::characterise {
 namespace {
 
-// Up to here every term is taken; beyond, sixteen or more to a τ.
-constexpr std::size_t decimate_above = std::size_t{1} << 20;
-constexpr std::size_t least_overlap = 16;
 constexpr std::size_t longest_filled_gap = 8;
-// Rates are means over their sample: F = ∞ in Greenhall and Riley's terms, as near as rounding lets.
-constexpr double means_of_the_rate = 1e3;
-
-bool is_difference(Statistic statistic) {
-  return statistic <= Statistic::ohdev;
-}
 
 // The longest stretch without a long gap, its short ones filled by straight lines.
 std::vector<double> longest_stretch(View<double> series) {
@@ -127,7 +118,7 @@ EdfCase edf_case(const CurveVariances& from, Statistic statistic, std::size_t m)
           .phase_points = from.phase_points,
           .stride = DifferenceVariances::stride(statistic, m, from.least_overlap),
           .modified = modified && m > 1,
-          .points_per_sample = means_of_the_rate};
+          .sampled = true};
 }
 
 // Share of the terms that a record without gaps would have.
@@ -139,27 +130,44 @@ double share_of_terms(const CurveVariances& from, const EdfCase& known, std::siz
   return std::min(1.0, static_cast<double>(terms) / static_cast<double>(all));
 }
 
+// Of the total variance at few samples to a τ the published fit has up to a third too many. There
+// it is the overlapping Allan variance with some terms more.
+double total_edf_of_few_samples(const CurveVariances& from,
+                                std::size_t m,
+                                const AlphaShares& shares) {
+  const auto N = static_cast<double>(from.phase_points);
+  const double plain =
+      mixed_edf({.m = m, .phase_points = from.phase_points, .sampled = true}, shares);
+  return plain * (N - 2.0) / (N - 2.0 * static_cast<double>(m));
+}
+
+double degrees_of_freedom(const CurveVariances& from,
+                          const DeviationPoint& point,
+                          const AlphaShares& shares,
+                          const NoiseOptions& options) {
+  const Statistic statistic = options.statistic;
+  const bool by_model = options.noise_type == NoiseTypeSource::model;
+  if (is_difference(statistic)) {
+    const EdfCase known = edf_case(from, statistic, point.m);
+    const double of_all = by_model ? mixed_edf(known, shares)
+                                   : edf(statistic, point.alpha, point.m, from.phase_points);
+    return of_all * share_of_terms(from, known, point.terms);
+  }
+  const double fitted = edf(statistic, point.alpha, point.m, from.phase_points);
+  if (statistic != Statistic::totdev || !by_model || from.phase_points <= 2 * point.m)
+    return fitted;
+  const double of_few = total_edf_of_few_samples(from, point.m, shares);
+  return point.m == 1 ? of_few : std::min(fitted, of_few);
+}
+
 }  // namespace
 
-CurveVariances curve_variances(View<double> series, const NoiseOptions& options) {
+CurveVariances whole_record_variances(View<double> series, const NoiseOptions& options) {
   const double tau0_s = 1.0 / options.rate_hz;
-  CurveVariances curve;
-  const auto factors = [&](std::size_t samples) {
-    return averaging_factors(options.taus, options.statistic, samples, tau0_s);
-  };
-  if (is_difference(options.statistic)) {
-    curve.factors = factors(series.size());
-    curve.phase_points = series.size() + 1;
-    curve.least_overlap =
-        series.size() <= decimate_above ? DifferenceVariances::full_overlap : least_overlap;
-    DifferenceVariances differences(options.statistic, curve.factors, curve.least_overlap);
-    differences.add(series);
-    curve.variances = differences.finish();
-    return curve;
-  }
   const std::vector<double> stretch = longest_stretch(series);
   const std::vector<double> phase = phase_of(stretch, tau0_s);
-  curve.factors = factors(stretch.size());
+  CurveVariances curve;
+  curve.factors = averaging_factors(options.taus, options.statistic, stretch.size(), tau0_s);
   curve.phase_points = phase.size();
   curve.left_out = series.size() - stretch.size();
   for (const std::size_t m : curve.factors)
@@ -193,11 +201,7 @@ DeviationCurve deviation_curve(const CurveVariances& variances,
     }
     if (options.noise_type == NoiseTypeSource::fixed)
       point.alpha = std::max(options.alpha, lowest_alpha(statistic));
-    const bool mixed = options.noise_type == NoiseTypeSource::model && is_difference(statistic);
-    point.edf = mixed ? mixed_edf(edf_case(variances, statistic, point.m), shares)
-                      : edf(statistic, point.alpha, point.m, variances.phase_points);
-    if (is_difference(statistic))
-      point.edf *= share_of_terms(variances, edf_case(variances, statistic, point.m), point.terms);
+    point.edf = degrees_of_freedom(variances, point, shares, options);
     const double bias = variance_bias(statistic, point.alpha, point.m, variances.phase_points);
     const double to_deviation = time_factor(statistic, point.tau_s);
     point.uncorrected = std::sqrt(found.variance) * to_deviation;

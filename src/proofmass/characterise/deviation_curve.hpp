@@ -17,8 +17,10 @@ struct CurveVariances {
   std::size_t left_out = 0;       ///< samples outside that stretch
 };
 
-/// Of a rate series with NaN where a sample is missing.
-[[nodiscard]] CurveVariances curve_variances(View<double> series, const NoiseOptions& options);
+/// Of a rate series with NaN where a sample is missing, by a statistic that is no difference and
+/// needs it all at once: that of its longest stretch without a gap of more than eight samples.
+[[nodiscard]] CurveVariances whole_record_variances(View<double> series,
+                                                    const NoiseOptions& options);
 
 /// The curve with bias corrections and limits. `model` decides the noise types unless
 /// options.noise_type says otherwise; `series` is only read for the lag-1 types.

@@ -9,7 +9,7 @@ namespace proofmass::characterise {
 namespace {
 
 // Sums side by side, so that one addition need not wait for the one before.
-constexpr std::size_t lanes = 32;
+constexpr std::size_t lanes = 16;
 using Lanes = std::array<double, lanes>;
 
 double total(const Lanes& sums) {
@@ -26,12 +26,12 @@ double squared_second_differences(const double* x, std::size_t m, std::size_t n)
   std::size_t i = 0;
   for (; i + lanes <= n; i += lanes) {
     for (std::size_t k = 0; k < lanes; ++k) {
-      const double z = (last[i + k] - middle[i + k]) - (middle[i + k] - x[i + k]);
+      const double z = (last[i + k] + x[i + k]) - 2.0 * middle[i + k];
       sums[k] += z * z;
     }
   }
   for (; i < n; ++i) {
-    const double z = (last[i] - middle[i]) - (middle[i] - x[i]);
+    const double z = (last[i] + x[i]) - 2.0 * middle[i];
     sums[0] += z * z;
   }
   return total(sums);

@@ -1,7 +1,9 @@
 #include "proofmass/characterise/difference_variance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "proofmass/characterise/difference_kernels.hpp"
 #include "proofmass/core/contract.hpp"
@@ -11,6 +13,8 @@ namespace {
 
 // So short that a chunk and what it is compared with stay in the first cache.
 constexpr std::size_t chunk = 2048;
+// Points of a decimated level that are worth a round over its factors.
+constexpr std::size_t batch = 256;
 // Between two subtractions of what the differences do not see.
 constexpr std::size_t rebase_every = 1 << 16;
 // A term may lack one in so many of its samples.
@@ -44,10 +48,14 @@ std::size_t level_of(std::size_t m, std::size_t least_overlap) {
 }
 
 bool all_finite(View<double> samples) {
-  // One infinity or NaN makes the sum of x·0 a NaN; the loop has no branch.
-  double sum = 0.0;
-  for (const double x : samples) sum += x * 0.0;
-  return sum == 0.0;
+  // One infinity or NaN makes the sum of x·0 a NaN; the loop has no branch, and no sum waits long
+  // for the one before.
+  std::array<double, 8> sums{};
+  std::size_t k = 0;
+  for (; k + sums.size() <= samples.size(); k += sums.size())
+    for (std::size_t lane = 0; lane < sums.size(); ++lane) sums[lane] += samples[k + lane] * 0.0;
+  for (; k < samples.size(); ++k) sums[0] += samples[k] * 0.0;
+  return std::accumulate(sums.begin(), sums.end(), 0.0) == 0.0;
 }
 
 double mean_of_finite(View<double> samples) {
@@ -99,7 +107,7 @@ void DifferenceVariances::add(View<double> samples) {
     } else {
       for (const double y : part) add_one(y);
     }
-    process();
+    process(batch);
     if (since_rebase_ >= rebase_every) rebase();
   }
 }
@@ -149,7 +157,7 @@ void DifferenceVariances::close_gap(double next) {
   for (std::size_t k = 1; k <= gap_; ++k) {
     ++missing_;
     add_sample(last_ + step * static_cast<double>(k));
-    if (k % chunk == 0) process();
+    if (k % chunk == 0) process(batch);
   }
 }
 
@@ -168,11 +176,13 @@ void DifferenceVariances::append_point() {
   ++points_;
 }
 
-// Takes the points that have come into the terms that they complete, level after level.
-void DifferenceVariances::process() {
+// Takes the points that have come into the terms that they complete, level after level, as far as
+// there are enough to be worth the trouble.
+void DifferenceVariances::process(std::size_t worth) {
   levels_.front().newest = points_ - 1;
   for (std::size_t k = 0; k < levels_.size(); ++k) {
     Level& level = levels_[k];
+    if (k > 0 && level.fresh < worth) return;
     for (Factor& factor : level.factors) take(level, factor, std::size_t{1} << k);
     if (k + 1 < levels_.size()) decimate(level, levels_[k + 1]);
     level.fresh = 0;
@@ -198,7 +208,7 @@ void DifferenceVariances::decimate(const Level& from, Level& to) const {
 
 // Drops the points that no later term needs, now and then.
 void DifferenceVariances::forget(Level& level) {
-  if (level.points.size() < 2 * level.span + chunk) return;
+  if (level.points.size() < 2 * level.span + 2 * chunk) return;
   const auto old = static_cast<std::ptrdiff_t>(level.points.size() - level.span);
   level.points.erase(level.points.begin(), level.points.begin() + old);
   if (missing_ > 0) level.missing.erase(level.missing.begin(), level.missing.begin() + old);
@@ -213,8 +223,7 @@ void DifferenceVariances::take(const Level& level, Factor& factor, std::size_t s
   const std::size_t first_number = level.newest + 1 - size;
   const std::size_t begin = std::max(first_fresh, span > first_number ? span - first_number : 0);
   if (begin >= size) return;
-  const bool complete =
-      missing_ == 0 || level.missing[size - 1] == level.missing[begin - span];
+  const bool complete = missing_ == 0 || level.missing[size - 1] == level.missing[begin - span];
   if (complete && overlaps(statistic_)) {
     const double* x = level.points.data() + begin - span;
     factor.sum += order_of(statistic_) == 2
@@ -235,20 +244,20 @@ void DifferenceVariances::take(const Level& level, Factor& factor, std::size_t s
   }
 }
 
-// Differences of order d do not see polynomials below that order. Taken off what is still held, they
-// keep the integral small however long the series and however far it wanders.
+// Differences of order d do not see polynomials below that order. Taken off what is still held,
+// they keep the integral small however long the series and however far it wanders.
 void DifferenceVariances::rebase() {
   const double slope = theta_ / static_cast<double>(since_rebase_);
   const auto now = static_cast<double>(points_ - 1);
   for (std::size_t k = 0; k < levels_.size(); ++k) {
     Level& level = levels_[k];
     const auto stride = static_cast<double>(std::size_t{1} << k);
-    double number = static_cast<double>(level.newest + 1) - static_cast<double>(level.points.size());
+    double number =
+        static_cast<double>(level.newest + 1) - static_cast<double>(level.points.size());
     for (double& point : level.points) {
       const double t = number * stride - now;
-      point -= is_modified(statistic_)
-                   ? big_theta_ + theta_ * t + slope * t * (t + 1.0) / 2.0
-                   : theta_ + slope * t;
+      point -= is_modified(statistic_) ? big_theta_ + theta_ * t + slope * t * (t + 1.0) / 2.0
+                                       : theta_ + slope * t;
       number += 1.0;
     }
   }
@@ -260,8 +269,10 @@ void DifferenceVariances::rebase() {
 
 std::vector<PhaseVariance> DifferenceVariances::finish() const {
   std::vector<PhaseVariance> variances(factor_count_);
-  for (std::size_t k = 0; k < levels_.size(); ++k) {
-    for (const Factor& factor : levels_[k].factors) {
+  DifferenceVariances last = *this;
+  if (points_ > 0) last.process(0);
+  for (std::size_t k = 0; k < last.levels_.size(); ++k) {
+    for (const Factor& factor : last.levels_[k].factors) {
       if (factor.terms == 0) continue;
       const auto m = static_cast<double>(factor.spacing << k);
       variances[factor.at] = {

@@ -18,11 +18,11 @@ namespace proofmass::characterise {
 ///     adev, oadev  σ² = mean (Δ_m² θ)² / (2 m²)        hdev, ohdev  σ² = mean (Δ_m³ θ)² / (6 m²)
 ///     mdev, tdev   σ² = mean (Δ_m³ Θ)² / (2 m⁴)        (tdev: that of mdev)
 ///
-/// θ and Θ decimate exactly, so a factor m = q·2^k, q odd or in 16 … 31, is served from every 2^k-th
-/// of them: terms then start every 2^k samples, 16 or more to a τ, which leaves 99 % of the degrees
-/// of freedom of a start at every sample; every term is itself exact.
-/// Source: W. J. Riley, NIST SP 1065 (2008), sections 5.2.2–5.2.8; C. A. Greenhall, W. Riley, Uncertainty
-/// of stability variances based on finite differences, PTTI 2003, for the free stride.
+/// θ and Θ decimate exactly, so a factor m = q·2^k, q odd or in 16 … 31, is served from every
+/// 2^k-th of them: terms then start every 2^k samples, 16 or more to a τ, which leaves 99 % of the
+/// degrees of freedom of a start at every sample; every term is itself exact. Source: W. J. Riley,
+/// NIST SP 1065 (2008), sections 5.2.2–5.2.8; C. A. Greenhall, W. Riley, Uncertainty of stability
+/// variances based on finite differences, PTTI 2003, for the free stride.
 ///
 /// A missing sample (NaN) stands on the straight line between its neighbours, and a term is counted
 /// if at most one in sixteen of its samples is missing: none below 16.
@@ -74,7 +74,7 @@ class DifferenceVariances {
   void add_sample(double y);
   void close_gap(double next);
   void append_point();
-  void process();
+  void process(std::size_t worth);
   void take(const Level& level, Factor& factor, std::size_t stride) const;
   void decimate(const Level& from, Level& to) const;
   void forget(Level& level);
@@ -86,10 +86,10 @@ class DifferenceVariances {
   std::size_t samples_ = 0;  ///< given
   std::size_t points_ = 0;   ///< of the integral, so far
   std::size_t since_rebase_ = 0;
-  double offset_ = 0.0;         ///< taken off each sample, lest the integral grow
+  double offset_ = 0.0;  ///< taken off each sample, lest the integral grow
   double theta_ = 0.0, big_theta_ = 0.0;
-  double last_ = 0.0;           ///< the last sample that was there
-  std::size_t gap_ = 0;         ///< samples missing since
+  double last_ = 0.0;    ///< the last sample that was there
+  std::size_t gap_ = 0;  ///< samples missing since
   std::uint32_t missing_ = 0;
   bool started_ = false;
 };

@@ -75,15 +75,13 @@ TEST(DifferenceVariances, AreTheirDefinitions) {
          {Statistic::adev, Statistic::oadev, Statistic::hdev, Statistic::ohdev}) {
       const auto found = variances(statistic, y, factors);
       for (std::size_t k = 0; k + 2 < factors.size(); ++k) {
-        EXPECT_NEAR(found[k].variance / by_definition(statistic, y, factors[k]), 1.0,
-                    1e-9)
+        EXPECT_NEAR(found[k].variance / by_definition(statistic, y, factors[k]), 1.0, 1e-9)
             << name_of(statistic) << " m = " << factors[k];
       }
     }
     const auto found = variances(Statistic::mdev, y, factors);
     for (std::size_t k = 0; k < factors.size(); ++k) {
-      EXPECT_NEAR(found[k].variance / modified_by_definition(y, factors[k]), 1.0,
-                  1e-8)
+      EXPECT_NEAR(found[k].variance / modified_by_definition(y, factors[k]), 1.0, 1e-8)
           << "m = " << factors[k];
     }
   }
@@ -137,9 +135,11 @@ TEST(DifferenceVariances, LoseNextToNothingByDecimation) {
   const std::vector<std::size_t> factors{64, 512, 4096};
   for (const auto& y : {white(200'000), random_walk(200'000)}) {
     for (const Statistic statistic : {Statistic::oadev, Statistic::mdev, Statistic::ohdev}) {
-      const auto full = variances(statistic, y, factors), thin = variances(statistic, y, factors, 32);
+      const auto full = variances(statistic, y, factors),
+                 thin = variances(statistic, y, factors, 32);
       for (std::size_t k = 0; k < factors.size(); ++k) {
-        EXPECT_NEAR(std::sqrt(thin[k].variance / full[k].variance), 1.0, 0.01) << name_of(statistic);
+        EXPECT_NEAR(std::sqrt(thin[k].variance / full[k].variance), 1.0, 0.01)
+            << name_of(statistic);
       }
     }
   }
@@ -148,7 +148,8 @@ TEST(DifferenceVariances, LoseNextToNothingByDecimation) {
 TEST(DifferenceVariances, OfALongRandomWalkStayExactAtTheShortestTau) {
   // The double integral of a random walk grows with the power 2.5 of its length.
   const auto y = random_walk(2'000'000);
-  const auto modified = variances(Statistic::mdev, y, {1, 32}), plain = variances(Statistic::oadev, y, {1});
+  const auto modified = variances(Statistic::mdev, y, {1, 32}),
+             plain = variances(Statistic::oadev, y, {1});
   EXPECT_NEAR(modified[0].variance / plain[0].variance, 1.0, 1e-6);
   EXPECT_NEAR(modified[0].variance, 0.5, 0.002);
 }

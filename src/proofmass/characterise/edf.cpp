@@ -55,16 +55,62 @@ double s_x(const PowerLaw& law, double t, double F) {
   return -derivative_of_s_w(law, t, 2) - derivative_of_s_w(law, t, 4) / (12.0 * F * F);
 }
 
+/// ψ(k + 1/2) for k ≥ 0, by its series in 1/k.
+/// Source: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions (1964), 6.3.5
+/// and 6.3.18.
+double digamma_above_half(double k) {
+  double steps = 0.0;
+  for (; k < 12.0; k += 1.0) steps += 1.0 / (k + 0.5);
+  const double u = 1.0 / (k * k);
+  return std::log(k) + u * (1.0 / 24.0 - u * (7.0 / 960.0 - u * 31.0 / 8064.0)) - steps;
+}
+
+/// s_x, to a factor, of what has the spectrum (2 sin(π f τ0))^−order from sample to sample, m
+/// samples to a unit of t.
+double s_x_sampled(int order, double t, double m) {
+  t = std::abs(t);
+  if (order == 0) return t * m < 0.25 ? 1.0 : 0.0;
+  const bool odd = order % 2 != 0;
+  double product = odd ? digamma_above_half(t * m) : t;
+  for (int i = 1; 2 * i <= (odd ? order - 1 : order - 2); ++i) {
+    const double root = (odd ? i - 0.5 : i) / m;
+    product *= t * t - root * root;
+  }
+  return product;
+}
+
+/// s_x of one power law in the case given.
+struct PhaseCovariance {
+  PhaseCovariance(const EdfCase& known, int alpha)
+      : law(alpha),
+        order(2 - alpha),
+        m(static_cast<double>(known.m)),
+        sampled(known.sampled),
+        modified(known.modified) {}
+
+  double operator()(double t) const {
+    if (!sampled) return s_x(law, t, modified ? 1.0 : m);
+    if (!modified) return s_x_sampled(order, t, m);
+    const auto s_w = [&](double u) { return s_x_sampled(order + 2, u, m); };
+    return 2.0 * s_w(t) - s_w(t - 1.0) - s_w(t + 1.0);
+  }
+
+  PowerLaw law;
+  int order;
+  double m;
+  bool sampled, modified;
+};
+
 /// s_z for differences of order d.
-double s_z(const PowerLaw& law, double t, double F, int d) {
+double s_z(const PhaseCovariance& s_x_at, double t, int d) {
   double weight = 1.0;  // C(2d, d+k), from k = d down to 0
   double sum = 0.0;
   for (int k = d; k > 0; --k) {
     const double sign = k % 2 == 0 ? 1.0 : -1.0;
-    sum += sign * weight * (s_x(law, t - k, F) + s_x(law, t + k, F));
+    sum += sign * weight * (s_x_at(t - k) + s_x_at(t + k));
     weight *= static_cast<double>(d + k) / (d - k + 1);
   }
-  return sum + weight * s_x(law, t, F);
+  return sum + weight * s_x_at(t);
 }
 
 /// How many terms there are, and how many of them start within one τ.
@@ -229,11 +275,10 @@ double greenhall_riley_edf(const EdfCase& known) {
 
 double mixed_edf(const EdfCase& known, const AlphaShares& shares) {
   struct Part {
-    PowerLaw law;
+    PhaseCovariance covariance;
     double weight;  // share / s_z(0)
   };
   const Overlap overlap = overlap_of(known);
-  const double F = known.modified ? 1.0 : static_cast<double>(known.m) * known.points_per_sample;
   const double total = std::accumulate(shares.begin(), shares.end(), 0.0);
   PM_EXPECTS(total > 0.0);
   std::vector<Part> parts;
@@ -241,12 +286,12 @@ double mixed_edf(const EdfCase& known, const AlphaShares& shares) {
     const double share = shares[static_cast<std::size_t>(2 - alpha)] / total;
     if (share == 0.0) continue;
     PM_EXPECTS(share > 0.0 && converges(alpha, known.d));
-    const PowerLaw law(alpha);
-    parts.push_back({law, share / s_z(law, 0.0, F, known.d)});
+    const PhaseCovariance covariance(known, alpha);
+    parts.push_back({covariance, share / s_z(covariance, 0.0, known.d)});
   }
   return edf_of(overlap, known.d, [&](double t) {
     double rho = 0.0;
-    for (const Part& part : parts) rho += part.weight * s_z(part.law, t, F, known.d);
+    for (const Part& part : parts) rho += part.weight * s_z(part.covariance, t, known.d);
     return rho;
   });
 }

@@ -15,10 +15,9 @@ struct EdfCase {
   std::size_t phase_points = 0;  ///< N, one more than there are rates
   std::size_t stride = 1;        ///< samples between the starts of terms: 1 is full overlap, m none
   bool modified = false;         ///< whether each term is averaged over m starts
-  /// F = m · this, of unmodified terms. 1 as in the paper, which takes the phase as averaged over
-  /// each sample; large for samples that are means of the rate, which make those of white noise
-  /// independent (edf 667 instead of 782 of 999 terms at m = 1).
-  double points_per_sample = 1.0;
+  /// Whether the power law holds from sample to sample, as of white noise whose samples are
+  /// independent, and not for a phase averaged over each sample, as in the paper.
+  bool sampled = false;
 };
 
 /// Equivalent degrees of freedom of the mean square of M differences z of order d:
@@ -29,17 +28,24 @@ struct EdfCase {
 /// autocovariance of z, t in units of τ:
 ///
 ///     s_z(t) = Σ_k (−1)^k C(2d, d+k) s_x(t + k),  k = −d … d
-///     s_x(t) = F² [2 s_w(t) − s_w(t − 1/F) − s_w(t + 1/F)],  F = modified ? 1 : m (but see points_per_sample)
+///     s_x(t) = F² [2 s_w(t) − s_w(t − 1/F) − s_w(t + 1/F)],  F = modified ? 1 : m
 ///     s_w(t) = −|t|, t² ln|t|, |t|³, −t⁴ ln|t|, −|t|⁵, t⁶ ln|t|, |t|⁷  for α = 2, 1, … −4.
 ///
 /// Lags beyond J = min(M, (d+1) S) are left out. Long sums are taken in blocks of lags that grow
 /// with the distance from the kinks of s_z (within 0.1 % of the sum over all lags).
-/// The paper's phase is averaged over each sample. For white rates independent from sample to
-/// sample the exact edf is 0.85 of this at m = 1, 1.12 at m = 5, 1.05 at m = 20, 1.02 at m = 50.
-/// Source: C. A. Greenhall, W. J. Riley, Uncertainty of stability variances based on finite
-/// differences, Proc. 35th PTTI (2003).
-/// Needs: N ≥ L, and α > 1 − 2d, below which the variance does not converge (the Allan variance
-/// for α ≤ −3); both are the caller's to see to. Cost: O(log m).
+/// The paper's phase is averaged over each sample. Where the law holds from sample to sample,
+/// S_y ∝ (2 sin(π f τ0))^α, with n = 2 − α the exact s_x to a factor is (`sampled`)
+///
+///     |t| Π (t² − (i/m)²),  i = 1 … n/2 − 1                    n even; n = 0: 1 at t = 0, else 0
+///     ψ(|t| m + ½) Π (t² − ((i − ½)/m)²),  i = 1 … (n − 1)/2   n odd
+///
+/// and of modified variances 2 s(t) − s(t − 1) − s(t + 1), s being that of n + 2. At m = 1 the edf
+/// is then 0.85 (α = 0), 0.92 (−1) and 1.12 (−2) of the paper's, from m = 50 within 2 %. Source: C.
+/// A. Greenhall, W. J. Riley, Uncertainty of stability variances based on finite differences, Proc.
+/// 35th PTTI (2003); from sample to sample J. R. M. Hosking, Fractional differencing, Biometrika 68
+/// (1981) 165, theorem 1, less its infinite part. Needs: N ≥ L, and α > 1 − 2d, below which the
+/// variance does not converge (the Allan variance for α ≤ −3); both are the caller's to see to.
+/// Cost: O(log m).
 [[nodiscard]] double greenhall_riley_edf(const EdfCase& known);
 
 /// The share of the variance at one τ that each power law has: [0] of α = +2 … [6] of α = −4.

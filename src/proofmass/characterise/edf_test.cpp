@@ -156,6 +156,81 @@ TEST(GreenhallRileyEdf, RefusesWhatDoesNotConverge) {
   EXPECT_DEATH((void)greenhall_riley_edf({.alpha = -3, .m = 1, .phase_points = 100}), "converges");
 }
 
+/// The sum over all lags with the autocovariance that spectrum and transfer function give, by the
+/// midpoint rule over frequency.
+double from_the_spectrum(const EdfCase& c) {
+  constexpr double pi = 3.14159265358979323846;
+  constexpr int steps = 4'000;
+  const auto m = static_cast<double>(c.m);
+  const std::size_t length = c.m * static_cast<std::size_t>(c.d) + (c.modified ? c.m : 1);
+  const std::size_t M = 1 + (c.phase_points - length) / c.stride;
+  std::vector<double> covariance(M);
+  for (int k = 0; k < steps; ++k) {
+    const double phase = pi * (k + 0.5) / (2.0 * steps);
+    const double once = 2.0 * std::sin(phase);
+    const double over_m = 2.0 * std::sin(m * phase);
+    const double density = std::pow(once, c.alpha - 2) * std::pow(over_m, 2 * c.d) *
+                           (c.modified ? std::pow(over_m / (m * once), 2.0) : 1.0);
+    for (std::size_t j = 0; j < M; ++j)
+      covariance[j] += density * std::cos(2.0 * phase * static_cast<double>(j * c.stride));
+  }
+  double sum = 1.0;
+  for (std::size_t j = 1; j < M; ++j)
+    sum += 2.0 * (1.0 - static_cast<double>(j) / static_cast<double>(M)) *
+           std::pow(covariance[j] / covariance[0], 2.0);
+  return static_cast<double>(M) / sum;
+}
+
+TEST(EdfFromSampleToSample, IsThatOfTheSpectrum) {
+  for (const int d : {2, 3})
+    for (int alpha = 2; alpha >= (d == 2 ? -2 : -4); --alpha)
+      for (const bool modified : {false, true})
+        for (const std::size_t m : {1U, 2U, 5U, 40U})
+          for (const std::size_t stride : {std::size_t{1}, (m + 3) / 4, m}) {
+            const EdfCase known{.alpha = alpha,
+                                .d = d,
+                                .m = m,
+                                .phase_points = 6 * m + 50,
+                                .stride = stride,
+                                .modified = modified,
+                                .sampled = true};
+            SCOPED_TRACE(testing::Message() << "α=" << alpha << " d=" << d << " m=" << m
+                                            << " stride=" << stride << " mod=" << modified);
+            // Of flicker, averaged as in the modified variance, correlations reach beyond the lags
+            // that are summed.
+            const double tolerance = modified && alpha == -1 ? 7e-3 : 4e-3;
+            EXPECT_NEAR(greenhall_riley_edf(known) / from_the_spectrum(known), 1.0, tolerance);
+          }
+}
+
+TEST(EdfFromSampleToSample, CountsEachStepOfARandomWalkOnceAtOneSample) {
+  EXPECT_DOUBLE_EQ(
+      greenhall_riley_edf({.alpha = -2, .m = 1, .phase_points = 1001, .sampled = true}), 999.0);
+}
+
+TEST(EdfFromSampleToSample, HasClosedFormsAtOneSample) {
+  const double M = 1'000'000.0;
+  const auto edf_of = [&](int alpha) {
+    return greenhall_riley_edf(
+        {.alpha = alpha, .m = 1, .phase_points = 1'000'002, .sampled = true});
+  };
+  // Correlations of (1 − B)⁴ and (1 − B)² noise: −2/3, 1/6 and −1/2; of flicker 1/(1 − 4k²).
+  EXPECT_NEAR(edf_of(2) / M, 18.0 / 35.0, 1e-5);
+  EXPECT_NEAR(edf_of(0) / M, 2.0 / 3.0, 1e-5);
+  constexpr double pi = 3.14159265358979323846;
+  EXPECT_NEAR(edf_of(-1) / M, 8.0 / (pi * pi), 2e-3);
+}
+
+TEST(EdfFromSampleToSample, TendsToThePapersWhereTauIsManySamples) {
+  for (int alpha = 2; alpha >= -2; --alpha) {
+    if (alpha == 1) continue;  // Its variance hangs on the bandwidth.
+    EdfCase known{.alpha = alpha, .m = 1000, .phase_points = 20'000};
+    const double paper = greenhall_riley_edf(known);
+    known.sampled = true;
+    EXPECT_NEAR(greenhall_riley_edf(known) / paper, 1.0, 3e-3) << "α=" << alpha;
+  }
+}
+
 TEST(MixedEdf, OfOneLawIsThatLawWhateverTheScale) {
   const EdfCase known{.alpha = -1, .m = 20, .phase_points = 2001};
   AlphaShares shares = only(-1);

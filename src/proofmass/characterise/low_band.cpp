@@ -80,8 +80,8 @@ std::vector<double> filled(View<double> means, double& share) {
   return values;
 }
 
-// Of 1 unit/s: √(2/n) step Σ (j + ½) cos((j + ½) π k/n) and √step for the density, the sum being the
-// derivative of Σ sin((j + ½) θ) = (1 − cos nθ) / (2 sin(θ/2)) at θ = π k/n. None for even k.
+// Of 1 unit/s: √(2/n) step Σ (j + ½) cos((j + ½) π k/n) and √step for the density, the sum being
+// the derivative of Σ sin((j + ½) θ) = (1 − cos nθ) / (2 sin(θ/2)) at θ = π k/n. None for even k.
 double ramp_amplitude(std::size_t k, std::size_t n, double step_s) {
   if (k % 2 == 0) return 0.0;
   const double half = 0.5 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
@@ -112,7 +112,9 @@ double sum_of(View<double> samples) {
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-void append_ordinates(View<double> means, double step_s, bool whole_band,
+void append_ordinates(View<double> means,
+                      double step_s,
+                      bool whole_band,
                       std::vector<CosineOrdinate>& ordinates) {
   double share = 1.0;
   std::vector<double> values = filled(means, share);
@@ -172,8 +174,8 @@ void BlockMeans::halve() {
 std::vector<double> BlockMeans::means() const {
   std::vector<double> means(sums_.size());
   for (std::size_t k = 0; k < means.size(); ++k) {
-    means[k] = 2 * counts_[k] >= block_ ? sums_[k] / counts_[k]
-                                        : std::numeric_limits<double>::quiet_NaN();
+    means[k] =
+        2 * counts_[k] >= block_ ? sums_[k] / counts_[k] : std::numeric_limits<double>::quiet_NaN();
   }
   return means;
 }
@@ -185,8 +187,8 @@ std::vector<CosineOrdinate> BlockMeans::ordinates() const {
   for (const Stretch& part : stretches(all)) {
     const std::size_t length = part.end - part.first;
     const bool worth_cutting = length > transform_any_length_below;
-    const auto means_of_part = View<double>(all).subspan(
-        part.first, worth_cutting ? smooth_length(length) : length);
+    const auto means_of_part =
+        View<double>(all).subspan(part.first, worth_cutting ? smooth_length(length) : length);
     append_ordinates(means_of_part, step_s, block_ == 1, ordinates);
   }
   return ordinates;

@@ -6,16 +6,12 @@
 #include <limits>
 
 #include "proofmass/characterise/deviation_curve.hpp"
-#include "proofmass/characterise/low_band.hpp"
-#include "proofmass/characterise/noise_fit.hpp"
-#include "proofmass/core/statistics.hpp"
+#include "proofmass/characterise/noise_accumulator.hpp"
 
 namespace proofmass::characterise {
 namespace {
 
 constexpr std::size_t fewest_samples = 3;
-// A spectrum is averaged over at least so many segments, as long as these keep 64 samples.
-constexpr std::size_t segments_wanted = 16, shortest_segment = 64;
 // Evaluating every factor of a long record would take hours.
 constexpr double most_work = 4e10;
 
@@ -27,8 +23,8 @@ Status check(View<double> series, const NoiseOptions& options) {
   if (options.noise_type == NoiseTypeSource::fixed && (options.alpha > 2 || options.alpha < -4))
     return Error{Errc::invalid_argument, "the noise type must be one of 2, 1, 0, -1, -2, -3, -4"};
   if (series.size() < fewest_samples)
-    return Error{Errc::too_few_samples, fmt::format("{} samples, expected at least {}",
-                                                    series.size(), fewest_samples)};
+    return Error{Errc::too_few_samples,
+                 fmt::format("{} samples, expected at least {}", series.size(), fewest_samples)};
   if (options.taus.kind == TauGrid::Kind::all &&
       static_cast<double>(series.size()) * static_cast<double>(series.size()) / 4.0 > most_work)
     return Error{Errc::invalid_argument,
@@ -38,35 +34,54 @@ Status check(View<double> series, const NoiseOptions& options) {
   return Done{};
 }
 
-std::size_t segment_for(std::size_t samples, std::size_t longest) {
-  std::size_t segment = longest;
-  while (segment > shortest_segment && samples / segment < segments_wanted) segment /= 2;
-  return segment;
-}
+struct Overview {
+  std::size_t missing = 0;
+  double mean = 0.0;
+  double short_term_std = 0.0;  ///< about the means of blocks short enough for drift not to count
+};
 
-// The spread about the means of blocks short enough for drift not to count.
-double short_term_std(View<double> series) {
+// One pass: sums over blocks, each about its first sample so that an offset takes no digits.
+Overview overview_of(View<double> series) {
   constexpr std::size_t block = 64;
-  double squares = 0.0, freedom = 0.0;
+  Overview overview;
+  double total = 0.0, squares = 0.0, freedom = 0.0;
   for (std::size_t from = 0; from < series.size(); from += block) {
-    const Moments part = moments(series.subspan(from, std::min(block, series.size() - from)));
-    if (part.count < 2) continue;
-    squares += part.squares;
-    freedom += static_cast<double>(part.count - 1);
+    const View<double> part = series.subspan(from, std::min(block, series.size() - from));
+    double first = 0.0, sum = 0.0, sum_of_squares = 0.0, count = 0.0;
+    for (const double sample : part) {
+      if (!std::isfinite(sample)) continue;
+      if (count == 0.0) first = sample;
+      const double departure = sample - first;
+      sum += departure;
+      sum_of_squares += departure * departure;
+      count += 1.0;
+    }
+    overview.missing += part.size() - static_cast<std::size_t>(count);
+    if (count < 1.0) continue;
+    total += count * first + sum;
+    squares += sum_of_squares - sum * sum / count;
+    freedom += count - 1.0;
   }
-  return freedom > 0.0 ? std::sqrt(squares / freedom) : 0.0;
+  const auto present = static_cast<double>(series.size() - overview.missing);
+  if (present > 0.0) overview.mean = total / present;
+  if (freedom > 0.0) overview.short_term_std = std::sqrt(std::max(0.0, squares) / freedom);
+  return overview;
 }
 
 // Noise of half a step is what still makes rounding a white noise of its own, of variance step²/12:
 // B. Widrow, I. Kollár, Quantization Noise (2008), section 4.
-Status check_resolution(double spread, double lsb) {
-  const double added = lsb * lsb / 12.0, least = 0.25 * lsb * lsb;
+Status check_spread(const Overview& overview, std::size_t samples, std::optional<double> lsb) {
+  if (overview.missing == samples) return Error{Errc::not_finite, "no sample is a number"};
+  const double spread = overview.short_term_std;
+  if (!(spread > 0.0)) return Error{Errc::not_observable, "the samples do not vary"};
+  if (!lsb) return Done{};
+  const double added = *lsb * *lsb / 12.0, least = 0.25 * *lsb * *lsb;
   if (spread * spread - added >= least) return Done{};
   return Error{Errc::not_observable,
                fmt::format("the readings spread by {:.2f} steps of the converter, of which the "
                            "steps themselves make 0.29: noise below half a step cannot be told "
                            "from rounding: record with a finer converter or more gain",
-                           spread / lsb)};
+                           spread / *lsb)};
 }
 
 void note_resolution(NoiseAnalysis& analysis, double spread) {
@@ -75,11 +90,11 @@ void note_resolution(NoiseAnalysis& analysis, double spread) {
   const bool coarse = spread < 2.0 * *analysis.lsb;
   analysis.notes.push_back(
       {coarse ? Severity::warning : Severity::info,
-       fmt::format("the converter's step is {:.3g} of the readings' spread: rounding makes a white "
-                   "noise of {:.3g} per √Hz, {:.0f} % of that found",
-                   *analysis.lsb / spread, density,
-                   analysis.model.white.value > 0.0 ? 100.0 * density / analysis.model.white.value
-                                                    : 0.0)});
+       fmt::format(
+           "the converter's step is {:.3g} of the readings' spread: rounding makes a white "
+           "noise of {:.3g} per √Hz, {:.0f} % of that found",
+           *analysis.lsb / spread, density,
+           analysis.model.white.value > 0.0 ? 100.0 * density / analysis.model.white.value : 0.0)});
 }
 
 // Steps of level are taken out where they stand; knocks and the edges of steps go missing.
@@ -125,7 +140,8 @@ void note_missing(NoiseAnalysis& analysis, std::size_t left_out) {
          fmt::format("this statistic needs one piece without gaps: {} of {} samples are left out",
                      left_out, analysis.samples)});
   if (analysis.missing == 0) return;
-  const double share = static_cast<double>(analysis.missing) / static_cast<double>(analysis.samples);
+  const double share =
+      static_cast<double>(analysis.missing) / static_cast<double>(analysis.samples);
   analysis.notes.push_back(
       {share > 0.05 ? Severity::warning : Severity::info,
        fmt::format("{} of {} samples are missing: the deviation counts the terms that are complete",
@@ -154,20 +170,6 @@ void note_model(NoiseAnalysis& analysis) {
          "from random walk: the simpler reading is given, its interval reaches down to zero"});
 }
 
-// Spectrum, lines and model, where the record is long enough for them.
-void fit(NoiseAnalysis& analysis, View<double> series, std::size_t longest_segment) {
-  const double rate_hz = analysis.rate_hz;
-  auto spectrum = signal::welch(
-      series, {.rate_hz = rate_hz, .segment = segment_for(series.size(), longest_segment)});
-  if (!spectrum) return;
-  analysis.spectrum = std::move(spectrum).value();
-  analysis.lines = signal::find_lines(analysis.spectrum);
-  BlockMeans slow(rate_hz);
-  slow.add(series);
-  auto model = fit_noise_model({slow, analysis.spectrum, analysis.lines, analysis.duration_s});
-  if (model) analysis.model = std::move(model).value();
-}
-
 }  // namespace
 
 Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& options) {
@@ -179,37 +181,30 @@ Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& opt
       changed[k] = (series[k + 1] - series[k]) * options.rate_hz;
     series = changed;
   }
-  NoiseAnalysis analysis;
-  analysis.rate_hz = options.rate_hz;
-  analysis.samples = series.size();
-  analysis.duration_s = static_cast<double>(series.size()) / options.rate_hz;
-  analysis.lsb = options.lsb;
-  const double spread = short_term_std(series);
-  if (!(spread > 0.0)) {
-    const bool none = moments(series).count == 0;
-    return Error{none ? Errc::not_finite : Errc::not_observable,
-                 none ? "no sample is a number" : "the samples do not vary"};
-  }
-  if (options.lsb) {
-    if (Status fine = check_resolution(spread, *options.lsb); !fine) return fine.error();
-  }
+  const Overview raw = overview_of(series);
+  if (Status varies = check_spread(raw, series.size(), options.lsb); !varies) return varies.error();
   if (options.progress) options.progress("knocks and steps", 0.0);
-  analysis.events = signal::find_events(series, {.rate_hz = options.rate_hz});
-  if (options.exclude_events && !analysis.events.empty()) {
-    changed = without_events(series, analysis.events, options.rate_hz);
+  std::vector<signal::Event> events = signal::find_events(series, {.rate_hz = options.rate_hz});
+  if (options.exclude_events && !events.empty()) {
+    changed = without_events(series, events, options.rate_hz);
     series = changed;
   }
-  const Moments all = moments(series);
-  analysis.mean = all.mean;
-  analysis.missing = all.nonfinite;
-  if (options.progress) options.progress("spectrum and coefficients", 0.2);
-  fit(analysis, series, options.segment);
-  if (options.progress) options.progress("deviations", 0.6);
-  const CurveVariances variances = curve_variances(series, options);
+  if (options.progress) options.progress("spectrum and deviations", 0.4);
+  NoiseAccumulator accumulator(options, series.size());
+  accumulator.add(series);
+  NoiseAnalysis analysis = accumulator.finish_spectrum();
+  const CurveVariances variances = is_difference(options.statistic)
+                                       ? accumulator.variances()
+                                       : whole_record_variances(series, options);
   analysis.deviation = deviation_curve(variances, analysis.model, series, options);
+  analysis.lsb = options.lsb;
+  const Overview kept = options.exclude_events && !events.empty() ? overview_of(series) : raw;
+  analysis.mean = kept.mean;
+  analysis.missing = kept.missing;
+  analysis.events = std::move(events);
   note_missing(analysis, variances.left_out);
   note_events(analysis, options.exclude_events);
-  note_resolution(analysis, spread);
+  note_resolution(analysis, raw.short_term_std);
   note_model(analysis);
   if (options.progress) options.progress("done", 1.0);
   return analysis;

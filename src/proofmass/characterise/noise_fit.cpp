@@ -36,7 +36,7 @@ struct Search {
   WhittleLikelihood likelihood;
   std::vector<int> all{0, 1, 2, 3};  ///< that the recording may hold
   std::vector<int> active = all;     ///< that it is taken to hold
-  std::optional<double> pole_s;  ///< time constant of the white term's filter
+  std::optional<double> pole_s;      ///< time constant of the white term's filter
   WhittleFit fit = {};
 
   [[nodiscard]] VectorXd column(const std::function<double(double, const Sampling&)>& shape) const {
@@ -244,7 +244,8 @@ void eliminate(Search& search) {
 
 // Twice the log-likelihood lost by holding one strength at a value, all others free, those too that
 // were left out: what they could have taken its place belongs to its uncertainty. The loss is
-// counted from the likelihood of the terms that were kept, which the free ones may exceed by chance.
+// counted from the likelihood of the terms that were kept, which the free ones may exceed by
+// chance.
 class Profile {
  public:
   Profile(const Search& search, int column)
@@ -313,8 +314,8 @@ class Profile {
 // All coefficients are roots of strengths.
 Coefficient coefficient(const Search& search, int column, double std_of_strength) {
   const Profile profile(search, column);
-  const bool in = std::find(search.active.begin(), search.active.end(), column) !=
-                  search.active.end();
+  const bool in =
+      std::find(search.active.begin(), search.active.end(), column) != search.active.end();
   Coefficient found;
   found.upper_95 = std::sqrt(profile.upper(quantile_95_one_sided));
   found.upper_two_sided_95 = std::sqrt(profile.upper(quantile_95_two_sided));
@@ -347,8 +348,8 @@ Coefficient ramp_coefficient(const Search& search, const Eigen::MatrixXd& covari
       gradient(a) += r_over_S * r_over_S * shape(row);
     }
   }
-  const double relative_variance = search.fit.slope_variance * search.fit.slope_variance *
-                                   gradient.dot(covariance * gradient);
+  const double relative_variance =
+      search.fit.slope_variance * search.fit.slope_variance * gradient.dot(covariance * gradient);
   const double dof = std::max(1.0, 2.0 / std::max(relative_variance, 1e-9));
   const double size = std::abs(search.fit.slope);
   const double two_sided = student_t_quantile(0.975, dof) * std;

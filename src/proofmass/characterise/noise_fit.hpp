@@ -29,8 +29,8 @@ struct NoiseEvidence {
 ///
 /// Intervals are those of the likelihood ratio with all other coefficients free, those left out
 /// too, counted from the model that was kept: S. S. Wilks, Ann. Math. Statist. 9 (1938) 60; at the
-/// boundary S. G. Self, K.-Y. Liang, J. Amer. Statist. Assoc. 82 (1987) 605. A standard deviation is
-/// that of the model that was kept. Coverage by simulation: noise_coverage_slow_test.cpp.
+/// boundary S. G. Self, K.-Y. Liang, J. Amer. Statist. Assoc. 82 (1987) 605. A standard deviation
+/// is that of the model that was kept. Coverage by simulation: noise_coverage_slow_test.cpp.
 ///
 /// Errors: too_few_samples (fewer than 12 spectral values).
 /// Cost: O(blocks log blocks), then some thousand passes over a few hundred groups.

@@ -74,8 +74,9 @@ double NoiseModelFit::density(double frequency_hz) const {
     if (value > 0.0) sum += square(value) * term_density(term, frequency_hz, sampling);
   }
   const double white_shape =
-      bandwidth_hz ? relaxation_density(1.0 / (2.0 * pi * bandwidth_hz->value), frequency_hz, sampling)
-                   : 1.0;
+      bandwidth_hz
+          ? relaxation_density(1.0 / (2.0 * pi * bandwidth_hz->value), frequency_hz, sampling)
+          : 1.0;
   sum += square(white.value) * white_shape;
   if (markov) {
     const double T = markov->time_constant_s.value;

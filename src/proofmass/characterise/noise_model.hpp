@@ -35,11 +35,12 @@ enum class Verdict {
 /// One coefficient: what the recording says of it.
 struct Coefficient {
   double value = 0.0;  ///< 0 where not observable
-  double std = 0.0;  ///< one standard deviation; where not observable upper_95 / 1.645
+  double std = 0.0;    ///< one standard deviation; where not observable upper_95 / 1.645
   /// Central 95 % interval, by likelihood ratio. It reaches 0 for an identified coefficient too,
-  /// where another term might stand in for it: flicker for a random walk seen in too short a record.
+  /// where another term might stand in for it: flicker for a random walk seen in too short a
+  /// record.
   double lower_95 = 0.0, upper_two_sided_95 = 0.0;
-  double upper_95 = 0.0;                            ///< with 95 % confidence not above this
+  double upper_95 = 0.0;  ///< with 95 % confidence not above this
   Verdict verdict = Verdict::not_observable;
   /// Length of recording that would identify it with 95 % probability: at its value, or where it is
   /// not observable at upper_95. None beyond ten thousand times the recording.
@@ -48,8 +49,8 @@ struct Coefficient {
 
 /// First-order Markov noise (exponentially correlated), only where the recording needs it.
 struct MarkovNoise {
-  Coefficient strength;      ///< q in u/√s
-  Uncertain time_constant_s;  ///< T
+  Coefficient strength;                         ///< q in u/√s
+  Uncertain time_constant_s;                    ///< T
   [[nodiscard]] double std_of_process() const;  ///< q √(T/2) in u
 };
 
@@ -65,7 +66,7 @@ struct NoiseModelFit {
   /// Root mean square by which the spectrum departs from the model beyond its own scatter, as a
   /// share of the density; 0 where the two agree. It widens all standard deviations.
   double misfit = 0.0;
-  double misfit_p = 1.0;  ///< probability of so much scatter if the model is the noise
+  double misfit_p = 1.0;      ///< probability of so much scatter if the model is the noise
   std::size_t ordinates = 0;  ///< groups of spectral values behind the fit, lines left out
 
   /// σ²(τ) of one term; 0 if not identified.

@@ -1,6 +1,7 @@
 #include "proofmass/characterise/record_needed.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -67,21 +68,31 @@ std::optional<double> length_for(const Shapes& shapes,
   const auto n = static_cast<Eigen::Index>(in.size());
   Eigen::Index place = 0;
   while (in[static_cast<std::size_t>(place)] != which) ++place;
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+  // Information a second of recording, from each frequency up.
+  std::vector<Eigen::MatrixXd> rate(static_cast<std::size_t>(shapes.total.size()));
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd X(n);
   for (Eigen::Index row = 0; row < shapes.total.size(); ++row) {
-    const double f = shapes.frequency_hz[static_cast<std::size_t>(row)];
     const double S = shapes.total(row) + (known ? 0.0 : strength * shapes.densities(row, which));
     for (Eigen::Index k = 0; k < n; ++k)
       X(k) = shapes.densities(row, in[static_cast<std::size_t>(k)]) / S;
-    information += (1.0 - 1.0 / step) * f * X * X.transpose();
-    const double T = 0.5 / f;
-    // Too few values to tell so many terms apart.
-    if (row < 2 * n) continue;
-    const double variance = positive_inverse(T * information)(place, place);
-    if (strength >= needed_ratio * std::sqrt(variance)) return T;
+    const double width_hz = (1.0 - 1.0 / step) * shapes.frequency_hz[static_cast<std::size_t>(row)];
+    sum += width_hz * X * X.transpose();
+    rate[static_cast<std::size_t>(row)] = sum;
   }
-  return std::nullopt;
+  const auto length_s = [&](std::size_t row) { return 0.5 / shapes.frequency_hz[row]; };
+  const auto tells = [&](std::size_t row) {
+    const double variance = positive_inverse(length_s(row) * rate[row])(place, place);
+    return strength >= needed_ratio * std::sqrt(variance);
+  };
+  // The first rows have too few values to tell so many terms apart.
+  std::size_t too_short = 2 * in.size(), enough = rate.size() - 1;
+  if (!tells(enough)) return std::nullopt;
+  while (enough - too_short > 1) {
+    const std::size_t middle = (too_short + enough) / 2;
+    (tells(middle) ? enough : too_short) = middle;
+  }
+  return length_s(enough);
 }
 
 std::optional<double> length_for_ramp(const NoiseModelFit& model, double slope) {

@@ -4,8 +4,8 @@
 
 namespace proofmass::characterise {
 
-/// For each coefficient, the length of recording at which one of that size (of upper_95, where it is
-/// not observable) would be identified with 95 % probability, all else being as the model says:
+/// For each coefficient, the length of recording at which one of that size (of upper_95, where it
+/// is not observable) would be identified with 95 % probability, all else being as the model says:
 /// the shortest T with c²/std(c²) ≥ 1.960 + 1.645, where the information on the strengths is
 ///
 ///     J_ab(T) = T ∫ X_a X_b / S² df  from 1/(2T) to half the rate,

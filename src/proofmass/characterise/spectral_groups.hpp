@@ -11,7 +11,7 @@ namespace proofmass::characterise {
 /// The evidence as groups of neighbouring densities, with how each came about.
 struct GroupedEvidence {
   std::vector<SpectralGroup> groups;  ///< those that a ramp reaches first
-  std::size_t slow = 0;               ///< so many are of the cosine transform, the rest of the averaged spectrum
+  std::size_t slow = 0;  ///< so many are of the cosine transform, the rest of the averaged spectrum
   Sampling slow_sampling, fast_sampling;
   double bin_hz = 0.0;  ///< of the averaged spectrum
 

@@ -23,6 +23,12 @@ enum class Statistic {
   pdev,     ///< parabolic
 };
 
+/// Whether it is a mean square of differences of the phase, which can be taken as samples come; the
+/// others need the whole record at once.
+[[nodiscard]] constexpr bool is_difference(Statistic statistic) {
+  return statistic <= Statistic::ohdev;
+}
+
 /// "oadev", as on the command line and in documents.
 [[nodiscard]] std::string_view name_of(Statistic statistic);
 

@@ -29,9 +29,9 @@ double flicker(double frequency_hz, const Sampling& sampling) {
   if (sampling.block == 1) return sampled(frequency_hz);
   // The aliases fall with the cube of their number.
   constexpr int aliases = 6;
-  const int last = std::min(aliases, static_cast<int>(sampling.block - 1) / 2);
+  const auto block = static_cast<int>(sampling.block);
   double sum = 0.0;
-  for (int j = -last; j <= last; ++j) {
+  for (int j = -std::min(aliases, (block - 1) / 2); j <= std::min(aliases, block / 2); ++j) {
     const double f = frequency_hz + j / sampling.step_s();
     sum += sampled(f) * mean_transfer(f, sampling);
   }

@@ -10,8 +10,8 @@ namespace proofmass::characterise {
 
 /// How the series that a spectrum is of came about: means over so many samples.
 struct Sampling {
-  double rate_hz = 0.0;       ///< of the samples
-  std::size_t block = 1;      ///< samples averaged to one value
+  double rate_hz = 0.0;   ///< of the samples
+  std::size_t block = 1;  ///< samples averaged to one value
   [[nodiscard]] double step_s() const { return static_cast<double>(block) / rate_hz; }
 };
 
@@ -19,8 +19,9 @@ struct Sampling {
 ///
 ///     quantisation   4 sin²(ω/2) / h                              ω = 2π f h, h the step
 ///     white          1
-///     flicker        τ0 / (2 sin(π f τ0))                         by the means' transfer and aliases
-///     random walk    h τ0 [(2D² + 1)/(3D) + (D² − 1)/(3D) cos ω] / (4 sin²(ω/2))      D the block
+///     flicker        τ0 / (2 sin(π f τ0))                         by the means' transfer and
+///     aliases random walk    h τ0 [(2D² + 1)/(3D) + (D² − 1)/(3D) cos ω] / (4 sin²(ω/2))      D
+///     the block
 ///
 /// Source: of means of a random walk H. Working, Note on the correlation of first differences of
 /// averages in a random chain, Econometrica 28 (1960) 916; of flicker N. J. Kasdin, Discrete

@@ -60,8 +60,10 @@ ArrayXd WhittleLikelihood::smoothed() const {
       weight += dof_(k);
       return true;
     };
-    for (Index k = g; k < p.size() && take(k); ++k) {}
-    for (Index k = g; k > 0 && take(k - 1); --k) {}
+    for (Index k = g; k < p.size() && take(k); ++k) {
+    }
+    for (Index k = g; k > 0 && take(k - 1); --k) {
+    }
     S(g) = sum / weight;
   }
   return S.max(1e-12 * S.maxCoeff()).max(1e-300);
@@ -144,7 +146,8 @@ WhittleFit WhittleLikelihood::maximise(const std::vector<int>& active,
   if (X.cols() == 0) S = fixed.max(least);
   WhittleFit fit;
   fit.strength = VectorXd::Zero(columns_.cols());
-  for (std::size_t k = 0; k < active.size(); ++k) fit.strength(active[k]) = theta(static_cast<Index>(k));
+  for (std::size_t k = 0; k < active.size(); ++k)
+    fit.strength(active[k]) = theta(static_cast<Index>(k));
   if (held) fit.strength(held->column) = held->strength;
   fit.density = S.matrix();
   fit.log_likelihood = log_likelihood(S);

@@ -29,8 +29,8 @@ struct WhittleFit {
 ///
 ///     ℓ(θ) = −½ Σ ν (ln S + p/S) − ½ ln Σ r²/S,    p = (a − R r)² where the ramp reaches,
 ///
-/// with R at its weighted least squares value; the last term is that of restricted likelihood, which
-/// makes up for R having been fitted. Maximised by Fisher scoring, each step of which is a
+/// with R at its weighted least squares value; the last term is that of restricted likelihood,
+/// which makes up for R having been fitted. Maximised by Fisher scoring, each step of which is a
 /// non-negative weighted least squares fit of p with weights ν/(2 S²) from the fitted S of the step
 /// before: the weights that equivalent degrees of freedom give.
 /// Source: P. Whittle, Estimation and information in stationary time series, Ark. Mat. 2 (1953)

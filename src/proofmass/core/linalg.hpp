@@ -14,10 +14,10 @@ struct SymmetricEigen {
 /// Reads the lower triangle of A, which must be square and finite. Cost: O(n³).
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
-/// The x ≥ 0 that minimises ½ xᵀA x − bᵀx, for A symmetric positive definite: the normal equations of
-/// non-negative least squares. Where A is singular, one of the minimisers.
-/// Source: C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (1974), algorithm NNLS.
-/// Cost: O(n³) a step, few steps.
+/// The x ≥ 0 that minimises ½ xᵀA x − bᵀx, for A symmetric positive definite: the normal equations
+/// of non-negative least squares. Where A is singular, one of the minimisers. Source: C. L. Lawson,
+/// R. J. Hanson, Solving Least Squares Problems (1974), algorithm NNLS. Cost: O(n³) a step, few
+/// steps.
 [[nodiscard]] Eigen::VectorXd non_negative_minimiser(const Eigen::MatrixXd& A,
                                                      const Eigen::VectorXd& b);
 

@@ -47,11 +47,11 @@ std::optional<Octave> read_octave(const Spectrum& spectrum,
 }
 
 // Lower comes first, but the even ones before the others; what might only be lower by chance has to
-// be so by two standard deviations.
+// be so by four standard deviations.
 bool is_better(const Octave& a, const Octave& b) {
   const bool a_even = a.unevenness_db <= even_db, b_even = b.unevenness_db <= even_db;
   if (a_even != b_even) return a_even;
-  return a_even ? a.level + 2.0 * a.std < b.level : a.unevenness_db < b.unevenness_db;
+  return a_even ? a.level + 4.0 * a.std < b.level : a.unevenness_db < b.unevenness_db;
 }
 
 }  // namespace
@@ -63,8 +63,7 @@ SpectralFloor measure_floor(const Spectrum& spectrum,
   std::optional<Octave> best;
   for (double last = used_share * bins; last >= 2.0 * first_judged_bin;
        last *= std::exp2(-1.0 / steps_per_octave)) {
-    const auto octave =
-        read_octave(spectrum, background, in_line, static_cast<std::size_t>(last));
+    const auto octave = read_octave(spectrum, background, in_line, static_cast<std::size_t>(last));
     if (octave && (!best || is_better(*octave, *best))) best = octave;
   }
   if (!best) return {};

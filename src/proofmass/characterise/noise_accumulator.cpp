@@ -1,0 +1,98 @@
+#include "proofmass/characterise/noise_accumulator.hpp"
+
+#include <algorithm>
+
+#include "proofmass/characterise/averaging_times.hpp"
+#include "proofmass/characterise/noise_fit.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+// Up to here every term is taken; beyond, sixteen or more to a τ.
+constexpr std::size_t decimate_above = std::size_t{1} << 20;
+constexpr std::size_t least_overlap = 16;
+// Of a recording of unknown length: three thousand years at a kilohertz.
+constexpr std::size_t any_length = std::size_t{1} << 46;
+// A spectrum is averaged over at least so many segments, as long as these keep 64 samples.
+constexpr std::size_t segments_wanted = 16, shortest_segment = 64;
+// Short enough that what one accumulator has read is still in the cache for the next.
+constexpr std::size_t chunk = 8192;
+
+std::size_t segment_for(std::size_t samples, std::size_t longest) {
+  std::size_t segment = longest;
+  while (segment > shortest_segment && samples / segment < segments_wanted) segment /= 2;
+  return segment;
+}
+
+std::size_t overlap_for(std::size_t samples) {
+  return samples <= decimate_above ? DifferenceVariances::full_overlap : least_overlap;
+}
+
+std::vector<std::size_t> factors_for(const NoiseOptions& options, std::size_t samples) {
+  if (!is_difference(options.statistic)) return {};
+  return averaging_factors(options.taus, options.statistic, samples, 1.0 / options.rate_hz);
+}
+
+}  // namespace
+
+NoiseAccumulator::NoiseAccumulator(const NoiseOptions& options, std::size_t expected_samples)
+    : options_(options),
+      least_overlap_(overlap_for(expected_samples > 0 ? expected_samples : any_length)),
+      factors_(factors_for(options, expected_samples > 0 ? expected_samples : any_length)),
+      differences_(is_difference(options.statistic) ? options.statistic : Statistic::oadev,
+                   factors_,
+                   least_overlap_),
+      spectrum_({.rate_hz = options.rate_hz,
+                 .segment = segment_for(expected_samples > 0 ? expected_samples : any_length,
+                                        options.segment)}),
+      slow_(options.rate_hz) {}
+
+void NoiseAccumulator::add(View<double> samples) {
+  for (std::size_t from = 0; from < samples.size(); from += chunk) {
+    const View<double> part = samples.subspan(from, std::min(chunk, samples.size() - from));
+    if (!factors_.empty()) differences_.add(part);
+    spectrum_.add(part);
+    slow_.add(part);
+  }
+  samples_ += samples.size();
+}
+
+NoiseAnalysis NoiseAccumulator::finish_spectrum() const {
+  NoiseAnalysis analysis;
+  analysis.rate_hz = options_.rate_hz;
+  analysis.samples = samples_;
+  analysis.duration_s = static_cast<double>(samples_) / options_.rate_hz;
+  analysis.spectrum = spectrum_.finish();
+  if (analysis.spectrum.averaged == 0) return analysis;
+  analysis.lines = signal::find_lines(analysis.spectrum);
+  auto model = fit_noise_model({slow_, analysis.spectrum, analysis.lines, analysis.duration_s});
+  if (model) analysis.model = std::move(model).value();
+  return analysis;
+}
+
+CurveVariances NoiseAccumulator::variances() const {
+  CurveVariances curve;
+  curve.phase_points = samples_ + 1;
+  curve.least_overlap = least_overlap_;
+  // The factors may have been chosen for a longer recording.
+  const TauGrid& taus = options_.taus;
+  const double ratio =
+      taus.stop_ratio > 0.0 ? taus.stop_ratio : default_stop_ratio(options_.statistic);
+  const auto longest = static_cast<std::size_t>(static_cast<double>(samples_) / ratio);
+  const std::vector<PhaseVariance> variances = differences_.finish();
+  for (std::size_t k = 0; k < factors_.size(); ++k) {
+    const bool asked_for = taus.kind == TauGrid::Kind::given || factors_[k] <= longest;
+    if (!asked_for || variances[k].terms == 0) continue;
+    curve.factors.push_back(factors_[k]);
+    curve.variances.push_back(variances[k]);
+  }
+  return curve;
+}
+
+NoiseAnalysis NoiseAccumulator::finish() const {
+  NoiseAnalysis analysis = finish_spectrum();
+  analysis.deviation = deviation_curve(variances(), analysis.model, {}, options_);
+  return analysis;
+}
+
+}  // namespace proofmass::characterise
