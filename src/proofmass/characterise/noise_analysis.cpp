@@ -88,31 +88,37 @@ void note_resolution(NoiseAnalysis& analysis, double spread) {
   if (!analysis.lsb) return;
   const double density = *analysis.lsb / std::sqrt(12.0 * analysis.rate_hz);
   const bool coarse = spread < 2.0 * *analysis.lsb;
-  analysis.notes.push_back(
-      {coarse ? Severity::warning : Severity::info,
-       fmt::format(
-           "the converter's step is {:.3g} of the readings' spread: rounding makes a white "
-           "noise of {:.3g} per √Hz, {:.0f} % of that found",
-           *analysis.lsb / spread, density,
-           analysis.model.white.value > 0.0 ? 100.0 * density / analysis.model.white.value : 0.0)});
+  const double white = analysis.model.white.value;
+  std::string text =
+      fmt::format("the converter's step is {:.2g} of the readings' spread", *analysis.lsb / spread);
+  if (white > 0.0)
+    text += fmt::format(": rounding alone has {:.0f} % of the density of the white noise found",
+                        100.0 * density / white);
+  analysis.notes.push_back({coarse ? Severity::warning : Severity::info, std::move(text)});
 }
 
-// Steps of level are taken out where they stand; knocks and the edges of steps go missing.
+// Knocks and the edges of steps go missing. At a step the record is drawn apart, by a gap so long that
+// no term and no transform reaches across: how high the step was need not be known.
 std::vector<double> without_events(View<double> series,
                                    const std::vector<signal::Event>& events,
                                    double rate_hz) {
   std::vector<double> kept(series.begin(), series.end());
   signal::drop_events(kept, events, rate_hz);
-  double level = 0.0;
-  std::size_t next = 0;
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    while (next < events.size() && events[next].first <= k) {
-      if (events[next].kind == signal::EventKind::step) level += events[next].size;
-      ++next;
-    }
-    kept[k] -= level;
+  const std::size_t gap = series.size() / 16 + 1;
+  std::vector<double> apart;
+  std::size_t from = 0;
+  const auto append = [&](std::size_t end) {
+    apart.insert(apart.end(), kept.begin() + static_cast<std::ptrdiff_t>(from),
+                 kept.begin() + static_cast<std::ptrdiff_t>(end));
+    from = end;
+  };
+  for (const signal::Event& event : events) {
+    if (event.kind != signal::EventKind::step) continue;
+    append(event.first);
+    apart.insert(apart.end(), gap, std::numeric_limits<double>::quiet_NaN());
   }
-  return kept;
+  append(kept.size());
+  return apart;
 }
 
 void note_events(NoiseAnalysis& analysis, bool excluded) {
@@ -122,15 +128,17 @@ void note_events(NoiseAnalysis& analysis, bool excluded) {
   const std::size_t knocks = analysis.events.size() - steps;
   if (analysis.events.empty()) return;
   const auto count = [](std::size_t n, const char* noun) {
-    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+    return n == 0 ? std::string() : fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
   };
+  const std::string all =
+      count(knocks, "knock") + (knocks > 0 && steps > 0 ? " and " : "") + count(steps, "step");
+  const bool one = knocks + steps == 1;
   analysis.notes.push_back(
       {Severity::warning,
-       excluded ? fmt::format("{} and {} left out of everything", count(knocks, "knock"),
-                              count(steps, "step"))
-                : fmt::format("{} and {} are in the figures, and are no noise of the sensor: leave "
-                              "them out with --exclude-events",
-                              count(knocks, "knock"), count(steps, "step"))});
+       excluded ? fmt::format("{} left out of everything", all)
+                : fmt::format("{} {} in the figures, and {} no noise of the sensor: leave {} out "
+                              "with --exclude-events",
+                              all, one ? "is" : "are", one ? "is" : "are", one ? "it" : "them")});
 }
 
 void note_missing(NoiseAnalysis& analysis, std::size_t left_out) {
@@ -174,7 +182,7 @@ void note_model(NoiseAnalysis& analysis) {
 
 Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& options) {
   if (Status checked = check(series, options); !checked) return checked.error();
-  std::vector<double> changed;
+  std::vector<double> changed, apart;
   if (options.kind == SeriesKind::phase) {
     changed.resize(series.size() - 1);
     for (std::size_t k = 0; k < changed.size(); ++k)
@@ -183,24 +191,33 @@ Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& opt
   }
   const Overview raw = overview_of(series);
   if (Status varies = check_spread(raw, series.size(), options.lsb); !varies) return varies.error();
+  View<double> used = series;
   if (options.progress) options.progress("knocks and steps", 0.0);
   std::vector<signal::Event> events = signal::find_events(series, {.rate_hz = options.rate_hz});
   if (options.exclude_events && !events.empty()) {
-    changed = without_events(series, events, options.rate_hz);
-    series = changed;
+    apart = without_events(series, events, options.rate_hz);
+    used = apart;
   }
   if (options.progress) options.progress("spectrum and deviations", 0.4);
   NoiseAccumulator accumulator(options, series.size());
-  accumulator.add(series);
+  accumulator.add(used);
   NoiseAnalysis analysis = accumulator.finish_spectrum();
+  analysis.samples = series.size();
+  analysis.duration_s = static_cast<double>(series.size()) / options.rate_hz;
   const CurveVariances variances = is_difference(options.statistic)
                                        ? accumulator.variances()
-                                       : whole_record_variances(series, options);
-  analysis.deviation = deviation_curve(variances, analysis.model, series, options);
+                                       : whole_record_variances(used, options);
+  if (variances.factors.empty())
+    return Error{
+        options.taus.kind == TauGrid::Kind::given ? Errc::invalid_argument : Errc::too_few_samples,
+        fmt::format("no averaging time fits: {} samples of {:.6g} s, of which the {} needs "
+                    "two or three times τ",
+                    series.size(), 1.0 / options.rate_hz, title_of(options.statistic))};
+  analysis.deviation = deviation_curve(variances, analysis.model, used, options);
   analysis.lsb = options.lsb;
-  const Overview kept = options.exclude_events && !events.empty() ? overview_of(series) : raw;
+  const Overview kept = overview_of(used);
   analysis.mean = kept.mean;
-  analysis.missing = kept.missing;
+  analysis.missing = kept.missing - (used.size() - series.size());
   analysis.events = std::move(events);
   note_missing(analysis, variances.left_out);
   note_events(analysis, options.exclude_events);

@@ -40,7 +40,7 @@ struct NoiseOptions {
   double confidence = 0.683;  ///< of the deviation's limits
   NoiseTypeSource noise_type = NoiseTypeSource::model;
   int alpha = 0;                   ///< with NoiseTypeSource::fixed: 2 … −4
-  bool exclude_events = false;     ///< leave out knocks, take steps of level out
+  bool exclude_events = false;  ///< leave out knocks, and terms that reach across steps
   std::optional<double> lsb = {};  ///< step of the converter, in the series' unit, where known
   std::size_t segment = 4096;      ///< of the spectrum
   Progress progress = {};

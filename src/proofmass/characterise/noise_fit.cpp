@@ -26,8 +26,8 @@ constexpr double quantile_95_one_sided = 2.705543454095404;  // the square of 1.
 constexpr double normal_95 = 1.6448536269514722;
 // χ² of one degree of freedom at 98.6 %: of the three terms that white noise does not have, one is
 // then taken in by chance in about one recording in fifty (the boundary halves it).
-constexpr double needed_gain = 6.0;
-constexpr double shape_gain = 14.0;
+constexpr double needed_gain = 6.0, needed_probability = 0.993;
+constexpr double shape_gain = 16.0;
 constexpr std::size_t fewest_groups = 12;
 
 // A fit in progress: the likelihood, with the shapes chosen so far, and the terms still in.
@@ -355,7 +355,8 @@ Coefficient ramp_coefficient(const Search& search, const Eigen::MatrixXd& covari
   const double two_sided = student_t_quantile(0.975, dof) * std;
   found.upper_95 = size + student_t_quantile(0.95, dof) * std;
   found.upper_two_sided_95 = size + two_sided;
-  if (size > two_sided) {
+  // As seldom by chance as any other term.
+  if (size > student_t_quantile(needed_probability, dof) * std) {
     found.verdict = Verdict::identified;
     found.value = size;
     found.std = std;

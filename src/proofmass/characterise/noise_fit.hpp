@@ -24,8 +24,8 @@ struct NoiseEvidence {
 /// correlation between neighbouring τ by construction, and lines can be left out, which raise the
 /// curve for a decade around them. Terms are left out, the least needed first, while twice the
 /// gain in log-likelihood is below 6 (98.6 % of χ² with one degree of freedom); a Markov term or a
-/// bandwidth, each with a free time constant, has to gain 14 (false once in a thousand over the
-/// dozen time constants that a record can tell apart).
+/// bandwidth, each with a free time constant, has to gain 16 (false less than once in a thousand
+/// over the dozen time constants that a record can tell apart).
 ///
 /// Intervals are those of the likelihood ratio with all other coefficients free, those left out
 /// too, counted from the model that was kept: S. S. Wilks, Ann. Math. Statist. 9 (1938) 60; at the

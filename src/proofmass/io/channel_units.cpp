@@ -213,6 +213,14 @@ void settle_by_gravity(Recording& recording, const Triad& triad) {
       {severity, fmt::format("{}: unit taken to be {}: {}; --unit overrides", names, symbol, why)});
 }
 
+/// One column that is called no more than "y" may be anything: its size is no proof of gravity.
+bool says_acceleration(const Recording& recording, const Triad& triad) {
+  if (triad.axes() > 1) return true;
+  for (const auto& axis : {triad.x, triad.y, triad.z})
+    if (axis) return contains(bare_name(recording.channels[*axis].name), "acc");
+  return false;
+}
+
 /// Sorts the accelerometers of unknown unit into sensors and settles each.
 void recognise_gravity(Recording& recording) {
   Recording sketch;  // names only: which channels belong together is for core to say
@@ -226,7 +234,7 @@ void recognise_gravity(Recording& recording) {
   for (Triad triad : accelerometer_triads(sketch)) {
     for (auto* axis : {&triad.x, &triad.y, &triad.z})
       if (*axis) *axis = columns[**axis];
-    settle_by_gravity(recording, triad);
+    if (says_acceleration(recording, triad)) settle_by_gravity(recording, triad);
   }
 }
 

@@ -396,5 +396,19 @@ TEST(DropEvents, LeavesARecordWithoutEvents) {
   EXPECT_FALSE(std::isnan(series[5'950]));
 }
 
+TEST(Events, AKnockThatDiesAwaySlowlyIsNoStep) {
+  Noise noise(12);
+  Series series = noise.white(60'000);
+  for (std::size_t k = 0; k < 300; ++k) series[30'000 + k] += 150.0 * std::exp(-static_cast<double>(k) / 20.0);
+  const auto events = find_events(series, {.rate_hz = 100.0});
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].kind, EventKind::knock);
+  EXPECT_NEAR(events[0].size, 150.0, 5.0);
+  EXPECT_NEAR(static_cast<double>(events[0].first), 30'000.0, 10.0);
+  // 150 σ have died away to 1 σ after 100 samples.
+  EXPECT_GT(events[0].last, 30'080U);
+  EXPECT_LT(events[0].last, 30'200U);
+}
+
 }  // namespace
 }  // namespace proofmass::signal
