@@ -38,6 +38,7 @@ struct Overview {
   std::size_t missing = 0;
   double mean = 0.0;
   double short_term_std = 0.0;  ///< about the means of blocks short enough for drift not to count
+  double low = std::numeric_limits<double>::infinity(), high = -low;
 };
 
 // One pass: sums over blocks, each about its first sample so that an offset takes no digits.
@@ -55,6 +56,8 @@ Overview overview_of(View<double> series) {
       sum += departure;
       sum_of_squares += departure * departure;
       count += 1.0;
+      overview.low = std::min(overview.low, sample);
+      overview.high = std::max(overview.high, sample);
     }
     overview.missing += part.size() - static_cast<std::size_t>(count);
     if (count < 1.0) continue;
@@ -84,6 +87,30 @@ Status check_spread(const Overview& overview, std::size_t samples, std::optional
                            spread / *lsb)};
 }
 
+// Noise thins out towards its extremes. Where the very last value comes up more often than all that
+// lies beside it, the converter, or the sensor, could go no further.
+Status check_rails(View<double> series, const Overview& overview, std::optional<double> lsb) {
+  constexpr double beside_share = 0.02, times = 1.3;
+  constexpr std::size_t fewest = 10;
+  const double width =
+      std::max(beside_share * (overview.high - overview.low), 1.01 * lsb.value_or(0.0));
+  for (const double rail : {overview.low, overview.high}) {
+    std::size_t at = 0, near = 0;
+    for (const double sample : series) {
+      at += sample == rail ? 1 : 0;
+      near += std::abs(sample - rail) < width ? 1 : 0;
+    }
+    const auto beside = static_cast<double>(near - at);
+    if (at < fewest || static_cast<double>(at) <= times * beside) continue;
+    return Error{
+        Errc::not_observable,
+        fmt::format("clipped: {} of {} samples read exactly {:.6g}, the {} value there is: "
+                    "what is cut off there is not in the figures",
+                    at, series.size(), rail, rail == overview.low ? "lowest" : "highest")};
+  }
+  return Done{};
+}
+
 void note_resolution(NoiseAnalysis& analysis, double spread) {
   if (!analysis.lsb) return;
   const double density = *analysis.lsb / std::sqrt(12.0 * analysis.rate_hz);
@@ -97,8 +124,8 @@ void note_resolution(NoiseAnalysis& analysis, double spread) {
   analysis.notes.push_back({coarse ? Severity::warning : Severity::info, std::move(text)});
 }
 
-// Knocks and the edges of steps go missing. At a step the record is drawn apart, by a gap so long that
-// no term and no transform reaches across: how high the step was need not be known.
+// Knocks and the edges of steps go missing. At a step the record is drawn apart, by a gap so long
+// that no term and no transform reaches across: how high the step was need not be known.
 std::vector<double> without_events(View<double> series,
                                    const std::vector<signal::Event>& events,
                                    double rate_hz) {
@@ -191,6 +218,7 @@ Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& opt
   }
   const Overview raw = overview_of(series);
   if (Status varies = check_spread(raw, series.size(), options.lsb); !varies) return varies.error();
+  if (Status free = check_rails(series, raw, options.lsb); !free) return free.error();
   View<double> used = series;
   if (options.progress) options.progress("knocks and steps", 0.0);
   std::vector<signal::Event> events = signal::find_events(series, {.rate_hz = options.rate_hz});

@@ -40,7 +40,7 @@ struct NoiseOptions {
   double confidence = 0.683;  ///< of the deviation's limits
   NoiseTypeSource noise_type = NoiseTypeSource::model;
   int alpha = 0;                   ///< with NoiseTypeSource::fixed: 2 … −4
-  bool exclude_events = false;  ///< leave out knocks, and terms that reach across steps
+  bool exclude_events = false;     ///< leave out knocks, and terms that reach across steps
   std::optional<double> lsb = {};  ///< step of the converter, in the series' unit, where known
   std::size_t segment = 4096;      ///< of the spectrum
   Progress progress = {};
@@ -73,7 +73,8 @@ struct NoiseAnalysis {
 ///
 /// Errors: invalid_argument (options), too_few_samples (fewer than 3), not_finite (nothing but
 /// missing samples), not_observable (the samples do not vary, or vary by less than half a step of
-/// the converter, so that no figure would be the sensor's; the message says which).
+/// the converter, or are clipped, so that no figure would be the sensor's; the message says
+/// which).
 /// Cost: O(N); memory once more the series, twice for the statistics that need all of it at once.
 [[nodiscard]] Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& options);
 

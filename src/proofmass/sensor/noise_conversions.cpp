@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/sensor/datasheet.hpp"
@@ -28,6 +29,11 @@ double one_sided_density(double two_sided_rthz) {
 
 double filtered_rms_mps2(const FilteredWhite& noise) {
   return filtered_noise_rms(one_sided_density(noise.white_mps2_rthz), noise.bandwidth_hz);
+}
+
+double folded_density_rthz(const FilteredWhite& noise, double rate_hz) {
+  const double x = std::numbers::pi * noise.bandwidth_hz / rate_hz;
+  return noise.white_mps2_rthz * std::sqrt(x / std::tanh(x));
 }
 
 double sample_variance_m2ps4(const SampledWhite& noise) {

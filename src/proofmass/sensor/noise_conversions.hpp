@@ -23,6 +23,13 @@ struct FilteredWhite {
 /// Source: as filtered_noise_rms, with ND = √2 N.
 [[nodiscard]] double filtered_rms_mps2(const FilteredWhite& noise);
 
+/// Two-sided density at low frequencies that a recording at this rate shows of white noise behind a
+/// one-pole filter: what the filter lets through above half the rate is folded onto it,
+/// N √(x coth x), x = π bandwidth / rate.
+/// Source: the sampled exponentially correlated process, M. B. Priestley, Spectral Analysis and
+/// Time Series (1981), section 7.1.1.
+[[nodiscard]] double folded_density_rthz(const FilteredWhite& noise, double rate_hz);
+
 /// White noise as a recording shows it. N is the density measured at that rate, so that whatever
 /// the filter lets through above half the rate is folded into it; a datasheet knows nothing of
 /// that.

@@ -145,5 +145,13 @@ TEST(NoiseConversions, AMinimumOfWhiteNoiseAndRandomWalkReadsAsFlickerThatIsNotT
   EXPECT_NEAR(flicker_of({.tau_s = tau_s, .deviation_mps2 = lowest}), 1.62e-4, 1e-6);
 }
 
+TEST(FoldedDensity, IsTheFiltersVarianceSpreadOverTheBandWhereTheFilterIsWide) {
+  // Samples far apart are independent: variance = density · rate.
+  const FilteredWhite noise{.white_mps2_rthz = 2e-3, .bandwidth_hz = 1600.0};
+  const double density = folded_density_rthz(noise, 100.0);
+  EXPECT_NEAR(density * density * 100.0 / std::pow(filtered_rms_mps2(noise), 2), 1.0, 1e-9);
+  EXPECT_NEAR(folded_density_rthz({.white_mps2_rthz = 2e-3, .bandwidth_hz = 1.0}, 1e4), 2e-3, 1e-9);
+}
+
 }  // namespace
 }  // namespace proofmass::sensor

@@ -399,7 +399,8 @@ TEST(DropEvents, LeavesARecordWithoutEvents) {
 TEST(Events, AKnockThatDiesAwaySlowlyIsNoStep) {
   Noise noise(12);
   Series series = noise.white(60'000);
-  for (std::size_t k = 0; k < 300; ++k) series[30'000 + k] += 150.0 * std::exp(-static_cast<double>(k) / 20.0);
+  for (std::size_t k = 0; k < 300; ++k)
+    series[30'000 + k] += 150.0 * std::exp(-static_cast<double>(k) / 20.0);
   const auto events = find_events(series, {.rate_hz = 100.0});
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].kind, EventKind::knock);

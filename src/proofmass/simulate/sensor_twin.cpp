@@ -6,6 +6,8 @@
 #include <numbers>
 #include <string>
 
+#include "proofmass/sensor/noise_conversions.hpp"
+
 namespace proofmass::simulate {
 namespace {
 
@@ -175,10 +177,13 @@ sensor::SensorModel model_of(const SensorTwin& twin, const RigOptions& options, 
   model.serial = "seed " + std::to_string(options.seed);
   model.electrical = electrical_of(s, options);
   model.calibration = calibration_of(twin, options.gravity_mps2);
-  Axes white{};  // N: below the filter's corner both kinds are flat
-  for (std::size_t axis = 0; axis < 3; ++axis)
+  Axes white{};  // N as sampled: below the filter's corner both kinds are flat
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const sensor::FilteredWhite filtered{sensor::two_sided_density(s.noise_density_mps2_rthz[axis]),
+                                         s.bandwidth_hz};
     white[axis] = std::hypot(s.noise_rms_mps2[axis] / std::sqrt(options.rate_hz),
-                             s.noise_density_mps2_rthz[axis] / std::numbers::sqrt2);
+                             sensor::folded_density_rthz(filtered, options.rate_hz));
+  }
   model.noise.white = sensor::make_axis_figures(white, "m/s^2/sqrt(Hz)", origin);
   model.noise.random_walk =
       sensor::make_axis_figures(s.bias_walk_mps2_rts, "m/s^2/sqrt(s)", origin);

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/sensor/calibration.hpp"
@@ -190,15 +191,17 @@ TEST(SensorTwin, WithoutCrossAxisNoRotationIsLeft) {
   }
 }
 
-TEST(SensorTwin, ItsNoiseFigureIsTheTwoSidedDensity) {
+TEST(SensorTwin, ItsNoiseFigureIsTheTwoSidedDensityThatTheRecordingShows) {
   RigOptions options = perfect_sensor();
   options.sensors[0].noise_rms_mps2 = {0.02, 0.0, 0.03};
   options.sensors[0].noise_density_mps2_rthz = {0.0, 1.5e-3, 4e-3};
   options.rate_hz = 100.0;
   const auto model = model_of(SensorTwin(options, 0), options, 0);
   EXPECT_DOUBLE_EQ(model.noise.white[0]->si(), 0.002);
-  EXPECT_DOUBLE_EQ(model.noise.white[1]->si(), 1.5e-3 / std::sqrt(2.0));
-  EXPECT_DOUBLE_EQ(model.noise.white[2]->si(), std::sqrt(9e-6 + 8e-6));
+  // The filter's corner stands at the rate: three times the power is folded into the band.
+  const double folded = std::numbers::pi / std::tanh(std::numbers::pi);
+  EXPECT_NEAR(model.noise.white[1]->si(), 1.5e-3 * std::sqrt(0.5 * folded), 1e-15);
+  EXPECT_NEAR(model.noise.white[2]->si(), std::sqrt(9e-6 + 8e-6 * folded), 1e-15);
 }
 
 }  // namespace
