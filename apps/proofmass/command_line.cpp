@@ -186,7 +186,7 @@ void add_noise(CLI::App& app, NoiseCommand& command) {
   add("--noise-type", command.noise_type, "TYPE",
       "on which the limits hang: auto (default), lag1, or the power of f from -4 to 2");
   verb.add_flag("--exclude-events", command.exclude_events,
-                "leave out knocks and take steps of level out");
+                "leave out knocks, and whatever reaches across a step");
   add("--temperature", command.temperature, "NAME",
       "take out what follows this channel, by least squares");
   add("--update-sensor", command.update_sensor, "FILE.toml",

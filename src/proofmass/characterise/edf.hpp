@@ -39,13 +39,20 @@ struct EdfCase {
 ///     |t| Π (t² − (i/m)²),  i = 1 … n/2 − 1                    n even; n = 0: 1 at t = 0, else 0
 ///     ψ(|t| m + ½) Π (t² − ((i − ½)/m)²),  i = 1 … (n − 1)/2   n odd
 ///
-/// and of modified variances 2 s(t) − s(t − 1) − s(t + 1), s being that of n + 2. At m = 1 the edf
-/// is then 0.85 (α = 0), 0.92 (−1) and 1.12 (−2) of the paper's, from m = 50 within 2 %. Source: C.
-/// A. Greenhall, W. J. Riley, Uncertainty of stability variances based on finite differences, Proc.
-/// 35th PTTI (2003); from sample to sample J. R. M. Hosking, Fractional differencing, Biometrika 68
-/// (1981) 165, theorem 1, less its infinite part. Needs: N ≥ L, and α > 1 − 2d, below which the
-/// variance does not converge (the Allan variance for α ≤ −3); both are the caller's to see to.
-/// Cost: O(log m).
+/// and of modified variances 2 s(t) − s(t − 1) − s(t + 1), s being that of n + 2. Of the Allan
+/// variance's edf in the paper this is, for α = 0, −1, −2:
+///
+///     m = 1    0.85   0.91   1.31
+///     m = 2    1.05   1.10   1.17
+///     m = 5    1.12   1.05   1.03
+///     m = 20   1.05   1.01   1.00
+///
+/// Source: C. A. Greenhall, W. J. Riley, Uncertainty of stability variances based on finite
+/// differences, Proc. 35th PTTI (2003).
+/// Source, from sample to sample: J. R. M. Hosking, Fractional differencing, Biometrika 68 (1981)
+/// 165, theorem 1, less its infinite part.
+/// Needs: N ≥ L, and α > 1 − 2d, below which the variance does not converge (the Allan variance
+/// for α ≤ −3); both are the caller's to see to. Cost: O(log m).
 [[nodiscard]] double greenhall_riley_edf(const EdfCase& known);
 
 /// The share of the variance at one τ that each power law has: [0] of α = +2 … [6] of α = −4.

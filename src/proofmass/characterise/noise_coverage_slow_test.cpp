@@ -197,7 +197,8 @@ void expect_intervals_cover(const Outcome& outcome, const Truth& truth) {
     SCOPED_TRACE(testing::Message() << "coefficient " << k << " of " << truth.values()[k]);
     const Tally& tally = outcome.coefficients[k];
     // Of what is not there the interval starts at 0 unless it is taken for something.
-    const bool there = truth.values()[k] > 0.0;
+    // A ramp's counts with a random walk that cannot be seen, and is wide where there is none.
+    const bool there = truth.values()[k] > 0.0 && k != ramp;
     expect_share(tally.covered, outcome.records, 0.93, there ? 0.975 : 1.0);
     expect_share(tally.bounded, outcome.records, 0.93, there ? 0.97 : 1.0);
   }
@@ -255,14 +256,11 @@ TEST(NoiseCoverage, OfWhiteNoiseWithOthersTooWeakToTellIsWhatTheirBoundsSay) {
 TEST(NoiseCoverage, OfWhiteNoiseAloneNothingElseIsSeen) {
   const Outcome outcome = analyse({{.white = 1.0}, 2000, 61}, 1500);
   EXPECT_EQ(outcome.coefficients[white].absent, 0);
-  for (const Place place : {quantisation, flicker, random_walk}) {
+  for (const Place place : {quantisation, flicker, random_walk, ramp}) {
     SCOPED_TRACE(testing::Message() << "coefficient " << place);
-    expect_share(outcome.coefficients[place].absent, outcome.records, 0.985, 1.0);
+    expect_share(outcome.coefficients[place].absent, outcome.records, 0.98, 1.0);
     EXPECT_EQ(outcome.coefficients[place].bounded, outcome.records);
   }
-  // Decided by a test of 5 %.
-  expect_share(outcome.coefficients[ramp].absent, outcome.records, 0.94, 0.96);
-  EXPECT_EQ(outcome.coefficients[ramp].bounded, outcome.records);
 }
 
 }  // namespace

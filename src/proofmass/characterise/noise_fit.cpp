@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <functional>
 #include <numbers>
 
@@ -23,11 +24,16 @@ constexpr std::array linear_terms{Term::quantisation, Term::white, Term::flicker
 
 constexpr double quantile_95_two_sided = 3.841458820694124;  // of χ² with one degree of freedom
 constexpr double quantile_95_one_sided = 2.705543454095404;  // the square of 1.645
-constexpr double normal_95 = 1.6448536269514722;
+constexpr double normal_95 = 1.6448536269514722, normal_975 = 1.9599639845400545;
 // χ² of one degree of freedom at 98.6 %: of the three terms that white noise does not have, one is
 // then taken in by chance in about one recording in fifty (the boundary halves it).
-constexpr double needed_gain = 6.0, needed_probability = 0.993;
+constexpr double needed_gain = 6.0;
+// A slope hangs on so few frequencies that its ratio is larger by chance than the theory of many
+// says: the squares of Student's t with 8 degrees of freedom for those of the normal quantiles.
+constexpr double ramp_gain = 9.0, ramp_two_sided = 5.318, ramp_one_sided = 3.458;
 constexpr double shape_gain = 16.0;
+// Of fewer samples the likelihood ratio's intervals are too narrow.
+constexpr std::size_t fewest_samples = 100;
 constexpr std::size_t fewest_groups = 12;
 
 // A fit in progress: the likelihood, with the shapes chosen so far, and the terms still in.
@@ -242,6 +248,30 @@ void eliminate(Search& search) {
   }
 }
 
+struct Bracket {
+  double inside, outside;
+};
+
+// Where a loss that grows like a square reaches a quantile: regula falsi (Illinois) on its root.
+template <class Loss>
+double crossing(const Loss& loss, Bracket bracket, double quantile) {
+  const auto height = [&](double at) { return std::sqrt(loss(at)) - std::sqrt(quantile); };
+  double a = bracket.inside, fa = height(a), b = bracket.outside, fb = height(b);
+  for (int k = 0; k < 30 && std::abs(b - a) > 1e-4 * std::max(std::abs(a), std::abs(b)); ++k) {
+    const double c = (a * fb - b * fa) / (fb - fa), fc = height(c);
+    if (std::abs(fc) < 1e-4) return c;
+    if (fc * fb < 0.0) {
+      a = b;
+      fa = fb;
+    } else {
+      fa *= 0.5;
+    }
+    b = c;
+    fb = fc;
+  }
+  return b;
+}
+
 // Twice the log-likelihood lost by holding one strength at a value, all others free, those too that
 // were left out: what they could have taken its place belongs to its uncertainty. The loss is
 // counted from the likelihood of the terms that were kept, which the free ones may exceed by
@@ -285,23 +315,8 @@ class Profile {
   }
 
  private:
-  // Regula falsi (Illinois) on the root of the loss, which is nearly straight.
   [[nodiscard]] double root(double inside, double outside, double quantile) const {
-    const auto height = [&](double at) { return std::sqrt(loss(at)) - std::sqrt(quantile); };
-    double a = inside, fa = height(a), b = outside, fb = height(b);
-    for (int k = 0; k < 30 && std::abs(b - a) > 1e-4 * std::max(std::abs(a), std::abs(b)); ++k) {
-      const double c = (a * fb - b * fa) / (fb - fa), fc = height(c);
-      if (std::abs(fc) < 1e-4) return c;
-      if (fc * fb < 0.0) {
-        a = b;
-        fa = fb;
-      } else {
-        fa *= 0.5;
-      }
-      b = c;
-      fb = fc;
-    }
-    return b;
+    return crossing([this](double at) { return loss(at); }, {inside, outside}, quantile);
   }
 
   const WhittleLikelihood& likelihood_;
@@ -332,35 +347,53 @@ Coefficient coefficient(const Search& search, int column, double std_of_strength
   return found;
 }
 
-// Student's t with the degrees of freedom of the slope's own variance, which hangs on the few
-// lowest frequencies: F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110.
-Coefficient ramp_coefficient(const Search& search, const Eigen::MatrixXd& covariance) {
-  Coefficient found;
-  const double std = std::sqrt(search.fit.slope_variance);
-  Eigen::VectorXd gradient(static_cast<Index>(search.active.size()));
-  const auto& groups = search.evidence.groups;
-  for (Index a = 0; a < gradient.size(); ++a) {
-    const VectorXd shape = search.likelihood.column(search.active[static_cast<std::size_t>(a)]);
-    gradient(a) = 0.0;
-    for (std::size_t g = 0; g < groups.size() && groups[g].of_ramp != 0.0; ++g) {
-      const auto row = static_cast<Index>(g);
-      const double r_over_S = groups[g].of_ramp / search.fit.density(row);
-      gradient(a) += r_over_S * r_over_S * shape(row);
-    }
+// Twice the log-likelihood lost by a slope, all terms free to explain the recording with it, those
+// too that were left out: a random walk too weak to be seen for itself looks like a slope.
+class SlopeProfile {
+ public:
+  explicit SlopeProfile(const Search& search) : search_(search), top_(log_likelihood(slope())) {}
+
+  [[nodiscard]] double slope() const { return search_.fit.slope; }
+
+  [[nodiscard]] double loss(double at) const {
+    return 2.0 * std::max(0.0, top_ - log_likelihood(at));
   }
-  const double relative_variance =
-      search.fit.slope_variance * search.fit.slope_variance * gradient.dot(covariance * gradient);
-  const double dof = std::max(1.0, 2.0 / std::max(relative_variance, 1e-9));
-  const double size = std::abs(search.fit.slope);
-  const double two_sided = student_t_quantile(0.975, dof) * std;
-  found.upper_95 = size + student_t_quantile(0.95, dof) * std;
-  found.upper_two_sided_95 = size + two_sided;
-  // As seldom by chance as any other term.
-  if (size > student_t_quantile(needed_probability, dof) * std) {
+
+  // Above the slope that was found (direction 1) or below it (−1).
+  [[nodiscard]] double end(double direction, double quantile) const {
+    double inside = slope();
+    double step = direction * std::sqrt(quantile * search_.fit.slope_variance);
+    while (loss(inside + step) < quantile) {
+      inside += step;
+      step *= 2.0;
+    }
+    return crossing([this](double at) { return loss(at); }, {inside, inside + step}, quantile);
+  }
+
+ private:
+  [[nodiscard]] double log_likelihood(double at) const {
+    return search_.likelihood.at_slope(at)
+        .maximise(search_.all, {}, search_.fit.strength)
+        .log_likelihood;
+  }
+
+  const Search& search_;
+  double top_;
+};
+
+Coefficient ramp_coefficient(const Search& search) {
+  const SlopeProfile profile(search);
+  const double slope = profile.slope();
+  const double direction = slope < 0.0 ? -1.0 : 1.0;
+  Coefficient found;
+  found.upper_95 = std::abs(profile.end(direction, ramp_one_sided));
+  found.upper_two_sided_95 = std::abs(profile.end(direction, ramp_two_sided));
+  const double lower = direction * profile.end(-direction, ramp_two_sided);
+  found.lower_95 = std::max(0.0, lower);
+  if (profile.loss(0.0) > ramp_gain) {
     found.verdict = Verdict::identified;
-    found.value = size;
-    found.std = std;
-    found.lower_95 = size - two_sided;
+    found.value = std::abs(slope);
+    found.std = (found.upper_two_sided_95 - lower) / (2.0 * normal_975);
   } else {
     found.std = found.upper_95 / normal_95;
   }
@@ -371,8 +404,11 @@ Coefficient ramp_coefficient(const Search& search, const Eigen::MatrixXd& covari
 
 Result<NoiseModelFit> fit_noise_model(const NoiseEvidence& evidence) {
   GroupedEvidence grouped = group_evidence(evidence);
-  if (grouped.groups.size() < fewest_groups)
-    return Error{Errc::too_few_samples, "a noise model needs at least 16 samples in one piece"};
+  if (static_cast<std::size_t>(evidence.duration_s * evidence.spectrum.rate_hz) < fewest_samples ||
+      grouped.groups.size() < fewest_groups)
+    return Error{
+        Errc::too_few_samples,
+        fmt::format("a noise model needs {} samples, and 16 in one piece", fewest_samples)};
   Search search = begin_search(std::move(grouped));
   NoiseModelFit model;
   model.rate_hz = evidence.spectrum.rate_hz;
@@ -399,7 +435,7 @@ Result<NoiseModelFit> fit_noise_model(const NoiseEvidence& evidence) {
   model.flicker = found(2);
   model.random_walk = found(3);
   model.slope_per_s = search.fit.slope;
-  model.ramp = ramp_coefficient(search, covariance);
+  model.ramp = ramp_coefficient(search);
   if (time_constant) {
     const Coefficient strength = found(column_of_markov);
     if (strength.verdict == Verdict::identified) model.markov = {strength, *time_constant};

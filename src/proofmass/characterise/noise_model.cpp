@@ -1,5 +1,6 @@
 #include "proofmass/characterise/noise_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -38,14 +39,18 @@ double NoiseModelFit::allan_variance(Term term, double tau_s) const {
     case Term::quantisation:
       return 3.0 * square(quantisation.value / tau_s);
     case Term::white: {
-      const double flat = square(white.value) / tau_s;
-      if (!bandwidth_hz) return flat;
-      return flat * relaxation_share(tau_s, 1.0 / (2.0 * pi * bandwidth_hz->value));
+      if (!bandwidth_hz) return square(white.value) / tau_s;
+      const double samples = std::max(1.0, std::round(tau_s * rate_hz));
+      return square(white.value) * relaxation_allan_variance(1.0 / (2.0 * pi * bandwidth_hz->value),
+                                                             static_cast<std::size_t>(samples),
+                                                             rate_hz);
     }
     case Term::flicker:
       return 2.0 * std::numbers::ln2 / pi * square(flicker.value);
     case Term::random_walk:
-      return square(random_walk.value) * tau_s / 3.0;
+      if (random_walk.value == 0.0) return 0.0;  // an empty model has no rate either
+      // Of a walk in steps of 1/rate: what one sample spans is not yet a walk.
+      return square(random_walk.value) * (tau_s / 3.0 + 1.0 / (6.0 * tau_s * rate_hz * rate_hz));
     case Term::markov:
       break;
   }

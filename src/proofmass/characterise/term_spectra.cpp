@@ -45,6 +45,25 @@ double random_walk(double omega, const Sampling& sampling) {
          square(2.0 * std::sin(0.5 * omega));
 }
 
+// Sums over D neighbours of an exponentially correlated process of variance 1: their variance, and
+// their covariance with the next sum, ρ times which is that with the one behind.
+struct RelaxationSums {
+  double phi, one_less_phi, rho, one_less_rho, own, across;
+};
+
+RelaxationSums relaxation_sums(double steps_to_relax, double D) {
+  RelaxationSums sums{};
+  const double decay = 1.0 / steps_to_relax;
+  sums.phi = std::exp(-decay);
+  sums.one_less_phi = -std::expm1(-decay);
+  sums.rho = std::exp(-D * decay);
+  sums.one_less_rho = -std::expm1(-D * decay);
+  sums.across = sums.phi * square(sums.one_less_rho / sums.one_less_phi);
+  sums.own = D * (1.0 + sums.phi) / sums.one_less_phi -
+             2.0 * sums.phi * sums.one_less_rho / square(sums.one_less_phi);
+  return sums;
+}
+
 }  // namespace
 
 double term_density(Term term, double frequency_hz, const Sampling& sampling) {
@@ -63,22 +82,22 @@ double term_density(Term term, double frequency_hz, const Sampling& sampling) {
 }
 
 double relaxation_density(double time_constant_s, double frequency_hz, const Sampling& sampling) {
-  const double decay = 1.0 / (time_constant_s * sampling.rate_hz);
-  const double phi = std::exp(-decay), one_less_phi = -std::expm1(-decay);
+  const auto D = static_cast<double>(sampling.block);
+  const RelaxationSums sums = relaxation_sums(time_constant_s * sampling.rate_hz, D);
   const double cosine = std::cos(2.0 * pi * frequency_hz * sampling.step_s());
   const double sine = std::sin(pi * frequency_hz * sampling.step_s());
-  const auto D = static_cast<double>(sampling.block);
-  // Of a process of variance 1: the sum of D samples has variance `own`, and correlates with the
-  // next but k by across · ρ^k.
-  const double rho = std::exp(-D * decay), one_less_rho = -std::expm1(-D * decay);
-  const double across = phi * square(one_less_rho / one_less_phi);
-  const double own =
-      D * (1.0 + phi) / one_less_phi - 2.0 * phi * one_less_rho / square(one_less_phi);
-  const double distance = square(one_less_rho) + 4.0 * rho * square(sine);
-  const double sum = own + 2.0 * across * (cosine - rho) / distance;
+  const double distance = square(sums.one_less_rho) + 4.0 * sums.rho * square(sine);
+  const double sum = sums.own + 2.0 * sums.across * (cosine - sums.rho) / distance;
   const double unit_variance = std::max(sum, 0.0) / (D * D) * sampling.step_s();
   // Its density at zero, sampled: τ0 (1 + φ) / (1 − φ).
-  return unit_variance * sampling.rate_hz * one_less_phi / (1.0 + phi);
+  return unit_variance * sampling.rate_hz * sums.one_less_phi / (1.0 + sums.phi);
+}
+
+double relaxation_allan_variance(double time_constant_s, std::size_t m, double rate_hz) {
+  const auto D = static_cast<double>(m);
+  const RelaxationSums sums = relaxation_sums(time_constant_s * rate_hz, D);
+  const double variance = rate_hz * sums.one_less_phi / (1.0 + sums.phi);
+  return variance * (sums.own - sums.across) / (D * D);
 }
 
 }  // namespace proofmass::characterise

@@ -35,4 +35,10 @@ struct Sampling {
                                         double frequency_hz,
                                         const Sampling& sampling);
 
+/// Allan variance at τ = m/rate of the same process, as sampled: the difference of the variance of
+/// the means over m samples and of their covariance with the next.
+[[nodiscard]] double relaxation_allan_variance(double time_constant_s,
+                                               std::size_t m,
+                                               double rate_hz);
+
 }  // namespace proofmass::characterise

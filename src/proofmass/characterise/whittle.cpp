@@ -157,6 +157,14 @@ WhittleFit WhittleLikelihood::maximise(const std::vector<int>& active,
   return fit;
 }
 
+WhittleLikelihood WhittleLikelihood::at_slope(double slope) const {
+  WhittleLikelihood other = *this;
+  other.raw_ = densities({.strength = {}, .density = {}, .slope = slope});
+  other.of_ramp_.setZero();
+  other.ramp_rows_ = 0;
+  return other;
+}
+
 MatrixXd WhittleLikelihood::information(const WhittleFit& fit,
                                         const std::vector<int>& active) const {
   const MatrixXd X = chosen(columns_, active);

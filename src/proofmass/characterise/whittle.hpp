@@ -51,6 +51,9 @@ class WhittleLikelihood {
                                     const std::optional<Held>& held = {},
                                     const Eigen::VectorXd& start = {}) const;
 
+  /// The same evidence with a ramp of known slope taken out of it, and none left to be told.
+  [[nodiscard]] WhittleLikelihood at_slope(double slope) const;
+
   /// Fisher information of the active strengths at S: ½ Σ ν X Xᵀ / S².
   [[nodiscard]] Eigen::MatrixXd information(const WhittleFit& fit,
                                             const std::vector<int>& active) const;

@@ -107,6 +107,20 @@ void add_terms(const ChannelNoise& channel, const Window& window, double shown, 
                                .below = true,
                                .left = falls});
   }
+  if (analysis.model.markov) {
+    const auto& model = analysis.model;
+    const auto markov = [&](double tau_s) { return model.allan_variance(Term::markov, tau_s); };
+    const double top_s =
+        std::clamp(1.89 * model.markov->time_constant_s.value, window.first_s, window.last_s);
+    figure.curves.push_back({"", taus, curve(markov), Ink::grey, Mark::thin});
+    figure.callouts.push_back(
+        {.text = fmt::format("Markov, T = {} s", compact(model.markov->time_constant_s.value, 2)),
+         .x = top_s,
+         .y = std::sqrt(markov(top_s)) * shown,
+         .ink = Ink::grey,
+         .below = true,
+         .left = true});
+  }
   const auto sum = [&](double tau_s) { return analysis.model.allan_variance(tau_s); };
   figure.curves.push_back({"fitted sum", taus, curve(sum), Ink::orange});
   const bool lines = std::ranges::any_of(analysis.lines.lines, [&](const auto& line) {

@@ -51,7 +51,8 @@ std::vector<std::string> coefficient_cells(const ChannelNoise& channel,
   const Coefficient& found = channel.analysis->model.*term.figure;
   return {term.name, coefficient_words(found, channel.unit, term.scale),
           interval_words(found, channel.unit, term.scale),
-          in_si(found.value, channel.unit, term.scale), verdict_words(found)};
+          in_si(found.value, channel.unit, term.scale),
+          verdict_words(found, channel.analysis->duration_s)};
 }
 
 Table coefficients_table(const ChannelNoise& channel) {

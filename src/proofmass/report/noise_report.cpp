@@ -32,7 +32,7 @@ Rows coefficient_rows(const ChannelNoise& channel) {
   for (const NamedCoefficient& term : named_coefficients) {
     const characterise::Coefficient& coefficient = analysis.model.*term.figure;
     rows.push_back({term.name, coefficient_words(coefficient, channel.unit, term.scale),
-                    verdict_words(coefficient)});
+                    verdict_words(coefficient, channel.analysis->duration_s)});
   }
   const signal::SpectralFloor& floor = analysis.lines.floor;
   if (floor.one_sided_density > 0.0) {

@@ -260,11 +260,12 @@ std::string coefficient_words(const Coefficient& coefficient, const Unit& unit, 
   return fmt::format("0, below {} (95 %)", noise_words(coefficient.upper_95, unit, scale));
 }
 
-std::string verdict_words(const Coefficient& coefficient) {
+std::string verdict_words(const Coefficient& coefficient, double duration_s) {
   if (is_identified(coefficient)) return "identified";
   if (!coefficient.record_needed_s) return "not observable";
+  const bool as_long = *coefficient.record_needed_s <= duration_s;
   return fmt::format("not observable; {} would show that much",
-                     duration_words(*coefficient.record_needed_s));
+                     as_long ? "this length" : duration_words(*coefficient.record_needed_s));
 }
 
 bool estimates_allan(characterise::Statistic statistic) {

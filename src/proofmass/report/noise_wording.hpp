@@ -59,8 +59,9 @@ extern const std::array<NamedCoefficient, 5> named_coefficients;
                                             const Unit& unit,
                                             NoiseScale scale);
 
-/// "identified", or how long a recording would show it.
-[[nodiscard]] std::string verdict_words(const characterise::Coefficient& coefficient);
+/// "identified", or how long a recording would show it; duration_s is that of the one at hand.
+[[nodiscard]] std::string verdict_words(const characterise::Coefficient& coefficient,
+                                        double duration_s);
 
 /// The curve whose points may be laid beside the fitted Allan variance.
 [[nodiscard]] bool estimates_allan(characterise::Statistic statistic);

@@ -1,0 +1,121 @@
+#include "proofmass/signal/event_kernels.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "proofmass/core/vector_clones.hpp"
+#include "proofmass/signal/lane_fourier.hpp"
+
+namespace proofmass::signal {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+PM_VECTOR_CLONES
+void copy_finite(const double* __restrict in, double* __restrict out, std::size_t n) {
+  for (std::size_t k = 0; k < n; ++k) out[k] = in[k] - in[k] == 0.0 ? in[k] : nan;
+}
+
+PM_VECTOR_CLONES
+void average_pairs(const double* __restrict in,
+                   double* __restrict out,
+                   std::size_t n,
+                   std::size_t w) {
+  for (std::size_t k = 0; k < n; ++k) out[k] = 0.5 * (in[k] + in[k + w]);
+}
+
+PM_VECTOR_CLONES
+void tally_knocks(const double* m, std::size_t w, std::size_t blocks, Tally* out) {
+  for (std::size_t b = 0; b < blocks; ++b, m += fine_block) {
+    Lanes sum{}, max{};
+    for (std::size_t k = 0; k < fine_block; k += lanes) {
+      Lanes here, before, after, far_before, far_after;
+      std::memcpy(&here, m + k, sizeof(Lanes));
+      std::memcpy(&before, m + k - w, sizeof(Lanes));
+      std::memcpy(&after, m + k + w, sizeof(Lanes));
+      std::memcpy(&far_before, m + k - 2 * w, sizeof(Lanes));
+      std::memcpy(&far_after, m + k + 2 * w, sizeof(Lanes));
+      const Lanes output = here - 0.25 * ((far_before + before) + (after + far_after));
+      const Lanes size = output < 0.0 ? -output : output;
+      sum += size;
+      max = size > max ? size : max;
+    }
+    double total = 0.0;
+    double largest = 0.0;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      total += sum[lane];
+      largest = max[lane] > largest ? max[lane] : largest;
+    }
+    out[b] = {total / static_cast<double>(fine_block), largest};
+  }
+}
+
+PM_VECTOR_CLONES
+void tally_outputs(const double* __restrict outputs, std::size_t blocks, Tally* __restrict out) {
+  for (std::size_t b = 0; b < blocks; ++b, outputs += coarse_block) {
+    double sum = 0.0;
+    double max = 0.0;
+    for (std::size_t k = 0; k < coarse_block; ++k) {
+      const double size = std::abs(outputs[k]);
+      sum += size;
+      max = size > max ? size : max;
+    }
+    out[b] = {sum / static_cast<double>(coarse_block), max};
+  }
+}
+
+PM_VECTOR_CLONES
+void sum_sixteens(const double* __restrict samples, std::size_t blocks, double* __restrict out) {
+  for (std::size_t b = 0; b < blocks; ++b) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < 16; ++k) sum += samples[16 * b + k];
+    out[b] = sum;
+  }
+}
+
+PM_VECTOR_CLONES
+void window_means(const WindowSums& in, double* __restrict out, std::size_t n) {
+  const double* __restrict mean = in.mean;
+  const float* __restrict share = in.share;
+  const double enough = in.enough;
+  const auto term = [&](std::size_t k) { return static_cast<double>(share[k]) * mean[k]; };
+  const auto weight = [&](std::size_t k) { return static_cast<double>(share[k]); };
+  const auto put = [&](std::size_t k, double sum, double total) {
+    out[k] = total >= enough ? sum / total : nan;
+  };
+  if (in.width == 1) {
+    for (std::size_t k = 0; k < n; ++k) put(k, 0.0 + term(k), weight(k));
+  } else if (in.width == 2) {
+    for (std::size_t k = 0; k < n; ++k)
+      put(k, 0.0 + term(k) + term(k + 1), weight(k) + weight(k + 1));
+  } else {
+    for (std::size_t k = 0; k < n; ++k)
+      put(k, 0.0 + term(k) + term(k + 1) + term(k + 2) + term(k + 3),
+          weight(k) + weight(k + 1) + weight(k + 2) + weight(k + 3));
+  }
+}
+
+PM_VECTOR_CLONES
+double least_difference(View<double> series) {
+  double least[lanes];
+  for (double& value : least) value = std::numeric_limits<double>::infinity();
+  const double* x = series.data();
+  std::size_t k = 1;
+  for (; k + lanes <= series.size(); k += lanes)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const double difference = std::abs(x[k + lane] - x[k + lane - 1]);
+      least[lane] = difference < least[lane] ? difference : least[lane];
+    }
+  double result = std::numeric_limits<double>::infinity();
+  for (; k < series.size(); ++k) {
+    const double difference = std::abs(x[k] - x[k - 1]);
+    result = difference < result ? difference : result;
+  }
+  for (const double value : least) result = value < result ? value : result;
+  return result;
+}
+
+}  // namespace proofmass::signal
