@@ -23,7 +23,7 @@ struct TauGrid {
 };
 
 /// Record over longest τ where nothing else is asked: 4, for the total statistics 2 (3 where the
-/// statistic ends there), for Theo1 4/3.
+/// statistic ends there), for Theo1 1, its τ being 0.75 of it.
 /// Source: W. J. Riley, Stable32 manual, "stop ratio"; SP1065, section 5.
 [[nodiscard]] double default_stop_ratio(Statistic statistic);
 

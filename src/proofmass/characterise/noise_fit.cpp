@@ -43,6 +43,7 @@ struct Search {
   std::vector<int> all{0, 1, 2, 3};  ///< that the recording may hold
   std::vector<int> active = all;     ///< that it is taken to hold
   std::optional<double> pole_s;      ///< time constant of the white term's filter
+  std::optional<double> markov_s;
   WhittleFit fit = {};
 
   [[nodiscard]] VectorXd column(const std::function<double(double, const Sampling&)>& shape) const {
@@ -63,7 +64,8 @@ Search begin_search(GroupedEvidence evidence) {
   auto groups = evidence.groups;
   Search search{.evidence = std::move(evidence),
                 .likelihood = {std::move(groups), Eigen::MatrixXd::Zero(rows, columns)},
-                .pole_s = {}};
+                .pole_s = {},
+                .markov_s = {}};
   for (std::size_t k = 0; k < linear_terms.size(); ++k) {
     const Term term = linear_terms[k];
     search.likelihood.set_column(static_cast<int>(k),
@@ -193,6 +195,7 @@ void reconsider_bandwidth(Search& search, std::optional<Uncertain>& bandwidth_hz
   search.fit = search.likelihood.maximise(search.active, {}, search.fit.strength);
   if (2.0 * (with.log_likelihood - search.fit.log_likelihood) < needed_gain) {
     bandwidth_hz.reset();
+    search.pole_s.reset();
     return;
   }
   search.likelihood.set_column(column_of_white, filtered);
@@ -216,6 +219,7 @@ std::optional<Uncertain> find_markov(Search& search, double duration_s) {
     return std::nullopt;
   }
   set(best.time_constant_s);
+  search.markov_s = best.time_constant_s;
   search.all = search.active;
   search.fit = search.likelihood.maximise(search.active, {}, search.fit.strength);
   return Uncertain{best.time_constant_s,
@@ -257,7 +261,8 @@ template <class Loss>
 double crossing(const Loss& loss, Bracket bracket, double quantile) {
   const auto height = [&](double at) { return std::sqrt(loss(at)) - std::sqrt(quantile); };
   double a = bracket.inside, fa = height(a), b = bracket.outside, fb = height(b);
-  for (int k = 0; k < 30 && std::abs(b - a) > 1e-4 * std::max(std::abs(a), std::abs(b)); ++k) {
+  const double near = 1e-4 * std::abs(b - a);
+  for (int k = 0; k < 30 && std::abs(b - a) > near; ++k) {
     const double c = (a * fb - b * fa) / (fb - fa), fc = height(c);
     if (std::abs(fc) < 1e-4) return c;
     if (fc * fb < 0.0) {
@@ -270,6 +275,47 @@ double crossing(const Loss& loss, Bracket bracket, double quantile) {
     fb = fc;
   }
   return b;
+}
+
+// What the density changes by, for a small relative change of each time constant that was fitted.
+std::vector<VectorXd> changes_of_shape(const Search& search) {
+  constexpr double step = 0.01;
+  std::vector<VectorXd> changes;
+  const auto add = [&](std::optional<double> time_constant_s, int column, int power) {
+    const double strength = search.fit.strength(column);
+    if (!time_constant_s || strength == 0.0) return;
+    const auto shape = [&](double T) { return search.relaxation(T, std::pow(T, power)); };
+    changes.push_back(
+        strength / (2.0 * step) *
+        (shape(*time_constant_s * std::exp(step)) - shape(*time_constant_s * std::exp(-step))));
+  };
+  add(search.pole_s, column_of_white, 0);
+  add(search.markov_s, column_of_markov, 2);
+  return changes;
+}
+
+// Covariance of some strengths, the time constants being uncertain too.
+Eigen::MatrixXd covariance_of(const Search& search, const std::vector<int>& columns_in) {
+  const std::vector<VectorXd> changes = changes_of_shape(search);
+  const auto n = static_cast<Index>(columns_in.size());
+  const auto more = static_cast<Index>(changes.size());
+  Eigen::MatrixXd X(static_cast<Index>(search.evidence.groups.size()), n + more);
+  for (Index k = 0; k < n; ++k)
+    X.col(k) = search.likelihood.column(columns_in[static_cast<std::size_t>(k)]);
+  for (Index k = 0; k < more; ++k) X.col(n + k) = changes[static_cast<std::size_t>(k)];
+  const Eigen::ArrayXd weight = 0.5 * search.likelihood.dof() / search.fit.density.array().square();
+  const Eigen::MatrixXd information = X.transpose() * (weight.matrix().asDiagonal() * X);
+  return positive_inverse(information).topLeftCorner(n, n);
+}
+
+// By how much the variance of a strength grows for the time constants having been fitted.
+double widening(const Search& search, int column) {
+  if (!search.pole_s && !search.markov_s) return 1.0;
+  std::vector<int> kept = without(search.active, column);
+  kept.push_back(column);
+  const Index last = static_cast<Index>(kept.size()) - 1;
+  const Eigen::MatrixXd known = positive_inverse(search.likelihood.information(search.fit, kept));
+  return std::max(1.0, covariance_of(search, kept)(last, last) / known(last, last));
 }
 
 // Twice the log-likelihood lost by holding one strength at a value, all others free, those too that
@@ -332,9 +378,10 @@ Coefficient coefficient(const Search& search, int column, double std_of_strength
   const bool in =
       std::find(search.active.begin(), search.active.end(), column) != search.active.end();
   Coefficient found;
-  found.upper_95 = std::sqrt(profile.upper(quantile_95_one_sided));
-  found.upper_two_sided_95 = std::sqrt(profile.upper(quantile_95_two_sided));
-  found.lower_95 = in ? std::sqrt(profile.lower(quantile_95_two_sided)) : 0.0;
+  const double wider = widening(search, column);
+  found.upper_95 = std::sqrt(profile.upper(wider * quantile_95_one_sided));
+  found.upper_two_sided_95 = std::sqrt(profile.upper(wider * quantile_95_two_sided));
+  found.lower_95 = in ? std::sqrt(profile.lower(wider * quantile_95_two_sided)) : 0.0;
   const double strength = search.fit.strength(column);
   // The last term left may be no more than the others were.
   if (in && strength > 0.0) {
@@ -422,8 +469,7 @@ Result<NoiseModelFit> fit_noise_model(const NoiseEvidence& evidence) {
   model.misfit_p = misfit.p;
   eliminate(search);
 
-  const Eigen::MatrixXd covariance =
-      positive_inverse(search.likelihood.information(search.fit, search.active));
+  const Eigen::MatrixXd covariance = covariance_of(search, search.active);
   const auto found = [&](int column) {
     const auto at = std::find(search.active.begin(), search.active.end(), column);
     const Index place = at - search.active.begin();

@@ -132,7 +132,7 @@ TEST(FitNoiseModel, FindsTheFilterOfWhiteNoise) {
   const double bandwidth_hz = 8.0, T = 1.0 / (2.0 * std::numbers::pi * bandwidth_hz);
   const NoiseModelFit model =
       model_of(test::scaled(test::relaxation(T, rate_hz, quarter_of_an_hour, 10), 1e-3));
-  EXPECT_NEAR(model.white.value, 1e-3, 2e-5);
+  expect_found(model.white, 1e-3, "white");
   ASSERT_TRUE(model.bandwidth_hz.has_value());
   EXPECT_NEAR(model.bandwidth_hz->value, bandwidth_hz, 3.5 * model.bandwidth_hz->std);
   EXPECT_LT(model.bandwidth_hz->std, 0.3);
@@ -170,6 +170,30 @@ TEST(FitNoiseModel, ARampDoesNotChangeTheRest) {
   EXPECT_NEAR(steep.white.value, level.white.value, 0.1 * level.white.std);
   EXPECT_NEAR(steep.random_walk.value, level.random_walk.value, 0.1 * level.random_walk.std);
   EXPECT_NEAR(steep.slope_per_s - 1e-4, level.slope_per_s, 0.1 * level.ramp.std);
+}
+
+TEST(FitNoiseModel, ASteepRampIsNothingButARamp) {
+  const Series noise = test::white(1e-4, rate_hz, 100'000, 4);
+  for (const double slope : {1e-4, 1e-3}) {
+    const NoiseModelFit model = model_of(sum_of({noise, test::ramp(slope, rate_hz, 100'000)}));
+    expect_found(model.ramp, slope, "ramp");
+    expect_found(model.white, 1e-4, "white");
+    expect_absent(model.random_walk, "random walk");
+    EXPECT_FALSE(model.markov.has_value()) << slope;
+  }
+}
+
+TEST(FitNoiseModel, TheLevelOfFilteredNoiseIsAsUncertainAsItSays) {
+  const double T = 1.0 / (2.0 * std::numbers::pi * 8.0);
+  constexpr unsigned runs = 40;
+  int inside = 0, in_interval = 0;
+  for (unsigned seed = 0; seed < runs; ++seed) {
+    const NoiseModelFit model = model_of(test::relaxation(T, rate_hz, 20'000, 2000 + seed));
+    inside += std::abs(model.white.value - 1.0) < 2.0 * model.white.std ? 1 : 0;
+    in_interval += model.white.lower_95 < 1.0 && 1.0 < model.white.upper_two_sided_95 ? 1 : 0;
+  }
+  EXPECT_GE(inside, 34);
+  EXPECT_GE(in_interval, 34);
 }
 
 TEST(FitNoiseModel, FindsThreeTermsAtOnce) {

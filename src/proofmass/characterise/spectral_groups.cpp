@@ -52,8 +52,20 @@ bool in_any(const std::vector<signal::SpectralLine>& lines, double frequency_hz,
   });
 }
 
+// By plain least squares: beyond the coefficients that carry the ramp, where it falls with the
+// square of their number, what this leaves of it is below the noise.
+double rough_slope(const std::vector<CosineOrdinate>& ordinates) {
+  double cross = 0.0, own = 0.0;
+  for (const CosineOrdinate& ordinate : ordinates) {
+    cross += ordinate.amplitude * ordinate.of_ramp;
+    own += ordinate.of_ramp * ordinate.of_ramp;
+  }
+  return own > 0.0 ? cross / own : 0.0;
+}
+
 void group_transform(const NoiseEvidence& evidence, double below_hz, GroupedEvidence& grouped) {
   const std::vector<CosineOrdinate> ordinates = evidence.slow.ordinates();
+  const double slope = rough_slope(ordinates);
   const double margin_hz = 0.5 * grouped.bin_hz;
   std::vector<SpectralGroup> rest;
   Grouping grouping(rest);
@@ -71,7 +83,8 @@ void group_transform(const NoiseEvidence& evidence, double below_hz, GroupedEvid
     if (k <= single) {
       grouped.groups.push_back({f, p, 1.0, ordinate.amplitude, ordinate.of_ramp});
     } else {
-      grouping.add(f, p, 1.0, relative_width * f);
+      const double level = ordinate.amplitude - slope * ordinate.of_ramp;
+      grouping.add(f, level * level, 1.0, relative_width * f);
     }
   }
   grouping.close();

@@ -18,6 +18,7 @@ inline constexpr std::size_t fine_scales = 4;
 /// One tally for every block of every scale.
 using FineTallies = std::array<std::vector<Tally>, fine_scales>;
 
+/// Where the filter lacks samples, of the departure from those that are there.
 [[nodiscard]] FineTallies tally_fine_scales(const Source& source);
 
 /// Looks again, with a level that the knock itself does not move, where a block stood out.

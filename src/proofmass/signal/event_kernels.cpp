@@ -68,10 +68,10 @@ void tally_outputs(const double* __restrict outputs, std::size_t blocks, Tally* 
 }
 
 PM_VECTOR_CLONES
-void sum_sixteens(const double* __restrict samples, std::size_t blocks, double* __restrict out) {
+void sum_blocks(const double* __restrict samples, std::size_t blocks, double* __restrict out) {
   for (std::size_t b = 0; b < blocks; ++b) {
     double sum = 0.0;
-    for (std::size_t k = 0; k < 16; ++k) sum += samples[16 * b + k];
+    for (std::size_t k = 0; k < base_block; ++k) sum += samples[base_block * b + k];
     out[b] = sum;
   }
 }

@@ -31,17 +31,21 @@ inline constexpr std::size_t coarse_block = 8;  ///< outputs
 /// Tallies of blocks of coarse_block outputs; the mean is NaN if one output is.
 void tally_outputs(const double* outputs, std::size_t blocks, Tally* out);
 
-/// Sums of 16 samples each; NaN if one is.
-void sum_sixteens(const double* samples, std::size_t blocks, double* out);
+inline constexpr std::size_t base_block = 16;  ///< samples
 
-/// out[k] = Σ share · mean / Σ share over `width` blocks from k on, k < n; NaN where Σ share is
-/// less than `enough`.
+/// Sums of blocks of base_block samples; NaN if one sample is.
+void sum_blocks(const double* samples, std::size_t blocks, double* out);
+
+/// Block means, the share of each block that is there, and the windows to take over them.
 struct WindowSums {
   const double* mean;
   const float* share;
   std::size_t width;  ///< 1, 2 or 4
-  double enough;
+  double enough;      ///< least Σ share of a window
 };
+
+/// out[k] = Σ share · mean / Σ share over the blocks k … k + width − 1, k < n; NaN where Σ share is
+/// less than `enough`.
 void window_means(const WindowSums& in, double* out, std::size_t n);
 
 /// The least |difference| of neighbours, NaN left out; ∞ if there is none.

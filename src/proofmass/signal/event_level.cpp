@@ -8,8 +8,6 @@
 namespace proofmass::signal {
 namespace {
 
-constexpr std::size_t base_block = 16;
-
 struct Part {
   double mean;
   float weight;
@@ -40,7 +38,7 @@ Level base_level(const Source& source) {
   for (std::size_t first = 0; first < blocks; first += stretch) {
     const std::size_t count = std::min(stretch, blocks - first);
     source.read(static_cast<std::ptrdiff_t>(first * base_block), x);
-    sum_sixteens(x.data(), count, &level.mean[first]);
+    sum_blocks(x.data(), count, &level.mean[first]);
     for (std::size_t b = 0; b < count; ++b) {
       double& mean = level.mean[first + b];
       if (std::isnan(mean)) {

@@ -5,6 +5,7 @@
 
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/event_findings.hpp"
+#include "proofmass/signal/event_kernels.hpp"
 #include "proofmass/signal/event_source.hpp"
 
 // The series as block means, from which the coarse scales take their windows.
@@ -12,12 +13,12 @@ namespace proofmass::signal {
 
 /// Means of the series over blocks, and the share of each that is there.
 struct Level {
-  std::size_t block = 16;  ///< samples
+  std::size_t block = base_block;  ///< samples
   std::vector<double> mean;
   std::vector<float> weight;
 };
 
-/// Over blocks of 16 samples; those after the last whole block are left out.
+/// Over blocks of base_block samples; those after the last whole block are left out.
 [[nodiscard]] Level base_level(const Source& source);
 
 /// Over blocks of twice the length.

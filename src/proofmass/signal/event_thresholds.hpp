@@ -11,6 +11,7 @@
 // as short blocks of it show them, that noise of this tail does so once in a hundred records.
 namespace proofmass::signal {
 
+/// Of the outputs that are not NaN.
 [[nodiscard]] Tally tally(View<double> outputs);
 
 /// By blocks of coarse_block outputs; the last may be shorter.
