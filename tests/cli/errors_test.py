@@ -21,7 +21,7 @@ class Usage(CommandTest):
         self.assertIn("proofmass wheel --help", line)
 
     def test_a_missing_file_argument_is_a_usage_error(self):
-        for verb in ("inspect", "convert", "wheel"):
+        for verb in ("inspect", "convert", "wheel", "noise"):
             self.expect_failure(USAGE, verb)
 
     def test_numbers_that_make_no_sense_are_refused_in_plain_words(self):
@@ -69,7 +69,7 @@ class Usage(CommandTest):
 
 
 class Input(CommandTest):
-    VERBS = (["inspect"], ["wheel"], ["convert", "-o", "out.csv"])
+    VERBS = (["inspect"], ["wheel"], ["noise"], ["convert", "-o", "out.csv"])
 
     def refused(self, name, **how):
         for verb in self.VERBS:

@@ -1,16 +1,24 @@
 #include "proofmass/signal/event_kernels.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
 #include "proofmass/core/vector_clones.hpp"
-#include "proofmass/signal/lane_fourier.hpp"
 
 namespace proofmass::signal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+constexpr std::size_t lanes = 8;  // partial sums and maxima of a block
+
+// Four at a time: vectors of eight are slow where the processor has none so long.
+constexpr std::size_t quad = 4;
+using Quad [[gnu::vector_size(quad * sizeof(double))]] = double;
+using QuadBits [[gnu::vector_size(quad * sizeof(double))]] = std::int64_t;
+constexpr std::int64_t all_but_sign = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
@@ -30,18 +38,27 @@ void average_pairs(const double* __restrict in,
 PM_VECTOR_CLONES
 void tally_knocks(const double* m, std::size_t w, std::size_t blocks, Tally* out) {
   for (std::size_t b = 0; b < blocks; ++b, m += fine_block) {
-    Lanes sum{}, max{};
-    for (std::size_t k = 0; k < fine_block; k += lanes) {
-      Lanes here, before, after, far_before, far_after;
-      std::memcpy(&here, m + k, sizeof(Lanes));
-      std::memcpy(&before, m + k - w, sizeof(Lanes));
-      std::memcpy(&after, m + k + w, sizeof(Lanes));
-      std::memcpy(&far_before, m + k - 2 * w, sizeof(Lanes));
-      std::memcpy(&far_after, m + k + 2 * w, sizeof(Lanes));
-      const Lanes output = here - 0.25 * ((far_before + before) + (after + far_after));
-      const Lanes size = output < 0.0 ? -output : output;
-      sum += size;
-      max = size > max ? size : max;
+    double sum[lanes], max[lanes];
+    for (std::size_t first = 0; first < lanes; first += quad) {
+      Quad sums{}, maxima{};
+      for (std::size_t k = first; k < fine_block; k += lanes) {
+        const double* at = m + k;
+        Quad here, before, after, far_before, far_after, size;
+        std::memcpy(&here, at, sizeof(Quad));
+        std::memcpy(&before, at - w, sizeof(Quad));
+        std::memcpy(&after, at + w, sizeof(Quad));
+        std::memcpy(&far_before, at - 2 * w, sizeof(Quad));
+        std::memcpy(&far_after, at + 2 * w, sizeof(Quad));
+        const Quad output = here - 0.25 * ((far_before + before) + (after + far_after));
+        QuadBits bits;
+        std::memcpy(&bits, &output, sizeof(Quad));
+        bits &= all_but_sign;
+        std::memcpy(&size, &bits, sizeof(Quad));
+        sums += size;
+        maxima = size > maxima ? size : maxima;
+      }
+      std::memcpy(sum + first, &sums, sizeof(Quad));
+      std::memcpy(max + first, &maxima, sizeof(Quad));
     }
     double total = 0.0;
     double largest = 0.0;

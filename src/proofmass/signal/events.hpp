@@ -49,7 +49,7 @@ struct EventOptions {
 /// sensor) count as missing. Where the data do not reach half a quantum of noise, σ is at least
 /// half a quantum for knocks and a third of one for steps.
 /// Errors: none. rate_hz must be positive and finite.
-/// Cost: O(N), about 15 ns a sample; allocates about N / 4 doubles, none for each sample.
+/// Cost: O(N), about 8 ns a sample; allocates about N / 4 doubles, none for each sample.
 [[nodiscard]] std::vector<Event> find_events(View<double> series, const EventOptions& options);
 
 /// Sets to NaN the samples of the events and a margin of 0.1 s, or 2 samples if more, at each side;
