@@ -48,11 +48,17 @@ std::string with_std(const Uncertain& figure, std::string_view unit) {
   const std::string tail = (unit.empty() || unit == "°" ? "" : " ") + std::string(unit);
   if (!std::isfinite(figure.value) || !std::isfinite(figure.std)) return "none";
   if (figure.std <= 0.0) return significant(figure.value, 6) + tail;
-  const int decimals = decimals_for(figure.std);
-  constexpr int most_decimals = 9;
-  if (decimals > most_decimals) {
-    return fmt::format("{} ± {}{}", significant(figure.value, 9), significant(figure.std, 2), tail);
+  const double size = std::max(std::abs(figure.value), figure.std);
+  constexpr double least_plain = 1e-4;
+  if (size < least_plain) {
+    const int exponent = static_cast<int>(std::floor(std::log10(size)));
+    const double unity = std::pow(10.0, exponent);
+    return fmt::format("({})e-{:02}{}",
+                       with_std(Uncertain{figure.value / unity, figure.std / unity}), -exponent,
+                       tail);
   }
+  constexpr int most_decimals = 9;
+  const int decimals = std::min(decimals_for(figure.std), most_decimals);
   return fmt::format("{} ± {}{}", fixed(figure.value, decimals), fixed(figure.std, decimals), tail);
 }
 

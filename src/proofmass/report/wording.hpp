@@ -12,8 +12,9 @@
 namespace proofmass::report {
 
 /// "79.614 ± 0.002 turns": the standard deviation rounded to the one or two digits that mean
-/// something, the value to the same place; "−" for a minus sign. A std of 0 is left away.
-/// Source: Particle Data Group, Review of Particle Physics, Introduction, section 5.3 (rounding).
+/// something, the value to the same place; "−" for a minus sign; "(4.90 ± 0.05)e-12 s" where both
+/// lie below 1e-4. A std of 0 is left away. Source: Particle Data Group, Review of Particle
+/// Physics, Introduction, section 5.3 (rounding).
 [[nodiscard]] std::string with_std(const Uncertain& figure, std::string_view unit = "");
 
 /// The same, or `absent` where there is no figure.

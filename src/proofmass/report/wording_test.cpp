@@ -20,6 +20,8 @@ TEST(WithStd, PutsTheUnitBehindAndADegreeSignCloseUp) {
 
 TEST(WithStd, RoundsLargeFiguresToWholeTens) {
   EXPECT_EQ(with_std({12345.0, 400.0}), "12300 ± 400");
+  EXPECT_EQ(with_std({4.898e-12, 4.7e-14}, "s"), "(4.90 ± 0.05)e-12 s");
+  EXPECT_EQ(with_std({1e-13, 2.5e-12}), "(0.1 ± 2.5)e-12");
 }
 
 TEST(WithStd, LeavesAwayAStdOfZeroAndSaysNoneOfWhatIsNotFinite) {
