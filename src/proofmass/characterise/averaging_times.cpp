@@ -44,6 +44,14 @@ std::vector<std::size_t> per_decade(int count, std::size_t last) {
   }
 }
 
+std::vector<std::size_t> one_two_four(std::size_t last) {
+  std::vector<std::size_t> factors;
+  for (std::size_t m = 1; m <= last; m *= 10) {
+    for (const std::size_t digit : {1U, 2U, 4U}) factors.push_back(digit * m);
+  }
+  return factors;
+}
+
 std::vector<std::size_t> wanted(const TauGrid& grid, std::size_t last, double tau0_s) {
   std::vector<std::size_t> factors;
   switch (grid.kind) {
@@ -51,10 +59,7 @@ std::vector<std::size_t> wanted(const TauGrid& grid, std::size_t last, double ta
       for (std::size_t m = 1; m <= last; m *= 2) factors.push_back(m);
       break;
     case TauGrid::Kind::decade:
-      for (std::size_t m = 1; m <= last; m *= 10) {
-        for (const std::size_t digit : {1U, 2U, 4U}) factors.push_back(digit * m);
-      }
-      break;
+      return one_two_four(last);
     case TauGrid::Kind::per_decade:
       return per_decade(grid.per_decade, last);
     case TauGrid::Kind::all:

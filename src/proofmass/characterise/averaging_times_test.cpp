@@ -48,7 +48,7 @@ TEST(AveragingFactors, PerDecadeAreWithinOneInThirtyTwoOfEvenAndCanBeDecimated) 
   EXPECT_EQ(m.front(), 1U);
   EXPECT_EQ(std::adjacent_find(m.begin(), m.end()), m.end());
   for (const std::size_t factor : m) {
-    EXPECT_LE(std::bit_width(factor) - std::countr_zero(factor), 6) << factor;
+    EXPECT_LE(static_cast<int>(std::bit_width(factor)) - std::countr_zero(factor), 6) << factor;
     const double even = count * std::log10(static_cast<double>(factor));
     const double nearest = std::pow(10.0, std::round(even) / count);
     if (factor >= 32) {

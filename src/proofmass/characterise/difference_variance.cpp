@@ -97,19 +97,22 @@ void DifferenceVariances::add(View<double> samples) {
   for (std::size_t from = 0; from < samples.size(); from += chunk) {
     const View<double> part = samples.subspan(from, std::min(chunk, samples.size() - from));
     samples_ += part.size();
-    if (points_ == 0) {
-      if (is_modified(statistic_)) append_point();  // Θ[0], before θ[0]
-      append_point();
-    }
+    if (points_ == 0) begin();
     if (!started_) offset_ = mean_of_finite(part);
     if (gap_ == 0 && all_finite(part)) {
       add_complete(part);
     } else {
-      for (const double y : part) add_one(y);
+      std::ranges::for_each(part, [this](double y) { add_one(y); });
     }
     process(batch);
     if (since_rebase_ >= rebase_every) rebase();
   }
+}
+
+// θ[0], and before it Θ[0].
+void DifferenceVariances::begin() {
+  if (is_modified(statistic_)) append_point();
+  append_point();
 }
 
 void DifferenceVariances::add_complete(View<double> samples) {
@@ -225,23 +228,24 @@ void DifferenceVariances::take(const Level& level, Factor& factor, std::size_t s
   if (begin >= size) return;
   const bool complete = missing_ == 0 || level.missing[size - 1] == level.missing[begin - span];
   if (complete && overlaps(statistic_)) {
-    const double* x = level.points.data() + begin - span;
-    factor.sum += order_of(statistic_) == 2
-                      ? squared_second_differences(x, factor.spacing, size - begin)
-                      : squared_third_differences(x, factor.spacing, size - begin);
+    factor.sum += squared_differences(level.points.data() + begin - span, factor, size - begin);
     factor.terms += size - begin;
     return;
   }
   const std::size_t step = overlaps(statistic_) ? 1 : factor.spacing;
-  const std::size_t late = (begin + first_number) % step;
-  for (std::size_t e = begin + (late == 0 ? 0 : step - late); e < size; e += step) {
-    const std::size_t allowed = span * stride / missing_share;
+  const std::size_t allowed = span * stride / missing_share;
+  for (std::size_t e = begin + (step - (begin + first_number) % step) % step; e < size; e += step) {
     if (missing_ > 0 && level.missing[e] - level.missing[e - span] > allowed) continue;
-    const double* x = level.points.data() + e - span;
-    factor.sum += order_of(statistic_) == 2 ? squared_second_differences(x, factor.spacing, 1)
-                                            : squared_third_differences(x, factor.spacing, 1);
+    factor.sum += squared_differences(level.points.data() + e - span, factor, 1);
     ++factor.terms;
   }
+}
+
+double DifferenceVariances::squared_differences(const double* x,
+                                                const Factor& factor,
+                                                std::size_t n) const {
+  return order_of(statistic_) == 2 ? squared_second_differences(x, factor.spacing, n)
+                                   : squared_third_differences(x, factor.spacing, n);
 }
 
 // Differences of order d do not see polynomials below that order. Taken off what is still held,

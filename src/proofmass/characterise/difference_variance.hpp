@@ -69,6 +69,7 @@ class DifferenceVariances {
     std::size_t span = 0;                ///< points of the longest term, less one
   };
 
+  void begin();
   void add_complete(View<double> samples);
   void add_one(double y);
   void add_sample(double y);
@@ -76,6 +77,9 @@ class DifferenceVariances {
   void append_point();
   void process(std::size_t worth);
   void take(const Level& level, Factor& factor, std::size_t stride) const;
+  [[nodiscard]] double squared_differences(const double* x,
+                                           const Factor& factor,
+                                           std::size_t n) const;
   void decimate(const Level& from, Level& to) const;
   void forget(Level& level);
   void rebase();

@@ -37,7 +37,7 @@ std::vector<PhaseVariance> variances(Statistic statistic,
 // The averages of m samples from each place on, in long double.
 long double average(View<double> y, std::size_t first, std::size_t m) {
   long double sum = 0.0L;
-  for (std::size_t k = 0; k < m; ++k) sum += y[first + k];
+  for (std::size_t k = 0; k < m; ++k) sum += static_cast<long double>(y[first + k]);
   return sum / static_cast<long double>(m);
 }
 

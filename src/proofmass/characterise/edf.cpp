@@ -154,25 +154,25 @@ bool converges(int alpha, int d) {
   return alpha <= 2 && alpha >= -4 && alpha > 1 - 2 * d;
 }
 
-double total_edf(int alpha, double tau_per_T) {
+double total_edf(int alpha, double relative_tau) {
   constexpr std::array<double, 3> b = {1.50, 1.17, 0.93};  // α = 0, −1, −2
   constexpr std::array<double, 3> c = {0.0, 0.22, 0.36};
   const auto i = static_cast<std::size_t>(-std::min(alpha, 0));
-  return b[i] / tau_per_T - c[i];
+  return b[i] / relative_tau - c[i];
 }
 
-double modified_total_edf(int alpha, double tau_per_T) {
+double modified_total_edf(int alpha, double relative_tau) {
   constexpr std::array<double, 5> b = {1.90, 1.20, 1.10, 0.85, 0.75};  // α = 2 … −2
   constexpr std::array<double, 5> c = {2.10, 1.40, 1.20, 0.50, 0.31};
   const auto i = static_cast<std::size_t>(2 - alpha);
-  return b[i] / tau_per_T - c[i];
+  return b[i] / relative_tau - c[i];
 }
 
-double hadamard_total_edf(int alpha, double tau_per_T) {
+double hadamard_total_edf(int alpha, double relative_tau) {
   constexpr std::array<double, 5> b0 = {0.559, 0.868, 0.938, 0.974, 1.276};  // α = 0 … −4
   constexpr std::array<double, 5> b1 = {1.004, 1.140, 1.696, 2.554, 3.149};
   const auto i = static_cast<std::size_t>(-alpha);
-  return 1.0 / (tau_per_T * (b0[i] + b1[i] * tau_per_T));
+  return 1.0 / (relative_tau * (b0[i] + b1[i] * relative_tau));
 }
 
 /// N phase points, r = 0.75 m.
@@ -306,16 +306,16 @@ double edf(Statistic statistic, int alpha, std::size_t m, std::size_t phase_poin
   PM_EXPECTS(alpha <= 2 && alpha >= lowest_alpha(statistic));
   PM_EXPECTS(m >= 1 && phase_points > m);
   const auto N = static_cast<double>(phase_points);
-  const double tau_per_T = static_cast<double>(m) / N;
+  const double relative_tau = static_cast<double>(m) / N;
   statistic = stand_in(statistic, alpha, m);
   switch (statistic) {
     case Statistic::totdev:
-      return std::max(1.0, total_edf(alpha, tau_per_T));
+      return std::max(1.0, total_edf(alpha, relative_tau));
     case Statistic::mtotdev:
     case Statistic::ttotdev:
-      return std::max(1.0, modified_total_edf(alpha, tau_per_T));
+      return std::max(1.0, modified_total_edf(alpha, relative_tau));
     case Statistic::htotdev:
-      return std::max(1.0, hadamard_total_edf(alpha, tau_per_T));
+      return std::max(1.0, hadamard_total_edf(alpha, relative_tau));
     case Statistic::theo1:
       return std::max(1.0, theo1_edf(alpha, N, 0.75 * static_cast<double>(m)));
     case Statistic::pdev:

@@ -102,24 +102,45 @@ AlphaShares only(int alpha) {
   return shares;
 }
 
-TEST(GreenhallRileyEdf, TakesLongSumsInBlocksWithoutLosingATenthOfAPercent) {
+struct Grid {
+  std::vector<std::size_t> factors, per_tau;
+  bool sampled;
+};
+
+// All orders, laws, averagings and strides at each factor, records of so many τ.
+std::vector<EdfCase> cases_of(const Grid& grid) {
+  std::vector<EdfCase> cases;
+  const auto add = [&](int d, int alpha, bool modified, std::size_t m) {
+    for (const std::size_t stride : {std::size_t{1}, (m + 3) / 4, m})
+      for (const std::size_t per_tau : grid.per_tau)
+        cases.push_back({.alpha = alpha,
+                         .d = d,
+                         .m = m,
+                         .phase_points = m * per_tau + 17,
+                         .stride = stride,
+                         .modified = modified,
+                         .sampled = grid.sampled});
+  };
   for (const int d : {2, 3})
     for (int alpha = 2; alpha >= (d == 2 ? -2 : -4); --alpha)
-      for (const bool modified : {false, true})
-        for (const std::size_t m : {3U, 30U, 1000U})
-          for (const std::size_t stride : {std::size_t{1}, std::size_t{7}, m})
-            for (const std::size_t per_tau : {5U, 200U}) {
-              const EdfCase known{.alpha = alpha,
-                                  .d = d,
-                                  .m = m,
-                                  .phase_points = m * per_tau + 17,
-                                  .stride = stride,
-                                  .modified = modified};
-              SCOPED_TRACE(testing::Message() << "α=" << alpha << " d=" << d << " m=" << m
-                                              << " stride=" << stride << " mod=" << modified);
-              EXPECT_NEAR(greenhall_riley_edf(known) / word_for_word(known, only(alpha)), 1.0,
-                          1e-3);
-            }
+      for (const std::size_t m : grid.factors) {
+        add(d, alpha, false, m);
+        add(d, alpha, true, m);
+      }
+  return cases;
+}
+
+testing::Message words(const EdfCase& known) {
+  return testing::Message() << "α=" << known.alpha << " d=" << known.d << " m=" << known.m
+                            << " stride=" << known.stride << " mod=" << known.modified;
+}
+
+TEST(GreenhallRileyEdf, TakesLongSumsInBlocksWithoutLosingATenthOfAPercent) {
+  const Grid grid{.factors = {3, 30, 1000}, .per_tau = {5, 200}, .sampled = false};
+  for (const EdfCase& known : cases_of(grid)) {
+    SCOPED_TRACE(words(known));
+    EXPECT_NEAR(greenhall_riley_edf(known) / word_for_word(known, only(known.alpha)), 1.0, 1e-3);
+  }
 }
 
 TEST(GreenhallRileyEdf, OfWhitePhaseHasAClosedFormEvenForFewIndependentTerms) {
@@ -182,25 +203,14 @@ double from_the_spectrum(const EdfCase& c) {
 }
 
 TEST(EdfFromSampleToSample, IsThatOfTheSpectrum) {
-  for (const int d : {2, 3})
-    for (int alpha = 2; alpha >= (d == 2 ? -2 : -4); --alpha)
-      for (const bool modified : {false, true})
-        for (const std::size_t m : {1U, 2U, 5U, 40U})
-          for (const std::size_t stride : {std::size_t{1}, (m + 3) / 4, m}) {
-            const EdfCase known{.alpha = alpha,
-                                .d = d,
-                                .m = m,
-                                .phase_points = 6 * m + 50,
-                                .stride = stride,
-                                .modified = modified,
-                                .sampled = true};
-            SCOPED_TRACE(testing::Message() << "α=" << alpha << " d=" << d << " m=" << m
-                                            << " stride=" << stride << " mod=" << modified);
-            // Of flicker, averaged as in the modified variance, correlations reach beyond the lags
-            // that are summed.
-            const double tolerance = modified && alpha == -1 ? 7e-3 : 4e-3;
-            EXPECT_NEAR(greenhall_riley_edf(known) / from_the_spectrum(known), 1.0, tolerance);
-          }
+  const Grid grid{.factors = {1, 2, 5, 40}, .per_tau = {7}, .sampled = true};
+  for (const EdfCase& known : cases_of(grid)) {
+    SCOPED_TRACE(words(known));
+    // Of flicker, averaged as in the modified variance, correlations reach beyond the lags that are
+    // summed.
+    const double tolerance = known.modified && known.alpha == -1 ? 7e-3 : 4e-3;
+    EXPECT_NEAR(greenhall_riley_edf(known) / from_the_spectrum(known), 1.0, tolerance);
+  }
 }
 
 TEST(EdfFromSampleToSample, CountsEachStepOfARandomWalkOnceAtOneSample) {

@@ -16,9 +16,9 @@ constexpr std::size_t fewest_samples = 3;
 constexpr double most_work = 4e10;
 
 Status check(View<double> series, const NoiseOptions& options) {
-  if (!(std::isfinite(options.rate_hz) && options.rate_hz > 0.0))
+  if (!std::isfinite(options.rate_hz) || options.rate_hz <= 0.0)
     return Error{Errc::invalid_argument, "rate_hz must be positive and finite"};
-  if (!(options.confidence > 0.0 && options.confidence < 1.0))
+  if (std::isnan(options.confidence) || options.confidence <= 0.0 || options.confidence >= 1.0)
     return Error{Errc::invalid_argument, "confidence must lie between 0 and 1"};
   if (options.noise_type == NoiseTypeSource::fixed && (options.alpha > 2 || options.alpha < -4))
     return Error{Errc::invalid_argument, "the noise type must be one of 2, 1, 0, -1, -2, -3, -4"};
@@ -148,24 +148,27 @@ std::vector<double> without_events(View<double> series,
   return apart;
 }
 
+std::string counted(std::size_t n, const char* noun) {
+  return n == 0 ? std::string() : fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+}
+
 void note_events(NoiseAnalysis& analysis, bool excluded) {
-  std::size_t steps = 0;
-  for (const signal::Event& event : analysis.events)
-    steps += event.kind == signal::EventKind::step ? 1 : 0;
-  const std::size_t knocks = analysis.events.size() - steps;
   if (analysis.events.empty()) return;
-  const auto count = [](std::size_t n, const char* noun) {
-    return n == 0 ? std::string() : fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
-  };
+  const auto steps = static_cast<std::size_t>(
+      std::ranges::count(analysis.events, signal::EventKind::step, &signal::Event::kind));
+  const std::size_t knocks = analysis.events.size() - steps;
   const std::string all =
-      count(knocks, "knock") + (knocks > 0 && steps > 0 ? " and " : "") + count(steps, "step");
-  const bool one = knocks + steps == 1;
+      counted(knocks, "knock") + (knocks > 0 && steps > 0 ? " and " : "") + counted(steps, "step");
+  if (excluded) {
+    analysis.notes.push_back({Severity::warning, all + " left out of everything"});
+    return;
+  }
+  const bool one = analysis.events.size() == 1;
   analysis.notes.push_back(
       {Severity::warning,
-       excluded ? fmt::format("{} left out of everything", all)
-                : fmt::format("{} {} in the figures, and {} no noise of the sensor: leave {} out "
-                              "with --exclude-events",
-                              all, one ? "is" : "are", one ? "is" : "are", one ? "it" : "them")});
+       fmt::format("{0} {1} in the figures, and {1} no noise of the sensor: leave {2} out with "
+                   "--exclude-events",
+                   all, one ? "is" : "are", one ? "it" : "them")});
 }
 
 void note_missing(NoiseAnalysis& analysis, std::size_t left_out) {

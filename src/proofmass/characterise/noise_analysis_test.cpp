@@ -57,6 +57,7 @@ struct Published {
   bool to_five_digits = false;
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name that GoogleTest asks for
 void PrintTo(const Published& published, std::ostream* out) {
   *out << name_of(published.statistic) << (published.uncorrected ? ", uncorrected" : "");
 }

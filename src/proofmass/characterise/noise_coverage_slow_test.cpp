@@ -143,6 +143,19 @@ struct Outcome {
   std::array<Tally, 5> coefficients;
 };
 
+void tally(const NoiseModelFit& model, const Truth& truth, Outcome& outcome) {
+  const auto found = coefficients(model);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const double value = truth.values()[k];
+    Tally& seen = outcome.coefficients[k];
+    const bool in = found[k]->lower_95 <= value && value <= found[k]->upper_two_sided_95;
+    const bool none = found[k]->verdict == Verdict::not_observable;
+    seen.covered += in ? 1 : 0;
+    seen.bounded += value <= found[k]->upper_95 ? 1 : 0;
+    seen.absent += none && found[k]->value == 0.0 && found[k]->upper_95 > 0.0 ? 1 : 0;
+  }
+}
+
 Outcome analyse(Process process, int records) {
   const NoiseOptions options{
       .rate_hz = rate_hz, .taus = {.kind = TauGrid::Kind::octave}, .confidence = 0.95};
@@ -156,16 +169,7 @@ Outcome analyse(Process process, int records) {
       const bool in = point.lower <= truth[point.m] && truth[point.m] <= point.upper;
       outcome.covered[point.m] += in ? 1 : 0;
     }
-    const auto found = coefficients(analysis.model);
-    for (std::size_t k = 0; k < found.size(); ++k) {
-      const double value = process.truth().values()[k];
-      Tally& tally = outcome.coefficients[k];
-      const bool in = found[k]->lower_95 <= value && value <= found[k]->upper_two_sided_95;
-      const bool none = found[k]->verdict == Verdict::not_observable;
-      tally.covered += in ? 1 : 0;
-      tally.bounded += value <= found[k]->upper_95 ? 1 : 0;
-      tally.absent += none && found[k]->value == 0.0 && found[k]->upper_95 > 0.0 ? 1 : 0;
-    }
+    tally(analysis.model, process.truth(), outcome);
   }
   return outcome;
 }

@@ -24,7 +24,7 @@ double by_definition(const std::vector<double>& x, double tau0_s, std::size_t m)
   for (std::size_t i = 0; i < x.size() - m; ++i)
     for (std::size_t delta = 0; delta < m / 2; ++delta)
       sum += std::pow((x[i] - x[i - delta + m / 2]) + (x[i + m] - x[i + delta + m / 2]), 2) /
-             static_cast<double>(m / 2 - delta);
+             static_cast<double>(m / 2 - delta);  // NOLINT(bugprone-integer-division): m is even
   const double span_s = static_cast<double>(m) * tau0_s;
   return sum / (0.75 * static_cast<double>(x.size() - m) * span_s * span_s);
 }

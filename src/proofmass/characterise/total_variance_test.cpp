@@ -91,8 +91,9 @@ double mean_of(const std::vector<double>& v, std::size_t first, std::size_t coun
 
 std::vector<double> mirrored(std::vector<double> stretch) {
   const std::size_t n = stretch.size();
-  const double slope = (mean_of(stretch, n - n / 2, n / 2) - mean_of(stretch, 0, n / 2)) /
-                       static_cast<double>(n - n / 2);
+  const double slope =
+      (mean_of(stretch, n - n / 2, n / 2) - mean_of(stretch, 0, n / 2)) /
+      static_cast<double>(n - n / 2);  // NOLINT(bugprone-integer-division): the longer half
   for (std::size_t i = 0; i < n; ++i) stretch[i] -= slope * static_cast<double>(i);
   std::vector<double> extended(stretch.rbegin(), stretch.rend());
   extended.insert(extended.end(), stretch.begin(), stretch.end());

@@ -105,53 +105,70 @@ double WhittleLikelihood::log_likelihood(const ArrayXd& S) const {
   return ramp_rows_ > 0 ? data + 0.5 * std::log(found.variance) : data;
 }
 
-WhittleFit WhittleLikelihood::maximise(const std::vector<int>& active,
-                                       const std::optional<Held>& held,
-                                       const VectorXd& start) const {
-  const MatrixXd X = chosen(columns_, active);
-  ArrayXd fixed = ArrayXd::Zero(X.rows());
-  if (held) fixed = columns_.col(held->column).array() * held->strength;
-  const ArrayXd least = 1e-9 * rough_;  // keeps S off zero where all that reaches is gone
-  VectorXd theta(X.cols());
-  ArrayXd S = rough_;
+// One problem of maximise(): the columns that move, and the density that does not.
+struct WhittleLikelihood::Ascent {
+  const WhittleLikelihood& likelihood;
+  MatrixXd X;
+  ArrayXd fixed;
+  ArrayXd least;  // keeps S off zero where all that reaches is gone
+  VectorXd theta;
+  ArrayXd S;
   double best = -std::numeric_limits<double>::infinity();
-  if (start.size() > 0) {
-    for (std::size_t k = 0; k < active.size(); ++k) theta(static_cast<Index>(k)) = start(active[k]);
-    S = (fixed + (X * theta).array()).max(least);
-    best = log_likelihood(S);
+
+  [[nodiscard]] ArrayXd density(const VectorXd& at) const {
+    return (fixed + (X * at).array()).max(least);
   }
-  for (int step = 0; step < most_steps && X.cols() > 0; ++step) {
-    const ArrayXd weight = 0.5 * dof_ / S.square();
-    const ArrayXd p = expected_densities(ramp(S));
+
+  // Fisher scoring: whether it led up by more than is worth another step.
+  bool climb() {
+    const ArrayXd weight = 0.5 * likelihood.dof_ / S.square();
+    const ArrayXd p = likelihood.expected_densities(likelihood.ramp(S));
     const MatrixXd WX = weight.matrix().asDiagonal() * X;
     const VectorXd next =
         non_negative_minimiser(X.transpose() * WX, WX.transpose() * (p - fixed).matrix());
     const VectorXd from = std::isfinite(best) ? theta : next;
     double value = best, fraction = 1.0;
-    for (int halving = 0; halving < 12; ++halving, fraction *= 0.5) {
+    constexpr int most_halvings = 12;
+    for (int halving = 0; halving < most_halvings; ++halving, fraction *= 0.5) {
       theta = from + fraction * (next - from);
-      S = (fixed + (X * theta).array()).max(least);
-      value = log_likelihood(S);
+      S = density(theta);
+      value = likelihood.log_likelihood(S);
       if (!(value < best)) break;
     }
     if (value < best) {  // no way up: this is the top
       theta = from;
-      S = (fixed + (X * theta).array()).max(least);
-      break;
+      S = density(theta);
+      return false;
     }
-    const bool done = value - best < converged;
+    const bool worth_another = !(value - best < converged);
     best = value;
-    if (done) break;
+    return worth_another;
   }
-  if (X.cols() == 0) S = fixed.max(least);
+};
+
+WhittleFit WhittleLikelihood::maximise(const std::vector<int>& active,
+                                       const std::optional<Held>& held,
+                                       const VectorXd& start) const {
+  Ascent ascent{*this,         chosen(columns_, active), ArrayXd::Zero(columns_.rows()),
+                1e-9 * rough_, VectorXd(active.size()),  rough_};
+  if (held) ascent.fixed = columns_.col(held->column).array() * held->strength;
+  if (start.size() > 0) {
+    for (std::size_t k = 0; k < active.size(); ++k)
+      ascent.theta(static_cast<Index>(k)) = start(active[k]);
+    ascent.S = ascent.density(ascent.theta);
+    ascent.best = log_likelihood(ascent.S);
+  }
+  if (active.empty()) ascent.S = ascent.density(ascent.theta);
+  for (int step = 0; step < most_steps && !active.empty() && ascent.climb(); ++step) {
+  }
   WhittleFit fit;
   fit.strength = VectorXd::Zero(columns_.cols());
   for (std::size_t k = 0; k < active.size(); ++k)
-    fit.strength(active[k]) = theta(static_cast<Index>(k));
+    fit.strength(active[k]) = ascent.theta(static_cast<Index>(k));
   if (held) fit.strength(held->column) = held->strength;
-  fit.density = S.matrix();
-  fit.log_likelihood = log_likelihood(S);
-  const Ramp found = ramp(S);
+  fit.density = ascent.S.matrix();
+  fit.log_likelihood = log_likelihood(ascent.S);
+  const Ramp found = ramp(ascent.S);
   fit.slope = found.slope;
   fit.slope_variance = found.variance;
   return fit;

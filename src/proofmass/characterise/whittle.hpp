@@ -74,6 +74,7 @@ class WhittleLikelihood {
   struct Ramp {
     double slope = 0.0, variance = 0.0;
   };
+  struct Ascent;
   [[nodiscard]] Ramp ramp(const Eigen::ArrayXd& S) const;
   [[nodiscard]] double log_likelihood(const Eigen::ArrayXd& S) const;
   [[nodiscard]] Eigen::ArrayXd expected_densities(const Ramp& ramp) const;

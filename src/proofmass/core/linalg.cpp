@@ -54,6 +54,21 @@ double feasible_step(const Eigen::VectorXd& x,
   return step;
 }
 
+// Moves x to the minimiser over the free unknowns; those that would turn negative stop at zero and
+// are free no more.
+void settle(const ScaledProblem& problem, Eigen::VectorXd& x, std::vector<Index>& free) {
+  while (!free.empty()) {
+    const Eigen::VectorXd to = solved_on(problem, free);
+    const double step = feasible_step(x, to, free);
+    x += step * (to - x);
+    if (step >= 1.0) return;
+    std::erase_if(free, [&](Index i) { return x(i) <= 1e-15 * x.maxCoeff() && to(i) <= 0.0; });
+    Eigen::VectorXd kept = Eigen::VectorXd::Zero(x.size());
+    for (const Index i : free) kept(i) = x(i);
+    x = kept;
+  }
+}
+
 }  // namespace
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A) {
@@ -73,17 +88,7 @@ Eigen::VectorXd non_negative_minimiser(const Eigen::MatrixXd& A, const Eigen::Ve
     Index best = 0;
     if (downhill.maxCoeff(&best) <= 1e-12 * problem.b.cwiseAbs().maxCoeff()) break;
     free.push_back(best);
-    for (;;) {
-      const Eigen::VectorXd to = solved_on(problem, free);
-      const double step = feasible_step(x, to, free);
-      x += step * (to - x);
-      if (step >= 1.0) break;
-      std::erase_if(free, [&](Index i) { return x(i) <= 1e-15 * x.maxCoeff() && to(i) <= 0.0; });
-      for (Index i = 0; i < x.size(); ++i) {
-        if (std::find(free.begin(), free.end(), i) == free.end()) x(i) = 0.0;
-      }
-      if (free.empty()) break;
-    }
+    settle(problem, x, free);
   }
   return problem.scale.asDiagonal() * x;
 }
