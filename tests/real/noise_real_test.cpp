@@ -37,6 +37,8 @@ struct Axis {
   double density_mg_rthz;  ///< one-sided, root of the mean PSD from 20 to 40 Hz
 };
 
+// GoogleTest looks for a printer of this very name.
+// NOLINTNEXTLINE(readability-identifier-naming)
 void PrintTo(const Axis& axis, std::ostream* out) {
   *out << "run " << axis.run << " " << axis.channel;
 }

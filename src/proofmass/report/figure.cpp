@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
+#include <limits>
 #include <set>
 #include <string_view>
 
@@ -58,7 +59,7 @@ struct Mapping {
 };
 
 struct Extent {
-  double low = INFINITY, high = -INFINITY;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
 
   void add(double value, bool log) {
     if (!std::isfinite(value) || (log && value <= 0.0)) return;

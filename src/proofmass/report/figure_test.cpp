@@ -2,12 +2,15 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <regex>
 
 #include "proofmass/report/page.hpp"
 
 namespace proofmass::report {
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Figure plot(std::vector<double> y) {
   Figure figure{
@@ -32,12 +35,12 @@ std::string curve_path(const std::string& text) {
 
 TEST(Svg, BreaksALineWhereAValueIsNotFinite) {
   EXPECT_EQ(count(curve_path(svg(plot({1.0, 2.0, 3.0, 4.0}), "f")), "M"), 1);
-  EXPECT_EQ(count(curve_path(svg(plot({1.0, std::nan(""), 3.0, INFINITY, 2.0}), "f")), "M"), 3);
+  EXPECT_EQ(count(curve_path(svg(plot({1.0, std::nan(""), 3.0, infinity, 2.0}), "f")), "M"), 3);
 }
 
 TEST(Svg, HasNoNumberThatIsNone) {
-  Figure figure = plot({std::nan(""), 1e300, -1e300, INFINITY});
-  figure.bands = {{"b", {0.0, 1.0}, {std::nan(""), 0.0}, {1.0, INFINITY}}};
+  Figure figure = plot({std::nan(""), 1e300, -1e300, infinity});
+  figure.bands = {{"b", {0.0, 1.0}, {std::nan(""), 0.0}, {1.0, infinity}}};
   const std::string text = svg(figure, "f");
   EXPECT_EQ(text.find("nan"), std::string::npos);
   EXPECT_EQ(text.find("inf"), std::string::npos);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 #include "proofmass/report/noise_wording.hpp"
@@ -185,7 +186,7 @@ Figure deviation_figure(const ChannelNoise& channel) {
             .x = {},
             .lower = {},
             .upper = {}};
-  double lowest = INFINITY;
+  double lowest = std::numeric_limits<double>::infinity();
   for (const DeviationPoint& point : points) {
     curve.x.push_back(point.tau_s);
     curve.y.push_back(point.value);

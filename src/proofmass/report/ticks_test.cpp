@@ -2,12 +2,14 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 
 namespace proofmass::report {
 namespace {
 
 std::vector<std::string> labels(const std::vector<Tick>& ticks) {
   std::vector<std::string> all;
+  all.reserve(ticks.size());
   for (const Tick& tick : ticks) all.push_back(tick.label);
   return all;
 }
@@ -48,7 +50,7 @@ TEST(LinearTicks, OfARangeThatIsNoneAreNone) {
   EXPECT_TRUE(linear_ticks(1.0, 1.0, 5).empty());
   EXPECT_TRUE(linear_ticks(2.0, 1.0, 5).empty());
   EXPECT_TRUE(linear_ticks(0.0, std::nan(""), 5).empty());
-  EXPECT_TRUE(linear_ticks(0.0, INFINITY, 5).empty());
+  EXPECT_TRUE(linear_ticks(0.0, std::numeric_limits<double>::infinity(), 5).empty());
   EXPECT_TRUE(linear_ticks(1e20, std::nextafter(1e20, 2e20), 5).empty());
 }
 

@@ -33,6 +33,7 @@ TEST(EvenGrid, OfAUniformTimeBaseIsTheSamplesThemselves) {
 
 TEST(EvenGrid, PutsNaNWhereSamplesAreMissing) {
   std::vector<double> stamps_s;
+  stamps_s.reserve(40);
   for (int k = 0; k < 40; ++k) stamps_s.push_back(0.01 * (k < 10 ? k : k + 3));
   const auto grid = even_grid(stamped(stamps_s, 100.0), stamps_s.size());
   ASSERT_TRUE(grid);
@@ -49,6 +50,7 @@ TEST(EvenGrid, PutsNaNWhereSamplesAreMissing) {
 
 TEST(EvenGrid, LeavesJitterAlone) {
   std::vector<double> stamps_s;
+  stamps_s.reserve(1000);
   for (int k = 0; k < 1000; ++k) stamps_s.push_back(0.01 * (k + 0.2 * std::sin(1.9 * k)));
   const auto grid = even_grid(stamped(stamps_s, 100.0), 1000);
   ASSERT_TRUE(grid);
@@ -58,6 +60,7 @@ TEST(EvenGrid, LeavesJitterAlone) {
 
 TEST(EvenGrid, TakesAStampThatWasLateForNoHole) {
   std::vector<double> stamps_s;
+  stamps_s.reserve(100);
   for (int k = 0; k < 100; ++k) stamps_s.push_back(0.01 * k);
   // Five samples held up by 40 ms and handed over at once.
   for (std::size_t k = 50; k < 55; ++k) stamps_s[k] = 0.01 * 54 + 1e-4 * static_cast<double>(k);
@@ -68,6 +71,7 @@ TEST(EvenGrid, TakesAStampThatWasLateForNoHole) {
 
 TEST(EvenGrid, FindsTwoHolesCloseToEachOther) {
   std::vector<double> stamps_s;
+  stamps_s.reserve(40);
   for (int k = 0; k < 40; ++k)
     stamps_s.push_back(0.01 * (k + (k >= 10 ? 2 : 0) + (k >= 13 ? 5 : 0)));
   const auto grid = even_grid(stamped(stamps_s, 100.0), 40);
@@ -79,6 +83,7 @@ TEST(EvenGrid, FindsTwoHolesCloseToEachOther) {
 
 TEST(EvenGrid, TakesTheRateThatTheWholeRecordHas) {
   std::vector<double> stamps_s;
+  stamps_s.reserve(5000);
   for (int k = 0; k < 5000; ++k) stamps_s.push_back(k / 99.9);
   const auto grid = even_grid(stamped(stamps_s, 100.0), 5000);
   ASSERT_TRUE(grid);

@@ -92,31 +92,34 @@ void follow_to_its_end(const Source& source, Event& event, double rate_hz) {
   }
 }
 
-}  // namespace
-
-std::vector<Event> assemble(const Source& source,
-                            std::vector<Hit> hits,
-                            std::vector<Step> steps,
-                            double rate_hz) {
-  const View<double> series = source.series;
-  std::ranges::sort(steps, {}, &Step::at);
-  std::vector<double> sizes;
-  for (std::size_t k = 0; k < steps.size(); ++k)
-    sizes.push_back(size_of_step(source, steps, k, rate_hz));
+/// Gives each step the size that the series around it shows.
+void measure_steps(const Source& source, std::vector<Step>& steps, double rate_hz) {
+  std::vector<double> sizes(steps.size());
+  for (std::size_t k = 0; k < steps.size(); ++k) sizes[k] = size_of_step(source, steps, k, rate_hz);
   for (std::size_t k = 0; k < steps.size(); ++k) steps[k].size = sizes[k];
-  pair_steps(steps, hits, rate_hz);
-  merge_hits(hits, std::max<std::size_t>(4, samples_in(0.2, rate_hz)));
+}
+
+/// Whether a hit is of the step's own making: a step sets the knock filter off beside it, in a
+/// window as long as that it was seen through.
+bool lies_beside(const Stretch& at, const Step& step, double rate_hz) {
+  const std::size_t reach =
+      std::max<std::size_t>(32, 2 * std::min(step.window, samples_in(0.5, rate_hz)));
+  return at.first <= step.at + reach && step.at <= at.last + reach;
+}
+
+/// An event for each step, widened by the hits beside it, and then one for each other hit.
+std::vector<Event> events_from(View<double> series,
+                               const std::vector<Hit>& hits,
+                               const std::vector<Step>& steps,
+                               double rate_hz) {
   std::vector<Event> events;
+  events.reserve(steps.size() + hits.size());
   for (const Step& step : steps)
     events.push_back({EventKind::step, step.at, step.at, step.size, step.sigmas});
   for (const Hit& hit : hits) {
     const Stretch at{hit.at.first, std::min(hit.at.last, series.size() - 1)};
-    // A step sets the knock filter off beside it, in a window as long as that it was seen through.
-    const auto owner = std::ranges::find_if(steps, [&](const Step& step) {
-      const std::size_t reach =
-          std::max<std::size_t>(32, 2 * std::min(step.window, samples_in(0.5, rate_hz)));
-      return at.first <= step.at + reach && step.at <= at.last + reach;
-    });
+    const auto owner = std::ranges::find_if(
+        steps, [&](const Step& step) { return lies_beside(at, step, rate_hz); });
     if (owner == steps.end()) {
       events.push_back(
           {EventKind::knock, at.first, at.last, size_of_knock(series, at, rate_hz), hit.sigmas});
@@ -126,19 +129,37 @@ std::vector<Event> assemble(const Source& source,
       event.last = std::max(event.last, at.last);
     }
   }
+  return events;
+}
+
+/// A knock that reaches into what a step has taken gives way.
+void part_overlapping(std::vector<Event>& events) {
+  for (std::size_t k = 1; k < events.size(); ++k) {
+    if (events[k].first > events[k - 1].last) continue;
+    events[k].first = events[k - 1].last + 1;
+    events[k].last = std::max(events[k].last, events[k].first);
+  }
+}
+
+}  // namespace
+
+std::vector<Event> assemble(const Source& source,
+                            std::vector<Hit> hits,
+                            std::vector<Step> steps,
+                            double rate_hz) {
+  std::ranges::sort(steps, {}, &Step::at);
+  measure_steps(source, steps, rate_hz);
+  pair_steps(steps, hits, rate_hz);
+  merge_hits(hits, std::max<std::size_t>(4, samples_in(0.2, rate_hz)));
+  std::vector<Event> events = events_from(source.series, hits, steps, rate_hz);
   for (Event& event : events) {
     if (event.kind == EventKind::step && event.last > event.first)
       settle_burst(source, event, rate_hz);
     if (event.kind == EventKind::knock) follow_to_its_end(source, event, rate_hz);
   }
   std::ranges::sort(events, {}, &Event::first);
-  for (std::size_t k = 1; k < events.size(); ++k) {
-    if (events[k].first > events[k - 1].last) continue;
-    // A knock that reaches into what a step has taken gives way.
-    events[k].first = events[k - 1].last + 1;
-    events[k].last = std::max(events[k].last, events[k].first);
-  }
-  std::erase_if(events, [&](const Event& event) { return event.last >= series.size(); });
+  part_overlapping(events);
+  std::erase_if(events, [&](const Event& event) { return event.last >= source.series.size(); });
   return events;
 }
 

@@ -64,6 +64,40 @@ class FineScales {
   std::size_t w_ = 1;
 };
 
+constexpr std::size_t blocks_per_stretch = FineScales::stretch / fine_block;
+
+/// Adds the samples of block `b` that clear the bar; the stretch opened begins at block `begin`.
+void add_hits_of_block(const FineScales& fine,
+                       std::size_t begin,
+                       std::size_t b,
+                       const Bar& bar,
+                       std::vector<Hit>& hits) {
+  for (std::size_t k = 0; k < fine_block; ++k) {
+    const double size = std::abs(fine.departure_at((b - begin) * fine_block + k));
+    const std::size_t at = b * fine_block + k;
+    if (size > bar.at(b)) hits.push_back({{at, at + fine.window() - 1}, size / bar.scale_at(b)});
+  }
+}
+
+/// Looks again at the stretch that begins at block `begin`, read only if a block of it stood out.
+void add_hits_of_stretch(FineScales& fine,
+                         std::size_t begin,
+                         const FineTallies& blocks,
+                         const std::array<Bar, fine_scales>& bars,
+                         std::vector<Hit>& hits) {
+  const std::size_t end = std::min(begin + blocks_per_stretch, blocks[0].size());
+  bool open = false;
+  for (std::size_t scale = 0; scale < fine_scales; ++scale) {
+    for (std::size_t b = begin; b < end; ++b) {
+      if (!(blocks[scale][b].max > bars[scale].at(b))) continue;
+      if (!open) fine.open(begin * fine_block);
+      open = true;
+      while (fine.window() < (std::size_t{1} << scale)) fine.widen();
+      add_hits_of_block(fine, begin, b, bars[scale], hits);
+    }
+  }
+}
+
 }  // namespace
 
 FineTallies tally_fine_scales(const Source& source) {
@@ -86,28 +120,10 @@ FineTallies tally_fine_scales(const Source& source) {
 std::vector<Hit> hits_on_fine_scales(const Source& source,
                                      const FineTallies& blocks,
                                      const std::array<Bar, fine_scales>& bars) {
-  constexpr std::size_t per_stretch = FineScales::stretch / fine_block;
   std::vector<Hit> hits;
   FineScales fine(source, 0);
-  for (std::size_t begin = 0; begin < blocks[0].size(); begin += per_stretch) {
-    const std::size_t end = std::min(begin + per_stretch, blocks[0].size());
-    bool open = false;
-    for (std::size_t scale = 0; scale < fine_scales; ++scale) {
-      const auto is_hot = [&](std::size_t b) { return blocks[scale][b].max > bars[scale].at(b); };
-      for (std::size_t b = begin; b < end; ++b) {
-        if (!is_hot(b)) continue;
-        if (!open) fine.open(begin * fine_block);
-        open = true;
-        while (fine.window() < (std::size_t{1} << scale)) fine.widen();
-        for (std::size_t k = 0; k < fine_block; ++k) {
-          const double size = std::abs(fine.departure_at((b - begin) * fine_block + k));
-          const std::size_t at = b * fine_block + k;
-          if (size > bars[scale].at(b))
-            hits.push_back({{at, at + fine.window() - 1}, size / bars[scale].scale_at(b)});
-        }
-      }
-    }
-  }
+  for (std::size_t begin = 0; begin < blocks[0].size(); begin += blocks_per_stretch)
+    add_hits_of_stretch(fine, begin, blocks, bars, hits);
   return hits;
 }
 

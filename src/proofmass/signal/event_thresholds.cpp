@@ -42,6 +42,31 @@ double median_above(std::span<double> above, std::size_t seen, double least) {
   return *middle;
 }
 
+constexpr double sigma_per_mean = 1.2533141373155003;  ///< √(π/2)
+
+/// The median scale of the whole record, `floor` at least.
+double scale_of_record(const std::vector<Tally>& blocks, double floor) {
+  std::vector<double> all;
+  for (std::size_t b = 0; b < blocks.size(); b += stride_of(blocks.size()))
+    if (!std::isnan(blocks[b].mean)) all.push_back(sigma_per_mean * blocks[b].mean);
+  return std::max(floor, all.empty() ? 0.0 : median_of(all));
+}
+
+/// The median scale of a group's blocks, `least` at least; `above` is room to work in.
+double scale_of_group(View<Tally> blocks, double least, std::vector<double>& above) {
+  above.resize(blocks.size());
+  std::size_t seen = 0;
+  std::size_t count = 0;
+  for (const Tally& block : blocks) {
+    const double sigma = sigma_per_mean * block.mean;
+    above[count] = sigma;
+    count += sigma > least ? 1 : 0;
+    seen += std::isnan(sigma) ? 0 : 1;
+  }
+  above.resize(count);
+  return median_above(above, seen, least);
+}
+
 }  // namespace
 
 Tally tally(View<double> outputs) {
@@ -77,26 +102,13 @@ std::size_t group_of(double rate_hz, std::size_t samples_per_block) {
 std::vector<double> group_scales(const std::vector<Tally>& blocks,
                                  std::size_t group,
                                  double floor) {
-  constexpr double sigma_per_mean = 1.2533141373155003;  // √(π/2)
-  std::vector<double> all;
-  for (std::size_t b = 0; b < blocks.size(); b += stride_of(blocks.size()))
-    if (!std::isnan(blocks[b].mean)) all.push_back(sigma_per_mean * blocks[b].mean);
-  const double overall = std::max(floor, all.empty() ? 0.0 : median_of(all));
-  std::vector<double> own;
+  const double overall = scale_of_record(blocks, floor);
+  std::vector<double> own(std::max<std::size_t>(blocks.size() / group, 1));
   std::vector<double> above;
-  for (std::size_t g = 0; g < std::max<std::size_t>(blocks.size() / group, 1); ++g) {
+  for (std::size_t g = 0; g < own.size(); ++g) {
     const std::size_t end = (g + 2) * group > blocks.size() ? blocks.size() : (g + 1) * group;
-    above.resize(end - g * group);
-    std::size_t seen = 0;
-    std::size_t count = 0;
-    for (std::size_t b = g * group; b < end; ++b) {
-      const double sigma = sigma_per_mean * blocks[b].mean;
-      above[count] = sigma;
-      count += sigma > overall ? 1 : 0;
-      seen += std::isnan(sigma) ? 0 : 1;
-    }
-    above.resize(count);
-    own.push_back(median_above(above, seen, overall));
+    const View<Tally> members = View<Tally>(blocks).subspan(g * group, end - g * group);
+    own[g] = scale_of_group(members, overall, above);
   }
   std::vector<double> scale(own.size());
   for (std::size_t g = 0; g < own.size(); ++g)

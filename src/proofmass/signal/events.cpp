@@ -14,11 +14,13 @@ namespace {
 
 void add_missing(Source& source, const std::vector<Hit>& hits) {
   std::vector<Hit> all;
+  all.reserve(source.missing.size() + hits.size());
   for (const Stretch& gap : source.missing) all.push_back({gap, 0.0});
   for (const Hit& hit : hits)
     all.push_back({{hit.at.first - std::min<std::size_t>(hit.at.first, 2), hit.at.last + 2}, 0.0});
   merge_hits(all, 1);
   source.missing.clear();
+  source.missing.reserve(all.size());
   for (const Hit& hit : all) source.missing.push_back(hit.at);
 }
 

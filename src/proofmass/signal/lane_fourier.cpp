@@ -113,7 +113,7 @@ PM_VECTOR_CLONES ValidSum valid_sum(const double* values, std::size_t n) {
   for (std::size_t i = 0; i < n; i += lanes) {
     Lanes x;
     std::memcpy(&x, values + i, sizeof(x));
-    const auto valid = (x - x) == 0.0;
+    const auto valid = x * 0.0 == 0.0;  // NaN and ±∞ give NaN
     sums += valid ? x : Lanes{};
     counts += valid ? Lanes{} + 1.0 : Lanes{};
   }

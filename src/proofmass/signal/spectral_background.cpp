@@ -100,7 +100,10 @@ View<Cell> neighbourhood(const std::vector<Cell>& cells, std::size_t index) {
     const std::size_t next = down ? first - 1 : last;
     if (distance(next) > reach && counting >= fewest_cells) break;
     if (cells[next].weight > 0.0) ++counting;
-    (down ? first : last) += down ? std::size_t(-1) : 1;
+    if (down)
+      --first;
+    else
+      ++last;
   }
   return View<Cell>(cells).subspan(first, last - first);
 }
