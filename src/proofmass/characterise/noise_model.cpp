@@ -40,9 +40,8 @@ double NoiseModelFit::allan_variance(Term term, double tau_s) const {
       return 3.0 * square(quantisation.value / tau_s);
     case Term::white: {
       if (!bandwidth_hz) return square(white.value) / tau_s;
-      const double samples = std::max(1.0, std::round(tau_s * rate_hz));
       return square(white.value) * relaxation_allan_variance(1.0 / (2.0 * pi * bandwidth_hz->value),
-                                                             static_cast<std::size_t>(samples),
+                                                             std::max(1.0, tau_s * rate_hz),
                                                              rate_hz);
     }
     case Term::flicker:

@@ -93,11 +93,10 @@ double relaxation_density(double time_constant_s, double frequency_hz, const Sam
   return unit_variance * sampling.rate_hz * sums.one_less_phi / (1.0 + sums.phi);
 }
 
-double relaxation_allan_variance(double time_constant_s, std::size_t m, double rate_hz) {
-  const auto D = static_cast<double>(m);
-  const RelaxationSums sums = relaxation_sums(time_constant_s * rate_hz, D);
+double relaxation_allan_variance(double time_constant_s, double m, double rate_hz) {
+  const RelaxationSums sums = relaxation_sums(time_constant_s * rate_hz, m);
   const double variance = rate_hz * sums.one_less_phi / (1.0 + sums.phi);
-  return variance * (sums.own - sums.across) / (D * D);
+  return variance * (sums.own - sums.across) / (m * m);
 }
 
 }  // namespace proofmass::characterise

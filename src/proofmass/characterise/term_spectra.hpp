@@ -37,8 +37,6 @@ struct Sampling {
 
 /// Allan variance at τ = m/rate of the same process, as sampled: the difference of the variance of
 /// the means over m samples and of their covariance with the next.
-[[nodiscard]] double relaxation_allan_variance(double time_constant_s,
-                                               std::size_t m,
-                                               double rate_hz);
+[[nodiscard]] double relaxation_allan_variance(double time_constant_s, double m, double rate_hz);
 
 }  // namespace proofmass::characterise

@@ -238,5 +238,19 @@ TEST(SineAllanVariance, IsThatOfASampledSine) {
   }
 }
 
+TEST(RelaxationAllanVariance, OfOneSampleIsHalfTheMeanSquareStep) {
+  // Neighbours of variance 1 correlate by φ, and the density at zero is τ0 (1 + φ)/(1 − φ).
+  const double T = 0.03, rate_hz = 100.0, phi = std::exp(-1.0 / (T * rate_hz));
+  EXPECT_NEAR(relaxation_allan_variance(T, 1.0, rate_hz),
+              rate_hz * (1.0 - phi) * (1.0 - phi) / (1.0 + phi), 1e-10);
+}
+
+TEST(RelaxationAllanVariance, OfManySamplesIsThatOfWhiteNoiseOrOfARandomWalk) {
+  EXPECT_NEAR(relaxation_allan_variance(0.01, 1e5, 100.0) * 1e3, 1.0, 1e-4);  // σ² τ, density 1
+  const double T = 1e4, tau_s = 10.0;  // far below T: a walk with K = 1/T
+  EXPECT_NEAR(relaxation_allan_variance(T, tau_s * 100.0, 100.0) / (tau_s / (3.0 * T * T)), 1.0,
+              2e-3);
+}
+
 }  // namespace
 }  // namespace proofmass::characterise

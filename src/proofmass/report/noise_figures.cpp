@@ -119,8 +119,8 @@ void add_terms(const ChannelNoise& channel, const Window& window, double shown, 
          .x = top_s,
          .y = std::sqrt(markov(top_s)) * shown,
          .ink = Ink::grey,
-         .below = true,
-         .left = true});
+         .below = false,
+         .left = false});
   }
   const auto sum = [&](double tau_s) { return analysis.model.allan_variance(tau_s); };
   figure.curves.push_back({"fitted sum", taus, curve(sum), Ink::orange});
