@@ -240,9 +240,9 @@ TEST(SineAllanVariance, IsThatOfASampledSine) {
 
 TEST(RelaxationAllanVariance, OfOneSampleIsHalfTheMeanSquareStep) {
   // Neighbours of variance 1 correlate by φ, and the density at zero is τ0 (1 + φ)/(1 − φ).
-  const double T = 0.03, rate_hz = 100.0, phi = std::exp(-1.0 / (T * rate_hz));
-  EXPECT_NEAR(relaxation_allan_variance(T, 1.0, rate_hz),
-              rate_hz * (1.0 - phi) * (1.0 - phi) / (1.0 + phi), 1e-10);
+  const double T = 0.03, hz = 100.0, phi = std::exp(-1.0 / (T * hz));
+  EXPECT_NEAR(relaxation_allan_variance(T, 1.0, hz), hz * (1.0 - phi) * (1.0 - phi) / (1.0 + phi),
+              1e-10);
 }
 
 TEST(RelaxationAllanVariance, OfManySamplesIsThatOfWhiteNoiseOrOfARandomWalk) {
