@@ -244,7 +244,8 @@ void add_budget(CLI::App& app, BudgetCommand& command) {
 }
 
 void add_sensor(CLI::App& app, SensorCommand& command) {
-  CLI::App& verb = *app.add_subcommand("sensor", "a sensor file for programs that read others");
+  CLI::App& verb =
+      *app.add_subcommand("sensor", "a sensor file's figures in the formats of other programs");
   verb.add_option("ACTION", command.action, "export")
       ->type_name("")
       ->check(CLI::IsMember({"export"}))

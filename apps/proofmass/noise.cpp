@@ -131,6 +131,10 @@ void analyse(NoiseChannel& channel, NoiseOptions options) {
   options.rate_hz = channel.rate_hz;
   options.lsb = channel.lsb;
   Result<NoiseAnalysis> found = characterise::analyse_noise(channel.series, options);
+  // What was asked for makes no sense, of this channel or of any.
+  if (!found && found.error().code == Errc::invalid_argument) {
+    throw Failure(usage, found.error().at(channel.shown.name).message);
+  }
   if (found)
     channel.shown.analysis = std::move(found).value();
   else
@@ -144,8 +148,7 @@ void analyse_all(std::vector<NoiseChannel>& channels,
                  const Progress& progress) {
   SharedProgress shared(progress, channels.size());
   std::atomic<std::size_t> next{0};
-  std::exception_ptr trouble;
-  std::mutex mutex;
+  std::vector<std::exception_ptr> troubles(channels.size());
   const auto work = [&] {
     for (std::size_t k = next++; k < channels.size(); k = next++) {
       try {
@@ -153,20 +156,21 @@ void analyse_all(std::vector<NoiseChannel>& channels,
         own.progress = shared.part(k);
         analyse(channels[k], std::move(own));
       } catch (...) {
-        const std::scoped_lock lock(mutex);
-        trouble = std::current_exception();
+        troubles[k] = std::current_exception();
       }
     }
   };
   {
     const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
-    std::vector<std::jthread> helpers;
+    std::vector<std::jthread> others;
     for (std::size_t k = 1; k < std::min(processors, channels.size()); ++k) {
-      helpers.emplace_back(work);
+      others.emplace_back(work);
     }
     work();
   }
-  if (trouble) std::rethrow_exception(trouble);
+  for (const std::exception_ptr& trouble : troubles) {
+    if (trouble) std::rethrow_exception(trouble);
+  }
 }
 
 sensor::MeasuredCoefficient measured(const characterise::Coefficient& found) {

@@ -42,6 +42,11 @@ class Noise(CommandTest):
                 for axis, density, seed, mean in (("x", 100, 1, 0.0), ("y", 200, 2, 0.0), ("z", 400, 3, 1.0))}
         return self.write(name, table(axes, rate_hz))
 
+    def test_times_that_no_record_has_are_the_user_s_to_mend(self):
+        self.rest()
+        line = self.expect_failure(USAGE, "noise", "rest.csv", "--taus", "0.00001")
+        self.assertIn("acc_x: no averaging time fits", line)
+
     def test_white_noise_is_found_in_si_within_its_std(self):
         self.rest()
         document = self.document("noise", "rest.csv")

@@ -71,7 +71,7 @@ TEST(BlockMeans, OfARandomWalkGivesIndependentOrdinatesOfItsDensity) {
   }
 }
 
-TEST(BlockMeans, ARampLandsInWhatItIsSaidToDo) {
+TEST(BlockMeans, ARampHasTheAmplitudesThatTheyGiveIt) {
   const std::size_t samples = 101;
   const auto found = ordinates_of(test::ramp(3.0, rate_hz, samples));
   ASSERT_EQ(found.size(), samples - 1);

@@ -77,6 +77,13 @@ Status check_spread(const Overview& overview, std::size_t samples, std::optional
   if (overview.missing == samples) return Error{Errc::not_finite, "no sample is a number"};
   const double spread = overview.short_term_std;
   if (!(spread > 0.0)) return Error{Errc::not_observable, "the samples do not vary"};
+  // The likelihood divides by squares of squares.
+  constexpr double least_spread = 1e-60, most_spread = 1e60;
+  if (spread < least_spread || spread > most_spread)
+    return Error{Errc::not_observable,
+                 fmt::format("the samples spread by {:.3g}, expected {:g} to {:g}: bring them to "
+                             "another unit",
+                             spread, least_spread, most_spread)};
   if (!lsb) return Done{};
   const double added = *lsb * *lsb / 12.0, least = 0.25 * *lsb * *lsb;
   if (spread * spread - added >= least) return Done{};

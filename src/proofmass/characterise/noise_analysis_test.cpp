@@ -479,5 +479,25 @@ TEST(AnalyseNoise, TellsHowFarItHasCome) {
   EXPECT_EQ(fractions.back(), 1.0);
 }
 
+TEST(AnalyseNoise, SaysTheSameInAnyUnit) {
+  const Series series =
+      sum_of({test::white(1.0, 100.0, 5000, 1), test::random_walk(0.3, 100.0, 5000, 2)});
+  const NoiseAnalysis one = analyse_noise(series, {.rate_hz = 100.0}).value();
+  for (const double factor : {1e-30, 1e-12, 1e12}) {
+    const NoiseAnalysis other =
+        analyse_noise(test::scaled(series, factor), {.rate_hz = 100.0}).value();
+    EXPECT_NEAR(other.model.white.value / factor, one.model.white.value, 1e-6) << factor;
+    EXPECT_NEAR(other.model.random_walk.value / factor, one.model.random_walk.value, 1e-5);
+    EXPECT_NEAR(other.model.ramp.upper_95 / factor, one.model.ramp.upper_95, 1e-4);
+    EXPECT_NEAR(other.deviation.points.back().upper / factor, one.deviation.points.back().upper,
+                1e-6);
+  }
+  for (const double factor : {1e-100, 1e100}) {
+    const auto refused = analyse_noise(test::scaled(series, factor), {.rate_hz = 100.0});
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().code, Errc::not_observable);
+  }
+}
+
 }  // namespace
 }  // namespace proofmass::characterise

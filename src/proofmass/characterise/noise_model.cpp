@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "proofmass/characterise/term_spectra.hpp"
+#include "proofmass/core/contract.hpp"
 
 namespace proofmass::characterise {
 namespace {
@@ -16,7 +17,7 @@ double square(double x) {
 }
 
 // σ²(τ) τ / S(0) of an exponentially correlated process of time constant T.
-// Source: IEEE Std 952-1997, equation C.23, by expm1 where τ ≪ T would cancel.
+// Source: IEEE Std 952-1997, annex C; by its series where τ ≪ T would cancel.
 double relaxation_share(double tau_s, double time_constant_s) {
   const double x = tau_s / time_constant_s;
   if (x < 1e-3) return x * x / 3.0 * (1.0 - 0.75 * x);
@@ -24,11 +25,6 @@ double relaxation_share(double tau_s, double time_constant_s) {
 }
 
 }  // namespace
-
-const char* name_of(Term term) {
-  constexpr const char* names[] = {"quantisation", "white", "flicker", "random_walk", "markov"};
-  return names[static_cast<int>(term)];
-}
 
 double MarkovNoise::std_of_process() const {
   return strength.value * std::sqrt(0.5 * time_constant_s.value);
@@ -68,24 +64,26 @@ double NoiseModelFit::allan_variance(double tau_s) const {
   return sum;
 }
 
-double NoiseModelFit::density(double frequency_hz) const {
+double NoiseModelFit::shape(Term term, double frequency_hz) const {
   const Sampling sampling{rate_hz, 1};
+  if (term == Term::white && bandwidth_hz)
+    return relaxation_density(1.0 / (2.0 * pi * bandwidth_hz->value), frequency_hz, sampling);
+  if (term != Term::markov) return term_density(term, frequency_hz, sampling);
+  PM_EXPECTS(markov.has_value());
+  const double T = markov->time_constant_s.value;
+  return T * T * relaxation_density(T, frequency_hz, sampling);
+}
+
+double NoiseModelFit::density(double frequency_hz) const {
   double sum = 0.0;
-  for (const Term term : {Term::quantisation, Term::flicker, Term::random_walk}) {
-    const double value = term == Term::quantisation ? quantisation.value
-                         : term == Term::flicker    ? flicker.value
-                                                    : random_walk.value;
-    if (value > 0.0) sum += square(value) * term_density(term, frequency_hz, sampling);
-  }
-  const double white_shape =
-      bandwidth_hz
-          ? relaxation_density(1.0 / (2.0 * pi * bandwidth_hz->value), frequency_hz, sampling)
-          : 1.0;
-  sum += square(white.value) * white_shape;
-  if (markov) {
-    const double T = markov->time_constant_s.value;
-    sum += square(markov->strength.value * T) * relaxation_density(T, frequency_hz, sampling);
-  }
+  const auto add = [&](Term term, const Coefficient& coefficient) {
+    if (coefficient.value > 0.0) sum += square(coefficient.value) * shape(term, frequency_hz);
+  };
+  add(Term::quantisation, quantisation);
+  add(Term::white, white);
+  add(Term::flicker, flicker);
+  add(Term::random_walk, random_walk);
+  if (markov) add(Term::markov, markov->strength);
   return sum;
 }
 

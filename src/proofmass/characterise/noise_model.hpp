@@ -1,13 +1,9 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "proofmass/core/quantity.hpp"
-#include "proofmass/core/view.hpp"
 
 // The parts that noise at rest is made of, their spectra and their Allan variances, and what a
 // recording says of each.
@@ -23,9 +19,6 @@ enum class Term {
   markov,        ///< q in u/√s:   S = (q T)² / (1 + (2π f T)²), tends to a random walk below T
 };
 inline constexpr std::size_t term_count = 5;
-
-/// "white", "random_walk", …
-[[nodiscard]] const char* name_of(Term term);
 
 enum class Verdict {
   identified,      ///< the recording cannot be explained without it
@@ -75,12 +68,15 @@ struct NoiseModelFit {
   [[nodiscard]] double ramp_allan_variance(double tau_s) const;
   /// Of all of it.
   [[nodiscard]] double allan_variance(double tau_s) const;
+  /// Two-sided density of a term with coefficient 1: the white one behind its filter, the Markov
+  /// one (which there must be) with its time constant.
+  [[nodiscard]] double shape(Term term, double frequency_hz) const;
   /// Two-sided density S(f) of all terms but the ramp.
   [[nodiscard]] double density(double frequency_hz) const;
 };
 
 /// σ²(τ) that a sine of amplitude A at frequency f adds: A² (sin²(π f τ) / (π f τ))².
-/// Source: IEEE Std 952-1997, equation C.27.
+/// Source: IEEE Std 952-1997, annex C, "sinusoidal noise".
 [[nodiscard]] double sine_allan_variance(double amplitude, double frequency_hz, double tau_s);
 
 }  // namespace proofmass::characterise

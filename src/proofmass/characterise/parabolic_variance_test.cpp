@@ -3,15 +3,15 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "proofmass/characterise/phase_test_support.hpp"
+#include "proofmass/characterise/test_support.hpp"
 
 namespace proofmass::characterise {
 namespace {
 
-using test::random_walk;
+using test::phase_of_white_rates;
 
 TEST(ParabolicVariance, AgreesWithSigmaThetaOnAThousandPoints) {
-  const auto x = test::nist_1000_phase();
+  const auto x = test::nbs14_phase();
   const std::vector<double> published{0.29223188,  0.21445234,  0.15618112,
                                       0.11709746,  0.069029585, 0.049749708,
                                       0.038947417, 0.030862393, 0.012447414};
@@ -40,8 +40,8 @@ double by_definition(const std::vector<double>& x, double tau0_s, std::size_t m)
 class ParabolicVarianceWithAMeanRateOf : public testing::TestWithParam<double> {};
 
 TEST_P(ParabolicVarianceWithAMeanRateOf, AgreesWithItsDefinition) {
-  const auto level = random_walk(500, 0.0, 9);
-  const auto x = random_walk(500, GetParam(), 9);
+  const auto level = phase_of_white_rates(500, 0.0, 9);
+  const auto x = phase_of_white_rates(500, GetParam(), 9);
   for (const std::size_t m : {2u, 3u, 8u, 31u, 100u, 249u}) {
     const double expected = by_definition(level, 0.02, m);
     const auto found = parabolic_variance(x, 0.02, m);
@@ -53,7 +53,7 @@ TEST_P(ParabolicVarianceWithAMeanRateOf, AgreesWithItsDefinition) {
 INSTANTIATE_TEST_SUITE_P(Some, ParabolicVarianceWithAMeanRateOf, testing::Values(0.0, 3.0, 1e6));
 
 TEST(ParabolicVariance, OfSingleIntervalsIsTheAllanVariance) {
-  const auto x = random_walk(100, 5.0, 2);
+  const auto x = phase_of_white_rates(100, 5.0, 2);
   double sum = 0.0;
   for (std::size_t i = 0; i + 2 < x.size(); ++i) sum += std::pow(x[i] - 2 * x[i + 1] + x[i + 2], 2);
   EXPECT_NEAR(parabolic_variance(x, 1.0, 1).variance, sum / (2.0 * 98.0), 1e-12 * sum);
@@ -74,7 +74,7 @@ TEST(ParabolicVariance, OfADriftIsThatOfTheAllanVarianceButForItsPublishedFactor
 
 TEST(ParabolicVariance, KeepsItsDigitsOnALongDriftingRecord) {
   constexpr std::size_t N = 300'001, m = 100;
-  auto x = random_walk(N, 0.0, 4);
+  auto x = phase_of_white_rates(N, 0.0, 4);
   for (std::size_t i = 0; i < N; ++i) {
     const auto t = static_cast<double>(i);
     x[i] += 1e4 * t + 1e-4 * t * t;

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <vector>
 
-#include "proofmass/characterise/term_spectra.hpp"
 #include "proofmass/core/linalg.hpp"
 
 namespace proofmass::characterise {
@@ -29,18 +28,6 @@ std::vector<Coefficient*> strengths(NoiseModelFit& model) {
   return all;
 }
 
-double shape(const NoiseModelFit& model, std::size_t which, double f) {
-  const Sampling sampling{model.rate_hz, 1};
-  if (which == 1 && model.bandwidth_hz)
-    return relaxation_density(1.0 / (2.0 * std::numbers::pi * model.bandwidth_hz->value), f,
-                              sampling);
-  if (which == 4) {
-    const double T = model.markov->time_constant_s.value;
-    return T * T * relaxation_density(T, f, sampling);
-  }
-  return term_density(static_cast<Term>(which), f, sampling);
-}
-
 Shapes shapes_of(const NoiseModelFit& model, std::size_t count) {
   Shapes shapes;
   const double lowest_hz = 0.5 / (longest * model.duration_s);
@@ -51,7 +38,7 @@ Shapes shapes_of(const NoiseModelFit& model, std::size_t count) {
   for (Eigen::Index row = 0; row < rows; ++row) {
     const double f = shapes.frequency_hz[static_cast<std::size_t>(row)];
     for (std::size_t k = 0; k < count; ++k)
-      shapes.densities(row, static_cast<Eigen::Index>(k)) = shape(model, k, f);
+      shapes.densities(row, static_cast<Eigen::Index>(k)) = model.shape(static_cast<Term>(k), f);
     shapes.total(row) = model.density(f);
   }
   return shapes;

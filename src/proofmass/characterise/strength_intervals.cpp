@@ -18,6 +18,9 @@ constexpr double normal_95 = 1.6448536269514722, normal_975 = 1.9599639845400545
 // says: the squares of Student's t with 8 degrees of freedom for those of the normal quantiles.
 constexpr double ramp_gain = 9.0, ramp_two_sided = 5.318, ramp_one_sided = 3.458;
 
+// So that a search for the end of an interval ends itself, whatever the data.
+constexpr int most_doublings = 200;
+
 struct Bracket {
   double inside, outside;
 };
@@ -69,9 +72,7 @@ Eigen::MatrixXd covariance_of(const Search& search, const std::vector<int>& colu
   for (Index k = 0; k < n; ++k)
     X.col(k) = search.likelihood.column(columns_in[static_cast<std::size_t>(k)]);
   for (Index k = 0; k < more; ++k) X.col(n + k) = changes[static_cast<std::size_t>(k)];
-  const Eigen::ArrayXd weight = 0.5 * search.likelihood.dof() / search.fit.density.array().square();
-  const Eigen::MatrixXd information = X.transpose() * (weight.matrix().asDiagonal() * X);
-  return positive_inverse(information).topLeftCorner(n, n);
+  return positive_inverse(search.likelihood.information_on(search.fit, X)).topLeftCorner(n, n);
 }
 
 // The column last of those that were kept.
@@ -119,7 +120,7 @@ class Profile {
   // Where the loss reaches a quantile: above the top, or below it (0 if it does not get there).
   [[nodiscard]] double upper(double quantile) const {
     double inside = top(), outside = inside + scale_ * std::sqrt(quantile);
-    while (loss(outside) < quantile) {
+    for (int k = 0; k < most_doublings && loss(outside) < quantile; ++k) {
       inside = outside;
       outside = top() + 2.0 * (outside - top());
     }
@@ -163,7 +164,7 @@ class SlopeProfile {
   [[nodiscard]] double end(double direction, double quantile) const {
     double inside = slope();
     double step = direction * std::sqrt(quantile * search_.fit.slope_variance);
-    while (loss(inside + step) < quantile) {
+    for (int k = 0; k < most_doublings && loss(inside + step) < quantile; ++k) {
       inside += step;
       step *= 2.0;
     }

@@ -206,7 +206,7 @@ TEST(TermDensity, OfBlocksGivesTheAllanVarianceThatTheSamplesGive) {
     EXPECT_NEAR(allan_variance(of(term, block), step_s, m, 1000) /
                     allan_variance(of(term), tau0_s, block * m, 1000),
                 1.0, 1e-9)
-        << name_of(term);
+        << static_cast<int>(term);
   EXPECT_NEAR(allan_variance(of_relaxation(0.3, block), step_s, m, 20'000) /
                   allan_variance(of_relaxation(0.3), tau0_s, block * m, 20'000),
               1.0, 1e-9);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -21,6 +23,21 @@ inline std::vector<double> nbs14_phase() {
   return phase;
 }
 
+/// Phase of the 10-point set there, p. 107.
+inline const std::vector<double> ten_point_phase{
+    0, 103.11111, 123.22222, 157.33333, 166.44444, 48.55555, -96.33333, -2.22222, 111.88889, 0};
+
+/// White rates about a mean one, summed.
+inline std::vector<double> phase_of_white_rates(std::size_t points,
+                                                double mean_rate,
+                                                unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> x(points, 0.0);
+  for (std::size_t i = 1; i < points; ++i) x[i] = x[i - 1] + mean_rate + normal(engine);
+  return x;
+}
+
 /// Empty where the folder is not there.
 inline std::filesystem::path stable32_folder() {
   std::filesystem::path data = std::filesystem::path(PROOFMASS_SOURCE_DIR) / ".." / "shared/data";
@@ -34,6 +51,7 @@ struct Stable32Row {
   int alpha = 0;
   double lower = 0.0, deviation = 0.0, upper = 0.0;  ///< limits 0 where none were asked for
   bool doubtful = false;  ///< commented out by those who published the table
+  double terms = 0.0;
 };
 
 inline std::vector<Stable32Row> read_stable32_table(const std::filesystem::path& file) {
@@ -44,12 +62,25 @@ inline std::vector<Stable32Row> read_stable32_table(const std::filesystem::path&
     row.doubtful = line.starts_with('#');
     std::ranges::replace(line, '#', ' ');
     double tau = 0.0;
-    double terms = 0.0;
     std::istringstream fields(line);
-    if (fields >> row.m >> tau >> terms >> row.alpha >> row.lower >> row.deviation >> row.upper)
+    if (fields >> row.m >> tau >> row.terms >> row.alpha >> row.lower >> row.deviation >> row.upper)
       rows.push_back(row);
   }
   return rows;
+}
+
+/// The phase record that the tables are of.
+inline std::vector<double> stable32_phase() {
+  std::vector<double> x;
+  std::ifstream in(stable32_folder() / "PHASE.DAT");
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty() && !line.starts_with('#')) x.push_back(std::stod(line));
+  return x;
+}
+
+/// Half a unit of the last of the five digits that the tables have, and a hair for ties.
+inline double printed(double deviation) {
+  return 0.51 * std::pow(10.0, std::floor(std::log10(deviation)) - 4.0);
 }
 
 }  // namespace proofmass::characterise::test

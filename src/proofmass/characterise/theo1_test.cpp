@@ -3,16 +3,16 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "proofmass/characterise/phase_test_support.hpp"
+#include "proofmass/characterise/test_support.hpp"
 #include "proofmass/characterise/whole_record.hpp"
 
 namespace proofmass::characterise {
 namespace {
 
-using test::random_walk;
+using test::phase_of_white_rates;
 
 TEST(Theo1, AgreesWithPublishedValuesOnAThousandPoints) {
-  const auto x = test::nist_1000_phase();
+  const auto x = test::nbs14_phase();
   EXPECT_NEAR(std::sqrt(theo1(x, 1.0, 10).variance), 1.0757e-1, 5e-6);
   EXPECT_NEAR(std::sqrt(theo1(x, 1.0, 100).variance), 3.1789e-2, 5e-7);
   EXPECT_NEAR(std::sqrt(theo1(x, 1.0, 1000).variance), 5.0524e-3, 5e-8);
@@ -32,8 +32,8 @@ double by_definition(const std::vector<double>& x, double tau0_s, std::size_t m)
 class Theo1WithAMeanRateOf : public testing::TestWithParam<double> {};
 
 TEST_P(Theo1WithAMeanRateOf, AgreesWithItsDefinition) {
-  const auto level = random_walk(200, 0.0, 7);
-  const auto x = random_walk(200, GetParam(), 7);
+  const auto level = phase_of_white_rates(200, 0.0, 7);
+  const auto x = phase_of_white_rates(200, GetParam(), 7);
   for (const std::size_t m : {2u, 4u, 10u, 32u, 34u, 66u, 150u, 198u}) {
     const double expected = by_definition(level, 0.02, m);
     const auto found = theo1(x, 0.02, m);
@@ -45,14 +45,14 @@ TEST_P(Theo1WithAMeanRateOf, AgreesWithItsDefinition) {
 INSTANTIATE_TEST_SUITE_P(Some, Theo1WithAMeanRateOf, testing::Values(0.0, 3.0, 1e6));
 
 TEST(Theo1, OfTwoIntervalsIsTwoThirdsOfTheAllanVariance) {
-  const auto x = random_walk(100, 0.0, 2);
+  const auto x = phase_of_white_rates(100, 0.0, 2);
   double sum = 0.0;
   for (std::size_t i = 0; i + 2 < x.size(); ++i) sum += std::pow(x[i] - 2 * x[i + 1] + x[i + 2], 2);
   EXPECT_NEAR(theo1(x, 1.0, 2).variance, 2.0 / 3.0 * sum / (2.0 * 98.0), 1e-14 * sum);
 }
 
 TEST(Theo1, LosesLittleByAStride) {
-  const auto x = random_walk(30'001, 0.0, 3);
+  const auto x = phase_of_white_rates(30'001, 0.0, 3);
   constexpr std::size_t m = 5000, stride = 4;
   ASSERT_EQ(affordable_stride(x.size() - stride, m), stride);
   double full = 0.0;
@@ -71,15 +71,15 @@ struct Table {
 class Theo1Table : public testing::TestWithParam<Table> {};
 
 TEST_P(Theo1Table, IsMetInEveryRow) {
-  if (test::stable32_tables().empty())
+  if (test::stable32_folder().empty())
     GTEST_SKIP() << "NO TABLES OF STABLE32: set PROOFMASS_DATA to the folder of public data";
   const auto x = test::stable32_phase();
-  const auto rows = test::read_table(test::stable32_tables() / GetParam().file);
+  const auto rows = test::read_stable32_table(test::stable32_folder() / GetParam().file);
   EXPECT_GE(rows.size(), 7u);
   for (const auto& row : rows) {
     const auto found = theo1(x, 1.0, row.m);
     const double sigma = std::sqrt(found.variance * GetParam().bias);
-    EXPECT_NEAR(sigma, row.sigma, test::printed(row.sigma)) << row.m;
+    EXPECT_NEAR(sigma, row.deviation, test::printed(row.deviation)) << row.m;
     EXPECT_NEAR(static_cast<double>(found.terms), row.terms, 0.501 * (row.terms > 1e5 ? 10 : 1));
   }
 }

@@ -5,15 +5,15 @@
 #include <numbers>
 #include <numeric>
 
-#include "proofmass/characterise/phase_test_support.hpp"
+#include "proofmass/characterise/test_support.hpp"
 #include "proofmass/characterise/whole_record.hpp"
 
 namespace proofmass::characterise {
 namespace {
 
 using test::nbs14_phase;
-using test::nist_1000_phase;
-using test::random_walk;
+using test::phase_of_white_rates;
+using test::ten_point_phase;
 
 using Variance = PhaseVariance (*)(View<double>, double, std::size_t);
 
@@ -25,12 +25,12 @@ double deviation(Variance variance, View<double> phase, std::size_t m) {
 const double htot_bias = std::sqrt(0.995);
 
 TEST(TotalVariance, AgreesWithNistOnTenPoints) {
-  EXPECT_NEAR(deviation(total_variance, nbs14_phase, 1), 91.22945, 5e-6);
-  EXPECT_NEAR(deviation(total_variance, nbs14_phase, 2), 93.90379, 5e-6);
+  EXPECT_NEAR(deviation(total_variance, ten_point_phase, 1), 91.22945, 5e-6);
+  EXPECT_NEAR(deviation(total_variance, ten_point_phase, 2), 93.90379, 5e-6);
 }
 
 TEST(TotalVariance, AgreesWithNistOnAThousandPoints) {
-  const auto x = nist_1000_phase();
+  const auto x = nbs14_phase();
   EXPECT_NEAR(deviation(total_variance, x, 1), 2.922319e-1, 5e-8);
   EXPECT_NEAR(deviation(total_variance, x, 10), 9.134743e-2, 5e-9);
   EXPECT_NEAR(deviation(total_variance, x, 100), 3.406530e-2, 5e-9);
@@ -38,16 +38,16 @@ TEST(TotalVariance, AgreesWithNistOnAThousandPoints) {
 }
 
 TEST(ModifiedTotalVariance, AgreesWithNistOnTenPoints) {
-  EXPECT_NEAR(deviation(modified_total_variance, nbs14_phase, 1), 64.509, 5e-4);
-  EXPECT_NEAR(deviation(modified_total_variance, nbs14_phase, 2), 64.794, 5e-4);
-  EXPECT_NEAR(deviation(modified_total_variance, nbs14_phase, 1) / std::numbers::sqrt3, 37.244,
+  EXPECT_NEAR(deviation(modified_total_variance, ten_point_phase, 1), 64.509, 5e-4);
+  EXPECT_NEAR(deviation(modified_total_variance, ten_point_phase, 2), 64.794, 5e-4);
+  EXPECT_NEAR(deviation(modified_total_variance, ten_point_phase, 1) / std::numbers::sqrt3, 37.244,
               5e-4);
-  EXPECT_NEAR(deviation(modified_total_variance, nbs14_phase, 2) * 2.0 / std::numbers::sqrt3,
+  EXPECT_NEAR(deviation(modified_total_variance, ten_point_phase, 2) * 2.0 / std::numbers::sqrt3,
               74.818, 5e-4);
 }
 
 TEST(ModifiedTotalVariance, AgreesWithNistOnAThousandPoints) {
-  const auto x = nist_1000_phase();
+  const auto x = nbs14_phase();
   EXPECT_NEAR(deviation(modified_total_variance, x, 1), 2.0664e-1, 5e-6);
   EXPECT_NEAR(deviation(modified_total_variance, x, 10), 5.5529e-2, 5e-7);
   EXPECT_NEAR(deviation(modified_total_variance, x, 100), 1.9547e-2, 5e-7);
@@ -57,12 +57,12 @@ TEST(ModifiedTotalVariance, AgreesWithNistOnAThousandPoints) {
 }
 
 TEST(HadamardTotalVariance, AgreesWithNistOnTenPoints) {
-  EXPECT_NEAR(deviation(hadamard_total_variance, nbs14_phase, 1), 70.80607, 5e-6);
-  EXPECT_NEAR(deviation(hadamard_total_variance, nbs14_phase, 2) / htot_bias, 91.16396, 5e-6);
+  EXPECT_NEAR(deviation(hadamard_total_variance, ten_point_phase, 1), 70.80607, 5e-6);
+  EXPECT_NEAR(deviation(hadamard_total_variance, ten_point_phase, 2) / htot_bias, 91.16396, 5e-6);
 }
 
 TEST(HadamardTotalVariance, AgreesWithNistOnAThousandPoints) {
-  const auto x = nist_1000_phase();
+  const auto x = nbs14_phase();
   EXPECT_NEAR(deviation(hadamard_total_variance, x, 1), 2.943883e-1, 5e-8);
   // The seventh digit falls on a tie: 9.61478750.
   EXPECT_NEAR(deviation(hadamard_total_variance, x, 10) / htot_bias, 9.614787e-2, 5.1e-9);
@@ -119,8 +119,8 @@ class TotalVariances : public testing::TestWithParam<double> {};  // by mean rat
 
 TEST_P(TotalVariances, AgreeWithTheirDefinitions) {
   const double slope = GetParam();
-  const auto level = random_walk(150, 0.0, 11);
-  const auto x = random_walk(150, slope, 11);
+  const auto level = phase_of_white_rates(150, 0.0, 11);
+  const auto x = phase_of_white_rates(150, slope, 11);
   std::vector<double> rates(level.size() - 1);
   for (std::size_t i = 0; i < rates.size(); ++i) rates[i] = (level[i + 1] - level[i]) / tau0_s;
   const double tolerance = 1e-12 + 1e-13 * std::abs(slope);
@@ -152,7 +152,7 @@ TEST(TotalVariances, OfASteadyRateAreZero) {
 }
 
 TEST(HadamardTotalVariance, IsBlindToADrift) {
-  auto x = random_walk(400, 0.0, 5);
+  auto x = phase_of_white_rates(400, 0.0, 5);
   const auto without = x;
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += 0.01 * std::pow(static_cast<double>(i), 2);
   for (const std::size_t m : {1u, 2u, 5u, 40u, 133u}) {
@@ -162,7 +162,7 @@ TEST(HadamardTotalVariance, IsBlindToADrift) {
 }
 
 TEST(TotalVariances, CountTheirTermsAsStable32Does) {
-  const auto x = random_walk(1001, 0.0, 1);
+  const auto x = phase_of_white_rates(1001, 0.0, 1);
   EXPECT_EQ(total_variance(x, 1.0, 256).terms, 999u);
   EXPECT_EQ(modified_total_variance(x, 1.0, 256).terms, 234u);
   EXPECT_EQ(hadamard_total_variance(x, 1.0, 256).terms, 233u);
@@ -190,7 +190,7 @@ double at_full_overlap(Variance variance, View<double> x, std::size_t m, std::si
 }
 
 TEST(TotalVariances, LoseLittleByAStride) {
-  const auto x = random_walk(30'001, 0.0, 3);
+  const auto x = phase_of_white_rates(30'001, 0.0, 3);
   constexpr std::size_t m = 5000, stride = 4;
   ASSERT_EQ(affordable_stride(x.size() - stride, m), stride);
   for (const Variance variance : {modified_total_variance, hadamard_total_variance}) {
@@ -202,7 +202,7 @@ TEST(TotalVariances, LoseLittleByAStride) {
 }
 
 TEST(TotalVariances, AtAStrideAreTheMeanOfTheStretchesThatBeginThere) {
-  const auto x = random_walk(30'001, 0.0, 3);
+  const auto x = phase_of_white_rates(30'001, 0.0, 3);
   constexpr std::size_t m = 5000, stride = 4;
   for (const Variance variance : {modified_total_variance, hadamard_total_variance}) {
     const std::size_t length = variance == modified_total_variance ? 3 * m : 3 * m + 1;
@@ -253,17 +253,17 @@ double of_hadamard(int alpha, std::size_t m) {
 class TotalVarianceTable : public testing::TestWithParam<Table> {};
 
 TEST_P(TotalVarianceTable, IsMetInEveryRow) {
-  if (test::stable32_tables().empty())
+  if (test::stable32_folder().empty())
     GTEST_SKIP() << "NO TABLES OF STABLE32: set PROOFMASS_DATA to the folder of public data";
   const Table& table = GetParam();
-  const auto x = table.of_rates_in_nist_1000 ? nist_1000_phase() : test::stable32_phase();
-  const auto rows = test::read_table(test::stable32_tables() / table.file);
+  const auto x = table.of_rates_in_nist_1000 ? nbs14_phase() : test::stable32_phase();
+  const auto rows = test::read_stable32_table(test::stable32_folder() / table.file);
   EXPECT_GE(rows.size(), 8u);
   for (const auto& row : rows) {
     const auto found = table.variance(x, 1.0, row.m);
     const double scale = table.time ? static_cast<double>(row.m) / std::numbers::sqrt3 : 1.0;
     const double sigma = scale * std::sqrt(found.variance / table.bias(row.alpha, row.m));
-    EXPECT_NEAR(sigma, row.sigma, test::printed(row.sigma)) << row.m;
+    EXPECT_NEAR(sigma, row.deviation, test::printed(row.deviation)) << row.m;
     EXPECT_EQ(static_cast<double>(found.terms), row.terms) << row.m;
   }
 }

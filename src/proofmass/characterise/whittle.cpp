@@ -184,7 +184,10 @@ WhittleLikelihood WhittleLikelihood::at_slope(double slope) const {
 
 MatrixXd WhittleLikelihood::information(const WhittleFit& fit,
                                         const std::vector<int>& active) const {
-  const MatrixXd X = chosen(columns_, active);
+  return information_on(fit, chosen(columns_, active));
+}
+
+MatrixXd WhittleLikelihood::information_on(const WhittleFit& fit, const MatrixXd& X) const {
   const ArrayXd weight = 0.5 * dof_ / fit.density.array().square();
   return X.transpose() * (weight.matrix().asDiagonal() * X);
 }

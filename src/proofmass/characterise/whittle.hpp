@@ -58,6 +58,10 @@ class WhittleLikelihood {
   [[nodiscard]] Eigen::MatrixXd information(const WhittleFit& fit,
                                             const std::vector<int>& active) const;
 
+  /// The same of any shapes.
+  [[nodiscard]] Eigen::MatrixXd information_on(const WhittleFit& fit,
+                                               const Eigen::MatrixXd& X) const;
+
   void set_column(int column, const Eigen::VectorXd& shape) { columns_.col(column) = shape; }
 
   [[nodiscard]] Eigen::VectorXd column(int column) const { return columns_.col(column); }

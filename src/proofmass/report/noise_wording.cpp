@@ -188,7 +188,7 @@ void add_judgement(const NoiseAnalysis& analysis, std::vector<std::string>& sent
   if (knocks > 0 || steps > 0) {
     std::string what = knocks > 0 ? count_words(knocks, "knock") : "";
     if (steps > 0) what += (what.empty() ? "" : " and ") + count_words(steps, "step") + " of level";
-    sentences.push_back(what + " in the recording: see the events.");
+    sentences.push_back(what + " found in the recording: see the events.");
   }
 }
 
