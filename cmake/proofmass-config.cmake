@@ -3,6 +3,7 @@
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4 NO_MODULE)
 find_dependency(Boost 1.74)
+find_dependency(Ceres)
 find_dependency(ZLIB)
 find_dependency(LibLZMA)
 find_dependency(fmt)

@@ -1,5 +1,5 @@
-// Uses what every exported library hides (fmt, zlib, lzma, toml++, nlohmann), so that a dependency
-// missing from the package is a link error here.
+// Uses what every exported library hides (Ceres, fmt, zlib, lzma, toml++, nlohmann), so that a
+// dependency missing from the package is a link error here.
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -10,6 +10,7 @@
 
 #include "proofmass/core/version.hpp"
 #include "proofmass/estimate/wheel.hpp"
+#include "proofmass/fit/curve.hpp"
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/report/wheel_report.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
@@ -25,6 +26,13 @@ int main() {
   const auto audit = pm::signal::audit(recording);
   const auto sensor = pm::sensor::parse_sensor_file("[sensor]\nname = \"A1\"\n", "a1.toml").value();
 
+  const std::vector<double> x{0.0, 1.0, 2.0, 3.0}, y{5.0, 2.5, 1.25, 0.625};
+  const auto decay =
+      pm::fit::fit_curve(
+          x, y, [](double t, pm::View<double> p) { return p[0] * std::exp(-t / p[1]); },
+          std::vector{1.0, 1.0})
+          .value();
+
   pm::simulate::RigOptions options;
   options.wheel.profile.front().duration_s = 15.0;
   const auto rig = pm::simulate::simulate_rig(options).value();
@@ -36,7 +44,8 @@ int main() {
   const auto wheel = pm::estimate::estimate_wheel(sensors, {}).value();
   std::cout << pm::version() << '\n' << pm::report::wheel_conclusion(wheel) << '\n';
 
-  const bool right = audit.samples == 3 && sensor.model.name == "A1" && wheel.turns &&
+  const bool right = audit.samples == 3 && sensor.model.name == "A1" && decay.converged &&
+                     std::abs(decay.parameters[1] * std::log(2.0) - 1.0) < 1e-9 && wheel.turns &&
                      std::abs(wheel.turns->value - 2.75) < 0.1;
   return right ? EXIT_SUCCESS : EXIT_FAILURE;
 }
