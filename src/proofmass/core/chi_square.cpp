@@ -12,6 +12,12 @@ double chi_square_quantile(double p, double degrees_of_freedom) {
   return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), p);
 }
 
+double chi_square_p(double statistic, double degrees_of_freedom) {
+  PM_EXPECTS(statistic >= 0.0 && degrees_of_freedom > 0.0);
+  const boost::math::chi_squared distribution(degrees_of_freedom);
+  return boost::math::cdf(boost::math::complement(distribution, statistic));
+}
+
 double student_t_quantile(double p, double degrees_of_freedom) {
   return boost::math::quantile(boost::math::students_t(degrees_of_freedom), p);
 }

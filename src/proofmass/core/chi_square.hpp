@@ -7,6 +7,9 @@ namespace proofmass {
 /// The p-quantile of the chi-square distribution with k degrees of freedom, p in (0, 1), k > 0.
 [[nodiscard]] double chi_square_quantile(double p, double degrees_of_freedom);
 
+/// The probability that a chi-square variable with k > 0 degrees of freedom exceeds `statistic`.
+[[nodiscard]] double chi_square_p(double statistic, double degrees_of_freedom);
+
 /// The p-quantile of Student's t distribution with k degrees of freedom, p in (0, 1), k > 0.
 [[nodiscard]] double student_t_quantile(double p, double degrees_of_freedom);
 

@@ -13,6 +13,14 @@ TEST(ChiSquareQuantile, AgreesWithTables) {
   EXPECT_NEAR(chi_square_quantile(0.9, 2.0), -2.0 * std::log(0.1), 1e-12);
 }
 
+TEST(ChiSquareP, IsWhatTheQuantileLeavesAbove) {
+  EXPECT_NEAR(chi_square_p(18.307, 10.0), 0.05, 1e-5);
+  EXPECT_NEAR(chi_square_p(100.0, 2.0) / std::exp(-50.0), 1.0, 1e-12);
+  for (const double k : {1.0, 7.0, 1000.0})
+    EXPECT_NEAR(chi_square_p(chi_square_quantile(0.3, k), k), 0.7, 1e-12);
+  EXPECT_EQ(chi_square_p(0.0, 3.0), 1.0);
+}
+
 TEST(MeanChiSquare95, ClosesInOnOneWithTheRootOfTheCount) {
   const Bounds thousand = mean_chi_square_95(1000);
   EXPECT_NEAR(thousand.lower, 0.914, 5e-4);

@@ -93,12 +93,18 @@ Eigen::VectorXd non_negative_minimiser(const Eigen::MatrixXd& A, const Eigen::Ve
   return problem.scale.asDiagonal() * x;
 }
 
-Eigen::MatrixXd positive_inverse(const Eigen::MatrixXd& A) {
+PositiveInverse invert_positive(const Eigen::MatrixXd& A) {
   PM_EXPECTS(A.rows() == A.cols());
   const ScaledProblem problem = scaled(A, Eigen::VectorXd::Zero(A.rows()));
-  const Eigen::MatrixXd inverse =
-      problem.A.llt().solve(Eigen::MatrixXd::Identity(A.rows(), A.cols()));
-  return problem.scale.asDiagonal() * inverse * problem.scale.asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> factor(problem.A);
+  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(A.rows(), A.cols()));
+  const double scaled_log = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  return {problem.scale.asDiagonal() * inverse * problem.scale.asDiagonal(),
+          scaled_log - 2.0 * problem.scale.array().log().sum()};
+}
+
+Eigen::MatrixXd positive_inverse(const Eigen::MatrixXd& A) {
+  return invert_positive(A).inverse;
 }
 
 }  // namespace proofmass

@@ -21,8 +21,17 @@ struct SymmetricEigen {
 [[nodiscard]] Eigen::VectorXd non_negative_minimiser(const Eigen::MatrixXd& A,
                                                      const Eigen::VectorXd& b);
 
-/// Inverse of a symmetric positive definite matrix; of a singular one, with a ridge of 1e-14 of its
+/// A⁻¹ and ln |A|.
+struct PositiveInverse {
+  Eigen::MatrixXd inverse;
+  double log_determinant = 0.0;
+};
+
+/// Of a symmetric positive definite matrix; of a singular one, with a ridge of 1e-14 of its
 /// diagonal. Cost: O(n³).
+[[nodiscard]] PositiveInverse invert_positive(const Eigen::MatrixXd& A);
+
+/// Its inverse alone.
 [[nodiscard]] Eigen::MatrixXd positive_inverse(const Eigen::MatrixXd& A);
 
 }  // namespace proofmass
