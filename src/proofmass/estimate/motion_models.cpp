@@ -1,5 +1,7 @@
 #include "proofmass/estimate/motion_models.hpp"
 
+#include "proofmass/estimate/bias_models.hpp"
+
 namespace proofmass::estimate {
 
 LinearModel<3, 1> pva_model(const PvaOptions& options) {
@@ -23,24 +25,9 @@ LinearModel<3, 1> pva_model(const PvaOptions& options) {
 }
 
 LinearModel<4, 1, 1> pva_bias_model(const PvaBiasOptions& options) {
-  PM_EXPECTS(options.time_constant_s > 0.0 && options.bias_psd_m2ps5 >= 0.0);
-  const LinearModel<3, 1> motion = pva_model(options.motion);
-  const double T = options.time_constant_s;
-  const double settled = -std::expm1(-options.motion.dt_s / T);  // 1 − φ, exact for short steps
-  const double phi = 1.0 - settled;
-  LinearModel<4, 1, 1> model;
-  model.F.setZero();
-  model.Q.setZero();
-  model.F.topLeftCorner<3, 3>() = motion.F;
-  model.Q.topLeftCorner<3, 3>() = motion.Q;
-  model.F(pva::bias_mps2, pva::bias_mps2) = phi;
-  // ∫ exp(−2s/T) ds over the step = T/2 (1 − φ²)
-  model.Q(pva::bias_mps2, pva::bias_mps2) =
-      options.bias_psd_m2ps5 * 0.5 * T * settled * (1.0 + phi);
-  model.H << motion.H, 1.0;
-  model.R = motion.R;
-  model.B(pva::bias_mps2) = settled;
-  return model;
+  const BiasStep step =
+      bias_step({options.motion.dt_s, options.time_constant_s, options.bias_psd_m2ps5});
+  return with_bias(pva_model(options.motion), step, Mat<1>(1.0));
 }
 
 template LinearRun<3, 1> filter_linear(LinearSeries<3, 1>, const Gaussian<3>&, const Gate&);

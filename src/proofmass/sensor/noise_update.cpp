@@ -2,14 +2,12 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <fmt/format.h>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/sensor/sensor_file.hpp"
+#include "proofmass/sensor/sensor_file_change.hpp"
 
 namespace proofmass::sensor {
 namespace {
@@ -119,18 +117,8 @@ Status update_noise(SensorModel& model, View<MeasuredNoise> measured) {
 }
 
 Status update_sensor_file(const std::string& path, View<MeasuredNoise> measured) {
-  SensorModel model;
-  std::error_code unknown;
-  // Where it cannot be told whether there is a file, there may be one that must not be lost.
-  if (std::filesystem::exists(path, unknown) || unknown) {
-    auto file = read_sensor_file(path);
-    if (!file) return file.error();
-    model = std::move(file).value().model;
-  } else {
-    model.name = std::filesystem::path(path).stem().string();
-  }
-  if (const Status done = update_noise(model, measured); !done) return done.error().at(path);
-  return write_sensor_file(model, path);
+  return change_sensor_file(path,
+                            [&](SensorModel& model) { return update_noise(model, measured); });
 }
 
 }  // namespace proofmass::sensor

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/sensor/sensor_model.hpp"
+
+namespace proofmass::sensor {
+
+/// Reads the sensor file, changes its model and writes it back; where there is no file the model is
+/// an empty one, named after it. Errors: those of reading, of `change` (with the path) and of
+/// writing. The file is then as it was.
+[[nodiscard]] Status change_sensor_file(const std::string& path,
+                                        const std::function<Status(SensorModel&)>& change);
+
+}  // namespace proofmass::sensor
