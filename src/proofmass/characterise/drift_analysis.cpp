@@ -1,0 +1,208 @@
+#include "proofmass/characterise/drift_analysis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include "proofmass/characterise/drift_evidence.hpp"
+#include "proofmass/characterise/drift_fit.hpp"
+#include "proofmass/core/recording.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
+
+Status check(View<double> series, const DriftOptions& options) {
+  if (!std::isfinite(options.rate_hz) || options.rate_hz <= 0.0)
+    return Error{Errc::invalid_argument, "rate_hz must be positive and finite"};
+  if (!std::isfinite(options.since_switch_on_s) || options.since_switch_on_s < 0.0)
+    return Error{Errc::invalid_argument,
+                 "since_switch_on_s must be a time in seconds, zero or more"};
+  if (series.size() < DriftEvidence::fewest_blocks)
+    return Error{Errc::too_few_samples, fmt::format("{} samples, expected at least {}",
+                                                    series.size(), DriftEvidence::fewest_blocks)};
+  const double* first = nullptr;
+  for (const double& sample : series) {
+    if (!std::isfinite(sample)) continue;
+    if (first == nullptr) first = &sample;
+    if (sample != *first) return Done{};
+  }
+  if (first == nullptr) return Error{Errc::not_finite, "no sample is a number"};
+  return Error{Errc::not_observable, "the samples do not vary"};
+}
+
+void report_progress(const DriftOptions& options, double fraction) {
+  if (options.progress) options.progress("drift", fraction);
+}
+
+// Means of so many samples each; NaN where more than half of a block is missing. What is left at
+// the end is less than a block.
+std::vector<double> means_of(View<double> series, std::size_t block) {
+  std::vector<double> means(series.size() / block);
+  for (std::size_t j = 0; j < means.size(); ++j) {
+    const View<double> part = series.subspan(j * block, block);
+    // About its first value, so that a level far from zero takes no digits.
+    double first = missing_value, sum = 0.0;
+    std::size_t count = 0;
+    for (const double sample : part) {
+      if (!std::isfinite(sample)) continue;
+      if (count == 0) first = sample;
+      sum += sample - first;
+      ++count;
+    }
+    means[j] = 2 * count > block || count == block ? first + sum / static_cast<double>(count)
+                                                   : missing_value;
+  }
+  return means;
+}
+
+// As many blocks as the fit can use; fewer where many of them are missing, of which each costs a
+// column.
+std::size_t block_length(View<double> series) {
+  constexpr std::size_t most_blocks = 2048, few_blocks = 512, many_missing = 48;
+  const auto length = [&](std::size_t blocks) {
+    return std::max<std::size_t>(1, (series.size() + blocks - 1) / blocks);
+  };
+  const std::vector<double> means = means_of(series, length(most_blocks));
+  const auto missing = static_cast<std::size_t>(
+      std::ranges::count_if(means, [](double mean) { return std::isnan(mean); }));
+  return length(missing > many_missing ? few_blocks : most_blocks);
+}
+
+// The least and greatest mean of so many samples in each of up to 1000 stretches.
+Envelope envelope_of(View<double> series, std::size_t scale, const DriftOptions& options) {
+  constexpr std::size_t buckets = 1000;
+  const std::vector<double> averaged = scale > 1 ? means_of(series, scale) : std::vector<double>();
+  const View<double> means = scale > 1 ? View<double>(averaged) : series;
+  const double step_s = static_cast<double>(scale) / options.rate_hz;
+  const std::size_t width = std::max<std::size_t>(1, (means.size() + buckets - 1) / buckets);
+  Envelope envelope;
+  envelope.scale_s = step_s;
+  const std::size_t count = (means.size() + width - 1) / width;
+  envelope.t_s.reserve(count);
+  envelope.lower.reserve(count);
+  envelope.upper.reserve(count);
+  for (std::size_t from = 0; from < means.size(); from += width) {
+    const std::size_t to = std::min(means.size(), from + width);
+    double low = missing_value, high = missing_value;
+    for (std::size_t k = from; k < to; ++k) {
+      if (!std::isfinite(means[k])) continue;
+      low = std::isnan(low) ? means[k] : std::min(low, means[k]);
+      high = std::isnan(high) ? means[k] : std::max(high, means[k]);
+    }
+    envelope.t_s.push_back(options.since_switch_on_s +
+                           0.5 * static_cast<double>(from + to) * step_s);
+    envelope.lower.push_back(low);
+    envelope.upper.push_back(high);
+  }
+  return envelope;
+}
+
+double take_curve_out(std::vector<double>& series,
+                      const DriftCurve& curve,
+                      const DriftOptions& options) {
+  double squares = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    if (!std::isfinite(series[k])) continue;
+    const double t_s = options.since_switch_on_s + (static_cast<double>(k) + 0.5) / options.rate_hz;
+    series[k] -= curve.value(t_s);
+    squares += series[k] * series[k];
+    count += 1.0;
+  }
+  return std::sqrt(squares / count);
+}
+
+// Knocks go missing; steps stay, as they are drift.
+std::vector<double> without_knocks(View<double> series, DriftAnalysis& analysis) {
+  std::vector<double> kept(series.begin(), series.end());
+  analysis.knocks = signal::find_events(series, {analysis.rate_hz});
+  std::erase_if(analysis.knocks,
+                [](const signal::Event& event) { return event.kind == signal::EventKind::step; });
+  signal::drop_events(kept, analysis.knocks, analysis.rate_hz);
+  analysis.missing = static_cast<std::size_t>(
+      std::ranges::count_if(kept, [](double sample) { return !std::isfinite(sample); }));
+  return kept;
+}
+
+std::size_t fitted_parameters(const DriftCurve& curve) {
+  return static_cast<std::size_t>(curve.covariance.rows());
+}
+
+void examine_residuals(DriftAnalysis& analysis,
+                       View<double> residuals,
+                       const DriftOptions& options) {
+  analysis.whiteness = signal::test_whiteness_at_scales(residuals, analysis.rate_hz,
+                                                        fitted_parameters(analysis.fit.curve));
+  // At the sampling interval, and where the tests say the most: at the longest scales but one.
+  std::vector<double> scales{1.0 / analysis.rate_hz};
+  for (const signal::WhitenessTest& test : analysis.whiteness)
+    if (test.scale_s > 1.5 / analysis.rate_hz) scales.push_back(test.scale_s);
+  constexpr std::size_t shown = 3;
+  while (scales.size() > shown) scales.erase(scales.begin() + 1);
+  for (const double scale_s : scales) {
+    const auto scale = static_cast<std::size_t>(std::llround(scale_s * analysis.rate_hz));
+    analysis.residuals.push_back(envelope_of(residuals, std::max<std::size_t>(1, scale), options));
+  }
+}
+
+void add_notes(DriftAnalysis& analysis) {
+  if (!analysis.knocks.empty())
+    analysis.notes.push_back(
+        {Severity::info, fmt::format("{} knock{} left out", analysis.knocks.size(),
+                                     analysis.knocks.size() == 1 ? "" : "s")});
+  const auto blank = static_cast<std::size_t>(
+      std::ranges::count_if(analysis.block_mean, [](double mean) { return std::isnan(mean); }));
+  if (blank > 0)
+    analysis.notes.push_back(
+        {Severity::warning, fmt::format("{} of {} blocks of {:.3g} s are missing: the fit goes "
+                                        "across them",
+                                        blank, analysis.block_mean.size(), analysis.block_s)});
+  constexpr double improbable = 0.001;
+  if (analysis.whitened &&
+      std::min({analysis.whitened->ljung_box_p, analysis.whitened->periodogram_p,
+                analysis.whitened->runs_p}) < improbable)
+    analysis.notes.push_back(
+        {Severity::warning,
+         "the noise model does not explain all of the residuals: there is "
+         "more than noise and this curve, and the intervals may be too narrow"});
+}
+
+}  // namespace
+
+Result<DriftAnalysis> analyse_drift(View<double> series, const DriftOptions& options) {
+  if (const Status status = check(series, options); !status) return status.error();
+  DriftAnalysis analysis;
+  analysis.rate_hz = options.rate_hz;
+  analysis.samples = series.size();
+  analysis.start_s = options.since_switch_on_s;
+  analysis.duration_s = static_cast<double>(series.size()) / options.rate_hz;
+  report_progress(options, 0.0);
+  std::vector<double> kept = without_knocks(series, analysis);
+  if (analysis.missing == kept.size())
+    return Error{Errc::not_finite, "nothing but knocks and missing samples"};
+  const std::size_t block = block_length(kept);
+  analysis.block_mean = means_of(kept, block);
+  const Sampling sampling{options.rate_hz, block};
+  analysis.block_s = sampling.step_s();
+  const auto evidence =
+      DriftEvidence::make(analysis.block_mean, sampling, options.since_switch_on_s);
+  if (!evidence) return evidence.error();
+  constexpr double before_fit = 0.2, after_fit = 0.8;
+  report_progress(options, before_fit);
+  FittedDrift fitted = fit_drift(*evidence);
+  analysis.fit = std::move(fitted.fit);
+  report_progress(options, after_fit);
+  analysis.data = envelope_of(kept, 1, options);
+  analysis.residual_rms = take_curve_out(kept, analysis.fit.curve, options);
+  examine_residuals(analysis, kept, options);
+  if (auto test = signal::test_whiteness(fitted.whitened, {1.0 / analysis.block_s, analysis.block_s,
+                                                           fitted_parameters(analysis.fit.curve)}))
+    analysis.whitened = std::move(*test);
+  add_notes(analysis);
+  report_progress(options, 1.0);
+  return analysis;
+}
+
+}  // namespace proofmass::characterise

@@ -1,0 +1,130 @@
+#include "proofmass/characterise/drift_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+#include "proofmass/core/contract.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+constexpr double two_sided_95 = 1.959963984540054;
+
+bool is_exponential(DriftShape shape) {
+  return shape == DriftShape::exponential || shape == DriftShape::exponential_and_line ||
+         shape == DriftShape::two_exponentials;
+}
+
+bool has_line(DriftShape shape) {
+  return shape == DriftShape::line || shape == DriftShape::exponential_and_line;
+}
+
+double rise(double t_s, double time_constant_s) {
+  return -std::expm1(-t_s / time_constant_s);
+}
+
+// ∂ rise / ∂ ln T.
+double rise_by_log_time(double t_s, double time_constant_s) {
+  const double ratio = t_s / time_constant_s;
+  return -ratio * std::exp(-ratio);
+}
+
+Interval95 normal_interval(double value, double variance) {
+  const double std = std::sqrt(std::max(variance, 0.0));
+  return {value, std, value - two_sided_95 * std, value + two_sided_95 * std};
+}
+
+// E[(flicker(t) − its mean over the record's last blocks)²] grows with the logarithm of t: half the
+// structure function 2 ∫ 2 S(f) (1 − cos 2πfΔ) df of S = B²/(2πf) above a cut at 1/h is
+// (2 B²/π) (ln(2πΔ/h) + γ − Ci).
+// Source: IEEE Std 952-1997, annex C, for S(f); the integral by parts.
+double flicker_growth(double B, double ahead_s, double block_s) {
+  if (ahead_s <= 0.0) return 0.0;
+  return 2.0 * B * B / std::numbers::pi * std::log1p(2.0 * std::numbers::pi * ahead_s / block_s);
+}
+
+}  // namespace
+
+std::string_view name_of(DriftShape shape) {
+  constexpr std::array<std::string_view, 6> names{
+      "constant", "line", "steps", "exponential", "exponential_and_line", "two_exponentials"};
+  return names[static_cast<std::size_t>(shape)];
+}
+
+double DriftNoise::markov_std() const {
+  return markov * std::sqrt(0.5 * markov_time_constant_s);
+}
+
+double DriftCurve::value(double t_s) const {
+  double y = a2;
+  if (is_exponential(shape)) y += a1 * rise(t_s, time_constant_s);
+  if (shape == DriftShape::two_exponentials) y += second_a1 * rise(t_s, second_time_constant_s);
+  if (has_line(shape)) y += slope_per_s * t_s;
+  for (const DriftStep& step : steps)
+    if (t_s >= step.t_s) y += step.size.value;
+  return y;
+}
+
+Eigen::VectorXd DriftCurve::gradient(double t_s) const {
+  std::vector<double> g{1.0};
+  const auto exponential = [&](double amplitude, double time_s) {
+    g.push_back(rise(t_s, time_s));
+    g.push_back(amplitude * rise_by_log_time(t_s, time_s));
+  };
+  if (is_exponential(shape)) exponential(a1, time_constant_s);
+  if (shape == DriftShape::two_exponentials) exponential(second_a1, second_time_constant_s);
+  if (has_line(shape)) g.push_back(t_s);
+  for (const DriftStep& step : steps) g.push_back(t_s >= step.t_s ? 1.0 : 0.0);
+  return Eigen::Map<const Eigen::VectorXd>(g.data(), static_cast<Eigen::Index>(g.size()));
+}
+
+double DriftCurve::std(double t_s) const {
+  const Eigen::VectorXd g = gradient(t_s);
+  PM_EXPECTS(covariance.rows() == g.size());
+  return std::sqrt(std::max(0.0, g.dot(covariance * g)));
+}
+
+Result<DriftForecast> forecast(const DriftFit& fit, double t_s) {
+  if (!std::isfinite(t_s) || t_s < fit.end.t_s)
+    return Error{Errc::invalid_argument,
+                 fmt::format("the forecast for {:g} s lies before the end of the recording at {:g} "
+                             "s after switching on: ask for a later time",
+                             t_s, fit.end.t_s)};
+  if (!fit.identified) return Error{Errc::not_observable, "no forecast: " + fit.reason};
+  const DriftNoise& noise = fit.noise;
+  const double ahead_s = t_s - fit.end.t_s;
+  // A random walk and flicker stay where they are on average, a Markov process relaxes to zero.
+  const double kept = noise.markov > 0.0 ? std::exp(-ahead_s / noise.markov_time_constant_s) : 0.0;
+  const double growth = noise.random_walk * noise.random_walk * ahead_s +
+                        flicker_growth(noise.flicker, ahead_s, fit.block_s) +
+                        (1.0 - kept * kept) * noise.markov_std() * noise.markov_std();
+  const Eigen::VectorXd now = fit.curve.gradient(fit.end.t_s), then = fit.curve.gradient(t_s);
+  const auto interval = [&](double value, const Eigen::VectorXd& of_curve,
+                            const Eigen::Vector3d& of_wander) {
+    Eigen::VectorXd g(of_curve.size() + 3);
+    g << of_curve, of_wander;
+    return normal_interval(value + of_wander.dot(fit.end.wander),
+                           g.dot(fit.end.covariance * g) + growth);
+  };
+  const double level = fit.curve.value(t_s);
+  DriftForecast result;
+  result.t_s = t_s;
+  result.bias = interval(level, then, {1.0, 1.0, kept});
+  result.change =
+      interval(level - fit.curve.value(fit.end.t_s), then - now, {0.0, 0.0, kept - 1.0});
+  return result;
+}
+
+Interval95 position_error(const Interval95& bias, double t_s) {
+  const double half_square = 0.5 * t_s * t_s;
+  const auto scaled = [&](const std::optional<double>& end) {
+    return end ? std::optional(*end * half_square) : std::nullopt;
+  };
+  return {bias.value * half_square, bias.std * half_square, scaled(bias.lower_95),
+          scaled(bias.upper_95)};
+}
+
+}  // namespace proofmass::characterise

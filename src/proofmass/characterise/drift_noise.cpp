@@ -1,0 +1,157 @@
+#include "proofmass/characterise/drift_noise.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "proofmass/characterise/golden_section.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// As in noise_search.cpp: one more term, and one more with a free time constant.
+constexpr double gain_for_term = 6.0, gain_for_time = 16.0;
+constexpr double cost_of_parameter = 2.0, gain_for_walk = 1.0;
+constexpr int markov_times = 10;
+
+NoiseColumns without_walk(const NoiseColumns& columns) {
+  NoiseColumns some;
+  some.markov_time_constant_s = columns.markov_time_constant_s;
+  some.P.resize(columns.P.rows(), columns.P.cols() - 1);
+  for (std::size_t k = 0; k < columns.terms.size(); ++k) {
+    if (columns.terms[k] == Term::random_walk) continue;
+    some.P.col(static_cast<Index>(some.terms.size())) = columns.P.col(static_cast<Index>(k));
+    some.terms.push_back(columns.terms[k]);
+  }
+  return some;
+}
+
+}  // namespace
+
+int NoiseColumns::parameters() const {
+  return static_cast<int>(terms.size()) + (markov_time_constant_s > 0.0 ? 1 : 0);
+}
+
+double NoiseColumns::strength(const OrdinateFit& fit, Term term) const {
+  for (std::size_t k = 0; k < terms.size(); ++k)
+    if (terms[k] == term) return std::sqrt(fit.strength(static_cast<Index>(k)));
+  return 0.0;
+}
+
+NoiseChoice::NoiseChoice(const DriftEvidence& evidence) : evidence_(evidence) {
+  white_ = with({}, Term::white);
+  base_ = with(white_, Term::random_walk);
+  // From where a block still shows it to where the record shows it but six times.
+  const double shortest_s = 2.0 * evidence.block_s(), longest_s = evidence.duration_s() / 6.0;
+  for (int k = 0; k < markov_times; ++k) {
+    const double share = static_cast<double>(k) / (markov_times - 1);
+    markov_times_s_.push_back(shortest_s * std::pow(longest_s / shortest_s, share));
+    markov_.push_back(column(Term::markov, markov_times_s_.back()));
+  }
+}
+
+VectorXd NoiseChoice::column(Term term, double time_constant_s) const {
+  VectorXd density(evidence_.blocks() - 1);
+  for (Index k = 0; k < density.size(); ++k) {
+    const double f = evidence_.frequency_hz(k + 1);
+    density(k) = term == Term::markov
+                     ? time_constant_s * time_constant_s *
+                           relaxation_density(time_constant_s, f, evidence_.sampling())
+                     : term_density(term, f, evidence_.sampling());
+  }
+  return density;
+}
+
+NoiseColumns NoiseChoice::with(const NoiseColumns& columns,
+                               Term term,
+                               double time_constant_s) const {
+  NoiseColumns more = columns;
+  more.P.conservativeResize(evidence_.blocks() - 1, columns.P.cols() + 1);
+  more.P.col(columns.P.cols()) = column(term, time_constant_s);
+  more.terms.push_back(term);
+  if (term == Term::markov) more.markov_time_constant_s = time_constant_s;
+  return more;
+}
+
+NoiseColumns NoiseChoice::with_base(const NoiseColumns& columns) const {
+  NoiseColumns more = base_;
+  for (const Term term : columns.terms)
+    if (term == Term::flicker || term == Term::markov)
+      more = with(more, term, columns.markov_time_constant_s);
+  return more;
+}
+
+NoiseColumns NoiseChoice::kept(const NoiseColumns& columns, const OrdinateFit& fit) {
+  NoiseColumns some;
+  for (std::size_t k = 0; k < columns.terms.size(); ++k) {
+    const auto from = static_cast<Index>(k);
+    if (!(fit.strength(from) > 0.0)) continue;
+    some.P.conservativeResize(columns.P.rows(), some.P.cols() + 1);
+    some.P.col(some.P.cols() - 1) = columns.P.col(from);
+    some.terms.push_back(columns.terms[k]);
+    if (columns.terms[k] == Term::markov)
+      some.markov_time_constant_s = columns.markov_time_constant_s;
+  }
+  return some;
+}
+
+// With a Markov term of the likeliest time constant.
+NoiseColumns NoiseChoice::with_markov(const NoiseColumns& columns,
+                                      const VectorXd& z,
+                                      const OrdinateMeans& means) const {
+  VectorXd start = VectorXd::Zero(columns.P.cols() + 1);
+  start.head(columns.P.cols()) = fit_ordinates(z, columns.P, means).strength;
+  NoiseColumns tried = with(columns, Term::markov, markov_times_s_.front());
+  const auto loss = [&](const VectorXd& shape) {
+    tried.P.rightCols(1) = shape;
+    return -fit_ordinates(z, tried.P, means, start).log_likelihood;
+  };
+  std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < markov_.size(); ++k) {
+    const double found = loss(markov_[k]);
+    if (found >= least) continue;
+    least = found;
+    best = k;
+  }
+  // To a twentieth: the strength makes up for what is left.
+  constexpr double tolerance = 0.05;
+  const double time_s = std::exp(
+      least_between(
+          {std::log(markov_times_s_[best > 0 ? best - 1 : 0]),
+           std::log(markov_times_s_[std::min(best + 1, markov_times_s_.size() - 1)]), tolerance},
+          [&](double log_time) { return loss(column(Term::markov, std::exp(log_time))); })
+          .place);
+  return with(columns, Term::markov, time_s);
+}
+
+NoiseColumns NoiseChoice::choose(const VectorXd& z, const OrdinateMeans& means) const {
+  const NoiseColumns flicker = with(base_, Term::flicker);
+  const std::array<NoiseColumns, 4> choices{base_, flicker, with_markov(base_, z, means),
+                                            with_markov(flicker, z, means)};
+  std::array<OrdinateFit, 4> fits;
+  std::array<double, 4> gain{};
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    fits[k] = fit_ordinates(z, choices[k].P, means);
+    gain[k] = 2.0 * (fits[k].log_likelihood - fits[0].log_likelihood);
+  }
+  // Whether there is more than white noise and a walk asks for proof; what it is, once there is, is
+  // the likeliest by Akaike's criterion.
+  std::size_t best = 0;
+  if (gain[1] > gain_for_term) best = 1;
+  if (gain[2] > gain_for_time && (best == 0 || gain[2] - gain[1] > cost_of_parameter)) best = 2;
+  const double both = best == 2 ? gain_for_term : gain_for_time;
+  if (best != 0 && gain[3] - gain[best] > both) best = 3;
+  // A walk that next to nothing speaks for is left out: kept, it would widen every interval.
+  const NoiseColumns without = without_walk(choices[best]);
+  const OrdinateFit fit = fit_ordinates(z, without.P, means);
+  if (2.0 * (fits[best].log_likelihood - fit.log_likelihood) < gain_for_walk)
+    return kept(without, fit);
+  return kept(choices[best], fits[best]);
+}
+
+}  // namespace proofmass::characterise

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "proofmass/characterise/drift_evidence.hpp"
+#include "proofmass/characterise/noise_model.hpp"
+#include "proofmass/characterise/ordinate_likelihood.hpp"
+
+namespace proofmass::characterise {
+
+/// The terms of which the noise beside a drift is made, as columns of densities at k ≥ 1.
+struct NoiseColumns {
+  Eigen::MatrixXd P;
+  std::vector<Term> terms;  ///< of each column
+  double markov_time_constant_s = 0.0;
+
+  /// So many parameters does the noise have.
+  [[nodiscard]] int parameters() const;
+  /// Strength of a term in a fit; 0 if it is none of the columns.
+  [[nodiscard]] double strength(const OrdinateFit& fit, Term term) const;
+};
+
+/// Which noise a drift is told from.
+class NoiseChoice {
+ public:
+  explicit NoiseChoice(const DriftEvidence& evidence);
+
+  /// White noise and a random walk, which cannot be left out before it is known whether they can.
+  [[nodiscard]] const NoiseColumns& base() const { return base_; }
+
+  [[nodiscard]] const NoiseColumns& white() const { return white_; }
+
+  /// White noise and a random walk, with flicker, with first-order Markov noise or with both:
+  /// flicker where that gains 6 in twice the log-likelihood and a Markov term where that gains 16,
+  /// as in noise_fit.hpp, of the two the likelier; less those that come out at nothing. Of terms
+  /// that explain as much the random walk is kept: over the length of the recording it costs the
+  /// most, so that an interval errs on the safe side.
+  [[nodiscard]] NoiseColumns choose(const Eigen::VectorXd& z, const OrdinateMeans& means) const;
+
+  /// A choice with white noise and random walk put back.
+  [[nodiscard]] NoiseColumns with_base(const NoiseColumns& columns) const;
+
+  /// Without the columns whose strength is zero.
+  [[nodiscard]] static NoiseColumns kept(const NoiseColumns& columns, const OrdinateFit& fit);
+
+ private:
+  [[nodiscard]] Eigen::VectorXd column(Term term, double time_constant_s = 0.0) const;
+  [[nodiscard]] NoiseColumns with(const NoiseColumns& columns,
+                                  Term term,
+                                  double time_constant_s = 0.0) const;
+  [[nodiscard]] NoiseColumns with_markov(const NoiseColumns& columns,
+                                         const Eigen::VectorXd& z,
+                                         const OrdinateMeans& means) const;
+
+  const DriftEvidence& evidence_;
+  NoiseColumns white_, base_;
+  std::vector<Eigen::VectorXd> markov_;
+  std::vector<double> markov_times_s_;
+};
+
+}  // namespace proofmass::characterise

@@ -1,0 +1,211 @@
+#include "proofmass/characterise/drift_state.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "proofmass/core/linalg.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::array<Term, 3> wandering{Term::random_walk, Term::flicker, Term::markov};
+constexpr Index terms = 3;
+
+// Density of each wandering term at each ordinate, k = 0 first. There a random walk has none, as it
+// is counted from its own mean over the record until pinned; the others' are those of half the
+// lowest frequency.
+MatrixXd wander_densities(const DriftEvidence& evidence, const DriftTrial& trial) {
+  MatrixXd S = MatrixXd::Zero(evidence.blocks(), terms);
+  for (std::size_t k = 0; k < trial.noise.terms.size(); ++k) {
+    const auto column = static_cast<Index>(k);
+    for (Index j = 0; j < terms; ++j) {
+      const Term term = wandering[static_cast<std::size_t>(j)];
+      if (trial.noise.terms[k] != term) continue;
+      S.col(j).tail(evidence.blocks() - 1) = trial.noise.P.col(column) * trial.fit.strength(column);
+      if (term == Term::flicker) S(0, j) = 2.0 * S(1, j);
+      if (term == Term::markov) S(0, j) = S(1, j);
+    }
+  }
+  return S;
+}
+
+// Derivatives of the mean's ordinates, k = 0 first, by what the curve's covariance is of, the level
+// apart, and then by the missing blocks.
+MatrixXd curve_jacobian(const DriftEvidence& evidence, const DriftTrial& trial) {
+  const MatrixXd columns = whole_columns(evidence, trial.at);
+  const auto exponentials = static_cast<Index>(trial.at.log_times.size());
+  MatrixXd J(evidence.blocks(), columns.cols() + exponentials);
+  for (Index k = 0; k < exponentials; ++k) {
+    const double T = std::exp(trial.at.log_times[static_cast<std::size_t>(k)]);
+    J.col(2 * k) = columns.col(k);
+    J.col(2 * k + 1) = trial.fit.coefficients(k) * evidence.rise_by_log_time(T);
+  }
+  J.rightCols(columns.cols() - exponentials) = columns.rightCols(columns.cols() - exponentials);
+  return J;
+}
+
+// How many of them belong to the curve.
+Index curve_parameters(const DriftEvidence& evidence, const MatrixXd& J) {
+  return J.cols() - evidence.dummies().cols();
+}
+
+// Linear functionals of the data and their errors: level (the mean of the record), walk at t = 0,
+// and each term at the end.
+struct Functionals {
+  VectorXd value;
+  MatrixXd covariance;   // given the curve
+  MatrixXd sensitivity;  // to the curve's parameters and missing blocks
+};
+
+Functionals functionals(const DriftEvidence& evidence,
+                        const DriftTrial& trial,
+                        const MatrixXd& J,
+                        const VectorXd& residual) {
+  const Index n = evidence.blocks();
+  constexpr Index count = 2 + terms;  // level, walk at the start, terms at the end
+  const MatrixXd S = wander_densities(evidence, trial);
+  VectorXd total(n);
+  total.tail(n - 1) = trial.fit.density;
+  // The white noise alone; the rest of k = 0 is in the functionals below.
+  const double wander_density = S.row(0).sum();
+  const double white = trial.noise.strength(trial.fit, Term::white);
+  total(0) = white * white + wander_density;
+  const VectorXd at_start = evidence.at(evidence.start_s()), at_end = evidence.at(evidence.end_s());
+  // Weights of the terms in the functionals, by ordinate: (which term, weight).
+  const std::array<Index, count> term_of{0, 0, 0, 1, 2};
+  Functionals out{VectorXd::Zero(count), MatrixXd::Zero(count, count),
+                  MatrixXd::Zero(count, J.cols())};
+  // Level: what is left at k = 0, which holds the stationary terms' means too.
+  const double to_level = at_start(0);
+  out.value(0) = to_level * residual(0);
+  out.covariance(0, 0) = to_level * to_level * total(0);
+  out.sensitivity.row(0) = -to_level * J.row(0);
+  for (Index j = 1; j < terms; ++j) {
+    const double shared = to_level * at_end(0) * S(0, j);
+    out.covariance(0, 2 + j) = out.covariance(2 + j, 0) = -shared;
+    out.covariance(2 + j, 2 + j) = at_end(0) * at_end(0) * S(0, j);
+  }
+  for (Index k = 1; k < n; ++k) {
+    for (Index a = 1; a < count; ++a) {
+      const double of_a = (a == 1 ? at_start(k) : at_end(k));
+      const double S_a = S(k, term_of[static_cast<std::size_t>(a)]);
+      const double gain = of_a * S_a / total(k);
+      out.value(a) += gain * residual(k);
+      out.sensitivity.row(a) -= gain * J.row(k);
+      for (Index b = a; b < count; ++b) {
+        const double of_b = (b == 1 ? at_start(k) : at_end(k));
+        const double S_b = S(k, term_of[static_cast<std::size_t>(b)]);
+        const bool same =
+            term_of[static_cast<std::size_t>(a)] == term_of[static_cast<std::size_t>(b)];
+        out.covariance(a, b) += of_a * of_b * ((same ? S_a : 0.0) - S_a * S_b / total(k));
+      }
+    }
+  }
+  out.covariance.triangularView<Eigen::StrictlyLower>() = out.covariance.transpose();
+  return out;
+}
+
+// The walk before the recording, and what each term does between the last block's mean and its end:
+// ∫∫ of the increments is K² h/3 for a walk, as for a Markov process slower than a block.
+void add_unseen(const DriftEvidence& evidence, const DriftTrial& trial, MatrixXd& of_values) {
+  const DriftNoise noise = noise_of(trial);
+  const double third = evidence.block_s() / 3.0, K = noise.random_walk;
+  const double start = K * K * (evidence.start_s() + third);
+  of_values(0, 0) += start;
+  of_values(0, 1) -= start;
+  of_values(1, 0) -= start;
+  of_values(1, 1) += start + K * K * third;
+  of_values(2, 2) += 2.0 * std::numbers::ln2 / std::numbers::pi * noise.flicker * noise.flicker;
+  of_values(3, 3) +=
+      std::min(noise.markov * noise.markov * third, noise.markov_std() * noise.markov_std());
+}
+
+void fill_curve(const DriftEvidence& evidence,
+                const DriftTrial& trial,
+                const MatrixXd& covariance,
+                DriftCurve& curve) {
+  const VectorXd& b = trial.fit.coefficients;
+  const std::vector<double>& log_times = trial.at.log_times;
+  curve.shape = trial.at.shape;
+  if (!log_times.empty()) {
+    curve.a1 = b(0);
+    curve.time_constant_s = std::exp(log_times[0]);
+  }
+  if (log_times.size() > 1) {
+    curve.second_a1 = b(1);
+    curve.second_time_constant_s = std::exp(log_times[1]);
+  }
+  auto place = static_cast<Index>(log_times.size());
+  if (curve.shape == DriftShape::line || curve.shape == DriftShape::exponential_and_line)
+    curve.slope_per_s = b(place++) / evidence.duration_s();
+  Index entry = covariance.rows() - static_cast<Index>(trial.at.step_blocks.size());
+  for (const std::size_t block : trial.at.step_blocks)
+    curve.steps.push_back({evidence.start_s() + static_cast<double>(block) * evidence.block_s(),
+                           {b(place++), std::sqrt(covariance(entry, entry))}}),
+        ++entry;
+}
+
+}  // namespace
+
+DriftNoise noise_of(const DriftTrial& trial) {
+  return {trial.noise.strength(trial.fit, Term::white),
+          trial.noise.strength(trial.fit, Term::flicker),
+          trial.noise.strength(trial.fit, Term::random_walk),
+          trial.noise.strength(trial.fit, Term::markov), trial.noise.markov_time_constant_s};
+}
+
+PlacedCurve place(const DriftEvidence& evidence, const DriftTrial& trial) {
+  const Index n = evidence.blocks();
+  MatrixXd J = curve_jacobian(evidence, trial);
+  const Index own = curve_parameters(evidence, J);
+  // The line's column is of t/duration, the covariance of the slope.
+  VectorXd scale = VectorXd::Ones(J.cols());
+  if (trial.at.shape == DriftShape::line || trial.at.shape == DriftShape::exponential_and_line)
+    scale(2 * static_cast<Index>(trial.at.log_times.size())) = 1.0 / evidence.duration_s();
+  const VectorXd residual =
+      evidence.ordinates() - whole_columns(evidence, trial.at) * trial.fit.coefficients;
+  const MatrixXd rows = J.bottomRows(n - 1);
+  const MatrixXd of_curve =
+      J.cols() > 0 ? positive_inverse(rows.transpose() *
+                                      (trial.fit.density.cwiseInverse().asDiagonal() * rows))
+                   : MatrixXd(0, 0);
+  const Functionals found = functionals(evidence, trial, J, residual);
+  // [a2; wander since 0]: level less the walk since 0, and the walk's end less its start.
+  MatrixXd turn = MatrixXd::Zero(1 + terms, found.value.size());
+  turn(0, 0) = turn(0, 1) = 1.0;
+  turn(1, 1) = -1.0;
+  turn(1, 2) = turn(2, 3) = turn(3, 4) = 1.0;
+  const VectorXd value = turn * found.value;
+  const MatrixXd sensitivity = turn * found.sensitivity;
+  MatrixXd of_values =
+      turn * found.covariance * turn.transpose() + sensitivity * of_curve * sensitivity.transpose();
+  add_unseen(evidence, trial, of_values);
+  const MatrixXd cross = (of_curve * sensitivity.transpose());  // curve by [a2; wander]
+
+  PlacedCurve placed;
+  MatrixXd all(1 + own + terms, 1 + own + terms);
+  const VectorXd own_scale = scale.head(own);
+  all(0, 0) = of_values(0, 0);
+  all.block(1, 1, own, own) =
+      own_scale.asDiagonal() * of_curve.topLeftCorner(own, own) * own_scale.asDiagonal();
+  all.block(1, 0, own, 1) = own_scale.asDiagonal() * cross.topRows(own).col(0);
+  all.block(0, 1, 1, own) = all.block(1, 0, own, 1).transpose();
+  all.block(1 + own, 1 + own, terms, terms) = of_values.bottomRightCorner(terms, terms);
+  all.block(1 + own, 0, terms, 1) = of_values.block(1, 0, terms, 1);
+  all.block(0, 1 + own, 1, terms) = of_values.block(0, 1, 1, terms);
+  all.block(1, 1 + own, own, terms) = own_scale.asDiagonal() * cross.topRows(own).rightCols(terms);
+  all.block(1 + own, 1, terms, own) = all.block(1, 1 + own, own, terms).transpose();
+  placed.curve.covariance = all.topLeftCorner(1 + own, 1 + own);
+  placed.curve.a2 = value(0);
+  fill_curve(evidence, trial, placed.curve.covariance, placed.curve);
+  placed.end = {evidence.end_s(), value.tail(terms), all};
+  return placed;
+}
+
+}  // namespace proofmass::characterise

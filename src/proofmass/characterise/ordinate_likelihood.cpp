@@ -1,0 +1,148 @@
+#include "proofmass/characterise/ordinate_likelihood.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "proofmass/core/contract.hpp"
+#include "proofmass/core/linalg.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int most_steps = 60;
+constexpr double converged = 1e-6;  // in log-likelihood, where 1.92 bounds an interval
+
+// All that follows from a density.
+struct State {
+  ArrayXd S;
+  VectorXd coefficients;
+  MatrixXd covariance;
+  ArrayXd residual;
+  MatrixXd adjusting_covariance;
+  double log_likelihood = 0.0;
+};
+
+class Ordinates {
+ public:
+  Ordinates(const VectorXd& z, const MatrixXd& P, const OrdinateMeans& means)
+      : z_(z),
+        P_(P),
+        means_(means),
+        least_(1e-12 * z.squaredNorm() / static_cast<double>(z.size())) {
+    PM_EXPECTS(P.rows() == z.size());
+  }
+
+  [[nodiscard]] ArrayXd density(const VectorXd& theta) const {
+    return (P_ * theta).array().max(std::max(least_, 1e-300));
+  }
+
+  [[nodiscard]] State at(ArrayXd S) const {
+    State state;
+    const VectorXd weight = S.inverse().matrix();
+    state.residual = z_.array();
+    double data = S.log().sum();
+    if (means_.fitted.cols() > 0) {
+      const MatrixXd WX = weight.asDiagonal() * means_.fitted;
+      const PositiveInverse information = invert_positive(means_.fitted.transpose() * WX);
+      state.covariance = information.inverse;
+      state.coefficients = state.covariance * (WX.transpose() * z_);
+      state.residual -= (means_.fitted * state.coefficients).array();
+    }
+    data += (state.residual.square() / S).sum();
+    if (means_.adjusting.cols() > 0) {
+      const MatrixXd information =
+          means_.adjusting.transpose() * (weight.asDiagonal() * means_.adjusting);
+      PositiveInverse inverse = invert_positive(information);
+      state.adjusting_covariance = std::move(inverse.inverse);
+      data += inverse.log_determinant;
+    }
+    state.log_likelihood = -0.5 * data;
+    state.S = std::move(S);
+    return state;
+  }
+
+  // What the squares of the ordinates are expected to be: of the fitted part, its uncertainty too.
+  [[nodiscard]] VectorXd expected_squares(const State& state) const {
+    VectorXd p = state.residual.square().matrix();
+    if (means_.adjusting.cols() > 0)
+      p += (means_.adjusting * state.adjusting_covariance)
+               .cwiseProduct(means_.adjusting)
+               .rowwise()
+               .sum();
+    return p;
+  }
+
+  // Fisher scoring: the strengths that fit the expected squares with weights 1/(2 S²).
+  [[nodiscard]] VectorXd scored(const State& state) const {
+    const VectorXd weight = (0.5 / state.S.square()).matrix();
+    const MatrixXd WP = weight.asDiagonal() * P_;
+    return non_negative_minimiser(P_.transpose() * WP, WP.transpose() * expected_squares(state));
+  }
+
+  // A first guess: the mean of neighbouring squares.
+  [[nodiscard]] ArrayXd rough() const {
+    constexpr Index reach = 4;
+    const ArrayXd p = z_.array().square();
+    ArrayXd S(p.size());
+    for (Index k = 0; k < p.size(); ++k) {
+      const Index from = std::max<Index>(0, k - reach), to = std::min(p.size() - 1, k + reach);
+      S(k) = p.segment(from, to - from + 1).mean();
+    }
+    return S.max(std::max(1e-9 * p.mean(), 1e-300));
+  }
+
+ private:
+  const VectorXd& z_;
+  const MatrixXd& P_;
+  const OrdinateMeans& means_;
+  double least_;
+};
+
+OrdinateFit result_of(State state, VectorXd theta) {
+  return {std::move(theta), state.S.matrix(), std::move(state.coefficients),
+          std::move(state.covariance), state.log_likelihood};
+}
+
+}  // namespace
+
+OrdinateFit fit_ordinates(const VectorXd& z,
+                          const MatrixXd& P,
+                          const OrdinateMeans& means,
+                          const VectorXd& start) {
+  const Ordinates ordinates(z, P, means);
+  VectorXd theta = start.size() > 0 ? start : ordinates.scored(ordinates.at(ordinates.rough()));
+  State state = ordinates.at(ordinates.density(theta));
+  for (int step = 0; step < most_steps; ++step) {
+    const VectorXd next = ordinates.scored(state);
+    const double before = state.log_likelihood;
+    bool up = false;
+    constexpr int most_halvings = 12;
+    double fraction = 1.0;
+    for (int halving = 0; halving < most_halvings && !up; ++halving, fraction *= 0.5) {
+      const VectorXd tried = theta + fraction * (next - theta);
+      State there = ordinates.at(ordinates.density(tried));
+      up = there.log_likelihood >= before;
+      if (!up) continue;
+      theta = tried;
+      state = std::move(there);
+    }
+    if (!up || state.log_likelihood - before < converged) break;
+  }
+  return result_of(std::move(state), std::move(theta));
+}
+
+OrdinateFit evaluate_ordinates(const VectorXd& z,
+                               const MatrixXd& P,
+                               const OrdinateMeans& means,
+                               const VectorXd& strength) {
+  const Ordinates ordinates(z, P, means);
+  return result_of(ordinates.at(ordinates.density(strength)), strength);
+}
+
+}  // namespace proofmass::characterise
