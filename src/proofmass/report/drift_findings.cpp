@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "proofmass/report/drift_wording.hpp"
+#include "proofmass/report/noise_wording.hpp"
+#include "proofmass/report/wording.hpp"
+
+// The sentences that a channel and a set of runs come to.
+namespace proofmass::report {
+namespace {
+
+using characterise::DriftAnalysis;
+using characterise::DriftFit;
+using characterise::DriftNoise;
+using characterise::RunSet;
+using signal::WhitenessTest;
+
+using Sentences = std::vector<std::string>;
+
+// "1 s", "1 s and 10 s", "1 s, 10 s and 100 s"
+std::string scales_words(const std::vector<const WhitenessTest*>& tests) {
+  std::string text;
+  for (const WhitenessTest* test : tests) {
+    text += (text.empty()           ? ""
+             : test == tests.back() ? " and "
+                                    : ", ") +
+            duration_words(test->scale_s);
+  }
+  return text;
+}
+
+std::string inside_words(const WhitenessTest& test) {
+  return fmt::format("{} % of lags inside the bounds", fixed(100.0 * test.inside_bounds, 0));
+}
+
+std::string sentence(std::string words) {
+  if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') {
+    words[0] = static_cast<char>(words[0] - 'a' + 'A');
+  }
+  return words + (words.ends_with('.') ? "" : ".");
+}
+
+void add_tests(const ChannelDrift& channel, Sentences& sentences) {
+  const DriftAnalysis& analysis = *channel.analysis;
+  const DriftFit& fit = analysis.fit;
+  sentences.push_back(
+      fmt::format("By chance an exponential would gain as much over a constant with a probability "
+                  "of {}, over a "
+                  "straight line of {}.",
+                  p_words(fit.constant_p), p_words(fit.line_p)));
+  if (fit.identified || !(fit.undetected_below > 0.0) || !std::isfinite(fit.undetected_below))
+    return;
+  sentences.push_back(fmt::format(
+      "With 95 % confidence there is no warm-up of more than {} with a time constant "
+      "of {}, a fifth of the recording.",
+      bias_words(fit.undetected_below, channel.unit), duration_words(analysis.duration_s / 5.0)));
+}
+
+void add_noise(const ChannelDrift& channel, Sentences& sentences) {
+  const DriftNoise& noise = channel.analysis->fit.noise;
+  std::string parts;
+  const auto add = [&](const std::string& part) { parts += (parts.empty() ? "" : ", ") + part; };
+  const Unit& unit = channel.unit;
+  if (noise.white > 0.0) add("white " + noise_words(noise.white, unit, NoiseScale::density));
+  if (noise.flicker > 0.0) add("flicker " + noise_words(noise.flicker, unit, NoiseScale::level));
+  if (noise.random_walk > 0.0) {
+    add("random walk " + noise_words(noise.random_walk, unit, NoiseScale::walk));
+  }
+  if (noise.markov > 0.0) {
+    add(fmt::format("first-order Markov {} rms over {}",
+                    noise_words(noise.markov_std(), unit, NoiseScale::level),
+                    duration_words(noise.markov_time_constant_s)));
+  }
+  if (parts.empty()) return;
+  sentences.push_back("Noise that the intervals allow for: " + parts + ".");
+}
+
+void add_temperature(const ChannelDrift& channel, Sentences& sentences) {
+  if (!channel.temperature) return;
+  const DriftTemperature& found = *channel.temperature;
+  if (!found.model) {
+    sentences.push_back(fmt::format("No curve against {}: {}.", found.channel, found.refused));
+    return;
+  }
+  const characterise::TemperatureModel& model = *found.model;
+  if (model.verdict != characterise::Verdict::identified) {
+    sentences.push_back(
+        sentence(fmt::format("No dependence on {} can be told: {}", found.channel, model.reason)));
+    return;
+  }
+  sentences.push_back(
+      fmt::format("Follows {} by a polynomial of degree {}: {} between {} and {} °C.",
+                  found.channel, model.degree, bias_words(model.bias_span, channel.unit),
+                  fixed(model.lowest_k - 273.15, 1), fixed(model.highest_k - 273.15, 1)));
+  if (model.hysteresis && model.hysteresis_significant) {
+    sentences.push_back(fmt::format("Heating reads {} above cooling at the same temperature.",
+                                    bias_words(*model.hysteresis, channel.unit)));
+  }
+}
+
+void add_outlook(const ChannelDrift& channel, Sentences& sentences) {
+  if (!channel.outlook) return;
+  if (!channel.outlook->forecast) {
+    sentences.push_back("No forecast: " + channel.outlook->refused + ".");
+    return;
+  }
+  const characterise::DriftForecast& later = *channel.outlook->forecast;
+  sentences.push_back(fmt::format(
+      "{} after switching on: bias {} (95 %: {}), {} since the end of the recording.",
+      duration_words(later.t_s), bias_words(later.bias, channel.unit),
+      bias_interval_words(later.bias, channel.unit), bias_words(later.change, channel.unit)));
+}
+
+void add_trend(const ChannelRuns& runs, Sentences& sentences) {
+  const RunSet& set = *runs.set;
+  if (!set.trend_per_run) return;
+  constexpr double significant_p = 0.05;
+  sentences.push_back(
+      set.trend_p < significant_p
+          ? fmt::format("The level moves by {} from one run to the next (p = {}).",
+                        bias_words(*set.trend_per_run, runs.unit), p_words(set.trend_p))
+          : fmt::format("No trend from run to run: {} a run (p = {}).",
+                        bias_words(*set.trend_per_run, runs.unit), p_words(set.trend_p)));
+}
+
+}  // namespace
+
+std::string whiteness_sentence(const DriftAnalysis& analysis) {
+  std::vector<const WhitenessTest*> white, coloured;
+  for (const WhitenessTest& test : analysis.whiteness) {
+    (test.white ? white : coloured).push_back(&test);
+  }
+  if (white.empty() && coloured.empty()) return "Too short to test whether residuals are white.";
+  if (coloured.empty()) return "Residuals at " + scales_words(white) + " white.";
+  const WhitenessTest& worst =
+      **std::ranges::min_element(coloured, {}, &WhitenessTest::inside_bounds);
+  std::string text = white.empty()
+                         ? fmt::format("Residuals at {} not white", scales_words(coloured))
+                         : fmt::format("Residuals at {} white, at {} not", scales_words(white),
+                                       scales_words(coloured));
+  text += fmt::format(": {}{} (95 % if white)", inside_words(worst),
+                      coloured.size() > 1 ? " at " + duration_words(worst.scale_s) : "");
+  if (!analysis.whitened) return text + "; whether the intervals allow for it cannot be tested.";
+  if (analysis.whitened->white) return text + "; the intervals allow for it.";
+  return text + fmt::format(
+                    "; the noise model does not explain all of it ({} after it): take the "
+                    "intervals as too narrow.",
+                    inside_words(*analysis.whitened));
+}
+
+std::vector<std::string> drift_findings(const ChannelDrift& channel) {
+  if (!channel.analysis) return {"Not analysed: " + channel.refused + "."};
+  Sentences sentences{sentence(drift_verdict(channel))};
+  add_tests(channel, sentences);
+  sentences.push_back(whiteness_sentence(*channel.analysis));
+  add_noise(channel, sentences);
+  add_temperature(channel, sentences);
+  add_outlook(channel, sentences);
+  const std::size_t knocks = channel.analysis->knocks.size();
+  if (knocks > 0) sentences.push_back(count_words(knocks, "knock") + " left out.");
+  return sentences;
+}
+
+std::vector<std::string> run_findings(const ChannelRuns& runs) {
+  if (!runs.set) return {"Not compared: " + runs.refused + "."};
+  const RunSet& set = *runs.set;
+  Sentences sentences;
+  sentences.push_back(fmt::format("Turn-on repeatability, of the first {}: {}.",
+                                  duration_words(set.window_s),
+                                  scatter_words(set.turn_on, runs.unit)));
+  sentences.push_back(
+      fmt::format("Scatter of the runs' levels: {}.", scatter_words(set.level, runs.unit)));
+  add_trend(runs, sentences);
+  ChannelDrift common;
+  common.unit = runs.unit;
+  common.analysis = set.warm_up;
+  sentences.push_back("Common to all runs: " + drift_verdict(common) + ".");
+  return sentences;
+}
+
+}  // namespace proofmass::report

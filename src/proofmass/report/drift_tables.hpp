@@ -1,0 +1,22 @@
+#pragma once
+
+#include "proofmass/report/drift_report.hpp"
+#include "proofmass/report/page.hpp"
+
+// The tables of a page of `drift`. The channels must have an analysis, the runs a set.
+namespace proofmass::report {
+
+[[nodiscard]] Table parameters_table(const ChannelDrift& channel);
+[[nodiscard]] Table steps_table(const ChannelDrift& channel);
+[[nodiscard]] Table whiteness_table(const characterise::DriftAnalysis& analysis);
+[[nodiscard]] Table candidates_table(const characterise::DriftFit& fit);
+
+/// What the bias costs in position, of a series in m/s².
+[[nodiscard]] Table position_table(const characterise::DriftForecast& forecast);
+
+/// The channel must have a model of temperature.
+[[nodiscard]] Table temperature_table(const ChannelDrift& channel);
+
+[[nodiscard]] Table runs_table(const ChannelRuns& runs);
+
+}  // namespace proofmass::report
