@@ -75,6 +75,13 @@ void add_input_flags(CLI::App& verb, InputFlags& flags) {
       ->needs(where);
 }
 
+void add_switch_on_flag(CLI::App& verb, InputFlags& flags, const char* help) {
+  verb.add_option("--since-switch-on", flags.since_switch_on_s, help)
+      ->type_name("S")
+      ->group("Input")
+      ->check(not_negative());
+}
+
 void add_output_flags(CLI::App& verb, OutputFlags& flags) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->group("Output");
@@ -106,6 +113,7 @@ struct Commands {
   ConvertCommand convert;
   WheelCommand wheel;
   NoiseCommand noise;
+  DriftCommand drift;
   SimulateCommand simulate;
   BudgetCommand budget;
   SensorCommand sensor;
@@ -156,6 +164,10 @@ void add_wheel(CLI::App& app, WheelCommand& command) {
       ->type_name("M")
       ->check(positive());
   add_input_flags(verb, command.input);
+  add_switch_on_flag(
+      verb, command.input,
+      "the sensors had been on so long at the file's first sample: takes the warm-up "
+      "that their sensor files know of out");
   add_output_file(verb, command.output, "write the whole time series with standard deviations");
   add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);
@@ -196,6 +208,33 @@ void add_noise(CLI::App& app, NoiseCommand& command) {
   add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer("Example:\n  proofmass noise rest.csv --rate 100 --unit g --report noise.html");
+}
+
+void add_drift(CLI::App& app, DriftCommand& command) {
+  CLI::App& verb = *app.add_subcommand(
+      "drift", "warm-up of the bias of a sensor at rest, and whether the recording can tell");
+  verb.add_option("FILE", command.files,
+                  "recordings at rest from switching on; three or more are compared as power-ups; "
+                  "- is standard input (CSV)")
+      ->type_name("")
+      ->required();
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type);
+  };
+  add("--forecast", command.forecast_s, "S", "foretell the bias so long after switching on")
+      ->check(not_negative());
+  add("--temperature", command.temperature, "NAME",
+      "fit the bias against this channel (default: the only one in a unit of temperature); none: "
+      "do not");
+  add("--update-sensor", command.update_sensor, "FILE.toml",
+      "write what is identified into this sensor file");
+  add_input_flags(verb, command.input);
+  add_switch_on_flag(verb, command.input,
+                     "how long the sensor had been on at the first sample (default 0)");
+  add_output_file(verb, command.output, "write block means, curve and its standard deviation");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass drift rest.csv --rate 100 --unit g --report drift.html");
 }
 
 void add_simulate(CLI::App& app, SimulateCommand& command) {
@@ -371,6 +410,7 @@ Command chosen(CLI::App& app, Commands& commands) {
   if (app.got_subcommand("convert")) return std::move(commands.convert);
   if (app.got_subcommand("wheel")) return std::move(commands.wheel);
   if (app.got_subcommand("noise")) return std::move(commands.noise);
+  if (app.got_subcommand("drift")) return std::move(commands.drift);
   if (app.got_subcommand("simulate")) return std::move(commands.simulate);
   if (app.got_subcommand("sensor")) return std::move(commands.sensor);
   return std::move(commands.budget);
@@ -398,6 +438,7 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
   add_convert(app, commands.convert);
   add_wheel(app, commands.wheel);
   add_noise(app, commands.noise);
+  add_drift(app, commands.drift);
   add_simulate(app, commands.simulate);
   add_budget(app, commands.budget);
   add_sensor(app, commands.sensor);

@@ -20,6 +20,8 @@ struct InputFlags {
   std::optional<double> from_s, to_s;
   std::vector<std::string> sensors;
   std::optional<double> gravity_mps2, latitude_deg, height_m;
+  /// How long the sensors had been on at the file's first sample; of verbs that know warm-up only.
+  std::optional<double> since_switch_on_s;
 };
 
 /// Flags of every verb.
@@ -59,6 +61,14 @@ struct NoiseCommand {
   OutputFlags output;
 };
 
+struct DriftCommand {
+  std::vector<std::string> files;
+  std::string temperature, update_sensor;
+  std::optional<double> forecast_s;
+  InputFlags input;
+  OutputFlags output;
+};
+
 struct SimulateCommand {
   std::string rig;
   std::optional<std::uint64_t> seed;
@@ -84,6 +94,7 @@ using Command = std::variant<InspectCommand,
                              ConvertCommand,
                              WheelCommand,
                              NoiseCommand,
+                             DriftCommand,
                              SimulateCommand,
                              BudgetCommand,
                              SensorCommand>;

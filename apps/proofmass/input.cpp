@@ -1,5 +1,6 @@
 #include "input.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <limits>
 
@@ -7,6 +8,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/sensor/calibration.hpp"
 #include "proofmass/sensor/gravity.hpp"
+#include "proofmass/sensor/warm_up.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -32,6 +34,11 @@ void bring_to_si(Channel& channel, const std::string& file) {
   const Unit unit = channel.unit;
   for (double& value : channel.values) value = unit.si(value);
   channel.unit = *parse_unit("m/s^2");
+}
+
+// One sensor file for all accelerometers, or one for each.
+const sensor::SensorModel& model_of(const std::vector<sensor::SensorModel>& models, std::size_t k) {
+  return models[models.size() > 1 ? k : 0];
 }
 
 }  // namespace
@@ -91,8 +98,7 @@ void calibrate(const std::vector<sensor::SensorModel>& models,
   for (std::size_t k = 0; k < found.size(); ++k) {
     Recording& recording = recordings[found[k].recording];
     if (!models.empty()) {
-      const Status status =
-          sensor::apply(models[models.size() > 1 ? k : 0], found[k].triad, recording);
+      const Status status = sensor::apply(model_of(models, k), found[k].triad, recording);
       if (!status) {
         throw Failure(status_of(status.error(), Stage::reading),
                       status.error().at(found[k].name).message);
@@ -100,6 +106,47 @@ void calibrate(const std::vector<sensor::SensorModel>& models,
     }
     for (const std::size_t axis : axes_of(found[k].triad)) {
       bring_to_si(recording.channels[axis], recording.source);
+    }
+  }
+}
+
+std::optional<double> on_at_start_s(const InputFlags& flags) {
+  if (!flags.since_switch_on_s) return std::nullopt;
+  return *flags.since_switch_on_s + std::max(flags.from_s.value_or(0.0), 0.0);
+}
+
+void remove_warm_up(const InputFlags& flags,
+                    const std::vector<sensor::SensorModel>& models,
+                    const std::vector<Accelerometer>& found,
+                    std::vector<Recording>& recordings,
+                    std::vector<Note>& notes) {
+  const bool any = std::any_of(models.begin(), models.end(), [](const sensor::SensorModel& model) {
+    return sensor::has_warm_up(model.drift);
+  });
+  const std::optional<double> on_s = on_at_start_s(flags);
+  if (!on_s) {
+    if (!any) return;
+    notes.push_back({Severity::warning,
+                     "the warm-up in the sensor file stays in the readings: --since-switch-on S, "
+                     "how long the sensor had been on at the file's first sample, takes it out"});
+    return;
+  }
+  if (!any) {
+    throw Failure(usage,
+                  "--since-switch-on: no warm-up is known: give a --sensor file with a [drift] "
+                  "section");
+  }
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const sensor::DriftModel& drift = model_of(models, k).drift;
+    if (!sensor::has_warm_up(drift)) {
+      notes.push_back({Severity::warning, found[k].name + ": its sensor file has no warm-up"});
+      continue;
+    }
+    const Status done =
+        sensor::remove_warm_up(drift, found[k].triad, {*on_s}, recordings[found[k].recording]);
+    if (!done) {
+      throw Failure(status_of(done.error(), Stage::reading),
+                    done.error().at(found[k].name).message);
     }
   }
 }

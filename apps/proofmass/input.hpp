@@ -37,6 +37,19 @@ void calibrate(const std::vector<sensor::SensorModel>& models,
                const std::vector<Accelerometer>& found,
                std::vector<Recording>& recordings);
 
+/// How long the sensors had been on at the first sample that is kept, where --since-switch-on says
+/// so of the first in the file.
+[[nodiscard]] std::optional<double> on_at_start_s(const InputFlags& flags);
+
+/// Takes the warm-up that the sensor files know of out of the calibrated accelerometers, where
+/// --since-switch-on says how long they had been on; where it does not, a note says what it is for.
+/// Throws Failure where the flag is given and no sensor file has a warm-up.
+void remove_warm_up(const InputFlags& flags,
+                    const std::vector<sensor::SensorModel>& models,
+                    const std::vector<Accelerometer>& found,
+                    std::vector<Recording>& recordings,
+                    std::vector<Note>& notes);
+
 /// Local gravity: --gravity, or by --latitude and --height, or the standard one.
 [[nodiscard]] double gravity_mps2(const InputFlags& flags);
 

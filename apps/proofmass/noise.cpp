@@ -1,20 +1,19 @@
-#include <algorithm>
 #include <array>
-#include <atomic>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <mutex>
-#include <thread>
 
 #include "console.hpp"
 #include "exit_status.hpp"
-#include "noise_channels.hpp"
 #include "output.hpp"
+#include "parallel.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
+#include "proofmass/report/document.hpp"
 #include "proofmass/report/noise_report.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/noise_update.hpp"
+#include "proofmass/signal/regress_out.hpp"
+#include "rest_channels.hpp"
 #include "verbs.hpp"
 
 namespace proofmass::app {
@@ -24,6 +23,11 @@ using characterise::NoiseAnalysis;
 using characterise::NoiseOptions;
 using characterise::NoiseTypeSource;
 using characterise::TauGrid;
+
+struct NoiseChannel {
+  RestChannel rest;
+  report::ChannelNoise shown;
+};
 
 template <class Number>
 std::optional<Number> number_of(std::string_view text) {
@@ -105,32 +109,46 @@ NoiseOptions options_of(const NoiseCommand& command) {
   return options;
 }
 
-// Tells one bar of the mean progress of several analyses at once.
-class SharedProgress {
- public:
-  SharedProgress(Progress shown, std::size_t parts) : shown_(std::move(shown)), done_(parts) {}
-
-  Progress part(std::size_t k) {
-    return [this, k](std::string_view, double fraction) {
-      const std::scoped_lock lock(mutex_);
-      done_[k] = fraction;
-      double sum = 0.0;
-      for (const double part : done_) sum += part;
-      if (shown_) shown_("analysing", sum / static_cast<double>(done_.size()));
-    };
+void take_temperature_out(const RestTemperature& cause,
+                          NoiseChannel& channel,
+                          std::vector<Note>& notes) {
+  if (channel.rest.series.empty()) return;
+  const std::string& name = channel.rest.title;
+  const Result<Uncertain> found = signal::regress_out(channel.rest.series, cause.series);
+  if (!found) {
+    notes.push_back({Severity::warning, fmt::format("{}: {} was not taken out: {}", name,
+                                                    cause.name, found.error().message)});
+    return;
   }
+  const bool known = cause.unit.quantity == Quantity::temperature;
+  channel.shown.temperature = {cause.name, *found, known ? "K" : "1"};
+  notes.push_back(
+      {Severity::info, fmt::format("{}: {} {} per {} were taken out with {}, by least squares",
+                                   name, report::with_std(*found), channel.rest.unit.symbol,
+                                   channel.shown.temperature->per, cause.name)});
+}
 
- private:
-  std::mutex mutex_;
-  Progress shown_;
-  std::vector<double> done_;
-};
+std::vector<NoiseChannel> noise_channels(std::vector<RestRecording> recordings,
+                                         std::vector<Note>& notes) {
+  std::vector<NoiseChannel> channels;
+  for (RestRecording& recording : recordings) {
+    for (RestChannel& rest : recording.channels) {
+      NoiseChannel& channel = channels.emplace_back();
+      channel.rest = std::move(rest);
+      channel.shown.name = channel.rest.title;
+      channel.shown.unit = channel.rest.unit;
+      channel.shown.refused = channel.rest.refused;
+      if (recording.temperature) take_temperature_out(*recording.temperature, channel, notes);
+    }
+  }
+  return channels;
+}
 
 void analyse(NoiseChannel& channel, NoiseOptions options) {
   if (!channel.shown.refused.empty()) return;
-  options.rate_hz = channel.rate_hz;
-  options.lsb = channel.lsb;
-  Result<NoiseAnalysis> found = characterise::analyse_noise(channel.series, options);
+  options.rate_hz = channel.rest.rate_hz;
+  options.lsb = channel.rest.lsb;
+  Result<NoiseAnalysis> found = characterise::analyse_noise(channel.rest.series, options);
   // What was asked for makes no sense, of this channel or of any.
   if (!found && found.error().code == Errc::invalid_argument) {
     throw Failure(usage, found.error().at(channel.shown.name).message);
@@ -139,38 +157,7 @@ void analyse(NoiseChannel& channel, NoiseOptions options) {
     channel.shown.analysis = std::move(found).value();
   else
     channel.shown.refused = found.error().message;
-  std::vector<double>().swap(channel.series);
-}
-
-// Each channel by itself, as many at once as there are processors: the results do not depend on it.
-void analyse_all(std::vector<NoiseChannel>& channels,
-                 const NoiseOptions& options,
-                 const Progress& progress) {
-  SharedProgress shared(progress, channels.size());
-  std::atomic<std::size_t> next{0};
-  std::vector<std::exception_ptr> troubles(channels.size());
-  const auto work = [&] {
-    for (std::size_t k = next++; k < channels.size(); k = next++) {
-      try {
-        NoiseOptions own = options;
-        own.progress = shared.part(k);
-        analyse(channels[k], std::move(own));
-      } catch (...) {
-        troubles[k] = std::current_exception();
-      }
-    }
-  };
-  {
-    const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
-    std::vector<std::jthread> others;
-    for (std::size_t k = 1; k < std::min(processors, channels.size()); ++k) {
-      others.emplace_back(work);
-    }
-    work();
-  }
-  for (const std::exception_ptr& trouble : troubles) {
-    if (trouble) std::rethrow_exception(trouble);
-  }
+  std::vector<double>().swap(channel.rest.series);
 }
 
 sensor::MeasuredCoefficient measured(const characterise::Coefficient& found) {
@@ -183,7 +170,7 @@ sensor::MeasuredCoefficient measured(const characterise::Coefficient& found) {
 sensor::MeasuredNoise measured(const NoiseChannel& channel) {
   const NoiseAnalysis& analysis = *channel.shown.analysis;
   sensor::MeasuredNoise noise;
-  noise.axis = *channel.axis;
+  noise.axis = *channel.rest.axis;
   noise.white = measured(analysis.model.white);
   noise.quantisation = measured(analysis.model.quantisation);
   noise.flicker = measured(analysis.model.flicker);
@@ -191,22 +178,11 @@ sensor::MeasuredNoise measured(const NoiseChannel& channel) {
   noise.ramp = measured(analysis.model.ramp);
   noise.bandwidth_hz = analysis.model.bandwidth_hz;
   const std::string origin = fmt::format(
-      "proofmass noise {}, {} at {} Hz", report::file_name(channel.file),
+      "proofmass noise {}, {} at {} Hz", report::file_name(channel.rest.file),
       report::duration_words(analysis.duration_s), report::compact(analysis.rate_hz, 6));
-  if (channel.lsb) noise.lsb = sensor::make_figure(*channel.lsb, "m/s^2", origin);
+  if (channel.rest.lsb) noise.lsb = sensor::make_figure(*channel.rest.lsb, "m/s^2", origin);
   noise.origin = origin;
   return noise;
-}
-
-// The axes that a sensor file can take. Throws before the analysis what would be in vain.
-void expect_axes(const std::vector<NoiseChannel>& channels) {
-  for (const NoiseChannel& channel : channels) {
-    const bool fits = channel.axis && channel.shown.unit.symbol == "m/s^2";
-    if (fits) continue;
-    throw Failure(usage, fmt::format("--update-sensor: {} is no x, y or z axis of one "
-                                     "accelerometer, in m/s^2: choose with --channel, say --unit",
-                                     channel.shown.name));
-  }
 }
 
 void update_sensor(const std::string& path, const std::vector<NoiseChannel>& channels) {
@@ -220,26 +196,30 @@ void update_sensor(const std::string& path, const std::vector<NoiseChannel>& cha
   if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error().message);
 }
 
-bool is_bad(const std::vector<Note>& notes) {
-  return std::ranges::any_of(notes, [](const Note& n) { return n.severity == Severity::bad; });
-}
-
 }  // namespace
 
 void run(const NoiseCommand& command) {
   if (command.output.output == "-" && command.output.json == "-") {
     throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
   }
-  if (!command.update_sensor.empty() && command.files.size() > 1) {
-    throw Failure(usage, "--update-sensor: a sensor file takes the noise of one recording");
-  }
   const NoiseOptions options = options_of(command);
   report::NoiseReport report;
   report.inputs = command.files;
   report.events_excluded = command.exclude_events;
-  std::vector<NoiseChannel> channels = noise_channels(command, report.notes);
-  if (!command.update_sensor.empty()) expect_axes(channels);
-  analyse_all(channels, options, progress_bar(command.output));
+  std::vector<NoiseChannel> channels =
+      noise_channels(rest_recordings({.files = command.files,
+                                      .input = command.input,
+                                      .output = command.output,
+                                      .temperature = command.temperature,
+                                      .for_sensor_file = !command.update_sensor.empty(),
+                                      .is_phase = command.data == "phase"},
+                                     report.notes),
+                     report.notes);
+  in_parallel(channels.size(), progress_bar(command.output), [&](std::size_t k, Progress progress) {
+    NoiseOptions own = options;
+    own.progress = std::move(progress);
+    analyse(channels[k], std::move(own));
+  });
   if (!command.update_sensor.empty()) {
     without_interruption([&] { update_sensor(command.update_sensor, channels); });
   }
@@ -253,7 +233,7 @@ void run(const NoiseCommand& command) {
            .json = [&] { return report::noise_json(report); },
            .html = [&] { return report::noise_html(report); }},
           command.output);
-  hold_to_strict(command.output, is_bad(notes));
+  hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
 }
 
 }  // namespace proofmass::app

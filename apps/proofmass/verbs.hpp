@@ -9,6 +9,7 @@ void run(const InspectCommand& command);
 void run(const ConvertCommand& command);
 void run(const WheelCommand& command);
 void run(const NoiseCommand& command);
+void run(const DriftCommand& command);
 void run(const SimulateCommand& command);
 void run(const BudgetCommand& command);
 void run(const SensorCommand& command);

@@ -89,6 +89,7 @@ WheelInput prepare(const WheelCommand& command) {
                               found.size(), names));
   }
   calibrate(models, found, recordings);
+  remove_warm_up(command.input, models, found, recordings, input.notes);
   keep_notes(recordings, input.notes);
   input.clocks_shared =
       recordings.size() == 1 || share_a_clock(recordings.front(), recordings.back());

@@ -1,5 +1,6 @@
 """proofmass wheel, on the simulated rig and on made-up files."""
 import csv
+import math
 import unittest
 
 from command import BAD_DATA, USAGE, CommandTest, parse_json, turning_csv
@@ -87,6 +88,58 @@ class Wheel(CommandTest):
         self.check_document("wheel", document)
         self.assertAlmostEqual(abs(document["turns"]["value"]), 5.0, delta=0.03)
         self.assertGreaterEqual(document["rejected_samples"], 20)
+
+    def simulate_warm_up(self):
+        """Ten seconds that begin two seconds after switching on, and sensor file and truth for them."""
+        sensor = "radius_m = 0.1\nwarm_up_mps2 = [1.0, -1.0, 0.0]\nwarm_up_time_s = 3.0\n"
+        self.write("rig.toml", "seed = 3\n[[segment]]\nduration_s = 12\nspeed_rpm = 40\n[[sensor]]\n" + sensor)
+        self.succeed("simulate", "rig.toml", "--rate", "50", "-o", "all.csv")
+        self.succeed("convert", "all.csv", "--from", "2", "-o", "part.csv")
+        self.write("s.toml", """[drift]
+a1 = { value = [1.0, -1.0, 0.0], unit = "m/s^2" }
+a2 = { value = 0.0, unit = "m/s^2" }
+T = { value = 3.0, unit = "s" }
+""")
+        with open(self.folder / "all.truth.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        angles = [float(row["angle (rad)"]) for row in rows if float(row["time (s)"]) >= 2.0]
+        return abs(angles[-1] - angles[0]) / (2.0 * math.pi)
+
+    def test_a_known_warm_up_no_longer_costs_turns(self):
+        truth = self.simulate_warm_up()
+        known = ("--sensor", "s.toml", "--since-switch-on", "2")
+        with_it = self.document("wheel", "part.csv", *known)["turns"]
+        without = self.document("wheel", "part.csv")["turns"]
+        error, blind = (abs(abs(turns["value"]) - truth) for turns in (with_it, without))
+        self.assertLess(error, 3.0 * with_it["std"])
+        self.assertLess(error, 0.0015)
+        self.assertGreater(blind, 5.0 * error)
+        self.assertLess(with_it["std"], without["std"])
+
+    def test_the_warm_up_counts_from_the_first_sample_of_the_file(self):
+        self.simulate_warm_up()
+        part = self.document("wheel", "part.csv", "--sensor", "s.toml", "--since-switch-on", "2")
+        whole = self.document("wheel", "all.csv", "--sensor", "s.toml", "--since-switch-on", "0", "--from", "2")
+        self.assertAlmostEqual(part["turns"]["value"], whole["turns"]["value"], delta=1e-6)
+
+    def test_a_warm_up_is_left_in_unless_it_is_said_since_when(self):
+        self.simulate_warm_up()
+        plain = self.document("wheel", "part.csv")
+        warned = self.document("wheel", "part.csv", "--sensor", "s.toml")
+        self.assertEqual(plain["turns"], warned["turns"])
+        self.assertTrue(any("--since-switch-on" in text for text in warned["warnings"]), warned["warnings"])
+        self.assertFalse(any("--since-switch-on" in text for text in plain["warnings"]))
+
+    def test_a_warm_up_that_no_sensor_file_knows_cannot_be_taken_out(self):
+        self.write("a.csv", turning_csv(seconds=2))
+        self.write("s.toml", "[sensor]\nname = \"s\"\n")
+        for sensor in ((), ("--sensor", "s.toml")):
+            said = self.expect_failure(USAGE, "wheel", "a.csv", "--since-switch-on", "0", *sensor)
+            self.assertIn("[drift]", said)
+        self.write("s.toml", "[drift]\na1 = { value = 0.1, unit = \"m/s^2\" }\n")
+        said = self.expect_failure(USAGE, "wheel", "a.csv", "--since-switch-on", "0", "--sensor", "s.toml")
+        self.assertIn("drift.a2 of axis x: is missing", said)
+        self.expect_failure(USAGE, "wheel", "a.csv", "--since-switch-on", "-1")
 
     def test_one_axis_alone_is_too_few(self):
         self.write("a.csv", turning_csv(seconds=2))

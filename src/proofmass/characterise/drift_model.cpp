@@ -93,7 +93,7 @@ Result<DriftForecast> forecast(const DriftFit& fit, double t_s) {
                  fmt::format("the forecast for {:g} s lies before the end of the recording at {:g} "
                              "s after switching on: ask for a later time",
                              t_s, fit.end.t_s)};
-  if (!fit.identified) return Error{Errc::not_observable, "no forecast: " + fit.reason};
+  if (!fit.identified) return Error{Errc::not_observable, fit.reason};
   const DriftNoise& noise = fit.noise;
   const double ahead_s = t_s - fit.end.t_s;
   // A random walk and flicker stay where they are on average, a Markov process relaxes to zero.

@@ -15,7 +15,8 @@ using Eigen::VectorXd;
 
 // As in noise_search.cpp: one more term, and one more with a free time constant.
 constexpr double gain_for_term = 6.0, gain_for_time = 16.0;
-constexpr double cost_of_parameter = 2.0, gain_for_walk = 1.0;
+constexpr double cost_of_parameter = 2.0, gain_for_walk = 1.0,
+                 gain_for_walk_beside = 4.0;
 constexpr int markov_times = 10;
 
 NoiseColumns without_walk(const NoiseColumns& columns) {
@@ -146,10 +147,12 @@ NoiseColumns NoiseChoice::choose(const VectorXd& z, const OrdinateMeans& means) 
   if (gain[2] > gain_for_time && (best == 0 || gain[2] - gain[1] > cost_of_parameter)) best = 2;
   const double both = best == 2 ? gain_for_term : gain_for_time;
   if (best != 0 && gain[3] - gain[best] > both) best = 3;
-  // A walk that next to nothing speaks for is left out: kept, it would widen every interval.
+  // A walk that next to nothing speaks for is left out: kept, it would widen every interval. Beside
+  // another term that wanders it has to show more.
   const NoiseColumns without = without_walk(choices[best]);
   const OrdinateFit fit = fit_ordinates(z, without.P, means);
-  if (2.0 * (fits[best].log_likelihood - fit.log_likelihood) < gain_for_walk)
+  const double least = best == 0 ? gain_for_walk : gain_for_walk_beside;
+  if (2.0 * (fits[best].log_likelihood - fit.log_likelihood) < least)
     return kept(without, fit);
   return kept(choices[best], fits[best]);
 }

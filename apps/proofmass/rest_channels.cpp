@@ -1,6 +1,7 @@
-#include "noise_channels.hpp"
+#include "rest_channels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <numeric>
@@ -12,7 +13,6 @@
 #include "proofmass/signal/audit.hpp"
 #include "proofmass/signal/counter.hpp"
 #include "proofmass/signal/even_grid.hpp"
-#include "proofmass/signal/regress_out.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -27,16 +27,53 @@ struct Source {
   signal::EvenGrid grid;
 };
 
-Recording load_noise(const std::string& file, const NoiseCommand& command) {
-  InputFlags flags = command.input;
-  if (!flags.channels.empty() && !command.temperature.empty()) {
-    flags.channels.push_back(command.temperature);
+Recording load_rest(const std::string& file, const RestOptions& options) {
+  InputFlags flags = options.input;
+  if (!flags.channels.empty() && !options.temperature.empty()) {
+    flags.channels.push_back(options.temperature);
   }
-  Recording recording = load(file, flags, progress_bar(command.output));
+  Recording recording = load(file, flags, progress_bar(options.output));
   if (recording.time.source == TimeSource::none) {
     throw Failure(usage, file + ": no time column and no --rate: give --rate HZ or --time NAME");
   }
   return recording;
+}
+
+std::size_t place_of(const Recording& recording, const std::string& name) {
+  const Channel* channel = recording.find(name);
+  if (channel == nullptr) {
+    throw Failure(usage, recording.source + ": --temperature: no channel '" + name + "'");
+  }
+  return static_cast<std::size_t>(channel - recording.channels.data());
+}
+
+bool has_samples(const Channel& channel) {
+  return std::ranges::any_of(channel.values, [](double x) { return std::isfinite(x); });
+}
+
+// The only channel that holds temperatures, unless it is all there is.
+std::optional<std::size_t> only_temperature(const Recording& recording, std::vector<Note>& notes) {
+  const std::vector<Channel>& channels = recording.channels;
+  std::vector<std::size_t> found;
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    const bool holds = channels[k].unit.quantity == Quantity::temperature;
+    if (holds && has_samples(channels[k])) found.push_back(k);
+  }
+  if (found.size() > 1) {
+    notes.push_back(
+        {Severity::warning, fmt::format("{}: {} and {} both hold temperatures: neither "
+                                        "is looked at unless --temperature names it",
+                                        report::file_name(recording.source),
+                                        channels[found[0]].name, channels[found[1]].name)});
+  }
+  return found.size() == 1 && channels.size() > 1 ? std::optional(found[0]) : std::nullopt;
+}
+
+std::optional<std::size_t> temperature_in(const Recording& recording,
+                                          const RestOptions& options,
+                                          std::vector<Note>& notes) {
+  if (!options.temperature.empty()) return place_of(recording, options.temperature);
+  return options.find_temperature ? only_temperature(recording, notes) : std::nullopt;
 }
 
 std::vector<std::size_t> axes_in(const Recording& recording) {
@@ -169,20 +206,20 @@ std::string clipping(const signal::ChannelAudit& audit, std::size_t samples) {
       audit.unit.symbol);
 }
 
-NoiseChannel prepared(Source& source, std::size_t k, bool is_phase) {
+RestChannel prepared(Source& source, std::size_t k, bool is_phase) {
   Channel& channel = source.recording.channels[source.chosen[k]];
   const signal::ChannelAudit& audit = source.audits[k];
-  NoiseChannel out;
-  out.shown.name = channel.name;
+  RestChannel out;
+  out.name = channel.name;
   out.rate_hz = source.grid.rate_hz;
   out.axis = source.axes[k];
-  out.shown.refused = clipping(audit, channel.values.size());
+  out.refused = clipping(audit, channel.values.size());
   const bool calibrated = channel.unit != audit.unit;
   bring_to_si(channel);
-  out.shown.unit = channel.unit;
-  if (channel.unit.symbol.empty()) out.shown.unit = {Quantity::unknown, 1.0, 0.0, "1"};
-  if (is_phase) out.shown.unit = rate_unit(out.shown.unit);
-  if (!out.shown.refused.empty()) return out;
+  out.unit = channel.unit;
+  if (channel.unit.symbol.empty()) out.unit = {Quantity::unknown, 1.0, 0.0, "1"};
+  if (is_phase) out.unit = rate_unit(out.unit);
+  if (!out.refused.empty()) return out;
   if (audit.lsb && !is_phase) {
     // A sensor file may have scaled it: the step grew as the spread did.
     const double before = audit.moments.std(), after = moments(channel.values).std();
@@ -194,41 +231,14 @@ NoiseChannel prepared(Source& source, std::size_t k, bool is_phase) {
   return out;
 }
 
-void take_temperature_out(const Source& source,
-                          const std::string& prefix,
-                          std::vector<NoiseChannel>& channels,
-                          std::vector<Note>& notes) {
-  Channel cause = source.recording.channels[*source.temperature];
-  bring_to_si(cause);
-  const std::vector<double> series = signal::on_even_grid(cause.values, source.grid);
-  const bool known = cause.unit.quantity == Quantity::temperature;
-  for (NoiseChannel& channel : channels) {
-    if (channel.series.empty()) continue;
-    const Result<Uncertain> found = signal::regress_out(channel.series, series);
-    if (!found) {
-      notes.push_back({Severity::warning, prefix + cause.name + ": not taken out of " +
-                                              channel.shown.name + ": " + found.error().message});
-      continue;
-    }
-    channel.shown.temperature = {cause.name, *found, known ? "K" : "1"};
-    notes.push_back(
-        {Severity::info,
-         fmt::format("{}{}: {} {} per {} were taken out with {}, by least squares", prefix,
-                     channel.shown.name, report::with_std(*found), channel.shown.unit.symbol,
-                     channel.shown.temperature->per, cause.name)});
-  }
+RestTemperature prepared_temperature(Source& source) {
+  Channel& channel = source.recording.channels[*source.temperature];
+  bring_to_si(channel);
+  return {channel.name, channel.unit, signal::on_even_grid(channel.values, source.grid)};
 }
 
-std::size_t place_of(const Recording& recording, const std::string& name) {
-  const Channel* channel = recording.find(name);
-  if (channel == nullptr) {
-    throw Failure(usage, recording.source + ": --temperature: no channel '" + name + "'");
-  }
-  return static_cast<std::size_t>(channel - recording.channels.data());
-}
-
-void calibrate_chosen(Source& source, const NoiseCommand& command, std::vector<Note>& notes) {
-  const std::vector<sensor::SensorModel> models = load_sensors(command.input, notes);
+void calibrate_chosen(Source& source, const InputFlags& flags, std::vector<Note>& notes) {
+  const std::vector<sensor::SensorModel> models = load_sensors(flags, notes);
   if (models.empty()) return;
   std::vector<Recording> one;
   one.push_back(std::move(source.recording));
@@ -236,34 +246,51 @@ void calibrate_chosen(Source& source, const NoiseCommand& command, std::vector<N
   source.recording = std::move(one.front());
 }
 
+void expect_axes(const RestRecording& recording) {
+  for (const RestChannel& channel : recording.channels) {
+    if (channel.axis && channel.unit.symbol == "m/s^2") continue;
+    throw Failure(usage, fmt::format("--update-sensor: {} is no x, y or z axis of one "
+                                     "accelerometer, in m/s^2: choose with --channel, say --unit",
+                                     channel.title));
+  }
+}
+
+RestRecording rest_recording(const std::string& file,
+                             const RestOptions& options,
+                             std::vector<Note>& notes) {
+  RestRecording out;
+  const std::string prefix = options.files.size() > 1 ? report::file_name(file) + ": " : "";
+  Source source;
+  source.recording = load_rest(file, options);
+  source.temperature = temperature_in(source.recording, options, notes);
+  source.chosen = choose(source, !options.input.channels.empty());
+  if (source.chosen.empty()) throw Failure(usage, file + ": no channel to analyse");
+  source.axes = axes_of(source);
+  audit(source, prefix, notes);
+  calibrate_chosen(source, options.input, notes);
+  lay_out(source, prefix, notes);
+  for (std::size_t k = 0; k < source.chosen.size(); ++k) {
+    RestChannel channel = prepared(source, k, options.is_phase);
+    channel.title = prefix + channel.name;
+    channel.file = file;
+    out.channels.push_back(std::move(channel));
+  }
+  if (source.temperature) out.temperature = prepared_temperature(source);
+  return out;
+}
+
 }  // namespace
 
-std::vector<NoiseChannel> noise_channels(const NoiseCommand& command, std::vector<Note>& notes) {
-  std::vector<NoiseChannel> all;
-  const bool is_phase = command.data == "phase";
-  for (const std::string& file : command.files) {
-    const std::string prefix = command.files.size() > 1 ? report::file_name(file) + ": " : "";
-    Source source;
-    source.recording = load_noise(file, command);
-    if (!command.temperature.empty()) {
-      source.temperature = place_of(source.recording, command.temperature);
-    }
-    source.chosen = choose(source, !command.input.channels.empty());
-    if (source.chosen.empty()) throw Failure(usage, file + ": no channel to analyse");
-    source.axes = axes_of(source);
-    audit(source, prefix, notes);
-    calibrate_chosen(source, command, notes);
-    lay_out(source, prefix, notes);
-    std::vector<NoiseChannel> channels;
-    for (std::size_t k = 0; k < source.chosen.size(); ++k) {
-      channels.push_back(prepared(source, k, is_phase));
-      channels.back().shown.name = prefix + channels.back().shown.name;
-      channels.back().file = file;
-    }
-    if (source.temperature) take_temperature_out(source, prefix, channels, notes);
-    std::ranges::move(channels, std::back_inserter(all));
+std::vector<RestRecording> rest_recordings(const RestOptions& options, std::vector<Note>& notes) {
+  if (options.for_sensor_file && options.files.size() > 1) {
+    throw Failure(usage, "--update-sensor: a sensor file takes the figures of one recording");
   }
-  return all;
+  std::vector<RestRecording> recordings;
+  for (const std::string& file : options.files) {
+    recordings.push_back(rest_recording(file, options, notes));
+    if (options.for_sensor_file) expect_axes(recordings.back());
+  }
+  return recordings;
 }
 
 }  // namespace proofmass::app

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "proofmass/core/progress.hpp"
+#include "proofmass/report/drift_report.hpp"
+#include "rest_channels.hpp"
+
+// Several recordings as power-ups of one sensor.
+namespace proofmass::app {
+
+/// Compares the runs of each channel, in the order of the first recording; two recordings or fewer
+/// are no set. Channels that are not in all recordings, and runs that were refused, are left out
+/// with a note.
+[[nodiscard]] std::vector<report::ChannelRuns> compare_recordings(
+    const std::vector<RestRecording>& recordings,
+    double since_switch_on_s,
+    const Progress& progress,
+    std::vector<Note>& notes);
+
+}  // namespace proofmass::app

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_line.hpp"
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/units.hpp"
+
+// From recordings at rest to the evenly sampled series that the analyses of them take.
+namespace proofmass::app {
+
+struct RestOptions {
+  std::vector<std::string> files;
+  InputFlags input;
+  OutputFlags output;
+  std::string temperature;        ///< name of the channel that holds it; empty: none is named
+  bool find_temperature = false;  ///< where none is named, the only channel with a temperature
+  bool for_sensor_file = false;   ///< refuse what a sensor file cannot take (--update-sensor)
+  bool is_phase = false;          ///< the channels hold the integral of the quantity over time
+};
+
+/// One channel, in SI where its unit is known, or why it cannot be analysed.
+struct RestChannel {
+  std::string name;   ///< as in the file
+  std::string title;  ///< the same, behind the file's name where there are several files
+  std::string file;
+  Unit unit;
+  std::string refused;
+  std::vector<double> series;  ///< NaN where a sample is missing; empty if refused
+  double rate_hz = 0.0;
+  std::optional<double> lsb;        ///< step of the converter, in the series' unit
+  std::optional<std::size_t> axis;  ///< 0, 1, 2 for x, y, z of the only accelerometer
+};
+
+/// The temperature beside the channels, on their grid.
+struct RestTemperature {
+  std::string name;
+  Unit unit;  ///< K, or none where it is not known
+  std::vector<double> series;
+};
+
+/// What is to be analysed of one file.
+struct RestRecording {
+  std::vector<RestChannel> channels;
+  std::optional<RestTemperature> temperature;
+};
+
+/// All files, each with its channels to analyse: without --channel all accelerations, else the
+/// voltages or counts that look like axes, else all but a counter. Notes of reading and preparing
+/// are added to `notes`. Throws Failure; for a sensor file also unless all is of one recording, of
+/// x, y or z of one accelerometer and in m/s^2.
+[[nodiscard]] std::vector<RestRecording> rest_recordings(const RestOptions& options,
+                                                         std::vector<Note>& notes);
+
+}  // namespace proofmass::app
