@@ -46,6 +46,7 @@ struct DriftAnalysis {
   /// Of the block means less curve and noise model: whether the noise is what the fit took it for.
   /// None where there are too few blocks.
   std::optional<signal::WhitenessTest> whitened;
+  bool noise_explained = true;  ///< none of its three p is below a thousandth
 
   Envelope data;
   std::vector<Envelope> residuals;  ///< at up to three scales

@@ -289,7 +289,8 @@ class Verdict95 {
       return trials_.plain_test(trials_.of(DriftShape::exponential)).p < level
                  ? DriftReason::hidden_by_noise
                  : DriftReason::no_warm_up;
-    constexpr double fewest_blocks = 3.0, line_level = 0.05;
+    // What spans fewer is a few odd blocks at the beginning.
+    constexpr double fewest_blocks = 10.0, line_level = 0.05;
     if (!T.lower_95 || T.value < fewest_blocks * evidence_.block_s())
       return DriftReason::shorter_than_resolved;
     if (!T.upper_95 || *T.upper_95 > evidence_.duration_s() || T.value > evidence_.duration_s())

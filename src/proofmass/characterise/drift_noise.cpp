@@ -15,8 +15,7 @@ using Eigen::VectorXd;
 
 // As in noise_search.cpp: one more term, and one more with a free time constant.
 constexpr double gain_for_term = 6.0, gain_for_time = 16.0;
-constexpr double cost_of_parameter = 2.0, gain_for_walk = 1.0,
-                 gain_for_walk_beside = 4.0;
+constexpr double cost_of_parameter = 2.0, gain_for_walk = 1.0, gain_for_walk_beside = 4.0;
 constexpr int markov_times = 10;
 
 NoiseColumns without_walk(const NoiseColumns& columns) {
@@ -152,8 +151,7 @@ NoiseColumns NoiseChoice::choose(const VectorXd& z, const OrdinateMeans& means) 
   const NoiseColumns without = without_walk(choices[best]);
   const OrdinateFit fit = fit_ordinates(z, without.P, means);
   const double least = best == 0 ? gain_for_walk : gain_for_walk_beside;
-  if (2.0 * (fits[best].log_likelihood - fit.log_likelihood) < least)
-    return kept(without, fit);
+  if (2.0 * (fits[best].log_likelihood - fit.log_likelihood) < least) return kept(without, fit);
   return kept(choices[best], fits[best]);
 }
 
