@@ -147,6 +147,13 @@ void examine_residuals(DriftAnalysis& analysis,
   }
 }
 
+void note_whitened(DriftAnalysis& analysis, signal::WhitenessTest test) {
+  constexpr double improbable = 0.001;
+  analysis.noise_explained =
+      std::min({test.ljung_box_p, test.periodogram_p, test.runs_p}) >= improbable;
+  analysis.whitened = std::move(test);
+}
+
 void add_notes(DriftAnalysis& analysis) {
   if (!analysis.knocks.empty())
     analysis.notes.push_back(
@@ -159,10 +166,7 @@ void add_notes(DriftAnalysis& analysis) {
         {Severity::warning, fmt::format("{} of {} blocks of {:.3g} s are missing: the fit goes "
                                         "across them",
                                         blank, analysis.block_mean.size(), analysis.block_s)});
-  constexpr double improbable = 0.001;
-  if (analysis.whitened &&
-      std::min({analysis.whitened->ljung_box_p, analysis.whitened->periodogram_p,
-                analysis.whitened->runs_p}) < improbable)
+  if (!analysis.noise_explained)
     analysis.notes.push_back(
         {Severity::warning,
          "the noise model does not explain all of the residuals: there is "
@@ -199,7 +203,7 @@ Result<DriftAnalysis> analyse_drift(View<double> series, const DriftOptions& opt
   examine_residuals(analysis, kept, options);
   if (auto test = signal::test_whiteness(fitted.whitened, {1.0 / analysis.block_s, analysis.block_s,
                                                            fitted_parameters(analysis.fit.curve)}))
-    analysis.whitened = std::move(*test);
+    note_whitened(analysis, std::move(*test));
   add_notes(analysis);
   report_progress(options, 1.0);
   return analysis;

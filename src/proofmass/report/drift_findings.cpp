@@ -142,7 +142,7 @@ std::string whiteness_sentence(const DriftAnalysis& analysis) {
   text += fmt::format(": {}{} (95 % if white)", inside_words(worst),
                       coloured.size() > 1 ? " at " + duration_words(worst.scale_s) : "");
   if (!analysis.whitened) return text + "; whether the intervals allow for it cannot be tested.";
-  if (analysis.whitened->white) return text + "; the intervals allow for it.";
+  if (analysis.noise_explained) return text + "; the intervals allow for it.";
   return text + fmt::format(
                     "; the noise model does not explain all of it ({} after it): take the "
                     "intervals as too narrow.",

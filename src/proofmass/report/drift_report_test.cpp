@@ -104,6 +104,7 @@ TEST(WhitenessSentence, TellsTheScalesApartAndWhetherTheIntervalsAllowForIt) {
             "Residuals at 1 s and 10 s white, at 100 s not: 41 % of lags inside the bounds (95 % "
             "if white); the intervals allow for it.");
   analysis.whitened->white = false;
+  analysis.noise_explained = false;
   EXPECT_TRUE(contains(whiteness_sentence(analysis), "take the intervals as too narrow"));
   analysis.whiteness.pop_back();
   EXPECT_EQ(whiteness_sentence(analysis), "Residuals at 1 s and 10 s white.");
