@@ -197,6 +197,7 @@ Result<DriftAnalysis> analyse_drift(View<double> series, const DriftOptions& opt
   report_progress(options, before_fit);
   FittedDrift fitted = fit_drift(*evidence);
   analysis.fit = std::move(fitted.fit);
+  analysis.block_bias = std::move(fitted.bias);
   report_progress(options, after_fit);
   analysis.data = envelope_of(kept, 1, options);
   analysis.residual_rms = take_curve_out(kept, analysis.fit.curve, options);

@@ -37,6 +37,8 @@ struct DriftAnalysis {
   double start_s = 0.0, duration_s = 0.0;
   double block_s = 0.0;            ///< the fit is of means over so long
   std::vector<double> block_mean;  ///< NaN where missing
+  /// The bias in each block, white noise filtered off: curve and wander together.
+  std::vector<double> block_bias;
 
   DriftFit fit;
   double residual_rms = 0.0;  ///< of the samples about fit.curve

@@ -258,7 +258,7 @@ class Verdict95 {
           interval(fit.curve.slope_per_s, std::sqrt(fit.curve.covariance(place, place)), dof);
     }
     fit.reason = reason_for(fit, evidence_, fit.noise);
-    whiten(chosen);
+    filter(chosen);
     return std::move(out_);
   }
 
@@ -312,12 +312,20 @@ class Verdict95 {
         log_interval(fit.curve.second_time_constant_s, std::sqrt(C(4, 4)), dof);
   }
 
-  void whiten(const DriftTrial& trial) {
-    VectorXd residual =
-        evidence_.ordinates() - whole_columns(evidence_, trial.at) * trial.fit.coefficients;
-    residual(0) = 0.0;
-    residual.tail(residual.size() - 1).array() /= trial.fit.density.array().sqrt();
-    out_.whitened = evidence_.series(residual);
+  // Of what is left the Wiener filter keeps all but the white share.
+  void filter(const DriftTrial& trial) {
+    const MatrixXd columns = whole_columns(evidence_, trial.at);
+    const Index rest = columns.rows() - 1, own = columns.cols() - evidence_.dummies().cols();
+    const VectorXd residual = evidence_.ordinates() - columns * trial.fit.coefficients;
+    const double white = trial.noise.strength(trial.fit, Term::white);
+    VectorXd bias = residual;
+    bias.tail(rest).array() *= 1.0 - white * white / trial.fit.density.array();
+    bias += columns.leftCols(own) * trial.fit.coefficients.head(own);
+    out_.bias = evidence_.series(bias);
+    VectorXd whitened = VectorXd::Zero(residual.size());
+    whitened.tail(rest) =
+        residual.tail(rest).cwiseProduct(trial.fit.density.cwiseSqrt().cwiseInverse());
+    out_.whitened = evidence_.series(whitened);
     for (const std::size_t k : evidence_.missing())
       out_.whitened[k] = std::numeric_limits<double>::quiet_NaN();
   }

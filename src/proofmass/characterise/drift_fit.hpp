@@ -23,6 +23,9 @@ struct FittedDrift {
   /// The block means less curve and fitted noise: white where the noise is what the fit took it
   /// for; NaN where a block is missing.
   std::vector<double> whitened;
+  /// The bias in each block as curve and noise model see it together: the curve and its wander, the
+  /// white noise filtered off. Across a gap what is most likely.
+  std::vector<double> bias;
 };
 
 [[nodiscard]] FittedDrift fit_drift(const DriftEvidence& evidence);

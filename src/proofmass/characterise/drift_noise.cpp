@@ -1,7 +1,6 @@
 #include "proofmass/characterise/drift_noise.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +16,12 @@ using Eigen::VectorXd;
 constexpr double gain_for_term = 6.0, gain_for_time = 16.0;
 constexpr double cost_of_parameter = 2.0, gain_for_walk = 1.0, gain_for_walk_beside = 4.0;
 constexpr int markov_times = 10;
+
+VectorXd with_zero(const VectorXd& strength) {
+  VectorXd more = VectorXd::Zero(strength.size() + 1);
+  more.head(strength.size()) = strength;
+  return more;
+}
 
 NoiseColumns without_walk(const NoiseColumns& columns) {
   NoiseColumns some;
@@ -45,6 +50,7 @@ double NoiseColumns::strength(const OrdinateFit& fit, Term term) const {
 NoiseChoice::NoiseChoice(const DriftEvidence& evidence) : evidence_(evidence) {
   white_ = with({}, Term::white);
   base_ = with(white_, Term::random_walk);
+  flicker_ = column(Term::flicker);
   // From where a block still shows it to where the record shows it but six times.
   const double shortest_s = 2.0 * evidence.block_s(), longest_s = evidence.duration_s() / 6.0;
   for (int k = 0; k < markov_times; ++k) {
@@ -99,13 +105,25 @@ NoiseColumns NoiseChoice::kept(const NoiseColumns& columns, const OrdinateFit& f
   return some;
 }
 
-// With a Markov term of the likeliest time constant.
-NoiseColumns NoiseChoice::with_markov(const NoiseColumns& columns,
-                                      const VectorXd& z,
-                                      const OrdinateMeans& means) const {
-  VectorXd start = VectorXd::Zero(columns.P.cols() + 1);
-  start.head(columns.P.cols()) = fit_ordinates(z, columns.P, means).strength;
-  NoiseColumns tried = with(columns, Term::markov, markov_times_s_.front());
+NoiseChoice::Option NoiseChoice::option(NoiseColumns columns,
+                                        const VectorXd& z,
+                                        const OrdinateMeans& means,
+                                        const VectorXd& start) const {
+  OrdinateFit fit = fit_ordinates(z, columns.P, means, start);
+  return {std::move(columns), std::move(fit)};
+}
+
+// With a Markov term of the likeliest time constant, where there is a chance of one.
+std::optional<NoiseChoice::Option> NoiseChoice::with_markov(const Option& beside,
+                                                            const VectorXd& z,
+                                                            const OrdinateMeans& means) const {
+  constexpr double hopeless = 0.25 * gain_for_time;
+  double promise = 0.0;
+  for (const VectorXd& shape : markov_)
+    promise = std::max(promise, promised_gain(z, beside.columns.P, means, beside.fit, shape));
+  if (promise < hopeless) return std::nullopt;
+  const VectorXd start = with_zero(beside.fit.strength);
+  NoiseColumns tried = with(beside.columns, Term::markov, markov_times_s_.front());
   const auto loss = [&](const VectorXd& shape) {
     tried.P.rightCols(1) = shape;
     return -fit_ordinates(z, tried.P, means, start).log_likelihood;
@@ -120,39 +138,52 @@ NoiseColumns NoiseChoice::with_markov(const NoiseColumns& columns,
   }
   // To a twentieth: the strength makes up for what is left.
   constexpr double tolerance = 0.05;
-  const double time_s = std::exp(
-      least_between(
-          {std::log(markov_times_s_[best > 0 ? best - 1 : 0]),
-           std::log(markov_times_s_[std::min(best + 1, markov_times_s_.size() - 1)]), tolerance},
-          [&](double log_time) { return loss(column(Term::markov, std::exp(log_time))); })
-          .place);
-  return with(columns, Term::markov, time_s);
+  const Bracket bracket{std::log(markov_times_s_[best > 0 ? best - 1 : 0]),
+                        std::log(markov_times_s_[std::min(best + 1, markov_times_s_.size() - 1)]),
+                        tolerance};
+  const double log_time = least_between(bracket, [&](double log_time_s) {
+                            return loss(column(Term::markov, std::exp(log_time_s)));
+                          }).place;
+  return option(with(beside.columns, Term::markov, std::exp(log_time)), z, means, start);
+}
+
+// With flicker, where there is a chance of it.
+std::optional<NoiseChoice::Option> NoiseChoice::with_flicker(const Option& beside,
+                                                             const VectorXd& z,
+                                                             const OrdinateMeans& means) const {
+  constexpr double hopeless = 0.25 * gain_for_term;
+  if (promised_gain(z, beside.columns.P, means, beside.fit, flicker_) < hopeless)
+    return std::nullopt;
+  return option(with(beside.columns, Term::flicker), z, means, with_zero(beside.fit.strength));
 }
 
 NoiseColumns NoiseChoice::choose(const VectorXd& z, const OrdinateMeans& means) const {
-  const NoiseColumns flicker = with(base_, Term::flicker);
-  const std::array<NoiseColumns, 4> choices{base_, flicker, with_markov(base_, z, means),
-                                            with_markov(flicker, z, means)};
-  std::array<OrdinateFit, 4> fits;
-  std::array<double, 4> gain{};
-  for (std::size_t k = 0; k < choices.size(); ++k) {
-    fits[k] = fit_ordinates(z, choices[k].P, means);
-    gain[k] = 2.0 * (fits[k].log_likelihood - fits[0].log_likelihood);
-  }
+  Option chosen = option(base_, z, means);
+  const auto gain = [](const std::optional<Option>& more, const Option& than) {
+    return more ? 2.0 * (more->fit.log_likelihood - than.fit.log_likelihood) : 0.0;
+  };
   // Whether there is more than white noise and a walk asks for proof; what it is, once there is, is
-  // the likeliest by Akaike's criterion.
-  std::size_t best = 0;
-  if (gain[1] > gain_for_term) best = 1;
-  if (gain[2] > gain_for_time && (best == 0 || gain[2] - gain[1] > cost_of_parameter)) best = 2;
-  const double both = best == 2 ? gain_for_term : gain_for_time;
-  if (best != 0 && gain[3] - gain[best] > both) best = 3;
+  // the likelier by Akaike's criterion.
+  std::optional<Option> flicker = with_flicker(chosen, z, means);
+  std::optional<Option> markov = with_markov(chosen, z, means);
+  const double of_flicker = gain(flicker, chosen), of_markov = gain(markov, chosen);
+  const bool is_flicker = of_flicker > gain_for_term;
+  if (of_markov > gain_for_time && (!is_flicker || of_markov - of_flicker > cost_of_parameter)) {
+    chosen = std::move(*markov);
+    std::optional<Option> both = with_flicker(chosen, z, means);
+    if (gain(both, chosen) > gain_for_term) chosen = std::move(*both);
+  } else if (is_flicker) {
+    chosen = std::move(*flicker);
+    std::optional<Option> both = with_markov(chosen, z, means);
+    if (gain(both, chosen) > gain_for_time) chosen = std::move(*both);
+  }
   // A walk that next to nothing speaks for is left out: kept, it would widen every interval. Beside
   // another term that wanders it has to show more.
-  const NoiseColumns without = without_walk(choices[best]);
-  const OrdinateFit fit = fit_ordinates(z, without.P, means);
-  const double least = best == 0 ? gain_for_walk : gain_for_walk_beside;
-  if (2.0 * (fits[best].log_likelihood - fit.log_likelihood) < least) return kept(without, fit);
-  return kept(choices[best], fits[best]);
+  const Option without = option(without_walk(chosen.columns), z, means);
+  const double least =
+      chosen.columns.terms.size() > base_.terms.size() ? gain_for_walk_beside : gain_for_walk;
+  if (gain(chosen, without) < least) chosen = without;
+  return kept(chosen.columns, chosen.fit);
 }
 
 }  // namespace proofmass::characterise

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "proofmass/characterise/drift_evidence.hpp"
@@ -49,12 +50,24 @@ class NoiseChoice {
   [[nodiscard]] NoiseColumns with(const NoiseColumns& columns,
                                   Term term,
                                   double time_constant_s = 0.0) const;
-  [[nodiscard]] NoiseColumns with_markov(const NoiseColumns& columns,
-                                         const Eigen::VectorXd& z,
-                                         const OrdinateMeans& means) const;
+  struct Option {
+    NoiseColumns columns;
+    OrdinateFit fit;
+  };
+  [[nodiscard]] Option option(NoiseColumns columns,
+                              const Eigen::VectorXd& z,
+                              const OrdinateMeans& means,
+                              const Eigen::VectorXd& start = {}) const;
+  [[nodiscard]] std::optional<Option> with_markov(const Option& beside,
+                                                  const Eigen::VectorXd& z,
+                                                  const OrdinateMeans& means) const;
+  [[nodiscard]] std::optional<Option> with_flicker(const Option& beside,
+                                                   const Eigen::VectorXd& z,
+                                                   const OrdinateMeans& means) const;
 
   const DriftEvidence& evidence_;
   NoiseColumns white_, base_;
+  Eigen::VectorXd flicker_;
   std::vector<Eigen::VectorXd> markov_;
   std::vector<double> markov_times_s_;
 };

@@ -41,25 +41,36 @@ struct Way {
 
 std::optional<double> crossing(const Way& way, const std::function<double(double)>& loss) {
   const auto [best, first_step, limit, bound] = way;
+  // The root of the loss is nearly straight.
+  const double root_bound = std::sqrt(bound);
+  const auto root = [&](double place) {
+    return std::sqrt(std::max(0.0, loss(place))) - root_bound;
+  };
   double step = first_step;
   const bool up = step > 0.0;
-  double inside = best, outside = best + step;
+  double inside = best, at_inside = -root_bound, outside = best + step, at_outside = 0.0;
   while (true) {
     const bool last = up ? outside >= limit : outside <= limit;
     if (last) outside = limit;
-    if (loss(outside) > bound) break;
+    at_outside = root(outside);
+    if (at_outside > 0.0) break;
     if (last) return std::nullopt;
     inside = outside;
+    at_inside = at_outside;
     step *= 1.5;
     outside += step;
   }
-  // The root of the loss is nearly straight; halving is sure.
-  constexpr int halvings = 8;
-  for (int k = 0; k < halvings; ++k) {
-    const double middle = 0.5 * (inside + outside);
-    (loss(middle) > bound ? outside : inside) = middle;
+  constexpr int most_rounds = 12;
+  constexpr double near = 0.005;  // standard deviations
+  double place = outside;
+  for (int round = 0; round < most_rounds; ++round) {
+    place = inside - at_inside * (outside - inside) / (at_outside - at_inside);
+    const double found = root(place);
+    if (std::abs(found) < near) break;
+    (found > 0.0 ? outside : inside) = place;
+    (found > 0.0 ? at_outside : at_inside) = found;
   }
-  return 0.5 * (inside + outside);
+  return place;
 }
 
 }  // namespace

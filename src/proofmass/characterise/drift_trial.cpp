@@ -100,14 +100,16 @@ void start_times(const DriftEvidence& evidence, const MatrixXd& P, ShapeAt& at) 
   const double low = std::log(2.0 * range.lower_s), high = std::log(0.3 * range.upper_s);
   while (at.log_times.size() < wanted) {
     double best = -std::numeric_limits<double>::infinity(), best_time = low;
+    VectorXd strength;
     at.log_times.push_back(low);
     for (std::size_t k = 0; k < points; ++k) {
       at.log_times.back() =
           low + (high - low) * static_cast<double>(k) / static_cast<double>(points - 1);
       const OrdinateMeans means{linear_columns(evidence, at), {}};
-      const double found = fit_ordinates(data_of(evidence), P, means).log_likelihood;
-      if (found <= best) continue;
-      best = found;
+      const OrdinateFit fit = fit_ordinates(data_of(evidence), P, means, strength);
+      strength = fit.strength;
+      if (fit.log_likelihood <= best) continue;
+      best = fit.log_likelihood;
       best_time = at.log_times.back();
     }
     at.log_times.back() = best_time;

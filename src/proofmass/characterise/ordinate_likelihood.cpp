@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/linalg.hpp"
@@ -135,6 +135,33 @@ OrdinateFit fit_ordinates(const VectorXd& z,
     if (!up || state.log_likelihood - before < converged) break;
   }
   return result_of(std::move(state), std::move(theta));
+}
+
+double promised_gain(const VectorXd& z,
+                     const MatrixXd& P,
+                     const OrdinateMeans& means,
+                     const OrdinateFit& fit,
+                     const VectorXd& column) {
+  const Ordinates ordinates(z, P, means);
+  const State state = ordinates.at(fit.density.array());
+  const VectorXd weight = (0.5 / state.S.square()).matrix();
+  const VectorXd weighted = weight.cwiseProduct(column);
+  const double score = weighted.dot(ordinates.expected_squares(state) - fit.density);
+  if (score <= 0.0) return 0.0;
+  double information = weighted.dot(column);
+  std::vector<Index> active;
+  for (Index k = 0; k < P.cols(); ++k)
+    if (fit.strength(k) > 0.0) active.push_back(k);
+  if (!active.empty()) {
+    const MatrixXd X = P(Eigen::all, active);
+    const VectorXd shared = X.transpose() * weighted;
+    const MatrixXd own = X.transpose() * (weight.asDiagonal() * X);
+    information -= shared.dot(positive_inverse(own) * shared);
+  }
+  // A column that the others make up can add nothing.
+  constexpr double least_share = 1e-9;
+  if (information <= least_share * weighted.dot(column)) return 0.0;
+  return score * score / information;
 }
 
 OrdinateFit evaluate_ordinates(const VectorXd& z,

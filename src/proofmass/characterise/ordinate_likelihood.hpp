@@ -37,7 +37,17 @@ struct OrdinateFit {
                                         const OrdinateMeans& means,
                                         const Eigen::VectorXd& start = {});
 
-/// The same with θ given.
+/// What one more column c, of strength zero so far, promises to add to twice the log-likelihood:
+/// its score test, (½ Σ c (p − S)/S²)² over what of its information ½ Σ c²/S² the strengths above
+/// zero do not share, p the expected squares; 0 where the score points below zero. Source: C. R.
+/// Rao, Proc. Camb. Phil. Soc. 44 (1948) 50.
+[[nodiscard]] double promised_gain(const Eigen::VectorXd& z,
+                                   const Eigen::MatrixXd& P,
+                                   const OrdinateMeans& means,
+                                   const OrdinateFit& fit,
+                                   const Eigen::VectorXd& column);
+
+/// fit_ordinates with θ given.
 [[nodiscard]] OrdinateFit evaluate_ordinates(const Eigen::VectorXd& z,
                                              const Eigen::MatrixXd& P,
                                              const OrdinateMeans& means,

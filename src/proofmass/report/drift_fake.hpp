@@ -70,6 +70,7 @@ inline void fake_series(characterise::DriftAnalysis& analysis, double memory) {
   for (int k = 0; k < 1800; ++k) {
     const double ripple = 0.5 * fake_mg * std::sin(2.1 * k);
     analysis.block_mean.push_back(analysis.fit.curve.value(4.0 * k + 2.0) + ripple);
+    analysis.block_bias.push_back(analysis.fit.curve.value(4.0 * k + 2.0));
   }
   analysis.residual_rms = fake_mg;
   analysis.whiteness = {fake_whiteness(1.0, 7200, 0.0), fake_whiteness(10.0, 720, 0.0),

@@ -89,7 +89,7 @@ void add_fit(const DriftAnalysis& analysis, double per_si, Figure& figure) {
               .y = {},
               .ink = Ink::orange,
               .mark = fit.identified ? Mark::line : Mark::dashes};
-  Band band{.label = "95 % band of the curve",
+  Band band{.label = "95 % band of the curve, wander apart",
             .x = curve.x,
             .lower = {},
             .upper = {},
@@ -198,23 +198,42 @@ Figure autocorrelation_figure(const WhitenessTest& test, const std::string& labe
 Figure drift_figure(const ChannelDrift& channel, const std::string& label) {
   const DriftAnalysis& analysis = *channel.analysis;
   const ShownUnit shown = bias_unit(channel.unit, largest(analysis.data));
+  const std::string means = "means over " + duration_words(analysis.block_s);
   Figure figure{
       .title = label + ": bias since switching on",
       .description = analysis.fit.identified
-                         ? "The readings, their least and greatest in each stretch, and the curve "
-                           "fitted under the noise that was found beside it."
+                         ? "What the fit is of, " + means +
+                               ", and the curve fitted under the noise that was found beside it."
                          : "No curve with a time constant is drawn, because none is identified: "
                            "the dashed one is the best of the shapes without.",
       .x = {.label = "Time since switching on (s)"},
       .y = {.label = axis_label("Bias", shown)},
       .height = 340.0};
-  Curve readings = zigzag(analysis.data, shown.per_si);
-  readings.label = analysis.data.scale_s > 1.5 / analysis.rate_hz
-                       ? "means over " + duration_words(analysis.data.scale_s)
-                       : "readings";
-  figure.curves.push_back(std::move(readings));
+  Curve bias{.label = means, .x = {}, .y = {}, .ink = Ink::grey, .mark = Mark::thin};
+  for (std::size_t k = 0; k < analysis.block_mean.size(); ++k) {
+    bias.x.push_back(analysis.start_s + (static_cast<double>(k) + 0.5) * analysis.block_s);
+    bias.y.push_back(analysis.block_mean[k] * shown.per_si);
+  }
+  Curve wander{
+      .label = "with its wander, white noise filtered off", .x = bias.x, .y = {}, .ink = Ink::blue};
+  for (const double value : analysis.block_bias) wander.y.push_back(value * shown.per_si);
+  figure.curves.push_back(std::move(bias));
+  figure.curves.push_back(std::move(wander));
   add_fit(analysis, shown.per_si, figure);
   add_forecast(channel, shown.per_si, figure);
+  return figure;
+}
+
+Figure readings_figure(const ChannelDrift& channel, const std::string& label) {
+  const DriftAnalysis& analysis = *channel.analysis;
+  const ShownUnit shown = bias_unit(channel.unit, largest(analysis.data));
+  Figure figure{.title = label + ": the readings themselves",
+                .description = "Their least and greatest in each stretch, and the same curve.",
+                .x = {.label = "Time since switching on (s)"},
+                .y = {.label = axis_label("Reading", shown)}};
+  figure.curves.push_back(zigzag(analysis.data, shown.per_si));
+  figure.curves.back().label = "readings";
+  add_fit(analysis, shown.per_si, figure);
   return figure;
 }
 

@@ -8,9 +8,12 @@
 // The plots of `drift`. The channels must have an analysis, the runs a set.
 namespace proofmass::report {
 
-/// The readings with what was fitted to them and its 95 % band; dashed where no warm-up is
+/// The block means with what was fitted to them and its 95 % band; dashed where no warm-up is
 /// identified. With a forecast, on to its time.
 [[nodiscard]] Figure drift_figure(const ChannelDrift& channel, const std::string& label);
+
+/// The readings, least and greatest, with the same curve.
+[[nodiscard]] Figure readings_figure(const ChannelDrift& channel, const std::string& label);
 
 /// Readings less the curve, one figure a scale.
 [[nodiscard]] std::vector<Figure> residual_figures(const ChannelDrift& channel,

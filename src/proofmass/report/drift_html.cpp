@@ -81,6 +81,7 @@ void add_all(const ChannelDrift& channel, const std::string& label, Section& sec
   if (channel.temperature && channel.temperature->model) {
     section.tables.push_back(temperature_table(channel));
   }
+  section.figures.push_back(readings_figure(channel, label));
   if (!analysis.fit.profile.empty()) section.figures.push_back(profile_figure(channel, label));
   append(section.figures, residual_figures(channel, label));
   append(section.figures, autocorrelation_figures(channel, label));

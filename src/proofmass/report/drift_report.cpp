@@ -134,7 +134,7 @@ void add_notes(const ChannelRuns& runs, std::vector<Note>& notes) {
 }
 
 struct Block {
-  double value, fitted, fitted_std;
+  double value, fitted, fitted_std, bias;
 };
 
 std::map<double, Block> blocks_of(const DriftAnalysis& analysis) {
@@ -142,7 +142,7 @@ std::map<double, Block> blocks_of(const DriftAnalysis& analysis) {
   for (std::size_t k = 0; k < analysis.block_mean.size(); ++k) {
     const double t_s = analysis.start_s + (static_cast<double>(k) + 0.5) * analysis.block_s;
     blocks[t_s] = {analysis.block_mean[k], analysis.fit.curve.value(t_s),
-                   analysis.fit.curve.std(t_s)};
+                   analysis.fit.curve.std(t_s), analysis.block_bias[k]};
   }
   return blocks;
 }
@@ -153,17 +153,19 @@ void add_columns(const std::string& name,
                  Recording& table) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const std::map<double, Block> blocks = blocks_of(*channel.analysis);
-  std::vector<double> values, fitted, fitted_std;
+  std::vector<double> values, fitted, fitted_std, bias;
   for (const double t_s : times_s) {
     const auto at = blocks.find(t_s);
-    const Block block = at == blocks.end() ? Block{none, none, none} : at->second;
+    const Block block = at == blocks.end() ? Block{none, none, none, none} : at->second;
     values.push_back(block.value);
     fitted.push_back(block.fitted);
     fitted_std.push_back(block.fitted_std);
+    bias.push_back(block.bias);
   }
   table.channels.push_back({name, channel.unit, std::move(values)});
   table.channels.push_back({name + "_fit", channel.unit, std::move(fitted)});
   table.channels.push_back({name + "_fit_std", channel.unit, std::move(fitted_std)});
+  table.channels.push_back({name + "_bias", channel.unit, std::move(bias)});
 }
 
 }  // namespace

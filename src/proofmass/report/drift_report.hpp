@@ -72,7 +72,8 @@ struct DriftReport {
 /// figure is null stands in the document alone.
 [[nodiscard]] std::vector<Note> drift_notes(const DriftReport& report);
 
-/// Block means, curve and its standard deviation against time: what `--output` writes.
+/// Block means, curve, its standard deviation, and the bias with its wander but without white
+/// noise, against time: what `--output` writes.
 [[nodiscard]] Recording drift_series(const DriftReport& report);
 
 }  // namespace proofmass::report

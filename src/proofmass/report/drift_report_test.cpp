@@ -283,29 +283,29 @@ TEST(DriftSeries, HasBlockMeansCurveAndItsStdAtTheMiddleOfEachBlock) {
   DriftReport report = fake_drift_report();
   report.channels[1].analysis->block_mean.pop_back();
   const Recording table = drift_series(report);
-  ASSERT_EQ(table.channels.size(), 6U);
+  ASSERT_EQ(table.channels.size(), 8U);
   EXPECT_EQ(table.channels[1].name, "acc_x_fit");
   ASSERT_EQ(table.time.stamps_s.size(), 1800U);
   EXPECT_EQ(table.time.stamps_s[1], 6.0);
   EXPECT_DOUBLE_EQ(table.channels[1].values[1], (1.5 + 5.0 * (1.0 - std::exp(-6.0 / 900.0))) * mg);
-  EXPECT_TRUE(std::isnan(table.channels[3].values.back()));
+  EXPECT_TRUE(std::isnan(table.channels[4].values.back()));
 }
 
 TEST(DriftFigure, DrawsACurveOnlyOfWhatIsIdentifiedAndTheRestDashed) {
   const Figure warm = drift_figure(fake_warm_up("x"), "x");
-  EXPECT_EQ(warm.curves[1].label, "fit, exponential");
-  EXPECT_EQ(warm.curves[1].mark, Mark::line);
-  EXPECT_NEAR(warm.curves[1].y.back(), 1.5 + 5.0 * (1.0 - std::exp(-8.0)), 1e-6);
+  EXPECT_EQ(warm.curves[2].label, "fit, exponential");
+  EXPECT_EQ(warm.curves[2].mark, Mark::line);
+  EXPECT_NEAR(warm.curves[2].y.back(), 1.5 + 5.0 * (1.0 - std::exp(-8.0)), 1e-6);
   const Figure steps = drift_figure(fake_steps("x"), "x");
-  EXPECT_EQ(steps.curves[1].label, "steps; no exponential is identified");
-  EXPECT_EQ(steps.curves[1].mark, Mark::dashes);
+  EXPECT_EQ(steps.curves[2].label, "steps; no exponential is identified");
+  EXPECT_EQ(steps.curves[2].mark, Mark::dashes);
 }
 
 TEST(DriftFigure, GoesOnToTheForecast) {
   const Figure figure = drift_figure(fake_drift_report().channels[0], "x");
-  ASSERT_EQ(figure.curves.size(), 3U);
-  EXPECT_DOUBLE_EQ(figure.curves[2].x.back(), 10'800.0);
-  EXPECT_NEAR(figure.curves[2].y.back(), 6.5, 0.01);
+  ASSERT_EQ(figure.curves.size(), 4U);
+  EXPECT_DOUBLE_EQ(figure.curves[3].x.back(), 10'800.0);
+  EXPECT_NEAR(figure.curves[3].y.back(), 6.5, 0.01);
 }
 
 TEST(ProfileFigure, MarksTheIntervalOfTheTimeConstant) {
@@ -319,8 +319,9 @@ TEST(ProfileFigure, MarksTheIntervalOfTheTimeConstant) {
 TEST(DriftHtml, ShowsLessOfEachTheMoreChannelsThereAre) {
   DriftReport report = fake_drift_report();
   report.runs = {fake_runs("acc_x")};
-  // Two of the runs; drift, profile, 3 scales twice and temperature of x; the same less one of y.
-  EXPECT_EQ(count_of(drift_html(report), "</svg>"), 2U + 9U + 8U);
+  // Two of the runs; drift, readings, profile, 3 scales twice and temperature of x; the same less
+  // one of y.
+  EXPECT_EQ(count_of(drift_html(report), "</svg>"), 2U + 10U + 9U);
   report.channels.assign(10, fake_steps("y"));
   EXPECT_EQ(count_of(drift_html(report), "</svg>"), 2U + 10U);
   report.channels.assign(30, fake_steps("y"));

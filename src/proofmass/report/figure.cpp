@@ -17,7 +17,7 @@ namespace proofmass::report {
 namespace {
 
 // The box of a figure in its own units; the page scales it to its width.
-constexpr double width = 900.0, left = 66.0, right = 16.0, foot = 48.0, row = 20.0;
+constexpr double width = 900.0, left = 66.0, right = 26.0, foot = 48.0, row = 20.0;
 constexpr double swatch = 24.0, letter = 6.9;  // advance of the 12.5-unit type, on average
 
 std::string_view colour(Ink ink) {

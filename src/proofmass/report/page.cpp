@@ -1,5 +1,6 @@
 #include "proofmass/report/page.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
 #include <string_view>
@@ -27,7 +28,7 @@ p{margin:.5rem 0;max-width:46rem}ul{margin:.5rem 0;padding-left:1.2rem;max-width
 .notes{list-style:none;padding:0}.notes li{padding:.35rem .8rem;border-left:3px solid var(--rule);
 margin:.4rem 0;overflow-wrap:anywhere}.notes .warning{border-color:var(--orange)}
 .notes .bad{border-color:var(--red)}.notes b{font-weight:600}
-.warning b{color:var(--orange)}.bad b{color:var(--red)}.info b{color:var(--soft)}
+summary{cursor:pointer;margin:.4rem 0}.warning b{color:var(--orange)}.bad b{color:var(--red)}.info b{color:var(--soft)}
 figure{margin:1.4rem 0 2.2rem;break-inside:avoid}
 figcaption{margin:0 0 .7rem}figcaption b{display:block;font-weight:600}
 figcaption span{color:var(--soft);font-size:.9rem}
@@ -116,19 +117,41 @@ void write(std::string& text, const std::vector<KeyFigure>& figures) {
   text += "</dl>\n";
 }
 
-// What is wrong stands at the top, what is merely so at the end.
-void write_notes(std::string& text, const std::vector<Note>& notes, bool graves) {
+std::string items_of(const std::vector<Note>& notes, bool (*wanted)(Severity)) {
   std::string items;
   for (const Note& note : notes) {
-    if ((note.severity > Severity::info) != graves) continue;
+    if (!wanted(note.severity)) continue;
+    const bool grave = note.severity > Severity::info;
     fmt::format_to(Out(items), "<li class=\"{0}\">{1}{2}</li>\n", word(note.severity),
-                   graves ? fmt::format("<b>{}</b> ", word(note.severity)) : "",
-                   escaped(note.text));
+                   grave ? fmt::format("<b>{}</b> ", word(note.severity)) : "", escaped(note.text));
   }
+  return items;
+}
+
+void write_items(std::string& text, const std::string& items) {
+  if (!items.empty()) text += "<ul class=\"notes\">\n" + items + "</ul>\n";
+}
+
+// What is wrong stands at the top; a long list of warnings is folded, so that the results come
+// first.
+void write_grave_notes(std::string& text, const std::vector<Note>& notes) {
+  constexpr std::ptrdiff_t most_open = 8;
+  const auto warnings = std::ranges::count(notes, Severity::warning, &Note::severity);
+  write_items(text, items_of(notes, [](Severity s) { return s > Severity::warning; }));
+  const std::string items = items_of(notes, [](Severity s) { return s == Severity::warning; });
+  if (warnings > most_open)
+    fmt::format_to(Out(text), "<details>\n<summary>{} warnings</summary>\n", warnings);
+  write_items(text, items);
+  if (warnings > most_open) text += "</details>\n";
+}
+
+// What is merely so stands at the end.
+void write_plain_notes(std::string& text, const std::vector<Note>& notes) {
+  const std::string items = items_of(notes, [](Severity s) { return s <= Severity::info; });
   if (items.empty()) return;
-  if (!graves) text += "<section>\n<h2>How the input was read</h2>\n";
-  text += "<ul class=\"notes\">\n" + items + "</ul>\n";
-  if (!graves) text += "</section>\n";
+  text += "<section>\n<h2>How the input was read</h2>\n";
+  write_items(text, items);
+  text += "</section>\n";
 }
 
 }  // namespace
@@ -143,10 +166,10 @@ std::string html(const Page& page) {
       version(), escaped(page.title), escaped(page.verb), figure_css(), page_css,
       escaped(page.conclusion));
   write(text, page.key_figures);
-  write_notes(text, page.notes, true);
+  write_grave_notes(text, page.notes);
   int figures = 0;
   for (const Section& section : page.sections) write(text, section, figures);
-  write_notes(text, page.notes, false);
+  write_plain_notes(text, page.notes);
   text += "<footer>\n";
   for (const std::string& input : page.inputs) {
     fmt::format_to(Out(text), "<p>Input: {}</p>\n", escaped(input));
