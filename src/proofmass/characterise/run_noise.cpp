@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "proofmass/characterise/whittle.hpp"
 #include "proofmass/core/linalg.hpp"
 
 namespace proofmass::characterise {
@@ -66,44 +67,12 @@ VectorXd ordinates_of(const RunNoiseTerm& term, const MatrixXd& C) {
   return (C * A).cwiseProduct(C).rowwise().sum();
 }
 
-struct Fit {
-  VectorXd strengths;
-  MatrixXd covariance;
-  double loss = std::numeric_limits<double>::infinity();
-};
-
-double loss_of(const VectorXd& v, const VectorXd& P, double degrees) {
-  return degrees * (v.array().log() + P.array() / v.array()).sum();
-}
-
-// Fisher's scoring; strengths stay above zero and shrink towards it where the data want them there,
-// which then lose to the choice without them.
-Fit score(const MatrixXd& a, const VectorXd& P, double degrees) {
-  const Index count = a.cols();
-  Fit fit;
-  fit.strengths =
-      (P.mean() / static_cast<double>(count)) * a.colwise().mean().transpose().cwiseInverse();
-  fit.loss = loss_of(a * fit.strengths, P, degrees);
-  for (int round = 0; round < 60; ++round) {
-    const VectorXd v = a * fit.strengths;
-    const VectorXd weight = (0.5 * degrees) * v.array().square().inverse();
-    fit.covariance = positive_inverse(a.transpose() * weight.asDiagonal() * a);
-    const VectorXd step = fit.covariance * (a.transpose() * weight.cwiseProduct(P - v));
-    double share = 1.0;
-    for (Index j = 0; j < count; ++j)
-      if (step(j) < 0.0) share = std::min(share, 0.9 * fit.strengths(j) / -step(j));
-    const double before = fit.loss;
-    for (; share > 1e-6; share *= 0.5) {
-      const VectorXd tried = fit.strengths + share * step;
-      const double loss = loss_of(a * tried, P, degrees);
-      if (!(loss < fit.loss)) continue;
-      fit.strengths = tried;
-      fit.loss = loss;
-      break;
-    }
-    if (!(before - fit.loss > 1e-6)) break;
-  }
-  return fit;
+WhittleLikelihood likelihood_of(const VectorXd& P, double degrees, const MatrixXd& ordinates) {
+  std::vector<SpectralGroup> groups;
+  groups.reserve(static_cast<std::size_t>(P.size()));
+  for (Index k = 0; k < P.size(); ++k)
+    groups.push_back({.frequency_hz = static_cast<double>(k + 1), .density = P(k), .dof = degrees});
+  return {std::move(groups), ordinates};
 }
 
 std::vector<RunNoiseTerm> all_terms() {
@@ -117,7 +86,7 @@ std::vector<RunNoiseTerm> all_terms() {
 }
 
 // Of the terms above.
-const std::vector<std::vector<std::size_t>> choices{
+const std::vector<std::vector<int>> choices{
     {0}, {1},    {2},       {0, 1}, {0, 2}, {1, 2},    {0, 1, 2}, {3},    {0, 3},   {0, 3, 2},
     {4}, {0, 4}, {0, 4, 2}, {5},    {0, 5}, {0, 5, 2}, {6},       {0, 6}, {0, 6, 2}};
 
@@ -180,22 +149,24 @@ RunNoise fit_run_noise(const MatrixXd& residuals, double duration_s) {
   const VectorXd P = (C * residuals).rowwise().squaredNorm() / degrees;
   if (!(P.mean() > 0.0)) return noise;
   const std::vector<RunNoiseTerm> terms = all_terms();
-  std::vector<VectorXd> ordinates;
-  for (const RunNoiseTerm& term : terms) ordinates.push_back(ordinates_of(term, C));
+  MatrixXd ordinates(C.rows(), static_cast<Index>(terms.size()));
+  for (std::size_t j = 0; j < terms.size(); ++j)
+    ordinates.col(static_cast<Index>(j)) = ordinates_of(terms[j], C);
+  const WhittleLikelihood likelihood = likelihood_of(P, degrees, ordinates);
   std::vector<double> criteria;
-  for (const std::vector<std::size_t>& choice : choices) {
-    MatrixXd a(C.rows(), static_cast<Index>(choice.size()));
-    for (std::size_t j = 0; j < choice.size(); ++j)
-      a.col(static_cast<Index>(j)) = ordinates[choice[j]];
-    Fit fit = score(a, P, degrees);
+  for (const std::vector<int>& choice : choices) {
+    const WhittleFit fit = likelihood.maximise(choice);
+    const VectorXd strengths = fit.strength(choice);
     // What has shrunk to nothing is the choice without it, which has been tried.
-    if ((fit.strengths.array() * a.colwise().mean().transpose().array() < 1e-3 * P.mean()).any())
-      continue;
+    constexpr double nothing = 1e-3;
+    const VectorXd shares =
+        strengths.cwiseProduct(ordinates(Eigen::all, choice).colwise().mean().transpose());
+    if (shares.minCoeff() < nothing * P.mean()) continue;
     RunNoiseModel model;
-    for (const std::size_t j : choice) model.terms.push_back(terms[j]);
-    model.strengths = std::move(fit.strengths);
-    model.covariance = std::move(fit.covariance);
-    criteria.push_back(fit.loss + 2.0 * parameters(model));
+    for (const int j : choice) model.terms.push_back(terms[static_cast<std::size_t>(j)]);
+    model.strengths = strengths;
+    model.covariance = positive_inverse(likelihood.information(fit, choice));
+    criteria.push_back(-2.0 * fit.log_likelihood + 2.0 * parameters(model));
     noise.models.push_back(std::move(model));
   }
   const double least = *std::ranges::min_element(criteria);

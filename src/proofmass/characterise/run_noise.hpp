@@ -52,7 +52,7 @@ struct RunNoise {
 ///
 ///     −2 ln L = (R − 1) Σ (ln v_k + P_k / v_k),
 ///
-/// the least of it by Fisher's scoring for each choice of up to three terms. No choice is made
+/// the least of it by WhittleLikelihood for each choice of up to three terms. No choice is made
 /// between them but each has its Akaike weight w ∝ exp(−AIC/2): a wander that is large over the
 /// length of a run may be too small within it to be chosen with certainty, and to leave it out
 /// would make the runs differ. a_jk is exact; that the coefficients are independent is so for white
