@@ -64,7 +64,9 @@ sensor::Calibration calibration_of(const SensorTwin& twin, double gravity_mps2) 
   const Eigen::Matrix3d U = split(twin.M).U;
   const Eigen::Vector3d scale = U.diagonal().cwiseInverse();
   sensor::Calibration calibration;
-  calibration.bias = sensor::make_axis_figures(twin.sensor.bias_mps2, "m/s^2", origin);
+  Axes warmed_up = twin.sensor.bias_mps2;
+  for (std::size_t axis = 0; axis < 3; ++axis) warmed_up[axis] += twin.sensor.warm_up_mps2[axis];
+  calibration.bias = sensor::make_axis_figures(warmed_up, "m/s^2", origin);
   calibration.scale = sensor::make_axis_figures({scale(0), scale(1), scale(2)}, "1", origin);
   calibration.misalignment = sensor::make_axis_figures(
       {-U(0, 1) * scale(1), U(0, 2) * scale(2), -U(1, 2) * scale(2)}, "rad", origin);
@@ -188,7 +190,7 @@ sensor::SensorModel model_of(const SensorTwin& twin, const RigOptions& options, 
   model.noise.random_walk =
       sensor::make_axis_figures(s.bias_walk_mps2_rts, "m/s^2/sqrt(s)", origin);
   model.drift.a1 = sensor::make_axis_figures(s.warm_up_mps2, "m/s^2", origin);
-  model.drift.a2 = sensor::make_axis_figures({0.0, 0.0, 0.0}, "m/s^2", "counted in the bias");
+  model.drift.a2 = sensor::make_axis_figures(s.bias_mps2, "m/s^2", origin);
   model.drift.time_constant = sensor::make_axis_figures(
       {s.warm_up_time_s, s.warm_up_time_s, s.warm_up_time_s}, "s", origin);
   return model;

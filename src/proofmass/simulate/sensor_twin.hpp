@@ -57,7 +57,8 @@ class OnePole {
   double t_s_ = 0.0, input_ = 0.0, output_ = 0.0;
 };
 
-/// What a bench would know of the sensor after a perfect calibration; see RigResult::sensors.
+/// What a bench would know of the sensor after a perfect calibration, done when it had warmed up,
+/// and a perfect static bias test; see RigResult::sensors.
 [[nodiscard]] sensor::SensorModel model_of(const SensorTwin& twin,
                                            const RigOptions& options,
                                            std::size_t index);

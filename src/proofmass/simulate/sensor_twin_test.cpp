@@ -191,6 +191,20 @@ TEST(SensorTwin, WithoutCrossAxisNoRotationIsLeft) {
   }
 }
 
+TEST(SensorTwin, IsCalibratedWhenItHasWarmedUp) {
+  RigOptions options = perfect_sensor();
+  options.sensors[0].bias_mps2 = {0.1, 0.2, 0.3};
+  options.sensors[0].warm_up_mps2 = {0.05, -0.02, 0.0};
+  options.sensors[0].warm_up_time_s = 20.0;
+  const SensorTwin twin(options, 0);
+  const sensor::SensorModel model = model_of(twin, options, 0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const AxisTwin readings(twin, options, 0, axis);
+    EXPECT_NEAR(model.calibration.bias[axis]->si(), readings.bias_mps2(1e6), 1e-14);
+    EXPECT_EQ(model.drift.a2[axis]->si(), readings.bias_mps2(0.0));
+  }
+}
+
 TEST(SensorTwin, ItsNoiseFigureIsTheTwoSidedDensityThatTheRecordingShows) {
   RigOptions options = perfect_sensor();
   options.sensors[0].noise_rms_mps2 = {0.02, 0.0, 0.03};
