@@ -204,7 +204,7 @@ Result<DriftAnalysis> analyse_drift(View<double> series, const DriftOptions& opt
   examine_residuals(analysis, kept, options);
   if (auto test = signal::test_whiteness(fitted.whitened, {1.0 / analysis.block_s, analysis.block_s,
                                                            fitted_parameters(analysis.fit.curve)}))
-    note_whitened(analysis, std::move(*test));
+    note_whitened(analysis, std::move(test).value());
   add_notes(analysis);
   report_progress(options, 1.0);
   return analysis;

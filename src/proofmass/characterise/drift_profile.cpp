@@ -46,19 +46,19 @@ std::optional<double> crossing(const Way& way, const std::function<double(double
   const auto root = [&](double place) {
     return std::sqrt(std::max(0.0, loss(place))) - root_bound;
   };
+  const auto before_limit = [&](double place) {
+    return first_step > 0.0 ? std::min(place, limit) : std::max(place, limit);
+  };
   double step = first_step;
-  const bool up = step > 0.0;
-  double inside = best, at_inside = -root_bound, outside = best + step, at_outside = 0.0;
-  while (true) {
-    const bool last = up ? outside >= limit : outside <= limit;
-    if (last) outside = limit;
-    at_outside = root(outside);
-    if (at_outside > 0.0) break;
-    if (last) return std::nullopt;
+  double inside = best, at_inside = -root_bound;
+  double outside = before_limit(best + step), at_outside = root(outside);
+  while (at_outside <= 0.0) {
+    if (outside == limit) return std::nullopt;
     inside = outside;
     at_inside = at_outside;
     step *= 1.5;
-    outside += step;
+    outside = before_limit(outside + step);
+    at_outside = root(outside);
   }
   constexpr int most_rounds = 12;
   constexpr double near = 0.005;  // standard deviations
@@ -93,7 +93,7 @@ DriftProfile::DriftProfile(const DriftEvidence& evidence, const DriftTrial& tria
 }
 
 // What is lost with all that is linear, and the noise, fitted anew.
-double DriftProfile::loss(const Held& held, ShapeAt at) const {
+double DriftProfile::loss(const Held& held, const ShapeAt& at) const {
   const Index rows = evidence_.blocks() - 1;
   VectorXd z = evidence_.ordinates().tail(rows);
   OrdinateMeans means{linear_columns(evidence_, at), adjusting_};
@@ -106,8 +106,8 @@ double DriftProfile::loss(const Held& held, ShapeAt at) const {
 }
 
 // The same, at the best of the time constants that are free.
-double DriftProfile::least_loss(const Held& held, ShapeAt at, std::size_t first_free) const {
-  if (first_free >= at.log_times.size()) return loss(held, std::move(at));
+double DriftProfile::least_loss(const Held& held, const ShapeAt& at, std::size_t first_free) const {
+  if (first_free >= at.log_times.size()) return loss(held, at);
   constexpr double standard_deviations = 3.0, tolerance = 0.05;
   const TimeRange range = time_range(evidence_);
   const double best = at.log_times[first_free], reach = standard_deviations * reach_[first_free];
@@ -118,7 +118,7 @@ double DriftProfile::least_loss(const Held& held, ShapeAt at, std::size_t first_
                        [&](double log_time) {
                          ShapeAt there = at;
                          there.log_times[first_free] = log_time;
-                         return least_loss(held, std::move(there), first_free + 1);
+                         return least_loss(held, there, first_free + 1);
                        })
       .value;
 }
@@ -126,13 +126,13 @@ double DriftProfile::least_loss(const Held& held, ShapeAt at, std::size_t first_
 double DriftProfile::of_log_time(double log_time) const {
   ShapeAt at = trial_.at;
   at.log_times.front() = log_time;
-  return least_loss({.log_time = log_time, .amplitude = {}}, std::move(at), 1);
+  return least_loss({.log_time = log_time, .amplitude = {}}, at, 1);
 }
 
 double DriftProfile::of_amplitude(double amplitude) const {
   ShapeAt at = trial_.at;
   at.log_times.front() += slope_ * (amplitude - trial_.fit.coefficients(0));
-  return least_loss({.log_time = {}, .amplitude = amplitude}, std::move(at), 0);
+  return least_loss({.log_time = {}, .amplitude = amplitude}, at, 0);
 }
 
 Interval95 DriftProfile::time_constant(double std_of_log) const {

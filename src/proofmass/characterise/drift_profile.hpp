@@ -42,8 +42,10 @@ class DriftProfile {
   struct Held {
     std::optional<double> log_time, amplitude;
   };
-  [[nodiscard]] double loss(const Held& held, ShapeAt at) const;
-  [[nodiscard]] double least_loss(const Held& held, ShapeAt at, std::size_t first_free) const;
+  [[nodiscard]] double loss(const Held& held, const ShapeAt& at) const;
+  [[nodiscard]] double least_loss(const Held& held,
+                                  const ShapeAt& at,
+                                  std::size_t first_free) const;
 
   const DriftEvidence& evidence_;
   const DriftTrial& trial_;

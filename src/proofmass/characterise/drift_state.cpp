@@ -67,47 +67,35 @@ Functionals functionals(const DriftEvidence& evidence,
                         const DriftTrial& trial,
                         const MatrixXd& J,
                         const VectorXd& residual) {
-  const Index n = evidence.blocks();
+  const Index rest = evidence.blocks() - 1;
   constexpr Index count = 2 + terms;  // level, walk at the start, terms at the end
   const MatrixXd S = wander_densities(evidence, trial);
-  VectorXd total(n);
-  total.tail(n - 1) = trial.fit.density;
-  // The white noise alone; the rest of k = 0 is in the functionals below.
-  const double wander_density = S.row(0).sum();
-  const double white = trial.noise.strength(trial.fit, Term::white);
-  total(0) = white * white + wander_density;
-  const VectorXd at_start = evidence.at(evidence.start_s()), at_end = evidence.at(evidence.end_s());
-  // Weights of the terms in the functionals, by ordinate: (which term, weight).
-  const std::array<Index, count> term_of{0, 0, 0, 1, 2};
+  const VectorXd start = evidence.at(evidence.start_s()), end = evidence.at(evidence.end_s());
   Functionals out{VectorXd::Zero(count), MatrixXd::Zero(count, count),
                   MatrixXd::Zero(count, J.cols())};
   // Level: what is left at k = 0, which holds the stationary terms' means too.
-  const double to_level = at_start(0);
+  const double to_level = start(0), white = trial.noise.strength(trial.fit, Term::white);
   out.value(0) = to_level * residual(0);
-  out.covariance(0, 0) = to_level * to_level * total(0);
+  out.covariance(0, 0) = to_level * to_level * (white * white + S.row(0).sum());
   out.sensitivity.row(0) = -to_level * J.row(0);
   for (Index j = 1; j < terms; ++j) {
-    const double shared = to_level * at_end(0) * S(0, j);
-    out.covariance(0, 2 + j) = out.covariance(2 + j, 0) = -shared;
-    out.covariance(2 + j, 2 + j) = at_end(0) * at_end(0) * S(0, j);
+    out.covariance(0, 2 + j) = out.covariance(2 + j, 0) = -to_level * end(0) * S(0, j);
+    out.covariance(2 + j, 2 + j) = end(0) * end(0) * S(0, j);
   }
-  for (Index k = 1; k < n; ++k) {
-    for (Index a = 1; a < count; ++a) {
-      const double of_a = (a == 1 ? at_start(k) : at_end(k));
-      const double S_a = S(k, term_of[static_cast<std::size_t>(a)]);
-      const double gain = of_a * S_a / total(k);
-      out.value(a) += gain * residual(k);
-      out.sensitivity.row(a) -= gain * J.row(k);
-      for (Index b = a; b < count; ++b) {
-        const double of_b = (b == 1 ? at_start(k) : at_end(k));
-        const double S_b = S(k, term_of[static_cast<std::size_t>(b)]);
-        const bool same =
-            term_of[static_cast<std::size_t>(a)] == term_of[static_cast<std::size_t>(b)];
-        out.covariance(a, b) += of_a * of_b * ((same ? S_a : 0.0) - S_a * S_b / total(k));
-      }
-    }
-  }
-  out.covariance.triangularView<Eigen::StrictlyLower>() = out.covariance.transpose();
+  // All others at k ≥ 1: weight and density of each, and what the data say of it.
+  MatrixXd weight(rest, count - 1), weighted(rest, count - 1);
+  weight << start.tail(rest), end.tail(rest).replicate(1, terms);
+  weighted << S.col(0).tail(rest), S.bottomRows(rest);
+  weighted = weighted.cwiseProduct(weight).eval();
+  const MatrixXd gain = trial.fit.density.cwiseInverse().asDiagonal() * weighted;
+  out.value.tail(count - 1) = gain.transpose() * residual.tail(rest);
+  out.sensitivity.bottomRows(count - 1) = -gain.transpose() * J.bottomRows(rest);
+  auto own = out.covariance.bottomRightCorner(count - 1, count - 1);
+  own -= gain.transpose() * weighted;
+  for (Index a = 0; a + 1 < count; ++a) own(a, a) += weight.col(a).dot(weighted.col(a));
+  const double walk = weight.col(0).dot(weighted.col(1));  // at its two ends
+  own(0, 1) += walk;
+  own(1, 0) += walk;
   return out;
 }
 
