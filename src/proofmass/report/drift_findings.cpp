@@ -118,9 +118,10 @@ void add_trend(const ChannelRuns& runs, Sentences& sentences) {
   constexpr double significant_p = 0.05;
   sentences.push_back(
       set.trend_p < significant_p
-          ? fmt::format("The level moves by {} from one run to the next (p = {}).",
+          ? fmt::format("The level moves by {} from one run to the next, in the order of the files "
+                        "(p = {}).",
                         bias_words(*set.trend_per_run, runs.unit), p_words(set.trend_p))
-          : fmt::format("No trend from run to run: {} a run (p = {}).",
+          : fmt::format("No trend from run to run, in the order of the files: {} a run (p = {}).",
                         bias_words(*set.trend_per_run, runs.unit), p_words(set.trend_p)));
 }
 
