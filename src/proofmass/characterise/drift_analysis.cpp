@@ -15,8 +15,11 @@ namespace {
 constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
 
 Status check(View<double> series, const DriftOptions& options) {
-  if (!std::isfinite(options.rate_hz) || options.rate_hz <= 0.0)
-    return Error{Errc::invalid_argument, "rate_hz must be positive and finite"};
+  constexpr double slowest_hz = 1e-20, fastest_hz = 1e20;
+  if (std::isnan(options.rate_hz) || options.rate_hz < slowest_hz || options.rate_hz > fastest_hz)
+    return Error{
+        Errc::invalid_argument,
+        fmt::format("rate_hz must be positive, between {:g} and {:g}", slowest_hz, fastest_hz)};
   if (!std::isfinite(options.since_switch_on_s) || options.since_switch_on_s < 0.0)
     return Error{Errc::invalid_argument,
                  "since_switch_on_s must be a time in seconds, zero or more"};
@@ -56,6 +59,25 @@ std::vector<double> means_of(View<double> series, std::size_t block) {
                                                    : missing_value;
   }
   return means;
+}
+
+// The fit squares its means, and the squares of those: it needs some that vary, by figures whose
+// fourth power is one.
+Status check_means(View<double> means) {
+  constexpr double least = 1e-60, most = 1e60;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double mean : means) {
+    if (std::isnan(mean)) continue;
+    low = std::min(low, mean);
+    high = std::max(high, mean);
+  }
+  if (low == high) return Error{Errc::not_observable, "the means over blocks do not vary"};
+  if (std::max(std::abs(low), std::abs(high)) > most || high - low < least)
+    return Error{Errc::unsupported,
+                 fmt::format("means over blocks from {:.3g} to {:.3g}, expected some that vary by "
+                             "{:g} or more and are not above {:g}",
+                             low, high, least, most)};
+  return Done{};
 }
 
 // As many blocks as the fit can use; fewer where many of them are missing, of which each costs a
@@ -193,6 +215,7 @@ Result<DriftAnalysis> analyse_drift(View<double> series, const DriftOptions& opt
   const auto evidence =
       DriftEvidence::make(analysis.block_mean, sampling, options.since_switch_on_s);
   if (!evidence) return evidence.error();
+  if (const Status status = check_means(analysis.block_mean); !status) return status.error();
   constexpr double before_fit = 0.2, after_fit = 0.8;
   report_progress(options, before_fit);
   FittedDrift fitted = fit_drift(*evidence);

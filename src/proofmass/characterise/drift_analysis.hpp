@@ -60,7 +60,8 @@ struct DriftAnalysis {
 ///
 /// Errors: invalid_argument (options), too_few_samples (fewer than 64 blocks can be made, or more
 /// than half of them are missing), not_finite (nothing but missing samples), not_observable (the
-/// samples do not vary). Cost: O(N), then some hundred passes over up to 2048 blocks.
+/// samples, or the means over blocks, do not vary), unsupported (means above 1e60, or that vary by
+/// less than 1e-60). Cost: O(N), then some hundred passes over up to 2048 blocks.
 [[nodiscard]] Result<DriftAnalysis> analyse_drift(View<double> series, const DriftOptions& options);
 
 }  // namespace proofmass::characterise

@@ -39,7 +39,7 @@ class DriftEvidence {
   }
   [[nodiscard]] const std::vector<std::size_t>& missing() const { return missing_; }
 
-  /// Of the data, with a constant taken out that `level` gives back to k = 0.
+  /// Of the data.
   [[nodiscard]] const Eigen::VectorXd& ordinates() const { return z_; }
   /// Of one column for each missing block.
   [[nodiscard]] const Eigen::MatrixXd& dummies() const { return dummies_; }

@@ -237,7 +237,7 @@ class Verdict95 {
     test();
     const PlacedCurve warm = place(evidence_, exponential_);
     const Interval95 T = profile_.time_constant(std::sqrt(warm.curve.covariance(2, 2)));
-    if (!T.upper_95) fit.time_constant_above_s = T.lower_95;
+    if (!T.upper_95 || *T.upper_95 > evidence_.duration_s()) fit.time_constant_above_s = T.lower_95;
     if (!T.lower_95) fit.time_constant_below_s = T.upper_95;
     fit.profile = profile_.points(T);
     fit.undetected_below = undetected_below(evidence_, trials_.of(DriftShape::constant));

@@ -102,6 +102,11 @@ NoiseColumns NoiseChoice::kept(const NoiseColumns& columns, const OrdinateFit& f
     if (columns.terms[k] == Term::markov)
       some.markov_time_constant_s = columns.markov_time_constant_s;
   }
+  // Of data without any noise the white one is kept, at nothing.
+  if (some.terms.empty()) {
+    some.P = columns.P.leftCols(1);
+    some.terms = {columns.terms.front()};
+  }
   return some;
 }
 

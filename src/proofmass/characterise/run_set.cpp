@@ -71,11 +71,17 @@ void add_missing(RunSet& set, View<Run> runs) {
   }
 }
 
+std::vector<double> means_of(const RunSet& set) {
+  std::vector<double> values(set.runs.size());
+  std::ranges::transform(set.runs, values.begin(),
+                         [](const RunLevel& run) { return run.mean.value; });
+  return values;
+}
+
 // Beyond five robust standard deviations; of fewer than six runs these say nothing.
 void add_outliers(RunSet& set) {
   if (set.runs.size() < 6) return;
-  std::vector<double> values;
-  for (const RunLevel& run : set.runs) values.push_back(run.mean.value);
+  const std::vector<double> values = means_of(set);
   const double centre = *median(values), spread = *robust_std(values);
   if (!(spread > 0.0)) return;
   for (const RunLevel& run : set.runs) {
@@ -107,9 +113,7 @@ void add_noisy(RunSet& set, const Eigen::MatrixXd& left, const RunNoise& noise) 
 }
 
 void add_trend(RunSet& set) {
-  std::vector<double> values;
-  for (const RunLevel& run : set.runs) values.push_back(run.mean.value);
-  const RunTrend trend = run_trend(values);
+  const RunTrend trend = run_trend(means_of(set));
   set.trend_per_run = trend.per_run;
   set.trend_p = trend.p;
   if (trend.p < 0.01) {

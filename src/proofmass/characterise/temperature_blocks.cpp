@@ -39,8 +39,8 @@ std::vector<TemperatureBlock> means(View<double> series, View<double> temperatur
 }
 
 std::vector<double> sorted_temperatures(const std::vector<TemperatureBlock>& blocks) {
-  std::vector<double> sorted;
-  for (const TemperatureBlock& block : blocks) sorted.push_back(block.temperature_k);
+  std::vector<double> sorted(blocks.size());
+  std::ranges::transform(blocks, sorted.begin(), &TemperatureBlock::temperature_k);
   std::ranges::sort(sorted);
   return sorted;
 }
@@ -110,6 +110,14 @@ double thermometer_std(const std::vector<TemperatureBlock>& blocks) {
   return robust_std(bends).value_or(0.0) / std::sqrt(6.0);
 }
 
+void mark_sweeps(const std::vector<double>& slope, double least, TemperatureBlocks& of) {
+  for (std::size_t b = 0; b < slope.size(); ++b) {
+    if (std::abs(slope[b]) <= least) continue;
+    of.blocks[b].sweep = slope[b] > 0.0 ? Sweep::heating : Sweep::cooling;
+    (slope[b] > 0.0 ? of.risen_k : of.fallen_k) += std::abs(slope[b]);
+  }
+}
+
 void set_sweeps(TemperatureBlocks& of) {
   const double std_k = thermometer_std(of.blocks);
   for (std::size_t reach = 2; reach <= of.blocks.size() / 8; reach *= 2) {
@@ -120,11 +128,7 @@ void set_sweeps(TemperatureBlocks& of) {
     const double doubt = 3.0 * std_k / std::sqrt(r * (r + 1.0) * (2.0 * r + 1.0) / 3.0);
     // A longer reach is steadier, but rounds off the turns.
     if (doubt > 0.5 * speed) continue;
-    for (std::size_t b = 0; b < slope.size(); ++b) {
-      if (std::abs(slope[b]) <= std::max(doubt, 0.2 * speed)) continue;
-      of.blocks[b].sweep = slope[b] > 0.0 ? Sweep::heating : Sweep::cooling;
-      (slope[b] > 0.0 ? of.risen_k : of.fallen_k) += std::abs(slope[b]);
-    }
+    mark_sweeps(slope, std::max(doubt, 0.2 * speed), of);
     return;
   }
 }

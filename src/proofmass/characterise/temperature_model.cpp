@@ -121,7 +121,7 @@ Eigen::VectorXd OrthogonalPolynomials::at(double temperature_k) const {
 }
 
 Result<Uncertain> TemperatureModel::at(double temperature_k) const {
-  if (!(temperature_k >= lowest_k && temperature_k <= highest_k)) {
+  if (std::isnan(temperature_k) || temperature_k < lowest_k || temperature_k > highest_k) {
     return Error{Errc::invalid_argument,
                  fmt::format("{:.2f} K is outside the temperatures recorded, {:.2f} to {:.2f} K",
                              temperature_k, lowest_k, highest_k)};

@@ -91,8 +91,8 @@ TemperatureProblem temperature_problem(const TemperatureBlocks& of, const Matrix
 
 TemperatureCurve fit_curve(const TemperatureProblem& problem, int degree) {
   const MatrixXd X = problem.columns.leftCols(problem.causes(degree));
-  const MatrixXd XtP = X.transpose() * problem.inverse;
-  MatrixXd A = positive_inverse(XtP * X) * XtP;
+  const MatrixXd XP = X.transpose() * problem.inverse;
+  MatrixXd A = positive_inverse(XP * X) * XP;
   TemperatureCurve curve;
   curve.values = A * problem.columns.rightCols(1);
   curve.covariance = problem.noise.white_variance * A * A.transpose();

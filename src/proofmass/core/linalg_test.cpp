@@ -1,5 +1,6 @@
 #include "proofmass/core/linalg.hpp"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <random>
 
@@ -46,6 +47,24 @@ TEST(PositiveInverse, UndoesTheMatrix) {
   Eigen::MatrixXd A(2, 2);
   A << 4.0e3, 1.0, 1.0, 3.0e-3;
   EXPECT_TRUE((A * positive_inverse(A)).isApprox(Eigen::MatrixXd::Identity(2, 2), 1e-9));
+}
+
+TEST(PositiveInverse, KnowsTheLogarithmOfTheDeterminant) {
+  // |A| of the n × n matrix with 2 on its diagonal and −1 beside it is n + 1.
+  for (const int n : {1, 2, 7, 40}) {
+    Eigen::MatrixXd A = 2.0 * Eigen::MatrixXd::Identity(n, n);
+    for (int k = 1; k < n; ++k) A(k, k - 1) = A(k - 1, k) = -1.0;
+    const PositiveInverse found = invert_positive(A);
+    EXPECT_NEAR(found.log_determinant, std::log(n + 1.0), 1e-10);
+    EXPECT_TRUE((A * found.inverse).isApprox(Eigen::MatrixXd::Identity(n, n), 1e-9));
+  }
+}
+
+TEST(PositiveInverse, KnowsADeterminantThatNoDoubleHolds) {
+  const Eigen::VectorXd d = Eigen::VectorXd::LinSpaced(60, -30.0, 29.0);
+  const Eigen::MatrixXd A =
+      d.unaryExpr([](double power) { return std::pow(10.0, 10.0 * power); }).asDiagonal();
+  EXPECT_NEAR(invert_positive(A).log_determinant, 10.0 * d.sum() * std::log(10.0), 1e-9);
 }
 
 }  // namespace

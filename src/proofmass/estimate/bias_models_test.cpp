@@ -129,12 +129,12 @@ Drawn<N> draw(const LinearModel<N, 1, 1>& model,
     return Mat<N, N>(eigen.vectors * roots.asDiagonal());
   };
   const auto white = [&] { return Mat<N>(Mat<N>::NullaryExpr([&] { return normal(random); })); };
-  const Mat<N, N> root_Q = root(model.Q);
+  const Mat<N, N> root_q = root(model.Q);
   const Mat<1> u(warm_up.settled_mps2());
   Drawn<N> drawn;
   Mat<N> x = prior.mean + root(prior.cov) * white();
   for (std::size_t k = 0; k < size; ++k) {
-    if (k > 0) x = (model.F * x + model.B * u + root_Q * white()).eval();
+    if (k > 0) x = (model.F * x + model.B * u + root_q * white()).eval();
     Epoch<1, 1> epoch{.dt_s = k > 0 ? 1.0 : 0.0, .z = model.H * x, .u = u};
     epoch.z(0) += std::sqrt(model.R.value()) * normal(random);
     drawn.epochs.push_back(epoch);
