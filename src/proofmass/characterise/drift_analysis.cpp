@@ -40,23 +40,54 @@ void report_progress(const DriftOptions& options, double fraction) {
   if (options.progress) options.progress("drift", fraction);
 }
 
-// Means of so many samples each; NaN where more than half of a block is missing. What is left at
-// the end is less than a block.
+struct BlockMean {
+  double mean = missing_value;
+  double off_middle = 0.0;  // of the samples that are there, in blocks
+};
+
+// NaN where half of a block or more is missing.
+BlockMean mean_of(View<double> block) {
+  // About its first value, so that a level far from zero takes no digits.
+  double first = 0.0, sum = 0.0, places = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < block.size(); ++k) {
+    if (!std::isfinite(block[k])) continue;
+    if (count == 0.0) first = block[k];
+    sum += block[k] - first;
+    places += static_cast<double>(k) + 0.5;
+    count += 1.0;
+  }
+  const auto size = static_cast<double>(block.size());
+  if (2.0 * count <= size && count < size) return {};
+  return {first + sum / count, places / (count * size) - 0.5};
+}
+
+// Means of so many samples each; what is left at the end is less than a block. Where samples are
+// missing the mean is brought to the middle of its block along the slope between its neighbours, as
+// the start of a warm-up is steep; where only a few blocks are touched they are left out instead,
+// which is exact.
 std::vector<double> means_of(View<double> series, std::size_t block) {
-  std::vector<double> means(series.size() / block);
-  for (std::size_t j = 0; j < means.size(); ++j) {
-    const View<double> part = series.subspan(j * block, block);
-    // About its first value, so that a level far from zero takes no digits.
-    double first = missing_value, sum = 0.0;
-    std::size_t count = 0;
-    for (const double sample : part) {
-      if (!std::isfinite(sample)) continue;
-      if (count == 0) first = sample;
-      sum += sample - first;
-      ++count;
+  std::vector<BlockMean> found(series.size() / block);
+  for (std::size_t j = 0; j < found.size(); ++j)
+    found[j] = mean_of(series.subspan(j * block, block));
+  const auto neighbour = [&](std::size_t of, std::size_t at) {
+    return at < found.size() && std::isfinite(found[at].mean) ? at : of;
+  };
+  const auto middle = [&](std::size_t j) { return static_cast<double>(j) + found[j].off_middle; };
+  const auto few = static_cast<std::ptrdiff_t>(found.size() / 128);
+  const auto partial =
+      std::ranges::count_if(found, [](const BlockMean& b) { return b.off_middle != 0.0; });
+  std::vector<double> means(found.size());
+  for (std::size_t j = 0; j < found.size(); ++j) {
+    means[j] = found[j].mean;
+    if (found[j].off_middle == 0.0) continue;
+    if (partial <= few) {
+      means[j] = missing_value;
+      continue;
     }
-    means[j] = 2 * count > block || count == block ? first + sum / static_cast<double>(count)
-                                                   : missing_value;
+    const std::size_t before = j > 0 ? neighbour(j, j - 1) : j, after = neighbour(j, j + 1);
+    if (before == after) continue;
+    means[j] -= found[j].off_middle * (found[after].mean - found[before].mean) /
+                (middle(after) - middle(before));
   }
   return means;
 }
@@ -115,7 +146,7 @@ Envelope envelope_of(View<double> series, std::size_t scale, const DriftOptions&
       high = std::isnan(high) ? means[k] : std::max(high, means[k]);
     }
     envelope.t_s.push_back(options.since_switch_on_s +
-                           0.5 * static_cast<double>(from + to) * step_s);
+                           0.5 * static_cast<double>(from + to) * step_s - 0.5 / options.rate_hz);
     envelope.lower.push_back(low);
     envelope.upper.push_back(high);
   }
@@ -128,7 +159,7 @@ double take_curve_out(std::vector<double>& series,
   double squares = 0.0, count = 0.0;
   for (std::size_t k = 0; k < series.size(); ++k) {
     if (!std::isfinite(series[k])) continue;
-    const double t_s = options.since_switch_on_s + (static_cast<double>(k) + 0.5) / options.rate_hz;
+    const double t_s = options.since_switch_on_s + static_cast<double>(k) / options.rate_hz;
     series[k] -= curve.value(t_s);
     squares += series[k] * series[k];
     count += 1.0;
@@ -212,8 +243,10 @@ Result<DriftAnalysis> analyse_drift(View<double> series, const DriftOptions& opt
   analysis.block_mean = means_of(kept, block);
   const Sampling sampling{options.rate_hz, block};
   analysis.block_s = sampling.step_s();
-  const auto evidence =
-      DriftEvidence::make(analysis.block_mean, sampling, options.since_switch_on_s);
+  // A mean of samples is that over a time which begins half a step before the first of them.
+  constexpr double half_a_sample = 0.5;
+  const auto evidence = DriftEvidence::make(
+      analysis.block_mean, sampling, options.since_switch_on_s - half_a_sample / options.rate_hz);
   if (!evidence) return evidence.error();
   if (const Status status = check_means(analysis.block_mean); !status) return status.error();
   constexpr double before_fit = 0.2, after_fit = 0.8;

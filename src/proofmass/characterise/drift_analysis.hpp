@@ -34,7 +34,8 @@ struct DriftAnalysis {
   double rate_hz = 0.0;
   std::size_t samples = 0;
   std::size_t missing = 0;  ///< NaN, infinite, absurd, or of knocks, which are left out
-  double start_s = 0.0, duration_s = 0.0;
+  double start_s = 0.0;     ///< of the first sample
+  double duration_s = 0.0;
   double block_s = 0.0;            ///< the fit is of means over so long
   std::vector<double> block_mean;  ///< NaN where missing
   /// The bias in each block, white noise filtered off: curve and wander together.
@@ -49,6 +50,11 @@ struct DriftAnalysis {
   /// None where there are too few blocks.
   std::optional<signal::WhitenessTest> whitened;
   bool noise_explained = true;  ///< none of its three p is below a thousandth
+
+  /// Since switching on, at the middle of a block.
+  [[nodiscard]] double block_time_s(std::size_t block) const {
+    return start_s + (static_cast<double>(block) + 0.5) * block_s - 0.5 / rate_hz;
+  }
 
   Envelope data;
   std::vector<Envelope> residuals;  ///< at up to three scales

@@ -165,7 +165,33 @@ TEST(DriftAnalysis, KeepsStepsAsDrift) {
   EXPECT_EQ(analysis.missing, 0U);
   EXPECT_EQ(analysis.fit.why, DriftReason::steps);
   ASSERT_EQ(analysis.fit.curve.steps.size(), 1U);
-  EXPECT_DOUBLE_EQ(analysis.fit.curve.steps[0].t_s, 250.0);
+  // Between the samples at 249 and 250 s.
+  EXPECT_DOUBLE_EQ(analysis.fit.curve.steps[0].t_s, 249.5);
+}
+
+TEST(DriftAnalysis, FindsAWarmUpToTheLastDigitThatItsNoiseLeaves) {
+  // Samples at 0, 1, 2 … s, of which noise a millionth as large hides next to nothing; a hole in
+  // the steep beginning.
+  const std::size_t many = 7200;
+  Series series = test::white(1e-6, 1.0, many, 21);
+  for (std::size_t k = 0; k < many; ++k)
+    series[k] += -0.21 + 0.25 * (1.0 - std::exp(-static_cast<double>(k) / 70.0));
+  series[60] = series[61] = missing;
+  const DriftAnalysis analysis = analysed(series);
+  ASSERT_TRUE(analysis.fit.identified);
+  EXPECT_NEAR(analysis.fit.time_constant_s->value, 70.0, 5e-3);
+  EXPECT_NEAR(analysis.fit.a1->value, 0.25, 1e-5);
+  EXPECT_NEAR(analysis.fit.a2.value, -0.21, 1e-5);
+}
+
+TEST(DriftAnalysis, SaysThatASlowSwingIsNeitherNoiseNorAnExponential) {
+  const std::size_t many = 7200;
+  Series series = test::white(1e-3, 1.0, many, 22);
+  for (std::size_t k = 0; k < many; ++k)
+    series[k] += 0.1 * std::sin(2.0 * 3.141592653589793 * static_cast<double>(k) / 3000.0);
+  const DriftAnalysis analysis = analysed(series);
+  EXPECT_FALSE(analysis.fit.identified);
+  EXPECT_EQ(analysis.fit.why, DriftReason::unexplained);
 }
 
 TEST(DriftAnalysis, CountsItsTimesFromSwitchingOn) {
@@ -192,7 +218,7 @@ TEST(DriftAnalysis, HasTheResidualOfTheSamplesAboutItsCurve) {
   double squares = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
     if (k == 17) continue;
-    const double t_s = 10.5 + static_cast<double>(k);
+    const double t_s = 10.0 + static_cast<double>(k);
     const double fitted = curve.a2 + curve.a1 * (1.0 - std::exp(-t_s / curve.time_constant_s));
     squares += (series[k] - fitted) * (series[k] - fitted);
   }
@@ -215,8 +241,8 @@ TEST(DriftAnalysis, HasAnEnvelopeThatKeepsTheExtremes) {
     EXPECT_EQ(data.lower[k], *std::min_element(from, to));
     EXPECT_EQ(data.upper[k], *std::max_element(from, to));
   }
-  EXPECT_DOUBLE_EQ(data.t_s.front(), 0.3);
-  EXPECT_DOUBLE_EQ(data.t_s[1], 0.9);
+  EXPECT_DOUBLE_EQ(data.t_s.front(), 0.25);
+  EXPECT_DOUBLE_EQ(data.t_s[1], 0.85);
   ASSERT_EQ(analysis.residuals.size(), 3U);
   EXPECT_EQ(analysis.residuals[0].scale_s, 0.1);
   for (const Envelope& residual : analysis.residuals) {

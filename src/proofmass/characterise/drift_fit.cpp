@@ -12,6 +12,7 @@
 #include "proofmass/characterise/drift_trial.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/signal/whiteness.hpp"
 
 namespace proofmass::characterise {
 namespace {
@@ -211,6 +212,10 @@ std::string reason_for(const DriftFit& fit,
           "time constant not bounded within the record of {:.3g} s: it is {}: record "
           "for longer",
           record_s, times_of(fit));
+    case DriftReason::unexplained:
+      return "something moves the bias that is neither noise nor an exponential: what is left is "
+             "not "
+             "white once the noise is divided out";
     case DriftReason::shorter_than_resolved:
       return fmt::format(
           "settled within {:.3g} s, which is too short for blocks of {:.3g} s: "
@@ -242,6 +247,9 @@ class Verdict95 {
     fit.profile = profile_.points(T);
     fit.undetected_below = undetected_below(evidence_, trials_.of(DriftShape::constant));
     fit.why = why(T);
+    if (fit.why == DriftReason::shorter_than_resolved) fit.time_constant_below_s = T.upper_95;
+    if (fit.why == DriftReason::identified && !explained(exponential_))
+      fit.why = DriftReason::unexplained;
     fit.identified = fit.why == DriftReason::identified;
     const DriftTrial& chosen = fit.identified ? exponential_ : other_;
     const PlacedCurve placed = fit.identified ? warm : place(evidence_, other_);
@@ -285,6 +293,7 @@ class Verdict95 {
     const DriftFit& fit = out_.fit;
     const bool best = Trials::criterion(exponential_) < Trials::criterion(other_);
     if (!best && other_.at.shape == DriftShape::steps) return DriftReason::steps;
+    if (!best && other_.at.shape == DriftShape::line) return DriftReason::line;
     if (!significant())
       return trials_.plain_test(trials_.of(DriftShape::exponential)).p < level
                  ? DriftReason::hidden_by_noise
@@ -295,9 +304,7 @@ class Verdict95 {
       return DriftReason::shorter_than_resolved;
     if (!T.upper_95 || *T.upper_95 > evidence_.duration_s() || T.value > evidence_.duration_s())
       return fit.line_p > line_level ? DriftReason::line : DriftReason::longer_than_record;
-    if (!best)
-      return other_.at.shape == DriftShape::line ? DriftReason::line : DriftReason::hidden_by_noise;
-    return DriftReason::identified;
+    return best ? DriftReason::identified : DriftReason::hidden_by_noise;
   }
 
   void intervals(const Interval95& T) {
@@ -310,6 +317,17 @@ class Verdict95 {
     fit.second_a1 = interval(fit.curve.second_a1, std::sqrt(C(3, 3)), dof);
     fit.second_time_constant_s =
         log_interval(fit.curve.second_time_constant_s, std::sqrt(C(4, 4)), dof);
+  }
+
+  // Whether the noise can be what the fit took it for.
+  [[nodiscard]] bool explained(const DriftTrial& trial) {
+    constexpr double impossible = 1e-6;
+    filter(trial);
+    const double block_s = evidence_.block_s();
+    const auto fitted =
+        static_cast<std::size_t>(trial.fit.coefficients.size() - evidence_.dummies().cols());
+    const auto test = signal::test_whiteness(out_.whitened, {1.0 / block_s, block_s, fitted + 1});
+    return !test || std::min(test->ljung_box_p, test->periodogram_p) >= impossible;
   }
 
   // Of what is left the Wiener filter keeps all but the white share.

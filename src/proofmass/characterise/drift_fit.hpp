@@ -14,7 +14,9 @@ namespace proofmass::characterise {
 ///     constant, at a level of 1 %, the search over T included:
 ///     p = P(χ²₁ > D) + (L/π) e^(−D/2), L the length of the path that the whitened exponential
 ///     takes over the unit sphere as T runs through its range;
-///   - T lies within the record and its interval is closed there.
+///   - T lies within the record and its interval is closed there;
+///   - what is left, the noise divided out, is not far from white (p ≥ 1e-6): else the likelihood,
+///     and all that follows from it, is of another noise.
 /// Source: of p R. B. Davies, Hypothesis testing when a nuisance parameter is present only under
 /// the alternative, Biometrika 74 (1987) 33; H. Hotelling, Tubes and spheres in n-spaces, Amer. J.
 /// Math. 61 (1939) 440. Of the criterion G. Schwarz, Ann. Statist. 6 (1978) 461.

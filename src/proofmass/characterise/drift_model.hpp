@@ -94,12 +94,13 @@ struct DriftState {
 /// Why there is no time constant.
 enum class DriftReason {
   identified,
-  no_warm_up,            ///< nothing an exponential explains that the noise does not
-  hidden_by_noise,       ///< amplitude not above the random walk or Markov noise
-  steps,                 ///< steps explain the drift better
-  line,                  ///< a straight line explains it as well: T cannot be told
-  longer_than_record,    ///< T is not bounded within the record
-  shorter_than_resolved  ///< T at or below what the blocks resolve
+  no_warm_up,             ///< nothing an exponential explains that the noise does not
+  hidden_by_noise,        ///< amplitude not above the random walk or Markov noise
+  steps,                  ///< steps explain the drift better
+  line,                   ///< a straight line explains it as well: T cannot be told
+  longer_than_record,     ///< T is not bounded within the record
+  shorter_than_resolved,  ///< T at or below what the blocks resolve
+  unexplained             ///< what is left is no noise: something else moves the bias
 };
 
 /// What was found. Where no exponential is identified, the curve is the best of the shapes without

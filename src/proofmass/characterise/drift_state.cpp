@@ -104,7 +104,7 @@ Functionals functionals(const DriftEvidence& evidence,
 void add_unseen(const DriftEvidence& evidence, const DriftTrial& trial, MatrixXd& of_values) {
   const DriftNoise noise = noise_of(trial);
   const double third = evidence.block_s() / 3.0, K = noise.random_walk;
-  const double start = K * K * (evidence.start_s() + third);
+  const double start = K * K * std::max(0.0, evidence.start_s() + third);
   of_values(0, 0) += start;
   of_values(0, 1) -= start;
   of_values(1, 0) -= start;

@@ -127,6 +127,7 @@ void add_trend(RunSet& set) {
 Result<DriftAnalysis> common_warm_up(const RunBlocks& blocks, const DriftOptions& options) {
   DriftOptions of_mean = options;
   of_mean.rate_hz = 1.0 / blocks.block_s;
+  of_mean.since_switch_on_s += 0.5 * blocks.block_s;  // the middle of the first block
   const std::vector<double> series(blocks.common.begin(), blocks.common.end());
   Result<DriftAnalysis> found = analyse_drift(series, of_mean);
   if (!found) return found.error().at("mean of the runs");

@@ -211,7 +211,7 @@ Figure drift_figure(const ChannelDrift& channel, const std::string& label) {
       .height = 340.0};
   Curve bias{.label = means, .x = {}, .y = {}, .ink = Ink::grey, .mark = Mark::thin};
   for (std::size_t k = 0; k < analysis.block_mean.size(); ++k) {
-    bias.x.push_back(analysis.start_s + (static_cast<double>(k) + 0.5) * analysis.block_s);
+    bias.x.push_back(analysis.block_time_s(k));
     bias.y.push_back(analysis.block_mean[k] * shown.per_si);
   }
   Curve wander{

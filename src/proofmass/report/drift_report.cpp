@@ -140,7 +140,7 @@ struct Block {
 std::map<double, Block> blocks_of(const DriftAnalysis& analysis) {
   std::map<double, Block> blocks;
   for (std::size_t k = 0; k < analysis.block_mean.size(); ++k) {
-    const double t_s = analysis.start_s + (static_cast<double>(k) + 0.5) * analysis.block_s;
+    const double t_s = analysis.block_time_s(k);
     blocks[t_s] = {analysis.block_mean[k], analysis.fit.curve.value(t_s),
                    analysis.fit.curve.std(t_s), analysis.block_bias[k]};
   }
@@ -214,7 +214,7 @@ Recording drift_series(const DriftReport& report) {
     if (!channel.analysis) continue;
     const DriftAnalysis& analysis = *channel.analysis;
     for (std::size_t k = 0; k < analysis.block_mean.size(); ++k) {
-      all.insert(analysis.start_s + (static_cast<double>(k) + 0.5) * analysis.block_s);
+      all.insert(analysis.block_time_s(k));
     }
   }
   Recording table;
