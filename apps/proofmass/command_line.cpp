@@ -231,7 +231,9 @@ void add_drift(CLI::App& app, DriftCommand& command) {
   add_input_flags(verb, command.input);
   add_switch_on_flag(verb, command.input,
                      "how long the sensor had been on at the first sample (default 0)");
-  add_output_file(verb, command.output, "write block means, curve and its standard deviation");
+  add_output_file(
+      verb, command.output,
+      "write block means, curve, its standard deviation, and the bias less white noise");
   add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer("Example:\n  proofmass drift rest.csv --rate 100 --unit g --report drift.html");

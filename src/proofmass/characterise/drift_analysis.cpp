@@ -216,9 +216,10 @@ void add_notes(DriftAnalysis& analysis) {
       std::ranges::count_if(analysis.block_mean, [](double mean) { return std::isnan(mean); }));
   if (blank > 0)
     analysis.notes.push_back(
-        {Severity::warning, fmt::format("{} of {} blocks of {:.3g} s are missing: the fit goes "
-                                        "across them",
-                                        blank, analysis.block_mean.size(), analysis.block_s)});
+        {100 * blank > analysis.block_mean.size() ? Severity::warning : Severity::info,
+         fmt::format("{} of {} blocks of {:.3g} s are missing: the fit goes "
+                     "across them",
+                     blank, analysis.block_mean.size(), analysis.block_s)});
   if (!analysis.noise_explained)
     analysis.notes.push_back(
         {Severity::warning,

@@ -41,6 +41,8 @@ class DriftEvidence {
 
   /// Of the data.
   [[nodiscard]] const Eigen::VectorXd& ordinates() const { return z_; }
+  /// Those at k ≥ 1: what a level has no part in.
+  [[nodiscard]] Eigen::VectorXd contrasts() const { return z_.tail(n_ - 1); }
   /// Of one column for each missing block.
   [[nodiscard]] const Eigen::MatrixXd& dummies() const { return dummies_; }
   /// Of 1 − e^(−t/T), and of its derivative by ln T.

@@ -1,15 +1,13 @@
 #include "proofmass/characterise/drift_fit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <numbers>
-#include <numeric>
+#include <limits>
 
 #include "proofmass/characterise/drift_profile.hpp"
 #include "proofmass/characterise/drift_state.hpp"
-#include "proofmass/characterise/drift_trial.hpp"
+#include "proofmass/characterise/drift_trials.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/signal/whiteness.hpp"
@@ -20,135 +18,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double level = 0.01;  // of the test against no exponential
-
-// Two time constants nearer than this cannot be told from one.
-constexpr double least_ratio = 2.0;
-
-constexpr std::array<DriftShape, 4> first_shapes{DriftShape::constant, DriftShape::line,
-                                                 DriftShape::steps, DriftShape::exponential};
-constexpr std::array<DriftShape, 2> further_shapes{DriftShape::exponential_and_line,
-                                                   DriftShape::two_exponentials};
-
-bool has_exponential(const DriftTrial& trial) {
-  return !trial.at.log_times.empty();
-}
-
-VectorXd data_of(const DriftEvidence& evidence) {
-  return evidence.ordinates().tail(evidence.blocks() - 1);
-}
-
-struct Tested {
-  double deviance = 0.0, p = 1.0;
-};
-
-// How far the whitened exponential travels over the unit sphere, what is fitted anyway projected
-// out, as T runs through its range.
-double path_length(const DriftEvidence& evidence, const MatrixXd& fitted, const VectorXd& density) {
-  constexpr int places = 60;
-  const TimeRange range = time_range(evidence);
-  const VectorXd root = density.cwiseSqrt().cwiseInverse();
-  const MatrixXd X = root.asDiagonal() * fitted;
-  const MatrixXd inverse = X.cols() > 0 ? positive_inverse(X.transpose() * X) : MatrixXd(0, 0);
-  double length = 0.0;
-  VectorXd last;
-  for (int k = 0; k < places; ++k) {
-    const double T = range.lower_s *
-                     std::pow(range.upper_s / range.lower_s, static_cast<double>(k) / (places - 1));
-    VectorXd e = root.cwiseProduct(evidence.rise(T).tail(evidence.blocks() - 1));
-    if (X.cols() > 0) e -= X * (inverse * (X.transpose() * e));
-    e.normalize();
-    if (k > 0) length += std::acos(std::clamp(std::abs(e.dot(last)), 0.0, 1.0));
-    last = std::move(e);
-  }
-  return length;
-}
-
-// The exponential of a trial against the shape without it: what the best of several noises leaves
-// to be gained.
-Tested against(const DriftEvidence& evidence,
-               const DriftTrial& trial,
-               DriftShape without,
-               const std::vector<const NoiseColumns*>& noises) {
-  const ShapeAt null{without, {}, {}};
-  const OrdinateMeans means{linear_columns(evidence, null), tangent_columns(evidence, trial.at)};
-  double best = -std::numeric_limits<double>::infinity();
-  for (const NoiseColumns* noise : noises)
-    best = std::max(best, fit_ordinates(data_of(evidence), noise->P, means).log_likelihood);
-  Tested tested;
-  tested.deviance = std::max(0.0, 2.0 * (trial.fit.log_likelihood - best));
-  const double L = path_length(evidence, means.fitted, trial.fit.density);
-  tested.p = std::min(1.0, chi_square_p(tested.deviance, 1.0) +
-                               L / std::numbers::pi * std::exp(-0.5 * tested.deviance));
-  return tested;
-}
-
-// All shapes, fitted.
-class Trials {
- public:
-  explicit Trials(const DriftEvidence& evidence) : evidence_(evidence), choice_(evidence) {
-    trials_.reserve(first_shapes.size() + further_shapes.size());
-    for (const DriftShape shape : first_shapes) add(shape);
-    // More than one exponential only where there is one.
-    if (test(of(DriftShape::exponential), DriftShape::constant).p >= level) return;
-    for (const DriftShape shape : further_shapes) add(shape);
-  }
-
-  [[nodiscard]] const DriftTrial& of(DriftShape shape) const {
-    return *std::ranges::find(trials_, shape, [](const DriftTrial& t) { return t.at.shape; });
-  }
-  // The best of those with an exponential, or of those without. A shape that asks for more than
-  // those before it has to show strong evidence of it: a criterion lower by 6 (R. E. Kass, A. E.
-  // Raftery, J. Amer. Statist. Assoc. 90 (1995) 773).
-  [[nodiscard]] const DriftTrial& best(bool exponential) const {
-    constexpr double strong = 6.0;
-    const DriftTrial* best = nullptr;
-    for (const DriftTrial& trial : trials_) {
-      if (has_exponential(trial) != exponential) continue;
-      if (best == nullptr || criterion(trial) < criterion(*best) - strong) best = &trial;
-    }
-    return *best;
-  }
-  [[nodiscard]] static double criterion(const DriftTrial& trial) {
-    return trial.candidate.information_criterion;
-  }
-  [[nodiscard]] Tested test(const DriftTrial& trial, DriftShape without) const {
-    return against(evidence_, trial, without, {&choice_.base(), &trial.noise, &of(without).noise});
-  }
-  // With white noise alone, as a plain fit takes it to be.
-  [[nodiscard]] Tested plain_test(const DriftTrial& trial) const {
-    const NoiseColumns& white = choice_.white();
-    DriftTrial plain = trial;
-    plain.noise = white;
-    plain.fit =
-        fit_ordinates(data_of(evidence_), white.P,
-                      {linear_columns(evidence_, trial.at), tangent_columns(evidence_, trial.at)});
-    return against(evidence_, plain, DriftShape::constant, {&white});
-  }
-  [[nodiscard]] std::vector<DriftCandidate> candidates() const {
-    std::vector<DriftCandidate> all;
-    all.reserve(trials_.size());
-    for (const DriftTrial& trial : trials_) all.push_back(trial.candidate);
-    std::ranges::sort(all, {}, &DriftCandidate::information_criterion);
-    return all;
-  }
-
- private:
-  void add(DriftShape shape) {
-    DriftTrial trial = try_shape(evidence_, choice_, shape);
-    // Without a step found it is the constant again; two that are as good as one say nothing more.
-    if (shape == DriftShape::steps && trial.at.step_blocks.empty()) return;
-    if (shape == DriftShape::two_exponentials &&
-        std::abs(trial.at.log_times[0] - trial.at.log_times[1]) < std::log(least_ratio))
-      return;
-    trials_.push_back(std::move(trial));
-  }
-
-  const DriftEvidence& evidence_;
-  NoiseChoice choice_;
-  std::vector<DriftTrial> trials_;
-};
 
 Interval95 interval(double value, double std, double dof) {
   constexpr double two_sided = 0.975;
@@ -169,7 +38,7 @@ double undetected_below(const DriftEvidence& evidence, const DriftTrial& constan
   means.fitted.rightCols(1) =
       evidence.rise(share * evidence.duration_s()).tail(evidence.blocks() - 1);
   const OrdinateFit fit =
-      evaluate_ordinates(data_of(evidence), constant.noise.P, means, constant.fit.strength);
+      evaluate_ordinates(evidence.contrasts(), constant.noise.P, means, constant.fit.strength);
   const Index last = means.fitted.cols() - 1;
   return std::abs(fit.coefficients(last)) + two_sided * std::sqrt(fit.covariance(last, last));
 }
@@ -214,8 +83,7 @@ std::string reason_for(const DriftFit& fit,
           record_s, times_of(fit));
     case DriftReason::unexplained:
       return "something moves the bias that is neither noise nor an exponential: what is left is "
-             "not "
-             "white once the noise is divided out";
+             "not white once the noise is divided out";
     case DriftReason::shorter_than_resolved:
       return fmt::format(
           "settled within {:.3g} s, which is too short for blocks of {:.3g} s: "
@@ -225,9 +93,9 @@ std::string reason_for(const DriftFit& fit,
   return {};
 }
 
-class Verdict95 {
+class DriftVerdict {
  public:
-  Verdict95(const DriftEvidence& evidence, const Trials& trials)
+  DriftVerdict(const DriftEvidence& evidence, const DriftTrials& trials)
       : evidence_(evidence),
         trials_(trials),
         exponential_(trials.best(true)),
@@ -274,8 +142,8 @@ class Verdict95 {
   void test() {
     DriftFit& fit = out_.fit;
     const DriftTrial& plain = trials_.of(DriftShape::exponential);
-    const Tested constant = trials_.test(plain, DriftShape::constant);
-    const Tested line = trials_.test(plain, DriftShape::line);
+    const GainTest constant = trials_.test(plain, DriftShape::constant);
+    const GainTest line = trials_.test(plain, DriftShape::line);
     fit.constant_deviance = constant.deviance;
     fit.constant_p = constant.p;
     fit.line_deviance = line.deviance;
@@ -285,17 +153,18 @@ class Verdict95 {
   // The exponential beside a line has to be needed beside it.
   [[nodiscard]] bool significant() const {
     if (exponential_.at.shape == DriftShape::exponential_and_line)
-      return trials_.test(exponential_, DriftShape::line).p < level;
-    return out_.fit.constant_p < level;
+      return trials_.test(exponential_, DriftShape::line).p < DriftTrials::level;
+    return out_.fit.constant_p < DriftTrials::level;
   }
 
   [[nodiscard]] DriftReason why(const Interval95& T) const {
     const DriftFit& fit = out_.fit;
-    const bool best = Trials::criterion(exponential_) < Trials::criterion(other_);
+    const bool best =
+        exponential_.candidate.information_criterion < other_.candidate.information_criterion;
     if (!best && other_.at.shape == DriftShape::steps) return DriftReason::steps;
     if (!best && other_.at.shape == DriftShape::line) return DriftReason::line;
     if (!significant())
-      return trials_.plain_test(trials_.of(DriftShape::exponential)).p < level
+      return trials_.plain_test(trials_.of(DriftShape::exponential)).p < DriftTrials::level
                  ? DriftReason::hidden_by_noise
                  : DriftReason::no_warm_up;
     // What spans fewer is a few odd blocks at the beginning.
@@ -349,7 +218,7 @@ class Verdict95 {
   }
 
   const DriftEvidence& evidence_;
-  const Trials& trials_;
+  const DriftTrials& trials_;
   const DriftTrial& exponential_;
   const DriftTrial& other_;
   DriftProfile profile_;
@@ -359,8 +228,8 @@ class Verdict95 {
 }  // namespace
 
 FittedDrift fit_drift(const DriftEvidence& evidence) {
-  const Trials trials(evidence);
-  return Verdict95(evidence, trials).run();
+  const DriftTrials trials(evidence);
+  return DriftVerdict(evidence, trials).run();
 }
 
 }  // namespace proofmass::characterise

@@ -94,8 +94,7 @@ DriftProfile::DriftProfile(const DriftEvidence& evidence, const DriftTrial& tria
 
 // What is lost with all that is linear, and the noise, fitted anew.
 double DriftProfile::loss(const Held& held, const ShapeAt& at) const {
-  const Index rows = evidence_.blocks() - 1;
-  VectorXd z = evidence_.ordinates().tail(rows);
+  VectorXd z = evidence_.contrasts();
   OrdinateMeans means{linear_columns(evidence_, at), adjusting_};
   if (held.amplitude) {
     z -= *held.amplitude * means.fitted.col(0);

@@ -44,10 +44,6 @@ MatrixXd beside(const MatrixXd& left, const MatrixXd& right) {
   return both;
 }
 
-VectorXd data_of(const DriftEvidence& evidence) {
-  return evidence.ordinates().tail(evidence.blocks() - 1);
-}
-
 OrdinateMeans restricted(const DriftEvidence& evidence, const ShapeAt& at) {
   return {linear_columns(evidence, at), tangent_columns(evidence, at)};
 }
@@ -58,7 +54,7 @@ std::vector<double> best_times(const DriftEvidence& evidence,
                                const VectorXd& S) {
   const Index rows = evidence.blocks() - 1;
   const VectorXd root = S.cwiseSqrt().cwiseInverse();
-  const VectorXd y = root.cwiseProduct(data_of(evidence));
+  const VectorXd y = root.cwiseProduct(evidence.contrasts());
   const TimeRange range = time_range(evidence);
   fit::SeparableProblem problem;
   problem.basis = [&](View<double> log_times, Eigen::Ref<MatrixXd> columns) {
@@ -80,7 +76,7 @@ std::vector<double> best_times(const DriftEvidence& evidence,
 // Noise and time constants in turn until neither moves.
 OrdinateFit settle(const DriftEvidence& evidence, ShapeAt& at, const MatrixXd& P, OrdinateFit fit) {
   for (int round = 0; round < most_rounds; ++round) {
-    fit = fit_ordinates(data_of(evidence), P, restricted(evidence, at), fit.strength);
+    fit = fit_ordinates(evidence.contrasts(), P, restricted(evidence, at), fit.strength);
     if (at.log_times.empty()) break;
     const std::vector<double> times = best_times(evidence, at, fit.density);
     double moved = 0.0;
@@ -89,7 +85,7 @@ OrdinateFit settle(const DriftEvidence& evidence, ShapeAt& at, const MatrixXd& P
     at.log_times = times;
     if (moved < settled) break;
   }
-  return fit_ordinates(data_of(evidence), P, restricted(evidence, at), fit.strength);
+  return fit_ordinates(evidence.contrasts(), P, restricted(evidence, at), fit.strength);
 }
 
 // The most likely of a grid of time constants; of two, the second beside the best single one.
@@ -106,7 +102,7 @@ void start_times(const DriftEvidence& evidence, const MatrixXd& P, ShapeAt& at) 
       at.log_times.back() =
           low + (high - low) * static_cast<double>(k) / static_cast<double>(points - 1);
       const OrdinateMeans means{linear_columns(evidence, at), {}};
-      const OrdinateFit fit = fit_ordinates(data_of(evidence), P, means, strength);
+      const OrdinateFit fit = fit_ordinates(evidence.contrasts(), P, means, strength);
       strength = fit.strength;
       if (fit.log_likelihood <= best) continue;
       best = fit.log_likelihood;
@@ -124,7 +120,7 @@ void add_steps(const DriftEvidence& evidence, ShapeAt& at, const MatrixXd& P, Or
     if (step.gain < least_gain) return;
     at.step_blocks.push_back(step.block);
     std::ranges::sort(at.step_blocks);
-    fit = fit_ordinates(data_of(evidence), P, restricted(evidence, at), fit.strength);
+    fit = fit_ordinates(evidence.contrasts(), P, restricted(evidence, at), fit.strength);
   }
 }
 
@@ -146,7 +142,7 @@ DriftCandidate candidate_of(const DriftEvidence& evidence,
   const OrdinateMeans means{linear_columns(evidence, trial.at), {}};
   candidate.information_criterion = std::numeric_limits<double>::infinity();
   for (const NoiseColumns& noise : {choice.base(), choice.with_base(trial.noise)}) {
-    const double found = fit_ordinates(data_of(evidence), noise.P, means).log_likelihood;
+    const double found = fit_ordinates(evidence.contrasts(), noise.P, means).log_likelihood;
     const int parameters = of_shape + noise.parameters();
     const double criterion = -2.0 * found + parameters * cost;
     if (!(criterion < candidate.information_criterion)) continue;
@@ -199,13 +195,13 @@ DriftTrial try_shape(const DriftEvidence& evidence, const NoiseChoice& choice, D
   trial.at.shape = shape;
   trial.noise = choice.base();
   start_times(evidence, trial.noise.P, trial.at);
-  trial.fit = fit_ordinates(data_of(evidence), trial.noise.P, restricted(evidence, trial.at));
+  trial.fit = fit_ordinates(evidence.contrasts(), trial.noise.P, restricted(evidence, trial.at));
   constexpr int choices = 2;
   for (int k = 0; k < choices; ++k) {
     if (shape == DriftShape::steps) add_steps(evidence, trial.at, trial.noise.P, trial.fit);
     trial.fit = settle(evidence, trial.at, trial.noise.P, std::move(trial.fit));
-    trial.noise = choice.choose(data_of(evidence), restricted(evidence, trial.at));
-    trial.fit = fit_ordinates(data_of(evidence), trial.noise.P, restricted(evidence, trial.at));
+    trial.noise = choice.choose(evidence.contrasts(), restricted(evidence, trial.at));
+    trial.fit = fit_ordinates(evidence.contrasts(), trial.noise.P, restricted(evidence, trial.at));
   }
   trial.fit = settle(evidence, trial.at, trial.noise.P, std::move(trial.fit));
   put_in_order(trial);

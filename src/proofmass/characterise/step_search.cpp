@@ -10,7 +10,7 @@ FoundStep find_step(const DriftEvidence& evidence,
   const Eigen::Index rows = evidence.blocks() - 1;
   const Eigen::VectorXd weight = density.cwiseInverse();
   const Eigen::MatrixXd WX = weight.asDiagonal() * fitted;
-  Eigen::VectorXd residual = evidence.ordinates().tail(rows);
+  Eigen::VectorXd residual = evidence.contrasts();
   Eigen::MatrixXd inverse;
   if (fitted.cols() > 0) {
     inverse = positive_inverse(fitted.transpose() * WX);

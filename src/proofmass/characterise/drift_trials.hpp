@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include "proofmass/characterise/drift_evidence.hpp"
+#include "proofmass/characterise/drift_model.hpp"
+#include "proofmass/characterise/drift_noise.hpp"
+#include "proofmass/characterise/drift_trial.hpp"
+
+namespace proofmass::characterise {
+
+/// Twice what one model gains over another in log-likelihood, and the probability of as much by
+/// chance.
+struct GainTest {
+  double deviance = 0.0, p = 1.0;
+};
+
+/// All shapes, fitted, each with its own noise: constant, line, steps where there are any, an
+/// exponential, and one with a line and two of them where the one explains anything. The evidence
+/// has to outlive it.
+class DriftTrials {
+ public:
+  explicit DriftTrials(const DriftEvidence& evidence);
+
+  /// Level of the test against no exponential.
+  static constexpr double level = 0.01;
+
+  /// Constant, line or exponential, which there always are.
+  [[nodiscard]] const DriftTrial& of(DriftShape shape) const;
+
+  /// The best of those with an exponential, or of those without. A shape that asks for more than
+  /// those before it has to show strong evidence of it: a criterion lower by 6 (R. E. Kass, A. E.
+  /// Raftery, J. Amer. Statist. Assoc. 90 (1995) 773).
+  [[nodiscard]] const DriftTrial& best(bool exponential) const;
+
+  /// The exponential of a trial against the constant or line that is left without it, under the
+  /// best of three noises: that of the trial, that which suits the shape without, and white noise
+  /// with a random walk; p as of drift_fit.hpp.
+  [[nodiscard]] GainTest test(const DriftTrial& trial, DriftShape without) const;
+
+  /// Against the constant with white noise alone, as a plain fit takes it to be.
+  [[nodiscard]] GainTest plain_test(const DriftTrial& trial) const;
+
+  /// Best first.
+  [[nodiscard]] std::vector<DriftCandidate> candidates() const;
+
+ private:
+  void add(DriftShape shape);
+
+  const DriftEvidence& evidence_;
+  NoiseChoice choice_;
+  std::vector<DriftTrial> trials_;
+};
+
+}  // namespace proofmass::characterise
