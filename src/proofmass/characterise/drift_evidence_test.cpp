@@ -38,7 +38,7 @@ void expect_equal(const VectorXd& found, const VectorXd& wanted, double toleranc
 
 /// Mean of 1 − e^(−t/T) over a block, in long double as it cancels where T is long.
 double mean_rise(double from_s, double time_constant_s) {
-  const long double T = time_constant_s, x = static_cast<long double>(h) / T;
+  const auto T = static_cast<long double>(time_constant_s), x = static_cast<long double>(h) / T;
   const long double before = -std::expm1(-static_cast<long double>(from_s) / T);
   // Below 1e-3 the series of 1 − (1 − e^(−x))/x.
   const long double within = x < 1e-3L ? x / 2 - x * x / 6 + x * x * x / 24 - x * x * x * x / 120
