@@ -11,13 +11,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <random>
 #include <string>
-#include <sys/resource.h>
 #include <vector>
 
+#include "measure.hpp"
 #include "proofmass/characterise/drift_analysis.hpp"
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/io/write_recording.hpp"
@@ -29,16 +28,6 @@ using namespace proofmass;
 
 constexpr double rate_hz = 1000.0;
 constexpr std::size_t axes = 3;
-
-double cpu_s() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-double peak_mib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
 
 // Warm-up in white noise and a random walk, 900 s at two hours.
 Recording made_up(std::size_t n) {

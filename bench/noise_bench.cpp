@@ -6,12 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <random>
 #include <string>
-#include <sys/resource.h>
 #include <vector>
 
+#include "measure.hpp"
 #include "proofmass/characterise/difference_variance.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/characterise/noise_fit.hpp"
@@ -22,16 +21,6 @@ using namespace proofmass;
 using namespace proofmass::characterise;
 
 constexpr double rate_hz = 1000.0;
-
-double cpu_s() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-double peak_mib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
 
 template <class Work>
 double best_of(int times, const Work& work) {

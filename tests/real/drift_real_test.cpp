@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <string>
@@ -14,6 +13,7 @@
 #include "proofmass/fit/curve.hpp"
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/signal/even_grid.hpp"
+#include "published_data.hpp"
 
 namespace proofmass {
 namespace {
@@ -26,16 +26,6 @@ using characterise::DriftShape;
 using characterise::DriftStep;
 using characterise::Run;
 using characterise::RunSet;
-
-std::filesystem::path published_data() {
-  if (const char* given = std::getenv("PROOFMASS_DATA")) return given;
-  return std::filesystem::path(PROOFMASS_SOURCE_DIR) / "../shared/data";
-}
-
-std::string absent(const std::filesystem::path& file) {
-  return "NO PUBLISHED RECORDINGS: set PROOFMASS_DATA to their folder (" + file.string() +
-         " is not there)";
-}
 
 double mean_of(View<double> values) {
   double sum = 0.0, count = 0.0;

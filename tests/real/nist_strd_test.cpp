@@ -2,7 +2,6 @@
 // each.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -12,16 +11,12 @@
 #include <vector>
 
 #include "proofmass/fit/nonlinear_least_squares.hpp"
+#include "published_data.hpp"
 
 namespace proofmass {
 namespace {
 
 using fit::LeastSquaresFit;
-
-std::filesystem::path published_data() {
-  if (const char* given = std::getenv("PROOFMASS_DATA")) return given;
-  return std::filesystem::path(PROOFMASS_SOURCE_DIR) / "../shared/data";
-}
 
 using Predictors = View<double>;
 using Parameters = View<double>;
@@ -143,9 +138,7 @@ double digits(double found, double certified) {
 class NistReference : public testing::TestWithParam<Case> {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(file_of(GetParam())))
-      GTEST_SKIP() << "NO PUBLISHED RECORDINGS: set PROOFMASS_DATA to their folder ("
-                   << file_of(GetParam()) << " is not there)";
+    if (!std::filesystem::exists(file_of(GetParam()))) GTEST_SKIP() << absent(file_of(GetParam()));
   }
   [[nodiscard]] static LeastSquaresFit fitted(const Published& set, std::size_t start) {
     return fit::fit_least_squares({.residuals =

@@ -3,13 +3,13 @@
 // once with NumPy and SciPy from their definitions.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <string>
 
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/io/read_recording.hpp"
+#include "published_data.hpp"
 
 namespace proofmass {
 namespace {
@@ -24,11 +24,6 @@ using characterise::Verdict;
 
 constexpr double rate_hz = 100.0;
 constexpr double lsb_mg = 3.33;
-
-std::filesystem::path published_data() {
-  if (const char* given = std::getenv("PROOFMASS_DATA")) return given;
-  return std::filesystem::path(PROOFMASS_SOURCE_DIR) / "../shared/data";
-}
 
 struct Axis {
   int run;
@@ -65,9 +60,7 @@ std::vector<double> samples_of(const Axis& axis) {
 class RestingAdis16405 : public testing::TestWithParam<Axis> {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(file_of(GetParam())))
-      GTEST_SKIP() << "NO PUBLISHED RECORDINGS: set PROOFMASS_DATA to their folder ("
-                   << file_of(GetParam()) << " is not there)";
+    if (!std::filesystem::exists(file_of(GetParam()))) GTEST_SKIP() << absent(file_of(GetParam()));
   }
   [[nodiscard]] static NoiseAnalysis analysed(TauGrid taus = {}) {
     NoiseOptions options;
@@ -167,9 +160,7 @@ INSTANTIATE_TEST_SUITE_P(
 // Stable32's own phase record, with its Allan deviation and limits (phase_dat_oadev_octave.txt).
 TEST(Stable32Phase, ReadAsAFileHasItsDeviationAndLimits) {
   const auto file = published_data() / "allan-reference/phasedat/PHASE.DAT";
-  if (!std::filesystem::exists(file))
-    GTEST_SKIP() << "NO PUBLISHED RECORDINGS: set PROOFMASS_DATA to their folder (" << file
-                 << " is not there)";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
   const auto recording = io::read_recording(file.string(), {.rate_hz = 1.0});
   ASSERT_TRUE(recording.has_value()) << recording.error().message;
   ASSERT_EQ(recording->samples(), 1001U);

@@ -2,7 +2,6 @@
 // are those counted from gravity's phase by two other methods, good to about 0.015 turn.
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <limits>
@@ -10,17 +9,13 @@
 
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/io/read_recording.hpp"
+#include "published_data.hpp"
 
 namespace proofmass {
 namespace {
 
 using estimate::WheelSensor;
 using estimate::WheelSolution;
-
-std::filesystem::path published_data() {
-  if (const char* given = std::getenv("PROOFMASS_DATA")) return given;
-  return std::filesystem::path(PROOFMASS_SOURCE_DIR) / "../shared/data";
-}
 
 struct Wheel {
   const char* trial;
@@ -71,8 +66,7 @@ class CarWheel : public testing::TestWithParam<Wheel> {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(file_of(GetParam(), "")))
-      GTEST_SKIP() << "NO PUBLISHED RECORDINGS: set PROOFMASS_DATA to their folder ("
-                   << file_of(GetParam(), "") << " is not there)";
+      GTEST_SKIP() << absent(file_of(GetParam(), ""));
     origin_ns_ = start_of(file_of(GetParam(), ""));
   }
   [[nodiscard]] WheelSensor hub() const { return sensor_of(file_of(GetParam(), ""), origin_ns_); }

@@ -1,13 +1,11 @@
 #include "proofmass/sensor/drift_update.hpp"
 
-#include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
-#include <iterator>
 #include <limits>
-#include <unistd.h>
 #include <vector>
 
+#include "proofmass/sensor/folder_test_support.hpp"
+#include "proofmass/sensor/folder_test_support.hpp"
 #include "proofmass/sensor/noise_update.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 #include "proofmass/sensor/warm_up.hpp"
@@ -23,25 +21,7 @@ MeasuredDrift measured_y() {
           .origin = "proofmass drift static.csv, 2 h at 100 Hz"};
 }
 
-/// A folder of one's own for a test's files.
-class DriftFileUpdate : public testing::Test {
- protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string path(const char* name) const { return (folder_ / name).string(); }
-  std::string text(const char* name) const {
-    std::ifstream in(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  void write(const char* name, std::string_view content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-  }
-
- private:
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
-                                  ("proofmass_drift_update_" + std::to_string(::getpid()));
-};
+class DriftFileUpdate : public FolderTest {};
 
 TEST(DriftUpdate, PutsTheFiguresWithTheirStdUnitAndOrigin) {
   SensorModel model;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace proofmass {
+
+/// The folder of the recordings by others, whether it is there or not.
+inline std::filesystem::path published_data() {
+  if (const char* given = std::getenv("PROOFMASS_DATA")) return given;
+  return std::filesystem::path(PROOFMASS_SOURCE_DIR) / "../shared/data";
+}
+
+/// What a test says that is skipped for want of a file.
+inline std::string absent(const std::filesystem::path& file) {
+  return "NO PUBLISHED RECORDINGS: set PROOFMASS_DATA to their folder (" + file.string() +
+         " is not there)";
+}
+
+}  // namespace proofmass
