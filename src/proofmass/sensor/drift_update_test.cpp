@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "proofmass/sensor/folder_test_support.hpp"
-#include "proofmass/sensor/folder_test_support.hpp"
 #include "proofmass/sensor/noise_update.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 #include "proofmass/sensor/warm_up.hpp"
