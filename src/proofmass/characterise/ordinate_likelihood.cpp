@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "proofmass/characterise/fisher_scoring.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/linalg.hpp"
 
@@ -15,7 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_steps = 60;
 constexpr double converged = 1e-6;  // in log-likelihood, where 1.92 bounds an interval
 
 // All that follows from a density.
@@ -42,7 +42,9 @@ class Ordinates {
     return (P_ * theta).array().max(std::max(least_, 1e-300));
   }
 
-  [[nodiscard]] State at(ArrayXd S) const {
+  [[nodiscard]] State at(const VectorXd& theta) const { return at_density(density(theta)); }
+
+  [[nodiscard]] State at_density(ArrayXd S) const {
     State state;
     const VectorXd weight = S.inverse().matrix();
     state.residual = z_.array();
@@ -116,24 +118,10 @@ OrdinateFit fit_ordinates(const VectorXd& z,
                           const OrdinateMeans& means,
                           const VectorXd& start) {
   const Ordinates ordinates(z, P, means);
-  VectorXd theta = start.size() > 0 ? start : ordinates.scored(ordinates.at(ordinates.rough()));
-  State state = ordinates.at(ordinates.density(theta));
-  for (int step = 0; step < most_steps; ++step) {
-    const VectorXd next = ordinates.scored(state);
-    const double before = state.log_likelihood;
-    bool up = false;
-    constexpr int most_halvings = 12;
-    double fraction = 1.0;
-    for (int halving = 0; halving < most_halvings && !up; ++halving, fraction *= 0.5) {
-      const VectorXd tried = theta + fraction * (next - theta);
-      State there = ordinates.at(ordinates.density(tried));
-      up = there.log_likelihood >= before;
-      if (!up) continue;
-      theta = tried;
-      state = std::move(there);
-    }
-    if (!up || state.log_likelihood - before < converged) break;
-  }
+  VectorXd theta =
+      start.size() > 0 ? start : ordinates.scored(ordinates.at_density(ordinates.rough()));
+  State state = ordinates.at(theta);
+  climb(ordinates, {.least_gain = converged}, theta, state);
   return result_of(std::move(state), std::move(theta));
 }
 
@@ -143,7 +131,7 @@ double promised_gain(const VectorXd& z,
                      const OrdinateFit& fit,
                      const VectorXd& column) {
   const Ordinates ordinates(z, P, means);
-  const State state = ordinates.at(fit.density.array());
+  const State state = ordinates.at_density(fit.density.array());
   const VectorXd weight = (0.5 / state.S.square()).matrix();
   const VectorXd weighted = weight.cwiseProduct(column);
   const double score = weighted.dot(ordinates.expected_squares(state) - fit.density);
@@ -169,7 +157,7 @@ OrdinateFit evaluate_ordinates(const VectorXd& z,
                                const OrdinateMeans& means,
                                const VectorXd& strength) {
   const Ordinates ordinates(z, P, means);
-  return result_of(ordinates.at(ordinates.density(strength)), strength);
+  return result_of(ordinates.at(strength), strength);
 }
 
 }  // namespace proofmass::characterise

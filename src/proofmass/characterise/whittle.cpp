@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "proofmass/characterise/fisher_scoring.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/linalg.hpp"
 
@@ -15,7 +15,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_steps = 60;
 constexpr double converged = 1e-8;  // in log-likelihood: far below what an interval could show
 
 MatrixXd chosen(const MatrixXd& columns, const std::vector<int>& active) {
@@ -107,68 +106,53 @@ double WhittleLikelihood::log_likelihood(const ArrayXd& S) const {
 
 // One problem of maximise(): the columns that move, and the density that does not.
 struct WhittleLikelihood::Ascent {
+  struct State {
+    ArrayXd S;
+    double log_likelihood = 0.0;
+  };
+
   const WhittleLikelihood& likelihood;
   MatrixXd X;
   ArrayXd fixed;
   ArrayXd least;  // keeps S off zero where all that reaches is gone
-  VectorXd theta;
-  ArrayXd S;
-  double best = -std::numeric_limits<double>::infinity();
 
-  [[nodiscard]] ArrayXd density(const VectorXd& at) const {
-    return (fixed + (X * at).array()).max(least);
+  [[nodiscard]] State at(const VectorXd& theta) const {
+    return at_density((fixed + (X * theta).array()).max(least));
   }
 
-  // Fisher scoring: whether it led up by more than is worth another step.
-  bool climb() {
-    const ArrayXd weight = 0.5 * likelihood.dof_ / S.square();
-    const ArrayXd p = likelihood.expected_densities(likelihood.ramp(S));
+  [[nodiscard]] State at_density(ArrayXd S) const {
+    const double value = likelihood.log_likelihood(S);
+    return {std::move(S), value};
+  }
+
+  [[nodiscard]] VectorXd scored(const State& state) const {
+    const ArrayXd weight = 0.5 * likelihood.dof_ / state.S.square();
+    const ArrayXd p = likelihood.expected_densities(likelihood.ramp(state.S));
     const MatrixXd WX = weight.matrix().asDiagonal() * X;
-    const VectorXd next =
-        non_negative_minimiser(X.transpose() * WX, WX.transpose() * (p - fixed).matrix());
-    const VectorXd from = std::isfinite(best) ? theta : next;
-    double value = best, fraction = 1.0;
-    constexpr int most_halvings = 12;
-    for (int halving = 0; halving < most_halvings; ++halving, fraction *= 0.5) {
-      theta = from + fraction * (next - from);
-      S = density(theta);
-      value = likelihood.log_likelihood(S);
-      if (!(value < best)) break;
-    }
-    if (value < best) {  // no way up: this is the top
-      theta = from;
-      S = density(theta);
-      return false;
-    }
-    const bool worth_another = !(value - best < converged);
-    best = value;
-    return worth_another;
+    return non_negative_minimiser(X.transpose() * WX, WX.transpose() * (p - fixed).matrix());
   }
 };
 
 WhittleFit WhittleLikelihood::maximise(const std::vector<int>& active,
                                        const std::optional<Held>& held,
                                        const VectorXd& start) const {
-  Ascent ascent{*this,         chosen(columns_, active), ArrayXd::Zero(columns_.rows()),
-                1e-9 * rough_, VectorXd(active.size()),  rough_};
+  Ascent ascent{*this, chosen(columns_, active), ArrayXd::Zero(columns_.rows()), 1e-9 * rough_};
   if (held) ascent.fixed = columns_.col(held->column).array() * held->strength;
-  if (start.size() > 0) {
-    for (std::size_t k = 0; k < active.size(); ++k)
-      ascent.theta(static_cast<Index>(k)) = start(active[k]);
-    ascent.S = ascent.density(ascent.theta);
-    ascent.best = log_likelihood(ascent.S);
-  }
-  if (active.empty()) ascent.S = ascent.density(ascent.theta);
-  for (int step = 0; step < most_steps && !active.empty() && ascent.climb(); ++step) {
-  }
+  VectorXd theta = VectorXd::Zero(static_cast<Index>(active.size()));
+  if (start.size() > 0)
+    theta = start(active);
+  else if (!active.empty())
+    theta = ascent.scored(ascent.at_density(rough_));
+  Ascent::State state = ascent.at(theta);
+  if (!active.empty()) climb(ascent, {.least_gain = converged}, theta, state);
   WhittleFit fit;
   fit.strength = VectorXd::Zero(columns_.cols());
   for (std::size_t k = 0; k < active.size(); ++k)
-    fit.strength(active[k]) = ascent.theta(static_cast<Index>(k));
+    fit.strength(active[k]) = theta(static_cast<Index>(k));
   if (held) fit.strength(held->column) = held->strength;
-  fit.density = ascent.S.matrix();
-  fit.log_likelihood = log_likelihood(ascent.S);
-  const Ramp found = ramp(ascent.S);
+  fit.density = state.S.matrix();
+  fit.log_likelihood = state.log_likelihood;
+  const Ramp found = ramp(state.S);
   fit.slope = found.slope;
   fit.slope_variance = found.variance;
   return fit;
