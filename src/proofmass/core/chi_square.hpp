@@ -13,6 +13,13 @@ namespace proofmass {
 /// The p-quantile of Student's t distribution with k degrees of freedom, p in (0, 1), k > 0.
 [[nodiscard]] double student_t_quantile(double p, double degrees_of_freedom);
 
+/// The probability that the magnitude of Student's t with k > 0 degrees of freedom exceeds |t|.
+[[nodiscard]] double student_t_p(double t, double degrees_of_freedom);
+
+/// The probability that Fisher's F, with these degrees of freedom above and below, exceeds
+/// `statistic` >= 0.
+[[nodiscard]] double fisher_f_p(double statistic, double dof_above, double dof_below);
+
 struct Bounds {
   double lower = 0.0, upper = 0.0;
 };

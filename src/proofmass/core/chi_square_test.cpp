@@ -28,4 +28,16 @@ TEST(MeanChiSquare95, ClosesInOnOneWithTheRootOfTheCount) {
 }
 
 }  // namespace
+TEST(StudentT, PutsATwentiethOutsideItsTabulatedBounds) {
+  EXPECT_NEAR(student_t_p(2.570582, 5.0), 0.05, 1e-7);
+  EXPECT_NEAR(student_t_p(-2.570582, 5.0), 0.05, 1e-7);
+  EXPECT_EQ(student_t_p(0.0, 3.0), 1.0);
+}
+
+TEST(FisherF, HasTheTabulatedTail) {
+  EXPECT_NEAR(fisher_f_p(3.325835, 5.0, 10.0), 0.05, 1e-6);
+  EXPECT_NEAR(fisher_f_p(4.0, 1.0, 7.0), student_t_p(2.0, 7.0), 1e-12);  // t² is F of 1 and k
+  EXPECT_EQ(fisher_f_p(0.0, 3.0, 4.0), 1.0);
+}
+
 }  // namespace proofmass
