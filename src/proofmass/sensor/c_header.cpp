@@ -124,24 +124,17 @@ class Definitions {
   std::string prefix_, text_, too_large_;
 };
 
-/// The unit of the reading that the calibration corrects.
-Result<std::string> reading_unit(const Calibration& calibration) {
-  SensorModel alone;
-  alone.calibration = calibration;
-  Recording nothing;
-  // What goes together in a calibration, only apply() knows.
-  if (const Status fits = apply(alone, Triad{}, nothing); !fits) return fits.error();
-  const auto known = std::ranges::find_if(calibration.scale, [](const auto& f) { return !!f; });
-  if (known == calibration.scale.end() || (*known)->unit.si_symbol == "1")
-    return std::string("m/s^2");
+/// The unit of the reading that the calibration corrects, where firmware can do so on every axis.
+Result<std::string> firmware_unit(const Calibration& calibration) {
+  auto unit = reading_unit(calibration);
+  if (!unit || *unit == "m/s^2") return unit;
   if (const std::string axes = missing_axes(calibration.scale); !axes.empty())
     return Error{
         Errc::invalid_argument,
         fmt::format("calibration.scale is missing on axis {}: calibrate all three axes, or "
                     "write it there",
                     axes)};
-  const std::string& symbol = (*known)->unit.si_symbol;
-  return symbol.substr(0, symbol.find('/'));
+  return unit;
 }
 
 /// How the reading comes about, for the one who writes the firmware.
@@ -180,7 +173,7 @@ void define_figures(const SensorModel& model, std::string_view section, Definiti
 }  // namespace
 
 Result<std::string> c_header(const SensorModel& model) {
-  const auto unit = reading_unit(model.calibration);
+  const auto unit = firmware_unit(model.calibration);
   if (!unit) return unit.error();
   const std::string prefix = identifier(model);
   Definitions out(prefix);

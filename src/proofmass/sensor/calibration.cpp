@@ -57,6 +57,10 @@ Result<Quantity> reading_quantity(const Calibration& calibration) {
   return reading->quantity;
 }
 
+Quantity quantity_of_lsb(const Figure& lsb) {
+  return lsb.unit.si_symbol == "V" ? Quantity::voltage : Quantity::acceleration;
+}
+
 /// V_ref / V_s at each sample, or one number where no supply is recorded.
 Result<std::vector<double>> supply_correction(const Electrical& electrical,
                                               const Recording& recording) {
@@ -92,8 +96,9 @@ struct Nominal {
     if (have == Quantity::counts && wanted != have) {
       if (!electrical.lsb || electrical.lsb->si() == 0.0) return missing(channel, "electrical.lsb");
       for (double& v : values) v *= electrical.lsb->si();
-      have = electrical.lsb->unit.si_symbol == "V" ? Quantity::voltage : Quantity::acceleration;
+      have = quantity_of_lsb(*electrical.lsb);
     }
+    if (wanted == Quantity::counts && have != wanted) return to_counts(std::move(values), channel);
     if (have == Quantity::voltage) {
       multiply(values, supply_correction);
       if (wanted == Quantity::acceleration) return from_volts(std::move(values), channel, axis);
@@ -102,6 +107,18 @@ struct Nominal {
       return Error{Errc::invalid_argument,
                    "channel " + channel.name + " is in " + channel.unit.symbol +
                        ", but the sensor file's calibration is of " + std::string(name_of(wanted))};
+    return values;
+  }
+
+  /// What the LSB has turned into volts or an acceleration, back.
+  Result<std::vector<double>> to_counts(std::vector<double> values, const Channel& channel) const {
+    if (!electrical.lsb || electrical.lsb->si() == 0.0 ||
+        quantity_of_lsb(*electrical.lsb) != channel.unit.quantity)
+      return Error{Errc::invalid_argument,
+                   "channel " + channel.name + " is in " + channel.unit.symbol +
+                       ", but the sensor file's calibration is of counts: record counts, or give "
+                       "electrical.lsb (not 0) in that unit"};
+    for (double& v : values) v /= electrical.lsb->si();
     return values;
   }
 
@@ -145,6 +162,12 @@ bool lacks_an_axis(const Calibration& calibration, const Columns& columns) {
 }
 
 }  // namespace
+
+Result<std::string> reading_unit(const Calibration& calibration) {
+  const auto quantity = reading_quantity(calibration);
+  if (!quantity) return quantity.error();
+  return std::string(std::ranges::find(readings, *quantity, &Reading::quantity)->bias);
+}
 
 std::array<std::array<double, 3>, 3> correction_matrix(const Calibration& calibration) {
   const auto alpha = [&](std::size_t i) { return si_or(calibration.misalignment[i], 0.0); };

@@ -86,6 +86,16 @@ TEST(ApplySensor, FollowsTheSupplyOfARatiometricSensor) {
   EXPECT_EQ(recording.channels[3].values[1], 3000.0);
 }
 
+TEST(ApplySensor, TakesAGivenSupplyWhereNoChannelRecordsIt) {
+  SensorModel model = thesis_sensor();
+  model.electrical.supply = make_figure(3.0, "V", "");
+  Recording recording = recording_of({{0.6 * 3.0, 0.5 * 3.0, 0.4 * 3.0}}, volts);
+  ASSERT_TRUE(apply(model, recording));
+  EXPECT_NEAR(recording.channels[0].values[0], standard_gravity_mps2, 1e-12);
+  EXPECT_NEAR(recording.channels[1].values[0], 0.0, 1e-12);
+  EXPECT_NEAR(recording.channels[2].values[0], -standard_gravity_mps2, 1e-12);
+}
+
 TEST(ApplySensor, OfOneThatIsNotRatiometricLeavesTheVoltsAlone) {
   SensorModel model = thesis_sensor();
   model.electrical.reference_supply.reset();

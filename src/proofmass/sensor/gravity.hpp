@@ -21,4 +21,13 @@ struct Place {
 /// equations 4-1 and 4-3. Range: −500 m … 20 km.
 [[nodiscard]] double gravity_mps2(const Place& place);
 
+/// By what the gravity of a place differs from gravity_mps2: standard deviation of the anomalies on
+/// land, some 40 mGal. Source: W. A. Heiskanen, H. Moritz, Physical Geodesy (1967), section 7-2
+/// (42 mGal).
+inline constexpr double gravity_anomaly_std_mps2 = 4e-4;
+
+/// Of the standard gravity where nobody says where on Earth: evenly between 9.78 (equator) and
+/// 9.832 m/s^2 (pole).
+inline constexpr double gravity_std_on_earth_mps2 = 0.015;
+
 }  // namespace proofmass::sensor

@@ -27,6 +27,7 @@ void visit_figures(Model& model, Visit&& visit) {
   visit("calibration", "bias", Units{"m/s^2", "V", "counts"}, c.bias);
   visit("calibration", "scale", Units{"1", "V/(m/s^2)", "counts/(m/s^2)"}, c.scale);
   visit("calibration", "misalignment", Units{"rad"}, c.misalignment);
+  visit("calibration", "dof", Units{"1"}, c.dof);
   visit("calibration", "gravity", Units{"m/s^2"}, c.gravity);
   visit("calibration", "temperature", Units{"K"}, c.temperature);
   visit("calibration", "alignment_std", Units{"rad"}, c.alignment_std);
@@ -40,6 +41,16 @@ void visit_figures(Model& model, Visit&& visit) {
   visit("drift", "a1", Units{"m/s^2"}, d.a1);
   visit("drift", "a2", Units{"m/s^2"}, d.a2);
   visit("drift", "T", Units{"s"}, d.time_constant);
+}
+
+/// The nine figures of a calibration in the order of its covariance, as pointers to
+/// std::optional<Figure>, or to const of it.
+template <class C>
+auto nine_figures(C& calibration) {
+  auto& [bx, by, bz] = calibration.bias;
+  auto& [sx, sy, sz] = calibration.scale;
+  auto& [yz, zy, zx] = calibration.misalignment;
+  return std::array{&bx, &by, &bz, &sx, &sy, &sz, &yz, &zy, &zx};
 }
 
 /// The same for what is text.

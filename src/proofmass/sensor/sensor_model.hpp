@@ -48,6 +48,7 @@ struct Calibration {
   AxisFigures misalignment;  ///< α_yz, α_zy, α_zx in rad
   /// Of bias x y z, scale x y z, misalignment, row by row, in SI.
   std::optional<std::array<std::array<double, 9>, 9>> covariance;
+  std::optional<Figure> dof;          ///< 1, effective degrees of freedom of the std; absent: many
   std::optional<Figure> gravity;      ///< m/s^2, that the calibration took for true
   std::optional<Figure> temperature;  ///< K, at which it was made
   /// Standard deviation in rad of the angle between the sensor's axes and its case, which no

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proofmass/sensor/sensor_model.hpp"
+
+namespace proofmass::sensor {
+
+/// One place of a sensor file where a figure may stand, and the figure if there is one.
+struct FigureSlot {
+  std::string section, key;         ///< "calibration", "bias"
+  std::optional<std::size_t> axis;  ///< 0, 1, 2; absent for a figure of the whole sensor
+  std::optional<Figure> figure;
+
+  /// "x", or "yz" of a misalignment; empty for a figure of the whole sensor.
+  [[nodiscard]] std::string axis_name() const;
+  /// "calibration.bias x"
+  [[nodiscard]] std::string name() const;
+};
+
+/// Every slot in the order of the file: the same ones whatever the model.
+[[nodiscard]] std::vector<FigureSlot> figure_slots(const SensorModel& model);
+
+}  // namespace proofmass::sensor
