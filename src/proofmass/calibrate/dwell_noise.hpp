@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "proofmass/core/view.hpp"
+
+namespace proofmass::calibrate {
+
+/// How well the mean of a rest is known, by the noise that all rests have in common.
+struct DwellNoise {
+  double white = 0.0;        ///< N², of the Allan variance N²/m over m samples
+  double flicker = 0.0;      ///< its part that does not hang on m
+  double random_walk = 0.0;  ///< its part ∝ m
+  double dof = 0.0;          ///< of the variance at the median dwell; 0: there is no noise to see
+  double rounding = 0.0;     ///< lsb²/12, where the noise is too small to average the steps out
+
+  /// Of the mean over `samples`, in the reading's unit squared.
+  [[nodiscard]] double variance_of_mean(std::size_t samples) const;
+};
+
+/// Fits σ²(m) = N²/m + F + K m to the Allan variances of the rests at m = 1, 2, 4, … samples,
+///
+///     σ²(m) = ½ mean (ȳ_{2k+1} − ȳ_{2k})²
+///
+/// over neighbouring means of m samples that do not overlap (Haar's wavelet), pooled over all
+/// rests, by non-negative least squares with weights from the fitted values; the strengths are the
+/// mean over the choices of terms (white noise with or without the others) by Akaike weights, of
+/// which each further term costs 3.84. Of a mean over the dwell the uncertainty is σ at the dwell:
+/// by what two rests of that length would differ, over √2. `rests` are the samples of one axis,
+/// rest by rest; NaN, infinities and spikes must have been taken out. `lsb` is the converter's
+/// step, 0 if it has none. Source: D. W. Allan, Proc. IEEE 54 (1966) 221; D. B. Percival, P.
+/// Guttorp, Long-memory processes, the Allan variance and wavelets (1994), for Haar's; S. T.
+/// Buckland, K. P. Burnham, N. H. Augustin, Biometrics 53 (1997) 603, for the weights. Cost: O(N).
+[[nodiscard]] DwellNoise fit_dwell_noise(const std::vector<std::span<const double>>& rests,
+                                         double lsb);
+
+}  // namespace proofmass::calibrate

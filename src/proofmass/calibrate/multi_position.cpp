@@ -1,0 +1,227 @@
+#include "proofmass/calibrate/multi_position.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "proofmass/calibrate/ellipsoid_start.hpp"
+#include "proofmass/calibrate/given_directions.hpp"
+#include "proofmass/calibrate/multi_position_parts.hpp"
+#include "proofmass/calibrate/norm_fit.hpp"
+#include "proofmass/calibrate/pose_design.hpp"
+#include "proofmass/calibrate/pose_selection.hpp"
+#include "proofmass/calibrate/six_position.hpp"
+#include "proofmass/core/contract.hpp"
+#include "proofmass/core/statistics.hpp"
+
+namespace proofmass::calibrate {
+namespace {
+
+constexpr double singular = 1e6;         // of a condition, where the noise does not decide
+constexpr double useless_error_g = 0.1;  // a figure no better than this is not known
+
+Status check(View<Pose> poses, const MultiPositionOptions& options) {
+  if (!(options.gravity_mps2 > 0.0) || !std::isfinite(options.gravity_mps2))
+    return Error{Errc::invalid_argument, "gravity: expected a positive number"};
+  if (poses.empty()) return Error{Errc::too_few_samples, "no position at rest"};
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    if (poses[k].mean.allFinite() && poses[k].mean_covariance.allFinite()) continue;
+    return Error{Errc::not_finite, fmt::format("position {}: its mean is no finite number", k + 1)};
+  }
+  return Done{};
+}
+
+// The poses with variances to weigh them by: where the noise of any is not known, all count alike.
+struct Weighable {
+  std::vector<Pose> poses;
+  double noise_dof;
+};
+
+Weighable weighable(View<Pose> poses, double noise_dof) {
+  Weighable out{{poses.begin(), poses.end()}, noise_dof};
+  const bool known = noise_dof > 0.0 && std::ranges::all_of(poses, [](const Pose& pose) {
+                       return pose.mean_covariance.diagonal().minCoeff() > 0.0;
+                     });
+  if (known) return out;
+  out.noise_dof = 0.0;
+  const std::optional<ReadingScale> scale = reading_scale(poses, 1.0);
+  const double unit = scale ? 1e-3 * scale->half.maxCoeff() : 1.0;
+  for (Pose& pose : out.poses) pose.mean_covariance = unit * unit * Eigen::Matrix3d::Identity();
+  return out;
+}
+
+Eigen::MatrixXd information_of(const PoseSelection& selection, NormParameters free) {
+  const auto count = static_cast<Eigen::Index>(free);
+  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(count, count);
+  for (std::size_t k = 0; k < selection.fit.terms.size(); ++k) {
+    if (!selection.used[k]) continue;
+    const NormTerm& term = selection.fit.terms[k];
+    const Eigen::VectorXd j = term.gradient.head(count);
+    N += j * j.transpose() / term.variance;
+  }
+  return N;
+}
+
+double typical_variance(const PoseSelection& selection) {
+  std::vector<double> variances;
+  variances.reserve(selection.fit.terms.size());
+  for (const NormTerm& term : selection.fit.terms) variances.push_back(term.variance);
+  return *median(variances) * std::max(selection.scatter.factor, 1e-300);
+}
+
+// Whether the poses carry the parameters that were fitted.
+bool carried(const PoseSelection& selection, const MultiPositionOptions& options) {
+  const NormFit& fit = selection.fit;
+  if (!(fit.condition < singular) || !fit.cofactor.allFinite()) return false;
+  if (selection.scatter.dof == 0.0) return true;
+  const Eigen::VectorXd error = errors_at_1g(selection.scatter.factor * fit.cofactor, fit.p);
+  if (error.size() == 9 && error.tail<3>().maxCoeff() > options.orthogonality_std_rad) return false;
+  return error.maxCoeff() < useless_error_g;
+}
+
+struct NormCalibration {
+  NormParameters free;
+  PoseSelection selection;
+};
+
+// Nine parameters where asked for or carried, else six.
+Result<NormCalibration> choose(const std::vector<NormalisedPose>& poses,
+                               double noise_dof,
+                               const MultiPositionOptions& options) {
+  const bool asked = options.model.has_value();
+  const bool nine_first = asked ? *options.model == PoseModel::norm_9 : poses.size() >= 9;
+  for (const NormParameters free : {NormParameters::nine, NormParameters::six}) {
+    if (free == NormParameters::nine && !nine_first) continue;
+    const auto count = static_cast<std::size_t>(free);
+    if (poses.size() < count) {
+      return Error{Errc::too_few_samples,
+                   fmt::format("{} positions for {} parameters: at least {} are needed, and 18 "
+                               "spread over all directions are sensible",
+                               poses.size(), count, count)};
+    }
+    const Parameters start = ellipsoid_start(poses, free == NormParameters::nine);
+    Result<PoseSelection> selection =
+        select_poses(poses, start, {free, noise_dof, options.keep_suspects});
+    if (!selection) return selection.error();
+    if (carried(*selection, options)) return NormCalibration{free, *selection};
+    if (free == NormParameters::nine && !asked) continue;
+    const Eigen::MatrixXd information = information_of(*selection, free);
+    const NextPose next = next_pose(information, selection->fit.p, 1.0);
+    return Error{Errc::not_observable, fmt::format("the positions {}: add others, such as: {}",
+                                                   unresolved(information), next.words)};
+  }
+  PM_EXPECTS(false);
+}
+
+// The normalised parameters' sensitivity to the three angles that six parameters leave out: the
+// others give way as the residuals ask.
+Eigen::Matrix<double, 9, 3> sensitivity_to_angles(const PoseSelection& selection) {
+  Eigen::Matrix<double, 6, 3> pull = Eigen::Matrix<double, 6, 3>::Zero();
+  for (std::size_t k = 0; k < selection.fit.terms.size(); ++k) {
+    if (!selection.used[k]) continue;
+    const NormTerm& term = selection.fit.terms[k];
+    pull += term.gradient.head<6>().transpose() * term.gradient.tail<3>() / term.variance;
+  }
+  Eigen::Matrix<double, 9, 3> out;
+  out << -selection.fit.cofactor * pull, Eigen::Matrix3d::Identity();
+  return out;
+}
+
+std::vector<UncertaintyShare> shares_of(const NormCalibration& norm,
+                                        const ReadingScale& scale,
+                                        const MultiPositionOptions& options) {
+  const PoseSelection& selection = norm.selection;
+  const ParameterMatrix slope = scale.slope().asDiagonal();
+  ParameterMatrix noise = ParameterMatrix::Zero();
+  const auto count = static_cast<Eigen::Index>(norm.free);
+  noise.topLeftCorner(count, count) = selection.scatter.factor * selection.fit.cofactor;
+  std::vector<UncertaintyShare> shares;
+  if (selection.scatter.dof > 0.0)
+    shares.push_back({"noise of the means", true, slope * noise * slope, selection.scatter.dof});
+  if (norm.free == NormParameters::six) {
+    const Eigen::Matrix<double, 9, 3> S =
+        options.orthogonality_std_rad * (slope * sensitivity_to_angles(selection));
+    shares.push_back({"orthogonality of the axes", false, S * S.transpose(), 0.0});
+  }
+  shares.push_back(gravity_share(scale.to_reading(selection.fit.p), options));
+  return shares;
+}
+
+std::vector<PoseResidual> residuals_of(const PoseSelection& selection,
+                                       bool noise_known,
+                                       double gravity_mps2) {
+  std::vector<PoseResidual> out(selection.fit.terms.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const NormTerm& term = selection.fit.terms[k];
+    out[k].residual_mps2 = gravity_mps2 * term.residual;
+    if (noise_known) out[k].predicted_std_mps2 = gravity_mps2 * std::sqrt(term.variance);
+    if (selection.leave_one_out[k])
+      out[k].leave_one_out_mps2 = gravity_mps2 * *selection.leave_one_out[k];
+    out[k].studentised = selection.studentised[k];
+    out[k].suspect = selection.suspect[k];
+    out[k].used = selection.used[k];
+    out[k].force_mps2 = gravity_mps2 * term.force;
+  }
+  return out;
+}
+
+void add_notes(const NormCalibration& norm,
+               const MultiPositionOptions& options,
+               MultiPosition& out) {
+  if (out.dof == 0.0) out.notes.emplace_back(noise_missing);
+  if (norm.free == NormParameters::six) {
+    out.notes.push_back(fmt::format(
+        "misalignment_rad: null: {}; the axes are taken for orthogonal within {:.3g} rad, "
+        "which the uncertainties hold",
+        options.model ? "six parameters were asked for"
+                      : "the positions do not carry nine parameters",
+        options.orthogonality_std_rad));
+  }
+}
+
+MultiPosition assembled(const NormCalibration& norm,
+                        const ReadingScale& scale,
+                        double noise_dof,
+                        const MultiPositionOptions& options) {
+  const PoseSelection& selection = norm.selection;
+  MultiPosition out;
+  out.model = norm.free == NormParameters::nine ? PoseModel::norm_9 : PoseModel::norm_6;
+  out.shares = shares_of(norm, scale, options);
+  set_estimate(scale.to_reading(selection.fit.p), norm.free == NormParameters::nine, out);
+  out.dof = selection.scatter.dof;
+  out.gravity_mps2 = options.gravity_mps2;
+  out.poses = residuals_of(selection, noise_dof > 0.0, options.gravity_mps2);
+  set_residual_sums(out);
+  out.lack_of_fit = selection.scatter.lack_of_fit;
+  out.doubtful = selection.alike;
+  out.condition = selection.fit.condition;
+  const double factor = selection.scatter.dof > 0.0 ? selection.scatter.factor : 1.0;
+  out.next_pose = next_pose(information_of(selection, norm.free) / std::max(factor, 1e-300),
+                            selection.fit.p, typical_variance(selection));
+  out.iterations = selection.fit.iterations;
+  out.converged = selection.fit.converged;
+  add_notes(norm, options, out);
+  return out;
+}
+
+}  // namespace
+
+Result<MultiPosition> calibrate_positions(View<Pose> poses, const MultiPositionOptions& options) {
+  if (const Status status = check(poses, options); !status) return status.error();
+  const Weighable weighed = weighable(poses, options.noise_dof);
+  const std::optional<ReadingScale> scale = reading_scale(weighed.poses, options.gravity_mps2);
+  if (!scale) {
+    return Error{Errc::not_observable,
+                 "all positions read the same: turn the sensor to different directions"};
+  }
+  if (options.model == PoseModel::given_12)
+    return calibrate_given(weighed.poses, *scale, weighed.noise_dof, options);
+  if (options.model == PoseModel::six_position)
+    return calibrate_six_position(weighed.poses, weighed.noise_dof, options);
+  const Result<NormCalibration> norm =
+      choose(normalise(weighed.poses, *scale), weighed.noise_dof, options);
+  if (!norm) return norm.error();
+  return assembled(*norm, *scale, weighed.noise_dof, options);
+}
+
+}  // namespace proofmass::calibrate

@@ -1,0 +1,73 @@
+#include "proofmass/calibrate/norm_model.hpp"
+
+namespace proofmass::calibrate {
+
+Parameters ReadingScale::slope() const {
+  Parameters slope;
+  slope << half, half / gravity_mps2, Eigen::Vector3d::Ones();
+  return slope;
+}
+
+Parameters ReadingScale::to_reading(const Parameters& normalised) const {
+  Parameters p = slope().cwiseProduct(normalised);
+  p.head<3>() += center;
+  return p;
+}
+
+Parameters ReadingScale::from_reading(const Parameters& parameters) const {
+  Parameters p = parameters;
+  p.head<3>() -= center;
+  return p.cwiseQuotient(slope());
+}
+
+std::optional<ReadingScale> reading_scale(View<Pose> poses, double gravity_mps2) {
+  Eigen::Vector3d low = poses.front().mean, high = low;
+  for (const Pose& pose : poses) {
+    low = low.cwiseMin(pose.mean);
+    high = high.cwiseMax(pose.mean);
+  }
+  // Halves first: the sum of two readings may be beyond the largest number.
+  const Eigen::Vector3d center = low / 2.0 + high / 2.0;
+  Eigen::Vector3d half = high / 2.0 - low / 2.0;
+  if (!(half.maxCoeff() > 0.0)) return std::nullopt;
+  // An axis that never left its place says nothing of its own size.
+  half = (half.array() > 1e-3 * half.maxCoeff()).select(half, half.maxCoeff());
+  return ReadingScale{center, half, gravity_mps2};
+}
+
+std::vector<NormalisedPose> normalise(View<Pose> poses, const ReadingScale& scale) {
+  const Eigen::Vector3d inverse = scale.half.cwiseInverse();
+  std::vector<NormalisedPose> out;
+  out.reserve(poses.size());
+  for (const Pose& pose : poses) {
+    out.push_back({(pose.mean - scale.center).cwiseProduct(inverse),
+                   inverse.asDiagonal() * pose.mean_covariance * inverse.asDiagonal()});
+  }
+  return out;
+}
+
+Eigen::Matrix3d correction(const Parameters& p) {
+  Eigen::Matrix3d T = Eigen::Matrix3d::Identity();
+  T(0, 1) = -p(6);
+  T(0, 2) = p(7);
+  T(1, 2) = -p(8);
+  return T * p.segment<3>(3).cwiseInverse().asDiagonal();
+}
+
+NormTerm norm_term(const Parameters& p, const NormalisedPose& pose) {
+  const Eigen::Matrix3d M = correction(p);
+  const Eigen::Vector3d w = (pose.u - p.head<3>()).cwiseQuotient(p.segment<3>(3));
+  NormTerm term;
+  term.force = M * (pose.u - p.head<3>());
+  const double norm = term.force.norm();
+  term.residual = norm - 1.0;
+  const Eigen::Vector3d n = term.force / norm;
+  const Eigen::RowVector3d nM = n.transpose() * M;
+  // ∂f/∂scale_k is column k of M times −(u − b)_k / scale_k.
+  term.gradient << -nM, -nM.cwiseProduct(w.transpose()), -n.x() * w.y(), n.x() * w.z(),
+      -n.y() * w.z();
+  term.variance = nM * pose.covariance * nM.transpose();
+  return term;
+}
+
+}  // namespace proofmass::calibrate

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "proofmass/calibrate/multi_position.hpp"
+#include "proofmass/calibrate/norm_model.hpp"
+
+// What the positions of a calibration can tell, and which one would tell more.
+namespace proofmass::calibrate {
+
+/// What these poses do not tell, of the weighted Jacobian's weakest direction: "do not tell bias z
+/// and scale z apart", "do not determine scale z". `information` is JᵀWJ of the free parameters.
+[[nodiscard]] std::string unresolved(const Eigen::MatrixXd& information);
+
+/// The free parameters' standard deviations as errors of a reading at 1 g, in g: bias/scale,
+/// scale/scale, angle. `covariance` is that of the normalised parameters p.
+[[nodiscard]] Eigen::VectorXd errors_at_1g(const Eigen::MatrixXd& covariance, const Parameters& p);
+
+/// Of the 26 positions on the faces, edges and corners of a cube about the sensor the one whose |f|
+/// the fit predicts least well, which adds most to ln |JᵀWJ| (D-optimal).
+/// Source: V. V. Fedorov, Theory of Optimal Experiments (1972), section 2.7.
+[[nodiscard]] NextPose next_pose(const Eigen::MatrixXd& information,
+                                 const Parameters& p,
+                                 double residual_variance);
+
+}  // namespace proofmass::calibrate

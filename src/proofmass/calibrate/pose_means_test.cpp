@@ -1,0 +1,89 @@
+#include "proofmass/calibrate/pose_means.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace proofmass::calibrate {
+namespace {
+
+constexpr std::size_t dwell = 400;
+
+std::vector<double> white(std::size_t count, double std, unsigned seed, double offset = 33000.0) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(offset, std);
+  std::vector<double> out(count);
+  for (double& value : out) value = normal(random);
+  return out;
+}
+
+std::vector<Dwell> rests(std::size_t count) {
+  std::vector<Dwell> out;
+  for (std::size_t k = 0; k < count; ++k) out.push_back({k * dwell, (k + 1) * dwell - 1});
+  return out;
+}
+
+TEST(PoseMeans, OfWhiteNoiseAreKnownToSigmaOverRootN) {
+  const auto x = white(40 * dwell, 3.0, 1), y = white(40 * dwell, 1.0, 2),
+             z = white(40 * dwell, 2.0, 3);
+  const PoseMeans means = pose_means({x, y, z}, rests(40)).value();
+  ASSERT_EQ(means.poses.size(), 40U);
+  for (const Pose& pose : means.poses) {
+    EXPECT_NEAR(std::sqrt(pose.mean_covariance(0, 0)), 3.0 / std::sqrt(400.0), 0.015);
+    EXPECT_NEAR(std::sqrt(pose.mean_covariance(1, 1)), 1.0 / std::sqrt(400.0), 0.005);
+    EXPECT_EQ(pose.mean_covariance(0, 1), 0.0);
+    EXPECT_NEAR(pose.mean.x(), 33000.0, 0.7);
+    EXPECT_EQ(pose.samples, dwell);
+  }
+  EXPECT_NEAR(means.sample_std[0], 3.0, 0.1);
+  EXPECT_GT(means.noise_dof, 5.0);
+}
+
+TEST(PoseMeans, OfWanderingNoiseAreKnownToItsAllanDeviationAtTheDwell) {
+  // A random walk: over m steps of variance q the Allan variance is q (2 m² + 1) / 6 m.
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  constexpr std::size_t count = 60;
+  std::vector<double> walk(count * dwell);
+  double level = 0.0;
+  for (double& value : walk) value = level += 0.1 * normal(random);
+  const PoseMeans means = pose_means({walk, walk, walk}, rests(count)).value();
+  const double expected = 0.01 * 400.0 / 3.0;
+  EXPECT_NEAR(means.poses[0].mean_covariance(0, 0) / expected, 1.0, 0.35);
+}
+
+TEST(PoseMeans, PassOverSpikesAndWhatIsNoNumber) {
+  auto x = white(2 * dwell, 1.0, 5), y = x, z = x;
+  const double clean = pose_means({x, y, z}, rests(2)).value().poses[0].mean.x();
+  x[10] = NAN;
+  x[20] = INFINITY;
+  x[30] = 3e34;
+  x[40] = -1e300;
+  const PoseMeans means = pose_means({x, y, z}, rests(2)).value();
+  EXPECT_EQ(means.rejected, 4U);
+  EXPECT_NEAR(means.poses[0].mean.x(), clean, 0.02);
+  EXPECT_EQ(means.poses[0].samples, dwell - 4);
+}
+
+TEST(PoseMeans, KnowNoNoiseWhereThereIsNone) {
+  const std::vector<double> still(2 * dwell, 5.0);
+  const PoseMeans means = pose_means({still, still, still}, rests(2)).value();
+  EXPECT_EQ(means.noise_dof, 0.0);
+  EXPECT_EQ(means.poses[0].mean_covariance(0, 0), 0.0);
+  // With a converter's steps the mean may be anywhere within one.
+  const PoseMeans stepped = pose_means({still, still, still}, rests(2), {0.6, 0.6, 0.6}).value();
+  EXPECT_NEAR(stepped.poses[0].mean_covariance(0, 0), 0.03, 1e-12);
+}
+
+TEST(PoseMeans, NameTheRestWithoutNumbers) {
+  auto x = white(2 * dwell, 1.0, 6);
+  const auto y = x, z = x;
+  std::fill(x.begin() + dwell, x.end(), NAN);
+  const auto means = pose_means({x, y, z}, rests(2));
+  ASSERT_FALSE(means);
+  EXPECT_NE(means.error().message.find("rest 2"), std::string::npos);
+  EXPECT_EQ(pose_means({y, y, View<double>(z).first(3)}, {}).error().code, Errc::invalid_argument);
+}
+
+}  // namespace
+}  // namespace proofmass::calibrate
