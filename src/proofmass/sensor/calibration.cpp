@@ -163,6 +163,18 @@ bool lacks_an_axis(const Calibration& calibration, const Columns& columns) {
 
 }  // namespace
 
+Status bring_to_reference_supply(const Electrical& electrical,
+                                 const Triad& triad,
+                                 Recording& recording) {
+  const auto correction = supply_correction(electrical, recording);
+  if (!correction) return correction.error();
+  for (const auto& axis : {triad.x, triad.y, triad.z}) {
+    if (!axis || recording.channels[*axis].unit.quantity != Quantity::voltage) continue;
+    multiply(recording.channels[*axis].values, *correction);
+  }
+  return Done{};
+}
+
 Result<std::string> reading_unit(const Calibration& calibration) {
   const auto quantity = reading_quantity(calibration);
   if (!quantity) return quantity.error();

@@ -27,6 +27,14 @@ namespace proofmass::sensor {
 /// Errors: as above, and invalid_argument if there is none.
 [[nodiscard]] Status apply(const SensorModel& model, Recording& recording);
 
+/// Brings the voltages of a ratiometric sensor to its reference supply, V · V_ref / V_s with the
+/// supply as recorded or, where no channel has it, the nominal one. Other channels stay.
+/// Errors: invalid_argument (the channel that the supply is taken from is not there, or not in
+/// volts). The recording is then as it was.
+[[nodiscard]] Status bring_to_reference_supply(const Electrical& electrical,
+                                               const Triad& triad,
+                                               Recording& recording);
+
 /// The SI unit of the reading that the calibration is of: "m/s^2", "V" or "counts".
 /// Errors: invalid_argument (bias and scale are in units that do not go together, a scale of 0).
 [[nodiscard]] Result<std::string> reading_unit(const Calibration& calibration);

@@ -203,5 +203,22 @@ TEST(AlignmentStd, IsGivenInRadians) {
   EXPECT_DOUBLE_EQ(*alignment_std_rad(model), 0.1 * rad_per_deg);
 }
 
+TEST(BringToReferenceSupply, ScalesVoltagesAndNothingElse) {
+  Electrical electrical = thesis_sensor().electrical;
+  electrical.supply_channel = "supply";
+  Recording recording = recording_of({{1.65, 1.98, 1.32}, {1.5, 1.8, 1.2}}, volts);
+  recording.channels.push_back({"supply", parse_unit("mV").value(), {3300.0, 3000.0}});
+  const Triad triad{"acc", 0, 1, 2};
+  ASSERT_TRUE(bring_to_reference_supply(electrical, triad, recording));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::vector<double>& values = recording.channels[axis].values;
+    EXPECT_NEAR(values[1], values[0], 1e-12) << axis;
+  }
+  EXPECT_EQ(recording.channels[3].values[1], 3000.0);
+  recording.channels.pop_back();
+  EXPECT_EQ(bring_to_reference_supply(electrical, triad, recording).error().code,
+            Errc::invalid_argument);
+}
+
 }  // namespace
 }  // namespace proofmass::sensor
