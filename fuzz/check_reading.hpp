@@ -27,6 +27,13 @@ inline void check_reading(std::span<const std::byte> bytes) {
   require(time.is_uniform() || time.stamps_s.size() == read->samples());
   require(std::isfinite(time.rate_hz) && time.rate_hz >= 0.0);
   for (const double stamp_s : time.stamps_s) require(std::isfinite(stamp_s));
+  std::size_t unlabelled = 0;  // the first sample that may begin a label
+  for (const proofmass::Label& label : read->labels) {
+    require(label.first >= unlabelled && label.last >= label.first);
+    require(label.last < read->samples() && !label.text.empty());
+    unlabelled = label.last + 1;
+  }
+  require(read->labels.empty() == read->label_channel.empty());
   const auto audit = proofmass::signal::audit(*read);
   require(audit.channels.size() == read->channels.size());
 }

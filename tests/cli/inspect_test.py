@@ -1,8 +1,9 @@
 """proofmass inspect."""
 import gzip
+import struct
 import unittest
 
-from command import BAD_DATA, CommandTest, turning_csv
+from command import BAD_DATA, BAD_INPUT, USAGE, CommandTest, turning_csv
 
 
 class Inspect(CommandTest):
@@ -18,6 +19,20 @@ class Inspect(CommandTest):
         self.assertEqual({channel["unit"] for channel in document["channels"]}, {"m/s^2"})
         self.assertEqual(document["timing"]["source"], "stamps")
         self.assertEqual(document["timing"]["gaps"], [])
+
+    def test_words_are_labels_and_go_with_the_window(self):
+        rows = [f"{k / 100},{'up' if k < 300 else 'down' if k < 500 else ''},0.1,{k % 7}"
+                for k in range(1000)]
+        self.write("a.csv", "t,part,acc_x (g),acc_y (g)\n" + "\n".join(rows) + "\n")
+        document = self.document("inspect", "a.csv")
+        self.assertEqual(document["labels"],
+                         [{"channel": "part", "name": "up", "runs": 1, "samples": 300},
+                          {"channel": "part", "name": "down", "runs": 1, "samples": 200}])
+        self.assertIn("labels in part, 2 names in 2 runs: up, down", self.succeed("inspect", "a.csv"))
+        self.succeed("convert", "a.csv", "--from", "2", "--to", "6", "--output", "b.csv")
+        labels = self.document("inspect", "b.csv")["labels"]
+        self.assertEqual([(use["name"], use["samples"]) for use in labels],
+                         [("up", 100), ("down", 200)])
 
     def test_gaps_and_dirt_are_counted(self):
         lines = turning_csv(seconds=4).splitlines()
@@ -85,6 +100,24 @@ class Inspect(CommandTest):
         ran = self.run_command("inspect", "bad.csv", "--strict")
         self.assertEqual(ran.returncode, BAD_DATA)
         self.assertIn("acc_x", ran.stdout.decode())
+
+    def test_a_variable_of_a_mat_file_is_chosen_by_its_name(self):
+        def variable(name, values):
+            head = struct.pack("<5i", 0, len(values), 1, 0, len(name) + 1)
+            return head + name.encode() + b"\0" + struct.pack(f"<{len(values)}d", *values)
+
+        mat = variable("t", [k * 0.01 for k in range(50)]) + variable("ax", [1.0, -1.0] * 25)
+        mat += variable("long", [1.0, -1.0] * 50)
+        self.write("a.mat", mat)
+        document = self.document("inspect", "a.mat")
+        self.assertEqual(document["format"], "MAT v4")
+        self.assertEqual([channel["name"] for channel in document["channels"]], ["long"])
+        document = self.document("inspect", "a.mat", "--variable", "ax")
+        self.assertEqual([channel["name"] for channel in document["channels"]], ["ax"])
+        self.assertAlmostEqual(document["rate_hz"], 100.0, places=6)
+        self.write("cut.mat", mat[:-8])
+        self.assertIn("byte", self.expect_failure(BAD_INPUT, "inspect", "cut.mat"))
+        self.expect_failure(USAGE, "inspect", "a.mat", "--variable", "az")
 
     def test_the_report_is_one_page_with_every_channel(self):
         self.write("a.csv", turning_csv(seconds=2))

@@ -55,6 +55,20 @@ std::string tidy(std::string sensor) {
   return sensor.empty() ? "accelerometer" : sensor;
 }
 
+/// The labels of the samples `kept`, which ascend, by their new numbers.
+std::vector<Label> cut_labels(const std::vector<Label>& labels,
+                              const std::vector<std::size_t>& kept) {
+  std::vector<Label> parts;
+  for (const Label& label : labels) {
+    const auto first = std::ranges::lower_bound(kept, label.first) - kept.begin();
+    const auto end = std::ranges::upper_bound(kept, label.last) - kept.begin();
+    if (first == end) continue;
+    parts.push_back(
+        {label.text, static_cast<std::size_t>(first), static_cast<std::size_t>(end) - 1});
+  }
+  return parts;
+}
+
 }  // namespace
 
 const Channel* Recording::find(std::string_view name) const {
@@ -87,6 +101,8 @@ Result<Recording> cut(const Recording& recording, double from_s, double to_s) {
     for (const std::size_t k : kept) copy.values.push_back(channel.values[k]);
   }
   if (recording.first_line > 0) part.first_line = recording.first_line + kept.front();
+  part.labels = cut_labels(recording.labels, kept);
+  part.label_channel = recording.label_channel;
   return part;
 }
 

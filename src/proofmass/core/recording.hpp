@@ -58,6 +58,14 @@ struct TimeBase {
   }
 };
 
+/// A run of samples that whoever recorded them gave one name: "x_up", "walking".
+struct Label {
+  std::string text;
+  std::size_t first = 0;
+  std::size_t last = 0;  ///< sample; it belongs to the run
+  friend bool operator==(const Label&, const Label&) = default;
+};
+
 /// What an instrument wrote down: equally long channels on one time base.
 struct Recording {
   std::string source;  ///< file name, "-" for standard input, or what made it
@@ -68,6 +76,9 @@ struct Recording {
   /// Line of the file (1 = first) on which sample 0 stands, and that of each later sample where
   /// lines and samples do not run in step; 0 for formats without lines.
   std::size_t first_line = 0;
+  /// Runs of one word in a column of words, in order and apart; samples without a word are in none.
+  std::vector<Label> labels{};
+  std::string label_channel{};  ///< name of that column, empty where there is none
 
   [[nodiscard]] std::size_t samples() const {
     return channels.empty() ? 0 : channels.front().values.size();
@@ -77,7 +88,8 @@ struct Recording {
   [[nodiscard]] const Channel* find(std::string_view name) const;
 };
 
-/// The samples k with from_s <= time < to_s, with their time counted from the first that is kept.
+/// The samples k with from_s <= time < to_s, with their time counted from the first that is kept;
+/// labels are cut with them.
 /// Errors: invalid_argument (from_s not below to_s), too_few_samples (none in the window).
 [[nodiscard]] Result<Recording> cut(const Recording& recording, double from_s, double to_s);
 

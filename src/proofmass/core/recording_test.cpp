@@ -49,6 +49,23 @@ TEST(AccelerometerTriads, LeaveOtherQuantitiesOut) {
   EXPECT_EQ(accelerometer_triads(recording).size(), 1U);
 }
 
+TEST(Cut, KeepsTheLabelsOfTheWindow) {
+  Recording recording = with_channels({"x"}, "g");
+  recording.labels = {{"before", 0, 0}, {"into", 1, 1}, {"out of", 2, 3}};
+  recording.label_channel = "part";
+  const Recording part = cut(recording, 0.1, 0.3).value();
+  EXPECT_EQ(part.label_channel, "part");
+  EXPECT_EQ(part.labels, (std::vector<Label>{{"into", 0, 0}, {"out of", 1, 1}}));
+}
+
+TEST(Cut, CountsLabelsByTheSamplesThatAreKept) {
+  Recording recording = with_channels({"x"}, "g");
+  recording.time.stamps_s = {0.0, 5.0, 0.2, 0.3};  // a stamp far off, outside the window
+  recording.labels = {{"a", 0, 2}, {"b", 3, 3}};
+  const Recording part = cut(recording, 0.0, 1.0).value();
+  EXPECT_EQ(part.labels, (std::vector<Label>{{"a", 0, 1}, {"b", 2, 2}}));
+}
+
 TEST(Cut, KeepsTheWindowAndItsTime) {
   const Recording part = cut(with_channels({"x"}, "g"), 0.1, 0.3).value();
   ASSERT_EQ(part.samples(), 2U);

@@ -14,7 +14,7 @@ bool is_calendar(ColumnKind kind) {
 }
 
 bool can_be_time(ColumnKind kind) {
-  return kind == ColumnKind::number || is_calendar(kind);
+  return kind == ColumnKind::number || kind == ColumnKind::blank || is_calendar(kind);
 }
 
 /// How surely a heading is that of the time column: 0 not at all.
@@ -73,6 +73,20 @@ std::optional<std::size_t> likely_time(const CsvLayout& layout, const CsvHeader&
   return best;
 }
 
+std::vector<ColumnUse> usual_uses(const CsvLayout& layout) {
+  constexpr std::size_t most_words = 4;
+  std::size_t words = 0;
+  std::vector<ColumnUse> uses;
+  for (const ColumnKind kind : layout.columns) {
+    if (kind == ColumnKind::number || kind == ColumnKind::blank)
+      uses.push_back(ColumnUse::keep);
+    else
+      uses.push_back(kind == ColumnKind::text && words++ < most_words ? ColumnUse::words
+                                                                      : ColumnUse::skip);
+  }
+  return uses;
+}
+
 }  // namespace
 
 Result<CsvColumns> choose_columns(const CsvLayout& layout,
@@ -86,8 +100,7 @@ Result<CsvColumns> choose_columns(const CsvLayout& layout,
     if (!named) return named.error();
     columns.stamps = *named;
   }
-  for (const ColumnKind kind : layout.columns)
-    columns.uses.push_back(kind == ColumnKind::number ? ColumnUse::keep : ColumnUse::skip);
+  columns.uses = usual_uses(layout);
   if (!columns.stamps) return columns;
   columns.uses[*columns.stamps] = ColumnUse::stamps;
   const ColumnKind kind = layout.columns[*columns.stamps];

@@ -36,12 +36,12 @@ TEST(CsvReader, ReadsNoHexadecimals) {
       << notes_of(*read);
 }
 
-TEST(CsvReader, LeavesColumnsOfWordsOutAndNamesThem) {
-  const auto read = read_text("part,t,a\nx_a,0,1\nx_a,0.1,2\nx_p,0.2,3\n");
+TEST(CsvReader, LeavesFurtherColumnsOfWordsOutAndNamesThem) {
+  const auto read = read_text("part,who,t,a,b,c\nx_a,I,0,1,2,3\nx_a,you,1,2,3,4\nx_p,I,2,3,4,5\n");
   ASSERT_TRUE(read.has_value());
-  ASSERT_EQ(read->channels.size(), 1u);
+  ASSERT_EQ(read->channels.size(), 3u);
   EXPECT_EQ(read->channels[0].values, (std::vector<double>{1, 2, 3}));
-  EXPECT_TRUE(is_noted(*read, "part: left out"));
+  EXPECT_TRUE(is_noted(*read, "who: left out"));
 }
 
 TEST(CsvReader, FillsShortRowsAndPassesOverExcess) {

@@ -80,6 +80,7 @@ struct Tally {
   }
   [[nodiscard]] std::size_t clocks() const { return date + clock + time_of_day; }
   [[nodiscard]] ColumnKind kind() const {
+    if (text + number + clocks() == 0) return ColumnKind::blank;
     if (text > number + clocks()) return ColumnKind::text;
     if (number >= clocks()) return ColumnKind::number;
     if (clock >= date && clock >= time_of_day) return ColumnKind::clock;
@@ -199,6 +200,11 @@ bool is_row(const std::vector<std::string_view>& fields, const CsvLayout& layout
   bool any = false;
   for (std::size_t c = 0; c < layout.columns.size(); ++c) {
     if (layout.columns[c] == ColumnKind::text) continue;
+    // Words that only some rows have may stand in the very first of them.
+    if (layout.columns[c] == ColumnKind::blank) {
+      any = any || read_cell(fields[c], layout.point).kind == CellKind::number;
+      continue;
+    }
     const CellKind kind = read_cell(fields[c], layout.point).kind;
     const bool stands_for_value = layout.columns[c] == ColumnKind::number
                                       ? kind == CellKind::number
@@ -311,7 +317,8 @@ Result<CsvLayout> infer_layout(std::string_view head, bool is_whole_text) {
   if (is_blank(head) && is_whole_text)
     return Error{Errc::too_few_samples, "is empty: expected a table of numbers"};
   if (looks_binary(head))
-    return Error{Errc::corrupt, "is binary, and no format that is known: expected CSV or .npy"};
+    return Error{Errc::corrupt,
+                 "is binary, and no format that is known: expected CSV, .npy or MAT"};
   CsvLayout layout;
   if (head.find('\n') == std::string_view::npos && head.find('\r') != std::string_view::npos)
     layout.line_end = '\r';

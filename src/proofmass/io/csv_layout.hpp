@@ -13,6 +13,7 @@ namespace proofmass::io {
 /// What the fields of a column are, by the majority of the rows looked at.
 enum class ColumnKind : unsigned char {
   number,
+  blank,  ///< nothing in any of them
   text,
   date,         ///< a date alone
   clock,        ///< a date with a time of day

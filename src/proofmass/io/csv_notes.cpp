@@ -29,6 +29,23 @@ std::string rows_from(const Seen& seen, std::string_view fault) {
              : fmt::format("{} lines, the first {}, {}", seen.count, seen.first_line, fault);
 }
 
+/// Says what became of the columns of words.
+void tell_words(const CsvHeader& header, const CsvColumns& columns, std::vector<Note>& notes) {
+  if (columns.labels)
+    notes.push_back({Severity::info, fmt::format("{}: words, kept as labels",
+                                                 header.labels[*columns.labels].name)});
+  std::string words;
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < columns.uses.size(); ++c) {
+    const bool is_read = columns.uses[c] == ColumnUse::keep || columns.uses[c] == ColumnUse::stamps;
+    if (is_read || columns.date == c || columns.labels == c) continue;
+    if (++count <= 8) words += (words.empty() ? "" : ", ") + header.labels[c].name;
+  }
+  if (count > 0)
+    notes.push_back({Severity::info,
+                     fmt::format("{}{}: left out, being words", words, count > 8 ? ", …" : "")});
+}
+
 }  // namespace
 
 void tell_layout(const CsvLayout& layout,
@@ -43,18 +60,13 @@ void tell_layout(const CsvLayout& layout,
                    name_of_separator(layout.separator), layout.point == '.' ? "point" : "comma",
                    head, layout.columns.size(), layout.first_line)});
   notes.insert(notes.end(), header.notes.begin(), header.notes.end());
-  std::string words;
-  std::size_t count = 0;
-  for (std::size_t c = 0; c < columns.uses.size(); ++c) {
-    if (columns.uses[c] != ColumnUse::skip || columns.date == c) continue;
-    if (++count <= 8) words += (words.empty() ? "" : ", ") + header.labels[c].name;
-  }
-  if (count > 0)
-    notes.push_back({Severity::info,
-                     fmt::format("{}{}: left out, being words", words, count > 8 ? ", …" : "")});
+  tell_words(header, columns, notes);
 }
 
-void tell_faults(const RowFaults& faults, const CsvHeader& header, std::vector<Note>& notes) {
+void tell_faults(const RowFaults& faults,
+                 const CsvHeader& header,
+                 const CsvColumns& columns,
+                 std::vector<Note>& notes) {
   const auto tell = [&](Severity severity, const Seen& seen, std::string_view fault) {
     if (seen.count > 0) notes.push_back({severity, rows_from(seen, fault)});
   };
@@ -67,6 +79,7 @@ void tell_faults(const RowFaults& faults, const CsvHeader& header, std::vector<N
   constexpr std::size_t most_columns_told = 16;
   std::size_t told = 0;
   for (const auto& [column, seen] : faults.words) {
+    if (columns.labels == column) continue;
     if (++told > most_columns_told) break;
     notes.push_back(
         {Severity::warning,

@@ -17,6 +17,9 @@ void tell_layout(const CsvLayout& layout,
                  std::vector<Note>& notes);
 
 /// Says what was wrong with the rows, each fault with its count and first line.
-void tell_faults(const RowFaults& faults, const CsvHeader& header, std::vector<Note>& notes);
+void tell_faults(const RowFaults& faults,
+                 const CsvHeader& header,
+                 const CsvColumns& columns,
+                 std::vector<Note>& notes);
 
 }  // namespace proofmass::io

@@ -124,6 +124,44 @@ std::optional<StampColumn> take_stamps(const CsvColumns& columns,
   return stamps;
 }
 
+/// Whether the words of a column may be labels: it is read as words, or holds no figure at all.
+bool is_all_words(std::size_t column, const CsvColumns& columns, const Recording& recording) {
+  if (columns.uses[column] == ColumnUse::words) return true;
+  if (columns.uses[column] != ColumnUse::keep) return false;
+  const auto place =
+      std::count(columns.uses.begin(), columns.uses.begin() + static_cast<std::ptrdiff_t>(column),
+                 ColumnUse::keep);
+  return std::ranges::all_of(recording.channels[static_cast<std::size_t>(place)].values,
+                             [](double value) { return std::isnan(value); });
+}
+
+/// The first column of words that says more than one thing for all rows, else the first.
+std::optional<std::size_t> label_column(const CsvColumns& columns,
+                                        const CsvRows& rows,
+                                        const Recording& recording) {
+  std::optional<std::size_t> constant;
+  for (const auto& [column, words] : rows.words()) {
+    if (words.runs() == 0 || !is_all_words(column, columns, recording)) continue;
+    if (words.changes(rows.rows())) return column;
+    if (!constant) constant = column;
+  }
+  return constant;
+}
+
+/// Makes the column of words the recording's labels; it is no channel then.
+void take_labels(std::size_t column,
+                 CsvColumns& columns,
+                 const CsvHeader& header,
+                 const CsvRows& rows,
+                 Recording& recording) {
+  const WordRuns& words = rows.words().at(column);
+  recording.labels = words.labels();
+  recording.label_channel = header.labels[column].name;
+  columns.labels = column;
+  std::erase_if(recording.channels,
+                [&](const Channel& channel) { return channel.name == recording.label_channel; });
+}
+
 }  // namespace
 
 Result<Recording> read_csv(PeekSource& source, const ReadOptions& options) {
@@ -136,28 +174,31 @@ Result<Recording> read_csv(PeekSource& source, const ReadOptions& options) {
   CsvLayout table = *layout;
   table.data_offset += mark;
   const CsvHeader header = read_header(table);
-  const auto columns = choose_columns(table, header, options);
-  if (!columns) return columns.error();
-  if (std::ranges::count(columns->uses, ColumnUse::keep) == 0)
+  const auto chosen = choose_columns(table, header, options);
+  if (!chosen) return chosen.error();
+  CsvColumns columns = *chosen;
+  if (std::ranges::count(columns.uses, ColumnUse::keep) == 0)
     return Error{Errc::too_few_samples, "has no column of numbers beside the time"};
 
   std::optional<StampReader> stamps;
-  if (columns->stamps) stamps.emplace(columns->spelling, table.point);
-  CsvRows rows(table, columns->uses, stamps, columns->date, expected_rows(source, table));
+  if (columns.stamps) stamps.emplace(columns.spelling, table.point);
+  CsvRows rows(table, columns.uses, stamps, columns.date, expected_rows(source, table));
   if (const Status fed = LineFeed(source, rows, table, options.progress).run(); !fed)
     return fed.error();
   rows.finish();
 
   Recording recording;
   recording.format = "CSV";
-  for (std::size_t c = 0; c < columns->uses.size(); ++c)
-    if (columns->uses[c] == ColumnUse::keep)
+  for (std::size_t c = 0; c < columns.uses.size(); ++c)
+    if (columns.uses[c] == ColumnUse::keep)
       recording.channels.push_back({header.labels[c].name, header.labels[c].unit, rows.take(c)});
   if (!rows.faults().out_of_step) recording.first_line = table.first_line;
-  tell_layout(table, header, *columns, recording.notes);
-  tell_faults(rows.faults(), header, recording.notes);
+  if (const auto labels = label_column(columns, rows, recording))
+    take_labels(*labels, columns, header, rows, recording);
+  tell_layout(table, header, columns, recording.notes);
+  tell_faults(rows.faults(), header, columns, recording.notes);
   std::ranges::move(source.notes(), std::back_inserter(recording.notes));
-  auto time = take_stamps(*columns, header, rows, recording.notes);
+  auto time = take_stamps(columns, header, rows, recording.notes);
   return finish_recording(std::move(recording), std::move(time), header.rate_hz, options);
 }
 

@@ -11,6 +11,10 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+bool has_values(ColumnUse use) {
+  return use == ColumnUse::keep || use == ColumnUse::stamps;
+}
+
 template <bool BlankSeparated>
 const char* skip_blanks(const char* p) {
   while (*p == ' ' || (BlankSeparated && *p == '\t')) ++p;
@@ -87,17 +91,25 @@ CsvRows::CsvRows(const CsvLayout& layout,
       date_column_(date_column),
       line_(layout.first_line) {
   for (const ColumnUse use : uses_) {
-    slots_.push_back(columns_.size());
-    if (use != ColumnUse::skip) columns_.emplace_back(expected_rows);
+    const std::size_t column = slots_.size();
+    slots_.push_back(use == ColumnUse::words ? word_runs_.size() : columns_.size());
+    if (use == ColumnUse::words) word_runs_.push_back(&words_[column]);
+    if (has_values(use)) columns_.emplace_back(expected_rows);
   }
+  row_words_.resize(word_runs_.size());
   gathered_.resize(block * columns_.size());
   plain_ = !stamps_ || stamps_->spelling() == StampSpelling::figures;
 }
 
 void CsvRows::commit() {
   if (pending_gap_) faults_.out_of_step = true;
+  if (!word_runs_.empty()) commit_words();
   ++rows_;
   if (++gathered_rows_ == block) flush();
+}
+
+void CsvRows::commit_words() {
+  for (std::size_t w = 0; w < word_runs_.size(); ++w) word_runs_[w]->add(rows_, row_words_[w]);
 }
 
 void CsvRows::flush() {
@@ -115,6 +127,14 @@ std::vector<double> CsvRows::take(std::size_t column) {
   return columns_[slots_[column]].take();
 }
 
+/// Where a field of words ends, which is taken if it is read; nullptr if it has quotes or zeros.
+const char* CsvRows::parse_words(const char* begin, std::size_t column) {
+  const char* end = scan_words(begin, layout_.separator, layout_.line_end);
+  if (uses_[column] == ColumnUse::words && end != nullptr)
+    row_words_[slots_[column]] = {begin, static_cast<std::size_t>(end - begin)};
+  return end;
+}
+
 /// One row of plain figures, straight from the text; nullptr, with nothing changed that matters, if
 /// there is anything else in it. This loop is the reader's speed.
 template <bool BlankSeparated>
@@ -126,8 +146,8 @@ const char* CsvRows::parse_plain(const char* p) {
   for (std::size_t c = 0;;) {
     p = skip_blanks<BlankSeparated>(p);
     const ColumnUse use = uses_[c];
-    if (use == ColumnUse::skip) {
-      p = scan_words(p, marks.separator, marks.line_end);
+    if (!has_values(use)) {
+      p = parse_words(p, c);
     } else {
       p = parse_value(p, marks, use == ColumnUse::stamps ? &*stamps_ : nullptr, *out);
       out += block;
@@ -191,6 +211,7 @@ double CsvRows::read_field(std::size_t column, std::size_t fields) {
   if (cell.kind == CellKind::text) {
     faults_.words[column].add(line_);
     faults_.first_word.try_emplace(column, trimmed(fields_[column]).substr(0, 24));
+    if (layout_.columns[column] == ColumnKind::blank) words_[column].add(rows_, fields_[column]);
   }
   return cell.value;
 }
@@ -214,7 +235,7 @@ std::size_t CsvRows::usable_fields(bool is_cut) {
 
 /// Whether a kept field holds a figure, or nothing: not a word.
 bool CsvRows::is_figure(std::size_t column) const {
-  if (uses_[column] == ColumnUse::skip) return false;
+  if (!has_values(uses_[column])) return false;
   if (uses_[column] == ColumnUse::stamps && !plain_) return !trimmed(fields_[column]).empty();
   return read_cell(fields_[column], layout_.point).kind != CellKind::text;
 }
@@ -237,13 +258,20 @@ void CsvRows::parse_fields(std::string_view line, bool is_cut) {
     pending_gap_ = true;
     return;
   }
+  read_row(count);
+  commit();
+}
+
+/// Takes the row's values and words from its first `count` fields.
+void CsvRows::read_row(std::size_t count) {
   double* out = gathered_.data() + gathered_rows_;
   for (std::size_t c = 0; c < uses_.size(); ++c) {
-    if (uses_[c] == ColumnUse::skip) continue;
+    if (uses_[c] == ColumnUse::words)
+      row_words_[slots_[c]] = c < count ? fields_[c] : std::string_view{};
+    if (!has_values(uses_[c])) continue;
     *out = read_field(c, count);
     out += block;
   }
-  commit();
 }
 
 }  // namespace proofmass::io

@@ -11,11 +11,12 @@
 #include "proofmass/io/columns.hpp"
 #include "proofmass/io/csv_layout.hpp"
 #include "proofmass/io/stamp_reader.hpp"
+#include "proofmass/io/word_runs.hpp"
 
 namespace proofmass::io {
 
 /// What becomes of a column.
-enum class ColumnUse : unsigned char { keep, stamps, skip };
+enum class ColumnUse : unsigned char { keep, stamps, words, skip };
 
 /// How often something was seen, and where first.
 struct Seen {
@@ -64,6 +65,9 @@ class CsvRows {
   [[nodiscard]] const std::optional<StampReader>& stamps() const { return stamps_; }
   /// The values of the file's column c, which must be kept or stamps; after finish().
   [[nodiscard]] std::vector<double> take(std::size_t column);
+  /// The words of the file's columns that are read as words, and those in columns where the layout
+  /// saw nothing at all.
+  [[nodiscard]] const std::map<std::size_t, WordRuns>& words() const { return words_; }
 
  private:
   template <bool BlankSeparated>
@@ -72,10 +76,13 @@ class CsvRows {
   void parse_lines(const char* begin, const char* end);
   void parse_any(std::string_view line, bool is_cut);
   void parse_fields(std::string_view line, bool is_cut);
+  const char* parse_words(const char* begin, std::size_t column);
+  void read_row(std::size_t count);
   std::size_t usable_fields(bool is_cut);
   [[nodiscard]] bool is_figure(std::size_t column) const;
   double read_field(std::size_t column, std::size_t fields);
   void commit();
+  void commit_words();
   void flush();
 
   static constexpr std::size_t block = 512;  ///< rows gathered before columns are appended to
@@ -84,13 +91,17 @@ class CsvRows {
   std::vector<ColumnUse> uses_;
   std::optional<StampReader> stamps_;
   std::optional<std::size_t> date_column_;
-  std::vector<std::size_t> slots_;  ///< of each column of the file among those kept
+  std::vector<std::size_t> slots_;  ///< of each column of the file among those of its kind
   std::vector<GrowingColumn> columns_;
   std::vector<double> gathered_;  ///< block by block, a column's rows side by side
   std::size_t gathered_rows_ = 0;
   std::size_t rows_ = 0;
   std::size_t line_ = 0;
   std::vector<std::string_view> fields_;
+  std::map<std::size_t, WordRuns> words_;
+  // Where the row's word goes, and the word, for each column of words.
+  std::vector<WordRuns*> word_runs_;
+  std::vector<std::string_view> row_words_;
   bool pending_gap_ = false;  ///< a line that is no sample, harmful only if a sample follows
   bool plain_ = true;         ///< no calendar time: parse_plain may be tried
   RowFaults faults_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "proofmass/io/recording_writers.hpp"
 #include "proofmass/io/stamp_reader.hpp"
@@ -21,17 +22,23 @@ void append_figure(std::string& out, double value) {
   out.append(text.data(), end.ptr);
 }
 
+void append_words(std::string& out, std::string words) {
+  std::ranges::replace(words, '"', '\'');
+  std::ranges::replace_if(words, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  const bool quoted = words.find_first_of(",;\t'#") != std::string::npos;
+  out += quoted ? '"' + words + '"' : words;
+}
+
 void append_heading(std::string& out, std::string_view name, std::string_view unit) {
-  std::string heading(name);
-  if (!unit.empty()) heading += " (" + std::string(unit) + ")";
-  std::ranges::replace(heading, '"', '\'');
-  std::ranges::replace_if(heading, [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  const bool quoted = heading.find_first_of(",;\t'#") != std::string::npos;
-  out += quoted ? '"' + heading + '"' : heading;
+  append_words(out, std::string(name) + (unit.empty() ? "" : " (" + std::string(unit) + ")"));
 }
 
 std::string header_of(const Recording& recording, bool timed) {
   std::string out = timed ? "time (s)" : "";
+  if (!recording.labels.empty()) {
+    if (timed) out += ',';
+    append_heading(out, recording.label_channel.empty() ? "label" : recording.label_channel, "");
+  }
   for (const Channel& channel : recording.channels) {
     if (!out.empty()) out += ',';
     append_heading(out, channel.name, channel.unit.symbol);
@@ -115,20 +122,45 @@ class TimeWriter {
   bool on_own_clock_ = false;
 };
 
+/// Writes the column of labels; a sample without one has an empty field.
+class LabelWriter {
+ public:
+  explicit LabelWriter(const std::vector<Label>& labels) : labels_(labels) {}
+
+  /// Samples must be asked for in order.
+  void append(std::string& out, std::size_t k) {
+    while (next_ < labels_.size() && labels_[next_].last < k) ++next_;
+    if (next_ < labels_.size() && labels_[next_].first <= k) append_words(out, labels_[next_].text);
+  }
+
+ private:
+  const std::vector<Label>& labels_;
+  std::size_t next_ = 0;
+};
+
+/// The channels' figures of a sample and the end of its row.
+void append_values(std::string& out, const Recording& recording, std::size_t k, bool is_behind) {
+  for (const Channel& channel : recording.channels) {
+    if (std::exchange(is_behind, true)) out += ',';
+    append_figure(out, channel.values[k]);
+  }
+  out += '\n';
+}
+
 }  // namespace
 
 bool write_csv(const Recording& recording, const Sink& sink) {
   const bool timed = recording.time.source != TimeSource::none;
+  const bool labelled = !recording.labels.empty();
   const TimeWriter time(recording);
+  LabelWriter labels(recording.labels);
   std::string out = header_of(recording, timed);
   for (std::size_t k = 0; k < recording.samples(); ++k) {
-    const std::size_t row = out.size();
     if (timed) time.append(out, k);
-    for (const Channel& channel : recording.channels) {
-      if (out.size() > row) out += ',';
-      append_figure(out, channel.values[k]);
-    }
-    out += '\n';
+    // Not in the last column, where an empty field is taken for none.
+    if (timed && labelled) out += ',';
+    if (labelled) labels.append(out, k);
+    append_values(out, recording, k, timed || labelled);
     if (out.size() < (1u << 16)) continue;
     if (!sink(out)) return false;
     out.clear();

@@ -4,6 +4,7 @@
 
 #include "proofmass/io/csv_reader.hpp"
 #include "proofmass/io/foreign_formats.hpp"
+#include "proofmass/io/mat_reader.hpp"
 #include "proofmass/io/npy_reader.hpp"
 
 namespace proofmass::io {
@@ -19,7 +20,8 @@ bool claims_anything(std::string_view, std::string_view) {
 
 constexpr std::array all_formats = std::to_array<Format>({
     {"npy", claims_npy, read_npy},
-    {"foreign", claims_foreign, refuse_foreign},
+    {"MAT", claims_mat, read_mat, true},
+    {"foreign", claims_foreign, refuse_foreign, true},  // 7.3 has variables
     {"CSV", claims_anything, read_csv},
 });
 

@@ -15,6 +15,7 @@ struct Format {
   /// By the first few KiB, and only where they do not tell by the file's name.
   bool (*claims)(std::string_view head, std::string_view file_name);
   Result<Recording> (*read)(PeekSource& source, const ReadOptions& options);
+  bool has_variables = false;  ///< whether ReadOptions::variables means anything to it
 };
 
 /// All formats, the most particular first: the first that claims a file reads it. The last claims

@@ -82,8 +82,8 @@ bool is_figure(char kind, std::size_t bytes) {
   }
 }
 
-Result<NpyType> type_of(std::string_view text) {
-  NpyType type;
+Result<FigureType> type_of(std::string_view text) {
+  FigureType type;
   type.big_endian = text.starts_with('>');
   text.remove_prefix(std::min(text.find_first_not_of("<>=|"), text.size()));
   if (text.starts_with('O'))

@@ -6,20 +6,14 @@
 #include <vector>
 
 #include "proofmass/core/result.hpp"
+#include "proofmass/io/figure_type.hpp"
 
 namespace proofmass::io {
-
-/// How one figure of an .npy file is stored.
-struct NpyType {
-  char kind = 'f';  ///< f, i, u, b as in NumPy; 0: not a figure, passed over
-  std::size_t bytes = 8;
-  bool big_endian = false;
-};
 
 /// A field of a row: one column, or `count` of them where it is an array itself.
 struct NpyField {
   std::string name;
-  NpyType type;
+  FigureType type;
   std::size_t count = 1;
 };
 

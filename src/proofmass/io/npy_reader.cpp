@@ -1,82 +1,21 @@
 #include "proofmass/io/npy_reader.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
+#include <array>
 #include <fmt/format.h>
 #include <iterator>
-#include <limits>
 
+#include "proofmass/io/array_recording.hpp"
 #include "proofmass/io/columns.hpp"
-#include "proofmass/io/csv_columns.hpp"
-#include "proofmass/io/finish_recording.hpp"
+#include "proofmass/io/csv_layout.hpp"
 #include "proofmass/io/npy_header.hpp"
 
 namespace proofmass::io {
 namespace {
 
-template <class T>
-T load(const char* p, bool swap) {
-  std::array<char, sizeof(T)> bytes;
-  std::memcpy(bytes.data(), p, sizeof(T));
-  if (swap) std::ranges::reverse(bytes);
-  return std::bit_cast<T>(bytes);
-}
-
-/// Source: IEEE 754-2019, binary16.
-double from_half(std::uint16_t bits) {
-  const int exponent = (bits >> 10) & 0x1F;
-  const int fraction = bits & 0x3FF;
-  double size = 0.0;
-  if (exponent == 0x1F)
-    size = fraction != 0 ? std::numeric_limits<double>::quiet_NaN()
-                         : std::numeric_limits<double>::infinity();
-  else if (exponent == 0)
-    size = std::ldexp(fraction, -24);
-  else
-    size = std::ldexp(1024 + fraction, exponent - 25);
-  return (bits & 0x8000) != 0 ? -size : size;
-}
-
-double load_signed(const char* p, std::size_t bytes, bool swap) {
-  switch (bytes) {
-    case 1:
-      return static_cast<double>(load<std::int8_t>(p, swap));
-    case 2:
-      return static_cast<double>(load<std::int16_t>(p, swap));
-    case 4:
-      return static_cast<double>(load<std::int32_t>(p, swap));
-    default:
-      return static_cast<double>(load<std::int64_t>(p, swap));
-  }
-}
-
-double load_unsigned(const char* p, std::size_t bytes, bool swap) {
-  switch (bytes) {
-    case 1:
-      return static_cast<double>(load<std::uint8_t>(p, swap));
-    case 2:
-      return static_cast<double>(load<std::uint16_t>(p, swap));
-    case 4:
-      return static_cast<double>(load<std::uint32_t>(p, swap));
-    default:
-      return static_cast<double>(load<std::uint64_t>(p, swap));
-  }
-}
-
-double load_figure(const char* p, const NpyType& type) {
-  const bool swap = type.big_endian == (std::endian::native == std::endian::little);
-  if (type.kind == 'i') return load_signed(p, type.bytes, swap);
-  if (type.kind == 'u' || type.kind == 'b') return load_unsigned(p, type.bytes, swap);
-  if (type.bytes == 2) return from_half(load<std::uint16_t>(p, swap));
-  if (type.bytes == 4) return static_cast<double>(load<float>(p, swap));
-  return load<double>(p, swap);
-}
-
 /// One column of figures in a row of bytes.
 struct Cursor {
-  NpyType type;
+  FigureType type;
   std::size_t offset = 0;
   std::string name;
 };
@@ -129,7 +68,7 @@ Result<Table> table_of(const NpyHeader& header) {
   if (width > most_columns)
     return Error{Errc::corrupt,
                  fmt::format("the .npy header claims {} columns: too many for a recording", width)};
-  const NpyType type = header.fields[0].type;
+  const FigureType type = header.fields[0].type;
   for (std::size_t c = 0; c < width; ++c) table.columns.push_back({type, c * type.bytes, ""});
   table.row_bytes = width * type.bytes;
   return table;
@@ -223,7 +162,7 @@ class TableReader {
     std::vector<char> bytes;
     std::vector<double> figures;
     for (std::size_t c = 0; c < table_.columns.size(); ++c) {
-      const NpyType& type = table_.columns[c].type;
+      const FigureType& type = table_.columns[c].type;
       const std::size_t a_piece = piece_bytes / type.bytes;
       bytes.resize(a_piece * type.bytes);
       for (std::size_t row = 0; row < table_.rows;) {
@@ -268,34 +207,6 @@ Status check_size(const PeekSource& source, const Table& table, std::size_t head
   return Done{};
 }
 
-bool ascends(View<double> values) {
-  return values.size() > 2 && std::ranges::adjacent_find(values, [](double a, double b) {
-                                return !(a < b) || !std::isfinite(b);
-                              }) == values.end();
-}
-
-/// Names for the columns of a plain array as for a CSV without a header.
-CsvHeader header_of(const Table& table, const CsvLayout& layout) {
-  if (!table.is_structured) return read_header(layout);
-  CsvHeader header;
-  header.found = true;
-  for (const Cursor& column : table.columns) header.labels.push_back(read_label(column.name));
-  complete_names(header.labels, header.notes);
-  return header;
-}
-
-StampColumn stamps_of(const ColumnLabel& label, std::vector<double> values, bool is_named) {
-  StampColumn stamps{label.name, label.unit, {}, std::move(values), is_named};
-  const auto sane =
-      std::ranges::find_if(stamps.values, [](double stamp) { return std::abs(stamp) < 9e18; });
-  if (sane == stamps.values.end()) return stamps;
-  const double first = *sane;
-  stamps.origin = std::abs(first) < 9e9 ? StampOrigin{std::llround(first * 1e9), -9}
-                                        : StampOrigin{std::llround(first), 0};
-  for (double& stamp : stamps.values) stamp -= first;
-  return stamps;
-}
-
 /// What went wrong with the rows, and what was made of them.
 std::vector<Note> notes_of(const Table& table,
                            const TableReader& reader,
@@ -309,7 +220,6 @@ std::vector<Note> notes_of(const Table& table,
   return notes;
 }
 
-/// Names the columns that were read and sorts out the time.
 Result<Recording> assemble(const Table& table,
                            TableReader& reader,
                            std::vector<Note> notes,
@@ -317,27 +227,12 @@ Result<Recording> assemble(const Table& table,
   Recording recording;
   recording.format = "npy";
   recording.notes = std::move(notes);
-  std::vector<std::vector<double>> values;
-  values.reserve(table.columns.size());
-  for (std::size_t c = 0; c < table.columns.size(); ++c) values.push_back(reader.take(c));
-  CsvLayout layout;
-  layout.columns.assign(values.size(), ColumnKind::number);
-  layout.first_ascends = !table.is_structured && values.size() > 1 && ascends(values[0]);
-  const CsvHeader header = header_of(table, layout);
-  recording.notes.insert(recording.notes.end(), header.notes.begin(), header.notes.end());
-  const auto columns = choose_columns(layout, header, options);
-  if (!columns) return columns.error();
-  std::optional<StampColumn> stamps;
-  for (std::size_t c = 0; c < values.size(); ++c) {
-    ColumnLabel label = header.labels[c];
-    if (columns->stamps != c) {
-      recording.channels.push_back({label.name, label.unit, std::move(values[c])});
-      continue;
-    }
-    if (!header.found) label.unit = *parse_unit("s");
-    stamps = stamps_of(label, std::move(values[c]), header.found);
+  ArrayColumns columns;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    columns.values.push_back(reader.take(c));
+    if (table.is_structured) columns.headings.push_back(table.columns[c].name);
   }
-  return finish_recording(std::move(recording), std::move(stamps), std::nullopt, options);
+  return recording_of(std::move(columns), std::move(recording), options);
 }
 
 }  // namespace

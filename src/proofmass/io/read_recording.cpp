@@ -20,6 +20,9 @@ Result<Recording> read_from(std::unique_ptr<ByteSource> bytes,
   const auto all = formats();
   const auto format =
       std::ranges::find_if(all, [&](const Format& f) { return f.claims(*head, name); });
+  if (!options.variables.empty() && !format->has_variables)
+    return Error{Errc::invalid_argument,
+                 "has no variables to choose from: --variable is for MAT files"};
   return format->read(*opened, options);
 }
 

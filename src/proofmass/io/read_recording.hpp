@@ -19,22 +19,23 @@ struct ReadOptions {
   std::optional<Unit> unit{};           ///< of the accelerometer channels, whatever the header says
   std::string time_channel{};           ///< name of the time column; empty: find it
   std::vector<std::string> channels{};  ///< keep these only, in the order of the file; empty: all
-  Progress progress{};                  ///< told the fraction of the file read; may be empty
+  std::vector<std::string> variables{};  ///< of a file of named arrays; empty: choose
+  Progress progress{};                   ///< told the fraction of the file read; may be empty
 };
 
-/// Reads a recording: CSV and TSV of any dialect, or .npy (a table of samples × channels, or a
-/// structured array), plain or compressed by gzip or xz. The bytes decide what a file is, its name
-/// only where they do not. What was found, inferred or mended is told in Recording::notes: the
-/// separator, the header's line, where the units and the time base come from, rows that were short,
-/// stamps that were corrupt. Values come back as recorded, NaN where the file has no number.
-/// `path` "-" is standard input.
+/// Reads a recording: CSV and TSV of any dialect, .npy (a table of samples × channels, or a
+/// structured array), or MAT of versions 4 to 7, plain or compressed by gzip or xz. The bytes
+/// decide what a file is, its name only where they do not. What was found, inferred or mended is
+/// told in Recording::notes: the separator, the header's line, where the units and the time base
+/// come from, rows that were short, stamps that were corrupt. Values come back as recorded, NaN
+/// where the file has no number. `path` "-" is standard input.
 /// A compressed file that breaks off yields what was read before, with a note of Severity::bad.
 /// Errors: unreadable (no such file, no permission, a directory), corrupt (not a table of numbers;
 /// damaged headers), unsupported (a format that is known but not read), too_few_samples (no row of
-/// numbers), invalid_argument (a channel or time column that is not there; a rate not above zero).
-/// Each names the file and, where there is one, the line or byte.
+/// numbers), invalid_argument (a channel, variable or time column that is not there; a rate not
+/// above zero). Each names the file and, where there is one, the line or byte.
 /// Cost: one pass; memory at the peak 1.02 to 1.15 × the table's doubles, the time column counted
-/// although it is dropped where it turns out to be uniform.
+/// although it is dropped where it turns out to be uniform; of MAT the file's bytes besides.
 [[nodiscard]] Result<Recording> read_recording(const std::string& path, const ReadOptions& options);
 
 /// The same for bytes that are in memory already; `name` stands for the file in errors and notes.

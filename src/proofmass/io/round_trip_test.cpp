@@ -128,6 +128,25 @@ TEST_F(RoundTrip, CsvBeginsWithTimeAndUnits) {
   EXPECT_FALSE(std::filesystem::exists(path("a.csv.part")));
 }
 
+TEST_F(RoundTrip, CsvKeepsLabels) {
+  for (const bool timed : {true, false}) {
+    Recording recording;
+    if (timed) recording.time = {TimeSource::given_rate, "", 100.0, {}, {}};
+    recording.channels.push_back({"a", *parse_unit("g"), std::vector<double>(3000, 1.5)});
+    recording.labels = {{"#1", 5, 7}, {"x, up", 8, 8}, {"it's", 700, 2000}, {"x, up", 2998, 2999}};
+    recording.label_channel = "part; of";
+    for (const char* name : {"l.csv", "l.csv.gz"}) {
+      const auto back = through(recording, name);
+      ASSERT_TRUE(back.has_value()) << back.error().message;
+      EXPECT_EQ(back->labels, recording.labels);
+      EXPECT_EQ(back->label_channel, recording.label_channel);
+      ASSERT_EQ(back->channels.size(), 1u);
+      EXPECT_EQ(back->channels[0].values, recording.channels[0].values);
+      EXPECT_EQ(back->time.source, timed ? TimeSource::stamps : TimeSource::none);
+    }
+  }
+}
+
 TEST_F(RoundTrip, RefusesWhatItCannotWrite) {
   const Recording recording = troubled({});
   EXPECT_EQ(write_recording(recording, path("a.wav")).error().code, Errc::unsupported);

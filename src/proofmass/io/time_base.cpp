@@ -205,7 +205,7 @@ TimeBaseFound find_time_base(TimeEvidence evidence, const ReadOptions& options) 
   }
   if (evidence.header_rate_hz) {
     use_rate(evidence, *evidence.header_rate_hz, found);
-    found.notes.push_back({Severity::info, fmt::format("rate of {} Hz from the file's preamble",
+    found.notes.push_back({Severity::info, fmt::format("rate of {} Hz, as the file says",
                                                        in_words(*evidence.header_rate_hz))});
   } else if (evidence.samples > 1) {
     found.notes.push_back(

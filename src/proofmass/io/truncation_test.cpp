@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <iterator>
 
+#include "proofmass/io/mat_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
 namespace proofmass::io {
@@ -39,6 +40,11 @@ TEST(BrokenOff, CsvIsReadOrRefused) {
 
 TEST(BrokenOff, NpyIsReadOrRefused) {
   break_off_everywhere("npy", {"\x93NUMPY"});
+}
+
+TEST(BrokenOff, MatIsReadOrRefused) {
+  break_off_everywhere("mat",
+                       {specimen::mat5_header(), specimen::mat5_header(specimen::Order::big), ""});
 }
 
 TEST(BrokenOff, CompressedIsReadOrRefused) {

@@ -53,6 +53,17 @@ Table timing_table(const RecordingAudit& audit) {
   return table;
 }
 
+std::vector<Table> file_tables(const InspectedFile& file) {
+  std::vector<Table> tables{channels_table(file.audit), timing_table(file.audit)};
+  Table labels{"Labels, the words of column " + file.recording.label_channel,
+               {"Name", "Runs", "Samples"},
+               {}};
+  for (const LabelUse& use : label_uses(file.recording))
+    labels.rows.push_back({use.name, std::to_string(use.runs), std::to_string(use.samples)});
+  if (!labels.rows.empty()) tables.push_back(std::move(labels));
+  return tables;
+}
+
 std::vector<double> instants(const Recording& recording) {
   std::vector<double> time_s(recording.samples());
   for (std::size_t k = 0; k < time_s.size(); ++k) time_s[k] = recording.time.at(k);
@@ -137,7 +148,7 @@ std::string inspect_html(const std::vector<InspectedFile>& files) {
         (files.size() > 1 ? file_name(file.name) + ": " : "") + inspect_conclusion(file) + " ";
     page.notes.insert(page.notes.end(), file.audit.notes.begin(), file.audit.notes.end());
     page.sections.push_back({.heading = file_name(file.name),
-                             .tables = {channels_table(file.audit), timing_table(file.audit)},
+                             .tables = file_tables(file),
                              .figures = channel_figures(file)});
     for (Figure& figure : step_figures(file.recording)) {
       page.sections.back().figures.push_back(std::move(figure));

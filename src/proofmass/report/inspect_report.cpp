@@ -73,7 +73,18 @@ bool has_rate(const RecordingAudit& audit) {
   return audit.timing.rate_hz > 0.0;
 }
 
-Object file_members(const RecordingAudit& audit) {
+Array labels_value(const Recording& recording) {
+  Array labels;
+  for (const LabelUse& use : label_uses(recording))
+    labels.push_back(Object{{"channel", recording.label_channel},
+                            {"name", use.name},
+                            {"runs", use.runs},
+                            {"samples", use.samples}});
+  return labels;
+}
+
+Object file_members(const InspectedFile& file) {
+  const RecordingAudit& audit = file.audit;
   Array channels;
   for (const ChannelAudit& channel : audit.channels) channels.push_back(channel_value(channel));
   return {{"format", audit.format},
@@ -81,6 +92,7 @@ Object file_members(const RecordingAudit& audit) {
           {"duration_s", has_rate(audit) ? Value(audit.duration_s) : Value()},
           {"rate_hz", has_rate(audit) ? Value(audit.timing.rate_hz) : Value()},
           {"channels", std::move(channels)},
+          {"labels", labels_value(file.recording)},
           {"timing", timing_value(audit.timing)},
           {"zero_rows", audit.zero_rows.size()},
           {"bad", audit.is_bad()},
@@ -110,7 +122,31 @@ std::vector<std::string> reasons(const RecordingAudit& audit) {
   return all;
 }
 
+// "part: 3 names in 9 runs: x_a, x_p, x_rot"
+std::string labels_line(const Recording& recording) {
+  const std::vector<LabelUse> uses = label_uses(recording);
+  if (uses.empty()) return {};
+  constexpr std::size_t most = 12;
+  std::string line =
+      fmt::format("  labels in {}, {} in {}: ", recording.label_channel,
+                  count_words(uses.size(), "name"), count_words(recording.labels.size(), "run"));
+  for (std::size_t k = 0; k < std::min(uses.size(), most); ++k)
+    line += (k == 0 ? "" : ", ") + uses[k].name;
+  return line + (uses.size() > most ? ", …\n" : "\n");
+}
+
 }  // namespace
+
+std::vector<LabelUse> label_uses(const Recording& recording) {
+  std::vector<LabelUse> uses;
+  for (const Label& label : recording.labels) {
+    auto use = std::ranges::find(uses, label.text, &LabelUse::name);
+    if (use == uses.end()) use = uses.insert(uses.end(), {label.text, 0, 0});
+    ++use->runs;
+    use->samples += label.last - label.first + 1;
+  }
+  return uses;
+}
 
 std::string inspect_json(const std::vector<InspectedFile>& files) {
   DocumentHead head{"inspect", {}, {}};
@@ -123,10 +159,10 @@ std::string inspect_json(const std::vector<InspectedFile>& files) {
       head.warnings.push_back(files.size() > 1 ? file.name + ": " + text : text);
     }
     Object members{{"file", file.name}};
-    for (Member& member : file_members(file.audit)) members.push_back(std::move(member));
+    for (Member& member : file_members(file)) members.push_back(std::move(member));
     all.emplace_back(std::move(members));
   }
-  Object body = files.empty() ? Object{} : file_members(files.front().audit);
+  Object body = files.empty() ? Object{} : file_members(files.front());
   if (files.size() > 1) body.push_back({"files", std::move(all)});
   return to_json(head, body);
 }
@@ -175,6 +211,8 @@ std::string inspect_text(const InspectedFile& file) {
                     std::to_string(channel.nonfinite), std::to_string(channel.clipped)});
   }
   text += '\n' + aligned(rows);
+  if (const std::string labels = labels_line(file.recording); !labels.empty())
+    text += '\n' + labels;
   if (!audit.notes.empty()) text += '\n';
   for (const Note& note : audit.notes) {
     constexpr const char* marks[] = {"note", "warning", "BAD"};

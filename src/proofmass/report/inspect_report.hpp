@@ -26,6 +26,16 @@ struct InspectedFile {
 /// A screenful a file for a terminal.
 [[nodiscard]] std::string inspect_text(const InspectedFile& file);
 
+/// One name among a recording's labels.
+struct LabelUse {
+  std::string name;
+  std::size_t runs = 0;
+  std::size_t samples = 0;
+};
+
+/// The names among the labels, in the order in which they first come.
+[[nodiscard]] std::vector<LabelUse> label_uses(const Recording& recording);
+
 /// "0.031 ms"; what lies below a nanosecond is the rounding of the stamps and none of the clock.
 [[nodiscard]] std::string jitter_words(const signal::TimingAudit& timing);
 

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/io/text_lines.hpp"
+
+namespace proofmass::io {
+
+/// What a heading says that its figures count.
+enum class Counts { unsaid, seconds, samples };
+
+/// The column of one end of the intervals.
+struct IntervalEdge {
+  std::size_t column = 0;
+  Counts counts = Counts::unsaid;
+  double unit_s = 1.0;
+};
+
+/// How a list of intervals is written.
+struct IntervalColumns {
+  char separator = ',';
+  char point = '.';
+  bool has_header = false;
+  IntervalEdge start, end;
+  std::optional<std::size_t> label;
+  std::optional<std::array<std::size_t, 3>> up;
+
+  [[nodiscard]] bool in_samples() const {
+    return start.counts == Counts::samples || end.counts == Counts::samples;
+  }
+};
+
+/// Finds separator, decimal mark and columns: under the header that the first line is, or, where
+/// that begins with two figures, start, end and text.
+/// Errors: corrupt (neither; seconds and samples in one list; a direction of fewer than three
+/// components).
+[[nodiscard]] Result<IntervalColumns> find_interval_columns(const std::vector<TextLine>& lines);
+
+/// A line's fields without blanks and quotes.
+[[nodiscard]] std::vector<std::string> fields_of(const TextLine& line, char separator);
+
+}  // namespace proofmass::io

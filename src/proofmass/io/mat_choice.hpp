@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/result.hpp"
+#include "proofmass/io/mat_catalogue.hpp"
+#include "proofmass/io/read_recording.hpp"
+
+namespace proofmass::io {
+
+/// An array as a table of samples.
+struct MatTable {
+  const MatArray* array = nullptr;
+  std::size_t rows = 0;
+  std::size_t width = 0;
+  bool is_turned = false;  ///< was channels × samples
+
+  [[nodiscard]] std::size_t figures() const { return rows * width; }
+  /// The last part of the array's path: "acc" of "imu.acc".
+  [[nodiscard]] std::string name() const;
+};
+
+/// More columns than that are no channels of one instrument.
+inline constexpr std::size_t most_mat_channels = 64;
+
+/// Time runs along the longer of the first and the last dimension; nullopt where that is shorter
+/// than 2, or the others make more than 64 channels or more channels than samples.
+[[nodiscard]] std::optional<MatTable> table_of(const MatArray& array);
+
+/// The arrays that make the recording.
+struct MatChoice {
+  std::vector<MatTable> tables;    ///< equally long, in the order of the file
+  const MatArray* rate = nullptr;  ///< a single number called "fs" and the like
+  std::vector<Note> notes;         ///< what was chosen, and what else there is
+};
+
+/// Chooses the largest table, with the vectors of its length that stand beside it; or what the user
+/// names: an array, with the time that stands beside it, or a struct, of which the largest.
+/// `catalogue` must outlive the choice.
+/// Errors: too_few_samples (no table), invalid_argument (no variable of a name asked for; tables of
+/// different length).
+[[nodiscard]] Result<MatChoice> choose_tables(const MatCatalogue& catalogue,
+                                              const ReadOptions& options);
+
+}  // namespace proofmass::io

@@ -1,0 +1,181 @@
+#include "proofmass/io/mat_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <iterator>
+#include <memory>
+
+#include "proofmass/io/array_recording.hpp"
+#include "proofmass/io/mat_choice.hpp"
+#include "proofmass/io/names.hpp"
+
+namespace proofmass::io {
+namespace {
+
+Result<std::string> read_all(PeekSource& source, const Progress& progress) {
+  constexpr std::size_t smallest_piece = std::size_t{1} << 14;
+  constexpr std::size_t largest_piece = std::size_t{1} << 22;
+  constexpr std::size_t most_unpacked = std::size_t{4} << 30;
+  std::string bytes;
+  if (source.size()) bytes.reserve(*source.size());
+  for (;;) {
+    const std::size_t had = bytes.size();
+    if (!source.size() && had > most_unpacked)
+      return Error{Errc::unsupported, "is larger than 4 GiB: unpack it into a file first"};
+    bytes.resize(had + std::clamp(had, smallest_piece, largest_piece));
+    const auto count = source.read(std::span(bytes).subspan(had));
+    bytes.resize(had + (count ? *count : 0));
+    if (!count) return count.error();
+    if (*count == 0) return bytes;
+    if (progress) progress("reading", source.fraction_read());
+  }
+}
+
+using Columns = std::vector<std::vector<double>>;
+
+/// Reads figures; goes on in a variable where it can, as going back means to unpack it anew.
+class FigureReader {
+ public:
+  explicit FigureReader(std::string_view file) : file_(file) {}
+
+  Result<Columns> read(const MatTable& table) {
+    Columns columns(table.width);
+    for (auto& column : columns) column.reserve(table.rows);
+    const FigureType& type = table.array->stored;
+    if (const Status found = go_to(*table.array); !found) return found.error();
+    // Whole rows of a turned table are read at once.
+    const std::size_t most = std::min(piece_figures / table.width * table.width, table.figures());
+    std::vector<char> bytes(most * type.bytes);
+    for (std::size_t at = 0; at < table.figures();) {
+      const std::size_t count = std::min(most, table.figures() - at);
+      if (const Status read = stream_->read(std::span(bytes).first(count * type.bytes)); !read)
+        return read.error();
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t column = table.is_turned ? i % table.width : (at + i) / table.rows;
+        columns[column].push_back(load_figure(bytes.data() + i * type.bytes, type));
+      }
+      at += count;
+    }
+    return columns;
+  }
+
+ private:
+  static constexpr std::size_t piece_figures = std::size_t{1} << 15;
+
+  Status go_to(const MatArray& array) {
+    const bool goes_on =
+        stream_ && region_offset_ == array.region.offset && stream_->position() <= array.begin;
+    if (!goes_on) stream_ = std::make_unique<MatStream>(file_, array.region);
+    region_offset_ = array.region.offset;
+    return stream_->skip(array.begin - stream_->position());
+  }
+
+  std::string_view file_;
+  std::unique_ptr<MatStream> stream_;
+  std::size_t region_offset_ = 0;
+};
+
+/// Whether a matrix's name says that it is of something else than acceleration.
+bool is_of_other_kind(std::string_view name) {
+  constexpr std::array<std::string_view, 9> others{"gyr",  "omega", "ang", "mag", "euler",
+                                                   "quat", "vel",   "pos", "temp"};
+  const std::string bare = bare_name(name);
+  return bare.find("acc") == std::string::npos && std::ranges::any_of(others, [&](auto other) {
+           return bare.find(other) != std::string::npos;
+         });
+}
+
+/// Headings for the columns of a matrix; `prefix` is empty where its name says nothing.
+std::vector<std::string> headings_of(std::string_view prefix, std::size_t width, bool is_timed) {
+  constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+  const std::size_t first = is_timed ? 1 : 0;
+  std::vector<std::string> headings;
+  if (is_timed) headings.emplace_back("time (s)");
+  for (std::size_t c = first; c < width; ++c) {
+    const bool is_triad = width - first == axes.size();
+    if (is_triad)
+      headings.push_back(fmt::format("{}{}{}", prefix, prefix.empty() ? "" : "_", axes[c - first]));
+    else
+      headings.push_back(fmt::format("{} {}", prefix.empty() ? "column" : prefix, c + 1));
+  }
+  return headings;
+}
+
+/// Headings for all columns; none where there is but one matrix whose name says nothing.
+std::vector<std::string> headings_of(const std::vector<MatTable>& tables,
+                                     const std::vector<Columns>& values,
+                                     const ReadOptions& options) {
+  const auto is_matrix = [](const MatTable& table) { return table.width > 1; };
+  const auto matrices = std::ranges::count_if(tables, is_matrix);
+  if (tables.size() == 1 && matrices == 1 && !is_of_other_kind(tables[0].name())) return {};
+  std::vector<std::string> vectors;
+  for (const MatTable& table : tables)
+    if (!is_matrix(table)) vectors.push_back(table.name());
+  bool is_timed = time_among(vectors, options).has_value();
+  std::vector<std::string> headings;
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    const std::string name = tables[i].name();
+    if (!is_matrix(tables[i])) {
+      headings.push_back(name);
+      continue;
+    }
+    const bool has_time = !is_timed && ascends(values[i][0]);
+    is_timed = is_timed || has_time;
+    const bool is_told = matrices > 1 || is_of_other_kind(name);
+    std::ranges::move(headings_of(is_told ? name : "", tables[i].width, has_time),
+                      std::back_inserter(headings));
+  }
+  return headings;
+}
+
+/// The rate that a single number says; a note where it says none that can be.
+Result<std::optional<double>> rate_of(const MatArray& array,
+                                      FigureReader& reader,
+                                      std::vector<Note>& notes) {
+  const auto figure = reader.read({&array, 1, 1, false});
+  if (!figure) return figure.error();
+  const double rate_hz = (*figure)[0][0];
+  const bool is_rate = rate_hz > 0.01 && rate_hz < 1e7;
+  notes.push_back(
+      {Severity::info,
+       fmt::format("{}: {}", array.path, is_rate ? "the rate in Hz" : "is no rate that can be")});
+  return is_rate ? std::optional(rate_hz) : std::nullopt;
+}
+
+}  // namespace
+
+bool claims_mat(std::string_view head, std::string_view) {
+  return is_mat5(head) || is_mat4(head);
+}
+
+Result<Recording> read_mat(PeekSource& source, const ReadOptions& options) {
+  const auto file = read_all(source, options.progress);
+  if (!file) return file.error();
+  const auto catalogue = is_mat5(*file) ? list_mat5(*file) : list_mat4(*file);
+  if (!catalogue) return catalogue.error();
+  const auto choice = choose_tables(*catalogue, options);
+  if (!choice) return choice.error();
+  Recording recording;
+  recording.format = std::string(catalogue->version);
+  recording.notes = choice->notes;
+  std::ranges::move(source.notes(), std::back_inserter(recording.notes));
+  FigureReader reader(*file);
+  std::vector<Columns> values;
+  for (const MatTable& table : choice->tables) {
+    auto columns = reader.read(table);
+    if (!columns) return columns.error();
+    values.push_back(std::move(columns).value());
+  }
+  ArrayColumns columns;
+  columns.headings = headings_of(choice->tables, values, options);
+  for (Columns& some : values) std::ranges::move(some, std::back_inserter(columns.values));
+  if (choice->rate != nullptr) {
+    const auto rate_hz = rate_of(*choice->rate, reader, recording.notes);
+    if (!rate_hz) return rate_hz.error();
+    columns.rate_hz = *rate_hz;
+  }
+  return recording_of(std::move(columns), std::move(recording), options);
+}
+
+}  // namespace proofmass::io

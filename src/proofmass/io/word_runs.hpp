@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+
+namespace proofmass::io {
+
+/// A column of words as runs of equal ones, gathered row by row. Given up, with nothing kept, where
+/// the words are no names: more than most_names of them, more than most_runs runs, or one of more
+/// than longest_name bytes. Memory: that of the runs.
+class WordRuns {
+ public:
+  static constexpr std::size_t most_names = 256;
+  static constexpr std::size_t most_runs = std::size_t{1} << 16;
+  static constexpr std::size_t longest_name = 100;
+
+  /// The field of a row, blanks and quotes left on; rows ascend. A row that is left out, an empty
+  /// field and a word for nothing ("nan", "-", "none") end the run.
+  void add(std::size_t row, std::string_view field) {
+    if (given_up_) return;
+    if (field == field_ && row == last_row_ + 1) {
+      last_row_ = row;
+      if (name_) runs_.back().last = row;
+      return;
+    }
+    change(row, field);
+  }
+
+  [[nodiscard]] std::size_t runs() const { return runs_.size(); }
+  [[nodiscard]] std::size_t names() const { return names_.size(); }
+  /// Whether it says more than one word for all `rows` rows.
+  [[nodiscard]] bool changes(std::size_t rows) const;
+  [[nodiscard]] std::vector<Label> labels() const;
+
+ private:
+  struct Run {
+    std::size_t name = 0;
+    std::size_t first = 0;
+    std::size_t last = 0;
+  };
+
+  void change(std::size_t row, std::string_view field);
+  void give_up();
+
+  std::vector<std::string> names_;
+  std::vector<Run> runs_;
+  std::string field_;                ///< of the row before, as it came
+  std::optional<std::size_t> name_;  ///< what it reads, if anything
+  std::size_t last_row_ = 0;
+  bool given_up_ = false;
+};
+
+}  // namespace proofmass::io
