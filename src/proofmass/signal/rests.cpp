@@ -1,0 +1,128 @@
+#include "proofmass/signal/rests.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "proofmass/core/contract.hpp"
+#include "proofmass/signal/rest_ends.hpp"
+
+namespace proofmass::signal {
+namespace {
+
+struct Lengths {
+  std::size_t window, shortest;  ///< samples
+};
+
+Lengths lengths_of(const RestOptions& options) {
+  constexpr double usual_s = 0.5;
+  constexpr double usual_samples = 50.0;
+  constexpr double least_samples = 8.0;
+  const double rate_hz = options.rate_hz > 0.0 ? options.rate_hz : usual_samples / usual_s;
+  const double shortest_s = options.shortest_s.value_or(usual_s);
+  const auto samples = [&](double seconds) {
+    return static_cast<std::size_t>(std::clamp(std::round(seconds * rate_hz), least_samples, 1e15));
+  };
+  return {samples(std::min(shortest_s, usual_s)), samples(shortest_s)};
+}
+
+/// Takes out windows that repeat one reading where the sensor has more noise than its converter
+/// hides.
+void drop_stuck(RestBlocks& blocks, const RestNoise& noise) {
+  bool noisy = false;
+  for (std::size_t a = 0; a < blocks.axes; ++a)
+    noisy = noisy || noise.window_variance[a] > std::max(blocks.quantum[a] * blocks.quantum[a],
+                                                         4.0 * blocks.variance_floor[a]);
+  if (!noisy) return;
+  const auto is_constant = [&](const RestBlock& block) {
+    for (std::size_t a = 0; a < blocks.axes; ++a)
+      if (block.squares[a] > 0.0) return false;
+    return block.count > 0.0;
+  };
+  std::size_t run = 0;
+  for (std::size_t k = 0; k <= blocks.at.size(); ++k) {
+    if (k < blocks.at.size() && is_constant(blocks.at[k])) {
+      ++run;
+      continue;
+    }
+    if (run >= blocks.window)
+      for (std::size_t b = k - run; b < k; ++b) blocks.at[b].count = 0.0;
+    run = 0;
+  }
+}
+
+double samples_in(const RestBlocks& blocks, const RestRun& run) {
+  double count = 0.0;
+  for (std::size_t k = run.first; k < run.end; ++k) count += blocks.at[k].count;
+  return count;
+}
+
+Rest rest_of(const RestBlocks& blocks, const RestRun& run) {
+  Rest rest{blocks.first_sample(run.first), blocks.end_sample(run.end - 1) - 1};
+  while (rest.first < rest.last && !blocks.there[rest.first]) ++rest.first;
+  while (rest.first < rest.last && !blocks.there[rest.last]) --rest.last;
+  return rest;
+}
+
+/// Of one sample about the mean of its window, over all runs.
+std::vector<double> std_over(const RestBlocks& blocks, const std::vector<RestRun>& runs) {
+  PerAxis squares{};
+  double free = 0.0;
+  for (const RestRun& run : runs)
+    for (std::size_t k = run.first; k < run.end; k += blocks.window) {
+      const RestBlock window = joined(blocks, k, std::min(blocks.window, run.end - k));
+      if (window.count < 2.0) continue;
+      for (std::size_t a = 0; a < blocks.axes; ++a) squares[a] += window.squares[a];
+      free += window.count - 1.0;
+    }
+  std::vector<double> std(blocks.axes);
+  for (std::size_t a = 0; a < blocks.axes; ++a)
+    std[a] = std::sqrt(squares[a] / std::max(1.0, free));
+  return std;
+}
+
+}  // namespace
+
+RestSearch find_rests(View<View<double>> axes, const RestOptions& options) {
+  PM_EXPECTS(std::isfinite(options.rate_hz) && options.rate_hz >= 0.0);
+  PM_EXPECTS(!options.shortest_s || *options.shortest_s > 0.0);
+  const Lengths lengths = lengths_of(options);
+  RestBlocks blocks = blocks_of(axes, lengths.window);
+  RestSearch search;
+  search.window = blocks.window * blocks.block;
+
+  std::optional<RestNoise> noise = find_rest_noise(blocks);
+  if (!noise) {
+    search.why_none =
+        fmt::format("{} usable samples are too few to tell the noise of the sensor from motion",
+                    std::ranges::count(blocks.there, 1));
+    return search;
+  }
+  if (noise->unrest >= 1.0) {
+    search.why_none =
+        "the sensor never lay still: even where the recording is quietest, its mean swings as far "
+        "as its samples scatter";
+    return search;
+  }
+  drop_stuck(blocks, *noise);
+  std::vector<RestRun> runs = still_runs(blocks, *noise, quiet_runs(axes, blocks, *noise));
+  for (RestRun& run : runs) trim_ends(blocks, *noise, run);
+  std::erase_if(runs, [](const RestRun& run) { return run.first >= run.end; });
+  std::vector<RestRun> joined = runs;
+  join_runs(blocks, *noise, joined);
+  const auto is_short = [&](const RestRun& run) {
+    return samples_in(blocks, run) < static_cast<double>(lengths.shortest);
+  };
+  std::erase_if(joined, is_short);
+  if (joined.empty()) {
+    search.why_none =
+        fmt::format("nowhere does the sensor lie still for {} samples", lengths.shortest);
+    return search;
+  }
+  std::erase_if(runs, is_short);
+  search.noise_std = std_over(blocks, runs.empty() ? joined : runs);
+  for (const RestRun& run : joined) search.rests.push_back(rest_of(blocks, run));
+  return search;
+}
+
+}  // namespace proofmass::signal
