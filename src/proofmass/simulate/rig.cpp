@@ -1,20 +1,16 @@
 #include "proofmass/simulate/rig.hpp"
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "proofmass/simulate/converter.hpp"
 #include "proofmass/simulate/random.hpp"
 #include "proofmass/simulate/sensor_twin.hpp"
 
 namespace proofmass::simulate {
 namespace {
-
-Unit unit(std::string_view symbol) {
-  return parse_unit(symbol).value_or(Unit{Quantity::unknown, 1.0, 0.0, std::string(symbol)});
-}
 
 /// All that moves and supplies the sensors, as functions of time.
 class Surroundings {
@@ -60,39 +56,6 @@ class Surroundings {
   double supply_phase_rad_;
 };
 
-/// What the converter makes of a voltage.
-double converted_v(double v, const RigDaq& daq) {
-  if (daq.bits == 0) return v;
-  const double lsb = daq_lsb_v(daq);
-  const double lowest = std::round(daq.min_v / lsb);
-  return std::clamp(std::round(v / lsb), lowest, lowest + std::ldexp(1.0, daq.bits) - 1.0) * lsb;
-}
-
-/// A voltage in what the recording is to hold.
-double written(double v, const RigSensor& sensor, const RigOptions& options) {
-  switch (options.output) {
-    case RigOutput::voltage:
-      return v;
-    case RigOutput::counts:
-      return std::round(v / daq_lsb_v(options.daq));
-    case RigOutput::acceleration:
-      break;
-  }
-  return (v - sensor.zero_g_fraction * options.supply.nominal_v) / sensor.sensitivity_v_per_mps2;
-}
-
-std::string_view unit_of(RigOutput output) {
-  switch (output) {
-    case RigOutput::voltage:
-      return "V";
-    case RigOutput::counts:
-      return "counts";
-    case RigOutput::acceleration:
-      break;
-  }
-  return "m/s^2";
-}
-
 struct Columns {
   std::vector<double> recorded, bias_mps2;
 };
@@ -101,7 +64,11 @@ struct Columns {
 class ChannelTwin {
  public:
   ChannelTwin(const SensorTwin& twin, const RigOptions& options, const Surroundings& surroundings)
-      : twin_(twin), options_(options), surroundings_(surroundings) {}
+      : twin_(twin),
+        options_(options),
+        surroundings_(surroundings),
+        output_{options.output, options.daq, twin.sensor.zero_g_fraction * options.supply.nominal_v,
+                twin.sensor.sensitivity_v_per_mps2} {}
 
   [[nodiscard]] Columns run(std::size_t sensor, std::size_t axis, std::size_t samples) const {
     AxisTwin state(twin_, options_, sensor, axis);
@@ -117,9 +84,7 @@ class ChannelTwin {
       const double t_s = scan_s + late_s;
       const double reading = twin_.sensor.filter_signal ? filtered(state, filter, axis, k, late_s)
                                                         : reading_at(state, axis, t_s);
-      columns.recorded.push_back(
-          written(converted_v(volts(reading, state.next_noise_mps2(), t_s), options_.daq),
-                  twin_.sensor, options_));
+      columns.recorded.push_back(output_.recorded(volts(reading, state.next_noise_mps2(), t_s)));
       columns.bias_mps2.push_back(state.bias_mps2(scan_s));
     }
     return columns;
@@ -160,6 +125,7 @@ class ChannelTwin {
   const SensorTwin& twin_;
   const RigOptions& options_;
   const Surroundings& surroundings_;
+  RecordedOutput output_;
 };
 
 Recording empty_recording(const RigOptions& options, std::string source) {

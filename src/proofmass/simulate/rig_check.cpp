@@ -2,36 +2,12 @@
 #include <string>
 #include <string_view>
 
+#include "proofmass/simulate/option_check.hpp"
 #include "proofmass/simulate/rig.hpp"
 #include "proofmass/simulate/rig_fields.hpp"
 
 namespace proofmass::simulate {
 namespace {
-
-/// Keeps the first thing that is wrong.
-class Verdict {
- public:
-  void require(bool holds, std::string_view where, std::string_view what) {
-    if (!holds && message_.empty()) message_ = std::string(where) + " " + std::string(what);
-  }
-  void operator()(std::string_view key, double value, double, const char*) {
-    require(std::isfinite(value), key, "must be a finite number");
-  }
-  template <std::size_t N>
-  void operator()(std::string_view key, const std::array<double, N>& values, double, const char*) {
-    for (const double v : values) require(std::isfinite(v), key, "must be finite numbers");
-  }
-  template <class Other>  // switches, counts and choices are finite by nature
-  void operator()(std::string_view, const Other&, double, const char*) {}
-
-  [[nodiscard]] Status status() const {
-    if (message_.empty()) return Done{};
-    return Error{Errc::invalid_argument, message_};
-  }
-
- private:
-  std::string message_;
-};
 
 void check_wheel(const RigWheel& wheel, Verdict& verdict) {
   const auto require = [&](bool holds, std::string_view where, std::string_view what) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "proofmass/sensor/noise_conversions.hpp"
+#include "proofmass/simulate/converter.hpp"
 
 namespace proofmass::simulate {
 namespace {
@@ -60,21 +61,6 @@ double rotation_angle(const Eigen::Matrix3d& R) {
 
 constexpr const char* origin = "simulated";
 
-sensor::Calibration calibration_of(const SensorTwin& twin, double gravity_mps2) {
-  const Eigen::Matrix3d U = split(twin.M).U;
-  const Eigen::Vector3d scale = U.diagonal().cwiseInverse();
-  sensor::Calibration calibration;
-  Axes warmed_up = twin.sensor.bias_mps2;
-  for (std::size_t axis = 0; axis < 3; ++axis) warmed_up[axis] += twin.sensor.warm_up_mps2[axis];
-  calibration.bias = sensor::make_axis_figures(warmed_up, "m/s^2", origin);
-  calibration.scale = sensor::make_axis_figures({scale(0), scale(1), scale(2)}, "1", origin);
-  calibration.misalignment = sensor::make_axis_figures(
-      {-U(0, 1) * scale(1), U(0, 2) * scale(2), -U(1, 2) * scale(2)}, "rad", origin);
-  calibration.gravity = sensor::make_figure(gravity_mps2, "m/s^2", origin);
-  calibration.alignment_std = sensor::make_figure(twin.alignment_std_rad, "rad", origin);
-  return calibration;
-}
-
 sensor::Electrical electrical_of(const RigSensor& sensor, const RigOptions& options) {
   const auto same = [](double value, const char* unit) {
     return sensor::make_axis_figures({value, value, value}, unit, origin);
@@ -95,7 +81,7 @@ sensor::Electrical electrical_of(const RigSensor& sensor, const RigOptions& opti
 
 SensorTwin::SensorTwin(const RigOptions& options, std::size_t index)
     : sensor(options.sensors[index]) {
-  alignment_std_rad = rotation_angle(split(error_matrix(sensor)).R);
+  alignment_std_rad = unseen_turn_rad(error_matrix(sensor));
   draw_bias(options, index, sensor);
   if (options.datasheet_errors) {
     draw_datasheet_errors(options, index, sensor);
@@ -153,6 +139,21 @@ void AxisTwin::step_walk() {
   walk_mps2_ += sensor_->bias_walk_mps2_rts[axis_] * std::sqrt(step_s_) * walk_.normal();
 }
 
+sensor::Calibration calibration_of(const Eigen::Matrix3d& M, const Axes& bias_mps2) {
+  const Eigen::Matrix3d U = split(M).U;
+  const Eigen::Vector3d scale = U.diagonal().cwiseInverse();
+  sensor::Calibration calibration;
+  calibration.bias = sensor::make_axis_figures(bias_mps2, "m/s^2", origin);
+  calibration.scale = sensor::make_axis_figures({scale(0), scale(1), scale(2)}, "1", origin);
+  calibration.misalignment = sensor::make_axis_figures(
+      {-U(0, 1) * scale(1), U(0, 2) * scale(2), -U(1, 2) * scale(2)}, "rad", origin);
+  return calibration;
+}
+
+double unseen_turn_rad(const Eigen::Matrix3d& M) {
+  return rotation_angle(split(M).R);
+}
+
 OnePole::OnePole(double bandwidth_hz) : tau_s_(1.0 / (2.0 * std::numbers::pi * bandwidth_hz)) {}
 
 double OnePole::next(double t_s, double input) {
@@ -168,17 +169,17 @@ double OnePole::next(double t_s, double input) {
   return output_;
 }
 
-double daq_lsb_v(const RigDaq& daq) {
-  return std::ldexp(daq.max_v - daq.min_v, -daq.bits);
-}
-
 sensor::SensorModel model_of(const SensorTwin& twin, const RigOptions& options, std::size_t index) {
   const RigSensor& s = twin.sensor;
   sensor::SensorModel model;
   model.name = "simulated sensor " + std::to_string(index + 1);
   model.serial = "seed " + std::to_string(options.seed);
   model.electrical = electrical_of(s, options);
-  model.calibration = calibration_of(twin, options.gravity_mps2);
+  Axes warmed_up = s.bias_mps2;
+  for (std::size_t axis = 0; axis < 3; ++axis) warmed_up[axis] += s.warm_up_mps2[axis];
+  model.calibration = calibration_of(twin.M, warmed_up);
+  model.calibration.gravity = sensor::make_figure(options.gravity_mps2, "m/s^2", origin);
+  model.calibration.alignment_std = sensor::make_figure(twin.alignment_std_rad, "rad", origin);
   Axes white{};  // N as sampled: below the filter's corner both kinds are flat
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const sensor::FilteredWhite filtered{sensor::two_sided_density(s.noise_density_mps2_rthz[axis]),

@@ -63,7 +63,11 @@ class OnePole {
                                            const RigOptions& options,
                                            std::size_t index);
 
-/// A step of the rig's converter in V; bits must not be 0.
-[[nodiscard]] double daq_lsb_v(const RigDaq& daq);
+/// Bias, scale and misalignment of a sensor that reads M f + bias, as a calibration against gravity
+/// would find them.
+[[nodiscard]] sensor::Calibration calibration_of(const Eigen::Matrix3d& M, const Axes& bias_mps2);
+
+/// Angle of the rotation in M that such a calibration cannot see.
+[[nodiscard]] double unseen_turn_rad(const Eigen::Matrix3d& M);
 
 }  // namespace proofmass::simulate

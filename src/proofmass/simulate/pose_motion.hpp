@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "proofmass/simulate/bench_sensor.hpp"
+#include "proofmass/simulate/pose_plan.hpp"
+#include "proofmass/simulate/random.hpp"
+
+namespace proofmass::simulate {
+
+/// Noise along three axes as a function of time.
+class TripleNoise {
+ public:
+  TripleNoise(double rms, double bandwidth_hz, const ProcedureOptions& options, const char* name);
+  [[nodiscard]] Eigen::Vector3d at(double t_s) const;
+
+ private:
+  std::array<BandLimitedNoise, 3> axes_;
+};
+
+/// What the sensor feels at any time of a procedure: exact rest in every position after it has
+/// settled, and in between smooth turns, by the table or by a hand that lifts, sways, trembles and
+/// sets down. Force and rates are continuous.
+class PoseMotion {
+ public:
+  PoseMotion(const ProcedureOptions& options, std::vector<PlannedPose> plan, bool with_rates);
+  [[nodiscard]] SensorMotion at(double t_s) const;
+  /// Number of the position at whose rest t_s lies; 0 between them.
+  [[nodiscard]] std::size_t rest_at(double t_s) const;
+  /// The position it stands in or is on its way to.
+  [[nodiscard]] const PlannedPose& aimed_at(double t_s) const;
+  /// An angle of the table that its positions have, in between as the table moves.
+  [[nodiscard]] double moving_rad(double PlannedPose::* angle, double t_s) const;
+
+ private:
+  /// A half-sine of force that begins and ends at 0.
+  struct Knock {
+    double start_s, duration_s;
+    Eigen::Vector3d peak_mps2;
+  };
+  /// What is drawn for the way to a position and its settling.
+  struct Arrival {
+    std::vector<Knock> knocks;
+    Eigen::Vector3d swing_mps2;
+    double swing_radps;
+  };
+
+  [[nodiscard]] std::size_t last_stood(double t_s) const;
+  [[nodiscard]] SensorMotion on_table(std::size_t next, double t_s) const;
+  [[nodiscard]] SensorMotion in_hand(std::size_t next, double t_s) const;
+  [[nodiscard]] Eigen::Vector3d up_in_hand(std::size_t next, double t_s) const;
+  [[nodiscard]] Eigen::Vector3d omega_in_hand(std::size_t next, double t_s) const;
+  [[nodiscard]] Eigen::Vector3d swing(std::size_t pose, double t_s) const;
+  void draw_arrivals(const ProcedureOptions& options);
+
+  std::vector<PlannedPose> plan_;
+  std::vector<Arrival> arrivals_;
+  ProcedureHand hand_;
+  double radius_m_, axis_tilt_rad_;
+  bool with_rates_;
+  TripleNoise sway_, tremor_, wobble_, motor_;
+};
+
+}  // namespace proofmass::simulate
