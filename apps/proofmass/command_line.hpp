@@ -15,10 +15,11 @@ namespace proofmass::app {
 struct InputFlags {
   std::optional<double> rate_hz;
   std::string unit;
-  std::vector<std::string> channels;
+  std::vector<std::string> channels, variables;
   std::string time;
   std::optional<double> from_s, to_s;
   std::vector<std::string> sensors;
+  std::optional<double> supply_v;
   std::optional<double> gravity_mps2, latitude_deg, height_m;
   /// How long the sensors had been on at the file's first sample; of verbs that know warm-up only.
   std::optional<double> since_switch_on_s;
@@ -69,12 +70,49 @@ struct DriftCommand {
   OutputFlags output;
 };
 
+/// Positions of a turntable at rest; or, by a flag, a wheel that turns or the model equation alone.
+struct CalibrateCommand {
+  std::vector<std::string> files;
+  std::string rests;  ///< --rests: list of intervals
+  std::optional<double> shortest_rest_s;
+  bool means = false, keep_suspects = false, six_position = false;
+  std::optional<int> parameters;  ///< 6, 9 or 12
+  std::optional<double> gravity_std_mps2, temperature_c;
+  double orthogonality_std_deg = 0.57, placement_std_deg = 1.0;
+  std::vector<double> supplies_v;
+  std::vector<std::string> type_b, validate;
+  std::size_t monte_carlo = 200;  ///< draws; 0: no check
+  std::string name, serial, date;
+  std::string update_sensor;
+  InputFlags input;
+  OutputFlags output;
+};
+
+struct TumbleCommand {
+  std::vector<std::string> files;
+  std::vector<double> angles_deg;  ///< --angles: of each rest of a recording, in its order
+  std::optional<double> shortest_rest_s;
+  std::string angle_channel;        ///< --angle: the column with the angle; empty: by its name
+  std::string input_axis;           ///< --input-axis: channel whose axis is at gravity × sin
+  std::vector<int> planes, mounts;  ///< --plane, --mount: of each file; empty: columns or 1 and 0
+  double indexing_std_deg = 0.0, gravity_std_mps2 = 0.0;
+  bool rotating = false;                  ///< --rotating: run_rotation()
+  std::vector<std::string> coefficients;  ///< --coefficients: run_model_equation()
+  std::string update_sensor;
+  InputFlags input;
+  OutputFlags output;
+};
+
 struct SimulateCommand {
-  std::string rig;
+  std::string rig;  ///< the description: of the rig, or with --procedure of the procedure
   std::optional<std::uint64_t> seed;
   std::optional<double> rpm, rate_hz, duration_s, gravity_mps2;
   bool datasheet_errors = false, print_config = false;
   std::optional<int> adc_bits;
+  std::string procedure, signal;  ///< empty: the rig; as the description says
+  std::optional<std::uint64_t> session;
+  std::optional<int> positions;
+  std::optional<double> dwell_s, supply_v;
   OutputFlags output;
 };
 
@@ -85,7 +123,8 @@ struct BudgetCommand {
 };
 
 struct SensorCommand {
-  std::string action, file, format, rostopic;
+  std::string action, format, rostopic;
+  std::vector<std::string> files;
   std::optional<double> rate_hz;
   OutputFlags output;
 };
@@ -95,6 +134,8 @@ using Command = std::variant<InspectCommand,
                              WheelCommand,
                              NoiseCommand,
                              DriftCommand,
+                             CalibrateCommand,
+                             TumbleCommand,
                              SimulateCommand,
                              BudgetCommand,
                              SensorCommand>;

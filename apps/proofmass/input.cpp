@@ -41,6 +41,30 @@ const sensor::SensorModel& model_of(const std::vector<sensor::SensorModel>& mode
   return models[models.size() > 1 ? k : 0];
 }
 
+// Puts --supply in place of what the files say of their supply.
+void set_supply(double supply_v,
+                std::vector<sensor::SensorModel>& models,
+                std::vector<Note>& notes) {
+  bool any = false;
+  for (sensor::SensorModel& model : models) {
+    if (!model.electrical.reference_supply) continue;
+    any = true;
+    model.electrical.supply = sensor::make_figure(supply_v, "V", "--supply");
+    model.electrical.supply_channel.clear();
+    const Result<std::string> unit = sensor::reading_unit(model.calibration);
+    if (unit && *unit == "counts") {
+      notes.push_back({Severity::warning,
+                       "--supply: the sensor file's calibration is of counts, which are taken as "
+                       "they are at any supply"});
+    }
+  }
+  if (!any) {
+    throw Failure(usage,
+                  "--supply: no sensor file says at which supply its figures hold: give "
+                  "electrical.reference_supply, which makes it ratiometric");
+  }
+}
+
 }  // namespace
 
 Recording load(const std::string& file, const InputFlags& flags, const Progress& progress) {
@@ -49,6 +73,7 @@ Recording load(const std::string& file, const InputFlags& flags, const Progress&
   if (!flags.unit.empty()) options.unit = parse_unit(flags.unit);
   options.time_channel = flags.time;
   options.channels = flags.channels;
+  options.variables = flags.variables;
   options.progress = progress;
   Recording recording = need(io::read_recording(file, options), Stage::reading);
   if (!flags.from_s && !flags.to_s) return recording;
@@ -83,6 +108,7 @@ std::vector<sensor::SensorModel> load_sensors(const InputFlags& flags, std::vect
     notes.insert(notes.end(), file.notes.begin(), file.notes.end());
     models.push_back(std::move(file.model));
   }
+  if (flags.supply_v) set_supply(*flags.supply_v, models, notes);
   return models;
 }
 
@@ -156,6 +182,19 @@ double gravity_mps2(const InputFlags& flags) {
   if (!flags.latitude_deg) return standard_gravity_mps2;
   return sensor::gravity_mps2({.latitude_rad = *flags.latitude_deg * rad_per_deg,
                                .height_m = flags.height_m.value_or(0.0)});
+}
+
+Uncertain uncertain_gravity_mps2(const InputFlags& flags,
+                                 const std::optional<double>& std_mps2,
+                                 std::vector<Note>& notes) {
+  const double gravity = gravity_mps2(flags);
+  if (std_mps2) return {gravity, *std_mps2};
+  if (flags.gravity_mps2) return {gravity, 0.0};
+  if (flags.latitude_deg) return {gravity, sensor::gravity_anomaly_std_mps2};
+  notes.push_back({Severity::warning,
+                   "gravity: taken for 9.80665 m/s^2, which no place has exactly: it makes every "
+                   "scale uncertain by 0.16 %; give --gravity, or --latitude and --height"});
+  return {gravity, sensor::gravity_std_on_earth_mps2};
 }
 
 }  // namespace proofmass::app

@@ -6,6 +6,7 @@
 
 #include "command_line.hpp"
 #include "proofmass/core/progress.hpp"
+#include "proofmass/core/quantity.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 
@@ -27,7 +28,8 @@ struct Accelerometer {
 /// The accelerometers of all recordings, in their order. Throws Failure if there is none.
 [[nodiscard]] std::vector<Accelerometer> accelerometers(const std::vector<Recording>& recordings);
 
-/// The sensor files of --sensor. Their notes are added to `notes`. Throws Failure.
+/// The sensor files of --sensor, with the supply of --supply in place of their own. Their notes are
+/// added to `notes`. Throws Failure, also where --supply is given and no sensor is ratiometric.
 [[nodiscard]] std::vector<sensor::SensorModel> load_sensors(const InputFlags& flags,
                                                             std::vector<Note>& notes);
 
@@ -52,5 +54,12 @@ void remove_warm_up(const InputFlags& flags,
 
 /// Local gravity: --gravity, or by --latitude and --height, or the standard one.
 [[nodiscard]] double gravity_mps2(const InputFlags& flags);
+
+/// The same with its standard deviation: std_mps2 if given, else 0 of --gravity, that of gravity
+/// anomalies by latitude, and where nobody says where it was, that of all places on Earth, which a
+/// note says.
+[[nodiscard]] Uncertain uncertain_gravity_mps2(const InputFlags& flags,
+                                               const std::optional<double>& std_mps2,
+                                               std::vector<Note>& notes);
 
 }  // namespace proofmass::app

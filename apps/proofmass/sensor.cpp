@@ -5,6 +5,8 @@
 #include "exit_status.hpp"
 #include "output.hpp"
 #include "proofmass/report/document.hpp"
+#include "proofmass/report/sensor_report.hpp"
+#include "proofmass/sensor/sensor_comparison.hpp"
 #include "proofmass/sensor/sensor_export.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 #include "verbs.hpp"
@@ -12,13 +14,32 @@
 namespace proofmass::app {
 namespace {
 
+// Flags and files that the action has no use for, or lacks.
+void check(const SensorCommand& command) {
+  const bool exports = command.action == "export";
+  const std::size_t wanted = command.action == "diff" ? 2 : 1;
+  const auto refuse = [&](const std::string& what) {
+    throw Failure(usage,
+                  fmt::format("sensor {}: {}: see proofmass sensor --help", command.action, what));
+  };
+  if (command.files.size() != wanted)
+    refuse(wanted == 2 ? "expected two sensor files, OLD and NEW" : "expected one sensor file");
+  if (exports && command.format.empty()) refuse("expected --format imu-yaml or c-header");
+  if (exports && !command.output.report.empty()) refuse("an export has no --report");
+  if (exports) return;
+  if (!command.format.empty()) refuse("--format is for export");
+  if (command.rate_hz || !command.rostopic.empty()) refuse("--rate and --rostopic are for export");
+  if (!command.output.output.empty())
+    refuse("--output is for export; --json and --report write the results");
+}
+
 // A sensor file that lacks what the export needs is an input to put right.
 std::string exported(const SensorCommand& command, const sensor::SensorModel& model) {
   sensor::ImuYamlOptions options{.rate_hz = command.rate_hz};
   if (!command.rostopic.empty()) options.rostopic = command.rostopic;
   const Result<std::string> text =
       command.format == "c-header" ? sensor::c_header(model) : sensor::imu_yaml(model, options);
-  if (!text) throw Failure(bad_input, text.error().at(command.file).message);
+  if (!text) throw Failure(bad_input, text.error().at(command.files.front()).message);
   return *text;
 }
 
@@ -39,18 +60,18 @@ std::string document(const SensorCommand& command,
   const bool nowhere = output.empty() && command.output.json == "-";
   if (nowhere) warnings.emplace_back("output: null: no --output; the text stands here alone");
   const std::string place = output.empty() ? "-" : output;
-  return report::to_json({"sensor", {command.file}, std::move(warnings)},
-                         {{"format", command.format},
+  return report::to_json({"sensor", command.files, std::move(warnings)},
+                         {{"action", "export"},
+                          {"format", command.format},
                           {"output", nowhere ? report::Value() : report::Value(place)},
                           {"text", text}});
 }
 
-}  // namespace
-
-void run(const SensorCommand& command) {
+void run_export(const SensorCommand& command) {
   if (command.output.output == "-" && command.output.json == "-")
     throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
-  const sensor::SensorFile file = need(sensor::read_sensor_file(command.file), Stage::reading);
+  const sensor::SensorFile file =
+      need(sensor::read_sensor_file(command.files.front()), Stage::reading);
   const std::string text = exported(command, file.model);
   const std::vector<Note> notes = notes_of(command, file);
   show_notes(notes, "", command.output);
@@ -65,6 +86,49 @@ void run(const SensorCommand& command) {
            .json = [&] { return document(command, notes, text); },
            .html = {}},
           command.output);
+}
+
+void run_show(const SensorCommand& command) {
+  sensor::SensorFile file = need(sensor::read_sensor_file(command.files.front()), Stage::reading);
+  const report::SensorShow shown{command.files.front(), std::move(file.model),
+                                 std::move(file.notes)};
+  show_notes(shown.notes, "", command.output);
+  publish({.text = [&] { return report::sensor_show_text(shown); },
+           .json = [&] { return report::sensor_show_json(shown); },
+           .html = [&] { return report::sensor_show_html(shown); }},
+          command.output);
+}
+
+void run_diff(const SensorCommand& command) {
+  const sensor::SensorFile before =
+      need(sensor::read_sensor_file(command.files[0]), Stage::reading);
+  const sensor::SensorFile after = need(sensor::read_sensor_file(command.files[1]), Stage::reading);
+  report::SensorDiff diff{command.files[0], command.files[1], before.notes,
+                          sensor::compare(before.model, after.model)};
+  diff.notes.insert(diff.notes.end(), after.notes.begin(), after.notes.end());
+  show_notes(diff.notes, "", command.output);
+  show_notes(diff.comparison.notes, "", command.output);
+  publish({.text = [&] { return report::sensor_diff_text(diff); },
+           .json = [&] { return report::sensor_diff_json(diff); },
+           .html = [&] { return report::sensor_diff_html(diff); }},
+          command.output);
+  if (command.output.strict && diff.comparison.all == sensor::Verdict::changed)
+    throw Failure(bad_data,
+                  fmt::format("done, but {} has changed from {} by more than its uncertainty "
+                              "(--strict)",
+                              command.files[1], command.files[0]));
+}
+
+}  // namespace
+
+void run(const SensorCommand& command) {
+  check(command);
+  if (command.action == "show")
+    run_show(command);
+  else if (command.action == "diff")
+    run_diff(command);
+  else
+    run_export(command);
 }
 
 }  // namespace proofmass::app

@@ -7,6 +7,7 @@
 #include "proofmass/report/simulate_report.hpp"
 #include "proofmass/simulate/rig.hpp"
 #include "proofmass/simulate/rig_file.hpp"
+#include "simulate_modes.hpp"
 #include "verbs.hpp"
 
 namespace proofmass::app {
@@ -45,6 +46,8 @@ simulate::RigOptions rig_options(const SimulateCommand& command) {
   return options;
 }
 
+}  // namespace
+
 // "rig.csv" → "rig.truth.csv", "rig.csv.gz" → "rig.truth.csv.gz".
 std::string truth_name(const std::string& file) {
   const std::size_t folder = file.find_last_of('/');
@@ -54,9 +57,8 @@ std::string truth_name(const std::string& file) {
   return file.substr(0, dot) + ".truth" + file.substr(dot);
 }
 
-}  // namespace
-
 void run(const SimulateCommand& command) {
+  if (!command.procedure.empty()) return run_procedure(command);
   const OutputFlags& flags = command.output;
   const simulate::RigOptions options = rig_options(command);
   if (command.print_config) {

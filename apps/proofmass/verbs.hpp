@@ -10,6 +10,8 @@ void run(const ConvertCommand& command);
 void run(const WheelCommand& command);
 void run(const NoiseCommand& command);
 void run(const DriftCommand& command);
+void run(const CalibrateCommand& command);
+void run(const TumbleCommand& command);
 void run(const SimulateCommand& command);
 void run(const BudgetCommand& command);
 void run(const SensorCommand& command);

@@ -35,6 +35,24 @@ class Convert(CommandTest):
         self.write("a.csv", turning_csv(seconds=1))
         self.expect_failure(USAGE, "convert", "a.csv", "-o", "-", "--json", "-")
 
+    def test_a_given_supply_takes_the_place_of_the_sensor_files(self):
+        # Half the supply plus 0.1 of it is 1 g at any supply.
+        self.write("a.csv", "time (s),acc_x (V)\n0,1.8\n0.01,1.8\n0.02,1.8\n")
+        electrical = ('[electrical]\nsupply = { value = 3.3, unit = "V" }\n'
+                      'sensitivity = { value = [330, 330, 330], unit = "mV/g" }\n'
+                      'zero_g_fraction = { value = [0.5, 0.5, 0.5], unit = "1" }\n')
+        self.write("plain.toml", electrical)
+        self.write("s.toml", electrical + 'reference_supply = { value = 3.3, unit = "V" }\n'
+                   'supply_channel = "rail"\n')
+        self.succeed("convert", "a.csv", "--sensor", "s.toml", "--supply", "3.0", "-o", "b.csv")
+        last = (self.folder / "b.csv").read_text().splitlines()[-1]
+        self.assertAlmostEqual(float(last.split(",")[1]), 9.80665, places=9)
+        error = self.expect_failure(USAGE, "convert", "a.csv", "--sensor", "plain.toml", "--supply", "3",
+                                    "-o", "c.csv")
+        self.assertIn("reference_supply", error)
+        self.expect_failure(USAGE, "convert", "a.csv", "--supply", "3", "-o", "c.csv")
+        self.expect_failure(USAGE, "convert", "a.csv", "--sensor", "s.toml", "--supply", "0", "-o", "c.csv")
+
     def test_a_sensor_file_is_applied(self):
         self.write("a.csv", turning_csv(seconds=1))
         self.write("s.toml", '[sensor]\nname = "s"\n[calibration]\n'

@@ -51,5 +51,63 @@ class Simulate(CommandTest):
         self.assertIn("colour", self.expect_failure(BAD_INPUT, "simulate", "rig.toml", "-o", "a.csv"))
 
 
+class SimulateProcedure(CommandTest):
+    def columns(self, name):
+        with open(self.folder / name, newline="") as file:
+            rows = list(csv.reader(file))
+        return {heading: [float(row[k]) for row in rows[1:]] for k, heading in enumerate(rows[0])}
+
+    def test_every_procedure_writes_recording_truth_and_sensor(self):
+        for name, positions in (("tumble", 25), ("four-position", 4), ("six-position", 6), ("multi-position", 25)):
+            document = self.document("simulate", "--procedure", name, "--rate", "50", "-o", f"{name}.csv")
+            self.assertEqual(document["procedure"], name)
+            self.assertEqual(len(document["truth"]["positions"]), positions)
+            truth = self.columns(document["truth_file"])
+            self.assertEqual(max(truth["position"]), positions)
+            self.assertEqual(document["samples"], len(truth["rest"]))
+            self.assertIn("[calibration]", (self.folder / document["sensor_file"]).read_text())
+
+    def test_the_true_sensor_file_brings_the_rests_to_gravity(self):
+        document = self.document("simulate", "--procedure", "six-position", "-o", "a.csv", "--signal", "counts")
+        self.succeed("convert", "a.csv", "--sensor", "a.sensor.toml", "-o", "b.csv")
+        read = self.columns("b.csv")
+        drift = document["truth"]["mean_drift_mps2"]
+        for position in document["truth"]["positions"]:
+            rows = [k for k, t in enumerate(read["time (s)"]) if position["start_s"] <= t < position["end_s"]]
+            for axis, letter in enumerate("xyz"):
+                mean = sum(read[f"acc_{letter} (m/s^2)"][k] for k in rows) / len(rows)
+                self.assertAlmostEqual(mean, position["force_mps2"][axis] + drift[axis], delta=0.01)
+
+    def test_its_printed_description_reads_back_as_the_same_procedure(self):
+        flags = ("--procedure", "tumble", "--positions", "12", "--dwell", "3", "--supply", "3.1", "--session", "4")
+        description = self.succeed("simulate", *flags, "--print-config")
+        self.write("bench.toml", description)
+        read = ("simulate", "--procedure", "tumble", "bench.toml")
+        self.assertEqual(self.succeed(*read, "--print-config"), description)
+        self.succeed(*read, "-o", "a.csv")
+        self.succeed("simulate", *flags, "-o", "b.csv")
+        self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())
+
+    def test_another_session_has_the_same_sensor(self):
+        a, b = (self.document("simulate", "--procedure", "four-position", "--session", n, "-o", f"{n}.csv") for n in "12")
+        self.assertEqual(a["truth"]["axes"], b["truth"]["axes"])
+        self.assertNotEqual((self.folder / "1.csv").read_bytes(), (self.folder / "2.csv").read_bytes())
+
+    def test_supplies_and_table_columns_are_there_where_asked_for(self):
+        self.write("bench.toml", "labelled = true\n[table]\nplanes = 2\nremounted = true\n[supply]\nrecorded = true\n")
+        document = self.document("simulate", "--procedure", "tumble", "bench.toml", "-o", "a.csv", "--rate", "20")
+        self.assertEqual([c["name"] for c in document["channels"]],
+                         ["acc_x", "acc_y", "acc_z", "angle", "plane", "mount", "supply"])
+        self.assertTrue((self.folder / "a.csv").read_text().splitlines()[0].count("label"))
+
+    def test_flags_that_do_not_go_together_are_refused(self):
+        for flags in (("--procedure", "tumble", "--rpm", "3"), ("--positions", "3"),
+                      ("--procedure", "six-position", "--positions", "3"), ("--procedure", "tumble", "--dwell", "0.3"),
+                      ("--procedure", "tumbling")):
+            self.expect_failure(USAGE, "simulate", "-o", "a.csv", *flags)
+        self.write("bench.toml", "procedure = 'six-position'\n")
+        self.assertIn("line 1", self.expect_failure(BAD_INPUT, "simulate", "--procedure", "tumble", "bench.toml", "-o", "a.csv"))
+
+
 if __name__ == "__main__":
     unittest.main()

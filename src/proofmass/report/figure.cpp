@@ -226,7 +226,8 @@ void draw(std::string& text, const Mappings& map, const Callout& callout) {
                  callout.below ? y + 17.0 : y - 7.0, escaped(callout.text));
 }
 
-std::vector<Tick> ticks_of(const Mapping& map, int most) {
+std::vector<Tick> ticks_of(const Mapping& map, const Axis& axis, int most) {
+  if (axis.scale == AxisScale::bare) return {};
   return map.log ? log_ticks(map.low, map.high, most) : linear_ticks(map.low, map.high, most);
 }
 
@@ -253,20 +254,22 @@ void draw_axes(std::string& text, const Mappings& map, const Figure& figure) {
   const Out out(text);
   draw_minor_grid(text, map.x, map.y, true);
   draw_minor_grid(text, map.y, map.x, false);
-  for (const Tick& tick : ticks_of(map.y, std::max(3, static_cast<int>(figure.height / 48.0)))) {
+  for (const Tick& tick :
+       ticks_of(map.y, figure.y, std::max(3, static_cast<int>(figure.height / 48.0)))) {
     const double y = map.y(tick.value);
     fmt::format_to(out,
                    "<path class=\"pm-grid\" d=\"M{0:.1f},{1:.1f}H{2:.1f}\"/>"
                    "<text class=\"pm-tick pm-end\" x=\"{3:.1f}\" y=\"{4:.1f}\">{5}</text>\n",
                    map.x.from, y, map.x.to, left - 8.0, y + 4.0, escaped(tick.label));
   }
-  for (const Tick& tick : ticks_of(map.x, 10)) {
+  for (const Tick& tick : ticks_of(map.x, figure.x, 10)) {
     const double x = map.x(tick.value);
     fmt::format_to(out,
                    "<path class=\"pm-grid\" d=\"M{0:.1f},{1:.1f}V{2:.1f}\"/>"
                    "<text class=\"pm-tick pm-mid\" x=\"{0:.1f}\" y=\"{3:.1f}\">{4}</text>\n",
                    x, map.y.from, map.y.to, map.y.from + 18.0, escaped(tick.label));
   }
+  if (figure.x.scale == AxisScale::bare) return;
   fmt::format_to(out,
                  "<path class=\"pm-axis\" d=\"M{0:.1f},{1:.1f}H{2:.1f}\"/>"
                  "<text class=\"pm-label pm-end\" x=\"{2:.1f}\" y=\"{3:.1f}\">{4}</text>"

@@ -8,7 +8,11 @@
 // reads well on a dark screen, on a light one and on paper.
 namespace proofmass::report {
 
-enum class AxisScale { linear, log };
+enum class AxisScale {
+  linear,
+  log,
+  bare,  ///< linear, without ticks and line: a map
+};
 
 struct Axis {
   std::string label;  ///< with its unit: "Time (s)"

@@ -37,8 +37,15 @@ table{border-collapse:collapse;width:100%;font-size:.92rem;font-variant-numeric:
 caption{text-align:left;color:var(--soft);font-size:.9rem;padding-bottom:.4rem}
 th,td{padding:.35rem .9rem .35rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--rule)}
 th{font-weight:600}thead th{color:var(--soft);font-weight:500}tbody th{font-weight:500}
+.conclusion:empty{display:none}
+.sign{display:flex;gap:2.5rem;margin:4.5rem 0 0;break-inside:avoid}
+.sign div{flex:1;border-top:1px solid var(--ink);padding-top:.3rem;color:var(--soft);font-size:.85rem}
 footer{margin-top:3rem;color:var(--soft);font-size:.85rem}
-@media print{body{font-size:10.5pt}main{max-width:none;padding:0}.conclusion{font-size:15pt}}
+@page{size:A4;margin:15mm 17mm}
+@media print{body{font-size:10pt;line-height:1.4}main{max-width:none;padding:0}.conclusion{font-size:15pt}
+h2{font-size:12.5pt;margin:1.2rem 0 .4rem;break-after:avoid}p,ul{max-width:none}.sheet{break-before:page}
+.wide{overflow:visible;margin:.7rem 0 1.1rem}table{font-size:9pt}th,td{padding:.22rem .7rem .22rem 0}
+tr,li,.signed{break-inside:avoid}.sign{margin-top:2.9rem}footer{margin-top:1.6rem;break-inside:avoid}}
 )";
 
 std::string_view word(Severity severity) {
@@ -78,15 +85,33 @@ void write(std::string& text, const Table& table) {
   if (!table.caption.empty()) {
     fmt::format_to(Out(text), "<caption>{}</caption>\n", escaped(table.caption));
   }
-  text += "<thead>";
-  write_cells(text, table.head, true);
-  text += "</thead><tbody>\n";
+  if (!table.head.empty()) {
+    text += "<thead>";
+    write_cells(text, table.head, true);
+    text += "</thead>";
+  }
+  text += "<tbody>\n";
   for (const std::vector<std::string>& cells : table.rows) write_cells(text, cells, false);
   text += "</tbody></table></div>\n";
 }
 
+void write_signatures(std::string& text, const std::vector<std::string>& signatures) {
+  if (signatures.empty()) return;
+  text += "<div class=\"sign\">\n";
+  for (const std::string& one : signatures) {
+    fmt::format_to(Out(text), "<div>{}</div>\n", escaped(one));
+  }
+  text += "</div>\n";
+}
+
+std::string_view class_of(const Section& section) {
+  if (!section.signatures.empty()) return " class=\"signed\"";
+  return section.new_sheet ? " class=\"sheet\"" : "";
+}
+
 void write(std::string& text, const Section& section, int& figures) {
-  fmt::format_to(Out(text), "<section>\n<h2>{}</h2>\n", escaped(section.heading));
+  fmt::format_to(Out(text), "<section{}>\n<h2>{}</h2>\n", class_of(section),
+                 escaped(section.heading));
   for (const std::string& paragraph : section.paragraphs) {
     fmt::format_to(Out(text), "<p>{}</p>\n", escaped(paragraph));
   }
@@ -104,6 +129,7 @@ void write(std::string& text, const Section& section, int& figures) {
                    figures, escaped(figure.title), escaped(figure.description),
                    svg(figure, fmt::format("figure-{}", figures)));
   }
+  write_signatures(text, section.signatures);
   text += "</section>\n";
 }
 

@@ -11,7 +11,7 @@ namespace proofmass::report {
 
 struct Table {
   std::string caption;
-  std::vector<std::string> head;
+  std::vector<std::string> head;               ///< empty: none
   std::vector<std::vector<std::string>> rows;  ///< plain text; the first cell names the row
 };
 
@@ -21,6 +21,8 @@ struct Section {
   std::vector<std::string> points = {};  ///< an unnumbered list
   std::vector<Table> tables = {};
   std::vector<Figure> figures = {};
+  std::vector<std::string> signatures = {};  ///< lines to be filled in by hand, with what they are
+  bool new_sheet = false;                    ///< printed, it begins on a new sheet
 };
 
 /// One figure that answers the question, set large above everything else.

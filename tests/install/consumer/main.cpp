@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "proofmass/calibrate/multi_position.hpp"
 #include "proofmass/core/version.hpp"
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/fit/curve.hpp"
@@ -33,6 +34,14 @@ int main() {
           std::vector{1.0, 1.0})
           .value();
 
+  std::vector<pm::calibrate::Pose> poses;
+  for (int side = 0; side < 6; ++side) {
+    const double up = side < 3 ? 10.1 : -9.9;
+    poses.emplace_back().mean = Eigen::Vector3d::Constant(0.1);
+    poses.back().mean(side % 3) = up;
+  }
+  const auto turned = pm::calibrate::calibrate_positions(poses, {.gravity_mps2 = 10.0}).value();
+
   pm::simulate::RigOptions options;
   options.wheel.profile.front().duration_s = 15.0;
   const auto rig = pm::simulate::simulate_rig(options).value();
@@ -44,7 +53,8 @@ int main() {
   const auto wheel = pm::estimate::estimate_wheel(sensors, {}).value();
   std::cout << pm::version() << '\n' << pm::report::wheel_conclusion(wheel) << '\n';
 
-  const bool right = audit.samples == 3 && sensor.model.name == "A1" && decay.converged &&
+  const bool right = std::abs(turned.bias[2]->value - 0.1) < 1e-9 && audit.samples == 3 &&
+                     sensor.model.name == "A1" && decay.converged &&
                      std::abs(decay.parameters[1] * std::log(2.0) - 1.0) < 1e-9 && wheel.turns &&
                      std::abs(wheel.turns->value - 2.75) < 0.1;
   return right ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -1,0 +1,223 @@
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "calibrate_poses.hpp"
+#include "console.hpp"
+#include "exit_status.hpp"
+#include "input.hpp"
+#include "output.hpp"
+#include "proofmass/calibrate/multi_position_budget.hpp"
+#include "proofmass/calibrate/multi_position_check.hpp"
+#include "proofmass/calibrate/multi_position_cross_axis.hpp"
+#include "proofmass/calibrate/validation.hpp"
+#include "proofmass/report/calibrate_report.hpp"
+#include "proofmass/report/document.hpp"
+#include "proofmass/report/wording.hpp"
+#include "proofmass/sensor/calibration_update.hpp"
+#include "verbs.hpp"
+
+namespace proofmass::app {
+namespace {
+
+using calibrate::MultiPosition;
+using calibrate::MultiPositionOptions;
+using calibrate::PoseModel;
+using calibrate::TypeB;
+
+void expect_sense(const CalibrateCommand& command) {
+  if (command.output.output == "-" && command.output.json == "-")
+    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
+  if (command.six_position && command.parameters)
+    throw Failure(usage, "--six-position has parameters of its own: leave out --parameters");
+  if (!command.update_sensor.empty() && !command.input.sensors.empty()) {
+    throw Failure(usage,
+                  "--update-sensor takes the calibration of readings as they are recorded: leave "
+                  "out --sensor");
+  }
+  if (!command.supplies_v.empty() && command.supplies_v.size() != command.files.size()) {
+    throw Failure(usage, fmt::format("--supplies: {} values for {} files: give one for each",
+                                     command.supplies_v.size(), command.files.size()));
+  }
+  if (!command.rests.empty() && command.files.size() > 1)
+    throw Failure(usage, "--rests: one list goes with one file");
+}
+
+std::optional<PoseModel> model_of(const CalibrateCommand& command) {
+  if (command.six_position) return PoseModel::six_position;
+  if (!command.parameters) return std::nullopt;
+  if (*command.parameters == 12) return PoseModel::given_12;
+  return *command.parameters == 9 ? PoseModel::norm_9 : PoseModel::norm_6;
+}
+
+std::vector<TypeB> type_b_of(const CalibrateCommand& command) {
+  std::vector<TypeB> lines;
+  for (const std::string& text : command.type_b) {
+    const Result<TypeB> line = calibrate::parse_type_b(text);
+    if (!line) throw Failure(usage, line.error().at("--type-b").message);
+    lines.push_back(*line);
+  }
+  return lines;
+}
+
+// A fit that the poses do not carry is the input's fault; its message names the files.
+MultiPosition fitted(const PoseSet& set, MultiPositionOptions options) {
+  options.noise_dof = set.noise_dof;
+  const Result<MultiPosition> fit = calibrate::calibrate_positions(set.poses, options);
+  if (fit) return *fit;
+  std::string files;
+  for (const report::PoseFile& file : set.files) files += (files.empty() ? "" : ", ") + file.file;
+  throw Failure(status_of(fit.error(), Stage::computing), fit.error().at(files).message);
+}
+
+// One calibration for each file, at its own supply, and what they have to do with it.
+void calibrate_supplies(const CalibrateCommand& command,
+                        const MultiPositionOptions& options,
+                        report::CalibrateReport& report) {
+  std::vector<calibrate::SupplyPoint> points;
+  for (std::size_t k = 0; k < command.files.size(); ++k) {
+    std::vector<Note> seen_before;
+    const PoseSet set = read_poses({command.files[k]}, command, seen_before);
+    MultiPositionOptions own = options;
+    // Gravity is the same at all supplies and says nothing of their difference.
+    own.gravity_std_mps2 = 0.0;
+    report::SuppliedFit& one = report.supplies.emplace_back();
+    one = {command.supplies_v[k], command.files[k], fitted(set, own)};
+    points.push_back({{one.supply_v, 0.0}, one.fit.bias, one.fit.scale});
+  }
+  const Result<calibrate::SupplyDependence> found =
+      calibrate::fit_supply(points, {.reading_unit = report.unit.symbol});
+  if (!found) throw Failure(status_of(found.error(), Stage::computing), found.error().message);
+  report.supply = *found;
+}
+
+void validate(const CalibrateCommand& command, report::CalibrateReport& report) {
+  const PoseSet set = read_poses(command.validate, command, report.notes);
+  if (set.unit.symbol != report.unit.symbol) {
+    throw Failure(usage,
+                  fmt::format("--validate: {} is in {}, the calibration in {}",
+                              command.validate.front(), set.unit.symbol, report.unit.symbol));
+  }
+  report.validation = calibrate::validate(report.fit, set.poses);
+  report.validation_files = command.validate;
+}
+
+sensor::MeasuredCalibration measured(const CalibrateCommand& command,
+                                     const report::CalibrateReport& report,
+                                     const std::optional<double>& reference_supply_v) {
+  const MultiPosition& fit = report.fit;
+  const std::string unit = report.unit.symbol;
+  sensor::MeasuredCalibration out;
+  out.bias = fit.bias;
+  out.scale = fit.scale;
+  out.misalignment = fit.misalignment_rad;
+  out.bias_unit = unit;
+  out.scale_unit = unit == "m/s^2" ? "1" : unit + "/(m/s^2)";
+  if (fit.misalignment_rad[0]) {
+    auto& covariance = out.covariance.emplace();
+    for (Eigen::Index i = 0; i < 9; ++i) {
+      for (Eigen::Index j = 0; j < 9; ++j)
+        covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = fit.covariance(i, j);
+    }
+  }
+  if (fit.dof > 0.0) out.dof = fit.dof;
+  out.gravity_mps2 = report.certificate.gravity_mps2;
+  if (command.temperature_c) out.temperature_k = *command.temperature_c + 273.15;
+  out.supply_v = reference_supply_v;
+  if (unit == "V" && command.supplies_v.size() == 1) out.supply_v = command.supplies_v.front();
+  out.origin = fmt::format("proofmass calibrate {}, {} positions",
+                           report::file_name(command.files.front()), fit.poses.size());
+  out.name = command.name;
+  out.serial = command.serial;
+  out.date = command.date;
+  return out;
+}
+
+void update_sensor(const CalibrateCommand& command,
+                   const std::optional<double>& reference_supply_v,
+                   report::CalibrateReport& report) {
+  const Result<std::vector<Note>> updated = sensor::update_calibration(
+      command.update_sensor, measured(command, report, reference_supply_v));
+  if (!updated) throw Failure(status_of(updated.error(), Stage::writing), updated.error().message);
+  report.notes.insert(report.notes.end(), updated->begin(), updated->end());
+}
+
+void fill_certificate(const CalibrateCommand& command,
+                      const Uncertain& gravity,
+                      report::CalibrateReport& report) {
+  report::CertificateData& data = report.certificate;
+  data.name = command.name;
+  data.serial = command.serial;
+  data.date = command.date;
+  data.files = command.files;
+  data.gravity_mps2 = gravity;
+  if (command.temperature_c) data.temperature_k = Uncertain{*command.temperature_c + 273.15, 0.0};
+  if (command.supplies_v.size() == 1) data.supply_v = Uncertain{command.supplies_v.front(), 0.0};
+  data.positions = report.fit.poses.size();
+}
+
+// The check costs a calibration a draw: it is made where someone is going to see it.
+void check_by_draws(const CalibrateCommand& command,
+                    const std::vector<TypeB>& lines,
+                    MultiPositionOptions options,
+                    const PoseSet& set,
+                    report::CalibrateReport& report) {
+  if (command.monte_carlo == 0) return;
+  options.noise_dof = set.noise_dof;
+  Result<calibrate::MonteCarloCheck> check = calibrate::check_by_monte_carlo(
+      set.poses, options, report.fit,
+      {.lines = lines, .reading_unit = report.unit.symbol, .draws = command.monte_carlo});
+  if (check)
+    report.check = std::move(check).value();
+  else
+    report.notes.push_back(
+        {Severity::warning, "monte_carlo: null: " + check.error().message});
+}
+
+}  // namespace
+
+void run(const CalibrateCommand& command) {
+  expect_sense(command);
+  const std::vector<TypeB> lines = type_b_of(command);
+  report::CalibrateReport report;
+  report.inputs = command.files;
+  const Uncertain gravity =
+      uncertain_gravity_mps2(command.input, command.gravity_std_mps2, report.notes);
+  PoseSet set = read_poses(command.files, command, report.notes);
+  report.files = set.files;
+  report.sensor = set.sensor;
+  report.unit = set.unit;
+  report.pose_file = set.pose_file;
+  report.sample_std = set.sample_std;
+  const MultiPositionOptions options{
+      .model = model_of(command),
+      .gravity_mps2 = gravity.value,
+      .gravity_std_mps2 = gravity.std,
+      .orthogonality_std_rad = command.orthogonality_std_deg * rad_per_deg,
+      .placement_std_rad = command.placement_std_deg * rad_per_deg,
+      .keep_suspects = command.keep_suspects};
+  if (command.supplies_v.size() > 1) calibrate_supplies(command, options, report);
+  report.fit = fitted(set, options);
+  report.budgets =
+      need(calibrate::budget_of(report.fit, lines, report.unit.symbol), Stage::computing);
+  fill_certificate(command, gravity, report);
+  check_by_draws(command, lines, options, set, report);
+  const Status added = calibrate::add_type_b(report.fit, lines, report.unit.symbol);
+  if (!added) throw Failure(usage, added.error().at("--type-b").message);
+  report.poses = std::move(set.poses);
+  report.cross_axis = calibrate::cross_axis_of(report.fit);
+  if (!command.validate.empty()) validate(command, report);
+  if (!command.update_sensor.empty())
+    without_interruption([&] { update_sensor(command, set.reference_supply_v, report); });
+  const std::vector<Note> notes = report::calibrate_notes(report);
+  show_notes(notes, "", command.output);
+  if (!command.output.output.empty())
+    write_series(report::calibrate_series(report), command.output.output);
+  publish({.text = [&] { return report::calibrate_text(report); },
+           .json = [&] { return report::calibrate_json(report); },
+           .html = [&] { return report::calibrate_html(report); }},
+          command.output);
+  hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
+}
+
+}  // namespace proofmass::app

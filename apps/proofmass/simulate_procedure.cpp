@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+#include <vector>
+
+#include "console.hpp"
+#include "exit_status.hpp"
+#include "output.hpp"
+#include "proofmass/report/procedure_report.hpp"
+#include "proofmass/sensor/sensor_file.hpp"
+#include "proofmass/simulate/procedure.hpp"
+#include "proofmass/simulate/procedure_file.hpp"
+#include "simulate_modes.hpp"
+
+namespace proofmass::app {
+namespace {
+
+using simulate::Procedure;
+using simulate::ProcedureOptions;
+
+void refuse_flags_of_the_rig(const SimulateCommand& command) {
+  const char* flag = command.rpm                ? "--rpm"
+                     : command.duration_s       ? "--duration"
+                     : command.datasheet_errors ? "--datasheet-errors"
+                                                : nullptr;
+  if (flag != nullptr)
+    throw Failure(usage, fmt::format("{} is for the rig, not for --procedure: leave it out", flag));
+}
+
+void set_positions(int positions, ProcedureOptions& options) {
+  if (options.procedure == Procedure::tumble) {
+    options.table.positions = positions;
+  } else if (options.procedure == Procedure::multi_position) {
+    options.hand.poses = positions;
+  } else {
+    throw Failure(usage, fmt::format("--positions: {} has as many as its name says",
+                                     simulate::name_of(options.procedure)));
+  }
+}
+
+// Counts need a converter: where the description has none, 16 bits over the supply.
+void set_signal(const std::string& signal, ProcedureOptions& options) {
+  if (signal == "acceleration") options.output = simulate::RigOutput::acceleration;
+  if (signal == "voltage") options.output = simulate::RigOutput::voltage;
+  if (signal != "counts") return;
+  options.output = simulate::RigOutput::counts;
+  if (options.daq.bits == 0)
+    options.daq = {.bits = 16, .min_v = 0.0, .max_v = options.supply.reference_v};
+}
+
+ProcedureOptions procedure_options(const SimulateCommand& command) {
+  const Procedure procedure = *simulate::procedure_named(command.procedure);
+  ProcedureOptions options = simulate::default_options(procedure);
+  if (!command.rig.empty()) {
+    const Result<ProcedureOptions> read = simulate::read_procedure_file(command.rig, procedure);
+    // Whatever is wrong in the file is wrong with the input.
+    if (!read) throw Failure(bad_input, read.error().message);
+    options = *read;
+  }
+  if (command.seed) options.seed = *command.seed;
+  if (command.session) options.session = *command.session;
+  if (command.rate_hz) options.rate_hz = *command.rate_hz;
+  if (command.gravity_mps2) options.gravity_mps2 = *command.gravity_mps2;
+  if (command.adc_bits) options.daq.bits = *command.adc_bits;
+  if (command.positions) set_positions(*command.positions, options);
+  if (command.dwell_s) options.timing.dwell_s = *command.dwell_s;
+  if (command.supply_v) options.supply.actual_v = *command.supply_v;
+  set_signal(command.signal, options);
+  return options;
+}
+
+// "poses.csv" → "poses.sensor.toml".
+std::string sensor_name(const std::string& truth) {
+  constexpr std::string_view mark = ".truth";
+  return truth.substr(0, truth.rfind(mark)) + ".sensor.toml";
+}
+
+}  // namespace
+
+void run_procedure(const SimulateCommand& command) {
+  const OutputFlags& flags = command.output;
+  refuse_flags_of_the_rig(command);
+  const ProcedureOptions options = procedure_options(command);
+  const Status fits = simulate::check(options);
+  if (!fits) throw Failure(usage, fits.error().message);
+  if (command.print_config) return print_out(simulate::format_procedure_file(options));
+  if (flags.output.empty())
+    throw Failure(usage, "simulate: no --output: say where to, -o poses.csv");
+  if (flags.output == "-" && flags.json == "-")
+    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
+  const simulate::ProcedureResult result =
+      need(simulate::simulate_procedure(options, progress_bar(flags)), Stage::computing);
+  report::ProcedureReport report{.output = flags.output, .options = options, .result = result};
+  if (!command.rig.empty()) report.inputs = {command.rig};
+  write_series(result.recording, flags.output);
+  if (flags.output != "-") {
+    report.truth = truth_name(flags.output);
+    report.sensor = sensor_name(report.truth);
+    write_series(result.truth_series, report.truth);
+    write_text(report.sensor, sensor::format_sensor_file(result.truth.sensor));
+  }
+  publish({.text = [&] { return report::procedure_text(report); },
+           .json = [&] { return report::procedure_json(report); },
+           .html = {}},
+          flags);
+}
+
+}  // namespace proofmass::app

@@ -1,0 +1,175 @@
+#include "proofmass/calibrate/tumble.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "exit_status.hpp"
+#include "input.hpp"
+#include "output.hpp"
+#include "proofmass/calibrate/tumble_axes.hpp"
+#include "proofmass/report/document.hpp"
+#include "proofmass/report/tumble_report.hpp"
+#include "proofmass/report/wording.hpp"
+#include "proofmass/sensor/calibration_update.hpp"
+#include "tumble_modes.hpp"
+#include "tumble_positions.hpp"
+#include "verbs.hpp"
+
+namespace proofmass::app {
+namespace {
+
+using calibrate::TumbleQuantity;
+using report::ChannelTumble;
+
+std::optional<std::size_t> input_axis(const TumbleCommand& command,
+                                      const TumbleReadings& readings) {
+  if (command.input_axis.empty()) return std::nullopt;
+  for (std::size_t k = 0; k < readings.outputs.size(); ++k)
+    if (readings.outputs[k].name == command.input_axis) return k;
+  throw Failure(usage, "--input-axis: no channel '" + command.input_axis + "' among the outputs");
+}
+
+// The positions in whose plane the axis moves, with its outputs.
+std::vector<calibrate::TumblePosition> positions_of(const TumbleReadings& readings,
+                                                    const TumbleOutput& output,
+                                                    const calibrate::TumbleAxis& axis) {
+  std::vector<calibrate::TumblePosition> out;
+  for (std::size_t k = 0; k < readings.positions.size(); ++k) {
+    calibrate::TumblePosition p = readings.positions[k];
+    if (!axis.phase_rad[p.plane == 2 ? 1 : 0]) continue;
+    p.output = output.values[k];
+    p.output_std = output.std[k];
+    out.push_back(std::move(p));
+  }
+  return out;
+}
+
+ChannelTumble analysed(const TumbleReadings& readings,
+                       const TumbleOutput& output,
+                       const calibrate::TumbleAxis& axis,
+                       calibrate::TumbleOptions options) {
+  ChannelTumble channel{.name = output.name,
+                        .unit = output.unit,
+                        .axis = axis,
+                        .positions = {},
+                        .fit = {},
+                        .refused = {}};
+  if (!axis.swings()) {
+    channel.refused = "the output " + axis.words + ", and a tumble about it tells nothing of it";
+    return channel;
+  }
+  channel.positions = positions_of(readings, output, axis);
+  options.noise_dof = output.noise_dof;
+  options.output_unit = output.unit.symbol;
+  for (std::size_t p = 0; p < 2; ++p) options.phase_rad[p] = axis.phase_rad[p].value_or(0.0);
+  Result<calibrate::TumbleFit> fit = calibrate::fit_tumble(channel.positions, options);
+  if (fit)
+    channel.fit = std::move(fit).value();
+  else
+    channel.refused = fit.error().message;
+  return channel;
+}
+
+// The input axis: named, else the first that follows sin(angle), else the first that swings.
+std::size_t main_channel(const report::TumbleReport& report, std::optional<std::size_t> input) {
+  if (input) return *input;
+  const auto follows_sine = [](const ChannelTumble& c) {
+    return c.fit && c.axis.phase_rad[0] && *c.axis.phase_rad[0] == 0.0;
+  };
+  const auto& channels = report.channels;
+  auto found = std::find_if(channels.begin(), channels.end(), follows_sine);
+  if (found == channels.end())
+    found = std::find_if(channels.begin(), channels.end(),
+                         [](const ChannelTumble& c) { return c.fit.has_value(); });
+  return found == channels.end() ? 0 : static_cast<std::size_t>(found - channels.begin());
+}
+
+sensor::MeasuredCalibration measured(const report::TumbleReport& report,
+                                     const TumbleReadings& readings,
+                                     std::vector<Note>& notes) {
+  sensor::MeasuredCalibration out;
+  for (std::size_t k = 0; k < report.channels.size(); ++k) {
+    const ChannelTumble& channel = report.channels[k];
+    const auto axis = readings.outputs[k].axis;
+    const calibrate::TumbleCoefficient* K1 =
+        channel.fit ? channel.fit->find(TumbleQuantity::K1) : nullptr;
+    if (!axis || K1 == nullptr || !K1->std || !channel.fit->bias_output_std) {
+      const char* why = !axis           ? "it is no x, y or z axis of one accelerometer"
+                        : K1 == nullptr ? "it was refused"
+                                        : "its figures have no standard deviation";
+      notes.push_back({Severity::warning,
+                       fmt::format("{}: not written into the sensor file: {}", channel.name, why)});
+      continue;
+    }
+    out.bias[*axis] = Uncertain{*channel.fit->bias_output, *channel.fit->bias_output_std};
+    out.scale[*axis] = Uncertain{*K1->value, *K1->std};
+    out.bias_unit = channel.unit.symbol;
+    out.scale_unit = K1->unit;
+  }
+  out.gravity_mps2 = Uncertain{report.gravity_mps2, report.gravity_std_mps2};
+  out.origin = fmt::format("proofmass tumble {}, {}", report::file_name(report.inputs.front()),
+                           report::count_words(readings.positions.size(), "position"));
+  return out;
+}
+
+void update_sensor(const TumbleCommand& command,
+                   const TumbleReadings& readings,
+                   report::TumbleReport& report) {
+  const sensor::MeasuredCalibration found = measured(report, readings, report.notes);
+  if (std::none_of(found.scale.begin(), found.scale.end(), [](const auto& s) { return s; })) return;
+  Result<std::vector<Note>> told = sensor::update_calibration(command.update_sensor, found);
+  if (!told) throw Failure(status_of(told.error(), Stage::writing), told.error().message);
+  for (Note& note : std::move(told).value()) report.notes.push_back(std::move(note));
+}
+
+void check(const TumbleCommand& command) {
+  if (command.output.output == "-" && command.output.json == "-")
+    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
+  if (!command.angles_deg.empty() && !command.angle_channel.empty())
+    throw Failure(usage, "--angles and --angle: give one of them");
+  if (!command.update_sensor.empty() && !command.input.sensors.empty())
+    throw Failure(usage,
+                  "--update-sensor with --sensor: the readings are calibrated already; leave "
+                  "--sensor away to calibrate anew");
+}
+
+}  // namespace
+
+void run(const TumbleCommand& command) {
+  if (command.rotating) return run_rotation(command);
+  if (!command.coefficients.empty()) return run_model_equation(command);
+  check(command);
+  report::TumbleReport report;
+  report.inputs = command.files;
+  report.gravity_mps2 = gravity_mps2(command.input);
+  report.gravity_std_mps2 = command.gravity_std_mps2;
+  report.indexing_std_rad = command.indexing_std_deg * rad_per_deg;
+  const TumbleReadings readings = tumble_readings(command, report.notes);
+  report.source = readings.source;
+  std::vector<std::vector<double>> outputs;
+  for (const TumbleOutput& output : readings.outputs) outputs.push_back(output.values);
+  const auto input = input_axis(command, readings);
+  const std::vector<calibrate::TumbleAxis> axes =
+      calibrate::tumble_axes(readings.positions, outputs, input);
+  const calibrate::TumbleOptions options{.gravity_mps2 = report.gravity_mps2,
+                                         .gravity_std_mps2 = report.gravity_std_mps2,
+                                         .indexing_std_rad = report.indexing_std_rad};
+  for (std::size_t k = 0; k < axes.size(); ++k)
+    report.channels.push_back(analysed(readings, readings.outputs[k], axes[k], options));
+  report.main = main_channel(report, input);
+  if (!command.update_sensor.empty())
+    without_interruption([&] { update_sensor(command, readings, report); });
+  const std::vector<Note> notes = report::tumble_notes(report);
+  show_notes(notes, "", command.output);
+  if (!command.output.output.empty())
+    write_series(report::tumble_series(report), command.output.output);
+  publish({.text = [&] { return report::tumble_text(report); },
+           .json = [&] { return report::tumble_json(report); },
+           .html = [&] { return report::tumble_html(report); }},
+          command.output);
+  hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
+}
+
+}  // namespace proofmass::app

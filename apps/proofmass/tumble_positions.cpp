@@ -1,0 +1,396 @@
+#include "tumble_positions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "exit_status.hpp"
+#include "input.hpp"
+#include "proofmass/calibrate/tumble_dwells.hpp"
+#include "proofmass/report/wording.hpp"
+#include "proofmass/signal/audit.hpp"
+#include "proofmass/signal/rests.hpp"
+#include "tumble_columns.hpp"
+
+namespace proofmass::app {
+namespace {
+
+using calibrate::Dwell;
+using calibrate::TumblePosition;
+
+// One file's part of the test.
+struct Part {
+  TumbleReadings readings;
+  bool is_table = false;
+  std::size_t rests = 0;
+};
+
+// A column of the table without --channel, which would leave the angle out.
+Recording load_all(const std::string& file, const TumbleCommand& command) {
+  InputFlags flags = command.input;
+  flags.channels.clear();
+  return load(file, flags, progress_bar(command.output));
+}
+
+void apply_sensors(Recording& recording, const TumbleCommand& command, std::vector<Note>& notes) {
+  const std::vector<sensor::SensorModel> models = load_sensors(command.input, notes);
+  if (models.empty()) return;
+  std::vector<Recording> one;
+  one.push_back(std::move(recording));
+  calibrate(models, accelerometers(one), one);
+  recording = std::move(one.front());
+}
+
+std::optional<std::size_t> axis_of(const Recording& recording, std::size_t channel) {
+  const std::vector<Triad> triads = accelerometer_triads(recording);
+  if (triads.size() != 1) return std::nullopt;
+  const std::array places{triads[0].x, triads[0].y, triads[0].z};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (places[axis] == channel) return axis;
+  return std::nullopt;
+}
+
+// What a column's unit is, the user's word before the file's silence.
+Unit unit_of(const Channel& channel, const InputFlags& flags) {
+  if (channel.unit.quantity != Quantity::unknown || flags.unit.empty()) return channel.unit;
+  return *parse_unit(flags.unit);
+}
+
+Unit si_unit(const Unit& unit) {
+  if (unit.quantity == Quantity::acceleration) return *parse_unit("m/s^2");
+  if (unit.quantity == Quantity::voltage) return *parse_unit("V");
+  return unit;
+}
+
+TumbleOutput make_output(const Recording& recording, std::size_t k, const InputFlags& flags) {
+  TumbleOutput out;
+  out.name = recording.channels[k].name;
+  out.unit = si_unit(unit_of(recording.channels[k], flags));
+  out.axis = axis_of(recording, k);
+  return out;
+}
+
+double to_si(const Channel& channel, const InputFlags& flags) {
+  const Unit unit = unit_of(channel, flags);
+  return si_unit(unit).to_si == unit.to_si ? 1.0 : unit.to_si;
+}
+
+// A word in a column of words, or a figure: +1 forwards, −1 backwards.
+int direction_in_words(const std::string& word) {
+  if (word.empty()) return 0;
+  const char c = static_cast<char>(word[0] | 0x20);
+  const bool forward = c == 'f' || c == 'u' || word == "cw" || word == "CW" || word == "+";
+  const bool backward =
+      c == 'b' || c == 'd' || c == 'r' || word == "ccw" || word == "CCW" || word == "-";
+  return forward ? 1 : backward ? -1 : 0;
+}
+
+std::vector<int> directions(const Recording& recording, const TumbleColumns& columns) {
+  std::vector<int> out(recording.samples(), 0);
+  if (columns.direction) {
+    const std::vector<double>& values = recording.channels[*columns.direction].values;
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = (values[k] > 0.0) - (values[k] < 0.0);
+    return out;
+  }
+  const std::string& name = recording.label_channel;
+  if (!name.starts_with("dir") && !name.starts_with("Dir") && name != "way" && name != "sense")
+    return out;
+  for (const Label& label : recording.labels)
+    for (std::size_t k = label.first; k <= label.last; ++k) out[k] = direction_in_words(label.text);
+  return out;
+}
+
+bool is_whole(const std::vector<double>& values, std::size_t row) {
+  return std::isfinite(values[row]);
+}
+
+int checked_plane(double value, const Recording& recording, std::size_t row) {
+  if (value == 1.0 || value == 2.0) return static_cast<int>(value);
+  throw Failure(bad_input, fmt::format("{}: row {}: plane {}: expected 1 or 2", recording.source,
+                                       row + 1, report::compact(value, 6)));
+}
+
+std::vector<TumblePosition> table_positions(const Recording& recording,
+                                            const TumbleColumns& columns,
+                                            const std::vector<std::size_t>& rows) {
+  const std::vector<double> angle = angles_rad(recording.channels[*columns.angle]);
+  const std::vector<int> way = directions(recording, columns);
+  std::vector<TumblePosition> out;
+  const auto at = [&](const std::optional<std::size_t>& column, std::size_t row, double absent) {
+    return column ? recording.channels[*column].values[row] : absent;
+  };
+  for (const std::size_t row : rows) {
+    TumblePosition p;
+    p.angle_rad = angle[row];
+    p.direction = way[row];
+    p.plane = checked_plane(at(columns.plane, row, 1.0), recording, row);
+    p.mount_rad = columns.mount ? angles_rad(recording.channels[*columns.mount])[row] : 0.0;
+    if (columns.time)
+      p.time_s = at(columns.time, row, 0.0);
+    else if (recording.time.source == TimeSource::stamps)
+      p.time_s = recording.time.at(row);
+    p.label = recording.first_line > 0 ? fmt::format("line {}", recording.first_line + row)
+                                       : fmt::format("row {}", row + 1);
+    out.push_back(std::move(p));
+  }
+  return out;
+}
+
+Part read_table(const Recording& recording,
+                const TumbleColumns& columns,
+                const TumbleCommand& command,
+                std::vector<Note>& notes) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < recording.samples(); ++row) {
+    const bool whole = is_whole(recording.channels[*columns.angle].values, row) &&
+                       std::all_of(columns.outputs.begin(), columns.outputs.end(), [&](auto k) {
+                         return is_whole(recording.channels[k].values, row);
+                       });
+    if (whole) rows.push_back(row);
+  }
+  if (rows.size() < recording.samples())
+    notes.push_back({Severity::warning,
+                     fmt::format("{}: {} without angle or reading: left out",
+                                 report::file_name(recording.source),
+                                 report::count_words(recording.samples() - rows.size(), "row"))});
+  Part part;
+  part.is_table = true;
+  part.readings.positions = table_positions(recording, columns, rows);
+  const bool calibrated = !command.input.sensors.empty();
+  for (std::size_t j = 0; j < columns.outputs.size(); ++j) {
+    const Channel& channel = recording.channels[columns.outputs[j]];
+    TumbleOutput out = make_output(recording, columns.outputs[j], command.input);
+    const double factor = to_si(channel, command.input);
+    const auto std_column = calibrated ? std::nullopt : columns.output_std[j];
+    for (const std::size_t row : rows) {
+      out.values.push_back(channel.values[row] * factor);
+      const double std = std_column ? recording.channels[*std_column].values[row] : 0.0;
+      const bool own_unit =
+          std_column && recording.channels[*std_column].unit.quantity == channel.unit.quantity &&
+          channel.unit.quantity != Quantity::unknown;
+      out.std.push_back(std::isfinite(std)
+                            ? std * (own_unit ? recording.channels[*std_column].unit.to_si : factor)
+                            : 0.0);
+    }
+    part.readings.outputs.push_back(std::move(out));
+  }
+  if (calibrated && columns.output_std.front())
+    notes.push_back({Severity::warning,
+                     "--sensor: the stated noise of the outputs is left aside: it is that of the "
+                     "readings before the calibration"});
+  return part;
+}
+
+std::string times_of(const Recording& recording, const std::vector<Dwell>& dwells) {
+  std::string text;
+  constexpr std::size_t most = 12;
+  for (std::size_t k = 0; k < dwells.size() && k < most; ++k)
+    text += fmt::format("{}{}–{} s", k > 0 ? ", " : "",
+                        report::fixed(recording.time.at(dwells[k].first), 1),
+                        report::fixed(recording.time.at(dwells[k].last), 1));
+  return dwells.size() > most ? text + ", …" : text;
+}
+
+signal::RestSearch search_rests(const Recording& recording,
+                                const TumbleColumns& columns,
+                                const TumbleCommand& command) {
+  constexpr std::size_t most_axes = 3;
+  std::vector<View<double>> axes;
+  for (const std::size_t k : columns.outputs)
+    if (axes.size() < most_axes) axes.push_back(recording.channels[k].values);
+  return signal::find_rests(
+      axes, {.rate_hz = recording.time.rate_hz, .shortest_s = command.shortest_rest_s});
+}
+
+std::vector<Dwell> rests_of(const Recording& recording,
+                            const TumbleColumns& columns,
+                            const TumbleCommand& command) {
+  const signal::RestSearch found = search_rests(recording, columns, command);
+  if (found.rests.empty())
+    throw Failure(bad_input, fmt::format("{}: no rest found: {}", recording.source,
+                                         found.why_none.empty() ? "the sensor never lay still"
+                                                                : found.why_none));
+  std::vector<Dwell> dwells;
+  for (const signal::Rest& rest : found.rests)
+    dwells.push_back({.first = rest.first, .last = rest.last});
+  return dwells;
+}
+
+// Where the recorded angle stands still and the sensor does too.
+std::vector<Dwell> steady_rests(const Recording& recording,
+                                const TumbleColumns& columns,
+                                const TumbleCommand& command,
+                                View<double> angle_rad) {
+  const std::vector<Dwell> steady = calibrate::steady_angles(
+      angle_rad, {.rate_hz = recording.time.rate_hz, .shortest_s = command.shortest_rest_s});
+  const signal::RestSearch found = search_rests(recording, columns, command);
+  return found.rests.empty() ? steady : calibrate::at_rest(steady, found.rests);
+}
+
+// --angles: one for each rest, in their order over all files.
+std::vector<double> given_angles(const Recording& recording,
+                                 const std::vector<Dwell>& dwells,
+                                 const TumbleCommand& command,
+                                 std::size_t before) {
+  const std::vector<double>& angles = command.angles_deg;
+  const bool last = recording.source == command.files.back();
+  const std::size_t end = before + dwells.size();
+  if (end > angles.size() || (last && end != angles.size()))
+    throw Failure(usage, fmt::format("{}: {} found, at {}: --angles has {} for {}: give one angle "
+                                     "for each rest, or --rest S to find only longer ones",
+                                     recording.source, report::count_words(dwells.size(), "rest"),
+                                     times_of(recording, dwells),
+                                     report::count_words(
+                                         angles.size() - std::min(before, angles.size()), "angle"),
+                                     before > 0 ? "the rests from here on" : "them"));
+  std::vector<double> out;
+  for (std::size_t k = before; k < end; ++k) out.push_back(angles[k] * rad_per_deg);
+  return out;
+}
+
+Part read_rests(const Recording& recording,
+                const TumbleColumns& columns,
+                const TumbleCommand& command,
+                std::size_t before) {
+  const bool given = !command.angles_deg.empty();
+  std::vector<double> angle;
+  if (!given) angle = angles_rad(recording.channels[*columns.angle]);
+  const std::vector<Dwell> dwells = given ? rests_of(recording, columns, command)
+                                          : steady_rests(recording, columns, command, angle);
+  if (dwells.size() < 2)
+    throw Failure(bad_input,
+                  fmt::format("{}: the table's angle stands still in {}: expected two or more",
+                              recording.source, report::count_words(dwells.size(), "place")));
+  const std::vector<double> angles = given ? given_angles(recording, dwells, command, before)
+                                           : calibrate::dwell_angles(angle, dwells);
+  Part part;
+  part.rests = dwells.size();
+  const bool timed = recording.time.source != TimeSource::none;
+  for (std::size_t k = 0; k < dwells.size(); ++k) {
+    const double begin = recording.time.at(dwells[k].first);
+    TumblePosition p;
+    p.angle_rad = angles[k];
+    if (timed) p.time_s = 0.5 * (begin + recording.time.at(dwells[k].last));
+    p.label = timed ? fmt::format("rest at {} s", report::fixed(begin, 1))
+                    : fmt::format("rest {}", k + 1);
+    part.readings.positions.push_back(std::move(p));
+  }
+  const signal::RecordingAudit audit = signal::audit(recording);
+  for (const std::size_t k : columns.outputs) {
+    const Channel& channel = recording.channels[k];
+    TumbleOutput out = make_output(recording, k, command.input);
+    const double factor = to_si(channel, command.input);
+    const auto means =
+        calibrate::dwell_outputs(channel.values, dwells, audit.channels[k].lsb.value_or(0.0));
+    if (!means)
+      throw Failure(status_of(means.error(), Stage::reading),
+                    means.error().at(channel.name).at(recording.source).message);
+    for (std::size_t j = 0; j < dwells.size(); ++j) {
+      out.values.push_back(means->mean[j] * factor);
+      out.std.push_back(means->std[j] * factor);
+    }
+    out.noise_dof = means->noise_dof;
+    part.readings.outputs.push_back(std::move(out));
+  }
+  return part;
+}
+
+// Many samples in few places are a recording; a table has one row for a position.
+bool is_recording(const Recording& recording, const std::vector<double>& angle) {
+  constexpr std::size_t fewest = 100, samples_a_rest = 10;
+  if (recording.samples() < fewest) return false;
+  std::size_t moves = 0;
+  for (std::size_t k = 1; k < angle.size(); ++k)
+    if (std::abs(angle[k] - angle[k - 1]) > 0.25 * rad_per_deg) ++moves;
+  return (moves + 1) * samples_a_rest < recording.samples() ||
+         !calibrate::steady_angles(angle, {.rate_hz = recording.time.rate_hz}).empty();
+}
+
+void place(Part& part, const TumbleCommand& command, std::size_t file) {
+  const auto of_file = [&](const std::vector<int>& given, const char* flag) -> std::optional<int> {
+    if (given.empty()) return std::nullopt;
+    if (given.size() != 1 && given.size() != command.files.size())
+      throw Failure(
+          usage, fmt::format("{}: {} for {}: give one for all or one for each", flag, given.size(),
+                             report::count_words(command.files.size(), "file")));
+    return given[given.size() > 1 ? file : 0];
+  };
+  const std::optional<int> plane = of_file(command.planes, "--plane");
+  const std::optional<int> mount = of_file(command.mounts, "--mount");
+  for (TumblePosition& p : part.readings.positions) {
+    if (plane) p.plane = *plane;
+    if (mount) p.mount_rad = *mount * rad_per_deg;
+    if (command.files.size() > 1) {
+      p.label = report::file_name(command.files[file]) + ", " + p.label;
+      p.time_s.reset();  // clocks of different files have nothing in common
+    }
+  }
+}
+
+Part read_part(const TumbleCommand& command,
+               std::size_t file,
+               std::size_t before,
+               std::vector<Note>& notes) {
+  Recording recording = load_all(command.files[file], command);
+  recording.source = command.files[file];
+  apply_sensors(recording, command, notes);
+  const TumbleColumns columns =
+      tumble_columns(recording, command.angle_channel, command.input.channels);
+  for (const Note& note : recording.notes) {
+    // A table of positions needs no time base.
+    if (note.severity != Severity::info && note.text.find("no time column") == std::string::npos)
+      notes.push_back(note);
+  }
+  if (!command.angles_deg.empty()) return read_rests(recording, columns, command, before);
+  if (!columns.angle)
+    throw Failure(usage, recording.source +
+                             ": no column with the table's angle: name it with --angle, or give "
+                             "--angles for the rests of a recording");
+  if (is_recording(recording, angles_rad(recording.channels[*columns.angle])))
+    return read_rests(recording, columns, command, before);
+  return read_table(recording, columns, command, notes);
+}
+
+// Adds a further file's positions to those of the first.
+void append(TumbleReadings more, const std::string& file, TumbleReadings& all) {
+  all.positions.insert(all.positions.end(), more.positions.begin(), more.positions.end());
+  for (TumbleOutput& out : all.outputs) {
+    const auto same = std::find_if(more.outputs.begin(), more.outputs.end(),
+                                   [&](const TumbleOutput& o) { return o.name == out.name; });
+    if (same == more.outputs.end() || same->unit != out.unit)
+      throw Failure(usage,
+                    fmt::format("{}: expected a channel {} in {}, as in the first file", file,
+                                out.name, out.unit.symbol.empty() ? "no unit" : out.unit.symbol));
+    out.values.insert(out.values.end(), same->values.begin(), same->values.end());
+    out.std.insert(out.std.end(), same->std.begin(), same->std.end());
+    if (same->noise_dof > 0.0)
+      out.noise_dof =
+          out.noise_dof > 0.0 ? std::min(out.noise_dof, same->noise_dof) : same->noise_dof;
+  }
+}
+
+}  // namespace
+
+TumbleReadings tumble_readings(const TumbleCommand& command, std::vector<Note>& notes) {
+  TumbleReadings all;
+  std::size_t rests = 0;
+  for (std::size_t file = 0; file < command.files.size(); ++file) {
+    Part part = read_part(command, file, rests, notes);
+    place(part, command, file);
+    rests += part.rests;
+    if (file == 0)
+      all = std::move(part.readings);
+    else
+      append(std::move(part.readings), command.files[file], all);
+  }
+  const std::string count = std::to_string(all.positions.size());
+  all.source = rests == 0 ? "a table of " + count + " positions"
+               : command.angles_deg.empty()
+                   ? count + " places in which the recorded angle stands still"
+                   : count + " rests of a recording, their angles given";
+  return all;
+}
+
+}  // namespace proofmass::app

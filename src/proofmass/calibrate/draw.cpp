@@ -1,0 +1,33 @@
+#include "proofmass/calibrate/draw.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace proofmass::calibrate {
+
+double Draw::unit() {
+  return static_cast<double>((engine_() >> 11U) + 1U) * 0x1p-53;
+}
+
+double Draw::operator()(Distribution distribution, double dof) {
+  // Each kind takes two numbers, so that a change of one input leaves the others' draws in place.
+  const double u = unit(), v = unit();
+  switch (distribution) {
+    case Distribution::uniform:
+      return std::numbers::sqrt3 * (2.0 * u - 1.0);
+    case Distribution::triangular:
+      return std::sqrt(6.0) * (u + v - 1.0);
+    case Distribution::arcsine:
+      return std::numbers::sqrt2 * std::cos(2.0 * std::numbers::pi * u);
+    case Distribution::student_t:
+      if (dof > 0.0)
+        return std::sqrt(dof * std::expm1(-2.0 / dof * std::log(u))) *
+               std::cos(2.0 * std::numbers::pi * v);
+      break;
+    case Distribution::normal:
+      break;
+  }
+  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v);
+}
+
+}  // namespace proofmass::calibrate

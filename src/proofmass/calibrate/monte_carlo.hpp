@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "proofmass/calibrate/uncertainty_budget.hpp"
+#include "proofmass/core/result.hpp"
+#include "proofmass/core/view.hpp"
+
+// The uncertainty of a result by drawing its inputs, and whether the budget agrees with that.
+// Source: JCGM 101:2008, Propagation of distributions using a Monte Carlo method.
+namespace proofmass::calibrate {
+
+/// What is known of one input.
+struct Input {
+  double value = 0.0;
+  double std = 0.0;  ///< as in BudgetLine: student_t is drawn std · t(dof), which spreads wider
+  Distribution distribution = Distribution::normal;
+  double dof = 0.0;  ///< of student_t; 0: infinitely many, and so normal
+};
+
+/// y = f(x); NaN where a draw has no result.
+using Measurement = std::function<double(View<double> inputs)>;
+
+struct PropagateOptions {
+  std::size_t draws = 200000;
+  std::uint64_t seed = 1;
+  Eigen::MatrixXd correlation = {};  ///< of the inputs, then all normal; empty: none
+};
+
+struct Interval {
+  double lower = 0.0, upper = 0.0;
+};
+
+/// The distribution of a result.
+struct Propagation {
+  std::size_t draws = 0;    ///< with a result
+  std::size_t without = 0;  ///< draws that had none
+  double mean = 0.0;
+  double std = 0.0;
+  Interval shortest_95;           ///< the shortest that holds 95 % of the draws
+  Interval symmetric_95;          ///< between the 2.5 % and the 97.5 % quantile
+  Interval lower_end, upper_end;  ///< where 95 % of repetitions would put symmetric_95's ends
+};
+
+/// What these results of draws come to. Draws that are not finite count as without.
+/// Errors: too_few_samples (fewer than 100 finite draws).
+[[nodiscard]] Result<Propagation> summary_of(std::vector<double> draws);
+
+/// Draws the inputs, the same numbers on every machine for the same seed, and sums up f.
+/// Source: JCGM 101, clauses 5.9 and 7.
+/// Errors: those of summary_of; not_finite, invalid_argument (inputs or correlation that make no
+/// sense, correlated inputs that are not normal).
+[[nodiscard]] Result<Propagation> propagate(const Measurement& f,
+                                            View<Input> inputs,
+                                            const PropagateOptions& options = {});
+
+/// Does the budget give the same interval as the draws?
+enum class Agreement {
+  yes,
+  no,
+  cannot_tell,  ///< the draws are too few for the tolerance
+};
+
+struct GumValidation {
+  double tolerance = 0.0;  ///< δ: half of the last digit of u_c that counts
+  double lower_difference = 0.0, upper_difference = 0.0;  ///< |y ∓ U − the draws' end|
+  Agreement agreement = Agreement::cannot_tell;
+  std::string verdict;  ///< one sentence
+};
+
+/// Compares y ± U with the draws' symmetric 95 % interval: they agree where both ends do within
+/// half of the last of `digits` (1 or 2) significant digits of u_c.
+/// Source: JCGM 101, clause 8.1, with the draws' own scatter counted in (8.2).
+[[nodiscard]] GumValidation validate(const UncertaintyBudget& budget,
+                                     const Propagation& drawn,
+                                     int digits = 2);
+
+}  // namespace proofmass::calibrate

@@ -1,0 +1,306 @@
+#include "proofmass/calibrate/rotation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <utility>
+
+#include "proofmass/calibrate/rotation_pass.hpp"
+#include "proofmass/calibrate/rotation_results.hpp"
+#include "proofmass/calibrate/rotation_turns.hpp"
+#include "proofmass/core/units.hpp"
+
+namespace proofmass::calibrate {
+namespace {
+
+constexpr double quarter = std::numbers::pi / 2.0;
+constexpr std::size_t least_steady_turns = 12;
+
+Status check_one(const RotationRecording& one, const RotationRecording& first) {
+  if (one.axes.empty() || one.axes.size() > 2) {
+    return Error{Errc::invalid_argument, "expected one axis in the plane of the wheel, or two"};
+  }
+  if (one.axes.size() != first.axes.size()) {
+    return Error{Errc::invalid_argument, "the recordings differ in their number of axes"};
+  }
+  if (one.angle_rad.empty() != first.angle_rad.empty()) {
+    return Error{Errc::invalid_argument, "an angle is there in some recordings and not in others"};
+  }
+  const std::size_t n = one.time_s.size();
+  const bool angle_fits = one.angle_rad.empty() || one.angle_rad.size() == n;
+  const bool axes_fit = std::ranges::all_of(one.axes, [n](const auto& a) { return a.size() == n; });
+  if (!angle_fits || !axes_fit) {
+    return Error{Errc::invalid_argument, "columns of different lengths"};
+  }
+  if (n < 2) return Error{Errc::too_few_samples, "fewer than two samples"};
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!std::isfinite(one.time_s[k]) || (k > 0 && !(one.time_s[k] > one.time_s[k - 1]))) {
+      return Error{Errc::not_finite, fmt::format("sample {}: time does not go on", k + 1)};
+    }
+  }
+  return Done{};
+}
+
+Status check(View<RotationRecording> recordings, const RotationOptions& options) {
+  if (recordings.empty()) return Error{Errc::invalid_argument, "no recording"};
+  if (!(options.gravity_mps2 > 0.0) || !(options.turns_per_knot >= 3.0)) {
+    return Error{Errc::invalid_argument, "gravity above 0 and 3 turns a knot or more are expected"};
+  }
+  for (const RotationRecording& one : recordings) {
+    if (const Status status = check_one(one, recordings.front()); !status) {
+      return status.error().at(one.name);
+    }
+  }
+  return Done{};
+}
+
+// Phase by the turns, and the mean of ω².
+void start_phase(RotationState& state, const RotationOptions& options) {
+  constexpr double most_intervals = 300.0;
+  for (const SteadyTurns& section : state.sections) {
+    const auto turns = static_cast<double>(section.turn_s.size() - 1);
+    const double intervals =
+        std::clamp(std::floor(turns / options.turns_per_knot), 1.0, most_intervals);
+    std::vector<double> theta;
+    for (std::size_t k = 0; k < section.turn_s.size(); ++k) {
+      theta.push_back(rad_per_turn * static_cast<double>(k));
+    }
+    state.splines.push_back(fit_spline(section.turn_s, theta, static_cast<std::size_t>(intervals)));
+  }
+}
+
+// ω̄², whether ω² varies enough to tell a radius, and each section's speed.
+void judge_speed(RotationState& state, RotationFit& fit) {
+  constexpr double least_spread = 0.1;  // of ω², relative; less is easily a drift's
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  std::vector<double> by_section(state.sections.size()), samples(state.sections.size());
+  std::vector<double> speed(state.sections.size());
+  for_each_sample(state, [&](const RotationRecording&, const RotationSample& sample) {
+    sum += sample.speed_squared;
+    squares += sample.speed_squared * sample.speed_squared;
+    count += 1.0;
+    by_section[sample.section] += sample.speed_squared;
+    speed[sample.section] += std::sqrt(sample.speed_squared);
+    samples[sample.section] += 1.0;
+  });
+  state.mean_square_speed = sum / count;
+  const double variance = squares / count - state.mean_square_speed * state.mean_square_speed;
+  state.speed_told = std::sqrt(std::max(variance, 0.0)) > least_spread * state.mean_square_speed;
+  fit.sections.clear();
+  fit.turns = 0.0;
+  for (std::size_t s = 0; s < state.sections.size(); ++s) {
+    const SteadyTurns& one = state.sections[s];
+    const double n = std::max(samples[s], 1.0), mean = speed[s] / n;
+    const double spread = std::sqrt(std::max(by_section[s] / n - mean * mean, 0.0));
+    const auto turns = static_cast<double>(one.turn_s.size() - 1);
+    fit.sections.push_back(
+        {one.recording, one.turn_s.front(), one.turn_s.back(), turns, mean, spread});
+    fit.turns += turns;
+  }
+}
+
+double phase_of(const Harmonics& h) {
+  return std::atan2(h(2), h(1));
+}
+
+// Turns each axis's phase so that it reads K1 sin φ; errors where two axes are not square.
+Status settle_phase(RotationState& state) {
+  const auto whole_quarters = [](double phase) { return quarter * std::round(phase / quarter); };
+  const double first = phase_of(state.harmonics[0]);
+  state.offset[0] = state.angle_given ? whole_quarters(first) : first;
+  if (state.axes == 2) {
+    const double apart = std::remainder(phase_of(state.harmonics[1]) - first, rad_per_turn);
+    if (std::abs(std::abs(apart) - quarter) > quarter / 2.0) {
+      return Error{Errc::invalid_argument,
+                   fmt::format("the two axes are {:.0f}° apart: expected two that are square to "
+                               "each other in the plane of the wheel",
+                               apart / rad_per_deg)};
+    }
+    // A second axis that lags is one that leads on a wheel that turns the other way.
+    if (apart < 0.0) {
+      state.direction = -1.0;
+      state.offset[0] = std::numbers::pi - state.offset[0];
+    }
+    state.offset[1] = state.offset[0] + quarter;
+  }
+  return Done{};
+}
+
+double relative_residual(const RotationState& state, std::size_t axis) {
+  return std::sqrt(2.0 * state.variance[axis]) /
+         std::hypot(state.harmonics[axis](1), state.harmonics[axis](2));
+}
+
+Status follows_gravity(const RotationState& state) {
+  constexpr double most = 0.5;
+  for (std::size_t axis = 0; axis < state.axes; ++axis) {
+    const double left = relative_residual(state, axis);
+    if (left < most) continue;
+    return Error{Errc::not_observable,
+                 fmt::format("{} % of the readings' swing does not follow gravity's turn: the axle "
+                             "moves (a travelling wheel is no bench), the turning is not even, or "
+                             "the axis does not lie in the plane of the wheel",
+                             std::round(100.0 * std::min(left, 9.99)))};
+  }
+  return Done{};
+}
+
+// Passes of Gauss and Newton; how many, and whether they came to an end.
+void iterate(RotationState& state, RotationFit& fit) {
+  constexpr int most = 40;
+  constexpr double still = 1e-10;
+  for (fit.iterations = 1; fit.iterations <= most; ++fit.iterations) {
+    const double change = step(state, !state.angle_given);
+    if (!std::isfinite(change)) return;
+    if (change < still) {
+      fit.converged = true;
+      return;
+    }
+  }
+}
+
+// The start's ω̄² was that of the turns' beginnings; the fitted one is better.
+void refer_to_fitted_speed(RotationState& state, RotationFit& fit) {
+  if (state.angle_given) return;
+  const int before = fit.iterations;
+  judge_speed(state, fit);
+  if (!state.speed_told) {
+    for (Harmonics& h : state.harmonics) h(7) = 0.0;
+  }
+  fit.converged = false;
+  iterate(state, fit);
+  fit.iterations += before;
+}
+
+void note_doubts(const RotationState& state, const RotationOptions& options, RotationFit& fit) {
+  constexpr double much = 0.15, half = 0.5, off = 0.3;
+  for (std::size_t axis = 0; axis < state.axes; ++axis) {
+    const double left = relative_residual(state, axis);
+    if (left > much) {
+      fit.doubts.push_back(fmt::format(
+          "axis {}: {:.0f} % of the readings' swing does not follow gravity's turn: a test wants a "
+          "wheel on a bench, whose axle stands still",
+          axis + 1, 100.0 * left));
+    }
+    const auto& k1 = fit.axes[axis][RotationQuantity::K1].value;
+    if (options.readings_are_accelerations && k1 && std::abs(k1->value - 1.0) > off) {
+      fit.doubts.push_back(
+          fmt::format("axis {}: K1 = {:.3g} of readings that are accelerations, where about 1 is "
+                      "expected: the unit or gravity is wrong, the axle is not horizontal, or the "
+                      "axis does not lie in the plane of the wheel",
+                      axis + 1, k1->value));
+    }
+  }
+  if (fit.steady_fraction < half) {
+    fit.doubts.push_back(fmt::format("only {:.0f} % of the recorded time is steady turning",
+                                     100.0 * fit.steady_fraction));
+  }
+  if (!fit.converged) fit.doubts.push_back("the fit did not settle");
+}
+
+void note_ripples(const RotationOptions& options, RotationFit& fit) {
+  const double g = options.gravity_mps2, one = 0.01;
+  // A phase error ε sin nφ, ε = one/n, has harmonics n ± 1 of ε/2.
+  fit.per_percent = {.bias_mps2 = 0.5 * one * g,
+                     .second_order_s2pm = one / g,
+                     .scale_relative = 0.25 * one,
+                     .misalignment_rad = 0.25 * one,
+                     .third_order_s4pm2 = one / (g * g)};
+  bool once = false, twice = false;
+  for (const SpeedRipple& ripple : fit.ripples) {
+    (ripple.per_turn == 1 ? once : twice) = ripple.accepted;
+    if (ripple.accepted && ripple.amplitude) {
+      fit.notes.push_back(
+          fmt::format("both axes show a speed that varies by {:.2g} % {} a turn; it was taken out",
+                      100.0 * ripple.amplitude->value, ripple.per_turn == 1 ? "once" : "twice"));
+    } else if (!ripple.accepted && ripple.chance_p < 0.01) {
+      fit.notes.push_back(fmt::format(
+          "the {} harmonics of the axes are not those of a varying speed alone (p = {:.2g}): they "
+          "are put down to the sensor",
+          ripple.per_turn == 1 ? "second" : "third", ripple.ripple_p));
+    }
+  }
+  const std::string what =
+      fit.angle_given ? "an angle that is wrong as if the speed varied" : "a speed that varies";
+  if (!once) {
+    fit.notes.push_back(fmt::format(
+        "{} by 1 % once a turn would look like K2 − Kpp or Kip of {:.2g} g/g² and a bias of "
+        "{:.2g} mg",
+        what, fit.per_percent.second_order_s2pm * g, 1e3 * fit.per_percent.bias_mps2 / g));
+  }
+  if (!twice) {
+    fit.notes.push_back(fmt::format(
+        "{} by 1 % twice a turn would look like {:.2g} % of K1, a misalignment of {:.2g} mrad and "
+        "K3 of {:.2g} g/g³",
+        what, 100.0 * fit.per_percent.scale_relative, 1e3 * fit.per_percent.misalignment_rad,
+        fit.per_percent.third_order_s4pm2 * g * g));
+  }
+  if (fit.axes.size() == 1 && !fit.angle_given) {
+    fit.notes.push_back(
+        "one axis without an encoder does not show which way the wheel turns: the sign of Kip is "
+        "that of a wheel on which the reading's rise is followed by its top");
+  }
+}
+
+}  // namespace
+
+Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
+                                 const RotationOptions& options) {
+  if (const Status status = check(recordings, options); !status) return status.error();
+  std::vector<RotationRecording> counted(recordings.begin(), recordings.end());
+  FoundTurns found;
+  for (std::size_t k = 0; k < counted.size(); ++k) {
+    counted[k].angle_rad = counted_on(counted[k].angle_rad);
+    find_turns(counted[k], k, found);
+  }
+  std::size_t steady = 0;
+  for (const SteadyTurns& one : found.sections) steady += one.turn_s.size() - 1;
+  if (steady < least_steady_turns) {
+    return Error{Errc::too_few_samples,
+                 fmt::format("{} steady turns of {} that were found: at least {} are needed, in "
+                             "runs of 8 or more of which each lasts as long as its neighbours to "
+                             "8 % and has 16 samples (a travelling wheel is no bench)",
+                             steady, found.turns, least_steady_turns)};
+  }
+  RotationFit fit;
+  fit.steady_fraction = found.steady_s / found.recorded_s;
+  fit.angle_given = !counted.front().angle_rad.empty();
+  RotationState state;
+  state.recordings = counted;
+  state.sections = std::move(found.sections);
+  state.angle_given = fit.angle_given;
+  state.axes = counted.front().axes.size();
+  start_phase(state, options);
+  judge_speed(state, fit);
+  // Harmonics against the phase as it is, the phase turned, and harmonics again.
+  step(state, false);
+  if (const Status status = settle_phase(state); !status) return status.error();
+  state.phase_defined = !state.angle_given;
+  for (Harmonics& h : state.harmonics) h.setZero();
+  step(state, false);
+  step(state, false);
+  if (const Status status = follows_gravity(state); !status) return status.error();
+  iterate(state, fit);
+  refer_to_fitted_speed(state, fit);
+  const RotationNormal normal = normal_equations(state);
+  RotationEstimate estimate;
+  estimate.harmonics.resize(state.size());
+  for (std::size_t axis = 0; axis < state.axes; ++axis) {
+    estimate.harmonics.segment<8>(harmonic_count * static_cast<Eigen::Index>(axis)) =
+        state.harmonics[axis];
+  }
+  estimate.blocks = block_scores(state, make_solver(state, normal));
+  fit.blocks = static_cast<std::size_t>(estimate.blocks.scores.cols());
+  estimate.constraints = state.speed_told ? 2 : 1;
+  fit.dof = estimate.dof();
+  if (state.axes == 2) fit.direction = state.direction > 0.0 ? 1 : -1;
+  if (state.axes == 2 && !fit.angle_given) separate_ripples(state, estimate, fit);
+  fill_rotation(state, estimate, options, fit);
+  fold_turns(state, fit);
+  note_doubts(state, options, fit);
+  note_ripples(options, fit);
+  return fit;
+}
+
+}  // namespace proofmass::calibrate

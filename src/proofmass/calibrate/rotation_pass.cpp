@@ -1,0 +1,188 @@
+#include "proofmass/calibrate/rotation_pass.hpp"
+
+#include <algorithm>
+
+#include "proofmass/core/linalg.hpp"
+#include "proofmass/core/units.hpp"
+
+namespace proofmass::calibrate {
+namespace {
+
+using Eigen::Index;
+
+RotationNormal empty_normal(const RotationState& state) {
+  const Index size = state.size();
+  RotationNormal normal;
+  normal.H = Eigen::MatrixXd::Zero(size, size);
+  normal.g = Eigen::VectorXd::Zero(size);
+  if (state.angle_given) return normal;
+  for (const PhaseSpline& spline : state.splines) {
+    const Index knots = spline.c.size();
+    normal.sections.push_back({Eigen::MatrixXd::Zero(size, knots),
+                               Eigen::MatrixXd::Zero(knots, knots), Eigen::VectorXd::Zero(knots)});
+  }
+  return normal;
+}
+
+// What is not fitted stands alone with a one, so that the rest can be inverted as it is.
+void leave_out_unfitted(const RotationState& state, Eigen::MatrixXd& H) {
+  for (Index k = 0; k < state.size(); ++k) {
+    if (state.fitted(k)) continue;
+    H.row(k).setZero();
+    H.col(k).setZero();
+    H(k, k) = 1.0;
+  }
+}
+
+// A⁻¹ with rows and columns brought to one unit first.
+Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& A) {
+  const Eigen::VectorXd scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * positive_inverse(scale.asDiagonal() * A * scale.asDiagonal()) *
+         scale.asDiagonal();
+}
+
+// Blocks of whole turns: how many in each section.
+std::vector<std::size_t> blocks_per_section(const RotationState& state, double& turns_per_block) {
+  constexpr double wanted = 24.0, least_turns = 4.0, at_least = 12.0;
+  std::size_t turns = 0;
+  for (const SteadyTurns& one : state.sections) turns += one.turn_s.size() - 1;
+  const auto all = static_cast<double>(turns);
+  turns_per_block =
+      std::max({1.0, std::floor(all / wanted), std::min(least_turns, std::floor(all / at_least))});
+  std::vector<std::size_t> blocks;
+  for (const SteadyTurns& one : state.sections) {
+    const auto in_section = static_cast<double>(one.turn_s.size() - 1);
+    blocks.push_back(
+        static_cast<std::size_t>(std::max(1.0, std::floor(in_section / turns_per_block))));
+  }
+  return blocks;
+}
+
+}  // namespace
+
+Harmonics columns_at(double phase, double relative_square_speed) {
+  const double s = std::sin(phase), c = std::cos(phase);
+  const double s2 = 2.0 * s * c, c2 = 1.0 - 2.0 * s * s;
+  Harmonics columns;
+  columns << 1.0, s, c, s2, c2, s2 * c + c2 * s, c2 * c - s2 * s, 1.0 - relative_square_speed;
+  return columns;
+}
+
+double slope_at(const Harmonics& x, const Harmonics& h) {
+  return h(1) * x(2) - h(2) * x(1) + 2.0 * (h(3) * x(4) - h(4) * x(3)) +
+         3.0 * (h(5) * x(6) - h(6) * x(5));
+}
+
+AxisAt axis_at(const RotationState& state,
+               std::size_t axis,
+               const RotationSample& sample,
+               double reading) {
+  AxisAt at;
+  at.columns = columns_at(state.offset[axis] + state.direction * sample.theta,
+                          sample.speed_squared / state.mean_square_speed);
+  at.residual = reading - at.columns.dot(state.harmonics[axis]);
+  at.slope = state.direction * slope_at(at.columns, state.harmonics[axis]);
+  return at;
+}
+
+RotationNormal normal_equations(const RotationState& state) {
+  RotationNormal normal = empty_normal(state);
+  for_each_sample(state, [&](const RotationRecording& recording, const RotationSample& sample) {
+    for (std::size_t axis = 0; axis < state.axes; ++axis) {
+      const AxisAt at = axis_at(state, axis, sample, recording.axes[axis][sample.k]);
+      if (!std::isfinite(at.residual)) continue;
+      const double weight = 1.0 / state.variance[axis];
+      const Index from = harmonic_count * static_cast<Index>(axis);
+      normal.squares[axis] += at.residual * at.residual;
+      ++normal.count[axis];
+      normal.H.block<8, 8>(from, from) += weight * at.columns * at.columns.transpose();
+      normal.g.segment<8>(from) += weight * at.residual * at.columns;
+      if (state.angle_given) continue;
+      RotationNormal::Section& section = normal.sections[sample.section];
+      const Index knot = sample.local.first;
+      const Eigen::Vector4d basis = at.slope * sample.local.value;
+      section.cross.block<8, 4>(from, knot) += weight * at.columns * basis.transpose();
+      section.H.block<4, 4>(knot, knot) += weight * basis * basis.transpose();
+      section.g.segment<4>(knot) += weight * at.residual * basis;
+    }
+  });
+  return normal;
+}
+
+RotationSolver make_solver(const RotationState& state, const RotationNormal& normal) {
+  RotationSolver solver;
+  Eigen::MatrixXd S = normal.H;
+  for (const RotationNormal::Section& section : normal.sections) {
+    solver.spline_inverse.push_back(scaled_inverse(section.H));
+    solver.elimination.push_back(section.cross * solver.spline_inverse.back());
+    S -= solver.elimination.back() * section.cross.transpose();
+  }
+  leave_out_unfitted(state, S);
+  solver.inverse = scaled_inverse(S);
+  for (Index k = 0; k < state.size(); ++k) {
+    if (!state.fitted(k)) solver.inverse(k, k) = 0.0;
+  }
+  return solver;
+}
+
+double step(RotationState& state, bool move_phase) {
+  RotationNormal normal = normal_equations(state);
+  if (!move_phase) normal.sections.clear();
+  const RotationSolver solver = make_solver(state, normal);
+  Eigen::VectorXd g = normal.g;
+  for (std::size_t s = 0; s < normal.sections.size(); ++s) {
+    g -= solver.elimination[s] * normal.sections[s].g;
+  }
+  const Eigen::VectorXd change = solver.inverse * g;
+  double largest = 0.0;
+  for (std::size_t s = 0; s < normal.sections.size(); ++s) {
+    const RotationNormal::Section& section = normal.sections[s];
+    const Eigen::VectorXd phase =
+        solver.spline_inverse[s] * (section.g - section.cross.transpose() * change);
+    state.splines[s].c += phase;
+    largest = std::max(largest, phase.cwiseAbs().maxCoeff());
+  }
+  for (std::size_t axis = 0; axis < state.axes; ++axis) {
+    const Harmonics by = change.segment<8>(harmonic_count * static_cast<Index>(axis));
+    state.harmonics[axis] += by;
+    const double size = std::abs(state.harmonics[axis](1));
+    if (size > 0.0) largest = std::max(largest, by.cwiseAbs().maxCoeff() / size);
+    const double tiny = 1e-30 * size * size;
+    if (normal.count[axis] > 0 && normal.squares[axis] > tiny) {
+      state.variance[axis] = normal.squares[axis] / static_cast<double>(normal.count[axis]);
+    }
+  }
+  return largest;
+}
+
+BlockScores block_scores(const RotationState& state, const RotationSolver& solver) {
+  BlockScores result;
+  const std::vector<std::size_t> blocks = blocks_per_section(state, result.turns_per_block);
+  std::vector<Index> first{0};
+  for (std::size_t s = 0; s < blocks.size(); ++s) {
+    first.push_back(first.back() + static_cast<Index>(blocks[s]));
+    result.section.insert(result.section.end(), blocks[s], s);
+  }
+  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(state.size(), first.back());
+  for_each_sample(state, [&](const RotationRecording& recording, const RotationSample& sample) {
+    const SteadyTurns& section = state.sections[sample.section];
+    const auto after = std::ranges::upper_bound(section.turn_s, recording.time_s[sample.k]);
+    const double turn = static_cast<double>(after - section.turn_s.begin()) - 1.0;
+    const Index in_section = std::min(static_cast<Index>(turn / result.turns_per_block),
+                                      static_cast<Index>(blocks[sample.section]) - 1);
+    auto score = scores.col(first[sample.section] + in_section);
+    for (std::size_t axis = 0; axis < state.axes; ++axis) {
+      const AxisAt at = axis_at(state, axis, sample, recording.axes[axis][sample.k]);
+      if (!std::isfinite(at.residual)) continue;
+      const double weighted = at.residual / state.variance[axis];
+      score.segment<8>(harmonic_count * static_cast<Index>(axis)) += weighted * at.columns;
+      if (state.angle_given) continue;
+      score -= solver.elimination[sample.section].middleCols<4>(sample.local.first) *
+               (weighted * at.slope * sample.local.value);
+    }
+  });
+  result.scores = solver.inverse * scores;
+  return result;
+}
+
+}  // namespace proofmass::calibrate

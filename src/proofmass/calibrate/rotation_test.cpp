@@ -1,0 +1,271 @@
+#include "proofmass/calibrate/rotation.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "proofmass/calibrate/rotation_test_support.hpp"
+
+namespace proofmass::calibrate {
+namespace {
+
+using Q = RotationQuantity;
+constexpr double g = standard_gravity_mps2;
+
+double value_of(const RotationAxis& axis, Q quantity) {
+  return axis[quantity].value.value().value;
+}
+
+PlainWheel nonlinear_wheel() {
+  PlainWheel wheel;
+  wheel.equations = {{.K1 = 0.0336, .K0 = 0.2, .K2 = 8e-5, .K3 = 5e-6, .Kip = -6e-5, .Kpp = 2e-5}};
+  return wheel;
+}
+
+void expect_coefficients(const RotationAxis& axis, const sensor::ModelEquation& truth, double by) {
+  EXPECT_NEAR(value_of(axis, Q::K1), truth.K1, by * truth.K1);
+  EXPECT_NEAR(value_of(axis, Q::K2_minus_Kpp), truth.K2 - truth.Kpp, by / g);
+  EXPECT_NEAR(value_of(axis, Q::Kip), truth.Kip, by / g);
+  EXPECT_NEAR(value_of(axis, Q::K3), truth.K3, 4.0 * by / (g * g));
+}
+
+TEST(Rotation, FindsTheCoefficientsOfOneAxisWithoutAnEncoder) {
+  const PlainWheel wheel = nonlinear_wheel();
+  const RotationFit fit = fit_of({turned(wheel)});
+  ASSERT_EQ(fit.axes.size(), 1U);
+  expect_coefficients(fit.axes[0], wheel.equations[0], 1e-7);
+  EXPECT_NEAR(value_of(fit.axes[0], Q::K0_radial), 0.2 + 2e-5 * g * g, 1e-6);
+  EXPECT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.turns, 35.0, 1.0);
+  EXPECT_EQ(fit.axes[0][Q::misalignment].reason,
+            "without an encoder the misalignment is part of the phase");
+}
+
+TEST(Rotation, TellsTheMisalignmentWhereAnEncoderGivesTheAngle) {
+  PlainWheel wheel = nonlinear_wheel();
+  wheel.equations[0].delta_o = 0.012;
+  wheel.give_angle = true;
+  const RotationFit fit = fit_of({turned(wheel)});
+  expect_coefficients(fit.axes[0], wheel.equations[0], 1e-9);
+  EXPECT_NEAR(value_of(fit.axes[0], Q::misalignment), 0.012, 1e-8);
+}
+
+TEST(Rotation, TakesAnEncodersAngleWrappedOrRunningBackwards) {
+  PlainWheel wheel = nonlinear_wheel();
+  wheel.equations[0].delta_o = 0.012;
+  wheel.give_angle = true;
+  RotationRecording wrapped = turned(wheel);
+  for (double& angle : wrapped.angle_rad) angle = std::remainder(angle, rad_per_turn);
+  EXPECT_NEAR(value_of(fit_of({wrapped}).axes[0], Q::misalignment), 0.012, 1e-8);
+  wheel.angle = [](double t) { return -1.152 * t; };
+  const RotationFit back = fit_of({turned(wheel)});
+  EXPECT_NEAR(value_of(back.axes[0], Q::misalignment), 0.012, 1e-8);
+  EXPECT_NEAR(value_of(back.axes[0], Q::Kip), -6e-5, 1e-9);
+}
+
+TEST(Rotation, DoesNotTellRadiusFromBiasAtOneSpeed) {
+  PlainWheel wheel = nonlinear_wheel();
+  wheel.radius_m = 0.1;
+  const RotationFit fit = fit_of({turned(wheel)});
+  const std::string reason =
+      "radius and radial bias cannot be told apart at one speed: record a second speed";
+  EXPECT_FALSE(fit.radius.value);
+  EXPECT_EQ(fit.radius.reason, reason);
+  EXPECT_EQ(fit.axes[0][Q::K0].reason, reason);
+  EXPECT_NEAR(value_of(fit.axes[0], Q::K0_radial), 0.2 + 2e-5 * g * g - 0.1 * 1.152 * 1.152, 1e-5);
+}
+
+TEST(Rotation, TellsRadiusAndBiasFromTwoRecordingsAtTwoSpeeds) {
+  PlainWheel slow, fast;
+  slow.radius_m = fast.radius_m = 0.1;
+  slow.equations[0].K0 = fast.equations[0].K0 = 0.2;
+  fast.angle = [](double t) { return 2.2 * t; };
+  const RotationFit fit = fit_of({turned(slow), turned(fast)});
+  EXPECT_NEAR(fit.radius.value.value().value, 0.1, 1e-7);
+  EXPECT_NEAR(value_of(fit.axes[0], Q::K0), 0.2, 1e-7);
+  EXPECT_EQ(fit.sections.size(), 2U);
+}
+
+// 11 rpm, a ramp of 20 s, 21 rpm: the ramp itself is left out.
+TEST(Rotation, TellsThemFromOneRecordingWhoseSpeedChanges) {
+  PlainWheel wheel;
+  wheel.radius_m = 0.1;
+  wheel.duration_s = 320.0;
+  wheel.equations[0].K0 = 0.2;
+  wheel.angle = [](double t) {
+    const double u = std::clamp(t - 150.0, 0.0, 20.0);
+    return 1.152 * t + 1.047 * (u * u / 40.0 + std::max(t - 170.0, 0.0));
+  };
+  const RotationFit fit = fit_of({turned(wheel)});
+  EXPECT_EQ(fit.sections.size(), 2U);
+  EXPECT_NEAR(fit.radius.value.value().value, 0.1, 2e-3);
+  EXPECT_NEAR(value_of(fit.axes[0], Q::K0), 0.2, 5e-3);
+}
+
+// However the pair sits on its spoke, both together know their distance from the axle.
+TEST(Rotation, FindsTheRadiusOfTwoAxesMountedAtAnyAngle) {
+  for (const double mounting : {0.0, 0.9, 2.5, -1.9}) {
+    PlainWheel slow, fast;
+    slow.equations = fast.equations = {{.K1 = 1.0, .K0 = 0.1}, {.K1 = 1.02, .K0 = -0.2}};
+    slow.radius_m = fast.radius_m = 0.1;
+    slow.mounting_rad = fast.mounting_rad = mounting;
+    fast.angle = [](double t) { return 2.2 * t; };
+    const RotationFit fit = fit_of({turned(slow), turned(fast)});
+    EXPECT_NEAR(fit.radius.value.value().value, 0.1, 1e-6) << mounting;
+    EXPECT_NEAR(value_of(fit.axes[0], Q::radius), 0.1 * std::cos(mounting), 1e-6);
+    EXPECT_NEAR(value_of(fit.axes[1], Q::radius), -0.1 * std::sin(mounting), 1e-6);
+    EXPECT_EQ(fit.direction, 1);
+  }
+}
+
+TEST(Rotation, SeesWhichWayTwoAxesTurnAndHowFarTheyAreFromSquare) {
+  for (const int hand : {1, -1}) {
+    PlainWheel wheel;
+    wheel.equations = {{.K1 = 1.0, .Kip = 3e-4}, {.K1 = 0.98, .K2 = 2e-4, .delta_o = 0.015}};
+    wheel.hand = hand;
+    const RotationFit fit = fit_of({turned(wheel)});
+    EXPECT_EQ(fit.direction, hand);
+    EXPECT_NEAR(value_of(fit.axes[0], Q::Kip), 3e-4, 1e-7);
+    EXPECT_NEAR(value_of(fit.axes[1], Q::K2_minus_Kpp), 2e-4, 1e-7);
+    EXPECT_NEAR(value_of(fit.axes[1], Q::misalignment), 0.015, 1e-6);
+  }
+}
+
+TEST(Rotation, FollowsASpeedThatWandersSlowly) {
+  PlainWheel wheel = nonlinear_wheel();
+  wheel.duration_s = 600.0;
+  wheel.angle = [](double t) {
+    return 1.152 * t + 0.8 * std::sin(2.0 * std::numbers::pi * t / 150.0);
+  };
+  const RotationFit fit = fit_of({turned(wheel)});
+  expect_coefficients(fit.axes[0], wheel.equations[0], 2e-4);
+}
+
+// ω (1 + 0.01 cos θ): what the note says it would do to one axis.
+std::function<double(double)> rippled(int per_turn, double size) {
+  return [=](double t) {
+    const double theta = 1.152 * t;
+    return theta + size / per_turn * std::sin(per_turn * theta + 0.4);
+  };
+}
+
+TEST(Rotation, SaysWhatARippleOfOnePerCentWouldLookLike) {
+  PlainWheel wheel;
+  wheel.angle = rippled(1, 0.01);
+  const RotationFit once = fit_of({turned(wheel)});
+  const double second =
+      std::hypot(value_of(once.axes[0], Q::K2_minus_Kpp), value_of(once.axes[0], Q::Kip));
+  EXPECT_NEAR(second, once.per_percent.second_order_s2pm, 0.02 * second);
+  wheel.angle = rippled(2, 0.01);
+  const RotationFit twice = fit_of({turned(wheel)});
+  EXPECT_LT(std::abs(value_of(twice.axes[0], Q::K1) / 0.0336 - 1.0),
+            twice.per_percent.scale_relative + 1e-3 + 3 * 0.0025);
+  const auto& notes = once.notes;
+  EXPECT_TRUE(std::ranges::any_of(notes, [](const std::string& note) {
+    return note.find(
+               "a speed that varies by 1 % once a turn would look like K2 − Kpp or Kip of "
+               "0.01 g/g² and a bias of 5 mg") != std::string::npos;
+  }));
+}
+
+TEST(Rotation, TakesARippleOutWhereTwoAxesShareIt) {
+  for (const int per_turn : {1, 2}) {
+    PlainWheel wheel;
+    wheel.equations = {{.K1 = 1.0, .K0 = 0.1}, {.K1 = 1.0, .K0 = -0.1, .delta_o = 0.01}};
+    wheel.angle = rippled(per_turn, 0.01);
+    wheel.white = 0.01;
+    const RotationFit fit = fit_of({turned(wheel)});
+    const SpeedRipple& ripple = fit.ripples.at(static_cast<std::size_t>(per_turn - 1));
+    EXPECT_TRUE(ripple.accepted) << per_turn << " " << ripple.chance_p << " " << ripple.ripple_p;
+    EXPECT_NEAR(ripple.amplitude.value().value, 0.01, 5e-4);
+    EXPECT_NEAR(value_of(fit.axes[0], Q::K0_radial), 0.1, 2e-3);
+    EXPECT_NEAR(value_of(fit.axes[1], Q::K0_radial), -0.1, 2e-3);
+    EXPECT_NEAR(value_of(fit.axes[0], Q::K1), 1.0, 3e-4);
+    EXPECT_NEAR(value_of(fit.axes[1], Q::misalignment), 0.01, 4e-4);
+    EXPECT_FALSE(fit.axes[0][per_turn == 1 ? Q::Kip : Q::K3].value);
+  }
+}
+
+TEST(Rotation, DoesNotTakeASensorsNonlinearityForARipple) {
+  PlainWheel wheel;
+  wheel.equations = {{.K1 = 1.0, .K2 = 1e-3}, {.K1 = 1.0, .K2 = 1e-3}};
+  wheel.white = 0.01;
+  const RotationFit fit = fit_of({turned(wheel)});
+  EXPECT_FALSE(fit.ripples.at(0).accepted);
+  EXPECT_NEAR(value_of(fit.axes[0], Q::K2_minus_Kpp), 1e-3, 1e-4);
+}
+
+TEST(Rotation, LeavesOutGapsAndSamplesThatAreNoNumbers) {
+  PlainWheel wheel = nonlinear_wheel();
+  wheel.duration_s = 300.0;
+  RotationRecording recording = turned(wheel);
+  for (std::size_t k = 3000; k < 3300; k += 7) {
+    recording.axes[0][k] = std::numeric_limits<double>::quiet_NaN();
+  }
+  recording.time_s.erase(recording.time_s.begin() + 6000, recording.time_s.begin() + 6100);
+  recording.axes[0].erase(recording.axes[0].begin() + 6000, recording.axes[0].begin() + 6100);
+  const RotationFit fit = fit_of({recording});
+  EXPECT_EQ(fit.sections.size(), 2U);
+  expect_coefficients(fit.axes[0], wheel.equations[0], 1e-6);
+}
+
+TEST(Rotation, FoldsTheReadingsOverTheTurns) {
+  const RotationFit fit = fit_of({turned(nonlinear_wheel())});
+  const RotationFold& fold = fit.axes[0].fold;
+  ASSERT_EQ(fold.mean.size(), 72U);
+  const auto top = std::ranges::max_element(fold.mean) - fold.mean.begin();
+  EXPECT_NEAR(fold.angle_rad[static_cast<std::size_t>(top)], std::numbers::pi / 2.0, 0.1);
+  for (const double residual : fold.residual) EXPECT_LT(std::abs(residual), 1e-7);
+}
+
+TEST(Rotation, DoubtsAWheelWhoseAxleMoves) {
+  PlainWheel wheel;
+  wheel.equations[0].K1 = 1.0;
+  RotationRecording recording = turned(wheel);
+  for (std::size_t k = 0; k < recording.time_s.size(); ++k) {
+    recording.axes[0][k] += 1.5 * std::sin(17.0 * recording.time_s[k]);
+  }
+  const RotationFit fit = fit_of({recording});
+  ASSERT_FALSE(fit.doubts.empty());
+  EXPECT_NE(fit.doubts[0].find("whose axle stands still"), std::string::npos);
+  for (std::size_t k = 0; k < recording.time_s.size(); ++k) {
+    recording.axes[0][k] += 8.0 * std::sin(17.0 * recording.time_s[k]);
+  }
+  const auto refused = fit_rotation(std::vector{recording}, {.gravity_mps2 = g});
+  ASSERT_FALSE(refused);
+}
+
+TEST(Rotation, DoubtsAScaleFactorThatCannotBe) {
+  PlainWheel wheel;
+  wheel.equations[0].K1 = 0.5;
+  const auto fit = fit_rotation(std::vector{turned(wheel)},
+                                {.gravity_mps2 = g, .readings_are_accelerations = true});
+  EXPECT_EQ(fit.value().doubts.size(), 1U);
+}
+
+TEST(Rotation, RefusesWhatIsNoTest) {
+  const auto code = [](const std::vector<RotationRecording>& recordings) {
+    return fit_rotation(recordings, {.gravity_mps2 = g}).error().code;
+  };
+  EXPECT_EQ(code({}), Errc::invalid_argument);
+  PlainWheel wheel;
+  wheel.duration_s = 40.0;
+  EXPECT_EQ(code({turned(wheel)}), Errc::too_few_samples);
+  wheel.duration_s = 200.0;
+  wheel.rate_hz = 2.0;
+  EXPECT_EQ(code({turned(wheel)}), Errc::too_few_samples);
+  RotationRecording still{"still", {0.0, 1.0, 2.0}, {{1.0, 1.0, 1.0}}, {}};
+  EXPECT_EQ(code({still}), Errc::too_few_samples);
+  still.time_s[2] = 0.5;
+  EXPECT_EQ(code({still}), Errc::not_finite);
+  still.axes[0].pop_back();
+  EXPECT_EQ(code({still}), Errc::invalid_argument);
+  wheel = {};
+  wheel.equations = {{.K1 = 1.0}, {.K1 = 1.0}};
+  RotationRecording same = turned(wheel);
+  same.axes[1] = same.axes[0];
+  EXPECT_EQ(code({same}), Errc::invalid_argument);
+}
+
+}  // namespace
+}  // namespace proofmass::calibrate

@@ -1,0 +1,200 @@
+#include "proofmass/calibrate/tumble.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "proofmass/calibrate/tumble_coefficients.hpp"
+#include "proofmass/calibrate/tumble_design.hpp"
+#include "proofmass/calibrate/tumble_findings.hpp"
+#include "proofmass/calibrate/tumble_regression.hpp"
+#include "proofmass/calibrate/tumble_words.hpp"
+#include "proofmass/core/contract.hpp"
+#include "proofmass/core/units.hpp"
+
+namespace proofmass::calibrate {
+namespace {
+
+std::string named(View<TumblePosition> positions, std::size_t k) {
+  return positions[k].label.empty() ? fmt::format("position {}", k + 1) : positions[k].label;
+}
+
+Status check(View<TumblePosition> positions, const TumbleOptions& options) {
+  PM_EXPECTS(options.gravity_mps2 > 0.0 && options.gravity_std_mps2 >= 0.0);
+  PM_EXPECTS(options.indexing_std_rad >= 0.0 && options.noise_dof >= 0.0);
+  if (positions.size() < 2)
+    return Error{Errc::too_few_samples,
+                 fmt::format("{} positions: scale factor and bias need two, the input axis up and "
+                             "down; four or more tell the rest",
+                             positions.size())};
+  constexpr std::size_t most = 5000;
+  if (positions.size() > most)
+    return Error{Errc::invalid_argument,
+                 fmt::format("{} positions: expected {} at most; is this a recording of a table "
+                             "that turns?",
+                             positions.size(), most)};
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    const TumblePosition& p = positions[k];
+    if (!std::isfinite(p.angle_rad) || !std::isfinite(p.output) || !std::isfinite(p.mount_rad) ||
+        !std::isfinite(p.output_std) || (p.time_s && !std::isfinite(*p.time_s)))
+      return Error{Errc::not_finite,
+                   named(positions, k) + ": angle, output, std or time is no number"};
+    if (p.output_std < 0.0)
+      return Error{Errc::invalid_argument, named(positions, k) + ": its std is below 0"};
+    if (p.plane != 1 && p.plane != 2)
+      return Error{Errc::invalid_argument,
+                   fmt::format("{}: plane {}: expected 1 or 2", named(positions, k), p.plane)};
+  }
+  return Done{};
+}
+
+TumbleErrors errors_of(View<TumblePosition> positions,
+                       const TumbleOptions& options,
+                       const TumbleDesign& design,
+                       bool noise_known) {
+  TumbleErrors errors;
+  const auto n = static_cast<Eigen::Index>(positions.size());
+  errors.noise_known = noise_known;
+  errors.noise_dof = noise_known ? options.noise_dof : 0.0;
+  errors.noise_std = Eigen::VectorXd::Ones(n);
+  errors.lever = Eigen::VectorXd::Zero(n);
+  errors.setting = design.setting;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    if (noise_known) errors.noise_std(k) = positions[row].output_std;
+    errors.lever(k) = std::cos(design.phi_rad[row]);  // times K1 g, which is not known yet
+  }
+  return errors;
+}
+
+// Fits once for K1 where indexing counts, and again with its lever.
+TumbleRegression regress(const TumbleDesign& design,
+                         const Eigen::VectorXd& outputs,
+                         TumbleErrors errors,
+                         double indexing_std_rad) {
+  TumbleRegression found = regress_tumble(design.A, outputs, errors);
+  if (indexing_std_rad <= 0.0) return found;
+  errors.lever *= std::abs(swing_of(design, found.beta));
+  errors.indexing_std_rad = indexing_std_rad;
+  return regress_tumble(design.A, outputs, errors);
+}
+
+Status check_swing(const TumbleSolution& solution, double largest_output) {
+  const TumbleDesign& design = solution.design;
+  const auto sine = design.find(TumbleTerm::sine);
+  if (!sine || !design.find(TumbleTerm::up_down))
+    return Error{Errc::not_observable,
+                 "scale factor and bias cannot be told apart: the input axis has to point up in "
+                 "one position and down in another"};
+  const TumbleRegression& regression = solution.regression;
+  const double swing = swing_of(design, regression.beta);
+  const auto k = static_cast<Eigen::Index>(*sine);
+  const double std = std::sqrt(regression.noise_covariance(k, k));
+  double across = 0.0;  // of an axis nearer to the other one
+  for (std::size_t j = 0; j < design.columns.size(); ++j)
+    if (design.columns[j].term == TumbleTerm::cosine)
+      across = std::max(across, std::abs(regression.beta(static_cast<Eigen::Index>(j))));
+  constexpr double least_stds = 5.0, rounding = 1e-12;
+  if (std::abs(swing) <= std::max({rounding * largest_output, least_stds * std, across}))
+    return Error{
+        Errc::not_observable,
+        fmt::format("the output does not follow sin(angle): its part with the sine is {:.3g} ± "
+                    "{:.2g}, with the cosine {:.3g}; is this the input axis, and are the "
+                    "angles those of the positions?",
+                    swing, std, across)};
+  return Done{};
+}
+
+// A bias of more than this is no bias but the output's nominal zero, half the supply or so.
+constexpr double largest_bias_g = 2.0;
+
+void add_zero_note(const TumbleOptions& options, TumbleFit& fit) {
+  const TumbleCoefficient* K0 = fit.find(TumbleQuantity::K0_up_down);
+  if (options.output_unit == "m/s^2" || K0 == nullptr || !K0->value) return;
+  if (std::abs(*K0->value) > largest_bias_g * options.gravity_mps2)
+    fit.notes.push_back(fmt::format(
+        "the bias is counted from an output of 0{}{}: the nominal zero of the sensor is in it",
+        options.output_unit.empty() ? "" : " ", options.output_unit));
+}
+
+void add_notes(View<TumblePosition> positions, bool some_noise, TumbleFit& fit) {
+  const auto add = [&](std::string note) { fit.notes.push_back(std::move(note)); };
+  if (some_noise)
+    add("the noise is stated of some positions only: it was left aside, the residuals judge");
+  if (fit.scatter > 1.0)
+    add(
+        fmt::format("the residuals are {:.3g} times what the noise explains: all standard "
+                    "deviations were widened by that",
+                    fit.scatter));
+  for (std::size_t k = 0; k < fit.positions.size(); ++k) {
+    const TumbleResidual& r = fit.positions[k];
+    if (r.suspect)
+      add(fmt::format(
+          "{} at {:.4g}° contradicts the others by {:.3g} standard deviations: look at "
+          "its angle and reading; it stays in the fit",
+          named(positions, k), positions[k].angle_rad / rad_per_deg, std::abs(*r.studentised)));
+  }
+  if (fit.lack_of_fit && fit.lack_of_fit->p < 0.01 && fit.scatter == 1.0)
+    add(
+        fmt::format("the model does not fit to within the scatter of the repeated positions (F = "
+                    "{:.3g}, p = {:.2g})",
+                    fit.lack_of_fit->statistic, fit.lack_of_fit->p));
+  for (const TumbleCoefficient& c : fit.coefficients) {
+    if (c.quantity != TumbleQuantity::third_cosine || !c.value || !c.half_width_95) continue;
+    if (std::abs(*c.value) > 1.7 * *c.half_width_95)
+      add(
+          fmt::format("cos 3φ, which the model does not have, is {:.3g} ± {:.2g} m/s²: a cubic "
+                      "cross-axis term or an indexing error of twice a turn",
+                      *c.value, *c.std));
+  }
+}
+
+}  // namespace
+
+const TumbleCoefficient* TumbleFit::find(TumbleQuantity quantity, int plane) const {
+  const auto place = place_of(quantity, plane);
+  return place ? &coefficients[*place] : nullptr;
+}
+
+std::optional<std::size_t> TumbleFit::place_of(TumbleQuantity quantity, int plane) const {
+  for (std::size_t k = 0; k < coefficients.size(); ++k) {
+    const TumbleCoefficient& c = coefficients[k];
+    if (c.quantity == quantity && (plane == 0 || c.plane == plane)) return k;
+  }
+  return std::nullopt;
+}
+
+Result<TumbleFit> fit_tumble(View<TumblePosition> positions, const TumbleOptions& options) {
+  if (const Status good = check(positions, options); !good) return good.error();
+  const auto stated = static_cast<std::size_t>(
+      std::count_if(positions.begin(), positions.end(),
+                    [](const TumblePosition& p) { return p.output_std > 0.0; }));
+  TumbleFit fit;
+  fit.noise_known = stated == positions.size();
+  const TumbleDesign design = design_tumble(positions, options.phase_rad, fit.noise_known);
+  const auto n = static_cast<Eigen::Index>(positions.size());
+  Eigen::VectorXd outputs(n);
+  for (Eigen::Index k = 0; k < n; ++k) outputs(k) = positions[static_cast<std::size_t>(k)].output;
+  const double largest = outputs.cwiseAbs().maxCoeff(), offset = outputs.mean();
+  outputs.array() -= offset;
+  const TumbleRegression regression =
+      regress(design, outputs, errors_of(positions, options, design, fit.noise_known),
+              options.indexing_std_rad);
+  const TumbleSolution solution{design, regression, options, offset};
+  if (const Status seen = check_swing(solution, largest); !seen) return seen.error();
+  fit.parameters = design.columns.size();
+  fit.dof = positions.size() - fit.parameters;
+  fit.residual_rms = std::sqrt(regression.rss / static_cast<double>(n));
+  if (fit.dof > 0) fit.residual_std = std::sqrt(regression.rss / static_cast<double>(fit.dof));
+  if (fit.noise_known) fit.scatter = regression.sigma;
+  find_coefficients(solution, fit);
+  find_residuals(solution, positions, fit);
+  fit.lack_of_fit = find_lack_of_fit(solution, positions, outputs);
+  fit.drift = find_drift(solution, positions, fit);
+  fit.indexing = indexing_words(solution, fit);
+  add_notes(positions, stated > 0 && !fit.noise_known, fit);
+  add_zero_note(options, fit);
+  return fit;
+}
+
+}  // namespace proofmass::calibrate

@@ -1,0 +1,207 @@
+#include "proofmass/calibrate/tumble_findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <tuple>
+
+#include "proofmass/core/chi_square.hpp"
+
+namespace proofmass::calibrate {
+namespace {
+
+constexpr double chance = 0.01;
+constexpr double rounding = 1e-12;  // of the outputs' size: residuals below are none
+
+// Of so large a studentised residual or larger, one position alone.
+double residual_p(double t, double dof) {
+  if (dof > 0.0) return student_t_p(t, dof);
+  return chi_square_p(t * t, 1.0);
+}
+
+// Externally studentised, with the degrees of freedom that are left.
+std::optional<double> studentised(double z, double dof, bool external) {
+  if (!external) return z;
+  if (dof < 2.0) return std::nullopt;
+  const double left = std::max(dof - z * z, 1e-12 * dof);
+  return z * std::sqrt((dof - 1.0) / left);
+}
+
+// The same number where a position is the same in all that the model knows of.
+std::vector<std::size_t> visits(View<TumblePosition> positions, std::size_t& count) {
+  constexpr double same_rad = 1e-5;
+  std::vector<std::size_t> number;
+  count = 0;
+  const auto same = [&](const TumblePosition& a, const TumblePosition& b) {
+    const double turn = 2.0 * std::acos(-1.0);
+    return std::abs(std::remainder(a.angle_rad - b.angle_rad, turn)) < same_rad &&
+           std::abs(std::remainder(a.mount_rad - b.mount_rad, turn)) < same_rad &&
+           a.plane == b.plane && a.direction == b.direction;
+  };
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    std::size_t j = 0;
+    while (j < k && !same(positions[j], positions[k])) ++j;
+    number.push_back(j < k ? number[j] : count++);
+  }
+  return number;
+}
+
+struct Within {
+  double rss = 0.0, dof = 0.0;
+};
+
+// About the mean of each position visited, the drift taken out if the model has it.
+Within within_visits(View<TumblePosition> positions,
+                     const Eigen::VectorXd& outputs,
+                     const Eigen::VectorXd* drift) {
+  std::size_t count = 0;
+  const std::vector<std::size_t> number = visits(positions, count);
+  const auto centred = [&](const Eigen::VectorXd& values) {
+    std::vector<double> sum(count, 0.0), visited(count, 0.0);
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      sum[number[k]] += values(static_cast<Eigen::Index>(k));
+      visited[number[k]] += 1.0;
+    }
+    Eigen::VectorXd out = values;
+    for (std::size_t k = 0; k < number.size(); ++k)
+      out(static_cast<Eigen::Index>(k)) -= sum[number[k]] / visited[number[k]];
+    return out;
+  };
+  Eigen::VectorXd y = centred(outputs);
+  Within out{.dof = static_cast<double>(positions.size() - count)};
+  if (drift != nullptr) {
+    const Eigen::VectorXd d = centred(*drift);
+    constexpr double least = 1e-9;
+    if (d.squaredNorm() > least) {
+      y -= d * (d.dot(y) / d.squaredNorm());
+      out.dof -= 1.0;
+    }
+  }
+  out.rss = y.squaredNorm();
+  return out;
+}
+
+std::string rate_unit(bool in_time) {
+  return in_time ? "per second" : "per position";
+}
+
+// Of the two visits of one position that lie farthest apart.
+std::optional<double> closure_rate(const TumbleSolution& solution, View<TumblePosition> positions) {
+  const TumbleDesign& design = solution.design;
+  const double K1 = swing_of(design, solution.regression.beta) / solution.options.gravity_mps2;
+  double farthest = 0.0;
+  std::optional<double> rate;
+  for (std::size_t j = 0; j < positions.size(); ++j) {
+    for (std::size_t k = 0; k < j; ++k) {
+      const double apart = design.when[j] - design.when[k];
+      const bool same = design.setting[j] == design.setting[k] &&
+                        positions[j].plane == positions[k].plane &&
+                        std::abs(positions[j].mount_rad - positions[k].mount_rad) < 1e-3;
+      if (!same || std::abs(apart) <= farthest) continue;
+      farthest = std::abs(apart);
+      rate = (positions[j].output - positions[k].output) / apart / K1;
+    }
+  }
+  return rate;
+}
+
+}  // namespace
+
+void find_residuals(const TumbleSolution& solution,
+                    View<TumblePosition> positions,
+                    TumbleFit& fit) {
+  const TumbleRegression& regression = solution.regression;
+  const bool indexing = solution.options.indexing_std_rad > 0.0;
+  // With two kinds of error there is no exact rule: Student's t errs to the careful side.
+  const bool external = (!fit.noise_known || fit.scatter > 1.0) && !indexing;
+  const auto dof = static_cast<double>(fit.dof);
+  const double left = external ? dof - 1.0 : regression.dof;
+  double size = 0.0;
+  for (const TumblePosition& p : positions) size = std::max(size, std::abs(p.output));
+  const double least = chance / static_cast<double>(positions.size());
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    TumbleResidual out;
+    out.residual = regression.residual(row);
+    out.fitted = positions[k].output - out.residual;
+    const double variance = regression.residual_variance(row);
+    if (regression.has_scale) out.std = std::sqrt(variance);
+    // A position that alone carries a parameter is met exactly.
+    const bool judged = out.std && *out.std > rounding * size && fit.dof > 0;
+    if (judged) out.studentised = studentised(out.residual / *out.std, dof, external);
+    out.suspect = out.studentised && residual_p(*out.studentised, left) < least;
+    fit.positions.push_back(out);
+  }
+}
+
+std::optional<TumbleLackOfFit> find_lack_of_fit(const TumbleSolution& solution,
+                                                View<TumblePosition> positions,
+                                                const Eigen::VectorXd& outputs) {
+  const TumbleRegression& regression = solution.regression;
+  const auto n = static_cast<Eigen::Index>(positions.size());
+  const auto dof = static_cast<std::size_t>(n - solution.design.A.cols());
+  if (dof == 0) return std::nullopt;
+  TumbleLackOfFit out;
+  if (regression.noise_known) {
+    out.against = "noise of the means";
+    out.dof = dof;
+    out.noise_dof = regression.noise_dof;
+    out.statistic = regression.chi_square / static_cast<double>(dof);
+    out.p = out.noise_dof > 0.0 ? fisher_f_p(out.statistic, static_cast<double>(dof), out.noise_dof)
+                                : chi_square_p(regression.chi_square, static_cast<double>(dof));
+    return out;
+  }
+  // An error of indexing comes again at each visit: repeated positions do not show it.
+  if (solution.options.indexing_std_rad > 0.0) return std::nullopt;
+  const auto drift = solution.design.find(TumbleTerm::drift);
+  Eigen::VectorXd column;
+  if (drift) column = solution.design.A.col(static_cast<Eigen::Index>(*drift));
+  const Within within = within_visits(positions, outputs, drift ? &column : nullptr);
+  const double lack = static_cast<double>(dof) - within.dof;
+  const double size = outputs.cwiseAbs().maxCoeff();
+  const double floor = rounding * rounding * size * size;
+  if (within.dof < 1.0 || lack < 1.0 || within.rss <= floor) return std::nullopt;
+  out.against = "repeated positions";
+  out.dof = static_cast<std::size_t>(lack);
+  out.noise_dof = within.dof;
+  out.statistic = std::max(regression.rss - within.rss, 0.0) / lack / (within.rss / within.dof);
+  out.p = fisher_f_p(out.statistic, lack, within.dof);
+  return out;
+}
+
+TumbleDrift find_drift(const TumbleSolution& solution,
+                       View<TumblePosition> positions,
+                       const TumbleFit& fit) {
+  const TumbleDesign& design = solution.design;
+  TumbleDrift out;
+  out.known = design.closed;
+  out.in_time = design.in_time;
+  const TumbleCoefficient* found = fit.find(TumbleQuantity::drift);
+  out.removed = found != nullptr && found->value.has_value();
+  if (!out.known) {
+    out.words =
+        "drift during the test is unknown: no position was visited again late enough, and a change "
+        "of the bias would be taken for the other coefficients";
+    return out;
+  }
+  if (!out.removed) {
+    out.rate_mps2 = closure_rate(solution, positions);
+    out.words = fmt::format(
+        "the repeated position shows a drift of {:.3g} m/s² {}, which was left in: {} positions "
+        "leave none over to judge by if it is taken out",
+        out.rate_mps2.value_or(0.0), rate_unit(out.in_time), positions.size());
+    return out;
+  }
+  out.rate_mps2 = found->value;
+  out.words =
+      fmt::format("drift of {:.3g} m/s² {} was taken out", *found->value, rate_unit(out.in_time));
+  if (found->std && *found->std > 0.0) {
+    out.p = residual_p(*found->value / *found->std, found->dof);
+    out.words += *out.p < 0.05 ? fmt::format(": it is more than chance (p = {:.2g})", *out.p)
+                               : fmt::format(": it may be chance (p = {:.2g})", *out.p);
+  }
+  if (!out.in_time) out.words += "; the rows' order was taken for that of the visits";
+  return out;
+}
+
+}  // namespace proofmass::calibrate

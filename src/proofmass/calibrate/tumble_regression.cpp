@@ -1,0 +1,102 @@
+#include "proofmass/calibrate/tumble_regression.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proofmass/calibrate/tumble_scatter.hpp"
+#include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/linalg.hpp"
+
+namespace proofmass::calibrate {
+namespace {
+
+constexpr double beyond_chance = 0.01;
+
+// The lever of each setting as a vector over the positions.
+std::vector<Eigen::VectorXd> setting_levers(const TumbleErrors& errors) {
+  const std::size_t count = 1 + *std::max_element(errors.setting.begin(), errors.setting.end());
+  std::vector<Eigen::VectorXd> levers(count, Eigen::VectorXd::Zero(errors.lever.size()));
+  for (std::size_t k = 0; k < errors.setting.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    levers[errors.setting[k]](row) = errors.lever(row);
+  }
+  return levers;
+}
+
+// V^(−½) X of V = I + u² Σ v vᵀ, whose v have no position in common.
+Eigen::MatrixXd whitened(Eigen::MatrixXd X, const std::vector<Eigen::VectorXd>& levers, double u) {
+  for (const Eigen::VectorXd& v : levers) {
+    const double square = v.squaredNorm();
+    if (square <= 0.0) continue;
+    const double factor = (1.0 - 1.0 / std::sqrt(1.0 + u * u * square)) / square;
+    const Eigen::RowVectorXd along = v.transpose() * X;
+    X -= factor * v * along;
+  }
+  return X;
+}
+
+double residual_square(const Eigen::MatrixXd& A, const Eigen::VectorXd& y) {
+  const Eigen::MatrixXd inverse = positive_inverse(A.transpose() * A);
+  return (y - A * (inverse * (A.transpose() * y))).squaredNorm();
+}
+
+}  // namespace
+
+TumbleRegression regress_tumble(const Eigen::MatrixXd& A,
+                                const Eigen::VectorXd& y,
+                                const TumbleErrors& errors) {
+  TumbleRegression out;
+  const Eigen::Index n = A.rows();
+  const auto dof = static_cast<double>(n - A.cols());
+  const double u = errors.indexing_std_rad;
+  // From here on in units of each position's noise.
+  const Eigen::VectorXd root_weight = errors.noise_std.cwiseInverse();
+  const Eigen::MatrixXd B = root_weight.asDiagonal() * A;
+  const Eigen::VectorXd z = root_weight.cwiseProduct(y);
+  const Eigen::MatrixXd cofactor = positive_inverse(B.transpose() * B);
+  out.beta = cofactor * (B.transpose() * z);
+  out.beta += cofactor * (B.transpose() * (z - B * out.beta));  // one step of refinement
+  const Eigen::VectorXd r = z - B * out.beta;
+  out.residual = y - A * out.beta;
+  out.rss = out.residual.squaredNorm();
+
+  const Eigen::MatrixXd hat = B * cofactor;
+  Eigen::VectorXd indexing = Eigen::VectorXd::Zero(n);  // its share of each residual's variance
+  out.indexing_covariance = Eigen::MatrixXd::Zero(A.cols(), A.cols());
+  std::vector<Eigen::VectorXd> levers;
+  if (u > 0.0) levers = setting_levers(errors);
+  for (Eigen::VectorXd& v : levers) {
+    v = v.cwiseProduct(root_weight);
+    const Eigen::VectorXd moved = cofactor * (B.transpose() * v);
+    indexing += u * u * (v - B * moved).cwiseAbs2();
+    out.indexing_covariance += u * u * moved * moved.transpose();
+  }
+
+  out.noise_known = errors.noise_known;
+  out.noise_dof = errors.noise_dof;
+  if (errors.noise_known) {
+    out.chi_square =
+        dof > 0.0 ? residual_square(whitened(B, levers, u), whitened(z, levers, u)) : 0.0;
+    const bool beyond = dof > 0.0 && (errors.noise_dof > 0.0
+                                          ? fisher_f_p(out.chi_square / dof, dof, errors.noise_dof)
+                                          : chi_square_p(out.chi_square, dof)) < beyond_chance;
+    out.sigma = beyond ? std::sqrt(out.chi_square / dof) : 1.0;
+    out.dof = beyond ? dof : errors.noise_dof;
+    out.has_scale = true;
+  } else if (dof > 0.0) {
+    for (Eigen::VectorXd& v : levers) v *= u;
+    const TumbleScatter own =
+        u > 0.0 ? restricted_scatter(A, y, levers) : TumbleScatter{std::sqrt(out.rss / dof), dof};
+    out.sigma = own.sigma;
+    out.dof = own.dof;
+    out.has_scale = true;
+  }
+  out.noise_covariance = out.sigma * out.sigma * cofactor;
+  const Eigen::VectorXd leverage = hat.cwiseProduct(B).rowwise().sum();
+  out.residual_variance = (out.sigma * out.sigma * (Eigen::VectorXd::Ones(n) - leverage) + indexing)
+                              .cwiseMax(0.0)
+                              .cwiseProduct(errors.noise_std.cwiseAbs2());
+  return out;
+}
+
+}  // namespace proofmass::calibrate

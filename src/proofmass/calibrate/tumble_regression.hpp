@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+// Least squares with errors of two kinds: each position's own and those of the table's settings.
+namespace proofmass::calibrate {
+
+/// What the positions may be wrong by.
+struct TumbleErrors {
+  Eigen::VectorXd noise_std;  ///< of each output; all 1 where it is not known
+  bool noise_known = false;
+  double noise_dof = 0.0;            ///< 0: infinitely many
+  Eigen::VectorXd lever;             ///< output per radian of indexing: K1 g cos φ
+  std::vector<std::size_t> setting;  ///< positions of one number share their error of indexing
+  double indexing_std_rad = 0.0;
+};
+
+/// y = A β + e, cov e = σ² diag(noise_std²) + indexing.
+struct TumbleRegression {
+  Eigen::VectorXd beta, residual;
+  Eigen::MatrixXd noise_covariance;     ///< of β
+  Eigen::MatrixXd indexing_covariance;  ///< of β
+  Eigen::VectorXd residual_variance;    ///< of each residual, as expected
+  double sigma = 0.0;                   ///< factor on noise_std; of unknown noise its std
+  double dof = 0.0;                     ///< of sigma; 0: infinitely many
+  bool noise_known = false;
+  double noise_dof = 0.0;   ///< of the stated noise
+  double rss = 0.0;         ///< Σ residual²
+  double chi_square = 0.0;  ///< rᵀV⁻¹r about the best fit, V of the stated errors (known noise)
+  bool has_scale = false;   ///< sigma is known: stated noise, or positions to spare
+};
+
+/// β = (AᵀWA)⁻¹AᵀWy = G y, W = diag(1/noise_std²);
+///
+///     cov β = σ² (AᵀWA)⁻¹ + u² G (Σ v vᵀ) Gᵀ,   v the lever of one setting.
+///
+/// Where noise is not known σ² = rss/(n − p), beside indexing by restricted likelihood
+/// (tumble_scatter.hpp); where it is, σ = 1, or √(χ²/(n − p)) if χ² is beyond chance.
+/// A must have full rank. Cost: O(n p²), with indexing O(settings · n · p).
+[[nodiscard]] TumbleRegression regress_tumble(const Eigen::MatrixXd& A,
+                                              const Eigen::VectorXd& y,
+                                              const TumbleErrors& errors);
+
+}  // namespace proofmass::calibrate

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proofmass/core/result.hpp"
+
+// The uncertainty of a result from those of what it was computed from.
+// Source: JCGM 100:2008, Guide to the Expression of Uncertainty in Measurement (GUM).
+namespace proofmass::calibrate {
+
+enum class Distribution { normal, uniform, triangular, arcsine, student_t };
+
+/// "normal", "uniform", "triangular", "arcsine", "Student t".
+[[nodiscard]] std::string_view name_of(Distribution distribution);
+
+/// Standard deviation of what lies within ± half_width: over √3 uniform, √6 triangular, √2 arcsine.
+/// Of normal and student_t, which have no width, half_width is taken for the standard deviation.
+/// Source: GUM, 4.3.7 and 4.3.9.
+[[nodiscard]] double std_of_half_width(double half_width, Distribution distribution);
+
+/// One input x of a result y.
+struct BudgetLine {
+  std::string source;  ///< "gravity"
+  bool type_a = false;
+  Distribution distribution = Distribution::normal;
+  double std = 0.0;          ///< u(x), standard uncertainty
+  std::string unit;          ///< of std
+  double sensitivity = 1.0;  ///< c = ∂y/∂x
+  double dof = 0.0;          ///< of u(x); 0: infinitely many
+
+  [[nodiscard]] double contribution() const { return sensitivity * std; }  ///< c u(x), with sign
+};
+
+/// What is measured.
+struct Measurand {
+  std::string quantity;  ///< "bias x"
+  std::string unit;
+  double value = 0.0;
+};
+
+struct UncertaintyBudget {
+  Measurand measurand;
+  std::vector<BudgetLine> lines;
+  std::vector<double> shares;       ///< of each line in the variance; they add up to 1
+  double combined_std = 0.0;        ///< u_c
+  double effective_dof = 0.0;       ///< 0: infinitely many
+  double coverage_factor_95 = 0.0;  ///< k
+  double expanded_95 = 0.0;         ///< U = k u_c
+};
+
+/// The factor that makes a standard uncertainty with so many degrees of freedom (0: infinitely
+/// many) an interval of this confidence: Student's t, the degrees of freedom cut to a whole number.
+/// Source: GUM, G.3 and G.4. level in (0, 1).
+[[nodiscard]] double coverage_factor(double level, double dof);
+
+/// Combines the lines,
+///
+///     u_c² = Σᵢ Σⱼ cᵢ uᵢ rᵢⱼ cⱼ uⱼ,     ν_eff = u_c⁴ / Σ_g (u_g⁴ / ν_g),     U = t₉₅(ν_eff) u_c,
+///     share of line i = cᵢ uᵢ Σⱼ rᵢⱼ cⱼ uⱼ / u_c²,
+///
+/// with the correlation matrix r (empty: none are correlated). In ν_eff a group g is one line, or
+/// all lines that correlation ties together: they count as one, with the least of their degrees of
+/// freedom (exact where all were observed together).
+///
+/// Source: GUM, 5.1.2, 5.2.2, G.4.1 (Welch–Satterthwaite); for groups R. Willink, Metrologia 44
+/// (2007) 340.
+/// Errors: not_finite (a figure is not), invalid_argument (a std or dof below 0; a correlation
+/// matrix of another size, not symmetric, with a diagonal other than 1 or not a possible one).
+[[nodiscard]] Result<UncertaintyBudget> combine(Measurand measurand,
+                                                std::vector<BudgetLine> lines,
+                                                const Eigen::MatrixXd& correlation = {});
+
+}  // namespace proofmass::calibrate

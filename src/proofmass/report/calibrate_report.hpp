@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proofmass/calibrate/cross_axis.hpp"
+#include "proofmass/calibrate/multi_position.hpp"
+#include "proofmass/calibrate/multi_position_check.hpp"
+#include "proofmass/calibrate/supply.hpp"
+#include "proofmass/calibrate/uncertainty_budget.hpp"
+#include "proofmass/calibrate/validation.hpp"
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/units.hpp"
+#include "proofmass/report/certificate.hpp"
+
+namespace proofmass::report {
+
+/// How the poses came to be known.
+enum class PoseOrigin {
+  found,     ///< rests found in the recording
+  labelled,  ///< by the recording's own labels
+  listed,    ///< by a list of intervals
+  table,     ///< a table of means
+};
+
+/// One file and what it gave.
+struct PoseFile {
+  std::string file;
+  PoseOrigin origin = PoseOrigin::found;
+  std::size_t poses = 0;
+  std::size_t samples = 0;   ///< of the recording; 0 of a table
+  double duration_s = 0.0;   ///< 0 where its rate is not known
+  bool times_known = true;   ///< false: start and end of its poses are in samples
+  std::size_t rejected = 0;  ///< samples at rest that were passed over: no number, or a spike
+};
+
+/// One of several calibrations at different supplies.
+struct SuppliedFit {
+  double supply_v = 0.0;
+  std::string file;
+  calibrate::MultiPosition fit;
+};
+
+/// A multi-position calibration and what it was computed from.
+struct CalibrateReport {
+  std::vector<std::string> inputs;  ///< files, as the user named them
+  std::vector<PoseFile> files;
+  std::string sensor;                  ///< what the three channels' names share
+  Unit unit;                           ///< of the reading: m/s^2, V or counts
+  std::vector<calibrate::Pose> poses;  ///< one for each of fit.poses; times in s
+  std::vector<std::size_t> pose_file;  ///< index into files
+  std::array<double, 3> sample_std{};  ///< of one sample at rest; 0 where not known
+  calibrate::MultiPosition fit;        ///< type B contributions included
+  std::vector<calibrate::UncertaintyBudget> budgets;
+  std::optional<calibrate::MonteCarloCheck> check;
+  std::array<std::optional<calibrate::CrossAxis>, 3> cross_axis;  ///< none of z: it is the frame
+  std::optional<calibrate::Validation> validation;
+  std::vector<std::string> validation_files;
+  std::vector<SuppliedFit> supplies;  ///< one for each file where they were at different supplies
+  std::optional<calibrate::SupplyDependence> supply;
+  CertificateData certificate;  ///< names, conditions and limits; budgets are those above
+  std::vector<Note> notes;      ///< of reading and preparing; those of the fit are added
+};
+
+/// The document of `calibrate`: docs/schema/calibrate.schema.json.
+[[nodiscard]] std::string calibrate_json(const CalibrateReport& report);
+
+/// The page: conclusion, key figures, residual of each pose with its bounds, the poses' directions
+/// on the sphere, table of poses, budgets, next pose, supplies, and the certificate to print.
+[[nodiscard]] std::string calibrate_html(const CalibrateReport& report);
+
+/// For a terminal, without colour, closed by a newline.
+[[nodiscard]] std::string calibrate_text(const CalibrateReport& report);
+
+/// "24 positions, nine parameters: readings at rest are good to 0.06 mg; …", a verdict in words.
+[[nodiscard]] std::string calibrate_conclusion(const CalibrateReport& report);
+
+/// All notes: the report's own, then the fit's; suspects as Severity::bad, lack of fit and poses
+/// that are doubtful as warnings.
+[[nodiscard]] std::vector<Note> calibrate_notes(const CalibrateReport& report);
+
+/// One row a pose: start, end, means, force, residual, leave-one-out residual: what `--output`
+/// writes.
+[[nodiscard]] Recording calibrate_series(const CalibrateReport& report);
+
+}  // namespace proofmass::report

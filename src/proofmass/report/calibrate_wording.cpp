@@ -1,0 +1,252 @@
+#include "proofmass/report/calibrate_wording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "proofmass/calibrate/multi_position_budget.hpp"
+#include "proofmass/calibrate/rest_accuracy.hpp"
+#include "proofmass/report/wording.hpp"
+
+namespace proofmass::report {
+namespace {
+
+using calibrate::MultiPosition;
+using calibrate::PoseModel;
+using calibrate::PoseResidual;
+
+constexpr double g = standard_gravity_mps2;
+constexpr double mg = 1e-3 * g;
+constexpr std::array<char, 3> axis_names{'x', 'y', 'z'};
+
+const std::optional<Uncertain>& figure_of(const MultiPosition& fit, std::size_t k) {
+  return k < 3 ? fit.bias[k] : k < 6 ? fit.scale[k - 3] : fit.misalignment_rad[k - 6];
+}
+
+std::string meaning_of(std::size_t k, bool acceleration) {
+  constexpr std::array<const char*, 3> angles{"of x and y away from a right angle",
+                                              "of x and z away from a right angle",
+                                              "of y and z away from a right angle"};
+  if (k >= 6) return angles[k - 6];
+  if (k >= 3) return acceleration ? "reading over acceleration" : "reading per g";
+  return "reading at 0 g";
+}
+
+void set_units(std::size_t k, const Unit& unit, CalibrationFigure& out) {
+  if (k >= 6) {
+    out.unit = "rad";
+    out.factor = 1e3;
+    out.printed_unit = "mrad";
+    return;
+  }
+  const bool acceleration = unit.quantity == Quantity::acceleration;
+  const bool voltage = unit.quantity == Quantity::voltage;
+  const std::string printed = acceleration ? "mg" : voltage ? "mV" : unit.symbol;
+  const double factor = acceleration ? 1.0 / mg : voltage ? 1e3 : 1.0;
+  if (k < 3) {
+    out.unit = unit.symbol;
+    out.factor = factor;
+    out.printed_unit = printed;
+    return;
+  }
+  out.unit = acceleration ? "1" : unit.symbol + "/(m/s^2)";
+  out.factor = acceleration ? 1.0 : factor * g;
+  out.printed_unit = acceleration ? "" : printed + "/g";
+}
+
+// The budget's interval, which knows the degrees of freedom of all its lines.
+double half_width(const CalibrateReport& report, const std::string& key, double std) {
+  for (const calibrate::UncertaintyBudget& budget : report.budgets)
+    if (budget.measurand.quantity == key) return budget.expanded_95;
+  return calibrate::coverage_factor(0.95, report.fit.dof) * std;
+}
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+  return unit.empty() ? number : number + " " + unit;
+}
+
+// Why the angles were not fitted: the first words of the fit's own, which stand among the notes.
+std::string why_no_angles(const MultiPosition& fit) {
+  const std::string start = "misalignment_rad: null: ";
+  for (const std::string& note : fit.notes) {
+    if (!note.starts_with(start)) continue;
+    const std::string why = note.substr(start.size());
+    return why.substr(0, why.find(';'));
+  }
+  return "the positions do not carry it";
+}
+
+// Decimals that leave the typical residual two digits; rounding is no residual.
+int residual_decimals(const CalibrateReport& report) {
+  const double rms = report.fit.residual_rms_mps2 / mg;
+  constexpr double rounding = 1e-6;
+  if (!(rms > rounding)) return 3;
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(rms))), 0, 6);
+}
+
+// The first row is the head.
+void without_empty_columns(std::vector<std::vector<std::string>>& rows) {
+  for (std::size_t column = rows.front().size(); column-- > 0;) {
+    const auto blank = [&](const std::vector<std::string>& row) { return row[column].empty(); };
+    if (!std::all_of(rows.begin() + 1, rows.end(), blank)) continue;
+    for (std::vector<std::string>& row : rows)
+      row.erase(row.begin() + static_cast<std::ptrdiff_t>(column));
+  }
+}
+
+std::string verdict_of(const CalibrateReport& report, std::size_t k) {
+  const PoseResidual& pose = report.fit.poses[k];
+  if (pose.suspect)
+    return pose.used ? "contradicts the others; kept" : "contradicts the others; left out";
+  const std::vector<std::size_t>& doubtful = report.fit.doubtful;
+  if (std::find(doubtful.begin(), doubtful.end(), k) != doubtful.end()) return "doubtful";
+  return "";
+}
+
+}  // namespace
+
+std::vector<CalibrationFigure> calibration_figures(const CalibrateReport& report) {
+  std::vector<CalibrationFigure> out;
+  const bool known = stds_known(report);
+  const bool acceleration = report.unit.quantity == Quantity::acceleration;
+  for (std::size_t k = 0; k < 9; ++k) {
+    CalibrationFigure& one = out.emplace_back();
+    one.key = calibrate::parameter_names()[k];
+    one.meaning = meaning_of(k, acceleration);
+    one.figure = figure_of(report.fit, k);
+    if (one.figure && known) one.half_width_95 = half_width(report, one.key, one.figure->std);
+    set_units(k, report.unit, one);
+  }
+  return out;
+}
+
+std::string figure_words(const CalibrationFigure& figure, bool std_known) {
+  if (!figure.figure) return "not determined";
+  const double value = figure.figure->value * figure.factor;
+  if (!std_known) return with_unit(significant(value, 6), figure.printed_unit);
+  return with_std(Uncertain{value, figure.figure->std * figure.factor}, figure.printed_unit);
+}
+
+std::vector<std::vector<std::string>> figure_rows(const CalibrateReport& report) {
+  const bool known = stds_known(report);
+  std::vector<std::vector<std::string>> rows;
+  for (const CalibrationFigure& one : calibration_figures(report)) {
+    const std::string band =
+        one.half_width_95 ? "± " + significant(*one.half_width_95 * one.factor, 2) : "";
+    rows.push_back({one.key, figure_words(one, known), band,
+                    one.figure ? one.meaning : why_no_angles(report.fit)});
+  }
+  return rows;
+}
+
+bool stds_known(const CalibrateReport& report) {
+  return report.fit.dof > 0.0;
+}
+
+std::string model_words(PoseModel model) {
+  switch (model) {
+    case PoseModel::norm_9:
+      return "nine parameters";
+    case PoseModel::norm_6:
+      return "six parameters";
+    case PoseModel::given_12:
+      return "twelve parameters by given directions";
+    case PoseModel::six_position:
+      break;
+  }
+  return "six directions taken for exact";
+}
+
+std::string accuracy_words(const CalibrateReport& report) {
+  const std::optional<calibrate::RestAccuracy> found = calibrate::rest_accuracy(report.fit);
+  if (!found)
+    return "how good they are cannot be told: no position is to spare, and the noise of the means "
+           "is not known";
+  std::string text = "readings at rest are good to " + mg_words(found->overall_mps2) + " (68 %)";
+  constexpr double much = 2.0;
+  if (found->overall_mps2 > much * found->by_noise_mps2) {
+    text += fmt::format(", most of it from {}; noise alone leaves {}", found->main_type_b,
+                        mg_words(found->by_noise_mps2));
+  }
+  if (found->worst_mps2 > much * found->overall_mps2) {
+    text += fmt::format(", but to {} with {}, where positions are missing",
+                        mg_words(found->worst_mps2), direction_words(found->worst_up));
+  }
+  return text;
+}
+
+std::string mg_words(double accel_mps2) {
+  const double value = accel_mps2 / mg;
+  constexpr double rounding = 1e-7;
+  if (std::abs(value) < rounding) return "0 mg";
+  if (std::abs(value) < 1e-3) return significant(value * 1e3, 2) + " µg";
+  if (std::abs(value) >= 1e3) return significant(value * 1e-3, 3) + " g";
+  return significant(value, std::abs(value) >= 100.0 ? 3 : 2) + " mg";
+}
+
+std::string direction_words(const Eigen::Vector3d& force) {
+  const double length = force.norm();
+  if (!(length > 0.0)) return "";
+  const Eigen::Vector3d up = force / length;
+  Eigen::Index main = 0;
+  const double along = up.cwiseAbs().maxCoeff(&main);
+  const auto name = [&](Eigen::Index k) {
+    return std::string(up(k) < 0.0 ? "−" : "+") + axis_names[static_cast<std::size_t>(k)];
+  };
+  const double tilt_deg = std::acos(std::min(along, 1.0)) / rad_per_deg;
+  std::string text = name(main) + " up";
+  if (tilt_deg < 0.95) return text;
+  Eigen::Index more = (main + 1) % 3, less = (main + 2) % 3;
+  if (std::abs(up(less)) > std::abs(up(more))) std::swap(more, less);
+  text += fmt::format(", {}° to {}", fixed(tilt_deg, 0), name(more));
+  // Within 22.5° of an axis the axis alone is said.
+  constexpr double aside = 0.41421356;
+  if (std::abs(up(less)) > aside * std::abs(up(more))) text += " and " + name(less);
+  return text;
+}
+
+std::string time_words(const CalibrateReport& report, std::size_t k) {
+  const calibrate::Pose& pose = report.poses[k];
+  if (!pose.start_s || !pose.end_s) return "";
+  const PoseFile& file = report.files[report.pose_file[k]];
+  if (!file.times_known)
+    return fmt::format("samples {}–{}", compact(*pose.start_s, 9), compact(*pose.end_s, 9));
+  const int decimals = *pose.end_s < 1e4 ? 1 : 0;
+  return fmt::format("{}–{} s", fixed(*pose.start_s, decimals), fixed(*pose.end_s, decimals));
+}
+
+std::string position_words(const CalibrateReport& report, std::size_t k) {
+  std::vector<std::string> parts;
+  if (report.files.size() > 1) parts.push_back(file_name(report.files[report.pose_file[k]].file));
+  if (!report.poses[k].label.empty()) parts.push_back(report.poses[k].label);
+  if (std::string time = time_words(report, k); !time.empty()) parts.push_back(std::move(time));
+  if (parts.empty()) return std::to_string(k + 1);
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return fmt::format("{} ({})", k + 1, text);
+}
+
+std::vector<std::vector<std::string>> position_rows(const CalibrateReport& report) {
+  const int decimals = residual_decimals(report);
+  std::vector<std::vector<std::string>> rows{
+      {"position", "when", "direction", "residual, mg", "by the others, mg", "t", "verdict"}};
+  for (std::size_t k = 0; k < report.poses.size(); ++k) {
+    const PoseResidual& pose = report.fit.poses[k];
+    std::string where = report.poses[k].label;
+    if (std::string time = time_words(report, k); !time.empty())
+      where += (where.empty() ? "" : ", ") + time;
+    if (report.files.size() > 1) {
+      const std::string file = file_name(report.files[report.pose_file[k]].file);
+      where = where.empty() ? file : file + ", " + where;
+    }
+    rows.push_back({std::to_string(k + 1), std::move(where), direction_words(pose.force_mps2),
+                    fixed(pose.residual_mps2 / mg, decimals),
+                    pose.leave_one_out_mps2 ? fixed(*pose.leave_one_out_mps2 / mg, decimals) : "",
+                    pose.studentised ? fixed(*pose.studentised, 1) : "", verdict_of(report, k)});
+  }
+  without_empty_columns(rows);
+  return rows;
+}
+
+}  // namespace proofmass::report
