@@ -70,14 +70,40 @@ MultiPosition fitted(const PoseSet& set, MultiPositionOptions options) {
   throw Failure(status_of(fit.error(), Stage::computing), fit.error().at(files).message);
 }
 
+// Of several supplies the one whose figures stand at the top: the nearest to their mean.
+std::optional<double> main_supply_v(const CalibrateCommand& command) {
+  const std::vector<double>& supplies = command.supplies_v;
+  if (supplies.empty()) return std::nullopt;
+  double mean = 0.0;
+  for (const double supply_v : supplies) mean += supply_v / static_cast<double>(supplies.size());
+  return *std::min_element(supplies.begin(), supplies.end(), [mean](double a, double b) {
+    return std::abs(a - mean) < std::abs(b - mean);
+  });
+}
+
+// Readings at different supplies are no calibration together: the files at that supply alone are.
+std::vector<std::string> main_files(const CalibrateCommand& command) {
+  const std::optional<double> supply_v = main_supply_v(command);
+  if (!supply_v) return command.files;
+  std::vector<std::string> files;
+  for (std::size_t k = 0; k < command.files.size(); ++k)
+    if (command.supplies_v[k] == *supply_v) files.push_back(command.files[k]);
+  return files;
+}
+
 // One calibration for each file, at its own supply, and what they have to do with it.
 void calibrate_supplies(const CalibrateCommand& command,
                         const MultiPositionOptions& options,
                         report::CalibrateReport& report) {
   std::vector<calibrate::SupplyPoint> points;
   for (std::size_t k = 0; k < command.files.size(); ++k) {
-    std::vector<Note> seen_before;
-    const PoseSet set = read_poses({command.files[k]}, command, seen_before);
+    std::vector<Note> notes;
+    const PoseSet set = read_poses({command.files[k]}, command, notes);
+    // Those of the files at the top have been told.
+    if (command.supplies_v[k] != main_supply_v(command)) {
+      for (const Note& note : notes)
+        report.notes.push_back({note.severity, command.files[k] + ": " + note.text});
+    }
     MultiPositionOptions own = options;
     // Gravity is the same at all supplies and says nothing of their difference.
     own.gravity_std_mps2 = 0.0;
@@ -124,9 +150,9 @@ sensor::MeasuredCalibration measured(const CalibrateCommand& command,
   out.gravity_mps2 = report.certificate.gravity_mps2;
   if (command.temperature_c) out.temperature_k = *command.temperature_c + 273.15;
   out.supply_v = reference_supply_v;
-  if (unit == "V" && command.supplies_v.size() == 1) out.supply_v = command.supplies_v.front();
+  if (unit == "V") out.supply_v = main_supply_v(command);
   out.origin = fmt::format("proofmass calibrate {}, {} positions",
-                           report::file_name(command.files.front()), fit.poses.size());
+                           report::file_name(report.files.front().file), fit.poses.size());
   out.name = command.name;
   out.serial = command.serial;
   out.date = command.date;
@@ -149,10 +175,10 @@ void fill_certificate(const CalibrateCommand& command,
   data.name = command.name;
   data.serial = command.serial;
   data.date = command.date;
-  data.files = command.files;
+  data.files = main_files(command);
   data.gravity_mps2 = gravity;
   if (command.temperature_c) data.temperature_k = Uncertain{*command.temperature_c + 273.15, 0.0};
-  if (command.supplies_v.size() == 1) data.supply_v = Uncertain{command.supplies_v.front(), 0.0};
+  if (const auto supply_v = main_supply_v(command)) data.supply_v = Uncertain{*supply_v, 0.0};
   data.positions = report.fit.poses.size();
 }
 
@@ -170,8 +196,7 @@ void check_by_draws(const CalibrateCommand& command,
   if (check)
     report.check = std::move(check).value();
   else
-    report.notes.push_back(
-        {Severity::warning, "monte_carlo: null: " + check.error().message});
+    report.notes.push_back({Severity::warning, "monte_carlo: null: " + check.error().message});
 }
 
 }  // namespace
@@ -183,7 +208,7 @@ void run(const CalibrateCommand& command) {
   report.inputs = command.files;
   const Uncertain gravity =
       uncertain_gravity_mps2(command.input, command.gravity_std_mps2, report.notes);
-  PoseSet set = read_poses(command.files, command, report.notes);
+  PoseSet set = read_poses(main_files(command), command, report.notes);
   report.files = set.files;
   report.sensor = set.sensor;
   report.unit = set.unit;
@@ -196,10 +221,16 @@ void run(const CalibrateCommand& command) {
       .orthogonality_std_rad = command.orthogonality_std_deg * rad_per_deg,
       .placement_std_rad = command.placement_std_deg * rad_per_deg,
       .keep_suspects = command.keep_suspects};
-  if (command.supplies_v.size() > 1) calibrate_supplies(command, options, report);
+  if (command.supplies_v.size() > 1) {
+    calibrate_supplies(command, options, report);
+    report.notes.push_back(
+        {Severity::info,
+         fmt::format("the figures at the top are those at {:g} V", *main_supply_v(command))});
+  }
   report.fit = fitted(set, options);
-  report.budgets =
-      need(calibrate::budget_of(report.fit, lines, report.unit.symbol), Stage::computing);
+  auto budgets = calibrate::budget_of(report.fit, lines, report.unit.symbol);
+  if (!budgets) throw Failure(usage, budgets.error().at("--type-b").message);
+  report.budgets = std::move(budgets).value();
   fill_certificate(command, gravity, report);
   check_by_draws(command, lines, options, set, report);
   const Status added = calibrate::add_type_b(report.fit, lines, report.unit.symbol);

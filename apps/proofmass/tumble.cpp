@@ -93,20 +93,20 @@ sensor::MeasuredCalibration measured(const report::TumbleReport& report,
   for (std::size_t k = 0; k < report.channels.size(); ++k) {
     const ChannelTumble& channel = report.channels[k];
     const auto axis = readings.outputs[k].axis;
-    const calibrate::TumbleCoefficient* K1 =
+    const calibrate::TumbleCoefficient* scale =
         channel.fit ? channel.fit->find(TumbleQuantity::K1) : nullptr;
-    if (!axis || K1 == nullptr || !K1->std || !channel.fit->bias_output_std) {
-      const char* why = !axis           ? "it is no x, y or z axis of one accelerometer"
-                        : K1 == nullptr ? "it was refused"
-                                        : "its figures have no standard deviation";
+    if (!axis || scale == nullptr || !scale->std || !channel.fit->bias_output_std) {
+      const char* why = !axis              ? "it is no x, y or z axis of one accelerometer"
+                        : scale == nullptr ? "it was refused"
+                                           : "its figures have no standard deviation";
       notes.push_back({Severity::warning,
                        fmt::format("{}: not written into the sensor file: {}", channel.name, why)});
       continue;
     }
     out.bias[*axis] = Uncertain{*channel.fit->bias_output, *channel.fit->bias_output_std};
-    out.scale[*axis] = Uncertain{*K1->value, *K1->std};
+    out.scale[*axis] = Uncertain{*scale->value, *scale->std};
     out.bias_unit = channel.unit.symbol;
-    out.scale_unit = K1->unit;
+    out.scale_unit = scale->unit;
   }
   out.gravity_mps2 = Uncertain{report.gravity_mps2, report.gravity_std_mps2};
   out.origin = fmt::format("proofmass tumble {}, {}", report::file_name(report.inputs.front()),
@@ -149,6 +149,7 @@ void run(const TumbleCommand& command) {
   const TumbleReadings readings = tumble_readings(command, report.notes);
   report.source = readings.source;
   std::vector<std::vector<double>> outputs;
+  outputs.reserve(readings.outputs.size());
   for (const TumbleOutput& output : readings.outputs) outputs.push_back(output.values);
   const auto input = input_axis(command, readings);
   const std::vector<calibrate::TumbleAxis> axes =

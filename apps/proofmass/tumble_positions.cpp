@@ -23,7 +23,6 @@ using calibrate::TumblePosition;
 // One file's part of the test.
 struct Part {
   TumbleReadings readings;
-  bool is_table = false;
   std::size_t rests = 0;
 };
 
@@ -102,10 +101,6 @@ std::vector<int> directions(const Recording& recording, const TumbleColumns& col
   return out;
 }
 
-bool is_whole(const std::vector<double>& values, std::size_t row) {
-  return std::isfinite(values[row]);
-}
-
 int checked_plane(double value, const Recording& recording, std::size_t row) {
   if (value == 1.0 || value == 2.0) return static_cast<int>(value);
   throw Failure(bad_input, fmt::format("{}: row {}: plane {}: expected 1 or 2", recording.source,
@@ -138,42 +133,56 @@ std::vector<TumblePosition> table_positions(const Recording& recording,
   return out;
 }
 
+// Rows with an angle and all readings.
+std::vector<std::size_t> whole_rows(const Recording& recording, const TumbleColumns& columns) {
+  std::vector<std::size_t> needed = columns.outputs, rows;
+  needed.push_back(*columns.angle);
+  for (std::size_t row = 0; row < recording.samples(); ++row) {
+    const bool whole = std::all_of(needed.begin(), needed.end(), [&](std::size_t k) {
+      return std::isfinite(recording.channels[k].values[row]);
+    });
+    if (whole) rows.push_back(row);
+  }
+  return rows;
+}
+
+// The stated noise of an output at those rows; 0 where there is none.
+std::vector<double> stated_std(const Recording& recording,
+                               const Channel& output,
+                               std::optional<std::size_t> column,
+                               const std::vector<std::size_t>& rows,
+                               double factor) {
+  std::vector<double> out(rows.size(), 0.0);
+  if (!column) return out;
+  const Channel& channel = recording.channels[*column];
+  const bool own_unit =
+      channel.unit.quantity == output.unit.quantity && output.unit.quantity != Quantity::unknown;
+  const double to = own_unit ? channel.unit.to_si : factor;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (std::isfinite(channel.values[rows[k]])) out[k] = channel.values[rows[k]] * to;
+  return out;
+}
+
 Part read_table(const Recording& recording,
                 const TumbleColumns& columns,
                 const TumbleCommand& command,
                 std::vector<Note>& notes) {
-  std::vector<std::size_t> rows;
-  for (std::size_t row = 0; row < recording.samples(); ++row) {
-    const bool whole = is_whole(recording.channels[*columns.angle].values, row) &&
-                       std::all_of(columns.outputs.begin(), columns.outputs.end(), [&](auto k) {
-                         return is_whole(recording.channels[k].values, row);
-                       });
-    if (whole) rows.push_back(row);
-  }
+  const std::vector<std::size_t> rows = whole_rows(recording, columns);
   if (rows.size() < recording.samples())
     notes.push_back({Severity::warning,
                      fmt::format("{}: {} without angle or reading: left out",
                                  report::file_name(recording.source),
                                  report::count_words(recording.samples() - rows.size(), "row"))});
   Part part;
-  part.is_table = true;
   part.readings.positions = table_positions(recording, columns, rows);
   const bool calibrated = !command.input.sensors.empty();
   for (std::size_t j = 0; j < columns.outputs.size(); ++j) {
     const Channel& channel = recording.channels[columns.outputs[j]];
     TumbleOutput out = make_output(recording, columns.outputs[j], command.input);
     const double factor = to_si(channel, command.input);
-    const auto std_column = calibrated ? std::nullopt : columns.output_std[j];
-    for (const std::size_t row : rows) {
-      out.values.push_back(channel.values[row] * factor);
-      const double std = std_column ? recording.channels[*std_column].values[row] : 0.0;
-      const bool own_unit =
-          std_column && recording.channels[*std_column].unit.quantity == channel.unit.quantity &&
-          channel.unit.quantity != Quantity::unknown;
-      out.std.push_back(std::isfinite(std)
-                            ? std * (own_unit ? recording.channels[*std_column].unit.to_si : factor)
-                            : 0.0);
-    }
+    for (const std::size_t row : rows) out.values.push_back(channel.values[row] * factor);
+    out.std = stated_std(recording, channel, calibrated ? std::nullopt : columns.output_std[j],
+                         rows, factor);
     part.readings.outputs.push_back(std::move(out));
   }
   if (calibrated && columns.output_std.front())
@@ -213,6 +222,7 @@ std::vector<Dwell> rests_of(const Recording& recording,
                                          found.why_none.empty() ? "the sensor never lay still"
                                                                 : found.why_none));
   std::vector<Dwell> dwells;
+  dwells.reserve(found.rests.size());
   for (const signal::Rest& rest : found.rests)
     dwells.push_back({.first = rest.first, .last = rest.last});
   return dwells;

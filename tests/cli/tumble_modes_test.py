@@ -169,7 +169,7 @@ class Rotating(ModesTest):
 
     def test_bad_usage_is_told(self):
         self.wheel(seconds=20)
-        self.assertIn("turns", self.expect_failure(FAILED, "tumble", "wheel.csv", "--rotating"))
+        self.assertIn("turns", self.expect_failure(BAD_INPUT, "tumble", "wheel.csv", "--rotating"))
         self.expect_failure(USAGE, "tumble", "wheel.csv", "--rotating", "--angle", "nothing")
         self.expect_failure(USAGE, "tumble", "wheel.csv", "--rotating", "--angle", "acc_z")
         three = [flag for axis in "xyz" for flag in ("--channel", f"acc_{axis}")]

@@ -75,7 +75,11 @@ DrawnFrom drawn_from(View<Pose> poses,
     if (!fit.poses[k].used) continue;
     from.poses.push_back(poses[k]);
     if (!known) from.poses.back().mean_covariance = Matrix3d::Identity();
-    from.forces_mps2.push_back(fit.poses[k].force_mps2);
+    // Six positions are drawn about the directions that they were taken for: those that they read
+    // hold the placement already.
+    const bool exact = fit.model == PoseModel::six_position && poses[k].up;
+    from.forces_mps2.emplace_back(exact ? Vector3d(fit.gravity_mps2 * poses[k].up->normalized())
+                                        : fit.poses[k].force_mps2);
     residuals.push_back(fit.poses[k].residual_mps2);
   }
   const double factor =

@@ -9,6 +9,7 @@
 #include "proofmass/calibrate/rotation_pass.hpp"
 #include "proofmass/calibrate/rotation_results.hpp"
 #include "proofmass/calibrate/rotation_turns.hpp"
+#include "proofmass/calibrate/rotation_words.hpp"
 #include "proofmass/core/units.hpp"
 
 namespace proofmass::calibrate {
@@ -127,11 +128,6 @@ Status settle_phase(RotationState& state) {
   return Done{};
 }
 
-double relative_residual(const RotationState& state, std::size_t axis) {
-  return std::sqrt(2.0 * state.variance[axis]) /
-         std::hypot(state.harmonics[axis](1), state.harmonics[axis](2));
-}
-
 Status follows_gravity(const RotationState& state) {
   constexpr double most = 0.5;
   for (std::size_t axis = 0; axis < state.axes; ++axis) {
@@ -171,76 +167,6 @@ void refer_to_fitted_speed(RotationState& state, RotationFit& fit) {
   fit.converged = false;
   iterate(state, fit);
   fit.iterations += before;
-}
-
-void note_doubts(const RotationState& state, const RotationOptions& options, RotationFit& fit) {
-  constexpr double much = 0.15, half = 0.5, off = 0.3;
-  for (std::size_t axis = 0; axis < state.axes; ++axis) {
-    const double left = relative_residual(state, axis);
-    if (left > much) {
-      fit.doubts.push_back(fmt::format(
-          "axis {}: {:.0f} % of the readings' swing does not follow gravity's turn: a test wants a "
-          "wheel on a bench, whose axle stands still",
-          axis + 1, 100.0 * left));
-    }
-    const auto& k1 = fit.axes[axis][RotationQuantity::K1].value;
-    if (options.readings_are_accelerations && k1 && std::abs(k1->value - 1.0) > off) {
-      fit.doubts.push_back(
-          fmt::format("axis {}: K1 = {:.3g} of readings that are accelerations, where about 1 is "
-                      "expected: the unit or gravity is wrong, the axle is not horizontal, or the "
-                      "axis does not lie in the plane of the wheel",
-                      axis + 1, k1->value));
-    }
-  }
-  if (fit.steady_fraction < half) {
-    fit.doubts.push_back(fmt::format("only {:.0f} % of the recorded time is steady turning",
-                                     100.0 * fit.steady_fraction));
-  }
-  if (!fit.converged) fit.doubts.push_back("the fit did not settle");
-}
-
-void note_ripples(const RotationOptions& options, RotationFit& fit) {
-  const double g = options.gravity_mps2, one = 0.01;
-  // A phase error ε sin nφ, ε = one/n, has harmonics n ± 1 of ε/2.
-  fit.per_percent = {.bias_mps2 = 0.5 * one * g,
-                     .second_order_s2pm = one / g,
-                     .scale_relative = 0.25 * one,
-                     .misalignment_rad = 0.25 * one,
-                     .third_order_s4pm2 = one / (g * g)};
-  bool once = false, twice = false;
-  for (const SpeedRipple& ripple : fit.ripples) {
-    (ripple.per_turn == 1 ? once : twice) = ripple.accepted;
-    if (ripple.accepted && ripple.amplitude) {
-      fit.notes.push_back(
-          fmt::format("both axes show a speed that varies by {:.2g} % {} a turn; it was taken out",
-                      100.0 * ripple.amplitude->value, ripple.per_turn == 1 ? "once" : "twice"));
-    } else if (!ripple.accepted && ripple.chance_p < 0.01) {
-      fit.notes.push_back(fmt::format(
-          "the {} harmonics of the axes are not those of a varying speed alone (p = {:.2g}): they "
-          "are put down to the sensor",
-          ripple.per_turn == 1 ? "second" : "third", ripple.ripple_p));
-    }
-  }
-  const std::string what =
-      fit.angle_given ? "an angle that is wrong as if the speed varied" : "a speed that varies";
-  if (!once) {
-    fit.notes.push_back(fmt::format(
-        "{} by 1 % once a turn would look like K2 − Kpp or Kip of {:.2g} g/g² and a bias of "
-        "{:.2g} mg",
-        what, fit.per_percent.second_order_s2pm * g, 1e3 * fit.per_percent.bias_mps2 / g));
-  }
-  if (!twice) {
-    fit.notes.push_back(fmt::format(
-        "{} by 1 % twice a turn would look like {:.2g} % of K1, a misalignment of {:.2g} mrad and "
-        "K3 of {:.2g} g/g³",
-        what, 100.0 * fit.per_percent.scale_relative, 1e3 * fit.per_percent.misalignment_rad,
-        fit.per_percent.third_order_s4pm2 * g * g));
-  }
-  if (fit.axes.size() == 1 && !fit.angle_given) {
-    fit.notes.push_back(
-        "one axis without an encoder does not show which way the wheel turns: the sign of Kip is "
-        "that of a wheel on which the reading's rise is followed by its top");
-  }
 }
 
 }  // namespace

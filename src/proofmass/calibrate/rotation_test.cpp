@@ -186,6 +186,24 @@ TEST(Rotation, TakesARippleOutWhereTwoAxesShareIt) {
   }
 }
 
+// The ripple also swings r ω² once a turn, by as much as 0.2 % of K1 here.
+TEST(Rotation, TakesOutWhatARippleMakesOfTheCentripetalAcceleration) {
+  for (const double mounting : {0.0, 1.1}) {
+    PlainWheel slow, fast;
+    slow.equations = fast.equations = {{.K1 = 1.0}, {.K1 = 1.0, .delta_o = 0.01}};
+    slow.radius_m = fast.radius_m = 0.1;
+    slow.mounting_rad = fast.mounting_rad = mounting;
+    slow.white = fast.white = 0.01;
+    slow.angle = rippled(1, 0.02);
+    fast.angle = [](double t) { return 2.2 * t + 0.02 * std::sin(2.2 * t + 0.4); };
+    const RotationFit fit = fit_of({turned(slow), turned(fast)});
+    EXPECT_TRUE(fit.ripples.at(0).accepted);
+    EXPECT_NEAR(value_of(fit.axes[0], Q::K1), 1.0, 5e-4);
+    EXPECT_NEAR(value_of(fit.axes[1], Q::K1), 1.0, 5e-4);
+    EXPECT_NEAR(value_of(fit.axes[1], Q::misalignment), 0.01, 5e-4);
+  }
+}
+
 TEST(Rotation, DoesNotTakeASensorsNonlinearityForARipple) {
   PlainWheel wheel;
   wheel.equations = {{.K1 = 1.0, .K2 = 1e-3}, {.K1 = 1.0, .K2 = 1e-3}};

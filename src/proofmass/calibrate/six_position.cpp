@@ -54,9 +54,11 @@ Result<std::array<Side, 6>> sides_of(View<Pose> poses) {
   return sides;
 }
 
-// What the noise of the means does, and what placing does that is taken for exact.
+// What the noise of the means does, and what placing does that is taken for exact; `across` is each
+// row's part across its axis, squared, over the whole.
 std::vector<UncertaintyShare> shares_of(const std::array<Side, 6>& sides,
                                         const Parameters& estimate,
+                                        const Eigen::Vector3d& across,
                                         double noise_dof,
                                         const MultiPositionOptions& options) {
   UncertaintyShare noise{"noise of the means", true, ParameterMatrix::Zero(), noise_dof};
@@ -71,7 +73,8 @@ std::vector<UncertaintyShare> shares_of(const std::array<Side, 6>& sides,
     noise.covariance(k, k) = variance / 4.0;
     noise.covariance(3 + k, 3 + k) = variance / (4.0 * g * g);
     placement.covariance(k, k) = tilt * (tilt / 2.0 + skew) * scale * scale * g * g;
-    placement.covariance(3 + k, 3 + k) = (tilt + skew) * (tilt + skew) * scale * scale;
+    placement.covariance(3 + k, 3 + k) =
+        ((tilt + skew) * (tilt + skew) + across(k) * (tilt / 2.0 + skew)) * scale * scale;
     placement.covariance(6 + k, 6 + k) = tilt + skew;
   }
   std::vector<UncertaintyShare> shares{placement, gravity_share(estimate, options)};
@@ -113,7 +116,9 @@ Result<MultiPosition> calibrate_six_position(View<Pose> poses,
   MultiPosition out;
   out.model = PoseModel::six_position;
   out.gravity_mps2 = options.gravity_mps2;
-  out.shares = shares_of(*sides, estimate, noise_dof, options);
+  const Eigen::Vector3d along = U.diagonal().cwiseQuotient(U.rowwise().norm());
+  const Eigen::Vector3d across = Eigen::Vector3d::Ones() - along.cwiseAbs2();
+  out.shares = shares_of(*sides, estimate, across, noise_dof, options);
   set_estimate(estimate, false, out);
   out.dof = noise_dof;
   out.axes_in_fixture = U.rowwise().normalized();

@@ -10,8 +10,9 @@ namespace proofmass::calibrate {
 ///     bias_k = (m_k(+k) + m_k(−k)) / 2,     scale_k = |row k of U| / 2g.
 ///
 /// Misalignment is not told: it cannot be told apart from how the sensor was placed. A tilt of
-/// std θ about either axis, with axes skew by angles of std α, moves a scale by θ² + α² of it and
-/// a bias by θ √(θ²/2 + α²) g, to leading order.
+/// std θ about either axis, with axes skew by angles of std α, moves a bias by θ √(θ²/2 + α²) g
+/// and a scale by √((θ² + α²)² + c² (θ²/2 + α²)) of it, to leading order, with c the part of row k
+/// across its axis.
 /// Several poses of one position are averaged.
 /// Source: F. Ferraris, U. Grimaldi, M. Parvis, Procedure for effortless in-field calibration of
 /// three-axial rate gyro and accelerometers, Sensors and Materials 7 (1995) 311.

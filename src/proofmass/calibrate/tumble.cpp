@@ -109,9 +109,9 @@ Status check_swing(const TumbleSolution& solution, double largest_output) {
 constexpr double largest_bias_g = 2.0;
 
 void add_zero_note(const TumbleOptions& options, TumbleFit& fit) {
-  const TumbleCoefficient* K0 = fit.find(TumbleQuantity::K0_up_down);
-  if (options.output_unit == "m/s^2" || K0 == nullptr || !K0->value) return;
-  if (std::abs(*K0->value) > largest_bias_g * options.gravity_mps2)
+  const TumbleCoefficient* bias = fit.find(TumbleQuantity::K0_up_down);
+  if (options.output_unit == "m/s^2" || bias == nullptr || !bias->value) return;
+  if (std::abs(*bias->value) > largest_bias_g * options.gravity_mps2)
     fit.notes.push_back(fmt::format(
         "the bias is counted from an output of 0{}{}: the nominal zero of the sensor is in it",
         options.output_unit.empty() ? "" : " ", options.output_unit));

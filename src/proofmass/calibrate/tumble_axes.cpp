@@ -106,6 +106,23 @@ bool along_sine(const TumbleAxis& axis) {
   return axis.phase_rad[0] && std::lround(*axis.phase_rad[0] / quarter) % 2 == 0;
 }
 
+TumbleAxis place_axis(const std::array<FirstHarmonic, 2>& found, double largest, bool is_input) {
+  TumbleAxis axis;
+  for (std::size_t p = 0; p < 2; ++p) {
+    const FirstHarmonic& h = found[p];
+    axis.swing = std::max(axis.swing, h.amplitude());
+    if (!h.sees_sine && !h.sees_cosine) continue;
+    const bool swings = h.amplitude() > least_swing * largest;
+    if (is_input || swings) axis.phase_rad[p] = is_input ? 0.0 : nearest_quarter(h);
+  }
+  // 0° and 180° alone do not move the input axis of a second plane.
+  const FirstHarmonic& second = found[1];
+  if (!axis.phase_rad[1] && along_sine(axis) && second.sees_cosine && !second.sees_sine)
+    axis.phase_rad[1] = axis.phase_rad[0];
+  axis.words = phase_words(axis, found);
+  return axis;
+}
+
 }  // namespace
 
 std::vector<TumbleAxis> tumble_axes(View<TumblePosition> positions,
@@ -119,24 +136,7 @@ std::vector<TumbleAxis> tumble_axes(View<TumblePosition> positions,
     for (const FirstHarmonic& h : found.back()) largest = std::max(largest, h.amplitude());
   }
   std::vector<TumbleAxis> axes(outputs.size());
-  for (std::size_t k = 0; k < axes.size(); ++k) {
-    TumbleAxis& axis = axes[k];
-    for (std::size_t p = 0; p < 2; ++p) {
-      const FirstHarmonic& h = found[k][p];
-      axis.swing = std::max(axis.swing, h.amplitude());
-      const bool seen = h.sees_sine || h.sees_cosine;
-      if (!seen) continue;
-      if (k == input)
-        axis.phase_rad[p] = 0.0;
-      else if (largest > 0.0 && h.amplitude() > least_swing * largest)
-        axis.phase_rad[p] = nearest_quarter(h);
-    }
-    // 0° and 180° alone do not move the input axis of a second plane.
-    const FirstHarmonic& second = found[k][1];
-    if (!axis.phase_rad[1] && along_sine(axis) && second.sees_cosine && !second.sees_sine)
-      axis.phase_rad[1] = axis.phase_rad[0];
-    axis.words = phase_words(axis, found[k]);
-  }
+  for (std::size_t k = 0; k < axes.size(); ++k) axes[k] = place_axis(found[k], largest, k == input);
   return axes;
 }
 

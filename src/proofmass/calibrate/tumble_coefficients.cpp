@@ -170,15 +170,15 @@ void find_coefficients(const TumbleSolution& solution, TumbleFit& fit) {
   const TumbleRegression& regression = solution.regression;
   std::vector<Form> forms = forms_of(solution.design);
   const Eigen::MatrixXd J = differentiate(solution, forms);
-  const Eigen::MatrixXd Jb = J.leftCols(regression.beta.size());
-  const Eigen::VectorXd Jg = J.rightCols(1);
+  const Eigen::MatrixXd J_b = J.leftCols(regression.beta.size());
+  const Eigen::VectorXd J_g = J.rightCols(1);
   const double u = solution.options.gravity_std_mps2;
   fit.shares = {{"scatter of the positions", true,
-                 Jb * regression.noise_covariance * Jb.transpose(), regression.dof}};
+                 J_b * regression.noise_covariance * J_b.transpose(), regression.dof}};
   if (regression.indexing_covariance.cwiseAbs().maxCoeff() > 0.0)
     fit.shares.push_back({"indexing of the table", false,
-                          Jb * regression.indexing_covariance * Jb.transpose(), 0.0});
-  if (u > 0.0) fit.shares.push_back({"gravity", false, u * u * Jg * Jg.transpose(), 0.0});
+                          J_b * regression.indexing_covariance * J_b.transpose(), 0.0});
+  if (u > 0.0) fit.shares.push_back({"gravity", false, u * u * J_g * J_g.transpose(), 0.0});
   if (fit.noise_known && fit.scatter == 1.0) fit.shares.front().source = "noise of the means";
   fit.covariance = Eigen::MatrixXd::Zero(J.rows(), J.rows());
   for (const TumbleShare& share : fit.shares) fit.covariance += share.covariance;

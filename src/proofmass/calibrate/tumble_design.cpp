@@ -66,20 +66,29 @@ void clock(View<TumblePosition> positions, TumbleDesign& design) {
   design.span = positions.empty() ? 0.0 : last - first;
 }
 
+// Of the positions in one mounting: their time, and that between visits of one setting at most.
+struct Stay {
+  double whole = 0.0, between = 0.0;
+};
+
+Stay stay_of(std::size_t mounting, const std::vector<std::size_t>& of, const TumbleDesign& design) {
+  Stay out;
+  for (std::size_t j = 0; j < of.size(); ++j) {
+    for (std::size_t k = 0; k < j; ++k) {
+      if (of[j] != mounting || of[k] != mounting) continue;
+      const double apart = std::abs(design.when[j] - design.when[k]);
+      out.whole = std::max(out.whole, apart);
+      if (design.setting[j] == design.setting[k]) out.between = std::max(out.between, apart);
+    }
+  }
+  return out;
+}
+
 // Whether in one mounting a setting was visited again half of that mounting's time later, or more.
 bool is_closed(const std::vector<std::size_t>& mounting, const TumbleDesign& design) {
-  const std::size_t n = mounting.size();
   for (std::size_t m = 0; m < design.mountings.size(); ++m) {
-    double first = design.span, last = 0.0, farthest = 0.0;
-    for (std::size_t j = 0; j < n; ++j) {
-      if (mounting[j] != m) continue;
-      first = std::min(first, design.when[j]);
-      last = std::max(last, design.when[j]);
-      for (std::size_t k = 0; k < j; ++k)
-        if (mounting[k] == m && design.setting[j] == design.setting[k])
-          farthest = std::max(farthest, std::abs(design.when[j] - design.when[k]));
-    }
-    if (farthest > 0.0 && farthest >= 0.5 * (last - first)) return true;
+    const Stay stay = stay_of(m, mounting, design);
+    if (stay.between > 0.0 && stay.between >= 0.5 * stay.whole) return true;
   }
   return false;
 }

@@ -88,7 +88,7 @@ std::string rate_unit(bool in_time) {
 // Of the two visits of one position that lie farthest apart.
 std::optional<double> closure_rate(const TumbleSolution& solution, View<TumblePosition> positions) {
   const TumbleDesign& design = solution.design;
-  const double K1 = swing_of(design, solution.regression.beta) / solution.options.gravity_mps2;
+  const double scale = swing_of(design, solution.regression.beta) / solution.options.gravity_mps2;
   double farthest = 0.0;
   std::optional<double> rate;
   for (std::size_t j = 0; j < positions.size(); ++j) {
@@ -99,7 +99,7 @@ std::optional<double> closure_rate(const TumbleSolution& solution, View<TumblePo
                         std::abs(positions[j].mount_rad - positions[k].mount_rad) < 1e-3;
       if (!same || std::abs(apart) <= farthest) continue;
       farthest = std::abs(apart);
-      rate = (positions[j].output - positions[k].output) / apart / K1;
+      rate = (positions[j].output - positions[k].output) / apart / scale;
     }
   }
   return rate;

@@ -40,6 +40,38 @@ double residual_square(const Eigen::MatrixXd& A, const Eigen::VectorXd& y) {
   return (y - A * (inverse * (A.transpose() * y))).squaredNorm();
 }
 
+// χ² about the best fit to what was whitened; where it is beyond chance sigma grows.
+void judge_by_noise(const Eigen::MatrixXd& B, const Eigen::VectorXd& z, TumbleRegression& out) {
+  const auto dof = static_cast<double>(B.rows() - B.cols());
+  out.sigma = 1.0;
+  out.dof = out.noise_dof;
+  out.has_scale = true;
+  if (dof <= 0.0) return;
+  out.chi_square = residual_square(B, z);
+  const double p = out.noise_dof > 0.0 ? fisher_f_p(out.chi_square / dof, dof, out.noise_dof)
+                                       : chi_square_p(out.chi_square, dof);
+  if (p >= beyond_chance) return;
+  out.sigma = std::sqrt(out.chi_square / dof);
+  out.dof = dof;
+}
+
+void judge_by_residuals(const Eigen::MatrixXd& A,
+                        const Eigen::VectorXd& y,
+                        const std::vector<Eigen::VectorXd>& common,
+                        TumbleRegression& out) {
+  const auto dof = static_cast<double>(A.rows() - A.cols());
+  const TumbleScatter own = common.empty() ? TumbleScatter{std::sqrt(out.rss / dof), dof}
+                                           : restricted_scatter(A, y, common);
+  out.sigma = own.sigma;
+  out.dof = own.dof;
+  out.has_scale = true;
+}
+
+std::vector<Eigen::VectorXd> scaled(std::vector<Eigen::VectorXd> levers, double u) {
+  for (Eigen::VectorXd& v : levers) v *= u;
+  return levers;
+}
+
 }  // namespace
 
 TumbleRegression regress_tumble(const Eigen::MatrixXd& A,
@@ -47,7 +79,6 @@ TumbleRegression regress_tumble(const Eigen::MatrixXd& A,
                                 const TumbleErrors& errors) {
   TumbleRegression out;
   const Eigen::Index n = A.rows();
-  const auto dof = static_cast<double>(n - A.cols());
   const double u = errors.indexing_std_rad;
   // From here on in units of each position's noise.
   const Eigen::VectorXd root_weight = errors.noise_std.cwiseInverse();
@@ -74,23 +105,10 @@ TumbleRegression regress_tumble(const Eigen::MatrixXd& A,
 
   out.noise_known = errors.noise_known;
   out.noise_dof = errors.noise_dof;
-  if (errors.noise_known) {
-    out.chi_square =
-        dof > 0.0 ? residual_square(whitened(B, levers, u), whitened(z, levers, u)) : 0.0;
-    const bool beyond = dof > 0.0 && (errors.noise_dof > 0.0
-                                          ? fisher_f_p(out.chi_square / dof, dof, errors.noise_dof)
-                                          : chi_square_p(out.chi_square, dof)) < beyond_chance;
-    out.sigma = beyond ? std::sqrt(out.chi_square / dof) : 1.0;
-    out.dof = beyond ? dof : errors.noise_dof;
-    out.has_scale = true;
-  } else if (dof > 0.0) {
-    for (Eigen::VectorXd& v : levers) v *= u;
-    const TumbleScatter own =
-        u > 0.0 ? restricted_scatter(A, y, levers) : TumbleScatter{std::sqrt(out.rss / dof), dof};
-    out.sigma = own.sigma;
-    out.dof = own.dof;
-    out.has_scale = true;
-  }
+  if (errors.noise_known)
+    judge_by_noise(whitened(B, levers, u), whitened(z, levers, u), out);
+  else if (A.rows() > A.cols())
+    judge_by_residuals(A, y, scaled(levers, u), out);
   out.noise_covariance = out.sigma * out.sigma * cofactor;
   const Eigen::VectorXd leverage = hat.cwiseProduct(B).rowwise().sum();
   out.residual_variance = (out.sigma * out.sigma * (Eigen::VectorXd::Ones(n) - leverage) + indexing)

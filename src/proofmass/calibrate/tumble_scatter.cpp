@@ -46,8 +46,8 @@ Likelihood likelihood(const Eigen::MatrixXd& A, const Eigen::VectorXd& y, const 
   const Eigen::MatrixXd B = V.solve(A);
   const Eigen::MatrixXd inverse = positive_inverse(A.transpose() * B);
   const Eigen::MatrixXd lost = inverse * (B.transpose() * B);
-  const Eigen::VectorXd Py = V.solve(y) - B * (inverse * (B.transpose() * y));
-  return {.score = Py.squaredNorm() - (V.trace(1, A.rows()) - lost.trace()),
+  const Eigen::VectorXd P_y = V.solve(y) - B * (inverse * (B.transpose() * y));
+  return {.score = P_y.squaredNorm() - (V.trace(1, A.rows()) - lost.trace()),
           .trace_2 = V.trace(2, A.rows()) - 2.0 * (inverse * (B.transpose() * V.solve(B))).trace() +
                      (lost * lost).trace()};
 }

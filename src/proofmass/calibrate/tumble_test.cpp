@@ -263,6 +263,14 @@ TEST(Tumble, LeavesOutWhatFewPositionsCannotTell) {
   EXPECT_FALSE(two.find(Q::K1)->std);
   EXPECT_NE(two.find(Q::K1)->reason.find("no standard deviation"), std::string::npos);
 
+  EXPECT_EQ(two.find(Q::K0_up_down)->meaning,
+            "K0 + K2 g²: half the sum of the readings at +1 g and −1 g");
+
+  // Level and down: what stands there is a bias, but not that of up and down.
+  const TumbleFit corner = fitted(at({180.0, 270.0}));
+  EXPECT_EQ(corner.find(Q::K0_up_down)->meaning, "bias, K2 − Kpp and misalignment taken for 0");
+  EXPECT_EQ(corner.find(Q::K1)->meaning, "scale factor K1, K3 and K2 − Kpp taken for 0");
+
   const TumbleFit five = fitted(at({0.0, 72.0, 144.0, 216.0, 288.0}));
   EXPECT_EQ(five.parameters, 4U);
   EXPECT_EQ(five.dof, 1U);

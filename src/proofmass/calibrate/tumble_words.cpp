@@ -94,17 +94,36 @@ std::string found_words(const TumbleFit& fit, Q cosine, Q sine, const char* how_
   return text;
 }
 
-std::string K1_words(const TumbleDesign& design) {
+// Is the input axis upright in all positions?
+bool upright_only(const TumbleDesign& design) {
+  constexpr double level = 0.05;
+  return std::all_of(design.phi_rad.begin(), design.phi_rad.end(),
+                     [](double phi) { return std::abs(std::cos(phi)) < level; });
+}
+
+// Does it point up in one and down in another?
+bool both_ways(const TumbleDesign& design) {
+  constexpr double upright = 0.95;
+  const auto points = [&](double way) {
+    return std::any_of(design.phi_rad.begin(), design.phi_rad.end(),
+                       [&](double phi) { return way * std::sin(phi) > upright; });
+  };
+  return points(1.0) && points(-1.0);
+}
+
+std::string scale_words(const TumbleDesign& design) {
   if (design.find(TumbleTerm::cube)) return "scale factor K1";
-  return quarters_only(design) ? "K1 (1 + K3 g²): the slope between +1 g and −1 g"
-                               : "scale factor K1, K3 taken for 0";
+  if (quarters_only(design) && both_ways(design))
+    return "K1 (1 + K3 g²): the slope between +1 g and −1 g";
+  return design.find(TumbleTerm::square) ? "scale factor K1, K3 taken for 0"
+                                         : "scale factor K1, K3 and K2 − Kpp taken for 0";
 }
 
 std::string up_down_words(const TumbleDesign& design) {
   const std::string words = "K0 + K2 g²: half the sum of the readings at +1 g and −1 g";
-  return design.find(TumbleTerm::square) || quarters_only(design)
-             ? words
-             : words + ", K2 − Kpp taken for 0";
+  if (design.find(TumbleTerm::square) || upright_only(design)) return words;
+  return design.find(TumbleTerm::cosine) ? "bias, K2 − Kpp taken for 0"
+                                         : "bias, K2 − Kpp and misalignment taken for 0";
 }
 
 std::string plane_words(const char* words, int plane, const TumbleDesign& design) {
@@ -145,7 +164,7 @@ std::string meaning_words(const TumbleCoefficient& coefficient, const TumbleDesi
   const int plane = coefficient.plane;
   switch (coefficient.quantity) {
     case Q::K1:
-      return K1_words(design);
+      return scale_words(design);
     case Q::K0:
       return "K0 + Kpp g²: bias where the input axis is level (0 g), the pendulous axis upright";
     case Q::K0_second:

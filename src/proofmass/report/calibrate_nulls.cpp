@@ -50,7 +50,7 @@ void add_fit_reasons(const CalibrateReport& report, Reasons& reasons) {
   if (!fit.misalignment_rad[0])
     reasons.add("misalignment_rad", "the model takes the axes for orthogonal");
   if (!stds_known(report))
-    reasons.add("std, interval_95, rest_accuracy",
+    reasons.add("std, interval_95 of bias, scale and misalignment_rad, rest_accuracy",
                 "the noise of the means is not known and no position is to spare");
   if (!report.certificate.gravity_mps2) reasons.add("gravity.std", "it was not stated");
   if (!fit.lack_of_fit)

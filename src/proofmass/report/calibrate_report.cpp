@@ -73,7 +73,9 @@ std::vector<Note> calibrate_notes(const CalibrateReport& report) {
     notes.push_back({Severity::warning, std::move(text)});
   if (report.fit.lack_of_fit && report.fit.lack_of_fit->p < some_p)
     notes.push_back({Severity::warning, lack_of_fit_sentence(report)});
-  if (!report.fit.converged)
+  // Where the residuals are rounding, a descent has nothing to come to an end by.
+  constexpr double rounding_g = 1e-9;
+  if (!report.fit.converged && report.fit.residual_rms_mps2 > rounding_g * report.fit.gravity_mps2)
     notes.push_back({Severity::bad, "the fit did not come to an end: do not use its figures"});
   if (report.check && !report.check->agrees && stds_known(report))
     notes.push_back({Severity::warning, "Monte Carlo: " + report.check->verdict});

@@ -164,7 +164,7 @@ TEST(CalibrateReport, HasNoStandardDeviationWhereNobodyKnowsTheNoise) {
 
 TEST(CalibrateReport, ReadsInMilligMillivoltAndMilliradian) {
   expect_words(calibrate_text(fake_calibrate_report()),
-               {"bias x           10.20 ± 0.02 mg", "1.0100 ± 0.0002", "−2.0 ± 0.2 mrad"});
+               {"bias x           10.197 ± 0.020 mg", "1.01000 ± 0.00020", "−2.00 ± 0.20 mrad"});
   const std::vector<CalibrationFigure> volts = calibration_figures(fake_supply_report());
   EXPECT_EQ(volts[0].printed_unit, "mV");
   EXPECT_EQ(volts[3].printed_unit, "mV/g");

@@ -106,10 +106,10 @@ std::vector<std::string> reasons(const RotationReport& report) {
 
 std::string conclusion(const RotationReport& report) {
   const RotationFit& fit = report.fit;
+  const std::size_t stretches = fit.sections.size();
   std::string text =
-      fmt::format("{} steady turns in {}", grouped(static_cast<std::size_t>(fit.turns)),
-                  count_words(fit.sections.size(), "stretch"));
-  if (fit.sections.size() == 2) text += "es";
+      fmt::format("{} steady turns in {} {}", grouped(static_cast<std::size_t>(fit.turns)),
+                  grouped(stretches), stretches == 1 ? "stretch" : "stretches");
   text += fit.angle_given ? ", the angle by the encoder. " : ", the angle by gravity. ";
   text += fmt::format("{}: K1 = {}, ", report.axis_names.front(),
                       figure(fit.axes.front()[Q::K1], report.unit));

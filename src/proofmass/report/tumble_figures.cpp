@@ -66,16 +66,38 @@ std::string unit_of(const ChannelTumble& channel) {
 // The first harmonics of the fit, enough for the eye: K1 (K0 + g sin φ + δ g cos φ).
 Curve fitted_curve(const ChannelTumble& channel, const Group& group, Ink ink) {
   Curve curve{.label = {}, .x = {}, .y = {}, .ink = ink, .mark = Mark::line};
-  const auto* K1 = channel.fit->find(calibrate::TumbleQuantity::K1);
-  const auto* K0 = channel.fit->find(calibrate::TumbleQuantity::K0_up_down);
+  const auto* scale = channel.fit->find(calibrate::TumbleQuantity::K1);
+  const auto* bias = channel.fit->find(calibrate::TumbleQuantity::K0_up_down);
   const auto phase = channel.axis.phase_rad[group.plane == 2 ? 1 : 0];
-  if (K1 == nullptr || !K1->value || K0 == nullptr || !K0->value || !phase) return curve;
+  if (scale == nullptr || !scale->value || bias == nullptr || !bias->value || !phase) return curve;
   for (int angle = 0; angle <= 360; angle += 3) {
     const double phi = angle * rad_per_deg + group.mount_rad + *phase;
     curve.x.push_back(angle);
-    curve.y.push_back(*K1->value * (*K0->value + standard_gravity_mps2 * std::sin(phi)));
+    curve.y.push_back(*scale->value * (*bias->value + standard_gravity_mps2 * std::sin(phi)));
   }
   return curve;
+}
+
+// The 95 % band of one group's residuals.
+Band residual_band(const ChannelTumble& channel, const Group& group) {
+  constexpr double two_sided_95 = 1.959964;
+  Band band{.label = "± 95 %", .x = {}, .lower = {}, .upper = {}, .ink = Ink::grey};
+  for (const std::size_t place : group.places) {
+    const calibrate::TumbleResidual& r = channel.fit->positions[place];
+    if (!r.std) continue;
+    band.x.push_back(turn_deg(channel.positions[place].angle_rad));
+    band.upper.push_back(two_sided_95 * *r.std);
+    band.lower.push_back(-two_sided_95 * *r.std);
+  }
+  return band;
+}
+
+Callout suspect_callout(const TumblePosition& position, double residual) {
+  const double angle = turn_deg(position.angle_rad);
+  return {.text = position.label.empty() ? compact(angle, 4) + "°" : position.label,
+          .x = angle,
+          .y = residual,
+          .ink = Ink::red};
 }
 
 }  // namespace
@@ -111,15 +133,7 @@ Figure tumble_residual_figure(const ChannelTumble& channel) {
                 .y = {.label = "Residual" + unit_of(channel)},
                 .levels = {{"", 0.0}}};
   const std::vector<Group> groups = groups_of(channel);
-  constexpr double two_sided_95 = 1.959964;
-  Band band{.label = "± 95 %", .x = {}, .lower = {}, .upper = {}, .ink = Ink::grey};
-  for (const std::size_t place : groups.front().places) {
-    const calibrate::TumbleResidual& r = channel.fit->positions[place];
-    if (!r.std) continue;
-    band.x.push_back(turn_deg(channel.positions[place].angle_rad));
-    band.upper.push_back(two_sided_95 * *r.std);
-    band.lower.push_back(-two_sided_95 * *r.std);
-  }
+  Band band = residual_band(channel, groups.front());
   if (band.x.size() > 1) figure.bands.push_back(std::move(band));
   for (std::size_t k = 0; k < groups.size(); ++k) {
     Curve points{.label = groups.size() > 1 ? label_of(groups[k], groups) : "",
@@ -129,15 +143,10 @@ Figure tumble_residual_figure(const ChannelTumble& channel) {
                  .mark = Mark::points};
     for (const std::size_t place : groups[k].places) {
       const calibrate::TumbleResidual& r = channel.fit->positions[place];
-      const TumblePosition& p = channel.positions[place];
-      points.x.push_back(turn_deg(p.angle_rad));
+      points.x.push_back(turn_deg(channel.positions[place].angle_rad));
       points.y.push_back(r.residual);
       if (r.suspect)
-        figure.callouts.push_back(
-            {.text = p.label.empty() ? fmt::format("{}°", compact(points.x.back(), 4)) : p.label,
-             .x = points.x.back(),
-             .y = r.residual,
-             .ink = Ink::red});
+        figure.callouts.push_back(suspect_callout(channel.positions[place], r.residual));
     }
     figure.curves.push_back(std::move(points));
   }

@@ -269,32 +269,35 @@ void add_drift_reasons(const TumbleFit& fit, const Reasons& add) {
   if (!fit.drift.p || c == nullptr || !c->std) add("drift.std, drift.p", fit.drift.words);
 }
 
-void add_null_reasons(const ChannelTumble& channel, std::vector<std::string>& all) {
-  const Reasons add = [&](const std::string& key, const std::string& why) {
-    all.push_back(fmt::format("{}: {}: null: {}", channel.name, key, why));
-  };
-  if (channel.unit.symbol.empty()) add("unit", "neither the file nor --unit says");
-  if (!channel.fit) {
-    std::string keys;
-    for (const Q quantity : always)
-      keys += (keys.empty() ? "" : ", ") + std::string(calibrate::name_of(quantity));
-    add(keys, channel.refused);
-    return;
-  }
-  const TumbleFit& fit = *channel.fit;
+void add_coefficient_reasons(const TumbleFit& fit, const Reasons& add) {
   for (const TumbleCoefficient& c : fit.coefficients) {
     if (!c.value) add(key_words(c), c.reason);
     // Where no residual judges, one line says so for all.
     if (c.value && !c.std && fit.residual_std) add(key_words(c) + ".std", c.reason);
   }
+  const TumbleCoefficient& first = fit.coefficients.front();
+  if (!first.std && !fit.residual_std) add("every std", first.reason);
   for (const Q quantity : always) {
     if (fit.find(quantity) == nullptr)
       add(std::string(calibrate::name_of(quantity)), "no position lies in the first plane");
   }
-  const TumbleCoefficient* K1 = fit.find(Q::K1);
-  if (K1 != nullptr && K1->value && !K1->std && !fit.residual_std) add("every std", K1->reason);
-  add_residual_reasons(fit, add);
-  add_drift_reasons(fit, add);
+}
+
+void add_null_reasons(const ChannelTumble& channel, std::vector<std::string>& all) {
+  const Reasons add = [&](const std::string& key, const std::string& why) {
+    all.push_back(fmt::format("{}: {}: null: {}", channel.name, key, why));
+  };
+  if (channel.unit.symbol.empty()) add("unit", "neither the file nor --unit says");
+  if (channel.fit) {
+    add_coefficient_reasons(*channel.fit, add);
+    add_residual_reasons(*channel.fit, add);
+    add_drift_reasons(*channel.fit, add);
+    return;
+  }
+  std::string keys;
+  for (const Q quantity : always)
+    keys += (keys.empty() ? "" : ", ") + std::string(calibrate::name_of(quantity));
+  add(keys, channel.refused);
 }
 
 std::vector<std::string> warnings(const TumbleReport& report) {

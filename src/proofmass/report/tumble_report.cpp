@@ -16,8 +16,8 @@ using calibrate::TumblePosition;
 using Q = calibrate::TumbleQuantity;
 
 std::string scale_words(const ChannelTumble& channel) {
-  const TumbleCoefficient* K1 = channel.fit->find(Q::K1);
-  return K1 == nullptr ? "" : "scale factor " + coefficient_words(*K1, channel.unit);
+  const TumbleCoefficient* scale = channel.fit->find(Q::K1);
+  return scale == nullptr ? "" : "scale factor " + coefficient_words(*scale, channel.unit);
 }
 
 std::string bias_words(const ChannelTumble& channel) {
