@@ -153,6 +153,21 @@ const Channel* stated_std(const Recording& table, const Channel& output) {
   return own != nullptr ? own : column(table, "std");
 }
 
+// √(δ_o² + δ_p²), where both were fitted.
+std::optional<calibrate::CrossAxis> cross_axis_of(const calibrate::ModelFit& fit) {
+  const auto *o = fit.find(Coefficient::delta_o), *p = fit.find(Coefficient::delta_p);
+  if (o == nullptr || p == nullptr || !o->value || !p->value) return std::nullopt;
+  const Eigen::Index at[] = {o - fit.coefficients.data(), p - fit.coefficients.data()};
+  Eigen::Matrix2d covariance;
+  for (int a = 0; a < 2; ++a) {
+    for (int b = 0; b < 2; ++b) covariance(a, b) = fit.covariance(at[a], at[b]);
+  }
+  const double dof = fit.std_stated ? 0.0 : static_cast<double>(fit.dof);
+  output.cross_axis =
+      need(calibrate::cross_axis_sensitivity({o->value->value, p->value->value}, covariance, dof),
+           Stage::computing);
+}
+
 report::ModelOutput fit_output(const Recording& table,
                                const Channel& channel,
                                const std::vector<sensor::Motion>& motions,
@@ -180,18 +195,7 @@ report::ModelOutput fit_output(const Recording& table,
     throw Failure(of_file ? bad_input : status_of(error, Stage::computing), error.message);
   }
   output.fit = std::move(fit).value();
-  const auto *o = output.fit.find(Coefficient::delta_o), *p = output.fit.find(Coefficient::delta_p);
-  if (o == nullptr || p == nullptr || !o->value || !p->value) return output;
-  const Eigen::Index at[] = {o - output.fit.coefficients.data(),
-                             p - output.fit.coefficients.data()};
-  Eigen::Matrix2d covariance;
-  for (int a = 0; a < 2; ++a) {
-    for (int b = 0; b < 2; ++b) covariance(a, b) = output.fit.covariance(at[a], at[b]);
-  }
-  const double dof = output.fit.std_stated ? 0.0 : static_cast<double>(output.fit.dof);
-  output.cross_axis =
-      need(calibrate::cross_axis_sensitivity({o->value->value, p->value->value}, covariance, dof),
-           Stage::computing);
+  output.cross_axis = cross_axis_of(output.fit);
   return output;
 }
 
@@ -210,6 +214,7 @@ void run_model_equation(const TumbleCommand& command) {
   InputFlags as_table = command.input;  // all columns, in the units of their headers
   as_table.channels.clear();
   as_table.unit.clear();
+  if (!as_table.rate_hz && as_table.time.empty()) as_table.rate_hz = 1.0;  // rows have no time
   const Recording table = load(command.files.front(), as_table, progress_bar(command.output));
   report::ModelEquationReport report;
   report.inputs = command.files;

@@ -67,6 +67,14 @@ std::vector<std::size_t> plane_channels(const Recording& recording, const Tumble
   return chosen;
 }
 
+void bring_to_si(Channel& channel) {
+  const Unit from = channel.unit;
+  const bool volts = from.quantity == Quantity::voltage;
+  if (!volts && from.quantity != Quantity::acceleration) return;
+  for (double& value : channel.values) value = from.si(value);
+  channel.unit = *parse_unit(volts ? "V" : "m/s^2");
+}
+
 // Volts and accelerations in SI, counts as they are; all of one kind.
 std::string bring_to_one_unit(std::vector<Recording>& recordings,
                               const std::vector<std::vector<std::size_t>>& chosen) {
@@ -74,15 +82,8 @@ std::string bring_to_one_unit(std::vector<Recording>& recordings,
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     for (const std::size_t c : chosen[r]) {
       Channel& channel = recordings[r].channels[c];
-      const bool physical = channel.unit.quantity == Quantity::acceleration ||
-                            channel.unit.quantity == Quantity::voltage;
-      std::string now = channel.unit.symbol;
-      if (physical) {
-        const Unit from = channel.unit;
-        for (double& value : channel.values) value = from.si(value);
-        channel.unit = *parse_unit(from.quantity == Quantity::voltage ? "V" : "m/s^2");
-        now = channel.unit.symbol;
-      }
+      bring_to_si(channel);
+      const std::string& now = channel.unit.symbol;
       if (unit && *unit != now) {
         throw Failure(usage, fmt::format("{}: channel {} is in {}, another in {}",
                                          recordings[r].source, channel.name, now, *unit));
@@ -114,6 +115,8 @@ calibrate::RotationRecording rotation_recording(const Recording& recording,
                                                 const std::string& angle_channel) {
   calibrate::RotationRecording turning;
   turning.name = recording.source;
+  turning.time_s.reserve(recording.samples());
+  turning.axes.reserve(chosen.size());
   for (std::size_t k = 0; k < recording.samples(); ++k) {
     turning.time_s.push_back(recording.time.at(k));
   }

@@ -13,18 +13,13 @@
 #include "proofmass/signal/audit.hpp"
 #include "proofmass/signal/rests.hpp"
 #include "tumble_columns.hpp"
+#include "tumble_table.hpp"
 
 namespace proofmass::app {
 namespace {
 
 using calibrate::Dwell;
 using calibrate::TumblePosition;
-
-// One file's part of the test.
-struct Part {
-  TumbleReadings readings;
-  std::size_t rests = 0;
-};
 
 // A column of the table without --channel, which would leave the angle out.
 Recording load_all(const std::string& file, const TumbleCommand& command) {
@@ -40,156 +35,6 @@ void apply_sensors(Recording& recording, const TumbleCommand& command, std::vect
   one.push_back(std::move(recording));
   calibrate(models, accelerometers(one), one);
   recording = std::move(one.front());
-}
-
-std::optional<std::size_t> axis_of(const Recording& recording, std::size_t channel) {
-  const std::vector<Triad> triads = accelerometer_triads(recording);
-  if (triads.size() != 1) return std::nullopt;
-  const std::array places{triads[0].x, triads[0].y, triads[0].z};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (places[axis] == channel) return axis;
-  return std::nullopt;
-}
-
-// What a column's unit is, the user's word before the file's silence.
-Unit unit_of(const Channel& channel, const InputFlags& flags) {
-  if (channel.unit.quantity != Quantity::unknown || flags.unit.empty()) return channel.unit;
-  return *parse_unit(flags.unit);
-}
-
-Unit si_unit(const Unit& unit) {
-  if (unit.quantity == Quantity::acceleration) return *parse_unit("m/s^2");
-  if (unit.quantity == Quantity::voltage) return *parse_unit("V");
-  return unit;
-}
-
-TumbleOutput make_output(const Recording& recording, std::size_t k, const InputFlags& flags) {
-  TumbleOutput out;
-  out.name = recording.channels[k].name;
-  out.unit = si_unit(unit_of(recording.channels[k], flags));
-  out.axis = axis_of(recording, k);
-  return out;
-}
-
-double to_si(const Channel& channel, const InputFlags& flags) {
-  const Unit unit = unit_of(channel, flags);
-  return si_unit(unit).to_si == unit.to_si ? 1.0 : unit.to_si;
-}
-
-// A word in a column of words, or a figure: +1 forwards, −1 backwards.
-int direction_in_words(const std::string& word) {
-  if (word.empty()) return 0;
-  const char c = static_cast<char>(word[0] | 0x20);
-  const bool forward = c == 'f' || c == 'u' || word == "cw" || word == "CW" || word == "+";
-  const bool backward =
-      c == 'b' || c == 'd' || c == 'r' || word == "ccw" || word == "CCW" || word == "-";
-  return forward ? 1 : backward ? -1 : 0;
-}
-
-std::vector<int> directions(const Recording& recording, const TumbleColumns& columns) {
-  std::vector<int> out(recording.samples(), 0);
-  if (columns.direction) {
-    const std::vector<double>& values = recording.channels[*columns.direction].values;
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = (values[k] > 0.0) - (values[k] < 0.0);
-    return out;
-  }
-  const std::string& name = recording.label_channel;
-  if (!name.starts_with("dir") && !name.starts_with("Dir") && name != "way" && name != "sense")
-    return out;
-  for (const Label& label : recording.labels)
-    for (std::size_t k = label.first; k <= label.last; ++k) out[k] = direction_in_words(label.text);
-  return out;
-}
-
-int checked_plane(double value, const Recording& recording, std::size_t row) {
-  if (value == 1.0 || value == 2.0) return static_cast<int>(value);
-  throw Failure(bad_input, fmt::format("{}: row {}: plane {}: expected 1 or 2", recording.source,
-                                       row + 1, report::compact(value, 6)));
-}
-
-std::vector<TumblePosition> table_positions(const Recording& recording,
-                                            const TumbleColumns& columns,
-                                            const std::vector<std::size_t>& rows) {
-  const std::vector<double> angle = angles_rad(recording.channels[*columns.angle]);
-  const std::vector<int> way = directions(recording, columns);
-  std::vector<TumblePosition> out;
-  const auto at = [&](const std::optional<std::size_t>& column, std::size_t row, double absent) {
-    return column ? recording.channels[*column].values[row] : absent;
-  };
-  for (const std::size_t row : rows) {
-    TumblePosition p;
-    p.angle_rad = angle[row];
-    p.direction = way[row];
-    p.plane = checked_plane(at(columns.plane, row, 1.0), recording, row);
-    p.mount_rad = columns.mount ? angles_rad(recording.channels[*columns.mount])[row] : 0.0;
-    if (columns.time)
-      p.time_s = at(columns.time, row, 0.0);
-    else if (recording.time.source == TimeSource::stamps)
-      p.time_s = recording.time.at(row);
-    p.label = recording.first_line > 0 ? fmt::format("line {}", recording.first_line + row)
-                                       : fmt::format("row {}", row + 1);
-    out.push_back(std::move(p));
-  }
-  return out;
-}
-
-// Rows with an angle and all readings.
-std::vector<std::size_t> whole_rows(const Recording& recording, const TumbleColumns& columns) {
-  std::vector<std::size_t> needed = columns.outputs, rows;
-  needed.push_back(*columns.angle);
-  for (std::size_t row = 0; row < recording.samples(); ++row) {
-    const bool whole = std::all_of(needed.begin(), needed.end(), [&](std::size_t k) {
-      return std::isfinite(recording.channels[k].values[row]);
-    });
-    if (whole) rows.push_back(row);
-  }
-  return rows;
-}
-
-// The stated noise of an output at those rows; 0 where there is none.
-std::vector<double> stated_std(const Recording& recording,
-                               const Channel& output,
-                               std::optional<std::size_t> column,
-                               const std::vector<std::size_t>& rows,
-                               double factor) {
-  std::vector<double> out(rows.size(), 0.0);
-  if (!column) return out;
-  const Channel& channel = recording.channels[*column];
-  const bool own_unit =
-      channel.unit.quantity == output.unit.quantity && output.unit.quantity != Quantity::unknown;
-  const double to = own_unit ? channel.unit.to_si : factor;
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    if (std::isfinite(channel.values[rows[k]])) out[k] = channel.values[rows[k]] * to;
-  return out;
-}
-
-Part read_table(const Recording& recording,
-                const TumbleColumns& columns,
-                const TumbleCommand& command,
-                std::vector<Note>& notes) {
-  const std::vector<std::size_t> rows = whole_rows(recording, columns);
-  if (rows.size() < recording.samples())
-    notes.push_back({Severity::warning,
-                     fmt::format("{}: {} without angle or reading: left out",
-                                 report::file_name(recording.source),
-                                 report::count_words(recording.samples() - rows.size(), "row"))});
-  Part part;
-  part.readings.positions = table_positions(recording, columns, rows);
-  const bool calibrated = !command.input.sensors.empty();
-  for (std::size_t j = 0; j < columns.outputs.size(); ++j) {
-    const Channel& channel = recording.channels[columns.outputs[j]];
-    TumbleOutput out = make_output(recording, columns.outputs[j], command.input);
-    const double factor = to_si(channel, command.input);
-    for (const std::size_t row : rows) out.values.push_back(channel.values[row] * factor);
-    out.std = stated_std(recording, channel, calibrated ? std::nullopt : columns.output_std[j],
-                         rows, factor);
-    part.readings.outputs.push_back(std::move(out));
-  }
-  if (calibrated && columns.output_std.front())
-    notes.push_back({Severity::warning,
-                     "--sensor: the stated noise of the outputs is left aside: it is that of the "
-                     "readings before the calibration"});
-  return part;
 }
 
 std::string times_of(const Recording& recording, const std::vector<Dwell>& dwells) {
@@ -260,10 +105,10 @@ std::vector<double> given_angles(const Recording& recording,
   return out;
 }
 
-Part read_rests(const Recording& recording,
-                const TumbleColumns& columns,
-                const TumbleCommand& command,
-                std::size_t before) {
+TumblePart read_rests(const Recording& recording,
+                      const TumbleColumns& columns,
+                      const TumbleCommand& command,
+                      std::size_t before) {
   const bool given = !command.angles_deg.empty();
   std::vector<double> angle;
   if (!given) angle = angles_rad(recording.channels[*columns.angle]);
@@ -275,7 +120,7 @@ Part read_rests(const Recording& recording,
                               recording.source, report::count_words(dwells.size(), "place")));
   const std::vector<double> angles = given ? given_angles(recording, dwells, command, before)
                                            : calibrate::dwell_angles(angle, dwells);
-  Part part;
+  TumblePart part;
   part.rests = dwells.size();
   const bool timed = recording.time.source != TimeSource::none;
   for (std::size_t k = 0; k < dwells.size(); ++k) {
@@ -318,7 +163,7 @@ bool is_recording(const Recording& recording, const std::vector<double>& angle) 
          !calibrate::steady_angles(angle, {.rate_hz = recording.time.rate_hz}).empty();
 }
 
-void place(Part& part, const TumbleCommand& command, std::size_t file) {
+void place(TumblePart& part, const TumbleCommand& command, std::size_t file) {
   const auto of_file = [&](const std::vector<int>& given, const char* flag) -> std::optional<int> {
     if (given.empty()) return std::nullopt;
     if (given.size() != 1 && given.size() != command.files.size())
@@ -339,10 +184,10 @@ void place(Part& part, const TumbleCommand& command, std::size_t file) {
   }
 }
 
-Part read_part(const TumbleCommand& command,
-               std::size_t file,
-               std::size_t before,
-               std::vector<Note>& notes) {
+TumblePart read_part(const TumbleCommand& command,
+                     std::size_t file,
+                     std::size_t before,
+                     std::vector<Note>& notes) {
   Recording recording = load_all(command.files[file], command);
   recording.source = command.files[file];
   apply_sensors(recording, command, notes);
@@ -360,7 +205,7 @@ Part read_part(const TumbleCommand& command,
                              "--angles for the rests of a recording");
   if (is_recording(recording, angles_rad(recording.channels[*columns.angle])))
     return read_rests(recording, columns, command, before);
-  return read_table(recording, columns, command, notes);
+  return read_table(recording, columns, command.input, notes);
 }
 
 // Adds a further file's positions to those of the first.
@@ -387,7 +232,7 @@ TumbleReadings tumble_readings(const TumbleCommand& command, std::vector<Note>& 
   TumbleReadings all;
   std::size_t rests = 0;
   for (std::size_t file = 0; file < command.files.size(); ++file) {
-    Part part = read_part(command, file, rests, notes);
+    TumblePart part = read_part(command, file, rests, notes);
     place(part, command, file);
     rests += part.rests;
     if (file == 0)

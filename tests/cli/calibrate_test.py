@@ -224,7 +224,7 @@ class Calibrate(CommandTest):
         scale_x = next(b for b in found["budgets"] if b["quantity"] == "scale x")
         line = next(one for one in scale_x["lines"] if one["source"] == "ADC reference")
         self.assertEqual((line["type"], line["distribution"]), ("B", "uniform"))
-        for text in ("nonsense", "a,bias", "a,bias,1 V,uniform", "a,taste,1 mg", "a,bias,1 mg,gaussian"):
+        for text in ("nonsense", "a,bias", "a,bias,1 V,uniform", "a,taste,1 mg", "a,bias,1 mg,lumpy"):
             line = self.expect_failure(USAGE, "calibrate", "r.csv", "--gravity", G, "--type-b", text)
             self.assertIn("type-b", line)
 

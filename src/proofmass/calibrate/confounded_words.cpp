@@ -106,8 +106,8 @@ std::string constant_size_words(const Confounded& found) {
         listed(squares), listed(squares));
   }
   return fmt::format(
-      "{} only by their difference{} while |a| is the same in every row: choose {} of the {}, or "
-      "change |a| (a centrifuge)",
+      "{} only by their difference{}, and K0 only with one of them, while |a| is the same in every "
+      "row: choose {} of the {}, or change |a| (a centrifuge)",
       listed(squares), count == 2 ? "" : "s", number_word(count - 1), number_word(count));
 }
 

@@ -37,6 +37,32 @@ struct Normal2 {
   }
 };
 
+// The length below which both lie with probability 0.95, which is below `high`: by the Illinois
+// variant of regula falsi.
+double root_95(const Normal2& normal, double high) {
+  constexpr int most = 100;
+  constexpr double exact = 1e-10;
+  double low = 0.0, below = -0.95, above = 0.05;
+  int side = 0;
+  for (int k = 0; k < most && high - low > exact * high; ++k) {
+    const double at = low - below * (high - low) / (above - below);
+    const double f = normal.shorter_than(at) - 0.95;
+    if (std::abs(f) < exact) return at;
+    if (f < 0.0) {
+      low = at;
+      below = f;
+      if (side < 0) above *= 0.5;
+      side = -1;
+    } else {
+      high = at;
+      above = f;
+      if (side > 0) below *= 0.5;
+      side = 1;
+    }
+  }
+  return high;
+}
+
 // The length below which both lie with probability 0.95. The wider of the two goes first, where
 // Simpson's rule has to follow it.
 double length_quantile_95(Normal2 normal) {
@@ -47,22 +73,7 @@ double length_quantile_95(Normal2 normal) {
   const double size = std::hypot(normal.mean[0], normal.mean[1]);
   if (!(normal.std[0] > 1e-4 * size)) return size + 1.645 * normal.std[0];
   normal.std[1] = std::max(normal.std[1], 1e-3 * normal.std[0]);
-  std::optional<bool> last_left;
-  // The Illinois variant of regula falsi.
-  double low = 0.0, high = size + 6.0 * normal.std[0];
-  double below = -0.95, above = 0.05;
-  for (int k = 0; k < 100 && high - low > 1e-10 * high; ++k) {
-    const double at = low - below * (high - low) / (above - below);
-    const double f = normal.shorter_than(at) - 0.95;
-    if (f == 0.0) return at;
-    const bool left = f < 0.0;
-    if (left == last_left) (left ? above : below) *= 0.5;
-    (left ? low : high) = at;
-    (left ? below : above) = f;
-    if (std::abs(f) < 1e-10) return at;
-    last_left = left;
-  }
-  return high;
+  return root_95(normal, size + 6.0 * normal.std[0]);
 }
 
 // Of so large a squared length in units of its standard deviation: Hotelling's T² of two.

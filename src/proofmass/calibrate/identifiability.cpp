@@ -36,26 +36,28 @@ struct Echelon {
   std::vector<Index> pivots;
 };
 
+// Makes a row the next of the form, and clears the pivot's column of the others.
+void reduce_by(Eigen::MatrixXd& null, Index done, Index row, Index column) {
+  null.row(done).swap(null.row(row));
+  null.row(done) /= null(done, column);
+  for (Index r = 0; r < null.rows(); ++r) {
+    if (r != done) null.row(r) -= null(r, column) * null.row(done);
+  }
+}
+
 Echelon echelon(Eigen::MatrixXd null, const std::vector<Index>& order) {
   constexpr double least_pivot = 0.05;
   Echelon result;
-  Index done = 0;
-  const auto reduce_by = [&](Index column, Index row) {
-    null.row(done).swap(null.row(row));
-    null.row(done) /= null(done, column);
-    for (Index r = 0; r < null.rows(); ++r) {
-      if (r != done) null.row(r) -= null(r, column) * null.row(done);
-    }
-    result.pivots.push_back(column);
-    ++done;
-  };
   for (const double least : {least_pivot, 0.0}) {
     for (const Index column : order) {
-      if (done == null.rows()) break;
-      if (std::ranges::find(result.pivots, column) != result.pivots.end()) continue;
+      const Index done = std::ssize(result.pivots);
+      const bool used = std::ranges::find(result.pivots, column) != result.pivots.end();
+      if (done == null.rows() || used) continue;
       Index row = 0;
       const double largest = null.col(column).tail(null.rows() - done).cwiseAbs().maxCoeff(&row);
-      if (largest > least) reduce_by(column, done + row);
+      if (largest <= least) continue;
+      reduce_by(null, done, done + row, column);
+      result.pivots.push_back(column);
     }
   }
   result.rows = std::move(null);
@@ -145,6 +147,14 @@ std::string_view term_text(Coefficient coefficient) {
   return text[static_cast<std::size_t>(coefficient)];
 }
 
+// "0.25 a_i": a term with its factor, which is left away where it is 1.
+std::string product_words(double factor, Coefficient coefficient) {
+  const bool one = std::abs(factor - 1.0) < negligible_weight;
+  const std::string figure = fmt::format("{:.4g}", one ? 1.0 : factor);
+  if (coefficient == Coefficient::K0) return figure;
+  return (one ? "" : figure + " ") + std::string(term_text(coefficient));
+}
+
 }  // namespace
 
 Identifiability identifiability(const Eigen::MatrixXd& design,
@@ -193,14 +203,9 @@ std::string relation_words(const TiedTerms& group,
         group.weight(static_cast<Index>(left_out), static_cast<Index>(r)) *
         std::pow(standard_gravity_mps2, degree_in_accel(right) - degree_in_accel(left));
     if (weight == 0.0) continue;
-    const double size = std::abs(weight);
-    const bool one = std::abs(size - 1.0) < negligible_weight;
-    const std::string figure = fmt::format("{:.4g}", one ? 1.0 : size);
-    sum += sum.empty() ? (weight < 0.0 ? "−" : "") : (weight < 0.0 ? " − " : " + ");
-    if (right == Coefficient::K0)
-      sum += figure;
-    else
-      sum += (one ? "" : figure + " ") + std::string(term_text(right));
+    const std::string_view first = weight < 0.0 ? "−" : "", later = weight < 0.0 ? " − " : " + ";
+    sum += sum.empty() ? first : later;
+    sum += product_words(std::abs(weight), right);
   }
   return fmt::format("{} = {}", term_text(left), sum.empty() ? "0" : sum);
 }

@@ -66,15 +66,21 @@ struct Linear {
   double scale = 1.0;  ///< coefficients are β over this where K1 is not fitted
 };
 
+// K1's bracket of what is held, times K1 where that is held too.
+ModelEquation held_part(const ModelFitOptions& options) {
+  ModelEquation held = options.held;
+  for (const Coefficient which : options.fitted) {
+    held.*sensor::info(which).member = which == Coefficient::K1 ? 1.0 : 0.0;
+  }
+  return held;
+}
+
 Linear linear_problem(View<ModelRow> rows, const ModelFitOptions& options) {
   Linear problem;
   const auto n = static_cast<Index>(rows.size()), p = std::ssize(options.fitted);
-  ModelEquation held = options.held;
-  for (Index c = 0; c < p; ++c) {
-    const Coefficient which = options.fitted[size_of(c)];
-    if (which == Coefficient::K1) problem.k1 = c;
-    held.*sensor::info(which).member = which == Coefficient::K1 ? 1.0 : 0.0;
-  }
+  const ModelEquation held = held_part(options);
+  const auto k1 = std::ranges::find(options.fitted, Coefficient::K1);
+  if (k1 != options.fitted.end()) problem.k1 = k1 - options.fitted.begin();
   problem.X.resize(n, p);
   problem.y.resize(n);
   problem.sigma.resize(n);
@@ -83,9 +89,9 @@ Linear linear_problem(View<ModelRow> rows, const ModelFitOptions& options) {
     const double sigma = row.output_std > 0.0 ? row.output_std : 1.0;
     const double by_held = sensor::output(held, row.motion);
     for (Index c = 0; c < p; ++c) {
-      const double term = sensor::term(options.fitted[size_of(c)], row.motion);
-      problem.X(r, c) = (problem.k1 == c ? by_held : term) / sigma;
+      problem.X(r, c) = sensor::term(options.fitted[size_of(c)], row.motion) / sigma;
     }
+    if (problem.k1) problem.X(r, *problem.k1) = by_held / sigma;
     problem.y(r) = (row.output - (problem.k1 ? 0.0 : by_held)) / sigma;
     problem.sigma(r) = sigma;
   }

@@ -163,9 +163,10 @@ TEST(ModelFit, SaysThatTheSquaresGoOnlyByTheirDifferencesAtOneG) {
   EXPECT_EQ(group.coefficients, (std::vector{K0, K2, Kpp, Koo}));
   EXPECT_EQ(group.determined, 3U);
   EXPECT_EQ(group.relations, (std::vector<std::string>{"a_o² = 1 − a_i² − a_p²"}));
-  EXPECT_EQ(group.words,
-            "K2, Kpp and Koo only by their differences while |a| is the same in every row: choose "
-            "two of the three, or change |a| (a centrifuge)");
+  EXPECT_EQ(
+      group.words,
+      "K2, Kpp and Koo only by their differences, and K0 only with one of them, while |a| is the "
+      "same in every row: choose two of the three, or change |a| (a centrifuge)");
   for (const Coefficient c : group.coefficients) {
     EXPECT_FALSE(fit.find(c)->value);
     EXPECT_EQ(fit.find(c)->reason, group.words);
@@ -195,9 +196,10 @@ TEST(ModelFit, TellsK2MinusKppInAPlaneAndNoMore) {
   const ModelFit fit = fitted(rows_of(plausible, tumble(24)), {K1, K0, K2, Kpp, delta_o});
   ASSERT_EQ(fit.confounded.size(), 1U);
   EXPECT_EQ(fit.confounded[0].combinations[1].name, "K2 − Kpp");
-  EXPECT_EQ(fit.confounded[0].words,
-            "K2 and Kpp only by their difference while |a| is the same in every row: choose one of "
-            "the two, or change |a| (a centrifuge)");
+  EXPECT_EQ(
+      fit.confounded[0].words,
+      "K2 and Kpp only by their difference, and K0 only with one of them, while |a| is the same "
+      "in every row: choose one of the two, or change |a| (a centrifuge)");
 }
 
 TEST(ModelFit, SaysThatFourPositionsDoNotShowOddTermsBesideTheScaleFactor) {

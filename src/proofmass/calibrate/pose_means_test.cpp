@@ -3,6 +3,10 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
+#include <span>
+#include <vector>
+
+#include "proofmass/calibrate/dwell_noise.hpp"
 
 namespace proofmass::calibrate {
 namespace {
@@ -73,6 +77,7 @@ TEST(PoseMeans, KnowNoNoiseWhereThereIsNone) {
   // With a converter's steps the mean may be anywhere within one.
   const PoseMeans stepped = pose_means({still, still, still}, rests(2), {0.6, 0.6, 0.6}).value();
   EXPECT_NEAR(stepped.poses[0].mean_covariance(0, 0), 0.03, 1e-12);
+  EXPECT_GT(stepped.noise_dof, 0.0);
 }
 
 TEST(PoseMeans, NameTheRestWithoutNumbers) {
@@ -83,6 +88,68 @@ TEST(PoseMeans, NameTheRestWithoutNumbers) {
   ASSERT_FALSE(means);
   EXPECT_NE(means.error().message.find("rest 2"), std::string::npos);
   EXPECT_EQ(pose_means({y, y, View<double>(z).first(3)}, {}).error().code, Errc::invalid_argument);
+}
+
+TEST(DwellNoise, IsTheSumOfItsParts) {
+  const DwellNoise noise{
+      .white = 4.0, .flicker = 0.5, .random_walk = 0.01, .dof = 1.0, .rounding = 0.2};
+  EXPECT_DOUBLE_EQ(noise.variance_of_mean(10), 0.4 + 0.5 + 0.1 + 0.2);
+}
+
+DwellNoise noise_of(const std::vector<double>& samples, std::size_t each, double lsb = 0.0) {
+  std::vector<std::span<const double>> rests;
+  for (std::size_t k = 0; k + each <= samples.size(); k += each)
+    rests.emplace_back(samples.data() + k, each);
+  return fit_dwell_noise(rests, lsb);
+}
+
+// Markov processes an octave apart, equally strong: a flat Allan deviation.
+TEST(DwellNoise, OfFlickerDoesNotAverageOut) {
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> normal;
+  constexpr int octaves = 16;
+  std::vector<double> samples(60 * dwell), state(octaves);
+  for (double& value : state) value = normal(random);
+  for (double& sample : samples) {
+    sample = 0.0;
+    for (int k = 0; k < octaves; ++k) {
+      const double phi = std::exp(-std::exp2(1 - k));
+      double& x = state[static_cast<std::size_t>(k)];
+      sample += x = phi * x + std::sqrt(1.0 - phi * phi) * normal(random);
+    }
+  }
+  const DwellNoise noise = noise_of(samples, dwell);
+  // Octaves of unit variance make the two-sided density 1/(2 ln 2 f), of Allan variance 2.
+  EXPECT_NEAR(noise.flicker, 2.0, 0.7);
+  EXPECT_NEAR(noise.variance_of_mean(dwell), 2.0, 0.7);
+  EXPECT_LT(noise.random_walk * dwell, 1.0);
+}
+
+// ln v scatters by 2/dof, over recordings of the same sensor, or by less: the choice between terms
+// makes dof cautious.
+TEST(DwellNoise, KnowsHowWellItIsKnown) {
+  constexpr int recordings = 200;
+  double sum = 0.0, squares = 0.0, claimed = 0.0;
+  for (unsigned seed = 100; seed < 100 + recordings; ++seed) {
+    const DwellNoise noise = noise_of(white(8 * 128, 1.0, seed, 0.0), 128);
+    const double value = std::log(noise.variance_of_mean(128));
+    sum += value / recordings;
+    squares += value * value / recordings;
+    claimed += 2.0 / noise.dof / recordings;
+  }
+  const double spread = squares - sum * sum;
+  EXPECT_GT(claimed / spread, 0.9);
+  EXPECT_LT(claimed / spread, 3.5);
+}
+
+TEST(DwellNoise, CountsStepsThatTheNoiseDoesNotAverageOut) {
+  const auto rounded = [](double std) {
+    std::vector<double> samples = white(20 * dwell, std, 9, 0.3);
+    for (double& value : samples) value = std::round(value);
+    return samples;
+  };
+  EXPECT_EQ(noise_of(rounded(1.0), dwell, 1.0).rounding, 0.0);
+  EXPECT_DOUBLE_EQ(noise_of(rounded(0.2), dwell, 1.0).rounding, 1.0 / 12.0);
 }
 
 }  // namespace

@@ -64,6 +64,7 @@ void start_phase(RotationState& state, const RotationOptions& options) {
     const double intervals =
         std::clamp(std::floor(turns / options.turns_per_knot), 1.0, most_intervals);
     std::vector<double> theta;
+    theta.reserve(section.turn_s.size());
     for (std::size_t k = 0; k < section.turn_s.size(); ++k) {
       theta.push_back(rad_per_turn * static_cast<double>(k));
     }

@@ -31,6 +31,7 @@ struct RotationOptions {
   double turns_per_knot = 4.0;              ///< of the phase, where no encoder tells it; at least 3
 };
 
+// NOLINTBEGIN(readability-identifier-naming): these are the standard's names.
 enum class RotationQuantity {
   K1,            ///< (S1 + 3 S3)/g
   K0,            ///< K0 + Kpp g² = (B0 + C2)/K1: the bias at 0 g
@@ -41,6 +42,7 @@ enum class RotationQuantity {
   K3,            ///< −4 S3/(K1 g³)
   radius,        ///< along the axis: the reading falls by K1 r ω²
 };
+// NOLINTEND(readability-identifier-naming)
 inline constexpr std::size_t rotation_quantities = 8;
 
 /// "K2_minus_Kpp": the name that documents use.

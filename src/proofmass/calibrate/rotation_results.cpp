@@ -168,6 +168,32 @@ void fill_radius(const RotationState& state,
   }
 }
 
+struct OfAxis {
+  std::size_t axis;
+  RotationCoefficient& coefficient;
+};
+
+// Value, standard deviation and interval; whether these had to be widened.
+bool fill_value(const RotationState& state,
+                const RotationEstimate& estimate,
+                const RotationOptions& options,
+                const OfAxis& of) {
+  RotationCoefficient& one = of.coefficient;
+  const Index from = harmonic_count * static_cast<Index>(of.axis);
+  const Derived found = derived(one.quantity, estimate.harmonics.segment<8>(from),
+                                {options.gravity_mps2, state.mean_square_speed});
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(state.size());
+  gradient.segment<8>(from) = found.gradient;
+  const bool slow =
+      one.quantity == Q::K0 || one.quantity == Q::K0_radial || one.quantity == Q::radius;
+  const RotationSpread spread = estimate.spread_of(gradient, slow);
+  const double by_gravity = found.value * power_of_gravity(one.quantity) *
+                            options.gravity_std_mps2 / options.gravity_mps2;
+  one.value = Uncertain{found.value, std::hypot(spread.std, by_gravity)};
+  one.half_width_95 = std::hypot(half_width(spread.std, spread.dof), 1.959964 * by_gravity);
+  return spread.widened;
+}
+
 }  // namespace
 
 std::string_view name_of(RotationQuantity quantity) {
@@ -182,39 +208,24 @@ void fill_rotation(const RotationState& state,
                    RotationFit& fit) {
   std::string widened_names;
   fit.axes.resize(state.axes);
-  const double u_g = options.gravity_std_mps2 / options.gravity_mps2;
   for (std::size_t axis = 0; axis < state.axes; ++axis) {
-    const Index from = harmonic_count * static_cast<Index>(axis);
-    const Harmonics h = estimate.harmonics.segment<8>(from);
+    const auto h = estimate.harmonics.segment<8>(harmonic_count * static_cast<Index>(axis));
     std::copy(h.begin(), h.end(), fit.axes[axis].harmonics.begin());
     for (std::size_t q = 0; q < rotation_quantities; ++q) {
       RotationCoefficient& one = fit.axes[axis].coefficients[q];
       one.quantity = static_cast<Q>(q);
       one.reason = why_not(state, fit, axis, one.quantity);
-      if (!one.reason.empty()) continue;
-      const Derived found =
-          derived(one.quantity, h, {options.gravity_mps2, state.mean_square_speed});
-      Eigen::VectorXd gradient = Eigen::VectorXd::Zero(state.size());
-      gradient.segment<8>(from) = found.gradient;
-      const bool slow =
-          one.quantity == Q::K0 || one.quantity == Q::K0_radial || one.quantity == Q::radius;
-      const RotationSpread spread = estimate.spread_of(gradient, slow);
-      const double by_gravity = found.value * power_of_gravity(one.quantity) * u_g;
-      one.value = Uncertain{found.value, std::hypot(spread.std, by_gravity)};
-      one.half_width_95 = std::hypot(half_width(spread.std, spread.dof), 1.959964 * by_gravity);
-      if (spread.widened) {
-        widened_names += (widened_names.empty() ? "" : ", ") + std::string(name_of(one.quantity));
-        if (state.axes > 1) widened_names += fmt::format(" of axis {}", axis + 1);
-      }
+      if (!one.reason.empty() || !fill_value(state, estimate, options, {axis, one})) continue;
+      widened_names += (widened_names.empty() ? "" : ", ") + std::string(name_of(one.quantity));
+      if (state.axes > 1) widened_names += fmt::format(" of axis {}", axis + 1);
     }
   }
   fill_radius(state, estimate, options, fit);
-  if (!widened_names.empty()) {
-    fit.notes.push_back(fmt::format(
-        "neighbouring blocks of {:.0f} turns agree more than chance in {}: the reading drifts; "
-        "standard deviations were widened for it",
-        estimate.blocks.turns_per_block, widened_names));
-  }
+  if (widened_names.empty()) return;
+  fit.notes.push_back(fmt::format(
+      "neighbouring blocks of {:.0f} turns agree more than chance in {}: the reading drifts; "
+      "standard deviations were widened for it",
+      estimate.blocks.turns_per_block, widened_names));
 }
 
 }  // namespace proofmass::calibrate

@@ -1,5 +1,6 @@
 #include "proofmass/calibrate/rotation_words.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <string>
@@ -37,6 +38,36 @@ void note_doubts(const RotationState& state, const RotationOptions& options, Rot
   if (!fit.converged) fit.doubts.push_back("the fit did not settle");
 }
 
+namespace {
+
+void note_ripple(const SpeedRipple& ripple, double gravity, RotationFit& fit) {
+  const bool once = ripple.per_turn == 1;
+  constexpr double beyond_chance = 0.01;
+  if (ripple.accepted && ripple.amplitude) {
+    fit.notes.push_back(
+        fmt::format("both axes show a speed that varies by {:.2g} % {} a turn; it was taken out",
+                    100.0 * ripple.amplitude->value, once ? "once" : "twice"));
+  } else if (!ripple.accepted && ripple.chance_p < beyond_chance) {
+    fit.notes.push_back(fmt::format(
+        "the {} harmonics of the axes are not those of a varying speed alone (p = {:.2g}): they "
+        "are put down to the sensor",
+        once ? "second" : "third", ripple.ripple_p));
+  }
+  if (!once || !ripple.accepted || !ripple.amplitude || fit.radius.value) return;
+  // r ω² swings by 2 r ω² times the ripple.
+  double square = 0.0;
+  for (const RotationSection& one : fit.sections) {
+    square = std::max(square, one.speed_radps * one.speed_radps);
+  }
+  constexpr double example_m = 0.1;
+  fit.notes.push_back(fmt::format(
+      "it swings r ω² too: each {} m of radius, which is not told, makes up to {:.2g} % "
+      "of K1",
+      example_m, 100.0 * 2.0 * ripple.amplitude->value * example_m * square / gravity));
+}
+
+}  // namespace
+
 void note_ripples(const RotationOptions& options, RotationFit& fit) {
   const double g = options.gravity_mps2, one = 0.01;
   // A phase error ε sin nφ, ε = one/n, has harmonics n ± 1 of ε/2.
@@ -48,16 +79,7 @@ void note_ripples(const RotationOptions& options, RotationFit& fit) {
   bool once = false, twice = false;
   for (const SpeedRipple& ripple : fit.ripples) {
     (ripple.per_turn == 1 ? once : twice) = ripple.accepted;
-    if (ripple.accepted && ripple.amplitude) {
-      fit.notes.push_back(
-          fmt::format("both axes show a speed that varies by {:.2g} % {} a turn; it was taken out",
-                      100.0 * ripple.amplitude->value, ripple.per_turn == 1 ? "once" : "twice"));
-    } else if (!ripple.accepted && ripple.chance_p < 0.01) {
-      fit.notes.push_back(fmt::format(
-          "the {} harmonics of the axes are not those of a varying speed alone (p = {:.2g}): they "
-          "are put down to the sensor",
-          ripple.per_turn == 1 ? "second" : "third", ripple.ripple_p));
-    }
+    note_ripple(ripple, g, fit);
   }
   const std::string what =
       fit.angle_given ? "an angle that is wrong as if the speed varied" : "a speed that varies";

@@ -52,7 +52,7 @@ double reach(const CalibrateReport& report) {
 // Two discs side by side: directions with +z up on the left, those with −z up on the right, each
 // seen along −z with x to the right and y upwards. Equal areas: r = √(1 − |z|).
 // Source: J. P. Snyder, Map Projections: A Working Manual, USGS Professional Paper 1395 (1987), 24.
-constexpr double disc_center = 1.17;
+constexpr double disc_center = 1.21;
 
 struct MapPlace {
   double x, y;
@@ -85,12 +85,16 @@ void add_circles(double from_z_deg, Mark mark, Figure& figure) {
 }
 
 void add_axis_names(Figure& figure) {
+  constexpr double outside = 1.1;
+  const auto add = [&](const char* text, double x, double y) {
+    figure.callouts.push_back({.text = text, .x = x, .y = y, .bare = true});
+  };
   for (const double center : {-disc_center, disc_center}) {
-    figure.callouts.push_back({.text = center < 0.0 ? "+z" : "−z", .x = center});
-    figure.callouts.push_back({.text = "+x", .x = center + 1.0});
-    figure.callouts.push_back({.text = "−x", .x = center - 1.0, .left = true});
-    figure.callouts.push_back({.text = "+y", .x = center, .y = 1.0});
-    figure.callouts.push_back({.text = "−y", .x = center, .y = -1.0, .below = true});
+    add("+x", center + outside, 0.0);
+    add("−x", center - outside, 0.0);
+    add("+y", center, outside);
+    add("−y", center, -outside);
+    add(center < 0.0 ? "+z up" : "−z up", center - 0.85, outside - 0.25);
   }
 }
 
@@ -190,9 +194,10 @@ Figure direction_figure(const CalibrateReport& report) {
     if (pose.force_mps2.norm() > 0.0) add_point(pose.force_mps2, pose.suspect ? bad : used);
   figure.curves.push_back(std::move(used));
   if (!bad.x.empty()) figure.curves.push_back(std::move(bad));
-  if (!report.fit.next_pose) return figure;
+  if (!report.fit.next_pose || !stds_known(report)) return figure;
   const auto [x, y] = map_place(report.fit.next_pose->up);
-  figure.callouts.push_back({.text = "next position", .x = x, .y = y, .ink = Ink::orange});
+  figure.callouts.push_back(
+      {.text = "next position", .x = x, .y = y, .ink = Ink::orange, .below = true});
   return figure;
 }
 

@@ -58,13 +58,16 @@ std::vector<std::string> capitals(std::vector<std::string> head) {
 }
 
 Section figures_section(const CalibrateReport& report) {
-  Table table{"± is one standard deviation", {"Figure", "Value", "95 %", "What it is"}, {}};
-  if (!stds_known(report))
-    table.caption = "No standard deviations: the noise is not known and no position is to spare";
-  table.rows = figure_rows(report);
+  std::vector<std::vector<std::string>> rows = figure_rows(report);
   // The sign stays on the line of its number.
-  for (std::vector<std::string>& row : table.rows)
-    if (row[2].starts_with("± ")) row[2].replace(0, 3, "±\u00a0");
+  const std::string sign = "± ";
+  for (std::vector<std::string>& row : rows)
+    if (row[2].starts_with(sign)) row[2].replace(0, sign.size(), "±\u00a0");
+  Table table{stds_known(report)
+                  ? "± is one standard deviation"
+                  : "No standard deviations: the noise is not known and no position is to spare",
+              capitals(rows.front()),
+              {rows.begin() + 1, rows.end()}};
   Section section{.heading = "Bias, scale and misalignment"};
   section.tables.push_back(std::move(table));
   section.points = calibrate_findings(report);
@@ -91,7 +94,11 @@ Section positions_section(const CalibrateReport& report) {
 
 Section plots_section(const CalibrateReport& report) {
   Section section{.heading = "Residuals and directions"};
-  section.figures = {residual_figure(report), direction_figure(report)};
+  // Rounding is no residual.
+  constexpr double rounding_g = 1e-9;
+  if (report.fit.residual_rms_mps2 > rounding_g * report.fit.gravity_mps2)
+    section.figures.push_back(residual_figure(report));
+  section.figures.push_back(direction_figure(report));
   return section;
 }
 
@@ -129,28 +136,38 @@ Section check_section(const CalibrateReport& report) {
   return section;
 }
 
-Section supply_section(const CalibrateReport& report) {
-  const bool voltage = report.unit.quantity == Quantity::voltage;
-  Table table{
-      "", {"File", "Supply", "Bias x", "Bias y", "Bias z", "Scale x", "Scale y", "Scale z"}, {}};
+// Bias and scale of each file, units in the head.
+Table supply_table(const CalibrateReport& report) {
+  Table table{"", {"File", "Supply"}, {}};
   for (const SuppliedFit& one : report.supplies) {
     CalibrateReport at;
     at.unit = report.unit;
     at.fit = one.fit;
-    const std::vector<CalibrationFigure> figures = calibration_figures(at);
+    std::vector<CalibrationFigure> figures = calibration_figures(at);
+    figures.resize(6);
     std::vector<std::string> row{file_name(one.file), compact(one.supply_v, 5) + " V"};
-    for (std::size_t k = 0; k < 6; ++k) row.push_back(figure_words(figures[k], stds_known(at)));
+    for (CalibrationFigure& figure : figures) {
+      if (table.head.size() < 8)
+        table.head.push_back(figure.key + (figure.printed_unit.empty() ? "" : ", ") +
+                             figure.printed_unit);
+      figure.printed_unit.clear();
+      row.push_back(figure_words(figure, stds_known(at)));
+    }
     table.rows.push_back(std::move(row));
   }
+  return table;
+}
+
+Section supply_section(const CalibrateReport& report) {
   Section section{.heading = "What the supply does"};
   for (const auto& axis : report.supply->axes)
     if (axis) section.points.push_back(axis->words);
-  if (voltage)
+  if (report.unit.quantity == Quantity::voltage)
     section.paragraphs.emplace_back(
         "A ratiometric output follows its supply: its scale grows as the supply, and its bias is "
         "the same part of it.");
   section.figures = supply_figures(report);
-  section.tables.push_back(std::move(table));
+  section.tables.push_back(supply_table(report));
   return section;
 }
 

@@ -49,8 +49,7 @@ std::string calibrate_conclusion(const CalibrateReport& report) {
 
 std::string calibrate_text(const CalibrateReport& report) {
   std::string text = calibrate_conclusion(report) + "\n\n";
-  std::vector<std::vector<std::string>> rows{{"figure", "value", "95 %", "what it is"}};
-  for (std::vector<std::string>& row : figure_rows(report)) rows.push_back(std::move(row));
+  std::vector<std::vector<std::string>> rows = figure_rows(report);
   text += aligned(rows) + '\n';
   rows = position_rows(report);
   constexpr std::size_t most_rows = 60;

@@ -66,6 +66,14 @@ std::string with_unit(const std::string& number, const std::string& unit) {
   return unit.empty() ? number : number + " " + unit;
 }
 
+// Two digits without powers of ten: the interval of a scale stands beside 1.01002.
+std::string two_digits(double value) {
+  constexpr int most = 9;
+  if (!(value > 0.0)) return "0";
+  const int decimals = std::min(1 - static_cast<int>(std::floor(std::log10(value))), most);
+  return fixed(value, decimals);
+}
+
 // Why the angles were not fitted: the first words of the fit's own, which stand among the notes.
 std::string why_no_angles(const MultiPosition& fit) {
   const std::string start = "misalignment_rad: null: ";
@@ -130,13 +138,14 @@ std::string figure_words(const CalibrationFigure& figure, bool std_known) {
 
 std::vector<std::vector<std::string>> figure_rows(const CalibrateReport& report) {
   const bool known = stds_known(report);
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<std::string>> rows{{"figure", "value", "95 %", "what it is"}};
   for (const CalibrationFigure& one : calibration_figures(report)) {
     const std::string band =
-        one.half_width_95 ? "± " + significant(*one.half_width_95 * one.factor, 2) : "";
+        one.half_width_95 ? "± " + two_digits(*one.half_width_95 * one.factor) : "";
     rows.push_back({one.key, figure_words(one, known), band,
                     one.figure ? one.meaning : why_no_angles(report.fit)});
   }
+  without_empty_columns(rows);
   return rows;
 }
 

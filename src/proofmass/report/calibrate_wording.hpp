@@ -28,7 +28,7 @@ struct CalibrationFigure {
 /// "12.3 ± 0.2 mg"; the value alone where the noise is not known; "not determined".
 [[nodiscard]] std::string figure_words(const CalibrationFigure& figure, bool std_known);
 
-/// Rows of name, figure, 95 % interval, meaning or why there is none.
+/// A head, then rows of name, figure, 95 % interval (where known), meaning or why there is none.
 [[nodiscard]] std::vector<std::vector<std::string>> figure_rows(const CalibrateReport& report);
 
 /// Whether the standard deviations hold the noise of the means.

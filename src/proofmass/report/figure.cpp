@@ -217,6 +217,12 @@ void draw(std::string& text, const Mappings& map, const Level& level) {
 void draw(std::string& text, const Mappings& map, const Callout& callout) {
   if (!map.x.holds(callout.x) || !map.y.holds(callout.y)) return;
   const double x = map.x(callout.x), y = map.y(callout.y);
+  if (callout.bare) {
+    fmt::format_to(Out(text),
+                   "<text class=\"pm-callout pm-mid pm-{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+                   colour(callout.ink), x, y + 4.0, escaped(callout.text));
+    return;
+  }
   const double wide = 10.0 + text_width(callout.text);
   const bool turned = x + wide > map.x.to || (callout.left && x - wide > map.x.from);
   fmt::format_to(Out(text),

@@ -60,6 +60,7 @@ struct Callout {
   Ink ink = Ink::grey;
   bool below = false;  ///< the word stands under its dot, not above
   bool left = false;   ///< and before it, not behind, if there is room
+  bool bare = false;   ///< the word alone, in the middle of its place, without a dot
 };
 
 struct Figure {

@@ -162,7 +162,7 @@ std::string model_equation_html(const ModelEquationReport& report) {
             .notes = report.notes};
   for (const ModelOutput& output : report.outputs) {
     for (const FittedCoefficient& one : output.fit.coefficients) {
-      if (page.key_figures.size() < 6) {
+      if (one.value && page.key_figures.size() < 6) {
         page.key_figures.push_back(
             {fmt::format("{} {}", output.name, sensor::info(one.coefficient).name),
              figure(one, output.unit)});

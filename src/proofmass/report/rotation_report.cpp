@@ -213,7 +213,8 @@ std::string rotation_html(const RotationReport& report) {
             .inputs = report.inputs,
             .conclusion = conclusion(report),
             .notes = report.notes};
-  for (const Q quantity : {Q::K1, Q::K0_radial, Q::K2_minus_Kpp}) {
+  const Q bias = fit.axes.front()[Q::K0].value ? Q::K0 : Q::K0_radial;
+  for (const Q quantity : {Q::K1, bias, Q::K2_minus_Kpp}) {
     page.key_figures.push_back({report.axis_names.front() + ": " + label(quantity),
                                 figure(fit.axes.front()[quantity], report.unit)});
   }

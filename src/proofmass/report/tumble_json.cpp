@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <functional>
 
 #include "proofmass/report/document.hpp"
+#include "proofmass/report/tumble_nulls.hpp"
 #include "proofmass/report/tumble_report.hpp"
 #include "proofmass/report/tumble_wording.hpp"
 
@@ -36,10 +36,6 @@ bool has_place_of_its_own(Q quantity) {
          quantity == Q::indexing_cos2 || quantity == Q::indexing_sin2;
 }
 
-// The keys that stand in every document, whether the test has them or not.
-constexpr Q always[] = {Q::K1, Q::K0,  Q::K2_minus_Kpp, Q::misalignment,
-                        Q::K3, Q::Kip, Q::K0_up_down};
-
 // The list without doubles: of a misalignment and a cos 3φ the first.
 std::vector<const TumbleCoefficient*> listed(const TumbleFit& fit) {
   std::vector<const TumbleCoefficient*> out;
@@ -50,12 +46,12 @@ std::vector<const TumbleCoefficient*> listed(const TumbleFit& fit) {
 
 Object figures(const TumbleFit* fit) {
   Object out;
-  for (const Q quantity : always)
+  for (const Q quantity : tumble_keys)
     out.push_back({std::string(calibrate::name_of(quantity)),
                    fit == nullptr ? Value() : figure(fit->find(quantity))});
   if (fit == nullptr) return out;
   for (const TumbleCoefficient* c : listed(*fit)) {
-    if (std::find(std::begin(always), std::end(always), c->quantity) == std::end(always))
+    if (std::find(tumble_keys.begin(), tumble_keys.end(), c->quantity) == tumble_keys.end())
       out.push_back({std::string(calibrate::name_of(c->quantity)), figure(c)});
   }
   return out;
@@ -244,68 +240,6 @@ Object channel_object(const ChannelTumble& channel) {
   return out;
 }
 
-using Reasons = std::function<void(const std::string& key, const std::string& why)>;
-
-void add_residual_reasons(const TumbleFit& fit, const Reasons& add) {
-  const auto& rows = fit.positions;
-  if (std::any_of(rows.begin(), rows.end(), [](const auto& r) { return !r.std; }))
-    add("positions[].std, residual_std",
-        "no position is over to judge by and the noise of the outputs is not stated");
-  else if (!fit.residual_std)
-    add("residual_std", "no position is over to judge by");
-  if (std::any_of(rows.begin(), rows.end(), [](const auto& r) { return !r.studentised; }))
-    add("positions[].studentised",
-        "the other positions alone do not carry the fit, or there is no scatter to judge by");
-  if (!fit.lack_of_fit)
-    add("lack_of_fit",
-        fit.dof == 0 ? "no position is over to judge by"
-                     : "there is neither the noise of the outputs nor, beside errors of indexing, "
-                       "the scatter of repeated positions to compare with");
-}
-
-void add_drift_reasons(const TumbleFit& fit, const Reasons& add) {
-  const TumbleCoefficient* c = fit.find(Q::drift);
-  if (!fit.drift.rate_mps2) add("drift.value", fit.drift.words);
-  if (!fit.drift.p || c == nullptr || !c->std) add("drift.std, drift.p", fit.drift.words);
-}
-
-void add_coefficient_reasons(const TumbleFit& fit, const Reasons& add) {
-  for (const TumbleCoefficient& c : fit.coefficients) {
-    if (!c.value) add(key_words(c), c.reason);
-    // Where no residual judges, one line says so for all.
-    if (c.value && !c.std && fit.residual_std) add(key_words(c) + ".std", c.reason);
-  }
-  const TumbleCoefficient& first = fit.coefficients.front();
-  if (!first.std && !fit.residual_std) add("every std", first.reason);
-  for (const Q quantity : always) {
-    if (fit.find(quantity) == nullptr)
-      add(std::string(calibrate::name_of(quantity)), "no position lies in the first plane");
-  }
-}
-
-void add_null_reasons(const ChannelTumble& channel, std::vector<std::string>& all) {
-  const Reasons add = [&](const std::string& key, const std::string& why) {
-    all.push_back(fmt::format("{}: {}: null: {}", channel.name, key, why));
-  };
-  if (channel.unit.symbol.empty()) add("unit", "neither the file nor --unit says");
-  if (channel.fit) {
-    add_coefficient_reasons(*channel.fit, add);
-    add_residual_reasons(*channel.fit, add);
-    add_drift_reasons(*channel.fit, add);
-    return;
-  }
-  std::string keys;
-  for (const Q quantity : always)
-    keys += (keys.empty() ? "" : ", ") + std::string(calibrate::name_of(quantity));
-  add(keys, channel.refused);
-}
-
-std::vector<std::string> warnings(const TumbleReport& report) {
-  std::vector<std::string> all = texts(tumble_notes(report), Severity::warning);
-  for (const ChannelTumble& channel : report.channels) add_null_reasons(channel, all);
-  return all;
-}
-
 }  // namespace
 
 std::string tumble_json(const TumbleReport& report) {
@@ -323,7 +257,7 @@ std::string tumble_json(const TumbleReport& report) {
   out.push_back({"gravity_std_mps2", report.gravity_std_mps2});
   out.push_back({"indexing_std_rad", report.indexing_std_rad});
   out.push_back({"notes", array_of(texts(tumble_notes(report), Severity::info))});
-  return to_json({"tumble", report.inputs, warnings(report)}, out);
+  return to_json({"tumble", report.inputs, tumble_warnings(report)}, out);
 }
 
 }  // namespace proofmass::report

@@ -12,6 +12,7 @@ namespace proofmass::sensor {
 /// The coefficients of E(a, ω), E being the output in its own unit [V, counts, m/s^2 …]. SI: no g.
 /// Source: IEEE Std 1293-2018, annex on the model equation, as written in the thesis of M. A. Lele
 /// (2010), section 2.3.
+// NOLINTBEGIN(readability-identifier-naming): these are the standard's names.
 struct ModelEquation {
   double K1 = 1.0;       ///< scale factor [unit of E per m/s^2]
   double K0 = 0.0;       ///< bias [m/s^2]
@@ -31,6 +32,7 @@ struct ModelEquation {
   double Kang = 0.0;     ///< angular acceleration about the output axis [m/s^2 per rad/s^2]
   friend bool operator==(const ModelEquation&, const ModelEquation&) = default;
 };
+// NOLINTEND(readability-identifier-naming)
 
 /// What acts on the accelerometer: specific force along its input, pendulous and output axes
 /// (i, p, o), rates about the first two, angular acceleration about the third.
@@ -49,6 +51,7 @@ struct Motion {
 [[nodiscard]] double output(const ModelEquation& equation, const Motion& motion);
 
 /// The coefficients by name, in the order of the equation.
+// NOLINTBEGIN(readability-identifier-naming)
 enum class Coefficient : std::size_t {
   K1,
   K0,
@@ -67,6 +70,7 @@ enum class Coefficient : std::size_t {
   Kspin,
   Kang
 };
+// NOLINTEND(readability-identifier-naming)
 inline constexpr std::size_t coefficient_count = 16;
 
 /// One coefficient: the single place for its name, units and meaning.
