@@ -19,7 +19,7 @@ struct PoseSet {
   Unit unit;                           ///< SI: m/s^2, V or counts
   /// Supply at which the readings in volts would have been these, brought there by a recorded one.
   std::optional<double> reference_supply_v;
-  double noise_dof = 0.0;              ///< of the poses' covariances; 0: not known
+  double noise_dof = 0.0;  ///< of the poses' covariances; 0: not known
   std::array<double, 3> sample_std{};
 };
 

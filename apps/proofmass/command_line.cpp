@@ -248,6 +248,9 @@ void add_drift(CLI::App& app, DriftCommand& command) {
   verb.footer("Example:\n  proofmass drift rest.csv --rate 100 --unit g --report drift.html");
 }
 
+constexpr const char* gravity_std_help =
+    "standard deviation of gravity (default: 0 of --gravity, 4e-4 of --latitude, else 0.015)";
+
 // Flags of `calibrate` that say where the poses are.
 void add_pose_flags(CLI::App& verb, CalibrateCommand& command) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
@@ -275,8 +278,7 @@ void add_uncertainty_flags(CLI::App& verb, CalibrateCommand& command) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type);
   };
-  add("--gravity-std", command.gravity_std_mps2, "M_PER_S2",
-      "standard deviation of gravity (default: 0 of --gravity, 4e-4 of --latitude, else 0.015)")
+  add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", gravity_std_help)
       ->check(not_negative());
   add("--orthogonality-std", command.orthogonality_std_deg, "DEG",
       "of the angles between the axes where they are not fitted")
@@ -352,7 +354,7 @@ void add_position_flags(CLI::App& verb, TumbleCommand& command) {
       "the channel whose axis sees g·sin(angle) (default: found from the readings)");
   add("--indexing-std", command.indexing_std_deg, "DEG", "standard deviation of the table's angles")
       ->check(not_negative());
-  add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", "standard deviation of gravity")
+  add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", gravity_std_help)
       ->check(not_negative());
 }
 

@@ -147,7 +147,7 @@ bool is_output(const Channel& channel, const TumbleCommand& command) {
          std::ranges::find(others, name) == others.end();
 }
 
-// An empty table of rows' standard deviations where no column NAME_std (or std) states them.
+// The column NAME_std, or std, which states the readings' standard deviations; or none.
 const Channel* stated_std(const Recording& table, const Channel& output) {
   const Channel* own = column(table, bare(output.name) + "std");
   return own != nullptr ? own : column(table, "std");
@@ -163,9 +163,9 @@ std::optional<calibrate::CrossAxis> cross_axis_of(const calibrate::ModelFit& fit
     for (int b = 0; b < 2; ++b) covariance(a, b) = fit.covariance(at[a], at[b]);
   }
   const double dof = fit.std_stated ? 0.0 : static_cast<double>(fit.dof);
-  output.cross_axis =
-      need(calibrate::cross_axis_sensitivity({o->value->value, p->value->value}, covariance, dof),
-           Stage::computing);
+  return need(
+      calibrate::cross_axis_sensitivity({o->value->value, p->value->value}, covariance, dof),
+      Stage::computing);
 }
 
 report::ModelOutput fit_output(const Recording& table,

@@ -153,21 +153,25 @@ void run_rotation(const TumbleCommand& command) {
   }
   keep_notes(recordings, report.notes);
   std::vector<std::vector<std::size_t>> chosen;
+  chosen.reserve(recordings.size());
   for (const Recording& recording : recordings) {
     chosen.push_back(plane_channels(recording, command));
   }
   report.unit = bring_to_one_unit(recordings, chosen);
   std::vector<calibrate::RotationRecording> turning;
+  turning.reserve(recordings.size());
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     turning.push_back(rotation_recording(recordings[r], chosen[r], command.angle_channel));
   }
   for (const std::size_t c : chosen.front()) {
     report.axis_names.push_back(recordings.front().channels[c].name);
   }
-  report.gravity_mps2 = gravity_mps2(command.input);
+  const Uncertain gravity =
+      uncertain_gravity_mps2(command.input, command.gravity_std_mps2, report.notes);
+  report.gravity_mps2 = gravity.value;
   report.fit =
       need(calibrate::fit_rotation(turning, {.gravity_mps2 = report.gravity_mps2,
-                                             .gravity_std_mps2 = command.gravity_std_mps2,
+                                             .gravity_std_mps2 = gravity.std,
                                              .readings_are_accelerations = report.unit == "m/s^2"}),
            Stage::computing);
   for (const std::string& text : report.fit.doubts) {

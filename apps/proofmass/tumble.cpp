@@ -143,8 +143,10 @@ void run(const TumbleCommand& command) {
   check(command);
   report::TumbleReport report;
   report.inputs = command.files;
-  report.gravity_mps2 = gravity_mps2(command.input);
-  report.gravity_std_mps2 = command.gravity_std_mps2;
+  const Uncertain gravity =
+      uncertain_gravity_mps2(command.input, command.gravity_std_mps2, report.notes);
+  report.gravity_mps2 = gravity.value;
+  report.gravity_std_mps2 = gravity.std;
   report.indexing_std_rad = command.indexing_std_deg * rad_per_deg;
   const TumbleReadings readings = tumble_readings(command, report.notes);
   report.source = readings.source;

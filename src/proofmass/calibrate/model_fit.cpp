@@ -268,6 +268,10 @@ void fill_coefficients(const Linear& problem,
 }
 
 Status enough_rows(const Linear& problem, std::size_t told, bool std_stated) {
+  if (told == 0 && problem.X.rows() > 0) {
+    return Error{Errc::not_observable,
+                 "no row has a motion that any of these coefficients would answer to"};
+  }
   const auto rows = size_of(problem.X.rows());
   if (rows < told || rows < 2) {
     return Error{Errc::too_few_samples,

@@ -368,6 +368,8 @@ TEST(ModelFit, RefusesToDivideByAScaleFactorThatIsNotThere) {
   std::vector<ModelRow> rows(8);
   for (ModelRow& row : rows) row = {{.ap_mps2 = g}, 1.0};
   EXPECT_EQ(fit_model_equation(rows, {{K1, K0}, {}}).error().code, Errc::not_observable);
+  EXPECT_EQ(fit_model_equation(rows, {{K1}, {}}).error().code, Errc::not_observable);
+  EXPECT_EQ(fit_model_equation(rows, {{Koo, Kspin}, {}}).error().code, Errc::not_observable);
   const auto noise = noisy(rows_of({.K1 = 0.0}, tumble(12)), 1.0, 9);
   EXPECT_EQ(fit_model_equation(noise, {{K1, K0}, {}}).error().code, Errc::not_observable);
 }

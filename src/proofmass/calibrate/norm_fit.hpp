@@ -39,8 +39,9 @@ struct NormFit {
                                        NormParameters free,
                                        const Parameters& start);
 
-/// The same with Cauchy's loss, whose weights are 1/(1 + (r/2.385 s)²), s from the median of |r|:
-/// up to a third of the poses may be anything. Returns the weights to begin an ordinary fit with:
+/// The same with Cauchy's loss, whose weights are 1/(1 + (r/2.385 s)²), s from the median of |r|.
+/// One bad pose in twelve does it no harm; from one in eight on they can pull it, all one way and
+/// far off the sooner. Returns the weights to begin an ordinary fit with:
 /// 0 for those beyond 6 s, else 1.
 /// Source: P. W. Holland, R. E. Welsch, Robust regression using iteratively reweighted
 /// least-squares, Communications in Statistics A6 (1977) 813.

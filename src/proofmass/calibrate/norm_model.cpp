@@ -14,12 +14,6 @@ Parameters ReadingScale::to_reading(const Parameters& normalised) const {
   return p;
 }
 
-Parameters ReadingScale::from_reading(const Parameters& parameters) const {
-  Parameters p = parameters;
-  p.head<3>() -= center;
-  return p.cwiseQuotient(slope());
-}
-
 std::optional<ReadingScale> reading_scale(View<Pose> poses, double gravity_mps2) {
   Eigen::Vector3d low = poses.front().mean, high = low;
   for (const Pose& pose : poses) {

@@ -23,7 +23,6 @@ struct ReadingScale {
   /// From u and g to the reading's unit and m/s^2: the diagonal of d(parameters)/d(normalised).
   [[nodiscard]] Parameters slope() const;
   [[nodiscard]] Parameters to_reading(const Parameters& normalised) const;
-  [[nodiscard]] Parameters from_reading(const Parameters& parameters) const;
 };
 
 /// A pose as the fit sees it.

@@ -16,8 +16,8 @@ struct TumblePosition {
   double mount_rad = 0.0;   ///< by which the sensor was turned on the table
   /// 1: the pendulous axis lies in the plane of rotation with the input axis; 2: the output axis.
   int plane = 1;
-  std::optional<double> time_s;
-  std::string label;  ///< as the user named it: "row 7", "rest at 12 s"; may be empty
+  std::optional<double> time_s = {};
+  std::string label = {};  ///< as the user named it: "row 7", "rest at 12 s"; may be empty
 };
 
 /// In the model equation
