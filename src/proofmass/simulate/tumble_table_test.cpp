@@ -143,7 +143,8 @@ TEST(TumbleTable, ATiltedAxisTakesItsCosineAndShowsAlongTheOutputAxis) {
 
 TEST(TumbleTable, AnAngleThatFollowsIsTheTrueOneOfATableWithoutErrors) {
   ProcedureOptions options = tumble();
-  for (const double ahead : column(simulated(options).recording, "angle"))
+  const ProcedureResult stepping = simulated(options);
+  for (const double ahead : column(stepping.recording, "angle"))
     ASSERT_NEAR(std::remainder(ahead, 15.0), 0.0, 1e-9);
   options.table.angle_follows = true;
   const ProcedureResult result = simulated(options);
