@@ -194,7 +194,7 @@ TEST(Procedure, ABadPoseIsPushedByAsMuchAsAsked) {
 TEST(Procedure, ClippingStopsAtFullScale) {
   ProcedureOptions options = noise_free(Procedure::six_position);
   options.sensor.full_scale_mps2 = 9.0;
-  const auto& x = column(simulated(options).recording, "acc_x");
+  const auto x = column(simulated(options).recording, "acc_x");
   EXPECT_NEAR(*std::ranges::max_element(x), 9.0, 1e-12);
 }
 
