@@ -19,9 +19,9 @@ main{max-width:60rem;margin:0 auto;padding:2.5rem 1.5rem 4rem}
 .from{margin:0;color:var(--soft);font-size:.85rem;letter-spacing:.04em}
 h1{font-size:1.05rem;font-weight:600;margin:.2rem 0 1.6rem;overflow-wrap:anywhere}
 .conclusion{font-size:1.55rem;line-height:1.35;font-weight:500;margin:0 0 1.6rem;max-width:46rem}
-dl.key{display:grid;grid-template-columns:repeat(auto-fit,minmax(15rem,1fr));gap:1px;margin:0 0 2rem;
+dl.key{display:flex;flex-wrap:wrap;gap:1px;margin:0 0 2rem;
 background:var(--rule);border:1px solid var(--rule);border-radius:6px;overflow:hidden}
-dl.key div{background:var(--panel);padding:.7rem .9rem}dl.key dt{color:var(--soft);font-size:.82rem}
+dl.key div{flex:1 1 15rem;background:var(--panel);padding:.7rem .9rem}dl.key dt{color:var(--soft);font-size:.82rem}
 dl.key dd{margin:0;font-size:1.08rem;font-variant-numeric:tabular-nums}
 h2{font-size:1.15rem;margin:2.6rem 0 .6rem;padding-bottom:.3rem;border-bottom:1px solid var(--rule)}
 p{margin:.5rem 0;max-width:46rem}ul{margin:.5rem 0;padding-left:1.2rem;max-width:46rem}li{margin:.2rem 0}
