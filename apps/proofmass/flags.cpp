@@ -1,0 +1,98 @@
+#include "flags.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace proofmass::app {
+
+CLI::Validator number(const char* expected, bool (*fits)(double)) {
+  const auto check = [expected, fits](std::string& text) -> std::string {
+    double value = 0.0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error == std::errc() && stop == end && std::isfinite(value) && fits(value)) return {};
+    return fmt::format("expected {}, not '{}'", expected, text);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator positive() {
+  return number("a number above 0", [](double x) { return x > 0.0; });
+}
+CLI::Validator finite() {
+  return number("a number", [](double) { return true; });
+}
+CLI::Validator not_negative() {
+  return number("a number of 0 or more", [](double x) { return x >= 0.0; });
+}
+CLI::Validator latitude() {
+  return number("degrees from -90 to 90", [](double x) { return std::abs(x) <= 90.0; });
+}
+
+void add_input_flags(CLI::App& verb, InputFlags& flags) {
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type)->group("Input");
+  };
+  add("--rate", flags.rate_hz, "HZ", "sample rate, where the file has no time column")
+      ->check(positive());
+  add("--unit", flags.unit, "UNIT", "of the accelerometer channels: g, mg, m/s2, V, mV or counts")
+      ->check(CLI::IsMember({"g", "mg", "m/s2", "V", "mV", "counts"}));
+  add("--channel", flags.channels, "NAME", "use this channel; may be repeated (default: all)")
+      ->allow_extra_args(false);
+  add("--variable", flags.variables, "NAME",
+      "of a MAT file, read this variable; may be repeated (default: the largest)")
+      ->allow_extra_args(false);
+  add("--time", flags.time, "NAME", "the time column (default: found by name and content)");
+  add("--from", flags.from_s, "S", "leave out what comes before")->check(finite());
+  add("--to", flags.to_s, "S", "leave out what comes from here on")->check(finite());
+  CLI::Option* sensor =
+      add("--sensor", flags.sensors, "FILE.toml",
+          "apply this sensor file's calibration first; once for all sensors or once for each");
+  sensor->allow_extra_args(false);
+  add("--supply", flags.supply_v, "V", "the ratiometric sensor's supply, instead of the file's")
+      ->check(positive())
+      ->needs(sensor);
+  CLI::Option* gravity =
+      add("--gravity", flags.gravity_mps2, "M_PER_S2", "local gravity (default 9.80665)");
+  gravity->check(positive());
+  CLI::Option* where = add("--latitude", flags.latitude_deg, "DEG", "gravity from the latitude");
+  where->check(latitude())->excludes(gravity);
+  add("--height", flags.height_m, "M", "and from the height above the ellipsoid")
+      ->check(finite())
+      ->needs(where);
+}
+
+void add_switch_on_flag(CLI::App& verb, InputFlags& flags, const char* help) {
+  verb.add_option("--since-switch-on", flags.since_switch_on_s, help)
+      ->type_name("S")
+      ->group("Input")
+      ->check(not_negative());
+}
+
+void add_output_flags(CLI::App& verb, OutputFlags& flags) {
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type)->group("Output");
+  };
+  add("--json", flags.json, "FILE", "write the results as JSON; - is standard output, alone");
+  verb.add_flag("-q,--quiet", flags.quiet, "say nothing on standard error but an error")
+      ->group("Output");
+  verb.add_flag("-v,--verbose", flags.verbose, "tell what was found while reading")
+      ->group("Output");
+  verb.add_flag("--strict", flags.strict, "exit with status 5 if the data are bad")
+      ->group("Output");
+  // Read before all others, by config_path(); here it stands for --help.
+  verb.add_option("--config", "read flags from this file")->type_name("FILE.toml")->group("Output");
+}
+
+void add_report_flag(CLI::App& verb, OutputFlags& flags) {
+  verb.add_option("--report", flags.report, "write one self-contained page with the plots")
+      ->type_name("FILE.html")
+      ->group("Output");
+}
+
+CLI::Option* add_output_file(CLI::App& verb, OutputFlags& flags, const char* help) {
+  return verb.add_option("-o,--output", flags.output, help)->type_name("FILE.csv")->group("Output");
+}
+
+}  // namespace proofmass::app
