@@ -139,7 +139,8 @@ sensor::MeasuredCalibration measured(const CalibrateCommand& command,
   out.misalignment = fit.misalignment_rad;
   out.bias_unit = unit;
   out.scale_unit = unit == "m/s^2" ? "1" : unit + "/(m/s^2)";
-  if (fit.misalignment_rad[0]) {
+  out.std_known = fit.dof > 0.0;
+  if (fit.misalignment_rad[0] && out.std_known) {
     auto& covariance = out.covariance.emplace();
     for (Eigen::Index i = 0; i < 9; ++i) {
       for (Eigen::Index j = 0; j < 9; ++j)

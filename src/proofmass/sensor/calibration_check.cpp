@@ -29,6 +29,9 @@ Status check_figures(const MeasuredCalibration& measured) {
   if (measured.gravity_mps2)
     if (const Status fits = check(*measured.gravity_mps2); !fits)
       return fits.error().at("calibration.gravity");
+  if (!measured.std_known && measured.covariance)
+    return Error{Errc::invalid_argument,
+                 "calibration.covariance: given, but the standard deviations are not known"};
   if (measured.dof && !(std::isfinite(*measured.dof) && *measured.dof > 0.0))
     return Error{Errc::invalid_argument, "calibration.dof: must be positive and finite"};
   if (measured.temperature_k && !std::isfinite(*measured.temperature_k))

@@ -71,8 +71,9 @@ void put_figures(const MeasuredCalibration& measured,
     if (!figures[k]) continue;
     const double factor = k < 6 ? units.factor : 1.0;
     const FigureUnit& unit = k < 3 ? units.bias : k < 6 ? units.scale : radian;
-    *places[k] = Figure{figures[k]->value * factor, figures[k]->std * std::abs(factor), unit,
-                        measured.origin};
+    const std::optional<double> std =
+        measured.std_known ? std::optional(figures[k]->std * std::abs(factor)) : std::nullopt;
+    *places[k] = Figure{figures[k]->value * factor, std, unit, measured.origin};
   }
 }
 

@@ -20,6 +20,9 @@ struct MeasuredCalibration {
   std::string scale_unit = "1";     ///< "1", "V/(m/s^2)" or "counts/(m/s^2)", or a multiple
   /// Of bias x y z, scale x y z, misalignment, in the units above and rad.
   std::optional<std::array<std::array<double, 9>, 9>> covariance;
+  /// False where part of the uncertainty is not known: figures are then written without standard
+  /// deviations, and there must be no covariance.
+  bool std_known = true;
   /// Effective degrees of freedom of the standard deviations; absent: so many that it does not
   /// matter. Who compares two calibrations takes more scatter for chance where they are few.
   std::optional<double> dof;

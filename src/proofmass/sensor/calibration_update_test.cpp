@@ -101,6 +101,18 @@ TEST(CalibrationUpdate, InCountsIsAppliedToCountsWhateverTheLsb) {
   }
 }
 
+TEST(CalibrationUpdate, WritesNoStandardDeviationsThatLackAShare) {
+  MeasuredCalibration m = in_counts();
+  m.std_known = false;
+  SensorModel model;
+  EXPECT_FALSE(update_calibration(model, m));
+  m.covariance.reset();
+  ASSERT_TRUE(update_calibration(model, m));
+  EXPECT_EQ(model.calibration.bias[1]->value, 33275.16);
+  EXPECT_FALSE(model.calibration.bias[1]->std);
+  EXPECT_FALSE(model.calibration.misalignment[2]->std);
+}
+
 TEST(CalibrationUpdate, InCountsIsAppliedToWhatTheLsbMadeOfThem) {
   SensorModel model;
   model.electrical.lsb = make_figure(0.3, "mV", "");
