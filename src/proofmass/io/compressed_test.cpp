@@ -4,24 +4,14 @@
 #include <lzma.h>
 #include <zlib.h>
 
+#include "proofmass/io/deflate_test_support.hpp"
 #include "proofmass/io/test_support.hpp"
 
 namespace proofmass::io {
 namespace {
 
 std::string gzip(const std::string& text) {
-  z_stream stream{};
-  deflateInit2(&stream, 6, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
-  std::string out(deflateBound(&stream, text.size()) + 64, '\0');
-  std::string in = text;
-  stream.next_in = reinterpret_cast<Bytef*>(in.data());
-  stream.avail_in = static_cast<uInt>(in.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  return out;
+  return specimen::deflated(text, 16 + MAX_WBITS);
 }
 
 std::string xz(const std::string& text) {

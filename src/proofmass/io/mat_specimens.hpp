@@ -7,7 +7,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
-#include <zlib.h>
+
+#include "proofmass/io/deflate_test_support.hpp"
 
 // Writes MAT files, whole and broken ones, for tests.
 namespace proofmass::io::specimen {
@@ -88,21 +89,6 @@ inline std::string structure(const std::string& name, const std::vector<Field>& 
   }
   return matrix({2, {1, 1}, name}, element(5, bytes_of<std::int32_t>({length}), Order::little) +
                                        element(1, names, Order::little) + values);
-}
-
-/// Compressed by zlib, as gzip does (16 + 15 bits) or as MATLAB (15).
-inline std::string deflated(std::string text, int window_bits) {
-  z_stream stream{};
-  deflateInit2(&stream, 6, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY);
-  std::string out(deflateBound(&stream, text.size()) + 64, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(text.data());
-  stream.avail_in = static_cast<uInt>(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  return out;
 }
 
 /// A variable as MATLAB's version 7 writes it.
