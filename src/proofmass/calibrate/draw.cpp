@@ -5,13 +5,10 @@
 
 namespace proofmass::calibrate {
 
-double Draw::unit() {
-  return static_cast<double>((engine_() >> 11U) + 1U) * 0x1p-53;
-}
-
 double Draw::operator()(Distribution distribution, double dof) {
   // Each kind takes two numbers, so that a change of one input leaves the others' draws in place.
-  const double u = unit(), v = unit();
+  // Logarithms want (0, 1].
+  const double u = 1.0 - random_.unit(), v = 1.0 - random_.unit();
   switch (distribution) {
     case Distribution::uniform:
       return std::numbers::sqrt3 * (2.0 * u - 1.0);

@@ -1,17 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <random>
 
 #include "proofmass/calibrate/uncertainty_budget.hpp"
+#include "proofmass/core/random.hpp"
 
-// Random numbers that are the same on every machine for the same seed: the generator is
-// standardised, the distributions are our own.
 namespace proofmass::calibrate {
 
+/// Inputs of a Monte Carlo calculation.
 class Draw {
  public:
-  explicit Draw(std::uint64_t seed) : engine_(seed) {}
+  explicit Draw(std::uint64_t seed) : random_(seed, "draws") {}
 
   /// One value of mean 0 and standard deviation 1; of student_t, of t itself with `dof` (0:
   /// normal). Source: G. E. P. Box, M. E. Muller, Ann. Math. Statist. 29 (1958) 610; R. W. Bailey,
@@ -20,8 +19,7 @@ class Draw {
   [[nodiscard]] double normal() { return (*this)(Distribution::normal); }
 
  private:
-  double unit();  ///< evenly in (0, 1]
-  std::mt19937_64 engine_;
+  Random random_;
 };
 
 }  // namespace proofmass::calibrate

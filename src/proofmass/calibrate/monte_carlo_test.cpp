@@ -55,7 +55,7 @@ TEST(Propagate, OfFourRectangularInputsIsNarrowerThanNormal) {
 TEST(Validate, ContradictsTheBudgetThatOneRectangleDominates) {
   std::vector<Input> inputs(4, Input{0.0, 1.0, D::uniform});
   inputs[3].std = 10.0;
-  const auto found = propagate(sum, inputs, {.draws = 200000, .seed = 3}).value();
+  const auto found = propagate(sum, inputs, {.draws = 1000000, .seed = 3}).value();
   EXPECT_NEAR(found.std, 10.1, 0.1);
   EXPECT_NEAR(found.symmetric_95.upper, 17.0, 0.1);
   const auto budget = budget_of_inputs(0.0, inputs, {1, 1, 1, 1});
@@ -78,7 +78,7 @@ TEST(Propagate, GivesTheMassCalibrationOfTheSupplement) {
   const Measurement mass = [](View<double> x) {
     return (x[0] + x[1]) * (1.0 + (x[2] - 1.2) * (1.0 / x[3] - 1.0 / x[4])) - 100000.0;
   };
-  const auto found = propagate(mass, inputs, {.draws = 200000, .seed = 4}).value();
+  const auto found = propagate(mass, inputs, {.draws = 1000000, .seed = 4}).value();
   EXPECT_NEAR(found.mean, 1.2341, 0.0005);
   EXPECT_NEAR(found.std, 0.0754, 0.0003);
   EXPECT_NEAR(found.shortest_95.lower, 1.0834, 0.003);

@@ -1,9 +1,9 @@
-#include "proofmass/simulate/random.hpp"
+#include "proofmass/core/random.hpp"
 
 #include <cmath>
 #include <numbers>
 
-namespace proofmass::simulate {
+namespace proofmass {
 namespace {
 
 /// Source: S. Vigna, splitmix64.c (2015); after G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014.
@@ -49,22 +49,4 @@ double Random::normal() {
   return radius * std::cos(angle);
 }
 
-BandLimitedNoise::BandLimitedNoise(double rms, double bandwidth_hz, Random random) {
-  if (rms == 0.0) return;
-  // One frequency in each of as many equal bands: an even spectrum that does not repeat.
-  constexpr std::size_t count = 64;
-  amplitude_ = rms * std::sqrt(2.0 / count);
-  const double band_radps = 2.0 * std::numbers::pi * bandwidth_hz / count;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double within = 0.5 * (random.uniform() + 1.0);
-    components_.push_back({(static_cast<double>(i) + within) * band_radps, random.phase()});
-  }
-}
-
-double BandLimitedNoise::at(double t_s) const {
-  double sum = 0.0;
-  for (const Component& c : components_) sum += std::sin(c.frequency_radps * t_s + c.phase_rad);
-  return amplitude_ * sum;
-}
-
-}  // namespace proofmass::simulate
+}  // namespace proofmass

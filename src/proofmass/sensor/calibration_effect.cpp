@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <random>
 #include <utility>
 #include <vector>
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/directions.hpp"
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/core/random.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/sensor/calibration_error.hpp"
@@ -140,25 +138,15 @@ Vector3d angle_slope(const Vector3d& u, const Vector3d& force) {
   return (std::cos(angle) * across.normalized() - std::sin(angle) * u) / force.norm();
 }
 
-/// Normal numbers from a generator that is the same everywhere.
-/// Source: G. E. P. Box, M. E. Muller, Ann. Math. Statist. 29 (1958) 610.
-class Draws {
- public:
-  double uniform() { return (static_cast<double>(engine_() >> 11U) + 0.5) * 0x1p-53; }
-  Eigen::VectorXd normal(Index size) {
-    Eigen::VectorXd out(size);
-    for (double& x : out)
-      x = std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
-    return out;
+void add_scatter(const Side& side, Random& random, Affine& error) {
+  Eigen::VectorXd draws(9);
+  for (double& x : draws) x = random.normal();
+  Eigen::VectorXd moved = side.root * draws;
+  // Half a step of the generator keeps the probability off 0, where there is no quantile.
+  if (side.dof) {
+    const double p = random.unit() + 0x1p-54;
+    moved *= std::sqrt(*side.dof / chi_square_quantile(p, *side.dof));
   }
-
- private:
-  std::mt19937_64 engine_{20261121};
-};
-
-void add_scatter(const Side& side, Draws& draws, Affine& error) {
-  Eigen::VectorXd moved = side.root * draws.normal(9);
-  if (side.dof) moved *= std::sqrt(*side.dof / chi_square_quantile(draws.uniform(), *side.dof));
   for (std::size_t k = 0; k < 9; ++k) {
     error.matrix += moved(static_cast<Index>(k)) * side.columns[k].matrix;
     error.offset += moved(static_cast<Index>(k)) * side.columns[k].offset;
@@ -169,12 +157,12 @@ void add_scatter(const Side& side, Draws& draws, Affine& error) {
 void put_chance(const Side& before, const Side& after, CalibrationEffect& effect) {
   constexpr int pairs = 4000;
   const std::vector<Vector3d> directions = spread_directions(250);
-  Draws draws;
+  Random random(1, "chance");
   std::vector<double> forces, angles;
   for (int k = 0; k < pairs; ++k) {
     Affine error;
-    add_scatter(before, draws, error);
-    add_scatter(after, draws, error);
+    add_scatter(before, random, error);
+    add_scatter(after, random, error);
     double force = 0.0, across = 0.0;
     for (const Vector3d& u : directions) {
       const Vector3d e = error(u);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "proofmass/core/random.hpp"
 #include "proofmass/simulate/pose_plan.hpp"
-#include "proofmass/simulate/random.hpp"
 #include "proofmass/simulate/sensor_twin.hpp"
 
 namespace proofmass::simulate {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "proofmass/simulate/random.hpp"
+#include "proofmass/core/random.hpp"
 
 namespace proofmass::simulate {
 

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <string>
 
+#include "proofmass/core/random.hpp"
 #include "proofmass/simulate/bench_sensor.hpp"
 #include "proofmass/simulate/pose_plan.hpp"
 #include "proofmass/simulate/procedure.hpp"
-#include "proofmass/simulate/random.hpp"
 
 namespace proofmass::simulate {
 namespace {

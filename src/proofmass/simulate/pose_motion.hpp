@@ -5,9 +5,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "proofmass/core/random.hpp"
+#include "proofmass/simulate/band_limited_noise.hpp"
 #include "proofmass/simulate/bench_sensor.hpp"
 #include "proofmass/simulate/pose_plan.hpp"
-#include "proofmass/simulate/random.hpp"
 
 namespace proofmass::simulate {
 

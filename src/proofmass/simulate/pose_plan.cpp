@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "proofmass/core/directions.hpp"
-#include "proofmass/simulate/random.hpp"
+#include "proofmass/core/random.hpp"
 
 namespace proofmass::simulate {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "proofmass/core/random.hpp"
 #include "proofmass/simulate/bench_sensor.hpp"
 #include "proofmass/simulate/pose_motion.hpp"
 #include "proofmass/simulate/pose_plan.hpp"
-#include "proofmass/simulate/random.hpp"
 
 namespace proofmass::simulate {
 namespace {

@@ -5,8 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "proofmass/core/random.hpp"
+#include "proofmass/simulate/band_limited_noise.hpp"
 #include "proofmass/simulate/converter.hpp"
-#include "proofmass/simulate/random.hpp"
 #include "proofmass/simulate/sensor_twin.hpp"
 
 namespace proofmass::simulate {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "proofmass/simulate/random.hpp"
+#include "proofmass/core/random.hpp"
 #include "proofmass/simulate/rig.hpp"
 
 namespace proofmass::simulate {

@@ -5,7 +5,8 @@
 #include <numbers>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/simulate/random.hpp"
+#include "proofmass/core/random.hpp"
+#include "proofmass/simulate/band_limited_noise.hpp"
 
 namespace proofmass::simulate {
 
