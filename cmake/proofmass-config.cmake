@@ -6,6 +6,8 @@ find_dependency(Boost 1.74)
 find_dependency(Ceres)
 find_dependency(ZLIB)
 find_dependency(LibLZMA)
+list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
+find_package(Hdf5C QUIET) # used if it was there when these were built
 find_dependency(fmt)
 find_dependency(nlohmann_json)
 find_dependency(tomlplusplus)

@@ -2,6 +2,7 @@
 import gzip
 import struct
 import unittest
+from pathlib import Path
 
 from command import BAD_DATA, BAD_INPUT, USAGE, CommandTest, turning_csv
 
@@ -118,6 +119,20 @@ class Inspect(CommandTest):
         self.write("cut.mat", mat[:-8])
         self.assertIn("byte", self.expect_failure(BAD_INPUT, "inspect", "cut.mat"))
         self.expect_failure(USAGE, "inspect", "a.mat", "--variable", "az")
+
+    def test_a_dataset_of_an_hdf5_file_is_chosen_by_its_name(self):
+        specimen = Path(__file__).parents[2] / "fuzz/corpus/hdf5/sensors.h5"
+        if b"without the HDF5 library" in self.run_command("inspect", specimen).stderr:
+            self.skipTest("built without the HDF5 library")
+        document = self.document("inspect", specimen)
+        self.assertEqual(document["format"], "HDF5")
+        self.assertEqual([channel["min"] for channel in document["channels"]], [1, 2, 3])
+        document = self.document("inspect", specimen, "--dataset", "right")
+        self.assertEqual([channel["min"] for channel in document["channels"]], [5, 6, 7])
+        self.assertAlmostEqual(document["rate_hz"], 200.0, places=6)
+        self.expect_failure(USAGE, "inspect", specimen, "--dataset", "middle")
+        self.write("cut.h5", specimen.read_bytes()[:4000])
+        self.assertIn("breaks off", self.expect_failure(BAD_INPUT, "inspect", "cut.h5"))
 
     def test_the_report_is_one_page_with_every_channel(self):
         self.write("a.csv", turning_csv(seconds=2))

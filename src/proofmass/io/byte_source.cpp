@@ -31,6 +31,9 @@ class FileSource final : public ByteSource {
     return count;
   }
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return size_; }
+  [[nodiscard]] std::optional<int> descriptor() const override {
+    return owned_ && size_ ? std::optional(::fileno(file_)) : std::nullopt;
+  }
   [[nodiscard]] double fraction_read() const override {
     if (!size_ || *size_ == 0) return 0.0;
     return std::min(1.0, static_cast<double>(position_) / static_cast<double>(*size_));

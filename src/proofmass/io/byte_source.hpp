@@ -26,6 +26,9 @@ class ByteSource {
   virtual Result<std::size_t> read(std::span<char> into) = 0;
   /// Bytes of this stream in all, where that is known beforehand.
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const { return std::nullopt; }
+  /// The regular file that these bytes are, from its front, where they are one as it lies on the
+  /// disk: for libraries that want a file. Open as long as this is.
+  [[nodiscard]] virtual std::optional<int> descriptor() const { return std::nullopt; }
   /// How much of the file behind it is read, in [0, 1]; 0 where its length is not known.
   [[nodiscard]] virtual double fraction_read() const = 0;
   /// What went wrong and could be salvaged, complete once read() has returned 0.
@@ -41,6 +44,7 @@ class PeekSource final : public ByteSource {
   Result<std::string_view> peek(std::size_t wanted);
   Result<std::size_t> read(std::span<char> into) override;
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return source_->size(); }
+  [[nodiscard]] std::optional<int> descriptor() const override { return source_->descriptor(); }
   [[nodiscard]] double fraction_read() const override { return source_->fraction_read(); }
   [[nodiscard]] std::vector<Note> notes() const override { return source_->notes(); }
 

@@ -4,6 +4,7 @@
 
 #include "proofmass/io/csv_reader.hpp"
 #include "proofmass/io/foreign_formats.hpp"
+#include "proofmass/io/hdf5_reader.hpp"
 #include "proofmass/io/mat_reader.hpp"
 #include "proofmass/io/npy_reader.hpp"
 
@@ -21,7 +22,8 @@ bool claims_anything(std::string_view, std::string_view) {
 constexpr std::array all_formats = std::to_array<Format>({
     {"npy", claims_npy, read_npy},
     {"MAT", claims_mat, read_mat, true},
-    {"foreign", claims_foreign, refuse_foreign, true},  // 7.3 has variables
+    {"HDF5", claims_hdf5, read_hdf5_file, true},
+    {"foreign", claims_foreign, refuse_foreign},
     {"CSV", claims_anything, read_csv},
 });
 

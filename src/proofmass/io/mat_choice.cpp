@@ -140,16 +140,12 @@ class Chooser {
 
   /// In the struct that the table is in, or one around it.
   [[nodiscard]] const MatArray* rate_beside(const MatTable& table) const {
-    constexpr std::array<std::string_view, 9> names{
-        "fs",           "fshz",       "samplerate",        "sampleratehz", "samplingrate",
-        "samplingfreq", "samplefreq", "samplingfrequency", "framerate"};
     for (const MatArray& array : catalogue_.arrays) {
       const bool is_number = !array.is_complex && std::ranges::all_of(array.shape, [](auto length) {
         return length == 1;
       });
-      const std::string name = bare_name(MatTable{&array}.name());
       if (is_number && is_within(table.array->group(), array.group()) &&
-          std::ranges::find(names, std::string_view(name)) != names.end())
+          is_rate_name(MatTable{&array}.name()))
         return &array;
     }
     return nullptr;
@@ -189,9 +185,22 @@ class Chooser {
 
 }  // namespace
 
+bool is_rate_name(std::string_view name) {
+  constexpr std::array<std::string_view, 12> names{
+      "fs",           "fshz",           "samplerate",
+      "sampleratehz", "samplingrate",   "rate",
+      "samplingfreq", "samplefreq",     "samplingfrequency",
+      "framerate",    "samplingratehz", "ratehz"};
+  return is_one_of(name, names);
+}
+
+bool is_rate(double rate_hz) {
+  return rate_hz > 0.01 && rate_hz < 1e7;
+}
+
 std::string MatTable::name() const {
   const std::string_view path = array->path;
-  const std::size_t point = path.rfind('.');
+  const std::size_t point = path.find_last_of("./");
   return std::string(point == std::string_view::npos ? path : path.substr(point + 1));
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "proofmass/core/recording.hpp"
@@ -30,6 +31,11 @@ inline constexpr std::size_t most_mat_channels = 64;
 /// Time runs along the longer of the first and the last dimension; nullopt where that is shorter
 /// than 2, or the others make more than 64 channels or more channels than samples.
 [[nodiscard]] std::optional<MatTable> table_of(const MatArray& array);
+
+/// Whether a single number of that name is a sample rate in Hz: "fs", "SamplingRate".
+[[nodiscard]] bool is_rate_name(std::string_view name);
+/// Whether an instrument may have it.
+[[nodiscard]] bool is_rate(double rate_hz);
 
 /// The arrays that make the recording.
 struct MatChoice {

@@ -1,14 +1,13 @@
 #include "proofmass/io/mat_reader.hpp"
 
 #include <algorithm>
-#include <array>
 #include <fmt/format.h>
 #include <iterator>
 #include <memory>
 
 #include "proofmass/io/array_recording.hpp"
 #include "proofmass/io/mat_choice.hpp"
-#include "proofmass/io/names.hpp"
+#include "proofmass/io/mat_headings.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -76,59 +75,6 @@ class FigureReader {
   std::size_t region_offset_ = 0;
 };
 
-/// Whether a matrix's name says that it is of something else than acceleration.
-bool is_of_other_kind(std::string_view name) {
-  constexpr std::array<std::string_view, 9> others{"gyr",  "omega", "ang", "mag", "euler",
-                                                   "quat", "vel",   "pos", "temp"};
-  const std::string bare = bare_name(name);
-  return bare.find("acc") == std::string::npos && std::ranges::any_of(others, [&](auto other) {
-           return bare.find(other) != std::string::npos;
-         });
-}
-
-/// Headings for the columns of a matrix; `prefix` is empty where its name says nothing.
-std::vector<std::string> headings_of(std::string_view prefix, std::size_t width, bool is_timed) {
-  constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
-  const std::size_t first = is_timed ? 1 : 0;
-  std::vector<std::string> headings;
-  if (is_timed) headings.emplace_back("time (s)");
-  for (std::size_t c = first; c < width; ++c) {
-    const bool is_triad = width - first == axes.size();
-    if (is_triad)
-      headings.push_back(fmt::format("{}{}{}", prefix, prefix.empty() ? "" : "_", axes[c - first]));
-    else
-      headings.push_back(fmt::format("{} {}", prefix.empty() ? "column" : prefix, c + 1));
-  }
-  return headings;
-}
-
-/// Headings for all columns; none where there is but one matrix whose name says nothing.
-std::vector<std::string> headings_of(const std::vector<MatTable>& tables,
-                                     const std::vector<Columns>& values,
-                                     const ReadOptions& options) {
-  const auto is_matrix = [](const MatTable& table) { return table.width > 1; };
-  const auto matrices = std::ranges::count_if(tables, is_matrix);
-  if (tables.size() == 1 && matrices == 1 && !is_of_other_kind(tables[0].name())) return {};
-  std::vector<std::string> vectors;
-  for (const MatTable& table : tables)
-    if (!is_matrix(table)) vectors.push_back(table.name());
-  bool is_timed = time_among(vectors, options).has_value();
-  std::vector<std::string> headings;
-  for (std::size_t i = 0; i < tables.size(); ++i) {
-    const std::string name = tables[i].name();
-    if (!is_matrix(tables[i])) {
-      headings.push_back(name);
-      continue;
-    }
-    const bool has_time = !is_timed && ascends(values[i][0]);
-    is_timed = is_timed || has_time;
-    const bool is_told = matrices > 1 || is_of_other_kind(name);
-    std::ranges::move(headings_of(is_told ? name : "", tables[i].width, has_time),
-                      std::back_inserter(headings));
-  }
-  return headings;
-}
-
 /// The rate that a single number says; a note where it says none that can be.
 Result<std::optional<double>> rate_of(const MatArray& array,
                                       FigureReader& reader,
@@ -136,11 +82,10 @@ Result<std::optional<double>> rate_of(const MatArray& array,
   const auto figure = reader.read({&array, 1, 1, false});
   if (!figure) return figure.error();
   const double rate_hz = (*figure)[0][0];
-  const bool is_rate = rate_hz > 0.01 && rate_hz < 1e7;
-  notes.push_back(
-      {Severity::info,
-       fmt::format("{}: {}", array.path, is_rate ? "the rate in Hz" : "is no rate that can be")});
-  return is_rate ? std::optional(rate_hz) : std::nullopt;
+  notes.push_back({Severity::info,
+                   fmt::format("{}: {}", array.path,
+                               is_rate(rate_hz) ? "the rate in Hz" : "is no rate that can be")});
+  return is_rate(rate_hz) ? std::optional(rate_hz) : std::nullopt;
 }
 
 }  // namespace

@@ -217,15 +217,6 @@ TEST(Mat5, WhateverBitIsWrongItIsReadOrRefusedInOneLine) {
   }
 }
 
-TEST(Mat5, RefusesVersion73InOneLine) {
-  std::string header = "MATLAB 7.3 MAT-file, Platform: GLNXA64";
-  header.resize(124, ' ');
-  const auto read = read_text(header + std::string("\0\2IM", 4) + std::string(512, '\0'));
-  ASSERT_FALSE(read.has_value());
-  EXPECT_EQ(read.error().code, Errc::unsupported);
-  EXPECT_NE(read.error().message.find("version 7.3 (HDF5)"), std::string::npos);
-}
-
 TEST(Mat4, ReadsEveryTypeInBothOrdersOfBytes) {
   for (const Order order : {Order::little, Order::big}) {
     const auto expect = [&](std::int32_t kind, const std::string& figures, const Values& values) {

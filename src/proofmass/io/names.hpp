@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -18,6 +20,13 @@ namespace proofmass::io {
   std::string out = lower(text);
   std::erase_if(out, [](char c) { return (c < 'a' || c > 'z') && (c < '0' || c > '9'); });
   return out;
+}
+
+/// Whether a name is one of several, which are bare.
+template <std::size_t N>
+[[nodiscard]] bool is_one_of(std::string_view name, const std::array<std::string_view, N>& names) {
+  const std::string bare = bare_name(name);
+  return std::ranges::find(names, std::string_view(bare)) != names.end();
 }
 
 }  // namespace proofmass::io

@@ -22,7 +22,8 @@ Result<Recording> read_from(std::unique_ptr<ByteSource> bytes,
       std::ranges::find_if(all, [&](const Format& f) { return f.claims(*head, name); });
   if (!options.variables.empty() && !format->has_variables)
     return Error{Errc::invalid_argument,
-                 "has no variables to choose from: --variable is for MAT files"};
+                 "has no datasets to choose from: --dataset and --variable are for HDF5 and MAT "
+                 "files"};
   return format->read(*opened, options);
 }
 

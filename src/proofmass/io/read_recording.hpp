@@ -24,7 +24,7 @@ struct ReadOptions {
 };
 
 /// Reads a recording: CSV and TSV of any dialect, .npy (a table of samples × channels, or a
-/// structured array), or MAT of versions 4 to 7, plain or compressed by gzip or xz. The bytes
+/// structured array), MAT of any version, or HDF5, plain or compressed by gzip or xz. The bytes
 /// decide what a file is, its name only where they do not. What was found, inferred or mended is
 /// told in Recording::notes: the separator, the header's line, where the units and the time base
 /// come from, rows that were short, stamps that were corrupt. Values come back as recorded, NaN
@@ -35,7 +35,8 @@ struct ReadOptions {
 /// numbers), invalid_argument (a channel, variable or time column that is not there; a rate not
 /// above zero). Each names the file and, where there is one, the line or byte.
 /// Cost: one pass; memory at the peak 1.02 to 1.15 × the table's doubles, the time column counted
-/// although it is dropped where it turns out to be uniform; of MAT the file's bytes besides.
+/// although it is dropped where it turns out to be uniform; of MAT the file's bytes besides. HDF5 is
+/// unpacked in a child process.
 [[nodiscard]] Result<Recording> read_recording(const std::string& path, const ReadOptions& options);
 
 /// The same for bytes that are in memory already; `name` stands for the file in errors and notes.

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Writes the specimens in fuzz/corpus/hdf5, from which the fuzzer starts and which io/hdf5_test.cpp
+reads. By hand, with h5py 3.7 and NumPy: the files are kept, as other versions write other bytes.
+The list of contents beside them, groups.contents, is encode(list_hdf5()) of groups.h5."""
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+FOLDER = Path(__file__).parent / "corpus" / "hdf5"
+N = 40
+K = np.arange(N)
+
+
+def vectors(first, width=3):
+    """Row k, column c: first + c + k / 4, which every type here holds exactly."""
+    return first + np.arange(width)[None, :] + K[:, None] / 4
+
+
+def tiny():
+    """As short as a file with numbers can be: they lie in the dataset's header."""
+    with h5py.File(FOLDER / "tiny.h5", "w", libver="latest") as f:
+        layout = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+        layout.set_layout(h5py.h5d.COMPACT)
+        space = h5py.h5s.create_simple((3,))
+        dataset = h5py.h5d.create(f.id, b"a", h5py.h5t.IEEE_F64LE, space, layout)
+        dataset.write(h5py.h5s.ALL, h5py.h5s.ALL, np.array([1.5, -2.0, 3.25]))
+
+
+def groups():
+    with h5py.File(FOLDER / "groups.h5", "w") as f:
+        f.attrs["fs"] = 100.0
+        f.attrs["info"] = "Made by a test: `gyro` in rad/s, `pos` in mm."
+        packed = {"chunks": (16, 2), "compression": "gzip", "shuffle": True, "fletcher32": True}
+        acc = f.create_dataset("imu/acc", data=vectors(1).astype(">f4"), **packed)
+        acc.attrs["units"] = "m/s^2"
+        f["imu/gyro"] = vectors(10).T
+        f["imu/temp"] = (4 * vectors(-7, 1)).astype(">i2")
+        f["imu/temp"].attrs["units"] = np.array([b"degC"])
+        f["imu/moving"] = K % 3 == 0
+        f["imu/quat"] = vectors(0, 4).astype("<f2")
+        f["pos"] = vectors(20).astype("<f8")
+        f["imu/phase"] = K + 1j
+        f["other"] = np.arange(7, dtype="<u8")
+        f["title"] = "text"
+        f["rows"] = np.zeros(N, dtype=[("a", "<f4"), ("b", "<i4")])
+        f["soft"] = h5py.SoftLink("/imu/acc")
+        f["far"] = h5py.ExternalLink("/etc/passwd", "/x")
+        f["imu/again"] = f["imu"]
+
+
+def sensors():
+    with h5py.File(FOLDER / "sensors.h5", "w", libver="latest") as f:
+        for name, first in (("left", 1), ("right", 5)):
+            group = f.create_group(name)
+            group["acc"] = vectors(first).astype("<i8")
+            group["time"] = 5000 * K + 1_600_000_000_000_000
+            group["time"].attrs["units"] = "us"
+
+
+def columns():
+    with h5py.File(FOLDER / "columns.h5", "w") as f:
+        data = f.create_dataset("data", data=np.c_[K / 50, vectors(1, 4)], maxshape=(None, 5), chunks=(7, 5))
+        data.attrs["columns"] = ["t", "ax", "ay", "az", "T"]
+        data.attrs["units"] = ["s", "g", "g", "g", "degC"]
+
+
+def matlab():
+    path = FOLDER / "matlab.mat"
+    with h5py.File(path, "w", userblock_size=512) as f:
+
+        def variable(name, array, kind):
+            f[name] = np.asarray(array).T
+            f[name].attrs["MATLAB_class"] = np.bytes_(kind)
+            return f[name]
+
+        variable("imu/acc", vectors(1), "double")
+        variable("imu/t", K[:, None] / 50, "double")
+        variable("imu/on", (K % 2)[:, None].astype("u1"), "logical")
+        f["imu"].attrs["MATLAB_class"] = np.bytes_("struct")
+        variable("name", [[ord(c)] for c in "title"], "char")
+        variable("fs", [[200.0]], "double")
+        parts = [variable(f"#refs#/{c}", vectors(10 * i), "single") for i, c in enumerate("abcd", 1)]
+        f["parts"] = np.array([[p.ref] for p in parts[:2]], dtype=h5py.ref_dtype)
+        f["parts"].attrs["MATLAB_class"] = np.bytes_("cell")
+        f["runs/acc"] = np.array([[p.ref] for p in parts[2:]], dtype=h5py.ref_dtype)
+        f["runs"].attrs["MATLAB_class"] = np.bytes_("struct")
+        f["sparse/data"] = np.ones(3)
+        f["sparse"].attrs["MATLAB_sparse"] = 3
+        f["none"] = np.zeros(2, dtype="u8")
+        f["none"].attrs["MATLAB_empty"] = 1
+    with open(path, "r+b") as f:
+        f.write(b"MATLAB 7.3 MAT-file, made by a test".ljust(124) + b"\0\2IM")
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    for specimen in (tiny, groups, sensors, columns, matlab):
+        specimen()

@@ -1,0 +1,25 @@
+// What stands in for the HDF5 library where it was not there at build time.
+#include "proofmass/io/hdf5_library.hpp"
+
+namespace proofmass::io {
+namespace {
+
+Error absent() {
+  return {Errc::unsupported, "is HDF5, and this program was built without the HDF5 library"};
+}
+
+}  // namespace
+
+bool has_hdf5_library() {
+  return false;
+}
+
+Result<Hdf5Catalogue> list_hdf5(const Hdf5Source&, bool) {
+  return absent();
+}
+
+Status read_hdf5(const Hdf5Source&, const std::vector<Hdf5Request>&, const ByteSink&) {
+  return absent();
+}
+
+}  // namespace proofmass::io

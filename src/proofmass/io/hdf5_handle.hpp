@@ -1,0 +1,46 @@
+#pragma once
+
+#include <hdf5.h>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/io/hdf5_library.hpp"
+
+namespace proofmass::io {
+
+/// An identifier of the HDF5 library, closed with its owner.
+class Hdf5Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+
+  Hdf5Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Hdf5Handle(Hdf5Handle&& other) noexcept
+      : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Hdf5Handle(const Hdf5Handle&) = delete;
+  Hdf5Handle& operator=(const Hdf5Handle&) = delete;
+  Hdf5Handle& operator=(Hdf5Handle&&) = delete;
+  ~Hdf5Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+
+  explicit operator bool() const { return id_ >= 0; }
+  operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor)
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
+/// Opens a file to read; no other can be opened by this process from then on, so that nothing in
+/// the file can name one. Errors: corrupt, with the library's reason.
+[[nodiscard]] Result<Hdf5Handle> open_hdf5(const Hdf5Source& source);
+
+/// Why the last call failed, in the library's words.
+[[nodiscard]] std::string hdf5_reason();
+
+/// The name of the part of a complex number that is read, where a type is one: "real", "r".
+[[nodiscard]] std::string real_part(hid_t type);
+
+}  // namespace proofmass::io
