@@ -7,10 +7,10 @@ namespace {
 void add_procedure_flags(CLI::App& verb, SimulateCommand& command) {
   CLI::Option* procedure =
       verb.add_option("--procedure", command.procedure,
-                      "a calibration instead of the rig: tumble, four-position, six-position or "
-                      "multi-position");
+                      "instead of the rig a calibration: tumble, four-position, six-position or "
+                      "multi-position; or a slide along a line");
   procedure->type_name("NAME")->check(
-      CLI::IsMember({"tumble", "four-position", "six-position", "multi-position"}));
+      CLI::IsMember({"tumble", "four-position", "six-position", "multi-position", "slide"}));
   const auto add = [&](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->needs(procedure)->group("Procedure");
   };
@@ -20,6 +20,18 @@ void add_procedure_flags(CLI::App& verb, SimulateCommand& command) {
   add("--dwell", command.dwell_s, "S", "in each position")->check(positive());
   add("--supply", command.supply_v, "V", "of the ratiometric sensor (default 3.3)")
       ->check(positive());
+  add("--strokes", command.strokes, "N", "of a slide, each followed by a rest (default 6)");
+  add("--repetitions", command.repetitions, "N", "of a slide: each stroke there and back so often");
+  add("--length", command.length_m, "M", "of a slide's stroke (default 0.4)")->check(finite());
+  add("--stroke-time", command.stroke_s, "S", "of a slide's stroke (default 1)")->check(positive());
+  add("--elevation", command.elevation_deg, "DEG", "of a slide's line above the horizontal")
+      ->check(finite());
+  verb.add_flag("--gravity-removed", command.gravity_removed, "of a slide, as phones do")
+      ->needs(procedure)
+      ->group("Procedure");
+  verb.add_flag("--gyro", command.gyro, "of a slide: channels of angular rate")
+      ->needs(procedure)
+      ->group("Procedure");
   add("--signal", command.signal, "KIND", "acceleration (default), voltage or counts")
       ->check(CLI::IsMember({"acceleration", "voltage", "counts"}));
 }
@@ -27,7 +39,8 @@ void add_procedure_flags(CLI::App& verb, SimulateCommand& command) {
 }  // namespace
 
 void add_flags(CLI::App& app, SimulateCommand& command) {
-  CLI::App& verb = *app.add_subcommand("simulate", "the rig, or a calibration, as a digital twin");
+  CLI::App& verb =
+      *app.add_subcommand("simulate", "the rig, a calibration or a slide as a digital twin");
   verb.add_option("RIG", command.rig, "description, TOML (default: the thesis's rig)")
       ->type_name("");
   verb.add_option("--seed", command.seed, "same seed, same numbers")
@@ -55,7 +68,8 @@ void add_flags(CLI::App& app, SimulateCommand& command) {
   add_output_flags(verb, command.output);
   verb.footer(
       "Examples:\n  proofmass simulate --rpm 15 --seed 7 -o rig.csv\n"
-      "  proofmass simulate --procedure multi-position -o poses.csv");
+      "  proofmass simulate --procedure multi-position -o poses.csv\n"
+      "  proofmass simulate --procedure slide --length 0.5 -o slide.csv");
 }
 
 void add_flags(CLI::App& app, BudgetCommand& command) {

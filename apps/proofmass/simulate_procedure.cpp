@@ -4,6 +4,7 @@
 #include "console.hpp"
 #include "exit_status.hpp"
 #include "output.hpp"
+#include "proofmass/core/units.hpp"
 #include "proofmass/report/procedure_report.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 #include "proofmass/simulate/procedure.hpp"
@@ -30,6 +31,8 @@ void set_positions(int positions, ProcedureOptions& options) {
     options.table.positions = positions;
   } else if (options.procedure == Procedure::multi_position) {
     options.hand.poses = positions;
+  } else if (options.procedure == Procedure::slide) {
+    throw Failure(usage, "--positions: a slide has strokes: give --strokes");
   } else {
     throw Failure(usage, fmt::format("--positions: {} has as many as its name says",
                                      simulate::name_of(options.procedure)));
@@ -44,6 +47,24 @@ void set_signal(const std::string& signal, ProcedureOptions& options) {
   options.output = simulate::RigOutput::counts;
   if (options.daq.bits == 0)
     options.daq = {.bits = 16, .min_v = 0.0, .max_v = options.supply.reference_v};
+}
+
+void set_slide(const SimulateCommand& command, ProcedureOptions& options) {
+  const bool asked = command.strokes || command.repetitions || command.length_m ||
+                     command.stroke_s || command.elevation_deg || command.gravity_removed ||
+                     command.gyro;
+  if (!asked) return;
+  if (options.procedure != Procedure::slide)
+    throw Failure(usage,
+                  "--strokes, --repetitions, --length, --stroke-time, --elevation, "
+                  "--gravity-removed and --gyro are for --procedure slide");
+  if (command.strokes) options.slide.strokes = *command.strokes;
+  if (command.repetitions) options.slide.repetitions = *command.repetitions;
+  if (command.length_m) options.slide.length_m = *command.length_m;
+  if (command.stroke_s) options.timing.move_s = *command.stroke_s;
+  if (command.elevation_deg) options.slide.elevation_rad = *command.elevation_deg * rad_per_deg;
+  if (command.gravity_removed) options.slide.gravity_removed = true;
+  if (command.gyro) options.slide.gyro = true;
 }
 
 ProcedureOptions procedure_options(const SimulateCommand& command) {
@@ -63,6 +84,7 @@ ProcedureOptions procedure_options(const SimulateCommand& command) {
   if (command.positions) set_positions(*command.positions, options);
   if (command.dwell_s) options.timing.dwell_s = *command.dwell_s;
   if (command.supply_v) options.supply.actual_v = *command.supply_v;
+  set_slide(command, options);
   set_signal(command.signal, options);
   return options;
 }

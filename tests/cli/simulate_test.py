@@ -78,6 +78,19 @@ class SimulateProcedure(CommandTest):
                 mean = sum(read[f"acc_{letter} (m/s^2)"][k] for k in rows) / len(rows)
                 self.assertAlmostEqual(mean, position["force_mps2"][axis] + drift[axis], delta=0.01)
 
+    def test_a_slide_knows_where_it_was(self):
+        document = self.document("simulate", "--procedure", "slide", "--strokes", "3", "--length", "0.5", "--elevation", "30",
+                                 "--gyro", "--gravity-removed", "-o", "slide.csv")
+        strokes = document["truth"]["strokes"]
+        self.assertEqual([stroke["to_m"] for stroke in strokes], [0.5, 0.0, 0.5])
+        self.assertEqual([channel["name"] for channel in document["channels"]][3:], ["gyro_x", "gyro_y", "gyro_z"])
+        truth = self.columns("slide.truth.csv")
+        self.assertEqual(truth["displacement (m)"][-1], 0.5)
+        self.assertAlmostEqual(max(truth["velocity (m/s)"]), 15 / 8 * 0.5, delta=0.15)
+        self.assertLess(abs(self.columns("slide.csv")["acc_z (m/s^2)"][0]), 1.0)
+        self.expect_failure(USAGE, "simulate", "--procedure", "tumble", "--strokes", "3", "-o", "a.csv")
+        self.expect_failure(USAGE, "simulate", "--strokes", "3", "-o", "a.csv")
+
     def test_its_printed_description_reads_back_as_the_same_procedure(self):
         flags = ("--procedure", "tumble", "--positions", "12", "--dwell", "3", "--supply", "3.1", "--session", "4")
         description = self.succeed("simulate", *flags, "--print-config")

@@ -7,24 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "proofmass/simulate/profile.hpp"
+
 namespace proofmass::simulate {
 namespace {
-
-/// The smoothest way from 0 to 1, its velocity and its acceleration, at s in [0, 1].
-/// Source: T. Flash, N. Hogan, Journal of Neuroscience 5 (1985) 1688 (minimum jerk).
-struct Way {
-  double place, velocity, accel;
-};
-Way minimum_jerk(double s) {
-  return {s * s * s * (10.0 - 15.0 * s + 6.0 * s * s), 30.0 * s * s * (1.0 - s) * (1.0 - s),
-          60.0 * s * (1.0 - 3.0 * s + 2.0 * s * s)};
-}
-
-/// 0 at both ends of [0, 1] with no slope, 1 in the middle.
-double swell(double s) {
-  const double sine = std::sin(std::numbers::pi * s);
-  return sine * sine;
-}
 
 /// Upward acceleration of something lifted within the first 0.4 of a move and set down within the
 /// last.

@@ -7,6 +7,7 @@
 
 #include "proofmass/core/directions.hpp"
 #include "proofmass/core/random.hpp"
+#include "proofmass/simulate/slide_motion.hpp"
 
 namespace proofmass::simulate {
 namespace {
@@ -164,6 +165,7 @@ Eigen::Vector3d up_on_table(double angle_rad, double axis_tilt_rad) {
 }
 
 std::vector<PlannedPose> plan_poses(const ProcedureOptions& options) {
+  if (options.procedure == Procedure::slide) return SlideMotion(options).rests();
   std::vector<PlannedPose> poses =
       is_on_table(options.procedure) ? table_poses(options) : hand_poses(options);
   set_times(options, poses);

@@ -11,15 +11,17 @@
 #include "proofmass/simulate/bench_sensor.hpp"
 #include "proofmass/simulate/pose_motion.hpp"
 #include "proofmass/simulate/pose_plan.hpp"
+#include "proofmass/simulate/slide_series.hpp"
 
 namespace proofmass::simulate {
 namespace {
 
-constexpr std::array<std::pair<Procedure, std::string_view>, 4> names{
+constexpr std::array<std::pair<Procedure, std::string_view>, 5> names{
     {{Procedure::tumble, "tumble"},
      {Procedure::four_position, "four-position"},
      {Procedure::six_position, "six-position"},
-     {Procedure::multi_position, "multi-position"}}};
+     {Procedure::multi_position, "multi-position"},
+     {Procedure::slide, "slide"}}};
 
 Recording empty_recording(const ProcedureOptions& options, const char* what) {
   Recording recording;
@@ -129,6 +131,7 @@ class Series {
 std::string label_of(const ProcedureOptions& options, const TruePose& pose) {
   if (options.procedure == Procedure::multi_position)
     return "position_" + std::to_string(pose.number);
+  if (options.procedure == Procedure::slide) return "rest_" + std::to_string(pose.number);
   Eigen::Index axis = 0;
   pose.force_mps2.cwiseAbs().maxCoeff(&axis);
   if (options.procedure == Procedure::six_position || options.procedure == Procedure::four_position)
@@ -145,6 +148,17 @@ void label(const ProcedureOptions& options, ProcedureResult& result) {
          static_cast<std::size_t>(std::ceil(pose.start_s * options.rate_hz)),
          static_cast<std::size_t>(std::min(last, std::ceil(pose.end_s * options.rate_hz) - 1.0))});
   result.recording.label_channel = "label";
+}
+
+void record_poses(const ProcedureOptions& options,
+                  const std::vector<PlannedPose>& plan,
+                  std::size_t samples,
+                  ProcedureResult& result,
+                  const Progress& progress) {
+  Series series(options, plan);
+  series.run(samples, result, progress);
+  if (is_on_table(options.procedure)) series.add_table(samples, result);
+  series.describe(result.truth);
 }
 
 }  // namespace
@@ -182,6 +196,14 @@ ProcedureOptions default_options(Procedure procedure) {
       o.timing.dwell_jitter = 0.2;
       o.timing.move_jitter = 0.3;
       break;
+    case Procedure::slide:
+      o.timing = {.dwell_s = 2.0,
+                  .move_s = 1.0,
+                  .dwell_jitter = 0.2,
+                  .move_jitter = 0.1,
+                  .settle_s = 0.0,
+                  .settle_mps2 = 0.0};
+      break;
   }
   return o;
 }
@@ -192,15 +214,15 @@ Result<ProcedureResult> simulate_procedure(const ProcedureOptions& options,
   const std::vector<PlannedPose> plan = plan_poses(options);
   const auto samples = static_cast<std::size_t>(plan.back().end_s * options.rate_hz);
   ProcedureResult result{empty_recording(options, ""), empty_recording(options, ", truth"), {}};
-  Series series(options, plan);
-  series.run(samples, result, progress);
-  if (is_on_table(options.procedure)) series.add_table(samples, result);
+  if (options.procedure == Procedure::slide)
+    record_slide(options, samples, result, progress);
+  else
+    record_poses(options, plan, samples, result, progress);
   if (options.supply.recorded)
     result.recording.channels.push_back(
         {"supply", unit("V"),
          std::vector<double>(samples, converted_v(options.supply.actual_v, options.daq))});
   result.truth.poses = true_poses(plan);
-  series.describe(result.truth);
   if (options.labelled) label(options, result);
   if (progress) progress("simulating", 1.0);
   return result;

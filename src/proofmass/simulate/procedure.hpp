@@ -16,9 +16,11 @@
 #include "proofmass/sensor/model_equation.hpp"
 #include "proofmass/sensor/sensor_model.hpp"
 #include "proofmass/simulate/rig.hpp"
+#include "proofmass/simulate/slide.hpp"
 
-// The calibration of one three-axis accelerometer as a digital twin: a table that turns it in
-// steps, or a hand that lays it down in one position after another.
+// What is done with one three-axis accelerometer, as a digital twin: its calibration by a table
+// that turns it in steps, or by a hand that lays it down in one position after another; and its
+// use, on a carriage that goes along a line.
 namespace proofmass::simulate {
 
 enum class Procedure {
@@ -26,9 +28,10 @@ enum class Procedure {
   four_position,   ///< the thesis's: 0°, 90°, 180°, 270°
   six_position,    ///< by hand: x, −x, y, −y, z, −z upwards
   multi_position,  ///< by hand: a long rest, then positions all over the sphere
+  slide,           ///< carried along a straight line, with rests between the strokes
 };
 
-/// "tumble", "four-position", "six-position", "multi-position".
+/// "tumble", "four-position", "six-position", "multi-position", "slide".
 [[nodiscard]] std::string_view name_of(Procedure procedure);
 [[nodiscard]] std::optional<Procedure> procedure_named(std::string_view name);
 
@@ -66,7 +69,7 @@ struct ProcedureSensor {
 /// When it moves and when it lies still.
 struct ProcedureTiming {
   double dwell_s = 4.0;  ///< from standing to the next move, settling included
-  double move_s = 2.0;
+  double move_s = 2.0;   ///< of a slide: a stroke
   double dwell_jitter = 0.0, move_jitter = 0.0;  ///< even draws of ± these fractions
   double settle_s = 0.6;                         ///< a dying swing after each move, then exact rest
   double settle_mps2 = 0.3, settle_hz = 14.0;
@@ -140,6 +143,7 @@ struct ProcedureOptions {
   ProcedureTiming timing;
   ProcedureTable table;
   ProcedureHand hand;
+  ProcedureSlide slide;
   ProcedureSupply supply;
   RigDaq daq;  ///< skew_s is not used
   ProcedureSensor sensor;
@@ -160,6 +164,9 @@ struct TruePose {
 /// What the seed has drawn.
 struct ProcedureTruth {
   std::vector<TruePose> poses;
+  /// Of a slide: its strokes, and the line's direction in the sensor's axes at the first rest.
+  std::vector<TrueStroke> strokes;
+  Eigen::Vector3d line = Eigen::Vector3d::Zero();
   /// Of the axes x, y, z, with the output in the recording's unit, at the actual supply; drift is
   /// not in it.
   std::array<sensor::ModelEquation, 3> equations;
@@ -171,10 +178,12 @@ struct ProcedureTruth {
 
 struct ProcedureResult {
   /// Channels acc_x, acc_y, acc_z and, of a table, angle (deg), where there are several plane and
-  /// mount (deg); if asked for supply.
+  /// mount (deg); of a slide gyro_x, … and acc2_x, … if asked for; if asked for supply.
   Recording recording;
   /// force_x, force_y, force_z (m/s^2), bias_x, … (m/s^2: the drift on the reading), angle (rad,
-  /// table only), rest (1 at rest, else 0), position (its number, else 0), at the samples.
+  /// table only), rest (1 at rest, else 0), position (its number, else 0), at the samples. Of a
+  /// slide, in place of position: displacement (m), velocity and acceleration along the line, turn
+  /// (rad, from the first rest) and stroke (its number, else 0).
   Recording truth_series;
   ProcedureTruth truth;
 };

@@ -7,6 +7,7 @@
 #include "proofmass/simulate/procedure.hpp"
 #include "proofmass/simulate/procedure_fields.hpp"
 #include "proofmass/simulate/rig_fields.hpp"
+#include "proofmass/simulate/slide_fields.hpp"
 
 namespace proofmass::simulate {
 namespace {
@@ -49,6 +50,26 @@ void check_hand(const ProcedureHand& hand, Verdict& verdict) {
   verdict.require(std::min({hand.placement_std_rad, hand.lift_m, hand.sway_rms_mps2,
                             hand.tremor_rms_mps2, hand.wobble_rms_rad, hand.bump_mps2}) >= 0.0,
                   "[hand]", not_negative);
+}
+
+void check_slide(const ProcedureOptions& options, Verdict& verdict) {
+  const ProcedureSlide& slide = options.slide;
+  visit_slide(slide, verdict);
+  verdict.require(slide.strokes >= 1 && slide.strokes <= most_positions, "strokes",
+                  "must lie between 1 and 1000");
+  verdict.require(slide.repetitions >= 0 && slide.repetitions <= most_positions, "repetitions",
+                  "must lie between 0 and 1000");
+  verdict.require(std::abs(slide.length_m) <= 1e3, "length_m", "must lie between -1000 and 1000");
+  verdict.require(slide.length_jitter >= 0.0 && slide.length_jitter < 1.0, "length_jitter",
+                  "must lie from 0 to below 1");
+  verdict.require(std::min({slide.turn_pause_s, slide.turn_std_rad, slide.wobble_rms_rad,
+                            slide.vibration_mps2, slide.gyro_bias_spread_radps,
+                            slide.gyro_noise_rms_radps, slide.gyro_walk_radps_rts}) >= 0.0,
+                  "[slide]", not_negative);
+  verdict.require(std::min(slide.initial_rest_s, slide.final_rest_s) * options.rate_hz >= 2.0,
+                  "initial_rest_s and final_rest_s", "must each hold at least two samples");
+  verdict.require(!slide.gravity_removed || options.output == RigOutput::acceleration,
+                  "gravity_removed", "needs an output in m/s^2");
 }
 
 void check_bench_sensor(const ProcedureSensor& sensor, Verdict& verdict) {
@@ -99,6 +120,7 @@ Status check(const ProcedureOptions& options) {
   check_hand(options.hand, verdict);
   check_bench_sensor(options.sensor, verdict);
   check_supply(options, verdict);
+  if (options.procedure == Procedure::slide) check_slide(options, verdict);
   const ProcedureTiming& timing = options.timing;
   const double rest_s = timing.dwell_s * (1.0 - timing.dwell_jitter) - timing.settle_s;
   verdict.require(rest_s * options.rate_hz >= 2.0, "dwell_s",

@@ -15,7 +15,7 @@ namespace proofmass::simulate {
 template <class Options, class Visit>
 void visit_procedure(Options& o, Visit&& visit) {
   visit("procedure", o.procedure, 1.0,
-        "\"tumble\", \"four-position\", \"six-position\" or \"multi-position\"");
+        "\"tumble\", \"four-position\", \"six-position\", \"multi-position\" or \"slide\"");
   visit("seed", o.seed, 1.0, "same seed, same numbers");
   visit("session", o.session, 1.0, "another one: same sensor and table, other noise and hand");
   visit("rate_hz", o.rate_hz, 1.0, "samples a second");

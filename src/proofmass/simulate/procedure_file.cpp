@@ -6,16 +6,22 @@
 #include "proofmass/simulate/description.hpp"
 #include "proofmass/simulate/procedure_fields.hpp"
 #include "proofmass/simulate/rig_fields.hpp"
+#include "proofmass/simulate/slide_fields.hpp"
 
 namespace proofmass::simulate {
 
 static auto choices(Procedure /*which*/) {
-  std::array<std::pair<Procedure, std::string_view>, 4> all{};
+  std::array<std::pair<Procedure, std::string_view>, 5> all{};
   for (std::size_t k = 0; k < all.size(); ++k) {
     const auto procedure = static_cast<Procedure>(k);
     all[k] = {procedure, name_of(procedure)};
   }
   return all;
+}
+
+static auto choices(SlideProfile /*which*/) {
+  return std::to_array<std::pair<SlideProfile, std::string_view>>(
+      {{SlideProfile::minimum_jerk, "minimum-jerk"}, {SlideProfile::harmonic, "harmonic"}});
 }
 
 static auto choices(TableAxis /*which*/) {
@@ -34,6 +40,7 @@ void for_each_section(Options& o, Section&& section) {
   section("timing", [&](auto&& visit) { visit_timing(o.timing, visit); });
   section("table", [&](auto&& visit) { visit_table(o.table, visit); });
   section("hand", [&](auto&& visit) { visit_hand(o.hand, visit); });
+  section("slide", [&](auto&& visit) { visit_slide(o.slide, visit); });
   section("supply", [&](auto&& visit) { visit_bench_supply(o.supply, visit); });
   section("daq", [&](auto&& visit) { visit_daq(o.daq, visit); });
   section("sensor", [&](auto&& visit) { visit_bench_sensor(o.sensor, visit); });

@@ -77,7 +77,7 @@ TEST(ProcedureFile, AnEmptyOneIsTheDefault) {
 TEST(ProcedureFile, ErrorsNameFileLineAndKey) {
   EXPECT_EQ(error_of("procedure = \"tumbling\""),
             "bench.toml: line 1: procedure must be one of \"tumble\", \"four-position\", "
-            "\"six-position\", \"multi-position\"");
+            "\"six-position\", \"multi-position\", \"slide\"");
   EXPECT_EQ(error_of("\nprocedure = \"six-position\""),
             "bench.toml: line 2: procedure is six-position, but tumble was asked for");
   EXPECT_EQ(error_of("[hand]\n\npose = 3"),
