@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel_clock.hpp"
 #include "proofmass/estimate/wheel_findings.hpp"
@@ -422,10 +421,10 @@ WheelSolution conclude(const WheelReadings& readings,
   add_methods(readings, fit, solution);
   add_distance(options, solution);
   add_peak_speed(solution);
-  const Bounds bounds = mean_chi_square_95(std::max<std::size_t>(fit.innovations, 1));
-  solution.consistency = {
-      fit.nis_sum / static_cast<double>(std::max<std::size_t>(fit.innovations, 1)), bounds.lower,
-      bounds.upper, fit.innovations};
+  solution.consistency = std::move(fit.consistency);
+  for (std::size_t i = 0; i < solution.consistency.channels.size(); ++i)
+    solution.consistency.channels[i].name =
+        solution.sensors[i / 2].name + (i % 2 == 0 ? " along u" : " along v");
   solution.not_observable = say_not_observable(fit, solution.sensors);
   add_gated(solution);
   note_travel(readings, options, solution);

@@ -10,6 +10,7 @@
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
+#include "proofmass/estimate/consistency.hpp"
 
 // The angle of a wheel from one or two accelerometers that turn with it.
 namespace proofmass::estimate {
@@ -78,13 +79,6 @@ struct WheelSeries {
   std::vector<float> nis;                         ///< per instant, over its channels
   std::vector<unsigned char> channels_used;       ///< behind each nis; 0 = nothing used
   std::vector<unsigned char> channels_gated;
-};
-
-/// Normalised innovations squared of the filter, mean per channel, with the bounds between which
-/// it lies in 95 % of runs of a filter whose noise figures are true.
-struct Consistency {
-  double nis = 0.0, nis_lower = 0.0, nis_upper = 0.0;
-  std::size_t innovations = 0;
 };
 
 /// A stretch of time, for lists of what was rejected or lost.

@@ -75,16 +75,23 @@ void resize(WheelSeries& series, std::size_t size) {
 }
 
 template <int S>
-void note_forward(std::size_t k, const StepOf<WheelModel<S>>& step, WheelFit& fit) {
+void note_forward(const WheelModel<S>& model,
+                  std::size_t k,
+                  const StepOf<WheelModel<S>>& step,
+                  ConsistencyCheck& check,
+                  WheelFit& fit) {
   double nis = 0.0;
   unsigned char used = 0, gated = 0;
-  for (int i = 0; i < step.count; ++i) {
-    const auto& u = step.updates[static_cast<std::size_t>(i)];
-    nis += u.used ? u.nis() : 0.0;
-    ++(u.used ? used : gated);
+  std::size_t next = 0;
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
+    if (!model.has_readings(s, k)) continue;
+    for (std::size_t channel = 2 * s; channel < 2 * s + 2; ++channel) {
+      const auto& u = step.updates[next++];
+      check.add(channel, u.innovation, u.expected, u.used);
+      nis += u.used ? u.nis() : 0.0;
+      ++(u.used ? used : gated);
+    }
   }
-  fit.nis_sum += nis;
-  fit.innovations += used;
   fit.series.nis[k] = static_cast<float>(nis);
   fit.series.channels_used[k] = used;
   fit.series.channels_gated[k] = gated;
@@ -142,6 +149,9 @@ WheelFit smooth_at_places(const WheelReadings& readings,
   const auto prior = prior_state<S>(settled.prior);
   Gaussian<wheel::states(S)> end = prior.x;
   Mat<wheel::states(S)> first_mean = end.mean;
+  ConsistencyCheck check({.channels = std::vector<std::string>(static_cast<std::size_t>(2 * S)),
+                          .rate_hz = readings.rate_hz(),
+                          .gate = wheel_gate.limit});
   const auto tell = [&](std::string_view stage, std::size_t done) {
     if (progress && done % 65536 == 0)
       progress(stage, static_cast<double>(done) / static_cast<double>(size));
@@ -157,7 +167,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
           fit.widest_prediction_rad = std::max(fit.widest_prediction_rad, std::sqrt(variance));
         }
         end = step.filtered;
-        note_forward<S>(k, step, fit);
+        note_forward(model, k, step, check, fit);
         tell("filter", k);
       },
       [&](std::size_t k, const auto& step, const auto& later) {
@@ -166,6 +176,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
         tell("smoother", size - k);
       });
   filter_calibrated(model, settled.prior, {first_mean, end.cov}, fit.series);
+  fit.consistency = check.judge();
   constexpr int count = wheel::standing(S);
   fit.constants = end.mean.template tail<count>();
   fit.constants_cov = end.cov.template bottomRightCorner<count, count>();

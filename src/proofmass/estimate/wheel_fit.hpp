@@ -71,8 +71,7 @@ struct WheelFit {
   WheelTrack track;
   Uncertain turns;
   double ekf_turns = 0.0;
-  double nis_sum = 0.0;
-  std::size_t innovations = 0;
+  Consistency consistency;             ///< channels: along u and v of each sensor, without names
   double widest_prediction_rad = 0.0;  ///< std of the predicted angle, once past the first second
   /// Of each sensor, where a radius was given: what the recording alone says of it.
   std::vector<Uncertain> free_radius_m;

@@ -132,15 +132,20 @@ struct WheelModel {
     return step;
   }
 
+  /// Whether instant k has the readings of a sensor.
+  [[nodiscard]] bool has_readings(std::size_t sensor, std::size_t k) const {
+    const std::int64_t row = (*instants)[k].row[sensor];
+    return row != WheelInstant::no_row && readings[sensor]->has(static_cast<std::size_t>(row));
+  }
+
   void measure(const State& x, std::size_t k, Readings<states, channels>& out) const {
     out.count = 0;
     const State at_state = about == nullptr ? x : state_about(x, k);
     for (int s = 0; s < Sensors; ++s) {
-      const std::int64_t row = (*instants)[k].row[static_cast<std::size_t>(s)];
-      if (row == WheelInstant::no_row) continue;
-      const auto at = static_cast<std::size_t>(row);
-      const PlanarReadings& sensor = *readings[static_cast<std::size_t>(s)];
-      if (!sensor.has(at)) continue;
+      const auto index = static_cast<std::size_t>(s);
+      if (!has_readings(index, k)) continue;
+      const PlanarReadings& sensor = *readings[index];
+      const auto at = static_cast<std::size_t>((*instants)[k].row[index]);
       read_sensor(at_state, s, out);
       auto& u = out.rows[static_cast<std::size_t>(out.count - 2)];
       auto& v = out.rows[static_cast<std::size_t>(out.count - 1)];

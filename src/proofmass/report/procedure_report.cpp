@@ -34,6 +34,18 @@ Array positions(const ProcedureReport& report) {
   return array;
 }
 
+Array strokes(const simulate::ProcedureTruth& truth) {
+  Array array;
+  for (const simulate::TrueStroke& stroke : truth.strokes)
+    array.push_back(Object{{"number", stroke.number},
+                           {"set", stroke.set},
+                           {"start_s", stroke.start_s},
+                           {"end_s", stroke.end_s},
+                           {"from_m", stroke.from_m},
+                           {"to_m", stroke.to_m}});
+  return array;
+}
+
 // The coefficients of each axis by name, K1 in the recording's unit per m/s^2, all else in SI.
 Array axes(const ProcedureReport& report) {
   Array array;
@@ -69,6 +81,16 @@ std::string procedure_json(const ProcedureReport& report) {
   Array channels;
   for (const Channel& channel : recording.channels)
     channels.push_back(Object{{"name", channel.name}, {"unit", channel.unit.symbol}});
+  Object told{{"positions", positions(report)},
+              {"axes", axes(report)},
+              {"bias", figures(calibration.bias)},
+              {"scale", figures(calibration.scale)},
+              {"misalignment_rad", figures(calibration.misalignment)},
+              {"mean_drift_mps2", numbers(truth.mean_drift_mps2)}};
+  if (!truth.strokes.empty()) {
+    told.push_back({"strokes", strokes(truth)});
+    told.push_back({"line", numbers(truth.line)});
+  }
   return to_json({"simulate", report.inputs, texts(recording.notes, Severity::warning)},
                  {{"procedure", simulate::name_of(report.options.procedure)},
                   {"file", report.output},
@@ -81,12 +103,7 @@ std::string procedure_json(const ProcedureReport& report) {
                   {"duration_s", recording.duration_s()},
                   {"gravity_mps2", report.options.gravity_mps2},
                   {"channels", std::move(channels)},
-                  {"truth", Object{{"positions", positions(report)},
-                                   {"axes", axes(report)},
-                                   {"bias", figures(calibration.bias)},
-                                   {"scale", figures(calibration.scale)},
-                                   {"misalignment_rad", figures(calibration.misalignment)},
-                                   {"mean_drift_mps2", numbers(truth.mean_drift_mps2)}}}});
+                  {"truth", std::move(told)}});
 }
 
 std::string procedure_text(const ProcedureReport& report) {
@@ -96,11 +113,15 @@ std::string procedure_text(const ProcedureReport& report) {
   return fmt::format("Simulated {}, {} at {} Hz, seed {}: {}.\n",
                      simulate::name_of(report.options.procedure),
                      duration_words(recording.duration_s()), compact(report.options.rate_hz, 6),
-                     report.options.seed, count_words(truth.poses.size(), "position")) +
+                     report.options.seed,
+                     truth.strokes.empty() ? count_words(truth.poses.size(), "position")
+                                           : count_words(truth.strokes.size(), "stroke")) +
          aligned({{"recording", report.output,
                    fmt::format("{} of {}", count_words(recording.channels.size(), "channel"),
                                count_words(recording.samples(), "sample"))},
-                  {"truth", report.truth, "force, drift, rests"},
+                  {"truth", report.truth,
+                   truth.strokes.empty() ? "force, drift, rests"
+                                         : "force, drift, displacement, rests, strokes"},
                   {"sensor", report.sensor, "what a perfect calibration would find:"},
                   {"", "bias", three(calibration.bias, 1.0, 5) + " m/s^2"},
                   {"", "scale", three(calibration.scale, 1.0, 6)},

@@ -62,7 +62,9 @@ inline WheelReport fake_report() {
   solution.ekf.turns = Uncertain{-79.6139, 0.004};
   solution.atan2 = {Uncertain{-79.612, 0.0}, "takes the hub's shaking for gravity"};
   solution.double_integration.note = "no radius is known well enough";
-  solution.consistency = {1.01, 0.97, 1.03, 24000};
+  estimate::ConsistencyCheck check({.channels = {"wheel <1>.csv along u"}, .rate_hz = 100.0});
+  for (int k = 0; k < 24000; ++k) check.add(0, std::sin(7.0 * k * k), 0.5);
+  solution.consistency = check.judge();
   solution.rejected_samples = 5;
   solution.rejected = {{41.67, 41.99, 5, "innovation beyond the gate"}};
   solution.not_observable = {

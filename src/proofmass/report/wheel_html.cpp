@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "proofmass/core/units.hpp"
+#include "proofmass/report/consistency_report.hpp"
 #include "proofmass/report/document.hpp"
 #include "proofmass/report/page.hpp"
 #include "proofmass/report/wheel_figures.hpp"
@@ -93,19 +94,8 @@ Table sensors_table(const WheelReport& report) {
   return table;
 }
 
-Section consistency_section(const WheelSolution& solution) {
-  const estimate::Consistency& found = solution.consistency;
-  const bool inside = found.nis >= found.nis_lower && found.nis <= found.nis_upper;
-  Section section{.heading = "Does the model fit the readings?"};
-  section.paragraphs = {fmt::format(
-      "The normalised innovations squared have the mean {} per channel over {}. If the noise "
-      "figures "
-      "were exactly true it would lie between {} and {} in 95 % of recordings: {}",
-      fixed(found.nis, 3), count_words(found.innovations, "innovation"), fixed(found.nis_lower, 3),
-      fixed(found.nis_upper, 3),
-      inside                        ? "it does."
-      : found.nis < found.nis_lower ? "it is lower, so the bands are wider than they need be."
-                                    : "it is higher, so the bands may be too narrow.")};
+Section fit_section(const WheelSolution& solution) {
+  Section section = consistency_section(solution.consistency);
   section.figures = {innovations_figure(solution)};
   if (solution.rejected.empty()) return section;
   Table table{"What was rejected", {"From", "To", "Rows", "Why"}, {}};
@@ -119,7 +109,7 @@ Section consistency_section(const WheelSolution& solution) {
     table.caption += fmt::format(": the first {} of {}; the JSON document has all", most_rows,
                                  count_words(solution.rejected.size(), "stretch"));
   }
-  section.tables = {std::move(table)};
+  section.tables.insert(section.tables.begin(), std::move(table));
   return section;
 }
 
@@ -161,7 +151,7 @@ std::string wheel_html(const WheelReport& report) {
     page.sections.push_back(
         {.heading = "What this recording cannot tell", .points = solution.not_observable});
   }
-  page.sections.push_back(consistency_section(solution));
+  page.sections.push_back(fit_section(solution));
   page.sections.push_back(method_section(report));
   return html(page);
 }

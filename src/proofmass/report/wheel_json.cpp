@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "proofmass/core/units.hpp"
+#include "proofmass/report/consistency_report.hpp"
 #include "proofmass/report/document.hpp"
 #include "proofmass/report/wheel_report.hpp"
 
@@ -88,6 +89,7 @@ std::vector<std::string> warnings(const WheelReport& report) {
   };
   add(texts(solution.notes, Severity::warning));
   add(solution.not_observable);
+  add(consistency_nulls(solution.consistency));
   const auto missing = [&](const auto& figure, const std::string& name, const std::string& why) {
     if (!figure) {
       all.push_back(name +
@@ -125,7 +127,6 @@ std::string wheel_json(const WheelReport& report) {
   for (const WheelSensorFit& fit : solution.sensors) {
     sensors.push_back(sensor(fit, &fit == &solution.sensors.front(), report.options.clocks_shared));
   }
-  const estimate::Consistency& consistency = solution.consistency;
   const std::vector<double>& time_s = solution.series.time_s;
   return to_json(
       {"wheel", report.inputs, warnings(report)},
@@ -144,10 +145,7 @@ std::string wheel_json(const WheelReport& report) {
                           {"atan2", method(solution.atan2)},
                           {"ekf", method(solution.ekf)},
                           {"smoother", method(solution.smoother)}}},
-       {"consistency", Object{{"nis", consistency.nis},
-                              {"nis_lower", consistency.nis_lower},
-                              {"nis_upper", consistency.nis_upper},
-                              {"innovations", consistency.innovations}}},
+       {"consistency", consistency_json(solution.consistency)},
        {"not_observable", array_of(solution.not_observable)},
        {"notes", array_of(notes)}});
 }

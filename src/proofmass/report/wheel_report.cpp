@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "proofmass/core/units.hpp"
+#include "proofmass/report/consistency_report.hpp"
 #include "proofmass/report/document.hpp"
 #include "proofmass/report/wording.hpp"
 
@@ -83,10 +84,8 @@ std::string wheel_text(const WheelReport& report) {
                           method_row("atan2", solution.atan2),
                           method_row("double integration", solution.double_integration)});
   text += '\n' + aligned(sensor_rows(solution));
-  text += fmt::format("\n  Consistency: mean NIS {}, expected {} … {} over {}.\n",
-                      fixed(solution.consistency.nis, 3), fixed(solution.consistency.nis_lower, 3),
-                      fixed(solution.consistency.nis_upper, 3),
-                      count_words(solution.consistency.innovations, "innovation"));
+  text += "\n  Consistency: " + nis_words(solution.consistency) + ".\n";
+  text += "  " + consistency_conclusion(solution.consistency) + '\n';
   text += fmt::format("  Rejected: {}.\n", count_words(solution.rejected_samples, "row"));
   if (!solution.not_observable.empty()) text += "\nWhat this recording cannot tell:\n";
   for (const std::string& sentence : solution.not_observable) text += "  - " + sentence + '\n';

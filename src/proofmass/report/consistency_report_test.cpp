@@ -1,0 +1,92 @@
+#include "proofmass/report/consistency_report.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "proofmass/core/random.hpp"
+
+namespace proofmass::report {
+namespace {
+
+using estimate::ConsistencyCheck;
+
+estimate::Consistency scattered(double first, double second, double outlier = 0.0) {
+  ConsistencyCheck check({.channels = {"a/x.csv: acc_x", "a/x.csv: acc_y"}, .rate_hz = 10.0});
+  Random random(1, "scattered");
+  for (int k = 0; k < 4000; ++k) {
+    check.add(0, first * random.normal() + (k % 200 == 0 ? outlier : 0.0), 1.0);
+    check.add(1, second * random.normal(), 1.0);
+  }
+  return check.judge();
+}
+
+const NoiseNames names{.measurement = "accel_std", .process = "jerk_std", .slow = "bias_walk"};
+
+TEST(ConsistencyReport, SaysOneSentenceAndWhatToMove) {
+  EXPECT_EQ(consistency_conclusion(scattered(1.0, 1.0), names),
+            "The filter errs as far as it says.");
+  EXPECT_EQ(consistency_conclusion(scattered(1.6, 1.6), names),
+            "The innovations scatter 1.6 times as far as the filter says: raise accel_std and "
+            "jerk_std by a factor of 1.6.");
+  EXPECT_EQ(consistency_conclusion(scattered(0.5, 0.5), names),
+            "The innovations scatter 0.50 times as far as the filter says: lower accel_std and "
+            "jerk_std by a factor of 2.0.");
+  EXPECT_EQ(consistency_conclusion(scattered(1.0, 2.0), names),
+            "x.csv: acc_y: the innovations scatter 2.0 times as far as the filter says: raise "
+            "accel_std and jerk_std by a factor of 2.0.");
+  EXPECT_EQ(consistency_conclusion(scattered(1.0, 1.0, 30.0), names),
+            "x.csv: acc_x: the innovations scatter 2.4 times as far as the filter says: a few "
+            "readings lie far off; leave them out by a gate.");
+}
+
+TEST(ConsistencyReport, SaysOfColourWhetherTheFilterLagsOrFollowsTheNoise) {
+  ConsistencyCheck slow({.channels = {"z"}}), fast({.channels = {"z"}});
+  Random random(2, "colour");
+  double held = 0.0, last = 0.0;
+  for (int k = 0; k < 4000; ++k) {
+    const double w = random.normal();
+    held = 0.8 * held + 0.6 * w;
+    slow.add(0, held, 1.0);
+    fast.add(0, std::sqrt(0.5) * (w - last), 1.0);
+    last = w;
+  }
+  const std::string lags = consistency_conclusion(slow.judge(), names);
+  EXPECT_NE(lags.find("it follows too slowly; raise jerk_std"), std::string::npos) << lags;
+  const std::string nervous = consistency_conclusion(fast.judge(), names);
+  EXPECT_NE(nervous.find("it follows the noise; lower jerk_std"), std::string::npos) << nervous;
+}
+
+TEST(ConsistencyReport, EveryNullHasItsReason) {
+  const auto nothing = ConsistencyCheck({.channels = {"z"}}).judge();
+  const std::string text = to_json({"track", {}, {}}, {{"consistency", consistency_json(nothing)}});
+  EXPECT_NE(text.find("\"nis\": null"), std::string::npos);
+  const std::vector<std::string> reasons = consistency_nulls(nothing);
+  ASSERT_EQ(reasons.size(), 2U);
+  EXPECT_EQ(reasons[0],
+            "consistency: null for nis, nis_lower, nis_upper, std_factor, inside_95, lag_one, "
+            "lag_one_bound: there is no innovation");
+  EXPECT_TRUE(consistency_nulls(scattered(1.0, 1.0)).empty());
+  EXPECT_EQ(consistency_conclusion(nothing), "0 innovations are too few to judge the filter by.");
+}
+
+TEST(ConsistencyReport, DocumentHasTheFiguresOfAllAndOfEachChannel) {
+  const std::string text =
+      to_json({"track", {}, {}}, {{"consistency", consistency_json(scattered(1.0, 2.0), names)}});
+  for (const char* piece :
+       {"\"nis_lower\"", "\"nis_upper\"", "\"verdict\": \"overconfident\"",
+        "\"verdict_of\": \"a/x.csv: acc_y\"", "\"what\": \"both_noises\"", "\"stretches\": [",
+        "\"name\": \"a/x.csv: acc_x\"", "\"verdict\": \"consistent\""})
+    EXPECT_NE(text.find(piece), std::string::npos) << piece;
+}
+
+TEST(ConsistencyReport, PageHasTheVerdictAndTheChannels) {
+  const Section section = consistency_section(scattered(1.0, 1.0));
+  EXPECT_EQ(section.paragraphs.front(), "The filter errs as far as it says.");
+  ASSERT_EQ(section.tables.size(), 2U);
+  EXPECT_EQ(section.tables[0].rows.size(), 3U);
+  EXPECT_EQ(section.tables[0].rows[0][0], "x.csv: acc_x");
+  EXPECT_EQ(section.tables[1].rows[0][0], "0.2 s");
+}
+
+}  // namespace
+}  // namespace proofmass::report
