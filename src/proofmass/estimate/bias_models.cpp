@@ -10,6 +10,18 @@ BiasStep bias_step(const BiasOptions& options) {
   return {phi, settled, options.bias_psd_m2ps5 * 0.5 * T * settled * (1.0 + phi)};
 }
 
+BiasStep random_walk_step(const RandomWalkOptions& options) {
+  PM_EXPECTS(options.dt_s >= 0.0 && options.bias_psd_m2ps5 >= 0.0);
+  return {1.0, 0.0, options.bias_psd_m2ps5 * options.dt_s};
+}
+
+BiasStep gauss_markov_step(const GaussMarkovOptions& options) {
+  PM_EXPECTS(options.bias_std_mps2 >= 0.0 && options.time_constant_s > 0.0);
+  const double variance = options.bias_std_mps2 * options.bias_std_mps2;
+  return bias_step(
+      {options.dt_s, options.time_constant_s, 2.0 * variance / options.time_constant_s});
+}
+
 Gaussian<1> bias_prior(const sensor::WarmUp& warm_up, double since_switch_on_s) {
   const Uncertain bias = sensor::bias_at(warm_up, since_switch_on_s);
   Gaussian<1> prior;
@@ -29,7 +41,11 @@ LinearModel<1, 1, 1> bias_model(const RestOptions& options) {
   return model;
 }
 
-template LinearRun<1, 1> filter_linear(LinearSeries<1, 1, 1>, const Gaussian<1>&, const Gate&);
-template LinearRun<1, 1> smooth_linear(LinearSeries<1, 1, 1>, const Gaussian<1>&, const Gate&);
+template LinearRun<1, 1> filter_linear(LinearSeries<1, 1, 1>,
+                                       const Start<1>&,
+                                       const LinearOptions&);
+template LinearRun<1, 1> smooth_linear(LinearSeries<1, 1, 1>,
+                                       const Start<1>&,
+                                       const LinearOptions&);
 
 }  // namespace proofmass::estimate

@@ -25,6 +25,24 @@ struct BiasStep {
 };
 [[nodiscard]] BiasStep bias_step(const BiasOptions& options);
 
+struct RandomWalkOptions {
+  double dt_s = 0.0;            ///< time between samples, not negative
+  double bias_psd_m2ps5 = 0.0;  ///< two-sided density of the white noise that drives the walk, ≥ 0
+};
+
+/// The same of a bias that walks and settles nowhere, the limit T → ∞: φ = 1, w ~ N(0, q dt).
+[[nodiscard]] BiasStep random_walk_step(const RandomWalkOptions& options);
+
+struct GaussMarkovOptions {
+  double dt_s = 0.0;             ///< time between samples, not negative
+  double time_constant_s = 0.0;  ///< T, positive
+  double bias_std_mps2 = 0.0;    ///< standard deviation of the stationary process, ≥ 0
+};
+
+/// The same of a bias that wanders about the level u with a standard deviation σ that does not
+/// change: φ = e^(−dt/T), w ~ N(0, σ² (1 − φ²)), which is the above with q = 2σ²/T.
+[[nodiscard]] BiasStep gauss_markov_step(const GaussMarkovOptions& options);
+
 /// What is known of the bias so long after switching on, before any reading: the mean is the
 /// warm-up's b(t), and `ε(0) = a2` with the input `u = a1 + a2` (WarmUp::settled_mps2()) follows
 /// it. Where a calibration of the warmed-up sensor is applied, the warm-up to give is its
@@ -62,10 +80,10 @@ struct RestOptions {
 [[nodiscard]] LinearModel<1, 1, 1> bias_model(const RestOptions& options);
 
 extern template LinearRun<1, 1> filter_linear(LinearSeries<1, 1, 1>,
-                                              const Gaussian<1>&,
-                                              const Gate&);
+                                              const Start<1>&,
+                                              const LinearOptions&);
 extern template LinearRun<1, 1> smooth_linear(LinearSeries<1, 1, 1>,
-                                              const Gaussian<1>&,
-                                              const Gate&);
+                                              const Start<1>&,
+                                              const LinearOptions&);
 
 }  // namespace proofmass::estimate

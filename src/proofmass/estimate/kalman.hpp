@@ -1,276 +1,42 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <concepts>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
-#include "proofmass/estimate/dense_kernels.hpp"
-#include "proofmass/estimate/gaussian.hpp"
+#include "proofmass/estimate/hindsight.hpp"
+#include "proofmass/estimate/kalman_filter.hpp"
 
-// The one Kalman filter and the one fixed-interval smoother under every model of this module,
-// linear or extended, with readings taken one channel at a time.
-//
-//   state     x[k] = f(x[k−1]) + w,   w ~ N(0, Q)     N-vector, of which the first D move
-//   readings  z[k] = h(x[k]) + v,     v ~ N(0, R)     up to M scalars, R diagonal
-//
-// A channel without a reading is left out, so one dead channel costs nothing but itself. Constants
-// and slow walks stand behind the D moving states: a prediction then costs O(D N) instead of O(N³).
+// The one fixed-interval smoother under every model of this module, linear or extended: the filter
+// of kalman_filter.hpp there, hindsight.hpp back.
 namespace proofmass::estimate {
 
-/// One step of time: the predicted moving states, how they hang on the former ones, and the noise
-/// that came in.
-template <int N, int D>
-struct Transition {
-  Mat<D> mean;  ///< f(x) of the moving states
-  Mat<D, D> F;  ///< ∂f/∂x among the moving states; the others neither move nor push
-  Mat<D, D> Q;  ///< process noise of the moving states
-  Mat<N> walk;  ///< variance added to each standing state; its first D are not read
-};
-
-/// One channel's reading and what the model makes of it at the predicted state.
-template <int N>
-struct Reading {
-  double value;      ///< z
-  double predicted;  ///< h(x)
-  double variance;   ///< R, positive
-  Mat<N> h;          ///< ∂h/∂x
-};
-
-template <int N, int M>
-struct Readings {
-  std::array<Reading<N>, static_cast<std::size_t>(M)> rows;
-  int count = 0;
-};
-
-/// What a model offers: sizes, the step that leads to instant k, and the readings of instant k.
-template <class Model>
-concept StateSpaceModel = requires(const Model& model,
-                                   const Mat<Model::states>& x,
-                                   std::size_t k,
-                                   Readings<Model::states, Model::channels>& readings,
-                                   Gaussian<Model::states>& lost) {
-  { model.size() } -> std::convertible_to<std::size_t>;
-  { model.transition(x, k) } -> std::same_as<Transition<Model::states, Model::moving>>;
-  model.measure(x, k, readings);
-  model.reopen(lost);
-};
-
-/// How many of a model's states the filter runs on: all, unless the model says by active() that
-/// those from there on are held, without variance.
-template <StateSpaceModel Model>
-[[nodiscard]] int active_states(const Model& model) {
-  if constexpr (requires { model.active(); })
-    return model.active();
-  else
-    return Model::states;
-}
-
-/// What one channel's reading did to the state: all that the backward pass and the tests need.
-template <int N>
-struct Update {
-  Mat<N> h, gain;
-  double innovation = 0.0;  ///< y = z − h(x̂)
-  double expected = 0.0;    ///< S = h P hᵀ + R, with the R that the model states
-  double variance = 0.0;    ///< S as used: larger where the reading lost weight
-  bool used = false;        ///< false: passed the gate's limit and was left out
-  [[nodiscard]] double nis() const { return innovation * innovation / expected; }
-};
-
-/// What is done with readings that the model did not expect, ν = |y|/√S standard deviations off.
-/// Beyond `huber` they lose weight as huber/ν, so that none pulls harder than one just there;
-/// beyond `limit` they are left out. After `patience` instants in a row with nothing but such
-/// readings the filter has lost the state, not the sensor its mind: the model reopens the
-/// covariance and what comes is believed again. Source: P. J. Huber, Robust Statistics (1981),
-/// section 4.5.
-struct Gate {
-  double huber = std::numeric_limits<double>::infinity();
-  double limit = std::numeric_limits<double>::infinity();
-  int patience = 25;
-};
-
-template <int N>
-struct FilterState {
-  Gaussian<N> x;
-  int instants_gated = 0;  ///< in a row, up to now
-};
-
-/// x̂[k|k−1] from x̂[k−1|k−1].
-template <int N, int D>
-void predict(Gaussian<N>& x, const Transition<N, D>& step) {
-  x.mean.template head<D>() = step.mean;
-  const Mat<D, N> FP = step.F.lazyProduct(x.cov.template topRows<D>());
-  // Symmetric to the last bit: corrections do not reach what is not, and F would make it grow.
-  const Mat<D, D> FPF = FP.template leftCols<D>() * step.F.transpose();
-  x.cov.template topLeftCorner<D, D>() = 0.5 * (FPF + FPF.transpose()) + step.Q;
-  if constexpr (D < N) {
-    constexpr int S = N - D;
-    x.cov.template topRightCorner<D, S>() = FP.template rightCols<S>();
-    x.cov.template bottomLeftCorner<S, D>() = FP.template rightCols<S>().transpose();
-    x.cov.diagonal().template tail<S>() += step.walk.template tail<S>();
+/// There and back over `size` instants: advance(state, k, step) from each to the next, telling it
+/// to forward(k, step), then backward(k, step) in falling k. The way there keeps the state at every
+/// `chunk`-th instant; the way back runs each chunk again, so that memory is
+/// O(size / chunk + chunk) states and steps instead of one step for each instant.
+template <class Step, std::size_t chunk, class State, class Advance, class Forward, class Backward>
+void there_and_back(
+    std::size_t size, State state, Advance&& advance, Forward&& forward, Backward&& backward) {
+  std::vector<State> starts;
+  starts.reserve(size / chunk + 1);
+  Step now;
+  for (std::size_t k = 0; k < size; ++k) {
+    if (k % chunk == 0) starts.push_back(state);
+    advance(state, k, now);
+    forward(k, std::as_const(now));
+  }
+  std::vector<Step> steps(std::min(chunk, size));
+  for (std::size_t c = starts.size(); c-- > 0;) {
+    const std::size_t first = c * chunk, last = std::min(first + chunk, size);
+    for (std::size_t k = first; k < last; ++k) advance(starts[c], k, steps[k - first]);
+    for (std::size_t k = last; k-- > first;) backward(k, std::as_const(steps[k - first]));
   }
 }
 
-/// Joseph's form with I − K h written out, in O(N³): for a prior so much wider than the reading
-/// that differences of its entries hold nothing of the answer.
-template <int N>
-[[gnu::noinline]] void correct_diffuse(Mat<N, N>& P, const Mat<N>& h, const Mat<N>& K, double R) {
-  const Mat<N, N> I_Kh = Mat<N, N>::Identity() - K * h.transpose();
-  const Mat<N, N> reduced = I_Kh * P * I_Kh.transpose() + R * K * K.transpose();
-  P = 0.5 * (reduced + reduced.transpose());
-}
-
-/// x̂ given one more reading: Kalman's gain, and P ← P − (P hᵀ)(P hᵀ)ᵀ / S, of which an entry and
-/// its mirror round alike; Joseph's form instead where the start is diffuse. Cost: O(N²).
-/// `predicted` is h(x̂) at the state as it stands. States from `active` on are held: their variances
-/// and covariances are zero, and are not touched. Source: G. J. Bierman, Factorization Methods for
-/// Discrete Sequential Estimation (1977), section II.
-template <int N>
-[[nodiscard]] Update<N> correct(Gaussian<N>& x,
-                                const Reading<N>& reading,
-                                const Gate& gate,
-                                int active = N) {
-  Mat<N> Ph = Mat<N>::Zero();
-  symmetric_times(x.cov.data(), reading.h.data(), Ph.data(), {active, N});
-  Update<N> update;
-  update.h = reading.h;
-  update.innovation = reading.value - reading.predicted;
-  const double hPh = reading.h.dot(Ph);
-  update.expected = update.variance = hPh + reading.variance;
-  const double off = std::abs(update.innovation) / std::sqrt(update.expected);
-  update.used = off <= gate.limit;
-  if (!update.used) {
-    update.gain.setZero();
-    return update;
-  }
-  if (off > gate.huber) update.variance *= off / gate.huber;
-  const double weight = 1.0 / update.variance;
-  update.gain = Ph * weight;
-  x.mean += update.gain * update.innovation;
-  if (const double noise = reading.variance + (update.variance - update.expected);
-      hPh > 1e8 * noise) {
-    correct_diffuse(x.cov, reading.h, update.gain, noise);
-  } else {
-    const Mat<N> w = Ph * std::sqrt(weight);
-    subtract_square(x.cov.data(), w.data(), {active, N});
-  }
-  return update;
-}
-
-/// One instant of a run: the state after its readings, and what led there.
-template <int N, int D, int M>
-struct Step {
-  Mat<D, D> F;  ///< of the transition to this instant; identity at the first
-  std::array<Update<N>, static_cast<std::size_t>(M)> updates;
-  int count = 0;
-  Gaussian<N> filtered;
-};
-
-template <StateSpaceModel Model>
-using StepOf = Step<Model::states, Model::moving, Model::channels>;
-
-/// Takes the state from instant k − 1 to k (at k = 0: only its readings) and says how in `step`.
-template <StateSpaceModel Model>
-void advance(const Model& model,
-             std::size_t k,
-             const Gate& gate,
-             FilterState<Model::states>& state,
-             StepOf<Model>& step) {
-  constexpr int N = Model::states;
-  if (k > 0) {
-    const auto transition = model.transition(state.x.mean, k);
-    step.F = transition.F;
-    predict(state.x, transition);
-  } else {
-    step.F.setIdentity();
-  }
-  if (state.instants_gated >= gate.patience) {
-    model.reopen(state.x);
-    state.instants_gated = 0;
-  }
-  Readings<N, Model::channels> readings;
-  const Mat<N> linearised_at = state.x.mean;
-  model.measure(linearised_at, k, readings);
-  bool any_used = false;
-  for (int i = 0; i < readings.count; ++i) {
-    Reading<N>& reading = readings.rows[static_cast<std::size_t>(i)];
-    reading.predicted += reading.h.dot(state.x.mean - linearised_at);
-    const Update<N>& update = step.updates[static_cast<std::size_t>(i)] =
-        correct(state.x, reading, gate, active_states(model));
-    any_used = any_used || update.used;
-  }
-  if (readings.count > 0) state.instants_gated = any_used ? 0 : state.instants_gated + 1;
-  step.count = readings.count;
-  step.filtered = state.x;
-}
-
-/// What all later readings say of the state at one instant, in the form of Bryson and Frazier:
-/// x̂[k|N] = x̂[k|k] − P λ, P[k|N] = P − P Λ P. Equal to Rauch, Tung and Striebel's smoother without
-/// the inverse of a covariance, so it stands where some states are constants or unobservable.
-/// Source: G. J. Bierman, Automatica 9 (1973) 519; S. Särkkä, Bayesian Filtering and Smoothing
-/// (2013), theorem 8.2, for the form it replaces.
-template <int N>
-struct Hindsight {
-  Mat<N> lambda = Mat<N>::Zero();
-  Mat<N, N> Lambda = Mat<N, N>::Zero();
-  int active = N;  ///< of the states; those held learn nothing
-
-  [[nodiscard]] Mat<N> mean(const Gaussian<N>& filtered) const {
-    return filtered.mean - filtered.cov * lambda;
-  }
-  /// Covariance of the first B states given every reading.
-  template <int B>
-  [[nodiscard]] Mat<B, B> cov(const Gaussian<N>& filtered) const {
-    Mat<N, B> LP = Mat<N, B>::Zero();  // P is symmetric: its first rows are its first columns
-    for (int i = 0; i < B; ++i)
-      symmetric_times(Lambda.data(), filtered.cov.col(i).data(), LP.col(i).data(), {active, N});
-    return filtered.cov.template topLeftCorner<B, B>() -
-           filtered.cov.template leftCols<B>().transpose().lazyProduct(LP);
-  }
-};
-
-/// Takes hindsight from after instant k to after instant k − 1, through k's readings and step.
-template <int N, int D, int M>
-void look_back(Hindsight<N>& later, const Step<N, D, M>& step) {
-  for (int i = step.count; i-- > 0;) {
-    const Update<N>& u = step.updates[static_cast<std::size_t>(i)];
-    if (!u.used) continue;
-    Mat<N> LK = Mat<N>::Zero();
-    symmetric_times(later.Lambda.data(), u.gain.data(), LK.data(), {later.active, N});
-    later.lambda -= u.h * (u.gain.dot(later.lambda) + u.innovation / u.variance);
-    const Mat<N> half = LK - 0.5 * (u.gain.dot(LK) + 1.0 / u.variance) * u.h;
-    subtract_symmetric_pair(later.Lambda.data(), u.h.data(), half.data(), {later.active, N});
-  }
-  later.lambda.template head<D>() = (step.F.transpose() * later.lambda.template head<D>()).eval();
-  const Mat<D, N> FL = step.F.transpose().lazyProduct(later.Lambda.template topRows<D>());
-  later.Lambda.template topRows<D>() = FL;
-  later.Lambda.template leftCols<D>() = FL.transpose();
-  const Mat<D, D> FLF = FL.template leftCols<D>() * step.F;
-  later.Lambda.template topLeftCorner<D, D>() = 0.5 * (FLF + FLF.transpose());
-}
-
-/// Filters instants [first, last) from `state`, telling each to visit(k, step).
-template <StateSpaceModel Model, class Visit>
-void filter(const Model& model,
-            std::size_t first,
-            std::size_t last,
-            const Gate& gate,
-            FilterState<Model::states>& state,
-            Visit&& visit) {
-  StepOf<Model> step;
-  for (std::size_t k = first; k < last; ++k) {
-    advance(model, k, gate, state, step);
-    visit(k, std::as_const(step));
-  }
-}
-
-/// Filter and fixed-interval smoother over all instants of a model. The forward pass keeps the
-/// state at every `chunk`-th instant; the backward pass runs each chunk again, so that memory is
-/// O(instants / chunk + chunk) states instead of one for each instant.
+/// Filter and fixed-interval smoother over all instants of a model, in the memory of
+/// there_and_back().
 ///
 /// forward(k, step) is called in rising k, backward(k, step, hindsight) in falling k: hindsight is
 /// what instants after k say. Cost: two forward passes and one backward, O(instants · M · N²).
@@ -282,26 +48,18 @@ void smooth(const Model& model,
             Backward&& backward) {
   constexpr int N = Model::states;
   constexpr std::size_t chunk = N > 12 ? 64 : 128;
-  const std::size_t size = model.size();
-  std::vector<FilterState<N>> starts;
-  starts.reserve(size / chunk + 1);
-  FilterState<N> state = prior;
-  for (std::size_t first = 0; first < size; first += chunk) {
-    starts.push_back(state);
-    filter(model, first, std::min(first + chunk, size), gate, state, forward);
-  }
-  std::vector<StepOf<Model>> steps(std::min(chunk, size));
   Hindsight<N> later;
   later.active = active_states(model);
-  for (std::size_t c = starts.size(); c-- > 0;) {
-    const std::size_t first = c * chunk, last = std::min(first + chunk, size);
-    state = starts[c];
-    for (std::size_t k = first; k < last; ++k) advance(model, k, gate, state, steps[k - first]);
-    for (std::size_t k = last; k-- > first;) {
-      backward(k, std::as_const(steps[k - first]), std::as_const(later));
-      look_back(later, steps[k - first]);
-    }
-  }
+  there_and_back<StepOf<Model>, chunk>(
+      model.size(), prior,
+      [&](FilterState<N>& state, std::size_t k, StepOf<Model>& step) {
+        advance(model, k, gate, state, step);
+      },
+      forward,
+      [&](std::size_t k, const StepOf<Model>& step) {
+        backward(k, step, std::as_const(later));
+        look_back(later, step);
+      });
 }
 
 }  // namespace proofmass::estimate

@@ -129,7 +129,7 @@ TEST(Smoother, StandingStatesAreStatesWithAnIdentityTransition) {
   const Path path = smoothed_in_chunks(model);
   for (std::size_t k = 0; k < model.size(); ++k) {
     EXPECT_TRUE(path.means[k].isApprox(run.steps[k].smoothed.mean, 1e-10)) << "k = " << k;
-    EXPECT_TRUE(path.covs[k].isApprox(run.steps[k].smoothed.cov, 1e-10)) << "k = " << k;
+    EXPECT_TRUE(path.covs[k].isApprox(run.steps[k].smoothed.cov.dense(), 1e-10)) << "k = " << k;
   }
 }
 

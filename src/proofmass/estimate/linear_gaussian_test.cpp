@@ -2,10 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <array>
 #include <gtest/gtest.h>
 
 #include "proofmass/core/chi_square.hpp"
+#include "proofmass/estimate/square_root.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 
 namespace proofmass::estimate {
@@ -84,7 +84,8 @@ TEST(LinearGaussian, FilterEqualsBatchLeastSquaresOfWhatWasReadSoFar) {
   for (std::size_t k = 0; k < epochs().size(); ++k) {
     const Batch batch = least_squares(epochs(), k + 1);
     EXPECT_TRUE(run.steps[k].filtered.mean.isApprox(batch.mean.tail<3>(), 1e-10)) << "k = " << k;
-    EXPECT_TRUE((run.steps[k].filtered.cov.isApprox(batch.cov.bottomRightCorner<3, 3>(), 1e-10)))
+    EXPECT_TRUE(
+        (run.steps[k].filtered.cov.dense().isApprox(batch.cov.bottomRightCorner<3, 3>(), 1e-10)))
         << "k = " << k;
   }
 }
@@ -96,7 +97,7 @@ TEST(LinearGaussian, SmootherEqualsBatchLeastSquaresOfEverything) {
     const auto at = static_cast<Eigen::Index>(3 * k);
     EXPECT_TRUE(run.steps[k].smoothed.mean.isApprox(batch.mean.segment<3>(at), 1e-10))
         << "k = " << k;
-    EXPECT_TRUE((run.steps[k].smoothed.cov.isApprox(batch.cov.block<3, 3>(at, at), 1e-10)))
+    EXPECT_TRUE((run.steps[k].smoothed.cov.dense().isApprox(batch.cov.block<3, 3>(at, at), 1e-10)))
         << "k = " << k;
   }
 }
@@ -147,8 +148,43 @@ TEST(LinearGaussian, SmootherEqualsRauchTungStriebelWithTheInverse) {
   const Textbook expected = textbook(epochs());
   for (std::size_t k = 0; k < epochs().size(); ++k) {
     EXPECT_TRUE(run.steps[k].smoothed.mean.isApprox(expected.smoothed[k].mean, 1e-11)) << k;
-    EXPECT_TRUE(run.steps[k].smoothed.cov.isApprox(expected.smoothed[k].cov, 1e-11)) << k;
+    EXPECT_TRUE(run.steps[k].smoothed.cov.dense().isApprox(expected.smoothed[k].cov, 1e-11)) << k;
   }
+}
+
+TEST(LinearGaussian, BothSmoothersAndTheSquareRootAreOne) {
+  const auto series = Series::make(epochs(), model_at).value();
+  const auto plain = smooth_linear(series, prior(), {.lag_one = true});
+  const auto by_gains =
+      smooth_linear(series, prior(), {.smoother = Smoother::rauch_tung_striebel, .lag_one = true});
+  const auto root = smooth_square_root(series, prior()).run;
+  for (const auto* other : {&by_gains, &root}) {
+    EXPECT_NEAR(other->log_likelihood, plain.log_likelihood, 1e-12);
+    EXPECT_NEAR(other->nis, plain.nis, 1e-12);
+    EXPECT_EQ(other->readings, plain.readings);
+    for (std::size_t k = 0; k < epochs().size(); ++k) {
+      const auto &a = plain.steps[k].smoothed, &b = other->steps[k].smoothed;
+      EXPECT_TRUE(b.mean.isApprox(a.mean, 1e-12)) << "k = " << k;
+      EXPECT_TRUE(b.cov.dense().isApprox(a.cov.dense(), 1e-12)) << "k = " << k;
+    }
+    for (std::size_t k = 0; k < plain.lag_one.size(); ++k)
+      EXPECT_TRUE(other->lag_one[k].isApprox(plain.lag_one[k], 1e-11)) << "k = " << k;
+  }
+}
+
+TEST(LinearGaussian, LagOneCovariancesAreThoseOfBatchLeastSquares) {
+  const auto run =
+      smooth_linear(Series::make(epochs(), model_at).value(), prior(), {.lag_one = true});
+  const Batch batch = least_squares(epochs(), epochs().size());
+  ASSERT_EQ(run.lag_one.size() + 1, epochs().size());
+  for (std::size_t k = 0; k < run.lag_one.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(3 * k);
+    EXPECT_TRUE((run.lag_one[k].isApprox(batch.cov.block<3, 3>(at + 3, at), 1e-10))) << k;
+  }
+}
+
+TEST(LinearGaussian, LagOneCovariancesAreKeptOnlyOnRequest) {
+  EXPECT_TRUE(smooth_linear(Series::make(epochs(), model_at).value(), prior()).lag_one.empty());
 }
 
 TEST(LinearGaussian, LikelihoodAndNisOfOneChannelAtATimeAreThoseOfAllAtOnce) {
@@ -224,37 +260,6 @@ TEST(LinearGaussian, NoEpochsGiveNoStepsAndLikelihoodOne) {
   const auto run = smooth_linear(Series::make({}, model_at).value(), prior());
   EXPECT_TRUE(run.steps.empty());
   EXPECT_EQ(run.log_likelihood, 0.0);
-}
-
-// The local level of the package KFAS (J. Helske, Journal of Statistical Software 78 (2017)), by R.
-// Its start is exactly diffuse. Given the first reading, a diffuse level is N(y₀, R): that is where
-// this run begins, and the first reading, to whose diffuse likelihood the package gives the
-// logarithm 0, is not read again.
-TEST(LinearGaussian, AgreesWithAnIndependentPackageOnALocalLevel) {
-  static constexpr double reading_variance = 1.993, level_variance = 8.253, first = 10.2394;
-  const auto level = [](double) {
-    LinearModel<1, 1> m;
-    m.F << 1.0;
-    m.Q << level_variance;
-    m.H << 1.0;
-    m.R << reading_variance;
-    return m;
-  };
-  std::vector<Epoch<1>> readings(10, Epoch<1>{1.0, Mat<1>(1.0)});
-  readings[0].z(0) = none;
-  Gaussian<1> start;
-  start.mean << first;
-  start.cov << reading_variance;
-  const auto run = smooth_linear(LinearSeries<1, 1>::make(readings, level).value(), start);
-  EXPECT_NEAR(run.log_likelihood, -23.0163218509366, 1e-11);
-  const std::array smoothed{8.69269189482201, 2.28778372019385, 1.21557953089427, 1.03608877283924};
-  const std::array variance{1.65936477978876, 1.42808320855318, 1.4216017878374, 1.42142015300846};
-  for (std::size_t k = 0; k < smoothed.size(); ++k) {
-    EXPECT_NEAR(run.steps[k].smoothed.mean(0), smoothed[k], 1e-12) << "k = " << k;
-    EXPECT_NEAR(run.steps[k].smoothed.cov(0, 0), variance[k], 1e-12) << "k = " << k;
-  }
-  EXPECT_NEAR(run.steps[1].filtered.mean(0), 2.50454483209413, 1e-12);
-  EXPECT_NEAR(run.steps[1].innovation_variance(0), 12.239, 1e-12);
 }
 
 // One run drawn from the model itself: true states, and readings with a third of them missing.

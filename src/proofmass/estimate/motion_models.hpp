@@ -24,6 +24,24 @@ struct PvaOptions {
 /// Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 6.2.3.
 [[nodiscard]] LinearModel<3, 1> pva_model(const PvaOptions& options);
 
+struct SingerOptions {
+  double dt_s = 0.0;                  ///< time between samples, not negative
+  double maneuver_time_s = 0.0;       ///< τ in which an acceleration is forgotten, positive
+  double maneuver_std_mps2 = 0.0;     ///< σ of the acceleration at any time, ≥ 0
+  double accel_variance_m2ps4 = 0.0;  ///< variance of one accelerometer reading
+};
+
+/// Position, velocity and an acceleration that comes and goes, a Gauss–Markov process:
+///
+///     a' = −a/τ + w,   E w w = 2σ²/τ δ(t),   z = a + v.
+///
+/// Beside pva_model(), whose acceleration walks without bound, it says how large an acceleration
+/// is; for dt ≪ τ the two are one, with the jerk density 2σ²/τ. Exact discretisation, for any dt.
+/// Source: R. A. Singer, Estimating optimal tracking filter performance for manned maneuvering
+/// targets, IEEE Trans. AES 6 (1970) 473, equation 8 for F; Q is the integral of his equation 10,
+/// without the cancellation of its closed form.
+[[nodiscard]] LinearModel<3, 1> singer_model(const SingerOptions& options);
+
 struct PvaBiasOptions {
   PvaOptions motion;
   double time_constant_s;  ///< T of the sensor's warm-up, positive
@@ -39,13 +57,17 @@ struct PvaBiasOptions {
 /// exact for any dt.
 [[nodiscard]] LinearModel<4, 1, 1> pva_bias_model(const PvaBiasOptions& options);
 
-extern template LinearRun<3, 1> filter_linear(LinearSeries<3, 1>, const Gaussian<3>&, const Gate&);
-extern template LinearRun<3, 1> smooth_linear(LinearSeries<3, 1>, const Gaussian<3>&, const Gate&);
+extern template LinearRun<3, 1> filter_linear(LinearSeries<3, 1>,
+                                              const Start<3>&,
+                                              const LinearOptions&);
+extern template LinearRun<3, 1> smooth_linear(LinearSeries<3, 1>,
+                                              const Start<3>&,
+                                              const LinearOptions&);
 extern template LinearRun<4, 1> filter_linear(LinearSeries<4, 1, 1>,
-                                              const Gaussian<4>&,
-                                              const Gate&);
+                                              const Start<4>&,
+                                              const LinearOptions&);
 extern template LinearRun<4, 1> smooth_linear(LinearSeries<4, 1, 1>,
-                                              const Gaussian<4>&,
-                                              const Gate&);
+                                              const Start<4>&,
+                                              const LinearOptions&);
 
 }  // namespace proofmass::estimate

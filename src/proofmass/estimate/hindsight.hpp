@@ -1,0 +1,60 @@
+#pragma once
+
+#include "proofmass/estimate/dense_kernels.hpp"
+#include "proofmass/estimate/gaussian.hpp"
+#include "proofmass/estimate/kalman_filter.hpp"
+
+namespace proofmass::estimate {
+
+/// What all later readings say of the state at one instant, in the form of Bryson and Frazier:
+/// x̂[k|N] = x̂[k|k] − P λ, P[k|N] = P − P Λ P. Equal to Rauch, Tung and Striebel's smoother without
+/// the inverse of a covariance, so it stands where some states are constants or unobservable.
+/// Source: G. J. Bierman, Automatica 9 (1973) 519; S. Särkkä, Bayesian Filtering and Smoothing
+/// (2013), theorem 8.2, for the form it replaces.
+template <int N>
+struct Hindsight {
+  Mat<N> lambda = Mat<N>::Zero();
+  Mat<N, N> Lambda = Mat<N, N>::Zero();
+  int active = N;  ///< of the states; those held learn nothing
+
+  [[nodiscard]] Mat<N> mean(const Gaussian<N>& filtered) const {
+    return filtered.mean - filtered.cov * lambda;
+  }
+  /// Covariance of the first B states given every reading.
+  template <int B>
+  [[nodiscard]] Mat<B, B> cov(const Gaussian<N>& filtered) const {
+    Mat<N, B> LP = Mat<N, B>::Zero();  // P is symmetric: its first rows are its first columns
+    for (int i = 0; i < B; ++i)
+      symmetric_times(Lambda.data(), filtered.cov.col(i).data(), LP.col(i).data(), {active, N});
+    return filtered.cov.template topLeftCorner<B, B>() -
+           filtered.cov.template leftCols<B>().transpose().lazyProduct(LP);
+  }
+};
+
+/// Takes hindsight from after instant k's readings to before them.
+template <int N, int D, int M>
+void look_back_readings(Hindsight<N>& later, const Step<N, D, M>& step) {
+  for (int i = step.count; i-- > 0;) {
+    const Update<N>& u = step.updates[static_cast<std::size_t>(i)];
+    if (!u.used) continue;
+    Mat<N> LK = Mat<N>::Zero();
+    symmetric_times(later.Lambda.data(), u.gain.data(), LK.data(), {later.active, N});
+    later.lambda -= u.h * (u.gain.dot(later.lambda) + u.innovation / u.variance);
+    const Mat<N> half = LK - 0.5 * (u.gain.dot(LK) + 1.0 / u.variance) * u.h;
+    subtract_symmetric_pair(later.Lambda.data(), u.h.data(), half.data(), {later.active, N});
+  }
+}
+
+/// Takes hindsight from after instant k to after instant k − 1, through k's readings and step.
+template <int N, int D, int M>
+void look_back(Hindsight<N>& later, const Step<N, D, M>& step) {
+  look_back_readings(later, step);
+  later.lambda.template head<D>() = (step.F.transpose() * later.lambda.template head<D>()).eval();
+  const Mat<D, N> FL = step.F.transpose().lazyProduct(later.Lambda.template topRows<D>());
+  later.Lambda.template topRows<D>() = FL;
+  later.Lambda.template leftCols<D>() = FL.transpose();
+  const Mat<D, D> FLF = FL.template leftCols<D>() * step.F;
+  later.Lambda.template topLeftCorner<D, D>() = 0.5 * (FLF + FLF.transpose());
+}
+
+}  // namespace proofmass::estimate
