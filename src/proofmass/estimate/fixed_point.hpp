@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "proofmass/core/contract.hpp"
+#include "proofmass/estimate/kalman.hpp"
+
+// Fixed-point smoother: the state at one instant of the past, better with every reading that comes.
+namespace proofmass::estimate {
+
+/// A state of the past that goes on learning. `cross` is the covariance of its error with the
+/// error of the present state, Σ = E[(x[j] − x̂[j]) (x[k] − x̂[k])ᵀ].
+template <int N>
+struct PastState {
+  Gaussian<N> x;                        ///< x[j] given z[0] … z[k]
+  Mat<N, N> cross = Mat<N, N>::Zero();  ///< Σ
+  int active = N;                       ///< of the states; those held learn nothing
+
+  /// The state at the present instant, after its readings: Σ = P.
+  [[nodiscard]] static PastState from(const Gaussian<N>& filtered, int active = N) {
+    return {filtered, filtered.cov, active};
+  }
+};
+
+/// Takes a past state from instant k − 1 to k, by what the filter's step to k did. Σ ← Σ Fᵀ, then
+/// for each reading, with the filter's K, y, S and row h,
+///
+///     x̂[j] ← x̂[j] + Σ hᵀ y / S,   P[j] ← P[j] − Σ hᵀ (Σ hᵀ)ᵀ / S,   Σ ← Σ (I − K h)ᵀ.
+///
+/// Equal to the fixed-interval smoother of z[0] … z[k] at j, without an inverse. Like that
+/// smoother's, its covariance is a difference: where what was known at j is wider than what is
+/// known of it at last by 1e8 in standard deviation, nothing is left of it. Source: B. D. O.
+/// Anderson, J. B. Moore, Optimal Filtering (1979), section 7.2. Cost: O(N² (D + M)).
+template <int N, int D, int M>
+void learn(PastState<N>& past, const Step<N, D, M>& step) {
+  past.cross.template leftCols<D>() =
+      (past.cross.template leftCols<D>() * step.F.transpose()).eval();
+  for (int i = 0; i < step.count; ++i) {
+    const Update<N>& u = step.updates[static_cast<std::size_t>(i)];
+    if (!u.used) continue;
+    const Mat<N> across = past.cross.lazyProduct(u.h);
+    past.x.mean += across * (u.innovation / u.variance);
+    const Mat<N> w = across / std::sqrt(u.variance);
+    subtract_square(past.x.cov.data(), w.data(), {past.active, N});
+    past.cross.noalias() -= across * u.gain.transpose();
+  }
+}
+
+/// The states at some instants given every reading, in the order asked for, in one pass forward:
+/// memory for the points alone. Every point must be an instant of the model.
+/// Cost: the filter's, and O(N² (D + M)) for each point and each instant after it.
+template <StateSpaceModel Model>
+[[nodiscard]] std::vector<Gaussian<Model::states>> smooth_points(
+    const Model& model,
+    const FilterState<Model::states>& prior,
+    const Gate& gate,
+    std::span<const std::size_t> points) {
+  constexpr int N = Model::states;
+  for (const std::size_t point : points) PM_EXPECTS(point < model.size());
+  std::vector<PastState<N>> past(points.size());
+  FilterState<N> state = prior;
+  filter(model, 0, model.size(), gate, state, [&](std::size_t k, const StepOf<Model>& step) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (points[i] == k) past[i] = PastState<N>::from(step.filtered, active_states(model));
+      if (points[i] < k) learn(past[i], step);
+    }
+  });
+  std::vector<Gaussian<N>> smoothed;
+  smoothed.reserve(past.size());
+  for (const PastState<N>& p : past) smoothed.push_back(p.x);
+  return smoothed;
+}
+
+}  // namespace proofmass::estimate
