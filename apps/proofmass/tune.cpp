@@ -1,0 +1,343 @@
+#include "proofmass/estimate/tune.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+
+#include "console.hpp"
+#include "exit_status.hpp"
+#include "input.hpp"
+#include "output.hpp"
+#include "parallel.hpp"
+#include "proofmass/report/document.hpp"
+#include "proofmass/report/tune_report.hpp"
+#include "proofmass/report/wording.hpp"
+#include "proofmass/sensor/noise_update.hpp"
+#include "proofmass/signal/rests.hpp"
+#include "rest_channels.hpp"
+#include "verbs.hpp"
+
+namespace proofmass::app {
+namespace {
+
+using estimate::TunedParameter;
+using estimate::TuneModel;
+using estimate::TuneOptions;
+using estimate::TuneSeries;
+using estimate::Tuning;
+
+// The stretches of the recording that the model is tuned on.
+struct Choice {
+  TuneModel model = TuneModel::rest;
+  std::string reason;
+  std::vector<signal::Rest> stretches;  // of the grid; empty: all of it
+};
+
+estimate::FixedParameter parse_fixed(const std::string& text) {
+  const std::size_t at = text.find('=');
+  estimate::FixedParameter fixed{text.substr(0, at), 0.0};
+  const char* from = text.data() + std::min(at, text.size() - 1) + 1;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(from, end, fixed.value);
+  if (at == std::string::npos || error != std::errc() || stop != end) {
+    throw Failure(usage, "--fix: expected NAME=VALUE, as in jerk_psd=0.5, not '" + text + "'");
+  }
+  return fixed;
+}
+
+double share_at_rest(const std::vector<signal::Rest>& rests, std::size_t samples) {
+  std::size_t inside = 0;
+  for (const signal::Rest& rest : rests) inside += rest.last - rest.first + 1;
+  return samples == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(samples);
+}
+
+bool may_rest(const RestRecording& recording) {
+  return std::ranges::all_of(recording.channels, [](const RestChannel& channel) {
+    const Quantity quantity = channel.unit.quantity;
+    return channel.axis || quantity == Quantity::acceleration || quantity == Quantity::counts ||
+           quantity == Quantity::voltage;
+  });
+}
+
+std::vector<signal::Rest> rests_of(const RestRecording& recording) {
+  std::vector<View<double>> axes;
+  for (const RestChannel& channel : recording.channels) {
+    if (!channel.series.empty() && axes.size() < 3) axes.emplace_back(channel.series);
+  }
+  if (axes.empty()) return {};
+  return signal::find_rests(axes, {.rate_hz = recording.channels.front().rate_hz}).rests;
+}
+
+bool is_rest(TuneModel model) {
+  return model == TuneModel::rest || model == TuneModel::rest_markov;
+}
+
+Choice choose(const TuneCommand& command, const RestRecording& recording) {
+  constexpr double nearly_all = 0.9;
+  Choice choice;
+  const bool given = command.model != "auto";
+  if (given) {
+    choice.model = *estimate::parse_tune_model(command.model);
+    choice.reason = "Chosen by --model.";
+    if (!is_rest(choice.model)) return choice;
+  } else if (!may_rest(recording)) {
+    choice.model = TuneModel::local_level;
+    choice.reason = "Chosen because the channels are no accelerations.";
+    return choice;
+  }
+  std::vector<signal::Rest> rests = rests_of(recording);
+  std::size_t samples = 0;
+  for (const RestChannel& channel : recording.channels)
+    samples = std::max(samples, channel.series.size());
+  const double share = share_at_rest(rests, samples);
+  const std::string words =
+      fmt::format("{} % of the recording is at rest", std::lround(100.0 * share));
+  if (!given && share < nearly_all) {
+    choice.model = TuneModel::pva;
+    choice.reason =
+        fmt::format("Chosen because only {}; --model rest would look at the rests alone.", words);
+    return choice;
+  }
+  if (!given) choice.reason = "Chosen because " + words + ".";
+  if (!rests.empty() && share < 1.0) {
+    choice.stretches = std::move(rests);
+    choice.reason += fmt::format(" Only the {} are looked at, each from a level of its own.",
+                                 report::count_words(choice.stretches.size(), "rest"));
+  } else if (rests.empty()) {
+    choice.reason += " No rest was found in it: all of it is looked at.";
+  }
+  return choice;
+}
+
+TuneSeries series_of(const RestChannel& channel, const Choice& choice) {
+  TuneSeries series{.name = channel.title, .rate_hz = channel.rate_hz, .segments = {}};
+  const View<double> all(channel.series);
+  if (choice.stretches.empty()) series.segments.push_back(all);
+  for (const signal::Rest& rest : choice.stretches) {
+    series.segments.push_back(all.subspan(rest.first, rest.last - rest.first + 1));
+    series.starts_s.push_back(static_cast<double>(rest.first) / channel.rate_hz);
+  }
+  return series;
+}
+
+// Where a sensor file knows the noise of the axis.
+void start_at_sensor(const RestChannel& channel,
+                     const sensor::SensorModel& model,
+                     TuneOptions& options) {
+  if (!channel.axis) return;
+  const auto add = [&](const char* name, const sensor::AxisFigures& figures) {
+    const auto& figure = figures[*channel.axis];
+    if (figure && figure->si() > 0.0) options.start.push_back({name, figure->si()});
+  };
+  add("white", model.noise.white);
+  add("random_walk", model.noise.random_walk);
+}
+
+Failure failure_of(const Error& error) {
+  const bool asked = error.code == Errc::invalid_argument;
+  return {asked ? usage : status_of(error, Stage::computing), error.message};
+}
+
+struct Tuned {
+  std::optional<Tuning> tuning;
+  std::string refused;
+};
+
+// All channels together where they share a parameter, else each by itself.
+std::vector<Tuned> tune_all(const std::vector<TuneSeries>& series,
+                            const std::vector<TuneOptions>& options,
+                            const OutputFlags& output) {
+  const bool together = !options.front().shared.empty();
+  std::vector<Tuned> all(together ? 1 : series.size());
+  in_parallel(all.size(), progress_bar(output), [&](std::size_t k, Progress progress) {
+    TuneOptions own = options[k];
+    own.progress = std::move(progress);
+    Result<Tuning> found = estimate::tune(together ? series : std::vector{series[k]}, own);
+    if (found) {
+      all[k].tuning = std::move(found).value();
+    } else if (found.error().code == Errc::invalid_argument || together) {
+      throw failure_of(found.error());
+    } else {
+      all[k].refused = found.error().message;
+    }
+  });
+  return all;
+}
+
+double value_of(const Tuning& tuning, std::size_t series, std::size_t parameter) {
+  const double value = tuning.series[series].values[parameter];
+  const auto& about = estimate::parameters_of(tuning.model)[parameter];
+  return about.variance_power() == 2 ? value * value : value;
+}
+
+// The study of one channel whose noises are a white one and the level's walk.
+std::optional<report::TuneStudy> study_of(const report::TuneReport& report,
+                                          std::size_t k,
+                                          double step_s) {
+  const Tuning& tuning = report.tuning;
+  if (tuning.model != TuneModel::rest && tuning.model != TuneModel::pva) return std::nullopt;
+  const double q = value_of(tuning, k, 1), R = tuning.series[k].system.R;
+  if (!(q > 0.0 && R > 0.0)) return std::nullopt;
+  const double own_step_s = step_s > 0.0 ? step_s : 1.0 / tuning.series[k].rate_hz;
+  // The slowest case below has a quarter of the gain's rate; ten of its times are enough to see.
+  const double settle_s = own_step_s / std::min(1.0, std::sqrt(q * own_step_s / R));
+  estimate::GainStudyOptions options{.jerk_psd_m2ps5 = q,
+                                     .accel_variance_m2ps4 = R,
+                                     .step_s = own_step_s,
+                                     .duration_s = std::min(40.0 * settle_s, 2e5 * own_step_s),
+                                     .prior_variance = 100.0};
+  report::TuneStudy study{.channel = report.channels[k].name, .cases = {}, .steps = {}};
+  constexpr double larger = 4.0;
+  const auto add = [&](const char* label, double q_factor, double R_factor) {
+    estimate::GainStudyOptions own = options;
+    own.jerk_psd_m2ps5 *= q_factor;
+    own.accel_variance_m2ps4 *= R_factor;
+    study.cases.push_back({label, estimate::gain_study(own)});
+  };
+  add("as tuned", 1.0, 1.0);
+  add("Q four times", larger, 1.0);
+  add("R four times", 1.0, larger);
+  std::vector<double> steps_s;
+  for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0})
+    steps_s.push_back(factor * own_step_s);
+  study.steps = estimate::step_size_study(options, steps_s);
+  return study;
+}
+
+sensor::MeasuredCoefficient measured(const Tuning& tuning,
+                                     std::string_view name,
+                                     std::size_t series) {
+  for (const TunedParameter& parameter : tuning.parameters) {
+    if (parameter.name != name || (parameter.series && *parameter.series != series)) continue;
+    if (parameter.verdict == estimate::TuneVerdict::fixed) return {};
+    if (parameter.value) return {parameter.value, std::nullopt};
+    return {std::nullopt, parameter.upper_95};
+  }
+  return {};
+}
+
+void update_sensor(const TuneCommand& command,
+                   const report::TuneReport& report,
+                   const std::vector<const RestChannel*>& channels) {
+  std::vector<sensor::MeasuredNoise> noise;
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    sensor::MeasuredNoise own;
+    own.axis = *channels[k]->axis;
+    own.white = measured(report.tuning, "white", k);
+    own.random_walk = measured(report.tuning, "random_walk", k);
+    own.origin = fmt::format("proofmass tune {}, {} at {} Hz", report::file_name(command.file),
+                             report::duration_words(report.tuning.series[k].duration_s),
+                             report::compact(report.tuning.series[k].rate_hz, 6));
+    noise.push_back(std::move(own));
+  }
+  const Status status = sensor::update_sensor_file(command.update_sensor, noise);
+  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error().message);
+}
+
+// The sensor file's noise of each channel where --start-at-sensor asks for it.
+std::vector<TuneOptions> options_of(const TuneCommand& command,
+                                    TuneModel model,
+                                    const std::vector<const RestChannel*>& channels) {
+  TuneOptions options{.model = model, .shared = command.share};
+  for (const std::string& text : command.fix) options.fixed.push_back(parse_fixed(text));
+  std::vector<TuneOptions> all(channels.size(), options);
+  if (!command.from_sensor) return all;
+  if (command.input.sensors.empty() || !is_rest(model)) {
+    throw Failure(usage, "--start-at-sensor: expected --sensor FILE.toml and a model of rest");
+  }
+  std::vector<Note> unused;
+  const auto models = load_sensors(command.input, unused);
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    start_at_sensor(*channels[k], models.front(), all[k]);
+  }
+  return all;
+}
+
+void refuse(const std::string& name, const std::string& why, std::vector<Note>& notes) {
+  notes.push_back({Severity::bad, name + ": not tuned: " + why});
+}
+
+// The channels that may be tuned by; why others may not is noted.
+std::vector<const RestChannel*> usable(const RestRecording& recording, std::vector<Note>& notes) {
+  std::vector<const RestChannel*> channels;
+  for (const RestChannel& channel : recording.channels) {
+    if (channel.refused.empty()) {
+      channels.push_back(&channel);
+    } else {
+      refuse(channel.title, channel.refused, notes);
+    }
+  }
+  return channels;
+}
+
+// Tunes by them and leaves those in `channels` that it worked for.
+void fill(const TuneCommand& command,
+          const Choice& choice,
+          std::vector<const RestChannel*>& channels,
+          report::TuneReport& report) {
+  std::vector<TuneSeries> series;
+  for (const RestChannel* channel : channels) series.push_back(series_of(*channel, choice));
+  const std::vector<Tuned> tuned =
+      tune_all(series, options_of(command, choice.model, channels), command.output);
+  std::vector<const RestChannel*> worked;
+  for (std::size_t k = 0; k < tuned.size(); ++k) {
+    if (!tuned[k].tuning) {
+      refuse(channels[k]->title, tuned[k].refused, report.notes);
+      continue;
+    }
+    estimate::append(report.tuning, *tuned[k].tuning);
+    worked.push_back(channels[k]);
+  }
+  if (worked.empty()) throw Failure(failed, command.file + ": " + tuned.front().refused);
+  if (command.share.empty()) channels = std::move(worked);
+  for (const RestChannel* channel : channels) {
+    report.channels.push_back(
+        {channel->title, channel->unit, std::max<std::size_t>(choice.stretches.size(), 1)});
+  }
+  report.consistency = estimate::consistency_of(report.tuning);
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    if (auto study = study_of(report, k, command.study_step_s))
+      report.studies.push_back(std::move(*study));
+  }
+}
+
+}  // namespace
+
+void run(const TuneCommand& command) {
+  if (command.output.output == "-" && command.output.json == "-") {
+    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
+  }
+  report::TuneReport report;
+  report.inputs = {command.file};
+  const std::vector<RestRecording> recordings =
+      rest_recordings({.files = report.inputs,
+                       .input = command.input,
+                       .output = command.output,
+                       .temperature = {},
+                       .for_sensor_file = !command.update_sensor.empty()},
+                      report.notes);
+  const Choice choice = choose(command, recordings.front());
+  if (!command.update_sensor.empty() && choice.model != TuneModel::rest) {
+    throw Failure(usage, "--update-sensor: a sensor file takes the figures of the model rest");
+  }
+  report.model_reason = choice.reason;
+  std::vector<const RestChannel*> channels = usable(recordings.front(), report.notes);
+  if (channels.empty()) throw Failure(failed, command.file + ": no channel that can be tuned by");
+  fill(command, choice, channels, report);
+  if (!command.update_sensor.empty()) {
+    without_interruption([&] { update_sensor(command, report, channels); });
+  }
+  show_notes(report.notes, "", command.output);
+  if (!command.output.output.empty())
+    write_series(report::tune_series(report), command.output.output);
+  publish({.text = [&] { return report::tune_text(report); },
+           .json = [&] { return report::tune_json(report); },
+           .html = [&] { return report::tune_html(report); }},
+          command.output);
+  hold_to_strict(command.output, !report::texts(report.notes, Severity::bad).empty());
+}
+
+}  // namespace proofmass::app

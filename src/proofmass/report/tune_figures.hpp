@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "proofmass/report/figure.hpp"
+#include "proofmass/report/tune_report.hpp"
+
+namespace proofmass::report {
+
+/// Normalised innovations of a channel against time, with where 95 % of them should lie.
+[[nodiscard]] Figure innovations_figure(const TuneReport& report, std::size_t channel);
+
+/// Autocorrelation of a channel's innovations at the sample; none where it was not tested.
+[[nodiscard]] std::vector<Figure> innovation_memory_figures(const TuneReport& report,
+                                                            std::size_t channel);
+
+/// Gain of the acceleration against time, each case with where it has settled.
+[[nodiscard]] Figure gain_figure(const TuneStudy& study);
+/// Standard deviations of position, velocity and acceleration against time, as tuned.
+[[nodiscard]] Figure covariance_figure(const TuneStudy& study);
+/// Standard deviation of the acceleration against the step.
+[[nodiscard]] Figure step_figure(const TuneStudy& study);
+
+}  // namespace proofmass::report

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/units.hpp"
+#include "proofmass/estimate/gain_study.hpp"
+#include "proofmass/estimate/tune.hpp"
+
+namespace proofmass::report {
+
+/// One channel beside what was tuned by it.
+struct TuneChannel {
+  std::string name;
+  Unit unit;  ///< of the series analysed: SI where known, else counts or none
+  std::size_t segments = 1;
+};
+
+/// A filter with certain figures, and how its gain comes to rest.
+struct GainCase {
+  std::string label;  ///< "x as tuned"
+  estimate::GainStudy study;
+};
+
+/// Gain and covariance of the figures found.
+struct TuneStudy {
+  std::string channel;
+  std::vector<GainCase> cases;  ///< the first as tuned
+  std::vector<estimate::StepSizeEffect> steps;
+};
+
+struct TuneReport {
+  std::vector<std::string> inputs;
+  std::vector<Note> notes;
+  std::string model_reason;  ///< why this model
+  estimate::Tuning tuning;
+  std::vector<TuneChannel> channels;  ///< as tuning.series
+  estimate::Consistency consistency;
+  std::vector<TuneStudy> studies;  ///< of channels with two white noises
+};
+
+/// The document of `tune`: docs/schema/tune.schema.json.
+[[nodiscard]] std::string tune_json(const TuneReport& report);
+
+/// The page: conclusion, parameters, innovations, the study of gain and covariance.
+[[nodiscard]] std::string tune_html(const TuneReport& report);
+
+/// For a terminal.
+[[nodiscard]] std::string tune_text(const TuneReport& report);
+
+/// "acc_x: white 0.52 ± 0.01 mg/√Hz …"
+[[nodiscard]] std::string tune_conclusion(const TuneReport& report);
+
+/// Innovations and the standard deviations that the filter states, against time: what `--output`
+/// writes.
+[[nodiscard]] Recording tune_series(const TuneReport& report);
+
+}  // namespace proofmass::report
