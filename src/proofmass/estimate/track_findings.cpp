@@ -1,0 +1,124 @@
+#include "proofmass/estimate/track_findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace proofmass::estimate {
+namespace {
+
+[[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...) {
+  char buffer[512];
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(buffer, sizeof buffer, format, arguments);
+  va_end(arguments);
+  return buffer;
+}
+
+constexpr double degree = 0.017453292519943295;
+
+void tell_of_rests(const TrackOptions& options, TrackSolution& solution) {
+  auto& notes = solution.notes;
+  if (solution.rests_by_quietness)
+    notes.push_back({Severity::info,
+                     "no noise of a resting sensor to go by (readings of several sensors fused, or "
+                     "smoothed): rests are where it is quiet against the motion"});
+  if (solution.cruises > 0)
+    notes.push_back({Severity::warning,
+                     text("%zu quiet stretches are no rests: at half the speed or more the velocity "
+                          "was not 0 there, and they are louder than the quietest rest",
+                          solution.cruises)});
+  if (solution.false_rests > 0)
+    notes.push_back({Severity::info,
+                     text("%zu short quiet stretches are no rests: velocity and level there are not "
+                          "what the motion between the long rests leads to",
+                          solution.false_rests)});
+  if (std::all_of(solution.series.resting.begin(), solution.series.resting.end(),
+                  [](unsigned char rests) { return rests != 0; }))
+    notes.push_back({Severity::info, "the sensor lay still throughout: there is no motion to measure"});
+  else if (solution.rests.size() == 1 && options.fixes.empty())
+    notes.push_back({Severity::warning,
+                     "only one rest: no second one checks the velocity, so that the band rests on "
+                     "what is usual; let the sensor lie still for 2 s at the end too"});
+}
+
+void tell_of_scale(const TrackSignal& signal, const TrackOptions& options, TrackSolution& solution) {
+  if (options.scale_std) return;
+  if (signal.resting_norm_mps2 && signal.gravity == GravityContent::present)
+    solution.notes.push_back(
+        {Severity::info,
+         text("not calibrated: gravity reads %.4g m/s^2 at rest where it is %.4g; lengths are taken "
+              "to be good to %.2g %%",
+              *signal.resting_norm_mps2, options.gravity_mps2, 100.0 * solution.scale_std)});
+  else
+    solution.notes.push_back({Severity::info,
+                              text("not calibrated: the scale of the readings is taken to be good "
+                                   "to %.2g %%; --sensor FILE.toml says better",
+                                   100.0 * solution.scale_std)});
+}
+
+void tell_of_turning(TrackSolution& solution) {
+  constexpr double noticed_rad = 1.0 * degree;
+  if (solution.turned_rad && *solution.turned_rad > noticed_rad && !solution.axis_in_world)
+    solution.notes.push_back(
+        {Severity::warning,
+         text("between two rests the sensor turned by %.2g deg: gravity leans into the axis, which "
+              "the band holds as far as the rests show it; gyroscope channels would tell it",
+              *solution.turned_rad / degree)});
+}
+
+void tell_of_jerk(TrackSolution& solution) {
+  if (!solution.suspected_jerk) return;
+  solution.notes.push_back(
+      {Severity::bad,
+       "the readings behave like the rate of change of an acceleration (jerk), not like an "
+       "acceleration: twice integrated they stay away from 0 while the sensor shakes as if under "
+       "way, and come back to 0 where it rests, as a velocity does; no displacement is given. If "
+       "they are accelerations, --take-as-acceleration says so"});
+}
+
+}  // namespace
+
+Error no_stop(const TrackSignal& signal) {
+  return {Errc::not_observable,
+          (signal.stops.why_none.empty() ? std::string("the sensor never lay still")
+                                         : signal.stops.why_none) +
+              "; without a rest the bias cannot be told from motion: let the sensor lie still for "
+              "2 s before and after, say where it stood with --still FILE, or give positions with "
+              "--fixes FILE"};
+}
+
+Error hidden_motion() {
+  return {Errc::not_observable,
+          "nearly all of the recording looks like rest, yet its readings integrate to a velocity far "
+          "beyond what their noise does: slow motion cannot be told from drift; say when the sensor stood still with --still FILE"};
+}
+
+double scale_std(const TrackSignal& signal, const TrackOptions& options) {
+  if (options.scale_std) return *options.scale_std;
+  if (signal.resting_norm_mps2 && signal.gravity == GravityContent::present)
+    return std::max(0.003, std::abs(*signal.resting_norm_mps2 / options.gravity_mps2 - 1.0));
+  return 0.01;
+}
+
+void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackSolution& solution) {
+  tell_of_jerk(solution);
+  tell_of_rests(options, solution);
+  tell_of_turning(solution);
+  tell_of_scale(signal, options, solution);
+  if (solution.missing > 0)
+    solution.notes.push_back(
+        {Severity::warning,
+         text("%zu samples without a reading: straight lines are drawn across them, with the doubt "
+              "of the motion around",
+              solution.missing)});
+  if (solution.travel_share < 0.8 && !solution.axis_given)
+    solution.notes.push_back({Severity::warning,
+                              text("only %.0f %% of the motion is along one axis: the displacement "
+                                   "is that along its longest direction",
+                                   100.0 * solution.travel_share)});
+}
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,92 @@
+#include "proofmass/estimate/track_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proofmass/core/linalg.hpp"
+#include "proofmass/core/statistics.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+constexpr double speed_at_start_mps = 10.0;
+constexpr double gap_steps = 2.5;        // a longer step between samples is a gap
+constexpr double carried_mps2_rts = 3e-3;  // walk with which the axis is looked for
+
+}  // namespace
+
+AxisRun prepare_axis(const TrackSignal& signal,
+                     View<double> accel,
+                     const TrackReadings& readings,
+                     const AxisNoise& known) {
+  AxisRun run;
+  run.level = level_noise(accel, readings.rests, signal.rate_hz);
+  const AxisSignal axis{signal.time_s, accel, std::max(moments(accel).std(), 1e-6), gap_steps / signal.rate_hz};
+  run.made = axis_epochs(axis, readings, run.level);
+  const double white = known.white_mps2_rthz.value_or(0.0);
+  const double walk = known.walk_mps2_rts.value_or(0.0);
+  run.noise = {.white_m2ps3 = std::max(white * white, run.level.white_m2ps3()),
+               .rest_walk_m2ps5 = std::max(walk * walk, run.level.walk_m2ps5),
+               .rest_speed_std_mps = readings.rest_speed_std_mps};
+  run.start.speed_std_mps = speed_at_start_mps;
+  return run;
+}
+
+AxisPass pass_over(const AxisRun& run) {
+  AxisPass pass;
+  const InertialAxis model{run.made.epochs, run.noise};
+  pass.filtered.resize(model.size());
+  pass.smoothed.resize(model.size());
+  smooth(
+      model, inertial_start(run.start), Gate{},
+      [&](std::size_t k, const StepOf<InertialAxis>& step) { pass.filtered[k] = step.filtered; },
+      [&](std::size_t k, const StepOf<InertialAxis>& step, const Hindsight<3>& later) {
+        pass.smoothed[k] = {later.mean(step.filtered), later.template cov<3>(step.filtered)};
+      });
+  return pass;
+}
+
+FoundAxis farthest_axis(const std::vector<std::vector<double>>& velocity,
+                        View<double> time_s,
+                        const std::vector<std::size_t>& axes) {
+  FoundAxis found;
+  const auto n = static_cast<int>(axes.size());
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b <= a; ++b) {
+      const auto &x = velocity[static_cast<std::size_t>(a)],
+                 &y = velocity[static_cast<std::size_t>(b)];
+      double sum = 0.0;
+      for (std::size_t k = 1; k < time_s.size(); ++k)
+        sum += x[k] * y[k] * (time_s[k] - time_s[k - 1]);
+      scatter(a, b) = scatter(b, a) = sum;
+    }
+  const SymmetricEigen eigen = symmetric_eigen(scatter);
+  const double total = eigen.values.sum();
+  if (total > 0.0) found.share = eigen.values(n - 1) / total;
+  for (int a = 0; a < n; ++a)
+    found.direction[axes[static_cast<std::size_t>(a)]] = eigen.vectors(a, n - 1);
+  const double largest = *std::max_element(
+      found.direction.begin(), found.direction.end(),
+      [](double x, double y) { return std::abs(x) < std::abs(y); });
+  if (largest < 0.0)
+    for (double& x : found.direction) x = -x;
+  return found;
+}
+
+FoundAxis farthest_axis(const TrackSignal& signal, const TrackReadings& readings) {
+  TrackReadings own = readings;
+  own.fixes.clear();  // they lie along an axis that is not known yet
+  std::vector<std::vector<double>> velocity;
+  for (const std::vector<double>& accel : signal.accel_mps2) {
+    AxisRun run = prepare_axis(signal, accel, own, {});
+    run.noise.motion_walk_m2ps5 = carried_mps2_rts * carried_mps2_rts;
+    const AxisPass pass = pass_over(run);
+    auto& of_axis = velocity.emplace_back();
+    for (const std::size_t epoch : run.made.of_sample)
+      of_axis.push_back(pass.smoothed[epoch].mean(inertial_axis::velocity_mps));
+  }
+  return farthest_axis(velocity, signal.time_s, signal.axes);
+}
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "proofmass/core/view.hpp"
+#include "proofmass/estimate/inertial_axis.hpp"
+#include "proofmass/estimate/track.hpp"
+
+// What the bias and the attitude do while the sensor moves: told by how far the velocity misses 0
+// at each stop, and how far the level has moved. Private to the module's track*.cpp.
+namespace proofmass::estimate {
+
+/// Posterior of what the acceleration errs by in motion beyond what it does at rest, on a grid:
+/// the walk q and the jump J of the bias, and the rocking L.
+struct MotionError {
+  /// Means: variances grow straight with them.
+  double walk_m2ps5 = 0.0, jump_m2ps4 = 0.0, lean_m2ps3 = 0.0;
+  double factor_95 = 1.96;  ///< half width of a 95 % interval in standard deviations, by the mixture
+};
+
+/// Weight ∝ likelihood of the readings · prior. Each of the three is nothing with probability 3/4,
+/// else log₁₀ of its root is normal about −2.5 with a standard deviation of 0.7, in m/s²/√s, m/s²
+/// and m/s²/√Hz: a sensor that is carried by hand or on a machine. The bias walks in motion no less
+/// than at rest. Source for the mixture in place of one value: A. Gelman et al., Bayesian Data
+/// Analysis (2013), section 5. Cost: 1728 passes over the knots.
+[[nodiscard]] MotionError motion_error(View<InertialEpoch> knots,
+                                     InertialNoise noise,
+                                     const InertialStart& start);
+
+/// How little each rest was expected, in their order: yᵀ S⁻¹ y of the velocity on arrival and of the
+/// first level there, two degrees of freedom. NaN of a rest at the very start.
+[[nodiscard]] std::vector<double> surprise_of_rests(View<InertialEpoch> knots,
+                                                    const InertialNoise& noise,
+                                                    const InertialStart& start);
+
+/// The velocity left over on arrival at each stop of the forward filter.
+[[nodiscard]] std::vector<Closure> closures(View<InertialEpoch> knots,
+                                            const InertialNoise& noise,
+                                            const InertialStart& start,
+                                            ConsistencyCheck& check);
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,134 @@
+#include "proofmass/report/track_report.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "proofmass/report/track_fake.hpp"
+#include "proofmass/report/track_wording.hpp"
+
+namespace proofmass::report {
+namespace {
+
+using nlohmann::json;
+
+bool tells(const json& document, const std::string& words) {
+  for (const std::string text : document["warnings"])
+    if (text.find(words) != std::string::npos) return true;
+  return false;
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++count;
+  return count;
+}
+
+TEST(TrackJson, HoldsWhatScriptsRelyOn) {
+  const json document = json::parse(track_json(fake_track()));
+  EXPECT_EQ(document["verb"], "track");
+  EXPECT_EQ(document["methods"]["smoother"]["displacement_m"], 0.2);
+  EXPECT_EQ(document["methods"]["smoother"]["std_m"], 0.002);
+  EXPECT_EQ(document["methods"]["smoother"]["path_m"], 2.6);
+  EXPECT_EQ(document["methods"]["smoother"]["peak_m"], 0.4);
+  EXPECT_EQ(document["methods"]["kalman"]["displacement_m"], 0.254);
+  EXPECT_EQ(document["methods"]["double_integration"]["displacement_m"], 6.68);
+  EXPECT_EQ(document["rests"].size(), 5U);
+  EXPECT_DOUBLE_EQ(document["rests"][1]["start_s"], 4.0);
+  EXPECT_EQ(document["strokes"].size(), 4U);
+  EXPECT_DOUBLE_EQ(document["strokes"][0]["length_m"], 0.402);
+  EXPECT_EQ(document["axis"], (json{0.0, 0.6, 0.8}));
+  for (const char* key : {"nis", "nis_lower", "nis_upper"})
+    EXPECT_TRUE(document["consistency"][key].is_number()) << key;
+}
+
+TEST(TrackJson, TheIntervalIsThatOfTheMethod) {
+  const json interval =
+      json::parse(track_json(fake_track()))["methods"]["smoother"]["interval_95_m"];
+  EXPECT_NEAR(interval[0].get<double>(), 0.1952, 1e-12);
+  EXPECT_NEAR(interval[1].get<double>(), 0.2048, 1e-12);
+}
+
+TEST(TrackJson, AStrokeOneWayHasNoTurnAndAWarningSaysSo) {
+  const json document = json::parse(track_json(fake_track()));
+  EXPECT_EQ(document["strokes"][0]["kind"], "there_and_back");
+  EXPECT_EQ(document["strokes"][3]["kind"], "one_way");
+  EXPECT_TRUE(document["strokes"][3]["back_m"].is_null());
+  EXPECT_TRUE(tells(document, "turn_s, back_m: null of a stroke that goes one way"));
+}
+
+TEST(TrackJson, OfJerkItHasNoFigureAndSaysWhy) {
+  const json document = json::parse(track_json(fake_jerk()));
+  for (const char* method : {"double_integration", "kalman", "smoother"})
+    for (const auto& figure : document["methods"][method]) EXPECT_TRUE(figure.is_null());
+  EXPECT_TRUE(document["suspected_jerk"]);
+  EXPECT_TRUE(document["stroke_summary"]["median_length_m"].is_null());
+  EXPECT_TRUE(tells(document, "methods.smoother: displacement_m, std_m"));
+  EXPECT_TRUE(tells(document, "jerk"));
+}
+
+TEST(TrackText, TheBudgetStandsBeforeTheResults) {
+  const std::string text = track_text(fake_track());
+  const auto budget = text.find("What this sensor, this duration and these stops allow");
+  const auto results = text.find("it stood at");
+  EXPECT_EQ(budget, 0U);
+  ASSERT_NE(results, std::string::npos);
+  EXPECT_LT(text.find("900 mm at the end"), results) << text;
+  EXPECT_EQ(text.back(), '\n');
+}
+
+TEST(TrackText, OfJerkItGivesNoLength) {
+  const std::string text = track_text(fake_jerk());
+  EXPECT_NE(text.find("cannot be told: the readings behave like"), std::string::npos) << text;
+  EXPECT_EQ(text.find("smoother"), std::string::npos) << text;
+}
+
+TEST(TrackConclusion, SaysWhereItEndedAndTheStrokes) {
+  const std::string text = track_conclusion(fake_track().solution);
+  EXPECT_NE(text.find("After 18 s it stood at 0.2000 ± 0.0020 m along (0.000, 0.600, 0.800)"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("3 strokes there and back and 1 one way, median length 0.404 ± 0.004 m"),
+            std::string::npos)
+      << text;
+}
+
+TEST(StrokeSummary, IsTheMedianWithTheMedianStd) {
+  const auto summary = summary_of(fake_track().solution.strokes);
+  ASSERT_TRUE(summary.has_value());
+  EXPECT_EQ(summary->count, 4U);
+  EXPECT_EQ(summary->there_and_back, 3U);
+  EXPECT_DOUBLE_EQ(summary->median_length_m.value, 0.5 * (0.402 + 0.406));
+  EXPECT_DOUBLE_EQ(summary->median_length_m.std, 0.004);
+  EXPECT_FALSE(summary_of({}).has_value());
+}
+
+TEST(TrackHtml, HasItsPlotsAndNoScript) {
+  const std::string page = track_html(fake_track());
+  EXPECT_EQ(count_of(page, "</svg>"), 4U);
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+  EXPECT_NE(page.find("stroke &lt;1&gt;.csv"), std::string::npos);
+  EXPECT_NE(page.find("off the figure: ends at 6.7"), std::string::npos);
+}
+
+TEST(TrackHtml, OfJerkShowsTheReadingsAlone) {
+  EXPECT_EQ(count_of(track_html(fake_jerk()), "</svg>"), 1U);
+}
+
+TEST(TrackSeries, HasARowForEachSampleAndOfJerkTheReadingsAlone) {
+  const Recording series = track_series(fake_track());
+  EXPECT_EQ(series.samples(), 1800U);
+  EXPECT_NE(series.find("position_std"), nullptr);
+  EXPECT_EQ(track_series(fake_jerk()).find("position"), nullptr);
+  EXPECT_NE(track_series(fake_jerk()).find("accel"), nullptr);
+}
+
+TEST(LengthWithStd, IsInMillimetresWhereBothAreSmall) {
+  EXPECT_EQ(length_with_std({0.0123, 0.0004}), "12.3 ± 0.4 mm");
+  EXPECT_EQ(length_with_std({0.441, 0.012}), "0.441 ± 0.012 m");
+  EXPECT_EQ(length_with_std({0.001, 0.2}), "0.00 ± 0.20 m");
+}
+
+}  // namespace
+}  // namespace proofmass::report
