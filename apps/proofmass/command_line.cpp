@@ -34,6 +34,9 @@ struct Commands {
   DriftCommand drift;
   CalibrateCommand calibrate;
   TumbleCommand tumble;
+  TiltCommand tilt;
+  TrackCommand track;
+  TuneCommand tune;
   SimulateCommand simulate;
   BudgetCommand budget;
   SensorCommand sensor;
@@ -144,6 +147,9 @@ Command chosen(CLI::App& app, Commands& commands) {
   if (app.got_subcommand("drift")) return std::move(commands.drift);
   if (app.got_subcommand("calibrate")) return std::move(commands.calibrate);
   if (app.got_subcommand("tumble")) return std::move(commands.tumble);
+  if (app.got_subcommand("tilt")) return std::move(commands.tilt);
+  if (app.got_subcommand("track")) return std::move(commands.track);
+  if (app.got_subcommand("tune")) return std::move(commands.tune);
   if (app.got_subcommand("simulate")) return std::move(commands.simulate);
   if (app.got_subcommand("sensor")) return std::move(commands.sensor);
   return std::move(commands.budget);
@@ -174,6 +180,9 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
   add_flags(app, commands.drift);
   add_flags(app, commands.calibrate);
   add_flags(app, commands.tumble);
+  add_flags(app, commands.tilt);
+  add_flags(app, commands.track);
+  add_flags(app, commands.tune);
   add_flags(app, commands.simulate);
   add_flags(app, commands.budget);
   add_flags(app, commands.sensor);

@@ -104,6 +104,48 @@ struct TumbleCommand {
   OutputFlags output;
 };
 
+/// Accelerations; or, with `angle`, the angle that they gave and a gyroscope's rate.
+struct TiltCommand {
+  std::string file;
+  std::string base = "auto", reads = "+g";
+  std::vector<std::string> gyro;  ///< channels x, y, z; empty: found
+  bool no_gyro = false;
+  std::string angle, rate_channel;  ///< columns, by name or number
+  std::string angle_unit = "rad", rate_unit = "rad/s";
+  std::optional<double> shortest_rest_s, bias_std_mps2, gravity_std_mps2;
+  InputFlags input;
+  OutputFlags output;
+};
+
+/// Displacement of one accelerometer.
+struct TrackCommand {
+  std::string file;
+  std::vector<std::string> gravity;  ///< a number in m/s^2, "removed" or "present", or both
+  std::string axis;                  ///< empty: found
+  bool same_place = false;
+  double same_place_std_m = 1e-3;
+  std::string fixes, still, turns;  ///< files: positions, intervals, times of velocity 0
+  double fix_std_m = 0.01;          ///< of fixes without their own
+  std::optional<double> shortest_rest_s, scale_std;
+  double rest_speed_std_mps = 1e-3;
+  bool take_as_acceleration = false, no_gyro = false;
+  std::string rate_unit = "rad/s";
+  InputFlags input;
+  OutputFlags output;
+};
+
+/// Q, R and the time constant of a bias from one recording.
+struct TuneCommand {
+  std::string file;
+  std::string model = "auto";
+  std::vector<std::string> fix, share;  ///< --fix NAME=VALUE, --share NAME
+  bool from_sensor = false;             ///< start at the noise of the sensor file
+  double study_step_s = 0.0;            ///< 0: the recording's own
+  std::string update_sensor;
+  InputFlags input;
+  OutputFlags output;
+};
+
 struct SimulateCommand {
   std::string rig;  ///< the description: of the rig, or with --procedure of the procedure
   std::optional<std::uint64_t> seed;
@@ -114,6 +156,9 @@ struct SimulateCommand {
   std::optional<std::uint64_t> session;
   std::optional<int> positions;
   std::optional<double> dwell_s, supply_v;
+  std::optional<int> strokes, repetitions;  ///< of a slide
+  std::optional<double> length_m, stroke_s, elevation_deg;
+  bool gravity_removed = false, gyro = false;
   OutputFlags output;
 };
 
@@ -137,6 +182,9 @@ using Command = std::variant<InspectCommand,
                              DriftCommand,
                              CalibrateCommand,
                              TumbleCommand,
+                             TiltCommand,
+                             TrackCommand,
+                             TuneCommand,
                              SimulateCommand,
                              BudgetCommand,
                              SensorCommand>;

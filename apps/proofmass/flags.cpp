@@ -40,8 +40,9 @@ void add_input_flags(CLI::App& verb, InputFlags& flags) {
       ->check(CLI::IsMember({"g", "mg", "m/s2", "V", "mV", "counts"}));
   add("--channel", flags.channels, "NAME", "use this channel; may be repeated (default: all)")
       ->allow_extra_args(false);
-  add("--variable", flags.variables, "NAME",
-      "of a MAT file, read this variable; may be repeated (default: the largest)")
+  add("--dataset,--variable", flags.variables, "NAME",
+      "of an HDF5 or MAT file, read this dataset or variable; may be repeated (default: chosen by "
+      "size and name)")
       ->allow_extra_args(false);
   add("--time", flags.time, "NAME", "the time column (default: found by name and content)");
   add("--from", flags.from_s, "S", "leave out what comes before")->check(finite());

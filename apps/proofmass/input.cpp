@@ -1,6 +1,7 @@
 #include "input.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <limits>
 
@@ -39,6 +40,22 @@ void bring_to_si(Channel& channel, const std::string& file) {
 // One sensor file for all accelerometers, or one for each.
 const sensor::SensorModel& model_of(const std::vector<sensor::SensorModel>& models, std::size_t k) {
   return models[models.size() > 1 ? k : 0];
+}
+
+// A recording's only acceleration, whose name ends in no axis: that of a one-axis sensor, called x.
+// A magnitude is along no axis.
+std::optional<Triad> lone_accelerometer(const Recording& recording) {
+  std::optional<Triad> lone;
+  for (std::size_t k = 0; k < recording.channels.size(); ++k) {
+    if (recording.channels[k].unit.quantity != Quantity::acceleration) continue;
+    std::string name = recording.channels[k].name;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const char* word : {"absolute", "magnitude", "norm", "total"})
+      if (lone || name.find(word) != std::string::npos) return std::nullopt;
+    lone = Triad{recording.channels[k].name, k, {}, {}};
+  }
+  return lone;
 }
 
 // Puts --supply in place of what the files say of their supply.
@@ -87,7 +104,10 @@ Recording load(const std::string& file, const InputFlags& flags, const Progress&
 std::vector<Accelerometer> accelerometers(const std::vector<Recording>& recordings) {
   std::vector<Accelerometer> found;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
-    const std::vector<Triad> triads = accelerometer_triads(recordings[k]);
+    std::vector<Triad> triads = accelerometer_triads(recordings[k]);
+    if (triads.empty()) {
+      if (auto lone = lone_accelerometer(recordings[k])) triads.push_back(std::move(*lone));
+    }
     for (const Triad& triad : triads) {
       const std::string& file = recordings[k].source;
       found.push_back({k, triad, triads.size() > 1 ? file + ": " + triad.name : file});

@@ -25,7 +25,8 @@ struct Accelerometer {
   std::string name;  ///< the file's, with the triad's where the file has several
 };
 
-/// The accelerometers of all recordings, in their order. Throws Failure if there is none.
+/// The accelerometers of all recordings, in their order; a lone acceleration whose name ends in no
+/// axis is the x of one. Throws Failure if there is none.
 [[nodiscard]] std::vector<Accelerometer> accelerometers(const std::vector<Recording>& recordings);
 
 /// The sensor files of --sensor, with the supply of --supply in place of their own. Their notes are

@@ -1,0 +1,183 @@
+#include "proofmass/estimate/tilt.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+
+#include "console.hpp"
+#include "exit_status.hpp"
+#include "gyroscope.hpp"
+#include "input.hpp"
+#include "output.hpp"
+#include "proofmass/estimate/tilt_axis.hpp"
+#include "proofmass/report/document.hpp"
+#include "proofmass/report/tilt_report.hpp"
+#include "verbs.hpp"
+
+namespace proofmass::app {
+namespace {
+
+std::vector<double> times_of(const Recording& recording) {
+  std::vector<double> time_s(recording.samples());
+  for (std::size_t k = 0; k < time_s.size(); ++k) time_s[k] = recording.time.at(k);
+  return time_s;
+}
+
+bool is_number(const std::string& text) {
+  return !text.empty() &&
+         std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c); });
+}
+
+std::string names_of(const Recording& recording) {
+  std::string names;
+  for (const Channel& channel : recording.channels)
+    names += (names.empty() ? "" : ", ") + channel.name;
+  return names;
+}
+
+// By its name, or by its place in a file that has no names.
+const Channel& column(const Recording& recording, const std::string& name, const char* flag) {
+  const Channel* found = recording.find(name);
+  if (found == nullptr && is_number(name)) found = recording.find("column " + name);
+  if (found == nullptr)
+    throw Failure(usage, fmt::format("{}: {}: no column '{}': expected one of {}", recording.source,
+                                     flag, name, names_of(recording)));
+  return *found;
+}
+
+// In SI, by the heading's unit or, where it has none, by the flag's.
+std::vector<double> in_si(const Channel& channel,
+                          Quantity quantity,
+                          const std::string& otherwise,
+                          const char* flag) {
+  if (channel.unit.quantity != quantity && channel.unit.quantity != Quantity::unknown)
+    throw Failure(usage, fmt::format("{}: {} is in {}: expected an {}", flag, channel.name,
+                                     channel.unit.symbol, name_of(quantity)));
+  const Unit unit = channel.unit.quantity == quantity ? channel.unit : *parse_unit(otherwise);
+  std::vector<double> values = channel.values;
+  for (double& value : values) value = unit.si(value);
+  return values;
+}
+
+void expect_time(const TiltCommand& command, const Recording& recording) {
+  if (recording.time.source == TimeSource::none)
+    throw Failure(usage,
+                  command.file + ": no time column and no --rate: give --rate HZ or --time NAME");
+}
+
+estimate::AxisTiltSolution solve_axis(const TiltCommand& command, std::vector<Note>& notes) {
+  if (command.rate_channel.empty())
+    throw Failure(usage, "--angle: expected --rate-channel COLUMN with the gyroscope's rate too");
+  const Recording recording = load(command.file, command.input, progress_bar(command.output));
+  expect_time(command, recording);
+  notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
+  estimate::AxisTiltRecord record{
+      .time_s = times_of(recording),
+      .angle_rad = in_si(column(recording, command.angle, "--angle"), Quantity::angle,
+                         command.angle_unit, "--angle"),
+      .rate_radps = in_si(column(recording, command.rate_channel, "--rate-channel"),
+                          Quantity::angular_rate, command.rate_unit, "--rate-channel")};
+  auto solution = estimate::estimate_axis_tilt(record, {.progress = progress_bar(command.output)});
+  if (!solution)
+    throw Failure(status_of(solution.error(), Stage::computing),
+                  solution.error().at(command.file).message);
+  return std::move(solution).value();
+}
+
+Accelerometer only_accelerometer(const std::vector<Recording>& recordings) {
+  const std::vector<Accelerometer> found = accelerometers(recordings);
+  if (found.size() == 1) return found.front();
+  std::string names;
+  for (const Accelerometer& one : found) names += (names.empty() ? "" : ", ") + one.triad.name;
+  throw Failure(usage,
+                fmt::format("{}: {} accelerometers ({}), expected one: choose with --channel",
+                            recordings.front().source, found.size(), names));
+}
+
+std::optional<GyroscopeChannels> gyroscope_of(const TiltCommand& command,
+                                              const Recording& recording,
+                                              const Triad& accelerometer) {
+  if (command.no_gyro) return std::nullopt;
+  if (command.gyro.empty()) return find_gyroscope(recording, accelerometer);
+  if (command.gyro.size() != 3)
+    throw Failure(usage, "--gyro: expected three channels, for x, y and z in this order");
+  GyroscopeChannels channels{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Channel& found = column(recording, command.gyro[i], "--gyro");
+    channels[i] = static_cast<std::size_t>(&found - recording.channels.data());
+  }
+  return channels;
+}
+
+estimate::TiltRecord prepare(const TiltCommand& command,
+                             estimate::TiltOptions& options,
+                             std::vector<Note>& notes) {
+  std::vector<Recording> recordings{
+      load(command.file, command.input, progress_bar(command.output))};
+  Recording& recording = recordings.front();
+  const auto models = load_sensors(command.input, notes);
+  const Accelerometer one = only_accelerometer(recordings);
+  calibrate(models, {one}, recordings);
+  remove_warm_up(command.input, models, {one}, recordings, notes);
+  notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
+  if (!models.empty()) {
+    options.calibration = models.front().calibration;
+    options.noise = models.front().noise;
+  }
+  estimate::TiltRecord record;
+  if (recording.time.source != TimeSource::none) record.time_s = times_of(recording);
+  const std::array axes{one.triad.x, one.triad.y, one.triad.z};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!axes[i]) continue;
+    record.accel_mps2[i] = recording.channels[*axes[i]].values;
+    if (command.reads == "-g")
+      for (double& value : record.accel_mps2[i]) value = -value;
+  }
+  if (const auto channels = gyroscope_of(command, recording, one.triad))
+    record.rate_radps = rates_radps(recording, *channels, command.rate_unit, notes);
+  return record;
+}
+
+estimate::TiltBase base_of(const std::string& text) {
+  if (text == "still") return estimate::TiltBase::still;
+  return text == "moving" ? estimate::TiltBase::moving : estimate::TiltBase::automatic;
+}
+
+estimate::TiltSolution solve(const TiltCommand& command, report::TiltReport& report) {
+  estimate::TiltOptions options{.base = base_of(command.base),
+                                .bias_std_mps2 = command.bias_std_mps2.value_or(0.0),
+                                .shortest_rest_s = command.shortest_rest_s,
+                                .progress = progress_bar(command.output)};
+  report.gravity_mps2 = options.gravity_mps2 =
+      uncertain_gravity_mps2(command.input, command.gravity_std_mps2, report.notes);
+  const estimate::TiltRecord record = prepare(command, options, report.notes);
+  auto solution = estimate::estimate_tilt(record, options);
+  if (!solution)
+    throw Failure(status_of(solution.error(), Stage::computing),
+                  solution.error().at(command.file).message);
+  return std::move(solution).value();
+}
+
+}  // namespace
+
+void run(const TiltCommand& command) {
+  if (command.output.output == "-" && command.output.json == "-")
+    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
+  report::TiltReport report;
+  report.inputs = {command.file};
+  report.reads_minus_g = command.reads == "-g";
+  if (!command.angle.empty())
+    report.axis = solve_axis(command, report.notes);
+  else
+    report.solution = solve(command, report);
+  show_notes(report::tilt_notes(report), "", command.output);
+  if (!command.output.output.empty())
+    write_series(report::tilt_series(report), command.output.output);
+  publish({.text = [&] { return report::tilt_text(report); },
+           .json = [&] { return report::tilt_json(report); },
+           .html = [&] { return report::tilt_html(report); }},
+          command.output);
+  hold_to_strict(command.output, !report::texts(report::tilt_notes(report), Severity::bad).empty());
+}
+
+}  // namespace proofmass::app

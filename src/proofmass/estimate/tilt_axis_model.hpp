@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "proofmass/estimate/kalman.hpp"
+#include "proofmass/estimate/tilt_axis.hpp"
+
+// One axis as kalman.hpp's StateSpaceModel. Private to the module's tilt_axis*.cpp.
+namespace proofmass::estimate {
+
+struct AxisInstants {
+  std::vector<double> step_s;      ///< to this instant from the one before; 0 at the first
+  std::vector<double> rate_radps;  ///< mean over the step to it; NaN: unknown
+  std::vector<double> angle_rad;   ///< NaN where there is no reading
+};
+
+/// States θ, b, d and the reading z = θ + d of tilt_axis.hpp.
+class AxisTiltModel {
+ public:
+  static constexpr int states = 3, moving = 3, channels = 1;
+
+  AxisTiltModel(const AxisInstants& instants,
+                const AxisTiltNoise& noise,
+                const AxisTiltOptions& options);
+
+  [[nodiscard]] std::size_t size() const { return instants_.step_s.size(); }
+  [[nodiscard]] Transition<3, 3> transition(const Mat<3>& x, std::size_t k) const;
+  void measure(const Mat<3>& x, std::size_t k, Readings<3, 1>& out) const;
+  void reopen(Gaussian<3>& x) const { x.cov = start().x.cov; }
+  [[nodiscard]] FilterState<3> start() const;
+
+ private:
+  const AxisInstants& instants_;
+  AxisTiltNoise noise_;
+  double rate_bias_std_radps_, usual_rate_radps_ = 0.0;
+};
+
+/// ln L of the innovations, those beyond the gate by Huber's loss.
+[[nodiscard]] double axis_log_likelihood(const AxisInstants& instants,
+                                         const AxisTiltNoise& noise,
+                                         const AxisTiltOptions& options);
+
+/// Figures of largest likelihood, each held to a factor of some hundred about what is usual (a
+/// normal prior of the logarithm, standard deviation 3). Of long recordings the first 20 000
+/// instants count.
+[[nodiscard]] AxisTiltNoise fit_axis_noise(const AxisInstants& instants,
+                                           const AxisTiltOptions& options);
+
+/// The gate of every pass: readings lose weight beyond three standard deviations.
+inline constexpr Gate axis_gate{.huber = 3.0};
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "proofmass/estimate/kalman.hpp"
+#include "proofmass/estimate/tilt.hpp"
+
+// The moving base as kalman.hpp's StateSpaceModel. Private to the module's tilt*.cpp.
+namespace proofmass::estimate {
+
+/// A stretch of a recording as the filter takes it: what does not hang on the noise figures.
+struct TiltInstants {
+  std::vector<double> step_s;         ///< to this instant from the one before; 0 at the first
+  std::vector<Mat<3>> force_mps2;     ///< NaN where there is no reading
+  std::vector<Mat<3>> rate_radps;     ///< mean over the step to it; NaN: unknown; empty: no gyro
+  std::vector<Mat<3>> rate_at_radps;  ///< of the instant itself, for rests
+  std::vector<unsigned char> resting;
+  std::vector<double> accel_std_mps2;  ///< of the base's acceleration, each component: base_accel()
+};
+
+/// Figures that are known before the likelihood is asked.
+struct TiltKnown {
+  double gravity_mps2 = standard_gravity_mps2;  ///< G
+  double gravity_std_mps2 = 0.0;
+  Mat<3> rest_std_mps2 = Mat<3>::Constant(1e-3);        ///< of a reading at rest
+  Mat<3> rest_rate_std_radps = Mat<3>::Constant(1e-3);  ///< of the gyroscope's at rest
+  double rate_bias_std_radps = 0.1, rate_bias_walk_radps_rts = 2e-5;
+  std::optional<double> rate_noise_radps_rthz{};  ///< where a rest shows it
+  double rate_scale_std = 0.01;                   ///< relative error of a turn
+  double usual_rate_radps = 1.0;                  ///< how fast it turns where no reading says
+};
+
+/// States: g in m/s² (0–2); a, acceleration of the base (3–5); then with gyroscope its bias b in
+/// rad/s, without it ġ in m/s³ (6–8). Readings: f on up to three axes, then at rests the
+/// gyroscope's bias. Nothing but R holds |g| = G: as a reading at every instant, linear about
+/// another direction each time, it would tell of the direction what nobody knows.
+///
+///     g' = R g,   R = exp(−[(ω − b) Δ]×),   ∂g'/∂b = −Δ [g']×,   Q_g = (N² Δ + s² |ω|² Δ T) (|g|²
+///     1 − g gᵀ)
+///
+/// with s the gyroscope's relative error over turns of T = 0.2 s, and without gyroscope R of the
+/// great circle, ω = ġ × g / |g|²,
+///
+///     g' = R (g + …),  ġ' = R ġ,   ∂g'/∂ġ = Δ R,   Q of white angular acceleration across g.
+class TiltModel {
+ public:
+  static constexpr int states = 9, moving = 9, channels = 6;
+
+  TiltModel(const TiltInstants& instants, const TiltKnown& known, const TiltMotion& motion);
+
+  [[nodiscard]] std::size_t size() const { return instants_.step_s.size(); }
+  [[nodiscard]] Transition<9, 9> transition(const Mat<9>& x, std::size_t k) const;
+  void measure(const Mat<9>& x, std::size_t k, Readings<9, 6>& out) const;
+  void reopen(Gaussian<9>& x) const;
+
+  /// What is known before the first reading, made linear about the direction of the first, or about
+  /// another.
+  [[nodiscard]] FilterState<9> start() const;
+  [[nodiscard]] FilterState<9> start_about(const Mat<3>& g) const;
+  /// Readings of the accelerometer at an instant; they come first.
+  [[nodiscard]] int accel_readings(std::size_t k) const;
+
+ private:
+  void turn_by_gyroscope(const Mat<9>& x, std::size_t k, Transition<9, 9>& step) const;
+  void turn_freely(const Mat<9>& x, std::size_t k, Transition<9, 9>& step) const;
+
+  const TiltInstants& instants_;
+  TiltKnown known_;
+  TiltMotion motion_;
+};
+
+}  // namespace proofmass::estimate

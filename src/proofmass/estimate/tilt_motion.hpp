@@ -1,0 +1,35 @@
+#pragma once
+
+#include "proofmass/estimate/tilt_accel.hpp"
+#include "proofmass/estimate/tilt_model.hpp"
+
+// The moving base: noise figures from the data, then filter and smoother. Private to tilt*.cpp.
+namespace proofmass::estimate {
+
+/// The gate of every pass: readings lose weight beyond three standard deviations.
+inline constexpr Gate tilt_gate{.huber = 3.0};
+
+/// ln L of the accelerometer's innovations in motion, those beyond the gate by Huber's loss.
+[[nodiscard]] double tilt_log_likelihood(const TiltInstants& instants,
+                                         const TiltKnown& known,
+                                         const TiltMotion& motion);
+
+/// The figures that the filter runs on: those of base_accel, the gyroscope's noise as rests show it
+/// or a common one's, and without gyroscope the angular acceleration of largest likelihood.
+[[nodiscard]] TiltMotion fit_tilt_motion(const TiltInstants& instants,
+                                         const TiltKnown& known,
+                                         const BaseAccel& accel,
+                                         bool gyroscope);
+
+/// The gyroscope's bias in the middle of the recording, given all of it.
+[[nodiscard]] Mat<3> rate_bias_of(const TiltInstants& instants,
+                                  const TiltKnown& known,
+                                  const TiltMotion& motion);
+
+/// Runs filter and smoother and fills series, consistency, final angles and bias.
+void run_tilt(const TiltInstants& instants,
+              const TiltKnown& known,
+              const TiltOptions& options,
+              TiltSolution& solution);
+
+}  // namespace proofmass::estimate

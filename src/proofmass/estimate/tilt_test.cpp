@@ -1,0 +1,201 @@
+#include "proofmass/estimate/tilt.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "proofmass/estimate/tilt_model.hpp"
+#include "proofmass/estimate/tilt_rest.hpp"
+#include "proofmass/estimate/tilt_test_support.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+const TiltOptions exact{.gravity_mps2 = {9.80665, 1e-6}};
+
+double rms_error_rad(const std::vector<double>& angle, const std::vector<double>& truth) {
+  double squares = 0.0;
+  for (std::size_t k = 100; k < truth.size(); ++k)
+    squares += (angle[k] - truth[k]) * (angle[k] - truth[k]);
+  return std::sqrt(squares / static_cast<double>(truth.size() - 100));
+}
+
+TEST(Tilt, OfNoiseFreeReadingsIsExact) {
+  TiltRecord record = still_record(force_at(0.4, -0.3), 0.0, 300, 1);
+  const auto solution = estimate_tilt(record, exact);
+  ASSERT_TRUE(solution) << solution.error().message;
+  EXPECT_NEAR(solution->final.roll_rad->value, 0.4, 1e-12);
+  EXPECT_NEAR(solution->final.pitch_rad->value, -0.3, 1e-12);
+}
+
+TEST(Tilt, AtRestIsThatOfTheMeanForceAndItsStandardError) {
+  const TiltRecord record = still_record(force_at(0.1, 0.2), 0.02, 4000, 2);
+  const auto solution = estimate_tilt(record, exact);
+  ASSERT_TRUE(solution) << solution.error().message;
+  EXPECT_FALSE(solution->moving);
+  const Uncertain roll = *solution->final.roll_rad, pitch = *solution->final.pitch_rad;
+  EXPECT_NEAR(roll.value, 0.1, 4.0 * roll.std);
+  EXPECT_NEAR(pitch.value, 0.2, 4.0 * pitch.std);
+  EXPECT_NEAR(pitch.std, 0.02 / std::sqrt(4000.0) / 9.80665, 0.4 * pitch.std);
+}
+
+TEST(Tilt, AtRestCountsCorrelatedNoise) {
+  Random random(3, "correlated");
+  std::vector<double> values;
+  double noise = 0.0;
+  for (int k = 0; k < 20000; ++k) values.push_back(noise = 0.95 * noise + random.normal());
+  const StretchMean mean = stretch_mean(values, 0.0);
+  // The variance of the mean of an autoregression is σ²/(1 − φ)²/N.
+  EXPECT_NEAR(std::sqrt(mean.variance), 20.0 / std::sqrt(20000.0), 0.3 * 20.0 / std::sqrt(20000.0));
+}
+
+TEST(Tilt, CountsTheCalibrationOfTheSensorFile) {
+  TiltOptions options = exact;
+  options.calibration.emplace();
+  options.calibration->bias = sensor::make_axis_figures({0.0, 0.0, 0.0}, "m/s^2", "test");
+  for (auto& bias : options.calibration->bias) bias->std = 0.05;
+  const auto solution = estimate_tilt(still_record(force_at(0.0, 0.0), 0.01, 2000, 4), options);
+  ASSERT_TRUE(solution) << solution.error().message;
+  EXPECT_NEAR(solution->final.pitch_rad->std, 0.05 / 9.80665, 1e-4);
+  EXPECT_NEAR(solution->shares.calibration, 0.05 / 9.80665, 1e-5);
+}
+
+TEST(Tilt, TakesAnUnknownSensorToBeAsFarOffAsItsNormShows) {
+  const auto solution =
+      estimate_tilt(still_record(1.02 * force_at(0.0, 0.0), 0.01, 2000, 5), exact);
+  ASSERT_TRUE(solution) << solution.error().message;
+  EXPECT_NEAR(solution->final.pitch_rad->std, 0.02, 1e-3);
+  ASSERT_FALSE(solution->notes.empty());
+  EXPECT_NE(solution->notes.front().text.find("departs from gravity"), std::string::npos);
+}
+
+TEST(Tilt, FollowsAMovingBaseWithAGyroscopeBetterThanTheForceDoes) {
+  const MovingBase base = moving_base({.rest_s = 1.5}, 7);
+  TiltOptions options = exact;
+  options.base = TiltBase::moving;
+  options.rate_scale_std = 0.0;
+  const auto solution = estimate_tilt(base.record, options);
+  ASSERT_TRUE(solution) << solution.error().message;
+  EXPECT_TRUE(solution->motion->gyroscope);
+  EXPECT_EQ(solution->rests.size(), 2U);
+  std::vector<double> raw;
+  for (std::size_t k = 0; k < base.pitch_rad.size(); ++k) {
+    const auto& f = base.record.accel_mps2;
+    raw.push_back(std::atan2(-f[0][k], std::hypot(f[1][k], f[2][k])));
+  }
+  const double by_force = rms_error_rad(raw, base.pitch_rad);
+  const double filtered = rms_error_rad(solution->series.filtered_pitch_rad, base.pitch_rad);
+  const double smoothed = rms_error_rad(solution->series.pitch_rad, base.pitch_rad);
+  EXPECT_LT(filtered, 0.2 * by_force);
+  EXPECT_LT(smoothed, 0.6 * filtered);
+}
+
+TEST(Tilt, FollowsAMovingBaseWithoutAGyroscope) {
+  const MovingBase base =
+      moving_base({.accel_std_mps2 = 0.2, .angular_accel_radps2_rthz = 0.3, .gyroscope = false}, 8);
+  TiltOptions options = exact;
+  options.base = TiltBase::moving;
+  const auto solution = estimate_tilt(base.record, options);
+  ASSERT_TRUE(solution) << solution.error().message;
+  EXPECT_FALSE(solution->motion->gyroscope);
+  EXPECT_LT(rms_error_rad(solution->series.pitch_rad, base.pitch_rad), 0.02);
+}
+
+TEST(Tilt, PassesTheUprightAxisWithoutASingularity) {
+  TiltRecord record;
+  for (int k = 0; k < 1000; ++k) {
+    const double pitch = 2.0 * std::numbers::pi * k / 1000.0;
+    const Mat<3> f = force_at(0.0, pitch);
+    record.time_s.push_back(0.01 * k);
+    for (std::size_t i = 0; i < 3; ++i) {
+      record.accel_mps2[i].push_back(f(static_cast<Eigen::Index>(i)));
+      record.rate_radps[i].push_back(i == 1 ? 0.2 * std::numbers::pi : 0.0);
+    }
+  }
+  TiltOptions options = exact;
+  options.base = TiltBase::moving;
+  const auto solution = estimate_tilt(record, options);
+  ASSERT_TRUE(solution) << solution.error().message;
+  EXPECT_NEAR(solution->series.pitch_rad[250], std::numbers::pi / 2, 0.02);
+  EXPECT_TRUE(std::isnan(solution->series.roll_rad[250]));
+  EXPECT_NEAR(solution->series.pitch_rad[900], -0.1 * 2.0 * std::numbers::pi, 0.02);
+}
+
+TEST(Tilt, KeepsGoingOverRowsWithoutReadings) {
+  MovingBase base = moving_base({.rest_s = 1.5}, 9);
+  for (std::size_t k = 700; k < 760; ++k) base.record.accel_mps2[1][k] = none;
+  for (std::size_t k = 900; k < 905; ++k) base.record.rate_radps[0][k] = none;
+  TiltOptions options = exact;
+  options.base = TiltBase::moving;
+  const auto solution = estimate_tilt(base.record, options);
+  ASSERT_TRUE(solution) << solution.error().message;
+  EXPECT_EQ(solution->unusable, 60U);
+  for (std::size_t k = 690; k < 920; ++k)
+    EXPECT_NEAR(solution->series.pitch_rad[k], base.pitch_rad[k], 0.03) << k;
+}
+
+TEST(Tilt, CountsAReadingThatALoggerRepeatsOnce) {
+  MovingBase base = moving_base({.accel_std_mps2 = 0.2}, 10);
+  for (std::size_t k = 0; k < base.record.time_s.size(); ++k)
+    for (std::size_t i = 0; i < 3; ++i) {
+      base.record.accel_mps2[i][k] = base.record.accel_mps2[i][k - k % 4];
+      base.record.rate_radps[i][k] = base.record.rate_radps[i][k - k % 4];
+    }
+  TiltOptions options = exact;
+  options.base = TiltBase::moving;
+  const auto solution = estimate_tilt(base.record, options);
+  ASSERT_TRUE(solution) << solution.error().message;
+  EXPECT_TRUE(std::ranges::any_of(solution->notes, [](const Note& note) {
+    return note.text.find("1500 of 2000 rows repeat") != std::string::npos;
+  }));
+}
+
+TEST(Tilt, SaysWhyItCannot) {
+  const auto message = [](const TiltRecord& record, const TiltOptions& options) {
+    const auto solution = estimate_tilt(record, options);
+    return solution ? std::string("done") : solution.error().message;
+  };
+  EXPECT_EQ(message({}, {}), "no accelerometer axis");
+  TiltRecord removed = still_record({0.0, 0.0, 0.1}, 0.01, 300, 11);
+  EXPECT_NE(message(removed, {}).find("gravity was removed"), std::string::npos);
+  TiltRecord counts = still_record({0.0, 0.0, 32768.0}, 1.0, 300, 12);
+  EXPECT_NE(message(counts, {}).find("its unit is another"), std::string::npos);
+  TiltRecord empty = still_record({none, none, none}, 0.0, 300, 13);
+  EXPECT_NE(message(empty, {}).find("no sample"), std::string::npos);
+  TiltRecord backwards = still_record(force_at(0.0, 0.0), 0.01, 300, 14);
+  backwards.time_s[100] = 0.0;
+  EXPECT_NE(message(backwards, {}).find("sample 100"), std::string::npos);
+  TiltRecord timeless = still_record(force_at(0.0, 0.0), 0.01, 300, 15);
+  timeless.time_s.clear();
+  TiltOptions moving;
+  moving.base = TiltBase::moving;
+  EXPECT_NE(message(timeless, moving).find("takes time"), std::string::npos);
+  TiltRecord flat = still_record(force_at(0.0, 0.0), 0.01, 300, 16);
+  flat.accel_mps2[1].clear();
+  EXPECT_NE(message(flat, moving).find("three axes"), std::string::npos);
+  EXPECT_NE(message(still_record(force_at(0.0, 0.0), 0.01, 20, 17), moving).find("50"),
+            std::string::npos);
+}
+
+TEST(TiltModel, HasTheJacobianOfItsMotion) {
+  TiltInstants instants{.step_s = {0.0, 0.02},
+                        .force_mps2 = {force_at(0.2, 0.1), force_at(0.2, 0.1)},
+                        .rate_radps = {{0.3, -0.8, 0.5}, {0.3, -0.8, 0.5}},
+                        .rate_at_radps = {{0.3, -0.8, 0.5}, {0.3, -0.8, 0.5}},
+                        .resting = {0, 0},
+                        .accel_std_mps2 = {0.5, 0.5}};
+  const TiltModel model(instants, {}, {.gyroscope = true, .drive = 1e-3, .accel_time_s = 0.1});
+  Mat<9> x;
+  x << force_at(0.2, 0.1), 0.3, -0.4, 0.2, 0.02, -0.01, 0.03;
+  const Mat<9, 9> F = model.transition(x, 1).F;
+  for (int i = 0; i < 9; ++i) {
+    const Mat<9> h = 1e-5 * Mat<9>::Unit(i);
+    const Mat<9> column =
+        (model.transition(x + h, 1).mean - model.transition(x - h, 1).mean) / 2e-5;
+    EXPECT_NEAR((F.col(i) - column).norm(), 0.0, 2e-3) << i;
+  }
+}
+
+}  // namespace
+}  // namespace proofmass::estimate

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "proofmass/core/random.hpp"
+#include "proofmass/core/units.hpp"
+#include "proofmass/estimate/rotation.hpp"
+#include "proofmass/estimate/tilt.hpp"
+
+namespace proofmass::estimate {
+
+/// The reading of a perfect accelerometer at rest.
+inline Mat<3> force_at(double roll_rad, double pitch_rad, double gravity_mps2 = 9.80665) {
+  return gravity_mps2 * Mat<3>(-std::sin(pitch_rad), std::cos(pitch_rad) * std::sin(roll_rad),
+                               std::cos(pitch_rad) * std::cos(roll_rad));
+}
+
+/// A record at rest with white noise of one standard deviation on every axis.
+inline TiltRecord still_record(const Mat<3>& force,
+                               double noise_mps2,
+                               std::size_t samples,
+                               std::uint64_t seed) {
+  Random random(seed, "still tilt");
+  TiltRecord record;
+  for (std::size_t k = 0; k < samples; ++k) {
+    record.time_s.push_back(0.01 * static_cast<double>(k));
+    for (std::size_t i = 0; i < 3; ++i)
+      record.accel_mps2[i].push_back(force(static_cast<Eigen::Index>(i)) +
+                                     noise_mps2 * random.normal());
+  }
+  return record;
+}
+
+/// A base that turns and is shaken, and what is true of it.
+struct MovingBase {
+  TiltRecord record;
+  std::vector<Mat<3>> up;  ///< gravity's reaction in sensor axes, m/s²
+  std::vector<double> roll_rad, pitch_rad;
+};
+
+struct MovingOptions {
+  std::size_t samples = 2000;
+  double rate_hz = 100.0;
+  double rest_s = 0.0;          ///< at either end
+  double accel_std_mps2 = 0.5;  ///< in world axes, exponentially correlated
+  double accel_time_s = 0.1;
+  double rate_noise_radps_rthz = 1e-3;
+  double rate_bias_radps = 0.01, rate_scale = 0.0;
+  double angular_accel_radps2_rthz = 0.0;  ///< > 0: white angular acceleration turns the base
+  double reading_std_mps2 = 0.01;
+  bool gyroscope = true;
+};
+
+inline MovingBase moving_base(const MovingOptions& o, std::uint64_t seed) {
+  Random random(seed, "moving tilt");
+  const auto normals = [&random](double std) {
+    const double x = random.normal(), y = random.normal(), z = random.normal();
+    return Mat<3>(std * x, std * y, std * z);
+  };
+  MovingBase out;
+  const double h = 1.0 / o.rate_hz;
+  Mat<3> g = force_at(0.3 * random.uniform(), 0.3 * random.uniform());
+  const Mat<3> phase(random.phase(), random.phase(), random.phase());
+  const Mat<3> bias = normals(o.rate_bias_radps);
+  Mat<3, 3> error = Mat<3, 3>::Identity();
+  for (int i = 0; i < 3; ++i) error.col(i) += normals(o.rate_scale);
+  Mat<3> accel = normals(o.accel_std_mps2), rate = Mat<3>::Zero();
+  const double phi = std::exp(-h / o.accel_time_s);
+  const double end_s = h * static_cast<double>(o.samples) - o.rest_s;
+  for (std::size_t k = 0; k < o.samples; ++k) {
+    const double t = h * static_cast<double>(k);
+    const bool rests = t < o.rest_s || t > end_s;
+    const Mat<3> before = rate;
+    if (rests)
+      rate.setZero();
+    else if (o.angular_accel_radps2_rthz > 0.0)
+      rate += normals(o.angular_accel_radps2_rthz * std::sqrt(h));
+    else
+      rate = Mat<3>(0.6 * std::sin(1.3 * t + phase.x()), 0.5 * std::sin(0.9 * t + phase.y()),
+                    0.4 * std::sin(0.5 * t + phase.z()));
+    const Mat<3, 3> R = rotation_by(Mat<3>(-0.5 * h * (rate + before)));
+    if (k > 0) g = R * g;
+    accel = phi * (R * accel) + normals(o.accel_std_mps2 * std::sqrt(1.0 - phi * phi));
+    const Mat<3> f = g + (rests ? Mat<3>(Mat<3>::Zero()) : accel) + normals(o.reading_std_mps2);
+    const Mat<3> w = error * rate + bias + normals(o.rate_noise_radps_rthz / std::sqrt(h));
+    out.record.time_s.push_back(t);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      out.record.accel_mps2[i].push_back(f(row));
+      if (o.gyroscope) out.record.rate_radps[i].push_back(w(row));
+    }
+    out.up.push_back(g);
+    out.roll_rad.push_back(std::atan2(g.y(), g.z()));
+    out.pitch_rad.push_back(std::atan2(-g.x(), std::hypot(g.y(), g.z())));
+  }
+  return out;
+}
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstddef>
+
+#include "proofmass/estimate/packed_kalman.hpp"
+
+// packed_kalman.hpp's equations on many stretches of one recording side by side: lane l runs through
+// the instants of its own stretch, all lanes at once in the processor's vector units.
+namespace proofmass::estimate::packed {
+
+inline constexpr int lanes = 16;
+using LaneNumbers = double[lanes];
+
+/// A filter's state in each lane, after an instant.
+template <int N>
+struct alignas(64) LaneState {
+  LaneNumbers P[Symmetric<N>::entries];
+  LaneNumbers x[N];
+};
+
+/// Row of each lane.
+template <int N>
+struct alignas(64) LaneRow {
+  LaneNumbers P[Symmetric<N>::entries];
+  LaneNumbers x[N];
+  LaneNumbers K[N];
+  LaneNumbers y_S, per_S;
+};
+
+/// Later of each lane.
+template <int N>
+struct alignas(64) LaneLater {
+  LaneNumbers L[Symmetric<N>::entries];
+  LaneNumbers l[N];
+};
+
+/// A mean and y / S of each lane, where the gain is known and stays.
+template <int N>
+struct alignas(64) LaneMean {
+  LaneNumbers x[N];
+  LaneNumbers y_S;
+};
+
+/// What a filter and smoother of constant gain need beside the model.
+template <int N>
+struct ConstantGain {
+  double K[N];
+  double seen[N][N];  ///< P⁺ Π of steady_state.hpp
+  double per_S;
+};
+
+/// Sums over the readings of each lane: y² / S and the product of R / S.
+struct alignas(64) LaneScore {
+  LaneNumbers nis, R_S;
+};
+
+/// The loops, `count` instants each; z holds the lanes' readings of an instant together. Rows and
+/// means are those of each instant, in rising order.
+template <int N>
+struct LaneKernels {
+  using Model = StepModel<N>;
+  /// Filters on from `state`; without rows only its end is kept.
+  void (*filter)(const Model&, const double* z, int count, LaneState<N>& state, LaneRow<N>* rows);
+  /// The means again, by the rows' gains, from other means before the first instant.
+  void (*filter_means)(const Model&, const double* z, int count, LaneNumbers* x, LaneRow<N>* rows);
+  /// λ alone, from after the last instant to before the first.
+  void (*look_back)(const Model&, const LaneRow<N>* rows, int count, LaneNumbers* l);
+  /// λ and Λ; x and P of the rows become those given all readings.
+  void (*smooth)(const Model&, LaneRow<N>* rows, int count, LaneLater<N>& later);
+  /// The same of λ and the means alone.
+  void (*smooth_means)(const Model&, LaneRow<N>* rows, int count, LaneNumbers* l);
+  /// Multiplies up R / S and adds up y² / S; count ≤ 8, so that the product stays a number.
+  void (*score)(const Model&, const LaneRow<N>* rows, int count, LaneScore& score);
+
+  /// As filter() with a gain that stays; `x` is the mean of each lane, taken along. Where means are
+  /// kept, (y / S)² is added to `squares`.
+  void (*filter_constant)(const Model&,
+                          const ConstantGain<N>&,
+                          const double* z,
+                          int count,
+                          LaneNumbers* x,
+                          LaneMean<N>* means,
+                          LaneNumbers& squares);
+  void (*look_back_constant)(const Model&,
+                             const ConstantGain<N>&,
+                             const LaneMean<N>* means,
+                             int count,
+                             LaneNumbers* l);
+  void (*smooth_constant)(const Model&,
+                          const ConstantGain<N>&,
+                          LaneMean<N>* means,
+                          int count,
+                          LaneNumbers* l);
+};
+
+/// The loops compiled for the narrowest pattern that fits the model. For N = 1 to 4.
+template <int N>
+[[nodiscard]] const LaneKernels<N>& lane_kernels(const StepModel<N>& model);
+
+}  // namespace proofmass::estimate::packed
