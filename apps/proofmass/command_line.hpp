@@ -117,9 +117,11 @@ struct TiltCommand {
   OutputFlags output;
 };
 
-/// Displacement of one accelerometer.
+/// Displacement of one accelerometer, or of several that are fused.
 struct TrackCommand {
   std::string file;
+  std::string model = "inertial";  ///< or pva, fused
+  std::optional<double> jerk_psd_m2ps5;
   std::vector<std::string> gravity;  ///< a number in m/s^2, "removed" or "present", or both
   std::string axis;                  ///< empty: found
   bool same_place = false;

@@ -72,6 +72,14 @@ void add_track_flags(CLI::App& verb, TrackCommand& command) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type);
   };
+  add("--model", command.model, "MODEL",
+      "inertial (default): the acceleration is integrated between stops, which holds for a motion "
+      "of any kind; pva: it is estimated, as one that white jerk drives, and NIS judges each "
+      "sample; fused: the same from 2 to 4 accelerometers with parallel axes")
+      ->check(CLI::IsMember({"inertial", "pva", "fused"}));
+  add("--jerk-psd", command.jerk_psd_m2ps5, "M2_PER_S5",
+      "density of that jerk (default: by maximum likelihood)")
+      ->check(positive());
   add("--axis", command.axis, "AXIS",
       "direction of the displacement: x, y, z, with a sign, or X,Y,Z in the sensor's axes, with a "
       "gyroscope the world's (default: along which it moved farthest)");
@@ -135,7 +143,8 @@ void add_flags(CLI::App& app, TrackCommand& command) {
       "Examples:\n"
       "  proofmass track stroke.csv --report track.html\n"
       "  proofmass track phone.csv --gravity removed --same-place\n"
-      "  proofmass track slide.csv --sensor sensor.toml --axis x --fixes tape.csv");
+      "  proofmass track slide.csv --sensor sensor.toml --axis x --fixes tape.csv\n"
+      "  proofmass track pair.csv --model fused --axis x");
 }
 
 void add_flags(CLI::App& app, TuneCommand& command) {

@@ -10,10 +10,12 @@
 #include "gyroscope.hpp"
 #include "input.hpp"
 #include "output.hpp"
+#include "proofmass/estimate/fusion.hpp"
 #include "proofmass/io/instant_list.hpp"
 #include "proofmass/io/interval_list.hpp"
 #include "proofmass/report/document.hpp"
 #include "proofmass/report/track_report.hpp"
+#include "proofmass/sensor/warm_up.hpp"
 #include "verbs.hpp"
 
 namespace proofmass::app {
@@ -45,6 +47,8 @@ void read_gravity(TrackCommand& command, TrackOptions& options) {
 }
 
 void expect_sense(const TrackCommand& command) {
+  if (command.jerk_psd_m2ps5 && command.model == "inertial")
+    throw Failure(usage, "--jerk-psd belongs to --model pva or fused");
   if (command.output.output == "-" && command.output.json == "-")
     throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
   const bool from_stdin = command.file == "-";
@@ -101,24 +105,53 @@ std::optional<double> scale_std_of(const sensor::Calibration& calibration) {
   return largest;
 }
 
-void take_from_sensor(const sensor::SensorModel& model, TrackOptions& options) {
+// The time of the warm-up only where its course has been taken out.
+estimate::AccelFigures figures_of(const sensor::SensorModel& model, bool warm_up_removed) {
+  estimate::AccelFigures figures;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto& white = model.noise.white[axis];
     const auto& walk = model.noise.random_walk[axis];
-    if (white && white->si() > 0.0) options.white_mps2_rthz[axis] = white->si();
-    if (walk) options.walk_mps2_rts[axis] = std::abs(walk->si());
+    if (white && white->si() > 0.0) figures.white_mps2_rthz[axis] = white->si();
+    if (walk) figures.walk_mps2_rts[axis] = std::abs(walk->si());
+    if (!warm_up_removed) continue;
+    if (const auto warm_up = sensor::warm_up_of(model.drift, axis))
+      figures.warm_up_time_s[axis] = warm_up->time_constant_s;
   }
+  return figures;
+}
+
+void take_from_sensor(const sensor::SensorModel& model,
+                      bool warm_up_removed,
+                      TrackOptions& options) {
+  const estimate::AccelFigures figures = figures_of(model, warm_up_removed);
+  options.white_mps2_rthz = figures.white_mps2_rthz;
+  options.walk_mps2_rts = figures.walk_mps2_rts;
+  options.warm_up_time_s = figures.warm_up_time_s;
   if (!options.scale_std) options.scale_std = scale_std_of(model.calibration);
 }
 
-Accelerometer only_accelerometer(const std::vector<Recording>& recordings) {
-  const std::vector<Accelerometer> found = accelerometers(recordings);
-  if (found.size() == 1) return found.front();
+// One; or for the model fused 2 to 4.
+std::vector<Accelerometer> chosen_accelerometers(const TrackCommand& command,
+                                                 const std::vector<Recording>& recordings) {
+  std::vector<Accelerometer> found = accelerometers(recordings);
+  const bool fused = command.model == "fused";
+  if (fused ? found.size() > 1 && found.size() <= estimate::most_fused_sensors : found.size() == 1)
+    return found;
   std::string names;
   for (const Accelerometer& one : found) names += (names.empty() ? "" : ", ") + one.triad.name;
   throw Failure(usage,
-                fmt::format("{}: {} accelerometers ({}), expected one: choose with --channel",
-                            recordings.front().source, found.size(), names));
+                fmt::format("{}: {} accelerometer{} ({}), expected {}: choose with --channel{}",
+                            recordings.front().source, found.size(), found.size() == 1 ? "" : "s",
+                            names, fused ? "2 to 4" : "one",
+                            fused ? "" : ", or fuse 2 to 4 that are parallel with --model fused"));
+}
+
+std::array<std::vector<double>, 3> readings_of(const Recording& recording, const Triad& triad) {
+  std::array<std::vector<double>, 3> readings;
+  const std::array axes{triad.x, triad.y, triad.z};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (axes[axis]) readings[axis] = recording.channels[*axes[axis]].values;
+  return readings;
 }
 
 TrackSensor sensor_of(const TrackCommand& command,
@@ -129,12 +162,16 @@ TrackSensor sensor_of(const TrackCommand& command,
   sensor.name = from.name;
   sensor.time_s.resize(recording.samples());
   for (std::size_t k = 0; k < sensor.time_s.size(); ++k) sensor.time_s[k] = recording.time.at(k);
-  const std::array axes{from.triad.x, from.triad.y, from.triad.z};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (axes[axis]) sensor.accel_mps2[axis] = recording.channels[*axes[axis]].values;
+  sensor.accel_mps2 = readings_of(recording, from.triad);
   if (command.no_gyro) return sensor;
-  if (const auto channels = find_gyroscope(recording, from.triad))
-    sensor.rate_radps = rates_radps(recording, *channels, command.rate_unit, notes);
+  const auto channels = find_gyroscope(recording, from.triad);
+  if (!channels) return sensor;
+  if (command.model != "inertial") {
+    notes.push_back({Severity::info,
+                     "the gyroscope's channels are left alone: only --model inertial uses them"});
+    return sensor;
+  }
+  sensor.rate_radps = rates_radps(recording, *channels, command.rate_unit, notes);
   return sensor;
 }
 
@@ -146,18 +183,32 @@ TrackSensor prepare(const TrackCommand& command, TrackOptions& options, std::vec
     throw Failure(usage,
                   command.file + ": no time column and no --rate: give --rate HZ or --time NAME");
   const auto models = load_sensors(command.input, notes);
-  const Accelerometer one = only_accelerometer(recordings);
-  calibrate(models, {one}, recordings);
-  remove_warm_up(command.input, models, {one}, recordings, notes);
+  const std::vector<Accelerometer> found = chosen_accelerometers(command, recordings);
+  calibrate(models, found, recordings);
+  remove_warm_up(command.input, models, found, recordings, notes);
   notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
-  if (!models.empty()) take_from_sensor(models.front(), options);
+  const bool warm = command.input.since_switch_on_s.has_value();
+  if (!models.empty()) take_from_sensor(models.front(), warm, options);
   read_lists(command, recording, options);
-  return sensor_of(command, recording, one, notes);
+  TrackSensor sensor = sensor_of(command, recording, found.front(), notes);
+  if (found.size() > 1) sensor.name = found.front().triad.name;
+  for (std::size_t k = 1; k < found.size(); ++k) {
+    estimate::ParallelAccelerometer& beside = sensor.beside.emplace_back();
+    beside.name = found[k].triad.name;
+    beside.accel_mps2 = readings_of(recording, found[k].triad);
+    if (!models.empty()) beside.figures = figures_of(models[models.size() > 1 ? k : 0], warm);
+  }
+  return sensor;
 }
 
 TrackOptions options_of(TrackCommand& command) {
   TrackOptions options;
   read_gravity(command, options);
+  using estimate::TrackModel;
+  options.model = command.model == "pva"     ? TrackModel::pva
+                  : command.model == "fused" ? TrackModel::fused
+                                             : TrackModel::inertial;
+  options.jerk_psd_m2ps5 = command.jerk_psd_m2ps5;
   if (!command.axis.empty()) options.axis = parse_axis(command.axis);
   options.same_place = command.same_place;
   options.same_place_std_m = command.same_place_std_m;
@@ -170,11 +221,12 @@ TrackOptions options_of(TrackCommand& command) {
 }
 
 // Errors of the estimate name the file.
-estimate::TrackSolution solve(const TrackSensor& sensor, const TrackOptions& options) {
+estimate::TrackSolution solve(const std::string& file,
+                              const TrackSensor& sensor,
+                              const TrackOptions& options) {
   auto solution = estimate::estimate_track(sensor, options);
   if (!solution)
-    throw Failure(status_of(solution.error(), Stage::computing),
-                  solution.error().at(sensor.name).message);
+    throw Failure(status_of(solution.error(), Stage::computing), solution.error().at(file).message);
   return std::move(solution).value();
 }
 
@@ -187,7 +239,7 @@ void run(const TrackCommand& given) {
   report.inputs = {command.file};
   report.options = options_of(command);
   const TrackSensor sensor = prepare(command, report.options, report.notes);
-  report.solution = solve(sensor, report.options);
+  report.solution = solve(command.file, sensor, report.options);
   report.options.progress = {};  // which wipes the bar away
   show_notes(report.notes, "", command.output);
   show_notes(report.solution.notes, "", command.output);

@@ -63,6 +63,7 @@ void follow(AttitudeModel& model, Attitude& out) {
     advance(model, k, gate, state, step);
     model.nominal[k].move_by(state.x.mean);
     state.x.mean.setZero();
+    out.filtered_velocity_mps[sample.row] = model.nominal[k].v;
     out.filtered_position_m[sample.row] = model.nominal[k].p;
     out.filtered_position_cov_m2[sample.row] = packed(state.x.cov, inertial::position);
   }
@@ -111,8 +112,9 @@ Attitude without_estimates(std::size_t size) {
   for (auto* covs : {&out.attitude_cov_rad2, &out.velocity_cov_m2ps2, &out.position_cov_m2,
                      &out.filtered_position_cov_m2})
     covs->assign(size, no_cov);
-  for (auto* vectors : {&out.velocity_mps, &out.position_m, &out.filtered_position_m, &out.rate_bias_radps,
-                        &out.rate_bias_std_radps, &out.accel_bias_mps2, &out.accel_bias_std_mps2})
+  for (auto* vectors : {&out.velocity_mps, &out.position_m, &out.filtered_velocity_mps,
+                        &out.filtered_position_m, &out.rate_bias_radps, &out.rate_bias_std_radps,
+                        &out.accel_bias_mps2, &out.accel_bias_std_mps2})
     vectors->assign(size, none);
   out.nis.assign(size, 0.0F);
   out.readings.assign(size, 0);

@@ -25,8 +25,8 @@ struct InertialSeries {
   std::array<std::vector<double>, 3> accel_mps2;  ///< specific force: +g upward at rest
 };
 
-/// A position that was measured: at a sample, along a direction of the world, counted from the start
-/// of the stretch.
+/// A position that was measured: at a sample, along a direction of the world, counted from the
+/// start of the stretch.
 struct PositionReading {
   std::size_t sample = 0;
   Mat<3> direction = Mat<3>::UnitZ();  ///< unit vector
@@ -83,7 +83,7 @@ struct Attitude {
   std::vector<Symmetric3> attitude_cov_rad2;
   std::vector<Mat<3>> velocity_mps, position_m;  ///< world axes
   std::vector<Symmetric3> velocity_cov_m2ps2, position_cov_m2;
-  std::vector<Mat<3>> filtered_position_m;          ///< given the readings so far
+  std::vector<Mat<3>> filtered_velocity_mps, filtered_position_m;  ///< given the readings so far
   std::vector<Symmetric3> filtered_position_cov_m2;
   std::vector<Mat<3>> rate_bias_radps, rate_bias_std_radps;  ///< sensor axes
   std::vector<Mat<3>> accel_bias_mps2, accel_bias_std_mps2;  ///< sensor axes

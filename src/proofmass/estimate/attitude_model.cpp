@@ -77,7 +77,8 @@ AttitudeModel::AttitudeModel(const PreparedSeries& series, const AttitudeOptions
   reading_of_.assign(series.samples.size(), 0);
   std::size_t k = 0;
   for (std::size_t i = 0; i < options.positions.size() && k < series.samples.size(); ++i) {
-    while (k + 1 < series.samples.size() && series.samples[k].row < options.positions[i].sample) ++k;
+    while (k + 1 < series.samples.size() && series.samples[k].row < options.positions[i].sample)
+      ++k;
     reading_of_[k] = i + 1;
   }
   rest_used.assign(static_cast<std::size_t>(rests), 1);

@@ -67,7 +67,7 @@ class AttitudeModel {
   const PreparedSeries* series_;
   AttitudeOptions options_;
   std::vector<unsigned char> bounds_speed_;  ///< by sample
-  std::vector<std::size_t> reading_of_;     ///< by sample: 1 + number of its position, 0 none
+  std::vector<std::size_t> reading_of_;      ///< by sample: 1 + number of its position, 0 none
   double gravity_variance_ = 0.0;            ///< of one sample, of what all rests share
 };
 

@@ -115,10 +115,9 @@ void expect_least_squares(const std::vector<Epoch<M, U>>& epochs,
                 1e-10 + 1e-12 * std::abs(all.log_likelihood));
     for (std::size_t k = 0; k < epochs.size(); ++k) {
       check(run.steps[k].smoothed, all, k);
-      if (k >= determined_from)
+      if (k >= determined_from && smoother == Smoother::bryson_frazier)
         check(run.steps[k].filtered, test::least_squares(series, epochs, variance, k + 1), k);
-      else
-        EXPECT_GT(run.steps[k].diffuse_directions, 0);
+      EXPECT_EQ(run.steps[k].diffuse_directions > 0, k < determined_from);
       if (k + 1 == epochs.size()) continue;
       for (int i = 0; i < N; ++i)
         for (int j = 0; j < N; ++j) {
@@ -191,7 +190,7 @@ TEST(DiffuseStart, OfPositionSpeedAndAccelerationAtTwoHundredReadingsASecondLose
       h * h * h / 3.0, h * h / 2.0, h * h * h / 6.0, h * h / 2.0, h;
   m.H << 1.0, 0.0, 0.0;
   m.R << 1e-4;
-  std::vector<Epoch<1>> epochs(60);
+  std::vector<Epoch<1>> epochs(20);
   for (std::size_t k = 0; k < epochs.size(); ++k)
     epochs[k] = {
         h, Mat<1>(k < 3 || k % 7 == 4 ? none : 100.0 + std::sin(0.1 * static_cast<double>(k)))};

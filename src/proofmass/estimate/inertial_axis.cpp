@@ -41,7 +41,8 @@ Transition<3, 3> InertialAxis::transition(const Mat<3>& x, std::size_t k) const 
   step.mean(0) += epoch.position_step_m;
   step.mean(1) += epoch.velocity_step_mps;
   step.Q = motion_noise(epoch, noise);
-  if (epoch.leaves_rest) step.Q += noise.motion_jump_m2ps4 * step.F.col(2) * step.F.col(2).transpose();
+  if (epoch.leaves_rest)
+    step.Q += noise.motion_jump_m2ps4 * step.F.col(2) * step.F.col(2).transpose();
   if (epoch.arrives_at_rest) step.Q(2, 2) += noise.motion_jump_m2ps4;
   return step;
 }

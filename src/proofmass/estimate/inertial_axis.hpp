@@ -25,7 +25,7 @@ inline constexpr int bias_mps2 = 2;
 /// How one epoch follows from the one before, and what is read there; NaN where nothing is.
 struct InertialEpoch {
   double dt_s = 0.0;
-  bool resting = false;  ///< on the way here
+  bool resting = false;                               ///< on the way here
   bool leaves_rest = false, arrives_at_rest = false;  ///< the motion begins before, ends after it
   /// What the readings on the way integrate to, from standstill.
   double velocity_step_mps = 0.0, position_step_m = 0.0;

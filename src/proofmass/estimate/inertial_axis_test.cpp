@@ -122,7 +122,8 @@ TEST(InertialAxis, EqualsTheDenseBatchWithItsCovariancesAcrossTime) {
   for (std::size_t i = 0; i < at.size(); ++i)
     for (std::size_t j = 0; j < at.size(); ++j) {
       const double expected = cov(3 * static_cast<int>(at[i]), 3 * static_cast<int>(at[j]));
-      EXPECT_NEAR(across.at(i, j), expected, 1e-7 * std::abs(expected) + 1e-13) << at[i] << ' ' << at[j];
+      EXPECT_NEAR(across.at(i, j), expected, 1e-7 * std::abs(expected) + 1e-13)
+          << at[i] << ' ' << at[j];
     }
 }
 

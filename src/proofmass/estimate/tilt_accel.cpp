@@ -12,7 +12,9 @@ namespace {
 
 // Over how long a time the force tells what the base does at present: so many correlation times,
 // that few enough weights hang on the very readings that they are for.
-constexpr double memory_times = 40.0, least_memory_s = 2.0, most_memory_s = 20.0;
+constexpr double memory_times = 60.0, least_memory_s = 2.0, most_memory_s = 20.0;
+// Degrees of freedom of the scatter: the three axes share the error of the running mean and of τ.
+constexpr double effective_dof = 10.0;
 // Over how long a time a gyroscope of unknown bias may carry the mean that the force departs from.
 constexpr double mean_memory_s = 2.0;
 // What no base is quieter than while it moves, relative to gravity.
@@ -126,7 +128,7 @@ BaseAccel base_accel(const TiltInstants& instants, const Mat<3>& rate_bias, doub
   // The running mean has taken its share of the slow part: M/(M + τ) is left.
   const double taken = 1.0 + out.time_s / mean_memory_s;
   // A scatter over so few correlation times is Student's, not Gauss's.
-  const double wider = student_t_quantile(0.975, 0.5 * memory_times) / 1.959964;
+  const double wider = student_t_quantile(0.975, effective_dof) / 1.959964;
   out.time_s *= taken;
   for (double& std : out.std_mps2) std *= wider * std::sqrt(taken);
   return out;

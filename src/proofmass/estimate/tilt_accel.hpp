@@ -17,7 +17,7 @@ struct BaseAccel {
 ///
 ///     m' = exp(−[ω Δ]×) m + (1 − e^(−Δ/2 s)) (f − m),   σ² = max(⟨|f − m|²⟩/3, ⟨(|f| − G)²⟩),
 ///
-/// over M = 40 correlation times, 2 to 20 s, less what the mean takes of slow departures; and
+/// over M = 60 correlation times, 2 to 20 s, less what the mean takes of slow departures; and
 /// without it (|f| − G)² alone, which sees the acceleration along gravity: a base that only speeds
 /// up on the level cannot then be told from one that tilts. A rule, not a likelihood: one step
 /// ahead a smooth acceleration looks like a slow one, and a likelihood would make it so slow that

@@ -7,6 +7,7 @@
 #include "proofmass/estimate/track_carried.hpp"
 #include "proofmass/estimate/track_findings.hpp"
 #include "proofmass/estimate/track_motion.hpp"
+#include "proofmass/estimate/track_pva.hpp"
 #include "proofmass/estimate/track_strokes.hpp"
 #include "proofmass/estimate/track_turns.hpp"
 #include "proofmass/estimate/track_walk.hpp"
@@ -34,21 +35,10 @@ std::vector<double> along(const TrackSignal& signal, const std::array<double, 3>
   return out;
 }
 
-std::optional<double> density_along(const std::array<std::optional<double>, 3>& figures,
-                                    const std::array<double, 3>& axis) {
-  double sum = 0.0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (axis[a] == 0.0) continue;
-    if (!figures[a]) return std::nullopt;
-    sum += axis[a] * axis[a] * *figures[a] * *figures[a];
-  }
-  return std::sqrt(sum);
-}
-
 // The nearest sample.
 std::size_t sample_at(View<double> time_s, double t) {
-  const auto after = static_cast<std::size_t>(
-      std::lower_bound(time_s.begin(), time_s.end(), t) - time_s.begin());
+  const auto after =
+      static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), t) - time_s.begin());
   if (after == time_s.size()) return after - 1;
   return after > 0 && t - time_s[after - 1] < time_s[after] - t ? after - 1 : after;
 }
@@ -62,8 +52,8 @@ TrackReadings readings_of(const TrackSignal& signal, const TrackOptions& options
     readings.fixes.push_back(
         {sample_at(signal.time_s, fix.time_s), fix.position_m, fix.std_m * fix.std_m});
   if (options.same_place)
-    readings.fixes.push_back({signal.time_s.size() - 1, 0.0,
-                              options.same_place_std_m * options.same_place_std_m});
+    readings.fixes.push_back(
+        {signal.time_s.size() - 1, 0.0, options.same_place_std_m * options.same_place_std_m});
   return readings;
 }
 
@@ -116,8 +106,14 @@ void fill_series(const TrackSignal& signal,
 
 // Twice integrated from the first sample, less the level of the first rest; a missing reading is
 // taken for the one before.
-std::vector<double> double_integral(View<double> time_s, View<double> accel) {
-  std::vector<double> position(time_s.size(), 0.0);
+struct DoubleIntegral {
+  std::vector<double> position_m, velocity_mps;
+};
+
+DoubleIntegral double_integral(View<double> time_s, View<double> accel) {
+  DoubleIntegral out;
+  std::vector<double>& position = out.position_m;
+  position.resize(time_s.size(), 0.0);
   double v = 0.0, last = 0.0;
   for (std::size_t k = 0; k < time_s.size(); ++k) {
     const double a = std::isnan(accel[k]) ? last : accel[k];
@@ -127,15 +123,23 @@ std::vector<double> double_integral(View<double> time_s, View<double> accel) {
       v += 0.5 * h * (last + a);
     }
     last = a;
+    out.velocity_mps.push_back(v);
   }
-  return position;
+  return out;
 }
 
-TrackMethod method_of(View<double> position, View<double> std, double factor) {
+// One estimate of position and velocity, one entry a sample.
+struct Course {
+  View<double> position_m, velocity_mps;
+};
+
+// The path is that of the velocity: a filter's position also jumps where it is put right.
+TrackMethod method_of(View<double> time_s, const Course& course, View<double> std, double factor) {
+  const View<double> position = course.position_m, velocity = course.velocity_mps;
   TrackMethod method;
   std::size_t peak = 0;
   for (std::size_t k = 1; k < position.size(); ++k) {
-    method.path_m += std::abs(position[k] - position[k - 1]);
+    method.path_m += 0.5 * std::abs(velocity[k] + velocity[k - 1]) * (time_s[k] - time_s[k - 1]);
     if (std::abs(position[k]) > std::abs(position[peak])) peak = k;
   }
   method.displacement_m = {position.back(), std.back()};
@@ -158,8 +162,8 @@ double free_std(const TrackSignal& signal, const AxisRun& run) {
   double begin_s = signal.time_s.front(), level_variance = 100.0;
   if (!signal.stops.rests.empty()) {
     const signal::Rest& rest = signal.stops.rests.front();
-    const auto blocks = static_cast<double>(rest.last - rest.first + 1) /
-                        static_cast<double>(run.level.block);
+    const auto blocks =
+        static_cast<double>(rest.last - rest.first + 1) / static_cast<double>(run.level.block);
     level_variance = run.level.variance_m2ps4 / std::max(blocks, 1.0);
     if (rest.first == 0) begin_s = signal.time_s[rest.last];
   }
@@ -220,7 +224,9 @@ std::size_t drop_belied_rests(TrackSignal& signal,
                               const TrackOptions& options) {
   auto& rests = signal.stops.rests;
   const std::vector<signal::Rest> all = rests;
-  const auto is_short = [&](const signal::Rest& rest) { return length_s(signal, rest) < long_rest_s; };
+  const auto is_short = [&](const signal::Rest& rest) {
+    return length_s(signal, rest) < long_rest_s;
+  };
   std::erase_if(rests, is_short);
   if (rests.size() == all.size() || rests.size() < 2) {
     rests = all;
@@ -241,7 +247,8 @@ std::size_t drop_belied_rests(TrackSignal& signal,
     const std::vector<double> surprise = surprise_of_rests(knots_of(run), run.noise, run.start);
     std::optional<std::size_t> worst;
     for (std::size_t i = 0; i < rests.size(); ++i)
-      if (is_short(rests[i]) && surprise[i] > std::max(unbelievable, worst ? surprise[*worst] : 0.0))
+      if (is_short(rests[i]) &&
+          surprise[i] > std::max(unbelievable, worst ? surprise[*worst] : 0.0))
         worst = i;
     if (!worst) return all.size() - rests.size();
     rests.erase(rests.begin() + static_cast<std::ptrdiff_t>(*worst));
@@ -284,9 +291,9 @@ Result<AlongAxis> solve(const TrackSignal& signal, const TrackOptions& options) 
     const std::size_t first = sample_at(signal.time_s, signal.time_s.front() + closure.start_s);
     const std::size_t last = sample_at(signal.time_s, signal.time_s.front() + closure.end_s);
     for (std::size_t k = first; k < last; ++k)
-      closure.fastest_mps = std::max(
-          closure.fastest_mps,
-          std::abs(found.pass.filtered[found.run.made.of_sample[k]].mean(inertial_axis::velocity_mps)));
+      closure.fastest_mps = std::max(closure.fastest_mps,
+                                     std::abs(found.pass.filtered[found.run.made.of_sample[k]].mean(
+                                         inertial_axis::velocity_mps)));
   }
   return found;
 }
@@ -326,14 +333,19 @@ void judge(const TrackSignal& signal,
   series.resting.assign(signal.time_s.size(), 0);
   for (const signal::Rest& rest : solution.rests)
     for (std::size_t k = rest.first; k <= rest.last; ++k) series.resting[k] = 1;
-  series.double_integral_m = double_integral(signal.time_s, series.accel_mps2);
+  DoubleIntegral integral = double_integral(signal.time_s, series.accel_mps2);
+  series.double_integral_m = std::move(integral.position_m);
   solution.suspected_jerk = !options.take_as_acceleration && suspect_jerk(signal, series).suspected;
   if (!solution.suspected_jerk) {
     const std::vector<double> free(signal.time_s.size(), free_m);
     const double factor = solution.factor_95;
-    solution.double_integration = method_of(series.double_integral_m, free, factor);
-    solution.kalman = method_of(series.filtered_position_m, series.filtered_position_std_m, factor);
-    solution.smoother = method_of(series.position_m, series.position_std_m, factor);
+    const View<double> t = series.time_s;
+    solution.double_integration =
+        method_of(t, {series.double_integral_m, integral.velocity_mps}, free, factor);
+    solution.kalman = method_of(t, {series.filtered_position_m, series.filtered_velocity_mps},
+                                series.filtered_position_std_m, factor);
+    solution.smoother =
+        method_of(t, {series.position_m, series.velocity_mps}, series.position_std_m, factor);
     Strokes strokes = find_strokes(solution, covariance);
     solution.strokes = std::move(strokes.strokes);
     solution.smoother->path_std_m = strokes.path_std_m;
@@ -341,7 +353,9 @@ void judge(const TrackSignal& signal,
   add_findings(signal, options, solution);
 }
 
-Result<TrackSolution> track_without_gyro(TrackSignal signal, const TrackOptions& options) {
+Result<TrackSolution> track_without_gyro(const TrackSensor& sensor,
+                                         TrackSignal signal,
+                                         const TrackOptions& options) {
   auto solved = solve(signal, options);
   if (!solved) return solved.error();
   const std::size_t belied = drop_belied_rests(signal, solved->accel_mps2, options);
@@ -366,6 +380,8 @@ Result<TrackSolution> track_without_gyro(TrackSignal signal, const TrackOptions&
   solution.consistency = found.consistency;
   solution.series.accel_mps2 = std::move(found.accel_mps2);
   fill_series(signal, found.run, found.pass, solution);
+  const PvaTask task{sensor, signal, found.run, readings_of(signal, options)};
+  if (const auto done = apply_track_model(task, options, solution); !done) return done.error();
   AxisRun quiet = found.run;
   quiet.noise.motion_walk_m2ps5 = quiet.noise.rest_walk_m2ps5;
   quiet.noise.motion_jump_m2ps4 = quiet.noise.motion_lean_m2ps3 = 0.0;
@@ -428,9 +444,10 @@ Result<TrackSolution> estimate_track(const TrackSensor& sensor, const TrackOptio
   TrackSignal signal = std::move(made).value();
   if (signal.stops.rests.empty() && options.fixes.empty()) return no_stop(signal);
   if (options.still.empty() && may_hide_motion(signal)) return hidden_motion();
-  if (has_gyro(sensor) && signal.gravity == GravityContent::present)
+  const bool inertial = options.model == TrackModel::inertial;
+  if (inertial && has_gyro(sensor) && signal.gravity == GravityContent::present)
     return track_with_gyro(sensor, signal, options);
-  return track_without_gyro(std::move(signal), options);
+  return track_without_gyro(sensor, std::move(signal), options);
 }
 
 }  // namespace proofmass::estimate

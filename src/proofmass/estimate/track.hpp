@@ -16,12 +16,29 @@
 // Displacement of one accelerometer that is carried along, from rest to rest.
 namespace proofmass::estimate {
 
+/// What else a sensor file says of an accelerometer, per axis.
+struct AccelFigures {
+  /// Absent: white noise from the rests, no walk.
+  std::array<std::optional<double>, 3> white_mps2_rthz{}, walk_mps2_rts{};
+  /// Of its warm-up, whose known course is taken out of the readings; absent: the bias walks.
+  std::array<std::optional<double>, 3> warm_up_time_s{};
+};
+
+/// A further accelerometer on the same body, its axes parallel to those of the first, read at the
+/// same times.
+struct ParallelAccelerometer {
+  std::string name;
+  std::array<std::vector<double>, 3> accel_mps2;
+  AccelFigures figures{};
+};
+
 /// What the sensor read, in SI. Series of an axis that the sensor lacks are empty.
 struct TrackSensor {
   std::string name;
   std::vector<double> time_s;                     ///< ascending
   std::array<std::vector<double>, 3> accel_mps2;  ///< NaN where there is no reading
   std::array<std::vector<double>, 3> rate_radps;  ///< gyroscope, in the same axes; empty: none
+  std::vector<ParallelAccelerometer> beside{};    ///< one to three for TrackModel::fused, else none
 };
 
 /// Whether the readings hold gravity: an accelerometer reads 1 g upward at rest, but many programs
@@ -39,32 +56,42 @@ struct TimeSpan {
   double start_s = 0.0, end_s = 0.0;
 };
 
+enum class TrackModel {
+  inertial,  ///< the acceleration is known input between stops
+  pva,       ///< it is a state that white jerk drives, and is measured: see track_pva.hpp
+  fused,     ///< the same, measured by several accelerometers
+};
+
 struct TrackOptions {
+  TrackModel model = TrackModel::inertial;
+  /// White jerk of the models pva and fused, two-sided density; absent: by maximum likelihood.
+  std::optional<double> jerk_psd_m2ps5 = std::nullopt;
+  std::array<std::optional<double>, 3> warm_up_time_s{};  ///< as of AccelFigures; pva and fused
   double gravity_mps2 = standard_gravity_mps2;
   GravityContent gravity = GravityContent::unknown;  ///< unknown: told from the rests
   /// Direction of the displacement in the sensor's axes, any length; with a gyroscope in those of
   /// the world. Absent: that along which the sensor moved farthest.
   std::optional<std::array<double, 3>> axis = std::nullopt;
-  bool same_place = false;            ///< it ended where it began
-  double same_place_std_m = 1e-3;     ///< how well
-  std::vector<PositionFix> fixes{};   ///< ascending in time
-  std::vector<TimeSpan> still{};      ///< when it stood still, in place of the rests that are found
-  std::vector<double> turns_s{};      ///< where the user says that it turned round: velocity 0
+  bool same_place = false;           ///< it ended where it began
+  double same_place_std_m = 1e-3;    ///< how well
+  std::vector<PositionFix> fixes{};  ///< ascending in time
+  std::vector<TimeSpan> still{};     ///< when it stood still, in place of the rests that are found
+  std::vector<double> turns_s{};     ///< where the user says that it turned round: velocity 0
   std::optional<double> shortest_rest_s = std::nullopt;  ///< as of signal::RestOptions
-  double rest_speed_std_mps = 1e-4;   ///< of a sensor that lies still
+  double rest_speed_std_mps = 1e-4;                      ///< of a sensor that lies still
   /// Of the sensor file, per axis; absent: white noise from the rests, no walk.
   std::array<std::optional<double>, 3> white_mps2_rthz{}, walk_mps2_rts{};
   std::optional<double> scale_std = std::nullopt;  ///< relative, of the readings; absent: see notes
-  bool take_as_acceleration = false;  ///< though it looks like something else
+  bool take_as_acceleration = false;               ///< though it looks like something else
   Progress progress = {};
 };
 
 /// What one method says of the whole recording, along the axis.
 struct TrackMethod {
-  Uncertain displacement_m;  ///< from the first sample to the last
-  double path_m = 0.0;       ///< there and back counted both
+  Uncertain displacement_m;            ///< from the first sample to the last
+  double path_m = 0.0;                 ///< there and back counted both
   std::optional<double> path_std_m{};  ///< absent where it was not worked out
-  Uncertain peak_m;          ///< largest distance from the start, with its sign
+  Uncertain peak_m;                    ///< largest distance from the start, with its sign
   /// Half the width of the 95 % interval of the displacement.
   double half_width_95_m = 0.0;
 };
@@ -81,13 +108,13 @@ struct Stroke {
 /// What the sensor, this duration and these constraints allow, before the motion is looked at: one
 /// standard deviation, from the noise at rest and the walk of the bias alone.
 struct TrackBudget {
-  double white_mps2_rthz = 0.0;       ///< along the axis, two-sided
-  double walk_mps2_rts = 0.0;         ///< of the bias
-  double longest_motion_s = 0.0;      ///< between two stops
-  double motion_s = 0.0;              ///< in all
-  std::optional<double> free_m;       ///< integrated twice from the start, at the end
-  std::optional<double> worst_m;      ///< with all constraints, where the band is widest
-  std::optional<double> end_m;        ///< with all constraints, at the end
+  double white_mps2_rthz = 0.0;   ///< along the axis, two-sided
+  double walk_mps2_rts = 0.0;     ///< of the bias
+  double longest_motion_s = 0.0;  ///< between two stops
+  double motion_s = 0.0;          ///< in all
+  std::optional<double> free_m;   ///< integrated twice from the start, at the end
+  std::optional<double> worst_m;  ///< with all constraints, where the band is widest
+  std::optional<double> end_m;    ///< with all constraints, at the end
 };
 
 /// One value for each sample.
@@ -115,14 +142,29 @@ struct Closure {
   double start_s = 0.0, end_s = 0.0;  ///< of the motion
   double velocity_mps = 0.0;          ///< left over, along the axis
   double expected_std_mps = 0.0;
-  double fastest_mps = 0.0;           ///< on the way, in the forward filter
+  double fastest_mps = 0.0;  ///< on the way, in the forward filter
+};
+
+/// One of several accelerometers, and what it would have told alone.
+struct FusedSensor {
+  std::string name;
+  Uncertain bias_mps2;  ///< what it reads along the axis at rest in the end, gravity's share too
+  Uncertain displacement_m;
+};
+
+struct FusedTrack {
+  std::vector<FusedSensor> sensors;
+  double variance_gain = 1.0;  ///< smallest variance of a displacement of theirs over the fused one
 };
 
 struct TrackSolution {
+  TrackModel model = TrackModel::inertial;
+  std::optional<Uncertain> jerk_psd_m2ps5;  ///< as used; std 0 where given; absent: not told
+  std::optional<FusedTrack> fused;          ///< of the model fused
   std::array<double, 3> axis{};  ///< unit vector; in the sensor's axes, or the world's
   bool axis_in_world = false;    ///< a gyroscope told where the world is: z is up
   bool axis_given = false;
-  double travel_share = 1.0;     ///< of the squared velocity that is along the axis
+  double travel_share = 1.0;  ///< of the squared velocity that is along the axis
   GravityContent gravity = GravityContent::unknown;
   std::vector<signal::Rest> rests;
   bool rests_by_quietness = false;  ///< found against the motion, not by the noise of a sensor
@@ -132,11 +174,11 @@ struct TrackSolution {
   std::optional<TrackMethod> double_integration, kalman, smoother;
   std::vector<Stroke> strokes;
   MotionErrorFigures motion_error;  ///< found from the closures; zeros with a gyroscope
-  double factor_95 = 1.96;  ///< half width of a 95 % interval in standard deviations
-  double scale_std = 0.0;   ///< relative, as used; part of every band in proportion to the distance
+  double factor_95 = 1.96;          ///< half width of a 95 % interval in standard deviations
+  double scale_std = 0.0;  ///< relative, as used; part of every band in proportion to the distance
   std::optional<double> resting_norm_mps2;  ///< length of the readings at rest, of three axes
-  std::optional<double> turned_rad;  ///< largest angle between gravity at two rests
-  std::size_t missing = 0;           ///< samples without a reading
+  std::optional<double> turned_rad;         ///< largest angle between gravity at two rests
+  std::size_t missing = 0;                  ///< samples without a reading
   TrackBudget budget;
   std::vector<Closure> closures;
   Consistency consistency;

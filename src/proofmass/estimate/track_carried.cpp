@@ -34,8 +34,7 @@ FoundAxis axis_of(const Attitude& attitude, View<double> time_s, const TrackOpti
   return farthest_axis(velocity, time_s, {0, 1, 2});
 }
 
-std::vector<PositionReading> readings_along(const Direction& axis,
-                                            const TrackReadings& readings) {
+std::vector<PositionReading> readings_along(const Direction& axis, const TrackReadings& readings) {
   std::vector<PositionReading> out;
   for (const auto& fix : readings.fixes)
     out.push_back({fix.sample, Mat<3>(axis[0], axis[1], axis[2]), fix.position_m, fix.variance_m2});
@@ -60,6 +59,7 @@ void fill(const Attitude& attitude,
     series.velocity_mps.push_back(v);
     series.velocity_std_mps.push_back(std_of(attitude.velocity_cov_m2ps2[k], v));
     series.filtered_position_m.push_back(f);
+    series.filtered_velocity_mps.push_back(along(axis, attitude.filtered_velocity_mps[k]));
     series.filtered_position_std_m.push_back(std_of(attitude.filtered_position_cov_m2[k], f));
     series.accel_mps2.push_back(along(axis, {accel[0][k], accel[1][k], accel[2][k]}));
   }
@@ -97,9 +97,9 @@ Result<bool> track_carried(const TrackSensor& sensor,
   solution.notes.insert(solution.notes.end(), attitude.notes.begin(), attitude.notes.end());
   std::size_t unused = 0;
   std::erase_if(solution.rests, [&](const signal::Rest& rest) {
-    const bool drop = std::any_of(attitude.rests.begin(), attitude.rests.end(), [&](const RestUse& use) {
-      return !use.used && use.rest.first == rest.first;
-    });
+    const bool drop =
+        std::any_of(attitude.rests.begin(), attitude.rests.end(),
+                    [&](const RestUse& use) { return !use.used && use.rest.first == rest.first; });
     unused += drop ? 1U : 0U;
     return drop;
   });

@@ -51,6 +51,16 @@ void add_differences(const std::vector<double>& means, std::size_t m, AllanSum& 
 
 constexpr double block_length_s = 0.5;
 
+// By which readings differ at least, where they do; 0 where they never do.
+double smallest_step(View<double> accel) {
+  double step = 0.0;
+  for (std::size_t k = 1; k < accel.size(); ++k) {
+    const double difference = std::abs(accel[k] - accel[k - 1]);
+    if (difference > 0.0 && (step == 0.0 || difference < step)) step = difference;
+  }
+  return step;
+}
+
 }  // namespace
 
 LevelNoise level_noise(View<double> accel, const std::vector<signal::Rest>& rests, double rate_hz) {
@@ -69,6 +79,12 @@ LevelNoise level_noise(View<double> accel, const std::vector<signal::Rest>& rest
   if (freedom > 0.0) noise.sample_std_mps2 = std::sqrt(blocks.within / freedom);
   const double white = noise.sample_std_mps2 * noise.sample_std_mps2 /
                        static_cast<double>(std::max<std::size_t>(noise.block, 1));
+  if (!(noise.sample_std_mps2 > 0.0)) {
+    // Readings that do not change at rest are off by their step, however many there are.
+    const double step = smallest_step(accel);
+    noise.variance_m2ps4 = std::max(step * step / 12.0, 1e-18);
+    return noise;
+  }
   // A scatter of few differences says less than that of the samples.
   constexpr std::size_t enough = 8;
   const double n = static_cast<double>(std::min(one.count, enough)) / enough;

@@ -13,11 +13,11 @@ namespace proofmass::estimate {
 /// How far the mean of a block of resting readings is off, whatever their correlation: from the
 /// scatter of successive blocks.
 struct LevelNoise {
-  std::size_t block = 1;          ///< samples
+  std::size_t block = 1;  ///< samples
   double block_s = 0.0;
-  double variance_m2ps4 = 0.0;    ///< of the mean of one block
-  double walk_m2ps5 = 0.0;        ///< by which the level wanders at rest
-  double sample_std_mps2 = 0.0;   ///< of one reading about its block's mean
+  double variance_m2ps4 = 0.0;   ///< of the mean of one block
+  double walk_m2ps5 = 0.0;       ///< by which the level wanders at rest
+  double sample_std_mps2 = 0.0;  ///< of one reading about its block's mean
   /// N² of noise that is white from the length of a block on.
   [[nodiscard]] double white_m2ps3() const { return variance_m2ps4 * block_s; }
 };
@@ -36,8 +36,8 @@ struct TrackReadings {
     std::size_t sample;
     double position_m, variance_m2;
   };
-  std::vector<Fix> fixes;           ///< ascending
-  std::vector<std::size_t> turns;   ///< ascending; the velocity is 0
+  std::vector<Fix> fixes;          ///< ascending
+  std::vector<std::size_t> turns;  ///< ascending; the velocity is 0
 };
 
 /// The accelerations along one axis: NaN where there is no reading.

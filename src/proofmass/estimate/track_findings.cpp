@@ -26,37 +26,43 @@ void tell_of_rests(const TrackOptions& options, TrackSolution& solution) {
                      "no noise of a resting sensor to go by (readings of several sensors fused, or "
                      "smoothed): rests are where it is quiet against the motion"});
   if (solution.cruises > 0)
-    notes.push_back({Severity::warning,
-                     text("%zu quiet stretches are no rests: at half the speed or more the velocity "
-                          "was not 0 there, and they are louder than the quietest rest",
-                          solution.cruises)});
+    notes.push_back(
+        {Severity::warning,
+         text("%zu quiet stretches are no rests: at half the speed or more the velocity "
+              "was not 0 there, and they are louder than the quietest rest",
+              solution.cruises)});
   if (solution.false_rests > 0)
-    notes.push_back({Severity::info,
-                     text("%zu short quiet stretches are no rests: velocity and level there are not "
-                          "what the motion between the long rests leads to",
-                          solution.false_rests)});
+    notes.push_back(
+        {Severity::info,
+         text("%zu short quiet stretches are no rests: velocity and level there are not "
+              "what the motion between the long rests leads to",
+              solution.false_rests)});
   if (std::all_of(solution.series.resting.begin(), solution.series.resting.end(),
                   [](unsigned char rests) { return rests != 0; }))
-    notes.push_back({Severity::info, "the sensor lay still throughout: there is no motion to measure"});
+    notes.push_back(
+        {Severity::info, "the sensor lay still throughout: there is no motion to measure"});
   else if (solution.rests.size() == 1 && options.fixes.empty())
     notes.push_back({Severity::warning,
                      "only one rest: no second one checks the velocity, so that the band rests on "
                      "what is usual; let the sensor lie still for 2 s at the end too"});
 }
 
-void tell_of_scale(const TrackSignal& signal, const TrackOptions& options, TrackSolution& solution) {
+void tell_of_scale(const TrackSignal& signal,
+                   const TrackOptions& options,
+                   TrackSolution& solution) {
   if (options.scale_std) return;
   if (signal.resting_norm_mps2 && signal.gravity == GravityContent::present)
     solution.notes.push_back(
         {Severity::info,
-         text("not calibrated: gravity reads %.4g m/s^2 at rest where it is %.4g; lengths are taken "
-              "to be good to %.2g %%",
-              *signal.resting_norm_mps2, options.gravity_mps2, 100.0 * solution.scale_std)});
+         text(
+             "not calibrated: gravity reads %.4g m/s^2 at rest where it is %.4g; lengths are taken "
+             "to be good to %.2g %%",
+             *signal.resting_norm_mps2, options.gravity_mps2, 100.0 * solution.scale_std)});
   else
-    solution.notes.push_back({Severity::info,
-                              text("not calibrated: the scale of the readings is taken to be good "
-                                   "to %.2g %%; --sensor FILE.toml says better",
-                                   100.0 * solution.scale_std)});
+    solution.notes.push_back(
+        {Severity::info, text("not calibrated: the scale of the readings is taken to be good "
+                              "to %.2g %%; --sensor FILE.toml says better",
+                              100.0 * solution.scale_std)});
 }
 
 void tell_of_turning(TrackSolution& solution) {
@@ -67,6 +73,22 @@ void tell_of_turning(TrackSolution& solution) {
          text("between two rests the sensor turned by %.2g deg: gravity leans into the axis, which "
               "the band holds as far as the rests show it; gyroscope channels would tell it",
               *solution.turned_rad / degree)});
+}
+
+// What errs in motion but not at rest is mostly gravity, as the sensor leans.
+void tell_of_leaning(const TrackOptions& options, TrackSolution& solution) {
+  constexpr double noticed_rad = 1.0 * degree;
+  const MotionErrorFigures& error = solution.motion_error;
+  const double t = std::max(solution.budget.longest_motion_s, 1e-3);
+  const double accel = std::hypot(error.jump_mps2, error.lean_mps2_rthz / std::sqrt(t),
+                                  error.walk_mps2_rts * std::sqrt(t));
+  const double lean_rad = accel / options.gravity_mps2;
+  if (solution.axis_in_world || lean_rad < noticed_rad) return;
+  solution.notes.push_back(
+      {Severity::warning,
+       text("in motion the readings err by some %.2g m/s^2, as if the sensor leaned by %.2g deg: "
+            "take the figures as rough; a gyroscope would tell",
+            accel, lean_rad / degree)});
 }
 
 void tell_of_jerk(TrackSolution& solution) {
@@ -91,9 +113,11 @@ Error no_stop(const TrackSignal& signal) {
 }
 
 Error hidden_motion() {
-  return {Errc::not_observable,
-          "nearly all of the recording looks like rest, yet its readings integrate to a velocity far "
-          "beyond what their noise does: slow motion cannot be told from drift; say when the sensor stood still with --still FILE"};
+  return {
+      Errc::not_observable,
+      "nearly all of the recording looks like rest, yet its readings integrate to a velocity far "
+      "beyond what their noise does: slow motion cannot be told from drift; say when the sensor "
+      "stood still with --still FILE"};
 }
 
 double scale_std(const TrackSignal& signal, const TrackOptions& options) {
@@ -107,6 +131,7 @@ void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackS
   tell_of_jerk(solution);
   tell_of_rests(options, solution);
   tell_of_turning(solution);
+  if (!solution.suspected_jerk) tell_of_leaning(options, solution);
   tell_of_scale(signal, options, solution);
   if (solution.missing > 0)
     solution.notes.push_back(
@@ -115,10 +140,10 @@ void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackS
               "of the motion around",
               solution.missing)});
   if (solution.travel_share < 0.8 && !solution.axis_given)
-    solution.notes.push_back({Severity::warning,
-                              text("only %.0f %% of the motion is along one axis: the displacement "
-                                   "is that along its longest direction",
-                                   100.0 * solution.travel_share)});
+    solution.notes.push_back(
+        {Severity::warning, text("only %.0f %% of the motion is along one axis: the displacement "
+                                 "is that along its longest direction",
+                                 100.0 * solution.travel_share)});
 }
 
 }  // namespace proofmass::estimate

@@ -10,10 +10,21 @@ namespace proofmass::estimate {
 namespace {
 
 constexpr double speed_at_start_mps = 10.0;
-constexpr double gap_steps = 2.5;        // a longer step between samples is a gap
+constexpr double gap_steps = 2.5;          // a longer step between samples is a gap
 constexpr double carried_mps2_rts = 3e-3;  // walk with which the axis is looked for
 
 }  // namespace
+
+std::optional<double> density_along(const std::array<std::optional<double>, 3>& figures,
+                                    const std::array<double, 3>& axis) {
+  double sum = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (axis[a] == 0.0) continue;
+    if (!figures[a]) return std::nullopt;
+    sum += axis[a] * axis[a] * *figures[a] * *figures[a];
+  }
+  return std::sqrt(sum);
+}
 
 AxisRun prepare_axis(const TrackSignal& signal,
                      View<double> accel,
@@ -21,7 +32,8 @@ AxisRun prepare_axis(const TrackSignal& signal,
                      const AxisNoise& known) {
   AxisRun run;
   run.level = level_noise(accel, readings.rests, signal.rate_hz);
-  const AxisSignal axis{signal.time_s, accel, std::max(moments(accel).std(), 1e-6), gap_steps / signal.rate_hz};
+  const AxisSignal axis{signal.time_s, accel, std::max(moments(accel).std(), 1e-6),
+                        gap_steps / signal.rate_hz};
   run.made = axis_epochs(axis, readings, run.level);
   const double white = known.white_mps2_rthz.value_or(0.0);
   const double walk = known.walk_mps2_rts.value_or(0.0);
@@ -66,9 +78,9 @@ FoundAxis farthest_axis(const std::vector<std::vector<double>>& velocity,
   if (total > 0.0) found.share = eigen.values(n - 1) / total;
   for (int a = 0; a < n; ++a)
     found.direction[axes[static_cast<std::size_t>(a)]] = eigen.vectors(a, n - 1);
-  const double largest = *std::max_element(
-      found.direction.begin(), found.direction.end(),
-      [](double x, double y) { return std::abs(x) < std::abs(y); });
+  const double largest =
+      *std::max_element(found.direction.begin(), found.direction.end(),
+                        [](double x, double y) { return std::abs(x) < std::abs(y); });
   if (largest < 0.0)
     for (double& x : found.direction) x = -x;
   return found;

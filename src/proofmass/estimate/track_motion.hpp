@@ -23,6 +23,10 @@ struct AxisNoise {
   std::optional<double> white_mps2_rthz, walk_mps2_rts;
 };
 
+/// A density along the axis, of figures for each of the sensor's; absent where one is.
+[[nodiscard]] std::optional<double> density_along(
+    const std::array<std::optional<double>, 3>& figures, const std::array<double, 3>& axis);
+
 /// Without the errors of motion.
 [[nodiscard]] AxisRun prepare_axis(const TrackSignal& signal,
                                    View<double> accel_mps2,

@@ -10,7 +10,9 @@
 namespace proofmass::estimate {
 namespace {
 
-Error bad(std::string message) { return {Errc::invalid_argument, std::move(message)}; }
+Error bad(std::string message) {
+  return {Errc::invalid_argument, std::move(message)};
+}
 
 std::string figure(double value) {
   char text[32];
@@ -27,7 +29,9 @@ std::array<double, 3> level_of(const TrackSignal& signal, const signal::Rest& re
   return level;
 }
 
-double norm(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
+double norm(const std::array<double, 3>& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
 
 // Median length of the rests' levels.
 std::optional<double> resting_norm(const TrackSignal& signal) {
@@ -41,13 +45,15 @@ Result<GravityContent> gravity_content(double norm_mps2, double gravity_mps2) {
   const double share = norm_mps2 / gravity_mps2;
   if (std::abs(share - 1.0) < 0.1) return GravityContent::present;
   if (std::abs(norm_mps2 - 1.0) < 0.08)
-    return bad("at rest the readings are " + figure(norm_mps2) +
-               " m/s^2 long, which is gravity in g: give --unit g, or --gravity removed if they are "
-               "m/s^2 with an offset");
+    return bad(
+        "at rest the readings are " + figure(norm_mps2) +
+        " m/s^2 long, which is gravity in g: give --unit g, or --gravity removed if they are "
+        "m/s^2 with an offset");
   if (std::abs(share / gravity_mps2 - 1.0) < 0.1)
     return bad("at rest the readings are " + figure(norm_mps2) +
                " m/s^2 long, which is gravity in m/s^2 taken for g: give --unit m/s2");
-  if (std::abs(share * 1e3 / gravity_mps2 - 1.0) < 0.1 || std::abs(share / 1e3 * gravity_mps2 - 1.0) < 0.1)
+  if (std::abs(share * 1e3 / gravity_mps2 - 1.0) < 0.1 ||
+      std::abs(share / 1e3 * gravity_mps2 - 1.0) < 0.1)
     return bad("at rest the readings are " + figure(norm_mps2) +
                " m/s^2 long, which is gravity in another unit: give --unit");
   if (share < 0.1) return GravityContent::removed;
@@ -178,8 +184,8 @@ std::optional<double> largest_turn_rad(const TrackSignal& signal) {
   for (const signal::Rest& rest : signal.stops.rests) {
     const auto d = level_of(signal, rest);
     const std::array f{g[0] + d[0], g[1] + d[1], g[2] + d[2]};
-    const double sine = norm({g[1] * f[2] - g[2] * f[1], g[2] * f[0] - g[0] * f[2],
-                              g[0] * f[1] - g[1] * f[0]});
+    const double sine =
+        norm({g[1] * f[2] - g[2] * f[1], g[2] * f[0] - g[0] * f[2], g[0] * f[1] - g[1] * f[0]});
     const double cosine = g[0] * f[0] + g[1] * f[1] + g[2] * f[2];
     largest = std::max(largest, std::atan2(sine, cosine));
   }

@@ -17,10 +17,10 @@ namespace proofmass::estimate {
 struct TrackSignal {
   std::vector<double> time_s;
   std::vector<std::vector<double>> accel_mps2;
-  std::vector<std::size_t> axes;        ///< 0 x, 1 y, 2 z: which of the sensor's each is
-  std::vector<double> reference_mps2;   ///< taken off each
-  double rate_hz = 0.0;                 ///< 1 / median step
-  std::size_t missing = 0;              ///< samples without a reading
+  std::vector<std::size_t> axes;       ///< 0 x, 1 y, 2 z: which of the sensor's each is
+  std::vector<double> reference_mps2;  ///< taken off each
+  double rate_hz = 0.0;                ///< 1 / median step
+  std::size_t missing = 0;             ///< samples without a reading
   Stops stops;
   GravityContent gravity = GravityContent::unknown;
   std::optional<double> resting_norm_mps2;  ///< median length of the level at rest, of three axes

@@ -32,7 +32,8 @@ Coverages cover(Carriage carriage, std::size_t runs) {
     if (!track) continue;
     const TrackSeries& series = track->series;
     const auto at = [&](std::size_t k, Coverage& into) {
-      into.add(series.position_m[k] - made.position_m[k], track->factor_95 * series.position_std_m[k]);
+      into.add(series.position_m[k] - made.position_m[k],
+               track->factor_95 * series.position_std_m[k]);
     };
     const std::size_t n = series.time_s.size();
     at(n - 1, found.end);
@@ -63,10 +64,9 @@ TEST(TrackCoverage, NinetyFivePercentBandsFromRestToRestHoldTheTruthInNinetyThre
 
 // One closure says little of what errs in motion: the bands are wider than they had to be.
 TEST(TrackCoverage, OneMotionAloneIsNeverTooSure) {
-  const Coverages found = cover({.strokes_m = {0.5, -0.5, 0.5, -0.5, 0.5, -0.5, 0.5, -0.5},
-                                 .dwell_s = 4.0,
-                                 .harmonic = true},
-                                400);
+  const Coverages found = cover(
+      {.strokes_m = {0.5, -0.5, 0.5, -0.5, 0.5, -0.5, 0.5, -0.5}, .dwell_s = 4.0, .harmonic = true},
+      400);
   EXPECT_GT(found.end.of, 390.0);
   EXPECT_GT(found.end.share(), 0.93);
   EXPECT_GT(found.on_the_way.share(), 0.93);

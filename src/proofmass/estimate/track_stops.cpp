@@ -13,7 +13,7 @@ namespace {
 // Means and scatter of the axes over blocks of samples.
 struct Blocks {
   std::size_t length = 0;
-  std::vector<double> scatter;             // root of the sum over axes; NaN without readings
+  std::vector<double> scatter;  // root of the sum over axes; NaN without readings
   std::vector<std::array<double, 3>> mean;
 };
 
@@ -98,8 +98,8 @@ Stops find_stops(View<View<double>> axes,
     told.rests = united(std::move(told.rests));
     return told;
   }
-  signal::RestSearch search = signal::find_rests(
-      axes, {.rate_hz = rate_hz, .shortest_s = options.shortest_rest_s});
+  signal::RestSearch search =
+      signal::find_rests(axes, {.rate_hz = rate_hz, .shortest_s = options.shortest_rest_s});
   Stops stops{std::move(search.rests), false, std::move(search.why_none)};
   if (stops.rests.empty()) {
     stops.rests = quiet_stretches(axes, rate_hz, options.shortest_rest_s.value_or(0.5));

@@ -15,8 +15,8 @@ struct Stops {
 };
 
 /// The rests of signal::find_rests(); where it finds none, stretches that are quiet against the
-/// motion: what fuses an accelerometer with other sensors has no noise of its own to go by. Where the
-/// user says when it stood still, that alone.
+/// motion: what fuses an accelerometer with other sensors has no noise of its own to go by. Where
+/// the user says when it stood still, that alone.
 [[nodiscard]] Stops find_stops(View<View<double>> axes,
                                View<double> time_s,
                                double rate_hz,
@@ -25,7 +25,8 @@ struct Stops {
 /// Stretches of windows of half a second whose readings scatter by less than four times what the
 /// quietest tenth does and whose means stay within that; none unless the record is five times as
 /// loud elsewhere.
-[[nodiscard]] std::vector<signal::Rest> quiet_stretches(View<View<double>> axes, double rate_hz,
+[[nodiscard]] std::vector<signal::Rest> quiet_stretches(View<View<double>> axes,
+                                                        double rate_hz,
                                                         double shortest_s);
 
 }  // namespace proofmass::estimate

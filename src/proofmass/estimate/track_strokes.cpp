@@ -13,8 +13,7 @@ using Motions = std::vector<std::vector<std::size_t>>;
 
 std::vector<double> swings_of(View<double> p, const std::vector<std::size_t>& turns) {
   std::vector<double> swings;
-  for (std::size_t i = 1; i < turns.size(); ++i)
-    swings.push_back(p[turns[i]] - p[turns[i - 1]]);
+  for (std::size_t i = 1; i < turns.size(); ++i) swings.push_back(p[turns[i]] - p[turns[i - 1]]);
   return swings;
 }
 
@@ -49,7 +48,9 @@ class TurnCovariance {
   double scale_std_;
 };
 
-Stroke stroke_of(const std::vector<std::size_t>& turns, const SwingPair& pair, View<double> time_s) {
+Stroke stroke_of(const std::vector<std::size_t>& turns,
+                 const SwingPair& pair,
+                 View<double> time_s) {
   Stroke stroke;
   stroke.first = turns[pair.out];
   stroke.turn = turns[pair.out + 1];
@@ -61,8 +62,10 @@ Stroke stroke_of(const std::vector<std::size_t>& turns, const SwingPair& pair, V
 }
 
 // Sum of the swings, each with its sign: linear in the positions of the turns.
-double path_std(const Motions& motions, const std::vector<std::vector<double>>& swings,
-                const TurnCovariance& cov, double scale_std) {
+double path_std(const Motions& motions,
+                const std::vector<std::vector<double>>& swings,
+                const TurnCovariance& cov,
+                double scale_std) {
   std::vector<double> weight;
   double path = 0.0;
   for (std::size_t m = 0; m < motions.size(); ++m) {
@@ -77,7 +80,8 @@ double path_std(const Motions& motions, const std::vector<std::vector<double>>& 
   }
   double variance = 0.0;
   for (std::size_t i = 0; i < weight.size(); ++i)
-    for (std::size_t j = 0; j < weight.size(); ++j) variance += weight[i] * weight[j] * cov.at(i, j);
+    for (std::size_t j = 0; j < weight.size(); ++j)
+      variance += weight[i] * weight[j] * cov.at(i, j);
   return std::hypot(std::sqrt(std::max(0.0, variance)), scale_std * path);
 }
 

@@ -50,6 +50,16 @@ TEST(Track, WithoutNoiseIsExactToATenthOfAMillimetre) {
   EXPECT_NEAR(found.smoother->displacement_m.value, 0.0, 1e-4);
 }
 
+TEST(Track, ReadingsThatDoNotChangeAtRestAreNoBetterThanTheirStep) {
+  Carriage carriage{.noise_std_mps2 = 0.0};
+  CarriageRecord made = record(carriage);
+  for (auto& axis : made.sensor.accel_mps2)
+    for (double& value : axis) value = 0.01 * std::round(value / 0.01);
+  const TrackSolution found = track(made);
+  EXPECT_TRUE(std::isfinite(found.smoother->displacement_m.std));
+  EXPECT_NEAR(found.smoother->peak_m.value, 0.4, 4.0 * found.smoother->peak_m.std);
+}
+
 TEST(Track, FindsTheAxisOfTheMotionWhereverItPoints) {
   Carriage carriage;
   carriage.direction = {0.36, 0.48, -0.8};
@@ -72,7 +82,8 @@ TEST(Track, NeedsNoGravityAndSaysWhichItFound) {
 }
 
 TEST(Track, CountsThereAndBackWithoutARestBetweenAsOneStroke) {
-  Carriage carriage{.strokes_m = {0.5, -0.5, 0.5, -0.5, 0.5, -0.5}, .stroke_s = 1.0, .harmonic = true};
+  Carriage carriage{
+      .strokes_m = {0.5, -0.5, 0.5, -0.5, 0.5, -0.5}, .stroke_s = 1.0, .harmonic = true};
   const TrackSolution found = track(record(carriage));
   ASSERT_EQ(found.strokes.size(), 3U);
   for (const Stroke& stroke : found.strokes) {
@@ -86,8 +97,11 @@ TEST(Track, CountsThereAndBackWithoutARestBetweenAsOneStroke) {
 // Where a harmonic motion turns, its acceleration stands still for a moment.
 TEST(Track, TakesNoTurningPointForARest) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Carriage carriage{.strokes_m = {0.5, -0.5, 0.5, -0.5}, .stroke_s = 2.5, .dwell_s = 4.0,
-                      .harmonic = true, .seed = seed};
+    Carriage carriage{.strokes_m = {0.5, -0.5, 0.5, -0.5},
+                      .stroke_s = 2.5,
+                      .dwell_s = 4.0,
+                      .harmonic = true,
+                      .seed = seed};
     const TrackSolution found = track(record(carriage));
     EXPECT_EQ(found.rests.size(), 2U) << seed;
     EXPECT_EQ(found.strokes.size(), 2U) << seed;
@@ -195,9 +209,9 @@ CarriageRecord lift(bool derivative) {
   const auto accel = [](double t) {
     const auto push = [&](double begin, double sign) {
       const double s = (t - begin) / 3.0;
-      return s > 0.0 && s < 1.0 ? sign * 0.8 * std::sin(std::numbers::pi * s) *
-                                      std::sin(std::numbers::pi * s)
-                                : 0.0;
+      return s > 0.0 && s < 1.0
+                 ? sign * 0.8 * std::sin(std::numbers::pi * s) * std::sin(std::numbers::pi * s)
+                 : 0.0;
     };
     return push(10.0, 1.0) + push(30.0, -1.0) + push(45.0, -1.0) + push(65.0, 1.0);
   };
@@ -246,9 +260,11 @@ TEST(Track, AGyroscopeTellsGravityFromMotion) {
   for (std::size_t k = 0; k < made.sensor.time_s.size(); ++k) {
     const double s = (made.sensor.time_s[k] - 2.0) / 4.0;
     const bool moving = s > 0.0 && s < 1.0;
-    const double bump = moving ? std::sin(std::numbers::pi * s) * std::sin(std::numbers::pi * s) : 0.0;
+    const double bump =
+        moving ? std::sin(std::numbers::pi * s) * std::sin(std::numbers::pi * s) : 0.0;
     const double tilt = 0.05 * bump;  // about y
-    const double rate = moving ? 0.05 * std::numbers::pi / 4.0 * std::sin(2.0 * std::numbers::pi * s) : 0.0;
+    const double rate =
+        moving ? 0.05 * std::numbers::pi / 4.0 * std::sin(2.0 * std::numbers::pi * s) : 0.0;
     const double a = made.accel_mps2[k];
     made.sensor.accel_mps2[0][k] = std::cos(tilt) * a - std::sin(tilt) * g + 0.02 * noise(engine);
     made.sensor.accel_mps2[2][k] = std::sin(tilt) * a + std::cos(tilt) * g + 0.02 * noise(engine);

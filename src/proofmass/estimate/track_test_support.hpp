@@ -36,8 +36,8 @@ inline std::array<double, 3> stroke_shape(double s, bool harmonic) {
     return {0.5 * (1.0 - std::cos(w * s)), 0.5 * w * std::sin(w * s),
             0.5 * w * w * std::cos(w * s)};
   }
-  return {s * s * s * (10.0 - 15.0 * s + 6.0 * s * s),
-          s * s * (30.0 - 60.0 * s + 30.0 * s * s), s * (60.0 - 180.0 * s + 120.0 * s * s)};
+  return {s * s * s * (10.0 - 15.0 * s + 6.0 * s * s), s * s * (30.0 - 60.0 * s + 30.0 * s * s),
+          s * (60.0 - 180.0 * s + 120.0 * s * s)};
 }
 
 inline CarriageRecord record(const Carriage& carriage) {

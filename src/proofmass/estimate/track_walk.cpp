@@ -34,7 +34,9 @@ Score score(View<InertialEpoch> knots, const InertialNoise& noise, const Inertia
   return score;
 }
 
-double outside(double x) { return std::erfc(x / std::numbers::sqrt2); }
+double outside(double x) {
+  return std::erfc(x / std::numbers::sqrt2);
+}
 
 // Half width of the central 95 % of a mixture of normals about 0, over the root of its variance.
 double mixture_factor(const std::vector<double>& weight, const std::vector<double>& variance) {
@@ -80,8 +82,7 @@ std::vector<InertialEpoch> without_middles(View<InertialEpoch> knots) {
   for (std::size_t k = 0; k < out.size(); ++k) {
     run = out[k].resting ? run + 1 : 0;
     const bool ends_soon = k + kept >= out.size() || !knots[k + kept].resting;
-    if (run > kept && !ends_soon && std::isnan(out[k].position_m))
-      out[k].level_mps2 = std::nan("");
+    if (run > kept && !ends_soon && std::isnan(out[k].position_m)) out[k].level_mps2 = std::nan("");
   }
   std::vector<std::size_t> read;
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -136,9 +137,11 @@ std::vector<double> surprise_of_rests(View<InertialEpoch> knots,
   bool level_due = false;
   filter(model, 0, model.size(), Gate{}, state,
          [&](std::size_t k, const StepOf<InertialAxis>& step) {
-           const bool arrives = knots[k].arrives_at_rest || (k == 0 && knots[k].velocity_std_mps > 0.0);
+           const bool arrives =
+               knots[k].arrives_at_rest || (k == 0 && knots[k].velocity_std_mps > 0.0);
            if (arrives) surprise.push_back(k == 0 ? std::nan("") : step.updates[0].nis());
-           if (knots[k].resting && level_due && step.count > 0) surprise.back() += step.updates[0].nis();
+           if (knots[k].resting && level_due && step.count > 0)
+             surprise.back() += step.updates[0].nis();
            level_due = arrives;
          });
   return surprise;

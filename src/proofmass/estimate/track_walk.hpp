@@ -15,7 +15,8 @@ namespace proofmass::estimate {
 struct MotionError {
   /// Means: variances grow straight with them.
   double walk_m2ps5 = 0.0, jump_m2ps4 = 0.0, lean_m2ps3 = 0.0;
-  double factor_95 = 1.96;  ///< half width of a 95 % interval in standard deviations, by the mixture
+  double factor_95 =
+      1.96;  ///< half width of a 95 % interval in standard deviations, by the mixture
 };
 
 /// Weight ∝ likelihood of the readings · prior. Each of the three is nothing with probability 3/4,
@@ -24,11 +25,11 @@ struct MotionError {
 /// than at rest. Source for the mixture in place of one value: A. Gelman et al., Bayesian Data
 /// Analysis (2013), section 5. Cost: 1728 passes over the knots.
 [[nodiscard]] MotionError motion_error(View<InertialEpoch> knots,
-                                     InertialNoise noise,
-                                     const InertialStart& start);
+                                       InertialNoise noise,
+                                       const InertialStart& start);
 
-/// How little each rest was expected, in their order: yᵀ S⁻¹ y of the velocity on arrival and of the
-/// first level there, two degrees of freedom. NaN of a rest at the very start.
+/// How little each rest was expected, in their order: yᵀ S⁻¹ y of the velocity on arrival and of
+/// the first level there, two degrees of freedom. NaN of a rest at the very start.
 [[nodiscard]] std::vector<double> surprise_of_rests(View<InertialEpoch> knots,
                                                     const InertialNoise& noise,
                                                     const InertialStart& start);

@@ -56,8 +56,8 @@ std::optional<Steady<N>> settle(const LinearModel<N, 1>& model) {
   for (std::size_t left = lane_length; left > 0; left /= 2, decay = (decay * decay).eval())
     if (left % 2 == 1) steady.lane_decay = (steady.lane_decay * decay).eval();
   // Rounding of a step, and what is left of it after so many.
-  steady.tolerance =
-      std::max(1e-12, 8.0 * std::numeric_limits<double>::epsilon() * limit->slowest_steps);
+  steady.tolerance = std::clamp(
+      8.0 * std::numeric_limits<double>::epsilon() * limit->slowest_steps, 1e-12, 1e-10);
   return steady;
 }
 

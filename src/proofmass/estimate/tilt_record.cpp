@@ -1,0 +1,130 @@
+#include "proofmass/estimate/tilt_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "proofmass/core/statistics.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+constexpr double still_share = 0.9;
+constexpr std::size_t fewest_moving = 50;
+
+Status check_lengths(const TiltRecord& record, std::size_t& samples) {
+  const auto& axes = record.accel_mps2;
+  const auto first = std::ranges::find_if(axes, [](const auto& axis) { return !axis.empty(); });
+  if (first == axes.end()) return Error{Errc::invalid_argument, "no accelerometer axis"};
+  samples = first->size();
+  const auto fits = [&](const auto& values) { return values.empty() || values.size() == samples; };
+  if (!std::ranges::all_of(axes, fits) || !std::ranges::all_of(record.rate_radps, fits) ||
+      !fits(record.time_s))
+    return Error{Errc::invalid_argument, "channels of different length"};
+  for (std::size_t k = 0; k < record.time_s.size(); ++k)
+    if (!std::isfinite(record.time_s[k]) || (k > 0 && record.time_s[k] < record.time_s[k - 1]))
+      return Error{Errc::invalid_argument,
+                   "time must ascend, but does not at sample " + std::to_string(k)};
+  return Done{};
+}
+
+// Refuses what cannot be the force on a body under gravity, by its median norm.
+Status check_force(const TiltRecord& record, const TiltOptions& options, TiltSolution& solution) {
+  std::vector<double> norms;
+  for (std::size_t k = 0; k < solution.samples; ++k) {
+    const Mat<3> f = vector_at(record.accel_mps2, k);
+    const auto present = static_cast<std::size_t>(f.array().isFinite().count());
+    if (present < solution.axes)
+      ++solution.unusable;
+    else
+      norms.push_back(f.norm());
+  }
+  if (norms.empty()) return Error{Errc::too_few_samples, "no sample has a reading on every axis"};
+  if (solution.axes < 3) return Done{};
+  const double usual = *median(norms), g = options.gravity_mps2.value;
+  if (usual < 0.5 * g || usual > 2.0 * g)
+    return Error{Errc::not_observable,
+                 "the force has a median of " + decimal(usual) + " m/s^2 where gravity is " +
+                     decimal(g) +
+                     (usual < g ? ": gravity was removed from it, or its unit is another"
+                                : ": its unit is another, or it needs a calibration")};
+  return Done{};
+}
+
+void note_unusable(TiltSolution& solution) {
+  if (solution.unusable == 0) return;
+  solution.notes.push_back({Severity::warning, std::to_string(solution.unusable) + " of " +
+                                                   std::to_string(solution.samples) +
+                                                   " samples lack a reading on some axis"});
+}
+
+}  // namespace
+
+std::string decimal(double value) {
+  const double hundredths = std::round(std::abs(value) * 100.0);
+  std::string fraction = std::to_string(static_cast<long long>(hundredths) % 100);
+  if (fraction.size() == 1) fraction.insert(0, "0");
+  return (value < 0.0 ? "-" : "") + std::to_string(static_cast<long long>(hundredths) / 100) + "." +
+         fraction;
+}
+
+bool has_rates(const TiltRecord& record) {
+  return std::ranges::all_of(record.rate_radps, [](const auto& axis) { return !axis.empty(); });
+}
+
+Mat<3> vector_at(const std::array<std::vector<double>, 3>& axes, std::size_t k) {
+  Mat<3> out = Mat<3>::Constant(std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!axes[i].empty() && std::isfinite(axes[i][k]))
+      out(static_cast<Eigen::Index>(i)) = axes[i][k];
+  return out;
+}
+
+Status check_record(const TiltRecord& record, const TiltOptions& options, TiltSolution& solution) {
+  if (Status fits = check_lengths(record, solution.samples); !fits) return fits;
+  for (const auto& axis : record.accel_mps2) solution.axes += axis.empty() ? 0 : 1;
+  if (Status force = check_force(record, options, solution); !force) return force;
+  note_unusable(solution);
+  return Done{};
+}
+
+signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options) {
+  std::vector<View<double>> axes;
+  for (const auto& axis : record.accel_mps2)
+    if (!axis.empty()) axes.emplace_back(axis);
+  double rate_hz = 0.0;
+  if (record.time_s.size() > 1) {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < record.time_s.size(); ++k)
+      steps.push_back(record.time_s[k] - record.time_s[k - 1]);
+    const double step = median(steps).value_or(0.0);
+    if (step > 0.0) rate_hz = 1.0 / step;
+  }
+  return signal::find_rests(axes, {.rate_hz = rate_hz, .shortest_s = options.shortest_rest_s});
+}
+
+Result<bool> is_moving(const TiltRecord& record,
+                       const TiltOptions& options,
+                       const signal::RestSearch& found,
+                       const TiltSolution& solution) {
+  std::size_t resting = 0;
+  for (const signal::Rest& rest : found.rests) resting += rest.last - rest.first + 1;
+  const bool mostly =
+      static_cast<double>(resting) >= still_share * static_cast<double>(solution.samples);
+  const bool timed = record.time_s.size() > 1;
+  if (options.base == TiltBase::still || (options.base == TiltBase::automatic && mostly))
+    return false;
+  const bool can_follow = timed && solution.axes == 3;
+  if (options.base == TiltBase::automatic && !can_follow && !found.rests.empty()) return false;
+  if (!timed)
+    return Error{Errc::not_observable, "a moving base takes time: give a time column or the rate"};
+  if (solution.axes < 3)
+    return Error{Errc::not_observable, "a moving base takes three axes, not " +
+                                           std::to_string(solution.axes) +
+                                           "; if it is still, say so"};
+  if (solution.samples < solution.unusable + fewest_moving)
+    return Error{Errc::too_few_samples, "a moving base takes at least 50 readings"};
+  return true;
+}
+
+}  // namespace proofmass::estimate

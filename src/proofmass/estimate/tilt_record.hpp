@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/estimate/tilt.hpp"
+#include "proofmass/signal/rests.hpp"
+
+// What a record holds, and whether tilt can be told from it. Private to the module's tilt*.cpp.
+namespace proofmass::estimate {
+
+/// All three channels of the gyroscope are there.
+[[nodiscard]] bool has_rates(const TiltRecord& record);
+
+/// Three axes at one sample; NaN where an axis is not there or not finite.
+[[nodiscard]] Mat<3> vector_at(const std::array<std::vector<double>, 3>& axes, std::size_t k);
+
+/// Sets samples, axes and unusable, and notes the latter.
+/// Errors: as of estimate_tilt; not_observable where the median force cannot be gravity's.
+[[nodiscard]] Status check_record(const TiltRecord& record,
+                                  const TiltOptions& options,
+                                  TiltSolution& solution);
+
+/// The stretches in which the accelerometer lay still.
+[[nodiscard]] signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options);
+
+/// Whether the base moves. Errors: not_observable, too_few_samples where it does and cannot be
+/// followed.
+[[nodiscard]] Result<bool> is_moving(const TiltRecord& record,
+                                     const TiltOptions& options,
+                                     const signal::RestSearch& found,
+                                     const TiltSolution& solution);
+
+/// A number with two decimals, for sentences.
+[[nodiscard]] std::string decimal(double value);
+
+}  // namespace proofmass::estimate

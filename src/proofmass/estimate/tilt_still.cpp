@@ -1,0 +1,119 @@
+#include "proofmass/estimate/tilt_still.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "proofmass/estimate/tilt_record.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+void put(const std::optional<Uncertain>& angle, double& value, double& std) {
+  value = angle ? angle->value : none;
+  std = angle ? angle->std : none;
+}
+
+// Variance of white readings whose mean over the rest is as good as that of the readings.
+Mat<3> noise_of_one(const TiltRecord& record, const TiltRest& rest) {
+  Mat<3> out = Mat<3>::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (record.accel_mps2[i].empty()) continue;
+    const StretchMean mean = stretch_mean(
+        View<double>(record.accel_mps2[i]).subspan(rest.first, rest.last - rest.first + 1), 0.0);
+    out(static_cast<Eigen::Index>(i)) = mean.variance * static_cast<double>(mean.count);
+  }
+  return out;
+}
+
+}  // namespace
+
+void find_rests(const TiltRecord& record,
+                const TiltOptions& options,
+                const std::vector<signal::Rest>& found,
+                TiltSolution& solution) {
+  std::array<double, 3> steps{};
+  for (std::size_t i = 0; i < 3; ++i) steps[i] = least_step(record.accel_mps2[i]);
+  solution.rests.clear();
+  for (const signal::Rest& rest : found)
+    solution.rests.push_back(rest_of(record, options, rest, steps));
+}
+
+void judge_norm(TiltOptions& options, TiltSolution& solution) {
+  const ForceSpread spread(options);
+  double squares = 0.0, count = 0.0;
+  for (const TiltRest& rest : solution.rests) {
+    if (!rest.norm_mps2) continue;
+    const double off = rest.norm_mps2->value - options.gravity_mps2.value;
+    squares += off * off;
+    count += 1.0;
+  }
+  const double off = count > 0.0 ? std::sqrt(squares / count) : 0.0;
+  const bool unknown = !spread.knows_calibration() && options.bias_std_mps2 == 0.0;
+  if (unknown && off > 2.0 * options.gravity_mps2.std) {
+    options.bias_std_mps2 = off;
+    solution.notes.push_back(
+        {Severity::warning,
+         "at rest the force departs from gravity by " + decimal(off) +
+             " m/s^2, and nothing says how well the sensor is calibrated: each axis is taken to be "
+             "off by as much; a sensor file tells better"});
+  } else if (unknown) {
+    solution.notes.push_back(
+        {Severity::warning,
+         "nothing says how well the sensor is calibrated: standard deviations count its noise "
+         "alone, and a bias of 0.1 m/s^2 tilts by 0.6 degrees; give --sensor or --bias-std"});
+  } else if (count > 0.0 && solution.rests.front().norm_mps2 &&
+             off > 3.0 * std::hypot(solution.rests.front().norm_mps2->std,
+                                    options.gravity_mps2.std)) {
+    solution.notes.push_back(
+        {Severity::warning,
+         "at rest the force departs from gravity by " + decimal(off) +
+             " m/s^2, more than three standard deviations of the calibration: the sensor has "
+             "changed, or it was not at rest"});
+  }
+}
+
+void make_series(const TiltRecord& record, TiltSolution& solution) {
+  TiltSeries& s = solution.series;
+  s.time_s = record.time_s;
+  for (auto* values :
+       {&s.roll_rad, &s.pitch_rad, &s.roll_std_rad, &s.pitch_std_rad, &s.filtered_roll_rad,
+        &s.filtered_pitch_rad, &s.filtered_roll_std_rad, &s.filtered_pitch_std_rad})
+    values->assign(solution.samples, none);
+  s.weight.assign(solution.samples, 0.0F);
+  s.resting.assign(solution.samples, 0);
+  for (const TiltRest& rest : solution.rests)
+    std::fill(s.resting.begin() + static_cast<std::ptrdiff_t>(rest.first),
+              s.resting.begin() + static_cast<std::ptrdiff_t>(rest.last) + 1, 1);
+}
+
+void fill_still(const TiltRecord& record, const TiltOptions& options, TiltSolution& solution) {
+  const ForceSpread spread(options);
+  TiltSeries& s = solution.series;
+  for (const TiltRest& rest : solution.rests) {
+    const Mat<3, 3> noise = noise_of_one(record, rest).asDiagonal();
+    Mat<3> sum = Mat<3>::Zero();
+    double count = 0.0;
+    for (std::size_t k = rest.first; k <= rest.last; ++k) {
+      put(rest.angles.roll_rad, s.roll_rad[k], s.roll_std_rad[k]);
+      put(rest.angles.pitch_rad, s.pitch_rad[k], s.pitch_std_rad[k]);
+      const Mat<3> f = vector_at(record.accel_mps2, k);
+      if (static_cast<std::size_t>(f.array().isFinite().count()) == solution.axes) {
+        sum += f;
+        count += 1.0;
+        s.weight[k] = 1.0F;
+      }
+      const Mat<3> known = sum.array().isFinite().select(sum / std::max(count, 1.0), 0.0);
+      if (!(known.norm() > 0.0)) continue;
+      const TiltAngles angles = angles_of_some(
+          sum / count, noise / count + spread.calibration(known) + spread.alignment(known),
+          options.gravity_mps2);
+      put(angles.roll_rad, s.filtered_roll_rad[k], s.filtered_roll_std_rad[k]);
+      put(angles.pitch_rad, s.filtered_pitch_rad[k], s.filtered_pitch_std_rad[k]);
+    }
+  }
+}
+
+}  // namespace proofmass::estimate
