@@ -148,13 +148,17 @@ estimate::TiltSolution solve(const TiltCommand& command, report::TiltReport& rep
                                 .bias_std_mps2 = command.bias_std_mps2.value_or(0.0),
                                 .shortest_rest_s = command.shortest_rest_s,
                                 .progress = progress_bar(command.output)};
+  std::vector<Note> of_gravity;
   report.gravity_mps2 = options.gravity_mps2 =
-      uncertain_gravity_mps2(command.input, command.gravity_std_mps2, report.notes);
+      uncertain_gravity_mps2(command.input, command.gravity_std_mps2, of_gravity);
   const estimate::TiltRecord record = prepare(command, options, report.notes);
   auto solution = estimate::estimate_tilt(record, options);
   if (!solution)
     throw Failure(status_of(solution.error(), Stage::computing),
                   solution.error().at(command.file).message);
+  // Three axes give the direction whatever gravity is.
+  if (solution->axes < 3)
+    report.notes.insert(report.notes.end(), of_gravity.begin(), of_gravity.end());
   return std::move(solution).value();
 }
 

@@ -56,7 +56,7 @@ struct TiltRest {
   TiltShares shares{};
 };
 
-/// What the filter of a moving base takes the motion for, found by maximum likelihood.
+/// What the filter of a moving base takes the motion for, found from the recording.
 struct TiltMotion {
   bool gyroscope = false;
   /// With gyroscope its white noise in rad/s/√Hz; without, the angular acceleration that turns the
@@ -106,17 +106,17 @@ struct TiltSolution {
 ///
 /// On a moving base: an extended Kalman filter and the fixed-interval smoother (kalman.hpp) over
 ///
-///     g' = exp(−[(ω − b) Δ]×) g,   a' = e^(−Δ/τ) a + w,   b' = b + w_b,      f = g + a + n,   |g|
-///     = G,
+///     g' = exp(−[(ω − b) Δ]×) g,   a' = e^(−Δ/τ) R a + w,   b' = b + w_b,   f = g + a + n,
 ///
 /// g being gravity's reaction in sensor axes, so that no orientation is singular, and a the
 /// acceleration of the base, which turns in the sensor as g does. Without gyroscope ω is that of a
 /// great circle, driven by white angular acceleration. The variance of a rises with the square of
-/// what |f| departed from G over the last second, so that the accelerometer is told less while the
-/// base is shaken; and a reading loses weight beyond three standard deviations of its innovation
-/// (Huber). Within rests g stands, a is 0, and
-/// the gyroscope reads its bias. Noise of rates and readings, strength and time constant of a, are
-/// those of largest likelihood of the innovations.
+/// what the force departed of late from a mean that turns with the sensor (tilt_accel.hpp), so that
+/// the accelerometer is told less while the base is shaken; and a reading loses weight beyond three
+/// standard deviations of its innovation (Huber). Within rests g stands, a is 0, and the gyroscope
+/// reads its bias. Strength and time constant of a are read off the scatter of the force, the
+/// gyroscope's noise off rests; the angular acceleration without gyroscope is that of largest
+/// likelihood of the innovations.
 ///
 /// Source: F. L. Markley, J. L. Crassidis, Fundamentals of Spacecraft Attitude Determination and
 /// Control (2014), section 6.2, for vector states; A. C. Harvey, Forecasting, Structural Time
@@ -125,7 +125,7 @@ struct TiltSolution {
 /// Errors: invalid_argument (no axis, lengths that differ, time that does not ascend),
 /// too_few_samples (no reading; fewer than 50 on a moving base), not_observable (a moving base
 /// without time or with fewer than three axes; no rest and no time).
-/// Cost: some 10 µs a sample, and a second or two for the likelihood.
+/// Cost: some 20 µs a sample.
 [[nodiscard]] Result<TiltSolution> estimate_tilt(const TiltRecord& record,
                                                  const TiltOptions& options);
 

@@ -21,6 +21,7 @@ struct AxisTiltRecord {
 
 struct AxisTiltOptions {
   double rate_bias_std_radps = 0.1;  ///< of the gyroscope's bias at the start
+  double rate_scale_std = 0.05;      ///< relative error of a turn: scale, axis, lag
   Progress progress = {};
 };
 
@@ -62,8 +63,8 @@ struct AxisTiltSolution {
 ///
 /// ω the gyroscope's rate, b its bias, and d what the acceleration of the base does to the angle z
 /// that the accelerometer gives. All five figures of noise are those of largest likelihood of the
-/// innovations, which also tells how far to believe the rate. A gyroscope that is slow or off scale
-/// is not modelled: what it misses is missed.
+/// innovations, which also tells how far to believe the rate; w_θ counts besides what a gyroscope
+/// off scale, or late, makes of a turn (tilt_gyroscope.hpp).
 ///
 /// Errors: invalid_argument (lengths that differ, time that does not ascend), too_few_samples
 /// (fewer than 50 with both). Cost: 1 µs a sample, and up to a second for the likelihood.

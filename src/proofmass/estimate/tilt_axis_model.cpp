@@ -8,6 +8,7 @@
 #include <span>
 
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/tilt_gyroscope.hpp"
 #include "proofmass/fit/minimise_smooth.hpp"
 
 namespace proofmass::estimate {
@@ -53,7 +54,10 @@ Logs usual(const AxisInstants& instants) {
 AxisTiltModel::AxisTiltModel(const AxisInstants& instants,
                              const AxisTiltNoise& noise,
                              const AxisTiltOptions& options)
-    : instants_(instants), noise_(noise), rate_bias_std_radps_(options.rate_bias_std_radps) {
+    : instants_(instants),
+      noise_(noise),
+      rate_bias_std_radps_(options.rate_bias_std_radps),
+      rate_scale_std_(options.rate_scale_std) {
   Moments rates;
   for (const double rate : instants.rate_radps) rates.add(rate);
   usual_rate_radps_ = rates.std();
@@ -71,8 +75,9 @@ Transition<3, 3> AxisTiltModel::transition(const Mat<3>& x, std::size_t k) const
   step.mean(2) *= phi;
   step.F(2, 2) = phi;
   const double walk = square(noise_.rate_bias_walk_radps_rts);
-  step.Q(0, 0) = known ? square(noise_.rate_noise_radps_rthz) * h + walk * h * h * h / 3.0
-                       : square(usual_rate_radps_ * h);
+  step.Q(0, 0) = known ? square(noise_.rate_noise_radps_rthz) * h + walk * h * h * h / 3.0 +
+                             turn_variance_rad2(rate_scale_std_, square(rate), h)
+                       : square(usual_rate_radps_) * h * std::max(h, unknown_turn_s);
   step.Q(0, 1) = step.Q(1, 0) = known ? -walk * h * h / 2.0 : 0.0;
   step.Q(1, 1) = walk * h;
   step.Q(2, 2) = square(noise_.motion_std_rad) * (1.0 - phi * phi);

@@ -33,7 +33,7 @@ class AxisTiltModel {
  private:
   const AxisInstants& instants_;
   AxisTiltNoise noise_;
-  double rate_bias_std_radps_, usual_rate_radps_ = 0.0;
+  double rate_bias_std_radps_, rate_scale_std_, usual_rate_radps_ = 0.0;
 };
 
 /// ln L of the innovations, those beyond the gate by Huber's loss.

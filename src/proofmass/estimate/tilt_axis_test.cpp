@@ -39,7 +39,7 @@ Swing swing(std::size_t samples, std::uint64_t seed) {
 
 TEST(AxisTilt, FindsAngleAndBiasThroughTheMotionAndTheNoise) {
   const Swing made = swing(5000, 1);
-  const auto solution = estimate_axis_tilt(made.record, {});
+  const auto solution = estimate_axis_tilt(made.record, {.rate_scale_std = 0.0});
   ASSERT_TRUE(solution) << solution.error().message;
   Moments filtered, smoothed, raw;
   for (std::size_t k = 500; k < made.truth_rad.size(); ++k) {

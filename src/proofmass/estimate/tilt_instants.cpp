@@ -12,6 +12,8 @@ namespace proofmass::estimate {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
+// Over how long a gap the rates at its ends are believed.
+constexpr double bridged_s = 0.2;
 
 // Standard deviation of white noise as strong at low frequency as the longest rest shows.
 Mat<3> rest_std(const std::array<std::vector<double>, 3>& axes,
@@ -38,7 +40,8 @@ TiltInstants instants_of(const TiltRecord& record, const TiltSolution& solution)
   std::vector<double> steps(1, 0.0);
   for (std::size_t k = 1; k < solution.samples; ++k)
     steps.push_back(record.time_s[k] - record.time_s[k - 1]);
-  const double longest = 5.0 * median(View<double>(steps).subspan(1)).value_or(0.0);
+  const double usual_s = median(View<double>(steps).subspan(1)).value_or(0.0);
+  const double longest = std::max(5.0 * usual_s, bridged_s);
   out.resting = solution.series.resting;
   for (std::size_t k = 0; k < solution.samples; ++k) {
     out.force_mps2.push_back(vector_at(record.accel_mps2, k));

@@ -8,7 +8,7 @@
 namespace proofmass::estimate {
 
 /// Steps, forces and rates. A rate over a step is the mean of its ends, and unknown over a step
-/// five times as long as is usual.
+/// five times as long as is usual, and longer than 0.2 s.
 [[nodiscard]] TiltInstants instants_of(const TiltRecord& record, const TiltSolution& solution);
 
 /// Takes readings that a logger wrote again and again until the next came for one, and says how

@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "proofmass/estimate/rotation.hpp"
+#include "proofmass/estimate/tilt_gyroscope.hpp"
 
 namespace proofmass::estimate {
 namespace {
 
-// How long a turn lasts whose scale is wrong one way.
-constexpr double turn_s = 0.5;
 // How exactly the norm is known at the start, relative: far below what tilts.
 constexpr double norm_std = 2e-3;
 // What a rest may creep: rad in the root of a second.
@@ -40,10 +39,9 @@ void TiltModel::turn_by_gyroscope(const Mat<9>& x, std::size_t k, Transition<9, 
   step.F.topLeftCorner<3, 3>() = R;
   if (known) step.F.topRightCorner<3, 3>() = -h * cross_matrix(g);
   const double angle_variance =
-      known
-          ? (square(motion_.drive) + square(known_.rate_scale_std) * rate.squaredNorm() * turn_s) *
-                h
-          : square(known_.usual_rate_radps) * h * std::max(h, turn_s);
+      known ? square(motion_.drive) * h +
+                  turn_variance_rad2(known_.rate_scale_std, rate.squaredNorm(), h)
+            : square(known_.usual_rate_radps) * h * std::max(h, unknown_turn_s);
   step.Q.topLeftCorner<3, 3>() = angle_variance * across(g);
 }
 

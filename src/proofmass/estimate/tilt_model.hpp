@@ -41,8 +41,8 @@ struct TiltKnown {
 ///     g' = R g,   R = exp(−[(ω − b) Δ]×),   ∂g'/∂b = −Δ [g']×,   Q_g = (N² Δ + s² |ω|² Δ T) (|g|²
 ///     1 − g gᵀ)
 ///
-/// with s the gyroscope's relative error over turns of T = 0.2 s, and without gyroscope R of the
-/// great circle, ω = ġ × g / |g|²,
+/// with s the gyroscope's relative error over turns of T = 0.5 s (tilt_gyroscope.hpp), and without
+/// gyroscope R of the great circle, ω = ġ × g / |g|²,
 ///
 ///     g' = R (g + …),  ġ' = R ġ,   ∂g'/∂ġ = Δ R,   Q of white angular acceleration across g.
 class TiltModel {

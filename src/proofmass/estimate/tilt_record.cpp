@@ -82,7 +82,8 @@ Mat<3> vector_at(const std::array<std::vector<double>, 3>& axes, std::size_t k) 
 
 Status check_record(const TiltRecord& record, const TiltOptions& options, TiltSolution& solution) {
   if (Status fits = check_lengths(record, solution.samples); !fits) return fits;
-  for (const auto& axis : record.accel_mps2) solution.axes += axis.empty() ? 0 : 1;
+  for (const auto& axis : record.accel_mps2)
+    if (!axis.empty()) ++solution.axes;
   if (Status force = check_force(record, options, solution); !force) return force;
   note_unusable(solution);
   return Done{};

@@ -110,9 +110,10 @@ Page axis_page(const TiltReport& report, Page page) {
   page.sections.push_back({.heading = "Angle", .figures = axis_tilt_figures(axis)});
   page.sections.push_back(
       {.heading = "Noise, as the recording tells it",
-       .paragraphs = {"Figures of largest likelihood. What motion does to the angle of the "
-                      "accelerometer is exponentially correlated; a gyroscope that is slow or off "
-                      "scale is not modelled."},
+       .paragraphs =
+           {"Figures of largest likelihood. What motion does to the angle of the "
+            "accelerometer is exponentially correlated; of a gyroscope that is late or off "
+            "scale 5 % of every turn is in doubt."},
        .tables = {{"Noise",
                    {"Figure", "Value"},
                    {{"White noise of the gyroscope",
