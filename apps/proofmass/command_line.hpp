@@ -129,7 +129,7 @@ struct TrackCommand {
   std::string fixes, still, turns;  ///< files: positions, intervals, times of velocity 0
   double fix_std_m = 0.01;          ///< of fixes without their own
   std::optional<double> shortest_rest_s, scale_std;
-  double rest_speed_std_mps = 1e-3;
+  double rest_speed_std_mps = 1e-4;
   bool take_as_acceleration = false, no_gyro = false;
   std::string rate_unit = "rad/s";
   InputFlags input;

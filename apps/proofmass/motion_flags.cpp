@@ -99,7 +99,7 @@ void add_track_flags(CLI::App& verb, TrackCommand& command) {
       "a rest lasts at least so long (default 0.5)")
       ->check(positive());
   add("--rest-speed-std", command.rest_speed_std_mps, "M_PER_S",
-      "speed that a sensor at rest may have (default 0.001)")
+      "speed that a sensor at rest may have (default 0.0001)")
       ->check(positive());
   add("--scale-std", command.scale_std, "SHARE",
       "relative standard deviation of the readings' scale (default: of the --sensor file, or by "

@@ -56,6 +56,70 @@ class Track(CommandTest):
         smoother = document["methods"]["smoother"]
         self.assertAlmostEqual(abs(smoother["displacement_m"]), end, delta=2 * document["factor_95"] * smoother["std_m"])
 
+    def slide_of_two(self, seed=5, noise=0.02):
+        """A slide with a second sensor; where it truly ended, along the axis."""
+        self.write("two.toml", f"procedure = 'slide'\n[slide]\nsecond_sensor = true\nstrokes = 5\n"
+                               f"[sensor]\nnoise_rms_mps2 = [{noise}, {noise}, {noise}]\n")
+        self.succeed("simulate", "two.toml", "--procedure", "slide", "--seed", seed, "-o", "two.csv")
+        with open(self.folder / "two.truth.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        column = next(name for name in rows[0] if name.startswith("displacement"))
+        return float(rows[-1][column]) - float(rows[0][column])
+
+    def test_the_model_pva_agrees_with_the_inertial_one(self):
+        self.write("a.csv", strokes_csv())
+        inertial = self.document("track", "a.csv")
+        self.assertEqual(inertial["model"], "inertial")
+        pva = self.document("track", "a.csv", "--model", "pva")
+        self.assertEqual(pva["model"], "pva")
+        self.assertEqual(pva["jerk_psd"]["unit"], "m^2/s^5")
+        self.assertGreater(pva["jerk_psd"]["std"], 0)
+        self.assertEqual(len(pva["strokes"]), 3)
+        self.assertAlmostEqual(pva["methods"]["smoother"]["displacement_m"],
+                               inertial["methods"]["smoother"]["displacement_m"],
+                               delta=inertial["methods"]["smoother"]["std_m"])
+        self.assertEqual(pva["consistency"]["channels"][0]["name"], "acceleration")
+        given = self.document("track", "a.csv", "--model", "pva", "--jerk-psd", "20")
+        self.assertEqual(given["jerk_psd"]["value"], 20)
+        self.expect_failure(USAGE, "track", "a.csv", "--jerk-psd", "20")
+        self.expect_failure(USAGE, "track", "a.csv", "--model", "pva", "--jerk-psd", "0")
+        self.expect_failure(USAGE, "track", "a.csv", "--model", "fancy")
+        self.assertIn("Model pva", self.succeed("track", "a.csv", "--model", "pva", "--report", "r.html"))
+
+    def test_two_accelerometers_are_fused(self):
+        end = self.slide_of_two()
+        self.assertIn("--model fused", self.expect_failure(USAGE, "track", "two.csv"))
+        document = self.document("track", "two.csv", "--model", "fused", "--axis", "x")
+        self.check_document("track", document)
+        fused = document["fused"]
+        self.assertEqual([sensor["name"] for sensor in fused["sensors"]], ["acc", "acc2"])
+        smoother = document["methods"]["smoother"]
+        self.assertAlmostEqual(smoother["displacement_m"], end, delta=2 * document["factor_95"] * smoother["std_m"])
+        self.assertGreater(fused["variance_gain"], 1.2)
+        for sensor in fused["sensors"]:
+            self.assertGreater(sensor["std_m"], smoother["std_m"])
+        text = self.succeed("track", "two.csv", "--model", "fused", "--axis", "x", "--report", "r.html")
+        self.assertIn("acc2 alone", text)
+        self.assertIn("acc2 alone", (self.folder / "r.html").read_text())
+
+    def test_the_warm_up_of_the_sensor_file_is_followed(self):
+        lines = strokes_csv(axes="x", heading="acc_{} (m/s^2)").splitlines()
+        warm = [f"{t},{float(a) + 0.4 * (1 - math.exp(-float(t) / 5)):.7f}"
+                for t, a in (line.split(",") for line in lines[1:])]
+        self.write("warm.csv", "\n".join([lines[0]] + warm) + "\n")
+        self.write("still.csv", "start,end\n0,1.9\n4.2,5.8\n8.2,9.8\n12.2,13.8\n")
+        self.write("s.toml", "[drift]\na1 = { value = 0.4, unit = \"m/s^2\" }\n"
+                             "a2 = { value = 0.0, unit = \"m/s^2\" }\nT = { value = 5.0, unit = \"s\" }\n")
+        flags = ("warm.csv", "--model", "pva", "--still", "still.csv", "--gravity", "removed")
+        blind = self.smoothed(*flags)
+        known = self.smoothed(*flags, "--sensor", "s.toml", "--since-switch-on", "0")
+        self.assertLess(known["std_m"], blind["std_m"])
+        self.assertLess(abs(known["displacement_m"]), 4 * known["std_m"])
+
+    def test_one_accelerometer_cannot_be_fused(self):
+        self.write("a.csv", strokes_csv())
+        self.assertIn("2 to 4", self.expect_failure(USAGE, "track", "a.csv", "--model", "fused"))
+
     def test_one_axis_without_a_letter_will_do_and_a_magnitude_beside_three_stays_out(self):
         self.write("one.csv", strokes_csv(heading="Acceleration (m/s^2)", axes=["x"]))
         document = self.document("track", "one.csv")

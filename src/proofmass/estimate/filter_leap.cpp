@@ -58,8 +58,7 @@ Leap<N> chained(const Leap<N>& first, const Leap<N>& second) {
   Square<N> A = second.A.transpose(), J = second.J * first.A;
   solve<N>(W, A);
   solve<N>(W, J);
-  Leap<N> both{A.transpose() * first.A,
-               A.transpose() * first.C * second.A.transpose() + second.C,
+  Leap<N> both{A.transpose() * first.A, A.transpose() * first.C * second.A.transpose() + second.C,
                first.A.transpose() * J + first.J};
   symmetrise<N>(both.C);
   symmetrise<N>(both.J);

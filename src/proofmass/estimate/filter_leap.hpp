@@ -6,8 +6,8 @@
 
 namespace proofmass::estimate::packed {
 
-/// Many steps of a filter with one reading each, as one: how P goes through all of them, whatever it
-/// is, and how an error of the mean does.
+/// Many steps of a filter with one reading each, as one: how P goes through all of them, whatever
+/// it is, and how an error of the mean does.
 ///
 ///     Φ = A (I + P J)⁻¹,   P ← Φ P Aᵀ + C,   Λ₀ = J (I + P J)⁻¹
 ///

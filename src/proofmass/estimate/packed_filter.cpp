@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "proofmass/estimate/packed_kalman.hpp"
 #include "proofmass/estimate/packed_patterns.hpp"
 
 namespace proofmass::estimate::packed {
@@ -58,8 +59,8 @@ template <int N>
                                    const double (&filtered)[Symmetric<N>::entries],
                                    const double (&next)[Symmetric<N>::entries],
                                    double (&smoothed)[Symmetric<N>::entries]) {
-  const Mat<N, N> F = Eigen::Map<const Eigen::Matrix<double, N, N, N == 1 ? 0 : Eigen::RowMajor>>(
-      &m.F[0][0]);
+  const Mat<N, N> F =
+      Eigen::Map<const Eigen::Matrix<double, N, N, N == 1 ? 0 : Eigen::RowMajor>>(&m.F[0][0]);
   const Mat<N, N> P = dense<N>(filtered), predicted = F * P * F.transpose() + dense<N>(m.Q);
   // In units of the standard deviations, or pivots would be chosen by the units of the states.
   const Mat<N> scale = predicted.diagonal().cwiseSqrt().cwiseInverse();

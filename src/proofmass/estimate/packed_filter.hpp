@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "proofmass/estimate/packed_kalman.hpp"
+#include "proofmass/estimate/packed_model.hpp"
 
 // packed_kalman.hpp's equations, one instant after another.
 namespace proofmass::estimate::packed {

@@ -1,158 +1,12 @@
 #pragma once
 
-#include <cstddef>
-#include <utility>
-
-#include "proofmass/estimate/linear_series.hpp"
-#include "proofmass/estimate/symmetric.hpp"
+#include "proofmass/estimate/packed_model.hpp"
 
 // The equations of kalman.hpp on packed covariances, for a model that stays the same and has one
 // channel: each is written once, on plain numbers, and is run either on one instant after another
-// or side by side on many (uniform_lanes.cpp). What a model's zeros and ones save is known when it
-// is compiled (Pattern).
+// (packed_filter.cpp) or side by side on many (uniform_lanes.cpp). What a model's zeros and ones
+// save is known when it is compiled (Pattern).
 namespace proofmass::estimate::packed {
-
-/// Which entries of F (row i, column j: bit i N + j) and of h (bit j) are 0 or 1 in every model
-/// that a kernel is for, and whether all of `offset` is 0. Entries not claimed may be anything.
-struct Pattern {
-  unsigned F_zero = 0, F_one = 0, h_zero = 0, h_one = 0;
-  bool no_offset = false;
-};
-
-/// What a step of a model with one channel is made of; `offset` is B u of an input that stays.
-template <int N>
-struct StepModel {
-  double F[N][N];
-  double Q[Symmetric<N>::entries];
-  double h[N];
-  double offset[N];
-  double R;
-};
-
-template <int N, int U>
-[[nodiscard]] StepModel<N> step_model(const LinearModel<N, 1, U>& model, const Mat<N>& offset) {
-  StepModel<N> out{};
-  for (int i = 0; i < N; ++i) {
-    for (int j = 0; j < N; ++j) out.F[i][j] = model.F(i, j);
-    for (int j = 0; j <= i; ++j) out.Q[Symmetric<N>::index(i, j)] = model.Q(i, j);
-    out.h[i] = model.H(0, i);
-    out.offset[i] = offset(i);
-  }
-  out.R = model.R(0);
-  return out;
-}
-
-/// Whether a pattern's claims hold of a model.
-template <int N>
-[[nodiscard]] constexpr bool fits(const Pattern& pattern, const StepModel<N>& model) {
-  const auto agrees = [](unsigned claimed, int bit, double entry, double value) {
-    return (claimed >> bit & 1U) == 0U || entry == value;
-  };
-  for (int i = 0; i < N; ++i) {
-    if (!agrees(pattern.h_zero, i, model.h[i], 0.0) || !agrees(pattern.h_one, i, model.h[i], 1.0))
-      return false;
-    if (pattern.no_offset && model.offset[i] != 0.0) return false;
-    for (int j = 0; j < N; ++j)
-      if (!agrees(pattern.F_zero, i * N + j, model.F[i][j], 0.0) ||
-          !agrees(pattern.F_one, i * N + j, model.F[i][j], 1.0))
-        return false;
-  }
-  return true;
-}
-
-/// States that no reading of such a model sees, now or later: Λ and λ are 0 there.
-template <int N>
-[[nodiscard]] constexpr unsigned unseen(const Pattern& pattern) {
-  constexpr unsigned all = (1U << N) - 1U;
-  unsigned seen = ~pattern.h_zero & all;
-  for (int pass = 0; pass < N; ++pass)
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j)
-        if ((seen >> i & 1U) != 0U && (pattern.F_zero >> (i * N + j) & 1U) == 0U) seen |= 1U << j;
-  return ~seen & all;
-}
-
-/// One instant of a filter: x̂ and P after its reading, K, y / S and 1 / S (all three 0 where there
-/// is no reading).
-template <int N>
-struct Row {
-  static constexpr int entries = Symmetric<N>::entries;
-  double P[entries];
-  double x[N];
-  double K[N];
-  double y_S, per_S;
-};
-
-/// What later readings say of a state: λ and Λ of hindsight.hpp, and the covariance of the instant
-/// after given all readings. `wide`: behind a wide P, Λ has lost digits that the covariances of
-/// earlier instants still need.
-template <int N>
-struct Later {
-  double L[Symmetric<N>::entries];
-  double l[N];
-  double next[Symmetric<N>::entries];
-  bool wide;
-};
-
-namespace detail {
-
-template <int N, class Body>
-[[gnu::always_inline]] constexpr void each(Body&& body) {
-  [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
-    (body(std::integral_constant<int, I>{}), ...);
-  }
-  (std::make_integer_sequence<int, N>{});
-}
-
-/// body(i, j) for each entry of the lower triangle.
-template <int N, class Body>
-[[gnu::always_inline]] constexpr void each_lower(Body&& body) {
-  each<N>([&](auto i) __attribute__((always_inline)) {
-    each<i() + 1>([&](auto j) __attribute__((always_inline)) { body(i, j); });
-  });
-}
-
-template <int N>
-constexpr int at(int i, int j) {
-  return static_cast<int>(Symmetric<N>::index(i, j));
-}
-
-constexpr bool claimed(unsigned mask, int bit) {
-  return (mask >> bit & 1U) != 0U;
-}
-
-/// A sum of which it is known at compile time whether it has a term yet.
-struct Sum {
-  double value = 0.0;
-  bool empty = true;
-  [[gnu::always_inline]] constexpr void add(double term) {
-    value = empty ? term : value + term;
-    empty = false;
-  }
-};
-
-/// sum += factor · value, where `zero` or `one` say what factor is.
-template <bool zero, bool one>
-[[gnu::always_inline]] constexpr void add_product(Sum& sum, double factor, double value) {
-  if constexpr (zero)
-    return;
-  else if constexpr (one)
-    sum.add(value);
-  else
-    sum.add(factor * value);
-}
-
-template <int N, Pattern S, int i, int j>
-[[gnu::always_inline]] constexpr void add_F(Sum& sum, const StepModel<N>& m, double value) {
-  add_product<claimed(S.F_zero, i* N + j), claimed(S.F_one, i* N + j)>(sum, m.F[i][j], value);
-}
-
-template <int N, Pattern S, int j>
-[[gnu::always_inline]] constexpr void add_h(Sum& sum, const StepModel<N>& m, double value) {
-  add_product<claimed(S.h_zero, j), claimed(S.h_one, j)>(sum, m.h[j], value);
-}
-
-}  // namespace detail
 
 /// x ← F x + offset
 template <int N, Pattern S>
@@ -185,9 +39,8 @@ template <int N, Pattern S>
   });
   each_lower<N>([&](auto i, auto j) __attribute__((always_inline)) {
     Sum sum;
-    each<N>([&](auto k) __attribute__((always_inline)) {
-      add_F<N, S, j(), k()>(sum, m, FP[i()][k()]);
-    });
+    each<N>([&](auto k)
+                __attribute__((always_inline)) { add_F<N, S, j(), k()>(sum, m, FP[i()][k()]); });
     P[at<N>(i(), j())] = sum.value + m.Q[at<N>(i(), j())];
   });
 }
@@ -211,16 +64,14 @@ template <int N, Pattern S>
   double Ph[N];
   each<N>([&](auto i) __attribute__((always_inline)) {
     Sum sum;
-    each<N>([&](auto j) __attribute__((always_inline)) {
-      add_h<N, S, j()>(sum, m, P[at<N>(i(), j())]);
-    });
+    each<N>([&](auto j)
+                __attribute__((always_inline)) { add_h<N, S, j()>(sum, m, P[at<N>(i(), j())]); });
     Ph[i()] = sum.value;
   });
   const double per_S = 1.0 / (predicted_reading<N, S>(m, Ph) + m.R);
   each<N>([&](auto i) __attribute__((always_inline)) { K[i()] = Ph[i()] * per_S; });
-  each_lower<N>([&](auto i, auto j) __attribute__((always_inline)) {
-    P[at<N>(i(), j())] -= K[i()] * Ph[j()];
-  });
+  each_lower<N>([&](auto i, auto j)
+                    __attribute__((always_inline)) { P[at<N>(i(), j())] -= K[i()] * Ph[j()]; });
   return per_S;
 }
 
@@ -265,8 +116,8 @@ template <int N, Pattern S>
   each<N>([&](auto i) __attribute__((always_inline)) {
     Sum sum;
     each<N>([&](auto j) __attribute__((always_inline)) {
-      add_product<claimed(nothing, i()) || claimed(nothing, j()), false>(
-          sum, L[at<N>(i(), j())], K[j()]);
+      add_product<claimed(nothing, i()) || claimed(nothing, j()), false>(sum, L[at<N>(i(), j())],
+                                                                         K[j()]);
     });
     LK[i()] = sum.value;
     add_product<claimed(nothing, i()), false>(KLK, K[i()], LK[i()]);
@@ -338,8 +189,8 @@ template <int N, Pattern S>
     each<N>([&](auto j) __attribute__((always_inline)) {
       Sum sum;
       each<N>([&](auto k) __attribute__((always_inline)) {
-        add_product<claimed(nothing, i()) || claimed(nothing, k()), false>(
-            sum, L[at<N>(i(), k())], P[at<N>(k(), j())]);
+        add_product<claimed(nothing, i()) || claimed(nothing, k()), false>(sum, L[at<N>(i(), k())],
+                                                                           P[at<N>(k(), j())]);
       });
       LP[i()][j()] = sum.value;
     });
@@ -351,8 +202,8 @@ template <int N, Pattern S>
     });
     smoothed[at<N>(i(), j())] = P[at<N>(i(), j())] - sum.value;
   });
-  each<Symmetric<N>::entries>(
-      [&](auto e) __attribute__((always_inline)) { P[e()] = smoothed[e()]; });
+  each<Symmetric<N>::entries>([&](auto e)
+                                  __attribute__((always_inline)) { P[e()] = smoothed[e()]; });
 }
 
 }  // namespace proofmass::estimate::packed

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "proofmass/estimate/packed_kalman.hpp"
+#include "proofmass/estimate/packed_model.hpp"
 
 // The patterns that kernels are compiled for, the narrower before the wider.
 namespace proofmass::estimate::packed {
@@ -27,8 +27,8 @@ template <>
 inline constexpr std::array<Pattern, 3> patterns<3>{chain<3>(0b011, 0b100), chain<3>(0b110, 0b001),
                                                     Pattern{}};
 template <>
-inline constexpr std::array<Pattern, 3> patterns<4>{
-    chain<4>(0b0011, 0b1100), chain<4>(0b1110, 0b0001), Pattern{}};
+inline constexpr std::array<Pattern, 3> patterns<4>{chain<4>(0b0011, 0b1100),
+                                                    chain<4>(0b1110, 0b0001), Pattern{}};
 
 /// Which of them is the first that fits the model; the last fits any.
 template <int N>

@@ -19,8 +19,16 @@
 //     always   z_i = a + c + b_i + n_i
 //
 // b_i is the bias of sensor i, which walks or settles. c is what all sensors err by in motion, as
-// gravity leans into the axis: it walks in motion and jumps where one begins or ends; of one sensor
-// it is part of b. l is the share of a that is no acceleration but rocking.
+// gravity leans into the axis: it walks in motion and jumps where one begins or ends, and a warm-up
+// does not make it settle. l is the share of a that is no acceleration but rocking.
+//
+// Between two samples a runs straight, for a sensor's own filter leaves little beside:
+//
+//     a ← a + w,   v ← v + h a + h w/2,   p ← p + h v + h² a/2 + h² w/6,   w of variance q h.
+//
+// White jerk proper would add q h³/12 to the variance of v in each step, as much as the noise of
+// the readings in a smooth motion, and no sensor that is added could take it away. Over a step
+// longer than `longest_step_s` it does.
 namespace proofmass::estimate {
 
 /// One accelerometer along the axis, less its level at the first rest.
@@ -53,8 +61,8 @@ struct PvaNoise {
 template <int S>
 class PvaAxis {
  public:
-  static constexpr int common = 3;                  ///< index of c; of one sensor, that of b
-  static constexpr int first_bias = S > 1 ? 4 : 3;  ///< index of b_1
+  static constexpr int common = 3;      ///< index of c
+  static constexpr int first_bias = 4;  ///< index of b_1
   static constexpr int states = first_bias + S, moving = states, channels = S + 2;
   static constexpr int velocity_channel = S, position_channel = S + 1;
   using State = Mat<states>;
@@ -63,6 +71,7 @@ class PvaAxis {
       : time_s_(time_s), sensors_(std::move(sensors)), samples_(samples) {}
 
   PvaNoise noise{};
+  double longest_step_s = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] std::size_t size() const { return time_s_.size(); }
   [[nodiscard]] std::size_t sensors() const { return sensors_.size(); }
@@ -142,7 +151,13 @@ class PvaAxis {
     const LinearModel<3, 1> motion = pva_model({h, noise.jerk_psd_m2ps5, 1.0});
     const double L = noise.lean_m2ps3;
     step.F.template topLeftCorner<3, 3>() = motion.F;
-    step.Q.template topLeftCorner<3, 3>() = motion.Q;
+    if (h > longest_step_s) {
+      step.Q.template topLeftCorner<3, 3>() = motion.Q;
+    } else {
+      const Mat<3> straight(h * h / 6.0, h / 2.0, 1.0);
+      step.Q.template topLeftCorner<3, 3>() =
+          noise.jerk_psd_m2ps5 * h * straight * straight.transpose();
+    }
     step.Q(0, 0) += L * h * h * h / 3.0;
     step.Q(0, 1) += L * h * h / 2.0;
     step.Q(1, 0) += L * h * h / 2.0;

@@ -197,22 +197,22 @@ Result<SteadyParts> steady_parts(const MatrixXd& F,
   parts.slowest_steps = slowest_steps(closed);
   if (!std::isfinite(parts.slowest_steps))
     return no_limit("something that is read is constant and not driven, and is known ever better");
-  const auto P_ud = doubled_sum(s.F_uu, s.F_ud * P_dd * closed.transpose() + s.Q_ud,
-                                closed.transpose());
+  const auto P_ud =
+      doubled_sum(s.F_uu, s.F_ud * P_dd * closed.transpose() + s.Q_ud, closed.transpose());
   if (!P_ud) return no_limit("something that no reading sees grows faster than the filter forgets");
   K.bottomRows(u) = *P_ud * s.d.H.transpose() * S_inverse;
 
   const MatrixXd FK_u = s.F_ud * K.topRows(d) + s.F_uu * K.bottomRows(u);
   const MatrixXd crossed = s.F_uu * *P_ud * s.F_ud.transpose();
-  const Unseen unseen = sum_unseen(
-      s.F_uu, symmetrised(s.F_ud * P_dd * s.F_ud.transpose() + crossed + crossed.transpose() -
-                          FK_u * S * FK_u.transpose() + s.Q_uu));
+  const Unseen unseen =
+      sum_unseen(s.F_uu, symmetrised(s.F_ud * P_dd * s.F_ud.transpose() + crossed +
+                                     crossed.transpose() - FK_u * S * FK_u.transpose() + s.Q_uu));
   MatrixXd P(n, n);
   P << P_dd, P_ud->transpose(), *P_ud, unseen.P;
   const MatrixXd filtered = P - K * S * K.transpose();
   const MatrixXd W = s.d.H * s.d.F;
-  const auto L = doubled_sum((keep * s.d.F).transpose(), W.transpose() * S_inverse * W,
-                             keep * s.d.F);
+  const auto L =
+      doubled_sum((keep * s.d.F).transpose(), W.transpose() * S_inverse * W, keep * s.d.F);
   if (!L) return no_limit("what later readings tell of a state does not settle");
 
   const MatrixXd T = D * stairs.basis, O = stairs.basis.leftCols(d);

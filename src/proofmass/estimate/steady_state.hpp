@@ -22,7 +22,8 @@ template <int N, int M>
 struct SteadyState {
   Mat<N, M> gain = Mat<N, M>::Zero();                 ///< K, of all channels of an instant at once
   Mat<M, M> innovation_variance = Mat<M, M>::Zero();  ///< S
-  std::array<bool, static_cast<std::size_t>(N)> has_limit{};  ///< whether a state's variance has one
+  std::array<bool, static_cast<std::size_t>(N)>
+      has_limit{};                             ///< whether a state's variance has one
   Symmetric<N> predicted, filtered, smoothed;  ///< P⁻, P⁺, P[k|N] far from both ends
   Symmetric<N> Lambda;                         ///< Λ of hindsight.hpp, after an instant
   /// P⁺ Π, where Π projects on what the readings see: x̂[k|N] = x̂[k|k] − P⁺ Π λ. All entries have a

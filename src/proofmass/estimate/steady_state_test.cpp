@@ -56,8 +56,8 @@ TEST(SteadyState, OfALocalLevelIsTheRootOfItsQuadratic) {
   EXPECT_NEAR(s.innovation_variance(0), P + r, 1e-14);
   EXPECT_NEAR(s.slowest_steps, -1.0 / std::log(r / (P + r)), 1e-9);
   // Smoothed: 1 / P[k|N] is the sum of both directions' information less the level's own of none.
-  EXPECT_NEAR(s.smoothed_variance(0).value(), P * r / (P + r) - std::pow(P * r / (P + r), 2) * s.Lambda(0, 0),
-              1e-14);
+  EXPECT_NEAR(s.smoothed_variance(0).value(),
+              P * r / (P + r) - std::pow(P * r / (P + r), 2) * s.Lambda(0, 0), 1e-14);
   EXPECT_NEAR(s.smoothed_variance(0).value(), q * r / std::sqrt(q * q + 4.0 * q * r), 1e-14);
 }
 
@@ -108,8 +108,7 @@ TEST(SteadyState, SmootherIsTheOneFarFromBothEnds) {
   const auto m = position_read(with_bias_model(0.1));
   const auto s = steady_state(m).value();
   std::vector<Epoch<1>> epochs(4000, Epoch<1>{0.005, Mat<1>(0.0)});
-  const auto series =
-      LinearSeries<4, 1>::make(epochs, [&](double) { return m; }).value();
+  const auto series = LinearSeries<4, 1>::make(epochs, [&](double) { return m; }).value();
   Gaussian<4> prior;
   prior.cov.setIdentity();
   const auto run = smooth_linear(series, prior);

@@ -318,7 +318,6 @@ TrackSolution described(const TrackSignal& signal, const TrackOptions& options) 
   solution.missing = signal.missing;
   solution.rests = signal.stops.rests;
   solution.rests_by_quietness = signal.stops.by_quietness;
-  solution.scale_std = scale_std(signal, options);
   solution.series.time_s = signal.time_s;
   return solution;
 }
@@ -373,6 +372,7 @@ Result<TrackSolution> track_without_gyro(const TrackSensor& sensor,
   solution.cruises = cruises;
   solution.axis = found.axis.direction;
   solution.travel_share = found.axis.share;
+  solution.scale_std = scale_std(signal, options, solution);
   solution.motion_error = {std::sqrt(found.error.walk_m2ps5), std::sqrt(found.error.jump_m2ps4),
                            std::sqrt(found.error.lean_m2ps3)};
   solution.factor_95 = found.error.factor_95;

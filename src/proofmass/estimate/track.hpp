@@ -102,7 +102,9 @@ struct Stroke {
   double start_s = 0.0, turn_s = 0.0, end_s = 0.0;
   Uncertain out_m;                  ///< with its sign
   std::optional<Uncertain> back_m;  ///< absent where it is one way
-  Uncertain length_m;               ///< of the shorter way: what was gone there and back
+  /// Mean of the two ways; of the shorter where one is half as long again: it was taken up from
+  /// elsewhere, or laid down there.
+  Uncertain length_m;
 };
 
 /// What the sensor, this duration and these constraints allow, before the motion is looked at: one

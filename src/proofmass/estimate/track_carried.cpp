@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "proofmass/estimate/attitude.hpp"
+#include "proofmass/estimate/track_findings.hpp"
 #include "proofmass/estimate/track_motion.hpp"
 
 namespace proofmass::estimate {
@@ -93,6 +94,7 @@ Result<bool> track_carried(const TrackSensor& sensor,
   solution.axis = axis.direction;
   solution.axis_in_world = true;
   solution.travel_share = axis.share;
+  solution.scale_std = scale_std(signal, options, solution);
   fill(attitude, gravity_free_acceleration(series, attitude), solution);
   solution.notes.insert(solution.notes.end(), attitude.notes.begin(), attitude.notes.end());
   std::size_t unused = 0;

@@ -120,11 +120,22 @@ Error hidden_motion() {
       "stood still with --still FILE"};
 }
 
-double scale_std(const TrackSignal& signal, const TrackOptions& options) {
+double scale_std(const TrackSignal& signal,
+                 const TrackOptions& options,
+                 const TrackSolution& solution) {
+  constexpr double unknown = 0.01;
   if (options.scale_std) return *options.scale_std;
-  if (signal.resting_norm_mps2 && signal.gravity == GravityContent::present)
-    return std::max(0.003, std::abs(*signal.resting_norm_mps2 / options.gravity_mps2 - 1.0));
-  return 0.01;
+  if (!signal.resting_norm_mps2 || signal.gravity != GravityContent::present) return unknown;
+  const double upwards =
+      std::max(0.003, std::abs(*signal.resting_norm_mps2 / options.gravity_mps2 - 1.0));
+  double cosine = solution.axis[2];
+  if (!solution.axis_in_world) {
+    cosine = 0.0;
+    for (std::size_t a = 0; a < 3; ++a)
+      cosine += solution.axis[a] * signal.reference_mps2[a] / *signal.resting_norm_mps2;
+  }
+  const double up = std::min(cosine * cosine, 1.0);
+  return std::sqrt(up * upwards * upwards + (1.0 - up) * std::max(unknown, upwards) * std::max(unknown, upwards));
 }
 
 void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackSolution& solution) {

@@ -11,9 +11,11 @@ namespace proofmass::estimate {
 /// Why what was taken for rest may be motion.
 [[nodiscard]] Error hidden_motion();
 
-/// Relative uncertainty of the readings' scale: as given; else how far gravity at rest is from what
-/// it should be, but at least 0.3 %; else 1 %.
-[[nodiscard]] double scale_std(const TrackSignal& signal, const TrackOptions& options);
+/// Relative uncertainty of the readings' scale along the solution's axis: as given; else 1 %, but
+/// upwards how far gravity at rest is from what it should be, at least 0.3 %.
+[[nodiscard]] double scale_std(const TrackSignal& signal,
+                               const TrackOptions& options,
+                               const TrackSolution& solution);
 
 /// Adds the notes.
 void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackSolution& solution);

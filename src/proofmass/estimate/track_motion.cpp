@@ -41,6 +41,7 @@ AxisRun prepare_axis(const TrackSignal& signal,
                .rest_walk_m2ps5 = std::max(walk * walk, run.level.walk_m2ps5),
                .rest_speed_std_mps = readings.rest_speed_std_mps};
   run.start.speed_std_mps = speed_at_start_mps;
+  run.longest_step_s = axis.longest_step_s;
   return run;
 }
 

@@ -16,6 +16,7 @@ struct AxisRun {
   LevelNoise level;
   InertialNoise noise;
   InertialStart start;
+  double longest_step_s = 0.0;  ///< between samples; a longer one is a gap
 };
 
 /// Densities that a sensor file knows, of one axis.

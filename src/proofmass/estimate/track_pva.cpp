@@ -10,6 +10,7 @@
 #include "proofmass/estimate/fusion.hpp"
 #include "proofmass/estimate/track_jerk.hpp"
 #include "proofmass/estimate/track_pva_pass.hpp"
+#include "proofmass/estimate/track_walk.hpp"
 #include "proofmass/signal/channel_audit.hpp"
 
 namespace proofmass::estimate {
@@ -171,6 +172,7 @@ PvaAxis<S> axis_of(const PvaTask& task,
     readings.push_back(sensor->reading(task.signal.rate_hz));
   PvaAxis<S> axis(task.signal.time_s, std::move(readings), samples);
   axis.noise = noise_of(task, jerk_psd);
+  axis.longest_step_s = task.run.longest_step_s;
   return axis;
 }
 
@@ -210,6 +212,42 @@ struct Sensors {
   std::vector<PvaSample> samples;
 };
 
+// What all sensors err by in motion, told by how far their mean misses the stops.
+struct CommonError {
+  double share_std = 1.0;  // √Σw²: of errors that each sensor has for itself, one in the mean
+  PvaNoise noise;
+  MotionError figures;
+};
+
+CommonError common_error(const PvaTask& task,
+                         const std::vector<SensorAlong>& sensors,
+                         double jerk_psd) {
+  CommonError found;
+  double sum = 0.0, squares = 0.0;
+  for (const SensorAlong& one : sensors) {
+    sum += 1.0 / one.white_m2ps3;
+    squares += 1.0 / (one.white_m2ps3 * one.white_m2ps3);
+  }
+  found.share_std = std::sqrt(squares) / sum;
+  std::vector<double> mean(task.signal.time_s.size(), 0.0);
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    double weights = 0.0;
+    for (const SensorAlong& one : sensors) {
+      if (std::isnan(one.accel_mps2[k])) continue;
+      mean[k] += one.accel_mps2[k] / one.white_m2ps3;
+      weights += 1.0 / one.white_m2ps3;
+    }
+    mean[k] /= weights;  // NaN where none reads
+  }
+  AxisRun run = prepare_axis(task.signal, mean, task.readings, {});
+  found.figures = motion_error(join_epochs(run.made.epochs, run.made.knots), run.noise, run.start);
+  run.noise.motion_walk_m2ps5 = found.figures.walk_m2ps5;
+  run.noise.motion_jump_m2ps4 = found.figures.jump_m2ps4;
+  run.noise.motion_lean_m2ps3 = found.figures.lean_m2ps3;
+  found.noise = noise_of({task.sensor, task.signal, run, task.readings}, jerk_psd);
+  return found;
+}
+
 void fuse(const PvaTask& task, const Sensors& sensors, double jerk_psd, TrackSolution& solution) {
   std::vector<const SensorAlong*> all;
   std::vector<std::string> names;
@@ -218,8 +256,10 @@ void fuse(const PvaTask& task, const Sensors& sensors, double jerk_psd, TrackSol
     names.push_back(one.name);
   }
   constexpr auto most = static_cast<int>(most_fused_sensors);
-  PvaPass fused = pass_over(axis_of<most>(task, all, sensors.samples, jerk_psd),
-                            {task.run.start.speed_std_mps, task.signal.rate_hz, names});
+  const CommonError common = common_error(task, sensors.all, jerk_psd);
+  auto axis = axis_of<most>(task, all, sensors.samples, jerk_psd);
+  axis.noise = common.noise;
+  PvaPass fused = pass_over(axis, {task.run.start.speed_std_mps, task.signal.rate_hz, names});
   FusedTrack track;
   double best = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -229,7 +269,12 @@ void fuse(const PvaTask& task, const Sensors& sensors, double jerk_psd, TrackSol
     track.sensors.push_back(fused_sensor(*all[i], alone, fused.bias_mps2[i], solution.scale_std));
     best = std::min(best, track.sensors.back().displacement_m.std);
   }
+  solution.scale_std *= common.share_std;  // each sensor's scale errs for itself
   take(std::move(fused), solution);
+  solution.factor_95 = common.figures.factor_95;
+  solution.motion_error = {std::sqrt(common.figures.walk_m2ps5),
+                           std::sqrt(common.figures.jump_m2ps4),
+                           std::sqrt(common.figures.lean_m2ps3)};
   const double std = solution.series.position_std_m.back();
   if (std > 0.0) track.variance_gain = best * best / (std * std);
   solution.fused = std::move(track);

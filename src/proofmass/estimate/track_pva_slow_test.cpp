@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -66,8 +67,7 @@ Tallies run(TrackModel model, double lean_mps2, std::size_t runs) {
     const auto& series = track->series;
     const std::size_t n = series.time_s.size();
     const double truth = made.position_m.back();
-    found.end.add(series.position_m.back() - truth, series.position_std_m.back(),
-                  track->factor_95);
+    found.end.add(series.position_m.back() - truth, series.position_std_m.back(), track->factor_95);
     for (std::size_t i = 3; i < 10; ++i)
       found.on_the_way.add(series.position_m[i * n / 10] - made.position_m[i * n / 10],
                            series.position_std_m[i * n / 10], track->factor_95);
@@ -81,19 +81,33 @@ Tallies run(TrackModel model, double lean_mps2, std::size_t runs) {
   return found;
 }
 
-void tell(const char* what, const Tallies& found) {
-  std::printf("%s end %.3f way %.3f rms %.5f stated %.5f alone %.5f %.5f nis %.3f\n", what,
-              found.end.share(), found.on_the_way.share(), found.end.rms(),
-              std::sqrt(found.end.stated / found.end.of), found.alone[0].rms(),
-              found.alone[1].rms(), found.nis);
+TEST(TrackPvaCoverage, NinetyFivePercentBandsHoldTheTruthInNinetyThreeToNinetySeven) {
+  const Tallies found = run(TrackModel::pva, 0.0, 500);
+  EXPECT_GT(found.end.share(), 0.93);
+  EXPECT_LT(found.end.share(), 0.975);
+  EXPECT_GT(found.on_the_way.share(), 0.93);
+  EXPECT_LT(found.on_the_way.share(), 0.98);
+  RecordProperty("end", std::to_string(found.end.share()));
+  RecordProperty("on_the_way", std::to_string(found.on_the_way.share()));
 }
 
-TEST(TrackPvaCoverage, Look) {
-  for (const double lean : {0.0, 0.02}) {
-    tell("inertial", run(TrackModel::inertial, lean, 200));
-    tell("pva     ", run(TrackModel::pva, lean, 200));
-    tell("fused   ", run(TrackModel::fused, lean, 200));
-  }
+TEST(TrackFusedCoverage, TwoSensorsAreNearerTheTruthThanEachAloneAndSayHowNear) {
+  const Tallies found = run(TrackModel::fused, 0.0, 300);
+  EXPECT_GT(found.end.share(), 0.93);
+  EXPECT_LT(found.end.share(), 0.985);
+  EXPECT_LT(found.end.rms(), 0.8 * found.alone[0].rms());
+  EXPECT_LT(found.end.rms(), 0.8 * found.alone[1].rms());
+  RecordProperty("end", std::to_string(found.end.share()));
+  RecordProperty("on_the_way", std::to_string(found.on_the_way.share()));
+  RecordProperty("rms_fused", std::to_string(found.end.rms()));
+  RecordProperty("rms_first", std::to_string(found.alone[0].rms()));
+  RecordProperty("rms_second", std::to_string(found.alone[1].rms()));
+}
+
+TEST(TrackFusedCoverage, WhatLeansBothSensorsIsInTheBand) {
+  const Tallies found = run(TrackModel::fused, 0.02, 100);
+  EXPECT_GT(found.end.share(), 0.93);
+  EXPECT_GT(found.on_the_way.share(), 0.93);
 }
 
 }  // namespace

@@ -40,6 +40,13 @@ class TurnCovariance {
     const double variance = at(i, i) + at(j, j) - 2.0 * at(i, j);
     return std::hypot(std::sqrt(std::max(0.0, variance)), scale_std_ * length_m);
   }
+  // Of the turn at i + 1 against the mean of the two beside it.
+  [[nodiscard]] double of_mean(std::size_t i, double out_m, double back_m) const {
+    const double variance = at(i + 1, i + 1) +
+                            0.25 * (at(i, i) + at(i + 2, i + 2) + 2.0 * at(i, i + 2)) -
+                            at(i + 1, i) - at(i + 1, i + 2);
+    return std::hypot(std::sqrt(std::max(0.0, variance)), scale_std_ * 0.5 * (out_m - back_m));
+  }
   [[nodiscard]] double at(std::size_t i, std::size_t j) const { return entries_[i * n_ + j]; }
 
  private:
@@ -47,6 +54,13 @@ class TurnCovariance {
   std::size_t n_;
   double scale_std_;
 };
+
+// The mean of both ways, but where one is half as long again the shorter's.
+Uncertain length_of(const Uncertain& a, const Uncertain& b, double std_of_mean) {
+  const double one = std::abs(a.value), other = std::abs(b.value);
+  if (std::max(one, other) <= 1.5 * std::min(one, other)) return {0.5 * (one + other), std_of_mean};
+  return one < other ? Uncertain{one, a.std} : Uncertain{other, b.std};
+}
 
 Stroke stroke_of(const std::vector<std::size_t>& turns,
                  const SwingPair& pair,
@@ -108,7 +122,7 @@ Strokes find_strokes(const TrackSolution& solution, const PositionCovarianceAt& 
       if (pair.back) {
         const double back = swings[m][pair.out + 1];
         stroke.back_m = Uncertain{back, cov.of_difference(i + 1, i + 2, back)};
-        if (std::abs(back) < std::abs(out)) stroke.length_m = {std::abs(back), stroke.back_m->std};
+        stroke.length_m = length_of(*stroke.back_m, stroke.out_m, cov.of_mean(i, out, back));
       }
       if (stroke.length_m.value > 2.0 * stroke.length_m.std) found.strokes.push_back(stroke);
     }

@@ -6,16 +6,15 @@
 namespace proofmass::estimate::packed {
 namespace {
 
-/// The filter over the chunk, from `x` before it, without keeping anything but its end. Says whether
-/// all readings are there.
+/// The filter over the chunk, from `x` before it, without keeping anything but its end. Says
+/// whether all readings are there.
 template <int N>
 bool filter_ends(Work<N>& work, const Chunk<N>& chunk, LaneNumbers* x) {
   LaneNumbers unused{};
   for (std::size_t t = 0; t < lane_length; t += together) {
     if (!lay_out(work, chunk, t)) return false;
-    work.side_by_side->filter_constant(work.model, work.steady->gain,
-                                       work.lane_z.data() + t * lanes, together, x, nullptr,
-                                       unused);
+    work.constant_gain->filter(work.model, work.steady->gain, work.lane_z.data() + t * lanes,
+                               together, x, nullptr, unused);
   }
   return true;
 }
@@ -28,9 +27,8 @@ void filter_means(Work<N>& work, const Chunk<N>& chunk, bool laid_out, LaneNumbe
   work.lane_means.resize(lane_length);
   for (std::size_t t = 0; t < lane_length; t += together) {
     if (!laid_out) (void)lay_out(work, chunk, t);
-    work.side_by_side->filter_constant(work.model, work.steady->gain,
-                                       work.lane_z.data() + t * lanes, together, x,
-                                       work.lane_means.data() + t, squares);
+    work.constant_gain->filter(work.model, work.steady->gain, work.lane_z.data() + t * lanes,
+                               together, x, work.lane_means.data() + t, squares);
   }
   const double per_S = work.steady->gain.per_S;
   for (const double sum : squares) work.score.nis += sum / per_S;
@@ -42,10 +40,8 @@ template <int N>
 void write_chunk(Work<N>& work, const Chunk<N>& chunk) {
   const UniformOutput<N>& out = work.output;
   const Steady<N>& steady = *work.steady;
-  for (std::size_t t = 0; t < lane_length; t += together)
-    write_lanes<N>(chunk.first, t, out.means, [&](std::size_t at) { return work.lane_means[at].x; });
-  const Symmetric<N>& cov =
-      work.options.smooth ? steady.limit.smoothed : steady.limit.filtered;
+  write_lanes<N>(chunk.first, out.means, [&](std::size_t t) { return work.lane_means[t].x; });
+  const Symmetric<N>& cov = work.options.smooth ? steady.limit.smoothed : steady.limit.filtered;
   if (!out.covariances.empty())
     std::ranges::fill(out.covariances.subspan(chunk.first, chunk.count), cov);
   if (work.options.covariances == Covariances::where_they_change)
@@ -92,15 +88,13 @@ void smooth_constant_gain(Work<N>& work, const Chunk<N>& chunk, Later<N>& later)
   filter_means(work, chunk, false, x);
   Mat<N> after = column(later.l);
   set_lane<N>(after, lanes - 1, l);
-  work.side_by_side->look_back_constant(work.model, steady.gain, work.lane_means.data(),
-                                        lane_length, l);
+  work.constant_gain->look_back(work.model, steady.gain, work.lane_means.data(), lane_length, l);
   for (int lane = lanes - 1; lane >= 0; --lane) {
     const Mat<N> own = lane_of<N>(l, lane);
     set_lane<N>(after, lane, l);
     after = lane == lanes - 1 ? own : Mat<N>(own + steady.lane_decay.transpose() * after);
   }
-  work.side_by_side->smooth_constant(work.model, steady.gain, work.lane_means.data(), lane_length,
-                                     l);
+  work.constant_gain->smooth(work.model, steady.gain, work.lane_means.data(), lane_length, l);
   for (int i = 0; i < N; ++i) later.l[i] = l[i][0];
   for (std::size_t e = 0; e < Symmetric<N>::entries; ++e)
     later.next[e] = steady.limit.smoothed.lower[e];

@@ -1,30 +1,11 @@
 #include "proofmass/estimate/uniform_lanes.hpp"
 
 #include "proofmass/core/vector_clones.hpp"
+#include "proofmass/estimate/one_lane.hpp"
 #include "proofmass/estimate/packed_patterns.hpp"
 
 namespace proofmass::estimate::packed {
 namespace {
-
-using detail::each;
-
-// Every loop over lanes is written as one lane's work on numbers of its own: that is the form which
-// the compiler turns into vectors.
-
-template <int Count>
-[[gnu::always_inline]] inline void load(const LaneNumbers* from, int lane, double (&to)[Count]) {
-  each<Count>([&](auto i) __attribute__((always_inline)) { to[i()] = from[i()][lane]; });
-}
-
-template <int Count>
-[[gnu::always_inline]] inline void store(const double (&from)[Count], int lane, LaneNumbers* to) {
-  each<Count>([&](auto i) __attribute__((always_inline)) { to[i()][lane] = from[i()]; });
-}
-
-template <int N>
-[[gnu::always_inline]] inline void add_gain(const double (&K)[N], double y, double (&x)[N]) {
-  each<N>([&](auto i) __attribute__((always_inline)) { x[i()] += K[i()] * y; });
-}
 
 template <int N, Pattern S, bool keep>
 [[gnu::always_inline]] inline void filter_loop(
@@ -72,11 +53,8 @@ PM_VECTOR_CLONES void filter_rows(const StepModel<N>& m,
 }
 
 template <int N, Pattern S>
-void filter(const StepModel<N>& m,
-            const double* z,
-            int count,
-            LaneState<N>& state,
-            LaneRow<N>* rows) {
+void filter(
+    const StepModel<N>& m, const double* z, int count, LaneState<N>& state, LaneRow<N>* rows) {
   if (rows != nullptr)
     filter_rows<N, S>(m, z, count, state, rows);
   else
@@ -184,121 +162,10 @@ PM_VECTOR_CLONES void add_score(const StepModel<N>& m,
     }
 }
 
-template <int N, Pattern S, bool keep>
-[[gnu::always_inline]] inline void constant_loop(const StepModel<N>& m,
-                                                 const ConstantGain<N>& gain,
-                                                 const double* z,
-                                                 int count,
-                                                 LaneNumbers* state,
-                                                 LaneMean<N>* means,
-                                                 LaneNumbers& squares) {
-  for (int t = 0; t < count; ++t, z += lanes) {
-#pragma GCC ivdep
-    for (int lane = 0; lane < lanes; ++lane) {
-      double x[N];
-      load(state, lane, x);
-      predict_mean<N, S>(m, x);
-      const double y = z[lane] - predicted_reading<N, S>(m, x);
-      add_gain(gain.K, y, x);
-      store(x, lane, state);
-      if constexpr (keep) {
-        const double y_S = y * gain.per_S;
-        store(x, lane, means[t].x);
-        means[t].y_S[lane] = y_S;
-        squares[lane] += y_S * y_S;
-      }
-    }
-  }
-}
-
-template <int N, Pattern S>
-PM_VECTOR_CLONES void constant_ends(const StepModel<N>& m,
-                                    const ConstantGain<N>& gain,
-                                    const double* __restrict z,
-                                    int count,
-                                    LaneNumbers* __restrict x,
-                                    LaneNumbers& __restrict squares) {
-  constant_loop<N, S, false>(m, gain, z, count, x, nullptr, squares);
-}
-
-template <int N, Pattern S>
-PM_VECTOR_CLONES void constant_rows(const StepModel<N>& m,
-                                    const ConstantGain<N>& gain,
-                                    const double* __restrict z,
-                                    int count,
-                                    LaneNumbers* __restrict x,
-                                    LaneMean<N>* __restrict means,
-                                    LaneNumbers& __restrict squares) {
-  constant_loop<N, S, true>(m, gain, z, count, x, means, squares);
-}
-
-template <int N, Pattern S>
-void filter_constant(const StepModel<N>& m,
-                     const ConstantGain<N>& gain,
-                     const double* z,
-                     int count,
-                     LaneNumbers* x,
-                     LaneMean<N>* means,
-                     LaneNumbers& squares) {
-  if (means != nullptr)
-    constant_rows<N, S>(m, gain, z, count, x, means, squares);
-  else
-    constant_ends<N, S>(m, gain, z, count, x, squares);
-}
-
-template <int N, Pattern S>
-PM_VECTOR_CLONES void look_back_constant(const StepModel<N>& m,
-                                         const ConstantGain<N>& gain,
-                                         const LaneMean<N>* __restrict means,
-                                         int count,
-                                         LaneNumbers* __restrict later) {
-  for (int t = count; t-- > 0;) {
-#pragma GCC ivdep
-    for (int lane = 0; lane < lanes; ++lane) {
-      double l[N];
-      load(later, lane, l);
-      mean_back<N, S>(m, gain.K, means[t].y_S[lane], l);
-      store(l, lane, later);
-    }
-  }
-}
-
-template <int N, Pattern S>
-PM_VECTOR_CLONES void smooth_constant(const StepModel<N>& m,
-                                      const ConstantGain<N>& gain,
-                                      LaneMean<N>* __restrict means,
-                                      int count,
-                                      LaneNumbers* __restrict later) {
-  constexpr unsigned nothing = unseen<N>(S);
-  for (int t = count; t-- > 0;) {
-#pragma GCC ivdep
-    for (int lane = 0; lane < lanes; ++lane) {
-      double x[N], l[N];
-      load(means[t].x, lane, x);
-      load(later, lane, l);
-      each<N>([&](auto i) __attribute__((always_inline)) {
-        each<N>([&](auto j) __attribute__((always_inline)) {
-          if constexpr (!detail::claimed(nothing, j())) x[i()] -= gain.seen[i()][j()] * l[j()];
-        });
-      });
-      mean_back<N, S>(m, gain.K, means[t].y_S[lane], l);
-      store(x, lane, means[t].x);
-      store(l, lane, later);
-    }
-  }
-}
-
 template <int N, Pattern S>
 constexpr LaneKernels<N> kernels_of() {
-  return {filter<N, S>,
-          filter_means<N, S>,
-          look_back<N, S>,
-          smooth<N, S>,
-          smooth_means<N, S>,
-          add_score<N>,
-          filter_constant<N, S>,
-          look_back_constant<N, S>,
-          smooth_constant<N, S>};
+  return {filter<N, S>, filter_means<N, S>, look_back<N, S>,
+          smooth<N, S>, smooth_means<N, S>, add_score<N>};
 }
 
 template <int N, std::size_t... I>

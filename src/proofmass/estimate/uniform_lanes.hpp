@@ -2,10 +2,10 @@
 
 #include <cstddef>
 
-#include "proofmass/estimate/packed_kalman.hpp"
+#include "proofmass/estimate/packed_model.hpp"
 
-// packed_kalman.hpp's equations on many stretches of one recording side by side: lane l runs through
-// the instants of its own stretch, all lanes at once in the processor's vector units.
+// packed_kalman.hpp's equations on many stretches of one recording side by side: lane l runs
+// through the instants of its own stretch, all lanes at once in the processor's vector units.
 namespace proofmass::estimate::packed {
 
 inline constexpr int lanes = 16;
@@ -34,21 +34,6 @@ struct alignas(64) LaneLater {
   LaneNumbers l[N];
 };
 
-/// A mean and y / S of each lane, where the gain is known and stays.
-template <int N>
-struct alignas(64) LaneMean {
-  LaneNumbers x[N];
-  LaneNumbers y_S;
-};
-
-/// What a filter and smoother of constant gain need beside the model.
-template <int N>
-struct ConstantGain {
-  double K[N];
-  double seen[N][N];  ///< P⁺ Π of steady_state.hpp
-  double per_S;
-};
-
 /// Sums over the readings of each lane: y² / S and the product of R / S.
 struct alignas(64) LaneScore {
   LaneNumbers nis, R_S;
@@ -71,26 +56,6 @@ struct LaneKernels {
   void (*smooth_means)(const Model&, LaneRow<N>* rows, int count, LaneNumbers* l);
   /// Multiplies up R / S and adds up y² / S; count ≤ 8, so that the product stays a number.
   void (*score)(const Model&, const LaneRow<N>* rows, int count, LaneScore& score);
-
-  /// As filter() with a gain that stays; `x` is the mean of each lane, taken along. Where means are
-  /// kept, (y / S)² is added to `squares`.
-  void (*filter_constant)(const Model&,
-                          const ConstantGain<N>&,
-                          const double* z,
-                          int count,
-                          LaneNumbers* x,
-                          LaneMean<N>* means,
-                          LaneNumbers& squares);
-  void (*look_back_constant)(const Model&,
-                             const ConstantGain<N>&,
-                             const LaneMean<N>* means,
-                             int count,
-                             LaneNumbers* l);
-  void (*smooth_constant)(const Model&,
-                          const ConstantGain<N>&,
-                          LaneMean<N>* means,
-                          int count,
-                          LaneNumbers* l);
 };
 
 /// The loops compiled for the narrowest pattern that fits the model. For N = 1 to 4.

@@ -61,8 +61,8 @@ void write_chunk(Work<N>& work, const Chunk<N>& chunk) {
 template <int N>
 void filter_one_by_one(Work<N>& work, const Chunk<N>& chunk, State<N>& state) {
   if (work.options.smooth) {
-    work.plain->filter(work.model, work.z.data() + chunk.first, chunk.count, chunk.first > 0,
-                       state, nullptr);
+    work.plain->filter(work.model, work.z.data() + chunk.first, chunk.count, chunk.first > 0, state,
+                       nullptr);
     return;
   }
   filter_rows(work, chunk, state);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "proofmass/estimate/constant_gain_lanes.hpp"
 #include "proofmass/estimate/filter_leap.hpp"
+#include "proofmass/estimate/lane_pair.hpp"
 #include "proofmass/estimate/log_product.hpp"
 #include "proofmass/estimate/packed_filter.hpp"
 #include "proofmass/estimate/steady_state.hpp"
@@ -15,10 +17,15 @@
 // The three passes of run_uniform(), a chunk of the recording at a time.
 namespace proofmass::estimate::packed {
 
-/// Instants that one lane's numbers are moved at a time, of a lane, and of all lanes. A lane's is not
-/// a power of two, or lanes would share sets of the cache.
+/// Instants that one lane's numbers are moved at a time, of a lane, and of all lanes. A lane's is
+/// not a power of two, or lanes would share sets of the cache.
 inline constexpr std::size_t together = 8, blocks = 31, lane_length = blocks * together;
 inline constexpr std::size_t chunk_length = lane_length * lanes;
+/// Instants of a lane that are written one after another.
+inline constexpr std::size_t run_length = 62;
+static_assert(lane_length % run_length == 0);
+/// The first chunk's, in which a filter forgets a wide start.
+inline constexpr std::size_t head_length = 1024;
 
 enum class Pass { one_by_one, side_by_side, constant_gain };
 
@@ -55,14 +62,15 @@ struct Work {
   UniformOutput<N> output;
   const PlainKernels<N>* plain = nullptr;
   const LaneKernels<N>* side_by_side = nullptr;
+  const ConstantGainKernels<N>* constant_gain = nullptr;
   FilterLeap<N> lane_leap{};
   std::optional<Steady<N>> steady;
 
   Score score;
   CovarianceRuns<N> covariances;
 
-  std::vector<Row<N>> rows;            // of a chunk, one by one
-  std::vector<LaneRow<N>> lane_rows;   // of a chunk, side by side
+  std::vector<Row<N>> rows;             // of a chunk, one by one
+  std::vector<LaneRow<N>> lane_rows;    // of a chunk, side by side
   std::vector<LaneMean<N>> lane_means;  // of a chunk, at constant gain
   std::vector<double> lane_z;           // of a chunk, the lanes' readings of an instant together
 };
@@ -72,31 +80,23 @@ struct Work {
   return first + static_cast<std::size_t>(lane) * lane_length + t;
 }
 
+/// What is known of the model's limit, if it has one.
+template <int N>
+[[nodiscard]] std::optional<Steady<N>> settle(const LinearModel<N, 1>& model);
+
+/// Whether what the readings see of P, and so every gain from here on, has come to its limit. Each
+/// entry is judged by itself and relatively; steps from one instant to the next would say nothing,
+/// since a slow mode's are always small.
+template <int N>
+[[nodiscard]] bool gains_settled(const Steady<N>& steady, const Mat<N, N>& P);
+
+/// Whether all of P has.
+template <int N>
+[[nodiscard]] bool settled(const Symmetric<N>& limit, const Mat<N, N>& P, double tolerance);
+
 /// The lanes' readings of `together` instants from t on into lane_z. Says whether all are there.
 template <int N>
 [[nodiscard]] bool lay_out(Work<N>& work, const Chunk<N>& chunk, std::size_t t);
-
-using Pair = double __attribute__((vector_size(16)));
-
-/// Numbers of two neighbouring lanes, each lane's together.
-template <int Count>
-[[gnu::always_inline]] inline void part(const LaneNumbers* numbers,
-                                        int lane,
-                                        double* first,
-                                        double* second) {
-  for (int i = 0; i + 2 <= Count; i += 2) {
-    Pair a, b;
-    std::memcpy(&a, &numbers[i][lane], sizeof a);
-    std::memcpy(&b, &numbers[i + 1][lane], sizeof b);
-    const Pair low = __builtin_shufflevector(a, b, 0, 2), high = __builtin_shufflevector(a, b, 1, 3);
-    std::memcpy(first + i, &low, sizeof low);
-    std::memcpy(second + i, &high, sizeof high);
-  }
-  if constexpr (Count % 2 == 1) {
-    first[Count - 1] = numbers[Count - 1][lane];
-    second[Count - 1] = numbers[Count - 1][lane + 1];
-  }
-}
 
 template <int N>
 [[nodiscard]] double* numbers_of(Mat<N>& x) {
@@ -107,21 +107,27 @@ template <int N>
   return P.lower.data();
 }
 
-/// The lanes' numbers of `together` instants from t on into `out`, one T an instant; `numbers(t)`
-/// are the lanes'. Memory is asked for the next so many: these are more places at once than a
-/// processor sees coming by itself.
-template <int Count, class T, class Numbers>
-void write_lanes(std::size_t first, std::size_t t, std::span<T> out, Numbers&& numbers) {
-  for (int lane = 0; lane < lanes; lane += 2) {
-    T* one = &out[instant(first, lane, t)];
-    T* other = one + lane_length;
-    for (std::size_t ahead = together * Count; ahead < 2 * together * Count; ahead += 8) {
-      __builtin_prefetch(numbers_of(*one) + ahead, 1);
-      __builtin_prefetch(numbers_of(*other) + ahead, 1);
+template <int Count, Write write, class T, class Numbers>
+void write_pairs(std::size_t first, std::span<T> out, const Numbers& numbers) {
+  for (std::size_t t = 0; t < lane_length; t += run_length)
+    for (int lane = 0; lane < lanes; lane += 2) {
+      T* one = &out[instant(first, lane, t)];
+      T* other = one + lane_length;
+      for (std::size_t u = 0; u < run_length; ++u)
+        part<Count, write>(numbers(t + u), lane, numbers_of(one[u]), numbers_of(other[u]));
     }
-    for (std::size_t u = 0; u < together; ++u)
-      part<Count>(numbers(t + u), lane, numbers_of(one[u]), numbers_of(other[u]));
-  }
+}
+
+/// The lanes' numbers of a chunk into `out`, one T of Count numbers an instant; `numbers(t)` are
+/// the lanes'.
+template <int Count, class T, class Numbers>
+void write_lanes(std::size_t first, std::span<T> out, const Numbers& numbers) {
+  constexpr std::size_t too_much_bytes = std::size_t{8} << 20U;
+  const bool aligned = Count % 2 == 0 && reinterpret_cast<std::uintptr_t>(out.data()) % 16 == 0;
+  if (aligned && out.size_bytes() > too_much_bytes)
+    write_pairs<Count, Write::streamed>(first, out, numbers);
+  else
+    write_pairs<Count, Write::cached>(first, out, numbers);
 }
 
 template <int N>
@@ -151,8 +157,8 @@ void set_lane(const Mat<N>& from, int lane, LaneNumbers* to) {
 
 /// Each pass's filter takes `state` from before the chunk to its end; where no smoother follows,
 /// it writes the results. filter_side_by_side() and filter_constant_gain() say false, and leave all
-/// as it was, where readings are missing or lanes do not end where the next begins. The smoothers take `later` from the chunk's end to before it,
-/// running the filter again, and write the results.
+/// as it was, where readings are missing or lanes do not end where the next begins. The smoothers
+/// take `later` from the chunk's end to before it, running the filter again, and write the results.
 template <int N>
 void filter_one_by_one(Work<N>& work, const Chunk<N>& chunk, State<N>& state);
 template <int N>

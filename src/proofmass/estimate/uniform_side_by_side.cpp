@@ -8,7 +8,8 @@ namespace {
 template <int N>
 using Leaps = std::vector<LeapFrom<N>>;
 
-/// The leap of each lane, one from where the one before ends; P of each lane's beginning to `state`.
+/// The leap of each lane, one from where the one before ends; P of each lane's beginning to
+/// `state`.
 template <int N>
 Leaps<N> leap_through(const Work<N>& work, const Chunk<N>& chunk, LaneState<N>& state) {
   Leaps<N> leaps;
@@ -108,12 +109,10 @@ bool filter_lanes(Work<N>& work, const Chunk<N>& chunk, LaneState<N>& state, boo
 template <int N>
 void write_chunk(Work<N>& work, const Chunk<N>& chunk) {
   const UniformOutput<N>& out = work.output;
-  for (std::size_t t = 0; t < lane_length; t += together) {
-    write_lanes<N>(chunk.first, t, out.means, [&](std::size_t at) { return work.lane_rows[at].x; });
-    if (!out.covariances.empty())
-      write_lanes<Symmetric<N>::entries>(chunk.first, t, out.covariances,
-                                         [&](std::size_t at) { return work.lane_rows[at].P; });
-  }
+  write_lanes<N>(chunk.first, out.means, [&](std::size_t t) { return work.lane_rows[t].x; });
+  if (!out.covariances.empty())
+    write_lanes<Symmetric<N>::entries>(chunk.first, out.covariances,
+                                       [&](std::size_t t) { return work.lane_rows[t].P; });
   if (!out.innovation.empty() || !out.innovation_variance.empty()) write_innovations(work, chunk);
   if (work.options.covariances == Covariances::where_they_change) keep_covariances(work);
 }

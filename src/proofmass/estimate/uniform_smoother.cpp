@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <numbers>
 
 #include "proofmass/core/contract.hpp"
@@ -22,14 +20,10 @@ bool lay_out(Work<N>& work, const Chunk<N>& chunk, std::size_t t) {
     __builtin_prefetch(z + 2 * together);
     __builtin_prefetch(z + 2 * together + lane_length);
     for (std::size_t u = 0; u < together; u += 2) {
-      Pair a, b;
-      std::memcpy(&a, z + u, sizeof a);
-      std::memcpy(&b, z + u + lane_length, sizeof b);
+      const Pair a = pair_at(z + u), b = pair_at(z + u + lane_length);
       none += 0.0 * a + 0.0 * b;
-      const Pair now = __builtin_shufflevector(a, b, 0, 2);
-      const Pair next = __builtin_shufflevector(a, b, 1, 3);
-      std::memcpy(out + u * lanes, &now, sizeof now);
-      std::memcpy(out + (u + 1) * lanes, &next, sizeof next);
+      write_pair<Write::cached>(__builtin_shufflevector(a, b, 0, 2), out + u * lanes);
+      write_pair<Write::cached>(__builtin_shufflevector(a, b, 1, 3), out + (u + 1) * lanes);
     }
   }
   return none[0] + none[1] == 0.0;
@@ -41,51 +35,6 @@ template bool lay_out(Work<3>&, const Chunk<3>&, std::size_t);
 template bool lay_out(Work<4>&, const Chunk<4>&, std::size_t);
 
 namespace {
-
-template <int N>
-std::optional<Steady<N>> settle(const LinearModel<N, 1>& model) {
-  const Result<SteadyState<N, 1>> limit = steady_state(model);
-  if (!limit) return std::nullopt;
-  Steady<N> steady{*limit, {}, Mat<N, N>::Identity(), 0.0};
-  steady.gain.per_S = 1.0 / limit->innovation_variance(0);
-  for (int i = 0; i < N; ++i) {
-    steady.gain.K[i] = limit->gain(i);
-    for (int j = 0; j < N; ++j) steady.gain.seen[i][j] = limit->seen(i, j);
-  }
-  Mat<N, N> decay = model.F - limit->gain * (model.H * model.F);
-  for (std::size_t left = lane_length; left > 0; left /= 2, decay = (decay * decay).eval())
-    if (left % 2 == 1) steady.lane_decay = (steady.lane_decay * decay).eval();
-  // Rounding of a step, and what is left of it after so many.
-  steady.tolerance = std::clamp(
-      8.0 * std::numeric_limits<double>::epsilon() * limit->slowest_steps, 1e-12, 1e-10);
-  return steady;
-}
-
-/// Whether what the readings see of P, and so every gain from here on, has come to its limit. Each
-/// entry is judged by itself and relatively; steps from one instant to the next would say nothing,
-/// since a slow mode's are always small.
-template <int N>
-bool gains_settled(const Steady<N>& steady, const Mat<N, N>& P) {
-  const Mat<N, N>& seen = steady.limit.seen;
-  for (int j = 0; j < N; ++j) {
-    if (seen(j, j) == 0.0) continue;
-    for (int i = 0; i < N; ++i) {
-      const double size = std::max(std::abs(seen(i, j)), 1e-6 * std::sqrt(P(i, i) * seen(j, j)));
-      if (!(std::abs(P(i, j) - seen(i, j)) <= steady.tolerance * size)) return false;
-    }
-  }
-  return true;
-}
-
-/// Whether all of P has.
-template <int N>
-bool settled(const Symmetric<N>& limit, const Mat<N, N>& P, double tolerance) {
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j <= i; ++j)
-      if (!(std::abs(P(i, j) - limit(i, j)) <= tolerance * std::sqrt(limit(i, i) * limit(j, j))))
-        return false;
-  return true;
-}
 
 template <int N>
 Pass pass_of(const Work<N>& work, const Chunk<N>& chunk) {
@@ -124,9 +73,10 @@ Status filter_chunk(Work<N>& work, Chunk<N>& chunk, State<N>& state) {
 template <int N>
 Result<std::vector<Chunk<N>>> filter_all(Work<N>& work, State<N> state) {
   std::vector<Chunk<N>> chunks;
-  chunks.reserve(work.z.size() / chunk_length + 1);
-  for (std::size_t first = 0; first < work.z.size(); first += chunk_length) {
-    const std::size_t count = std::min(chunk_length, work.z.size() - first);
+  chunks.reserve(work.z.size() / chunk_length + 2);
+  for (std::size_t first = 0; first < work.z.size(); first += chunks.back().count) {
+    const std::size_t most = first == 0 ? head_length : chunk_length;
+    const std::size_t count = std::min(most, work.z.size() - first);
     chunks.push_back({first, count, state, Pass::one_by_one});
     if (const Status fine = filter_chunk(work, chunks.back(), state); !fine) return fine.error();
   }
@@ -157,10 +107,9 @@ UniformSummary<N> summarise(Work<N>& work, const std::vector<Chunk<N>>& chunks) 
   summary.covariances = std::move(work.covariances);
   summary.nis = work.score.nis;
   summary.readings = work.score.readings;
-  summary.log_likelihood =
-      0.5 * (work.score.R_S.value() - work.score.nis -
-             static_cast<double>(summary.readings) *
-                 std::log(2.0 * std::numbers::pi * work.model.R));
+  summary.log_likelihood = 0.5 * (work.score.R_S.value() - work.score.nis -
+                                  static_cast<double>(summary.readings) *
+                                      std::log(2.0 * std::numbers::pi * work.model.R));
   for (const Chunk<N>& chunk : chunks) {
     if (chunk.pass == Pass::one_by_one) summary.one_by_one += chunk.count;
     if (chunk.pass == Pass::side_by_side) summary.side_by_side += chunk.count;
@@ -194,6 +143,7 @@ Result<UniformSummary<N>> run(const LinearModel<N, 1>& model,
   work.plain = &plain_kernels(work.model);
   if (z.size() > chunk_length) {
     work.side_by_side = &lane_kernels(work.model);
+    work.constant_gain = &constant_gain_kernels(work.model);
     work.lane_leap = filter_leap(model, lane_length);
     work.steady = settle(model);
   }
@@ -206,6 +156,7 @@ Result<UniformSummary<N>> run(const LinearModel<N, 1>& model,
   if (!filtered) return filtered.error();
   std::vector<Chunk<N>> chunks = std::move(filtered).value();
   if (options.smooth) smooth_all(work, chunks);
+  finish_streaming();
   return summarise(work, chunks);
 }
 
@@ -229,44 +180,44 @@ Result<UniformSummary<N>> run_uniform(const LinearModel<N, 1, U>& model,
 }
 
 template Result<UniformSummary<1>> run_uniform(const LinearModel<1, 1, 0>&,
-                                                const Gaussian<1>&,
-                                                std::span<const double>,
-                                                const UniformOptions<1>&,
-                                                const UniformOutput<1>&);
+                                               const Gaussian<1>&,
+                                               std::span<const double>,
+                                               const UniformOptions<1>&,
+                                               const UniformOutput<1>&);
 template Result<UniformSummary<1>> run_uniform(const LinearModel<1, 1, 1>&,
-                                                const Gaussian<1>&,
-                                                std::span<const double>,
-                                                const UniformOptions<1>&,
-                                                const UniformOutput<1>&);
+                                               const Gaussian<1>&,
+                                               std::span<const double>,
+                                               const UniformOptions<1>&,
+                                               const UniformOutput<1>&);
 template Result<UniformSummary<2>> run_uniform(const LinearModel<2, 1, 0>&,
-                                                const Gaussian<2>&,
-                                                std::span<const double>,
-                                                const UniformOptions<2>&,
-                                                const UniformOutput<2>&);
+                                               const Gaussian<2>&,
+                                               std::span<const double>,
+                                               const UniformOptions<2>&,
+                                               const UniformOutput<2>&);
 template Result<UniformSummary<2>> run_uniform(const LinearModel<2, 1, 1>&,
-                                                const Gaussian<2>&,
-                                                std::span<const double>,
-                                                const UniformOptions<2>&,
-                                                const UniformOutput<2>&);
+                                               const Gaussian<2>&,
+                                               std::span<const double>,
+                                               const UniformOptions<2>&,
+                                               const UniformOutput<2>&);
 template Result<UniformSummary<3>> run_uniform(const LinearModel<3, 1, 0>&,
-                                                const Gaussian<3>&,
-                                                std::span<const double>,
-                                                const UniformOptions<3>&,
-                                                const UniformOutput<3>&);
+                                               const Gaussian<3>&,
+                                               std::span<const double>,
+                                               const UniformOptions<3>&,
+                                               const UniformOutput<3>&);
 template Result<UniformSummary<3>> run_uniform(const LinearModel<3, 1, 1>&,
-                                                const Gaussian<3>&,
-                                                std::span<const double>,
-                                                const UniformOptions<3>&,
-                                                const UniformOutput<3>&);
+                                               const Gaussian<3>&,
+                                               std::span<const double>,
+                                               const UniformOptions<3>&,
+                                               const UniformOutput<3>&);
 template Result<UniformSummary<4>> run_uniform(const LinearModel<4, 1, 0>&,
-                                                const Gaussian<4>&,
-                                                std::span<const double>,
-                                                const UniformOptions<4>&,
-                                                const UniformOutput<4>&);
+                                               const Gaussian<4>&,
+                                               std::span<const double>,
+                                               const UniformOptions<4>&,
+                                               const UniformOutput<4>&);
 template Result<UniformSummary<4>> run_uniform(const LinearModel<4, 1, 1>&,
-                                                const Gaussian<4>&,
-                                                std::span<const double>,
-                                                const UniformOptions<4>&,
-                                                const UniformOutput<4>&);
+                                               const Gaussian<4>&,
+                                               std::span<const double>,
+                                               const UniformOptions<4>&,
+                                               const UniformOutput<4>&);
 
 }  // namespace proofmass::estimate

@@ -16,9 +16,11 @@
 //
 // Which of three passes a stretch of the recording goes through is seen from the recording:
 //   one by one       its beginning, stretches with readings missing, what is left over at the end
-//   side by side     complete stretches, cut into lanes that run together; covariances at the lanes'
+//   side by side     complete stretches, cut into lanes that run together; covariances at the
+//   lanes'
 //                    beginnings come from the composition of filtering elements, so they are exact
-//   constant gain    complete stretches after the gains have reached their limit (steady_state.hpp),
+//   constant gain    complete stretches after the gains have reached their limit
+//   (steady_state.hpp),
 //                    where covariances have a limit too or are not asked for
 // A gap leads back to the first, and from there on again.
 namespace proofmass::estimate {
@@ -107,9 +109,8 @@ template <int N, int U>
     run.innovation.resize(z.size());
     run.innovation_variance.resize(z.size());
   }
-  auto summary =
-      run_uniform(model, prior, z, options,
-                  {run.means, run.covariances, run.innovation, run.innovation_variance});
+  auto summary = run_uniform(model, prior, z, options,
+                             {run.means, run.covariances, run.innovation, run.innovation_variance});
   if (!summary) return summary.error();
   run.summary = std::move(summary).value();
   return run;

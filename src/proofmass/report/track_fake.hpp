@@ -83,6 +83,17 @@ inline TrackReport fake_track() {
   return report;
 }
 
+/// The same as two sensors showed it.
+inline TrackReport fake_fused() {
+  TrackReport report = fake_track();
+  estimate::TrackSolution& solution = report.solution;
+  solution.model = estimate::TrackModel::fused;
+  solution.jerk_psd_m2ps5 = Uncertain{12.0, 0.5};
+  solution.fused = estimate::FusedTrack{
+      {{"acc", {0.02, 1e-3}, {0.201, 0.003}}, {"acc<2>", {0.31, 1e-3}, {0.198, 0.0029}}}, 2.1};
+  return report;
+}
+
 /// The same readings, that look like jerk.
 inline TrackReport fake_jerk() {
   TrackReport report = fake_track();

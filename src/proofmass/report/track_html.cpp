@@ -71,7 +71,9 @@ std::string cut_caption(std::string caption, std::size_t rows) {
 }
 
 Table strokes_table(const std::vector<Stroke>& strokes) {
-  Table table{cut_caption("Each stroke; the length is that of the shorter way", strokes.size()),
+  Table table{cut_caption("Each stroke; the length is the mean of both ways, or the shorter where "
+                          "they differ by half",
+                          strokes.size()),
               {"Stroke", "From", "Turns", "To", "Out", "Back", "Length"},
               {}};
   for (const Stroke& stroke : strokes) {
@@ -152,7 +154,31 @@ Section readings_section(const TrackReport& report) {
       .heading = "The readings", .tables = {std::move(table)}, .figures = {accel_figure(solution)}};
 }
 
-Section method_section() {
+Table fused_table(const TrackSolution& solution) {
+  auto rows = fused_rows(solution);
+  Table table{
+      "Each accelerometer alone, and all fused", {"Sensor", "Displacement", "Reads at rest"}, {}};
+  table.rows.assign(rows.begin() + 1, rows.end());
+  return table;
+}
+
+Section pva_method_section(const TrackSolution& solution) {
+  Section section{.heading = "How it was computed"};
+  section.paragraphs = {
+      model_words(solution),
+      "A Kalman filter carries position, velocity, acceleration and a bias of each accelerometer "
+      "through the recording. White jerk drives the acceleration in motion; at rest velocity and "
+      "acceleration are 0, and what an accelerometer reads is its bias. Each reading is judged by "
+      "its innovation. A fixed-interval smoother then goes back through the recording.",
+      "The axis, the rests and what the readings err by in motion are found as in the inertial "
+      "model. "
+      "Beside it stands double integration of the same readings, less their level at the first "
+      "rest."};
+  return section;
+}
+
+Section method_section(const TrackSolution& solution) {
+  if (solution.model != estimate::TrackModel::inertial) return pva_method_section(solution);
   return {
       .heading = "How it was computed",
       .paragraphs = {
@@ -184,6 +210,7 @@ std::string track_html(const TrackReport& report) {
                              .tables = {methods_table(solution)},
                              .figures = {position_figure(report), velocity_figure(solution),
                                          position_std_figure(solution)}});
+    if (solution.fused) page.sections.back().tables.push_back(fused_table(solution));
     if (!solution.strokes.empty())
       page.sections.push_back({.heading = "Strokes", .tables = {strokes_table(solution.strokes)}});
   }
@@ -191,7 +218,7 @@ std::string track_html(const TrackReport& report) {
   if (solution.smoother) {
     page.sections.push_back(stops_section(report));
     page.sections.push_back(consistency_section(solution.consistency));
-    page.sections.push_back(method_section());
+    page.sections.push_back(method_section(solution));
   }
   return html(page);
 }

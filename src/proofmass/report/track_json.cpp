@@ -76,6 +76,17 @@ Value stroke_summary(const std::vector<Stroke>& strokes) {
                 {"spread_m", optional(summary->spread_m)}};
 }
 
+Value fused(const estimate::FusedTrack& fused) {
+  Array sensors;
+  for (const estimate::FusedSensor& sensor : fused.sensors)
+    sensors.push_back(Object{{"name", sensor.name},
+                             {"bias_mps2", sensor.bias_mps2.value},
+                             {"bias_std_mps2", sensor.bias_mps2.std},
+                             {"displacement_m", sensor.displacement_m.value},
+                             {"std_m", sensor.displacement_m.std}});
+  return Object{{"sensors", sensors}, {"variance_gain", fused.variance_gain}};
+}
+
 Value budget(const TrackBudget& budget) {
   return Object{{"white_mps2_rthz", budget.white_mps2_rthz},
                 {"walk_mps2_rts", budget.walk_mps2_rts},
@@ -146,6 +157,11 @@ std::vector<std::string> warnings(const TrackReport& report) {
   const TrackBudget& budget = solution.budget;
   if (!budget.free_m || !budget.worst_m || !budget.end_m)
     all.emplace_back("budget: free_m, worst_m, end_m: null where nothing bounds the error");
+  if (solution.model == estimate::TrackModel::inertial)
+    all.emplace_back("jerk_psd: null: the inertial model has none");
+  else if (!solution.jerk_psd_m2ps5)
+    all.emplace_back("jerk_psd: null: the readings in motion do not tell it");
+  if (!solution.fused) all.emplace_back("fused: null: one sensor alone");
   missing(solution.resting_norm_mps2, "resting_norm_mps2: null: it takes three axes and a rest");
   missing(solution.turned_rad,
           "turned_rad: null: it takes three axes, gravity in the readings, and a rest");
@@ -169,6 +185,9 @@ std::string track_json(const TrackReport& report) {
       {{"samples", time_s.size()},
        {"duration_s", time_s.empty() ? 0.0 : time_s.back() - time_s.front()},
        {"budget", budget(solution.budget)},
+       {"model", name_of(solution.model)},
+       {"jerk_psd", quantity(solution.jerk_psd_m2ps5, "m^2/s^5")},
+       {"fused", solution.fused ? fused(*solution.fused) : Value()},
        {"methods", Object{{"double_integration", method(solution.double_integration)},
                           {"kalman", method(solution.kalman)},
                           {"smoother", method(solution.smoother)}}},

@@ -59,6 +59,7 @@ std::string track_text(const TrackReport& report) {
   for (const std::string& sentence : budget_words(solution)) text += "  " + sentence + '\n';
   text += '\n' + track_conclusion(solution) + '\n';
   if (solution.smoother) text += '\n' + aligned(method_rows(solution));
+  if (solution.fused && solution.smoother) text += '\n' + aligned(fused_rows(solution));
   if (!solution.strokes.empty()) {
     text += '\n' + aligned(stroke_rows(solution.strokes));
     if (solution.strokes.size() > most_strokes)
@@ -69,6 +70,7 @@ std::string track_text(const TrackReport& report) {
                       gravity_words(solution.gravity));
   if (!solution.closures.empty()) text += "; " + closures_words(solution.closures);
   text += ".\n";
+  if (const std::string model = model_words(solution); !model.empty()) text += "  " + model + '\n';
   if (solution.consistency.innovations > 0)
     text += "  " + consistency_conclusion(solution.consistency) + '\n';
   return text;

@@ -42,6 +42,32 @@ TEST(TrackJson, HoldsWhatScriptsRelyOn) {
     EXPECT_TRUE(document["consistency"][key].is_number()) << key;
 }
 
+TEST(TrackJson, SaysWhichModelAndWhatEachSensorToldAlone) {
+  const json one = json::parse(track_json(fake_track()));
+  EXPECT_EQ(one["model"], "inertial");
+  EXPECT_TRUE(one["jerk_psd"].is_null());
+  EXPECT_TRUE(one["fused"].is_null());
+  EXPECT_TRUE(tells(one, "jerk_psd: null"));
+  EXPECT_TRUE(tells(one, "fused: null"));
+  const json two = json::parse(track_json(fake_fused()));
+  EXPECT_EQ(two["model"], "fused");
+  EXPECT_EQ(two["jerk_psd"], (json{{"value", 12.0}, {"std", 0.5}, {"unit", "m^2/s^5"}}));
+  EXPECT_EQ(two["fused"]["variance_gain"], 2.1);
+  EXPECT_EQ(two["fused"]["sensors"][1]["name"], "acc<2>");
+  EXPECT_EQ(two["fused"]["sensors"][1]["displacement_m"], 0.198);
+  EXPECT_EQ(two["fused"]["sensors"][0]["bias_mps2"], 0.02);
+}
+
+TEST(TrackText, TellsTheModelAndEachSensorAlone) {
+  EXPECT_EQ(track_text(fake_track()).find("Model"), std::string::npos);
+  const std::string text = track_text(fake_fused());
+  EXPECT_NE(text.find("Model fused: 2 accelerometers, one motion; white jerk of 12.0"),
+            std::string::npos);
+  EXPECT_NE(text.find("acc alone"), std::string::npos);
+  EXPECT_NE(text.find("variance 2.1 times smaller"), std::string::npos);
+  EXPECT_NE(track_html(fake_fused()).find("acc&lt;2&gt; alone"), std::string::npos);
+}
+
 TEST(TrackJson, TheIntervalIsThatOfTheMethod) {
   const json interval =
       json::parse(track_json(fake_track()))["methods"]["smoother"]["interval_95_m"];

@@ -172,6 +172,40 @@ std::string closures_words(const std::vector<Closure>& closures) {
       significant(std::sqrt(normalised / n), 2));
 }
 
+std::string_view name_of(estimate::TrackModel model) {
+  switch (model) {
+    case estimate::TrackModel::pva:
+      return "pva";
+    case estimate::TrackModel::fused:
+      return "fused";
+    default:
+      return "inertial";
+  }
+}
+
+std::string model_words(const TrackSolution& solution) {
+  if (solution.model == estimate::TrackModel::inertial) return "";
+  std::string text = solution.fused ? fmt::format("Model fused: {} accelerometers, one motion",
+                                                  solution.fused->sensors.size())
+                                    : std::string("Model pva: the acceleration is estimated");
+  if (!solution.jerk_psd_m2ps5) return text + "; the readings do not tell how hard it jerks.";
+  const Uncertain& jerk = *solution.jerk_psd_m2ps5;
+  return text + fmt::format("; white jerk of {} m²/s⁵{}.", significant(jerk.value, 3),
+                            jerk.std > 0.0 ? " by maximum likelihood" : ", as given");
+}
+
+std::vector<std::vector<std::string>> fused_rows(const TrackSolution& solution) {
+  std::vector<std::vector<std::string>> rows{{"sensor", "displacement", "reads at rest"}};
+  if (!solution.fused || !solution.smoother) return rows;
+  for (const estimate::FusedSensor& sensor : solution.fused->sensors)
+    rows.push_back({sensor.name + " alone", length_with_std(sensor.displacement_m),
+                    fixed(sensor.bias_mps2.value, 4) + " m/s²"});
+  rows.push_back({fmt::format("fused: variance {} times smaller",
+                              significant(solution.fused->variance_gain, 2)),
+                  length_with_std(solution.smoother->displacement_m), ""});
+  return rows;
+}
+
 std::string track_conclusion(const TrackSolution& solution) {
   const std::vector<double>& time_s = solution.series.time_s;
   const std::string when = time_s.empty() ? "" : duration_words(time_s.back() - time_s.front());

@@ -22,6 +22,16 @@ namespace proofmass::report {
 /// "removed", "present" or "unknown".
 [[nodiscard]] std::string_view name_of(estimate::GravityContent gravity);
 
+/// "inertial", "pva" or "fused".
+[[nodiscard]] std::string_view name_of(estimate::TrackModel model);
+
+/// Which model it was and with what jerk; empty for the inertial one.
+[[nodiscard]] std::string model_words(const estimate::TrackSolution& solution);
+
+/// A row for each sensor that was fused, alone, and one for all; the first names the columns.
+[[nodiscard]] std::vector<std::vector<std::string>> fused_rows(
+    const estimate::TrackSolution& solution);
+
 /// "removed by whoever recorded the readings", …
 [[nodiscard]] std::string_view gravity_words(estimate::GravityContent gravity);
 
