@@ -163,8 +163,8 @@ struct TrackSolution {
   TrackModel model = TrackModel::inertial;
   std::optional<Uncertain> jerk_psd_m2ps5;  ///< as used; std 0 where given; absent: not told
   std::optional<FusedTrack> fused;          ///< of the model fused
-  std::array<double, 3> axis{};  ///< unit vector; in the sensor's axes, or the world's
-  bool axis_in_world = false;    ///< a gyroscope told where the world is: z is up
+  std::array<double, 3> axis{};             ///< unit vector; in the sensor's axes, or the world's
+  bool axis_in_world = false;               ///< a gyroscope told where the world is: z is up
   bool axis_given = false;
   double travel_share = 1.0;  ///< of the squared velocity that is along the axis
   GravityContent gravity = GravityContent::unknown;

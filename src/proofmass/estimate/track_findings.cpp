@@ -135,7 +135,8 @@ double scale_std(const TrackSignal& signal,
       cosine += solution.axis[a] * signal.reference_mps2[a] / *signal.resting_norm_mps2;
   }
   const double up = std::min(cosine * cosine, 1.0);
-  return std::sqrt(up * upwards * upwards + (1.0 - up) * std::max(unknown, upwards) * std::max(unknown, upwards));
+  return std::sqrt(up * upwards * upwards +
+                   (1.0 - up) * std::max(unknown, upwards) * std::max(unknown, upwards));
 }
 
 void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackSolution& solution) {

@@ -35,8 +35,8 @@ struct ReadOptions {
 /// numbers), invalid_argument (a channel, variable or time column that is not there; a rate not
 /// above zero). Each names the file and, where there is one, the line or byte.
 /// Cost: one pass; memory at the peak 1.02 to 1.15 × the table's doubles, the time column counted
-/// although it is dropped where it turns out to be uniform; of MAT the file's bytes besides. HDF5 is
-/// unpacked in a child process.
+/// although it is dropped where it turns out to be uniform; of MAT the file's bytes besides. HDF5
+/// is unpacked in a child process.
 [[nodiscard]] Result<Recording> read_recording(const std::string& path, const ReadOptions& options);
 
 /// The same for bytes that are in memory already; `name` stands for the file in errors and notes.
