@@ -93,7 +93,8 @@ TEST(TrackPva, TakesFixesAndTheSamePlace) {
   EXPECT_LT(back.smoother->displacement_m.std, 1.01e-4);
   const TrackSolution fixed = solved(made.sensor, {.model = TrackModel::pva,
                                                    .axis = {{1.0, 0.0, 0.0}},
-                                                   .fixes = {{4.0, 0.4, 1e-3}, {4.0, 0.4, 1e-3}}});
+                                                   .fixes = {{4.0, 0.4, 1e-3}, {4.0, 0.4, 1e-3}},
+                                                   .scale_std = 0.0});
   EXPECT_LT(fixed.series.position_std_m[400], 2e-3);
   EXPECT_NEAR(fixed.series.position_m[400], 0.4, 3e-3);
 }
