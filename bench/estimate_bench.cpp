@@ -116,7 +116,7 @@ void run(benchmark::State& state,
   const auto model = model_of(reads);
   auto z = record(reads, instants);
   for (std::size_t k = 0; missing > 0 && k < z.size(); k += missing) z[k] = std::nan("");
-  std::vector<Mat<4>> means(instants);
+  std::vector<Mat<4>> means(instants, Mat<4>::Zero());  // memory that is there
   std::vector<Symmetric<4>> covariances(options.covariances == Covariances::everywhere ? instants
                                                                                        : 0);
   for (auto _ : state) {
@@ -170,7 +170,7 @@ void constant_gain_means(benchmark::State& state, bool smooth) {
   const auto count = static_cast<std::size_t>(state.range(0));
   const auto model = model_of(position);
   const auto z = record(position, count);
-  std::vector<Mat<4>> means(count);
+  std::vector<Mat<4>> means(count, Mat<4>::Zero());  // memory that is there
   double best_s = 1e300;
   for (auto _ : state) {
     const double from = cpu_s();

@@ -16,7 +16,9 @@ struct PvaTask {
 
 /// Puts the solution of options.model in place of the inertial one: series, closures, consistency,
 /// density of the jerk, fused figures. The axis, the rests and what the acceleration errs by in
-/// motion are those of the inertial solution. Does nothing for TrackModel::inertial.
+/// motion are those of the inertial solution; what fused sensors all err by is found anew, from
+/// their mean. Strokes keep the covariance of the inertial solution: that of one sensor. Does
+/// nothing for TrackModel::inertial.
 ///
 /// The density of the jerk maximises the likelihood of all readings of the first sensor, given the
 /// noise at rest; its std is that of the likelihood's curvature.
