@@ -26,10 +26,12 @@ namespace proofmass::estimate {
 /// How smooth_linear() goes back. Both give the same but for rounding.
 enum class Smoother {
   /// Bryson and Frazier: no inverse, so constants, unobservable states and a singular Q are as good
-  /// as any others; the more exact where some states are not observable.
+  /// as any others; the more exact where some states are not observable. P − P Λ P loses digits
+  /// where the filter is far less sure than the smoother: behind a gap of 10 s with position read,
+  /// 2·10⁻³ of a variance.
   bryson_frazier,
-  /// Rauch, Tung and Striebel: for comparison with others' results, and where Λ would be very large
-  /// because readings are very precise.
+  /// Rauch, Tung and Striebel: for comparison with others' results, and where readings are very
+  /// precise, a gap is long or the prior very wide.
   rauch_tung_striebel,
 };
 
