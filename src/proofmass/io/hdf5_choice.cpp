@@ -40,14 +40,9 @@ class Chooser {
 
   Result<Hdf5Choice> choice() const {
     Hdf5Choice choice;
-    for (const MatTable& table : tables_)
-      if (chosen_.contains(table.array)) choice.tables.push_back(table);
-    const MatTable& first = choice.tables.front();
-    for (const MatTable& table : choice.tables)
-      if (table.rows != first.rows)
-        return Error{Errc::invalid_argument,
-                     fmt::format("{} has {} samples and {} {}: they do not belong together",
-                                 first.array->path, first.rows, table.array->path, table.rows)};
+    Result<std::vector<MatTable>> tables = chosen_tables(tables_, chosen_);
+    if (!tables) return tables.error();
+    choice.tables = std::move(tables).value();
     tell(choice);
     return choice;
   }

@@ -63,15 +63,10 @@ class Chooser {
 
   Result<MatChoice> choice() {
     MatChoice choice;
-    for (const MatTable& table : tables_)
-      if (chosen_.contains(table.array)) choice.tables.push_back(table);
-    const MatTable& first = choice.tables.front();
-    for (const MatTable& table : choice.tables)
-      if (table.rows != first.rows)
-        return Error{Errc::invalid_argument,
-                     fmt::format("{} has {} samples and {} {}: they do not belong together",
-                                 first.array->path, first.rows, table.array->path, table.rows)};
-    choice.rate = rate_beside(first);
+    Result<std::vector<MatTable>> tables = chosen_tables(tables_, chosen_);
+    if (!tables) return tables.error();
+    choice.tables = std::move(tables).value();
+    choice.rate = rate_beside(choice.tables.front());
     tell(choice);
     return choice;
   }
@@ -184,6 +179,20 @@ class Chooser {
 };
 
 }  // namespace
+
+Result<std::vector<MatTable>> chosen_tables(const std::vector<MatTable>& tables,
+                                            const std::set<const MatArray*>& chosen) {
+  std::vector<MatTable> found;
+  for (const MatTable& table : tables)
+    if (chosen.contains(table.array)) found.push_back(table);
+  for (const MatTable& table : found)
+    if (table.rows != found.front().rows)
+      return Error{Errc::invalid_argument,
+                   fmt::format("{} has {} samples and {} {}: they do not belong together",
+                               found.front().array->path, found.front().rows, table.array->path,
+                               table.rows)};
+  return found;
+}
 
 bool is_rate_name(std::string_view name) {
   constexpr std::array<std::string_view, 12> names{

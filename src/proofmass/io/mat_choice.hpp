@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,11 @@ inline constexpr std::size_t most_mat_channels = 64;
 [[nodiscard]] bool is_rate_name(std::string_view name);
 /// Whether an instrument may have it.
 [[nodiscard]] bool is_rate(double rate_hz);
+
+/// Those of the tables whose array was chosen, in their order.
+/// Errors: invalid_argument where they are not equally long.
+[[nodiscard]] Result<std::vector<MatTable>> chosen_tables(const std::vector<MatTable>& tables,
+                                                          const std::set<const MatArray*>& chosen);
 
 /// The arrays that make the recording.
 struct MatChoice {
