@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "proofmass/core/chi_square.hpp"
+#include "proofmass/estimate/lag_test_support.hpp"
 #include "proofmass/estimate/square_root.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 
@@ -15,28 +16,8 @@ using Model = LinearModel<3, 2, 1>;
 using Series = LinearSeries<3, 2, 1>;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-// A damped oscillator with a slow third state. Dense in every matrix, so that no entry is idle.
-Model model_at(double dt_s) {
-  const double c = std::exp(-0.2 * dt_s);
-  Model m;
-  m.F << c * std::cos(dt_s), c * std::sin(dt_s), 0.1 * dt_s,  //
-      -c * std::sin(dt_s), c * std::cos(dt_s), 0.05,          //
-      0.02, -0.1 * dt_s, std::exp(-dt_s / 50.0);
-  Mat<3, 3> root;
-  root << 0.3, 0.1, -0.05, 0.0, 0.4, 0.1, 0.0, 0.0, 0.2;
-  m.Q = dt_s * root * root.transpose() + 0.01 * Mat<3, 3>::Identity();
-  m.H << 1.0, 0.5, -0.2, 0.3, -0.7, 1.1;
-  m.R << 0.04, 0.25;
-  m.B << 0.5 * dt_s, -dt_s, 0.2;
-  return m;
-}
-
-Gaussian<3> prior() {
-  Gaussian<3> x;
-  x.mean << 0.5, -0.2, 0.1;
-  x.cov << 1.0, 0.2, 0.0, 0.2, 0.5, -0.1, 0.0, -0.1, 2.0;
-  return x;
-}
+constexpr auto model_at = test::driven_oscillator;
+constexpr auto prior = test::oscillator_prior;
 
 // Steps that are not alike, one channel missing, the other missing, both missing, input throughout.
 std::vector<Epoch<2, 1>> epochs() {
