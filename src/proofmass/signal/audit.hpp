@@ -14,6 +14,9 @@ namespace proofmass::signal {
 /// Values beyond this size are no measurement but a decoder's accident: 3e34 and the like.
 inline constexpr double absurd_magnitude = 1e15;
 
+/// A list of places ends here; its count does not.
+inline constexpr std::size_t most_listed = 1'000'000;
+
 /// What one channel's figures look like. Moments, LSB and clipping are over the plausible values:
 /// the finite ones that are below absurd_magnitude and not denormal.
 struct ChannelAudit {
@@ -43,7 +46,9 @@ struct TimingAudit {
   double rate_hz = 0.0;            ///< 0 if unknown
   std::optional<double> jitter_s;  ///< std of the steps about the nominal one, gaps left out; none
                                    ///< where there are no stamps
-  std::vector<Gap> gaps;
+  std::vector<Gap> gaps;           ///< the first most_listed of them
+  std::size_t gap_count = 0;       ///< all
+  Gap longest_gap;                 ///< the first such; of no duration where there is none
   std::size_t backwards = 0;  ///< stamps below the one before, those that the reader mended too
   std::size_t repeated = 0;   ///< stamps equal to the one before
   std::size_t mended = 0;     ///< stamps that the reader replaced, being no number or far off
@@ -57,7 +62,8 @@ struct RecordingAudit {
   double duration_s = 0.0;
   std::vector<ChannelAudit> channels;  ///< in the order of the recording
   TimingAudit timing;
-  std::vector<std::size_t> zero_rows;  ///< samples at which every measured channel reads exactly 0
+  std::vector<std::size_t> zero_rows;  ///< samples at which every inertial channel reads exactly 0
+  std::size_t zero_row_count = 0;      ///< of them; the list has the first most_listed
   /// What the reader noted, then what the audit found, each a sentence with its place.
   std::vector<Note> notes;
 
@@ -65,14 +71,15 @@ struct RecordingAudit {
   [[nodiscard]] bool is_bad() const;
 };
 
-/// Judges a recording's channels and timing.
+/// Judges a recording's channels and timing: a fold over RunningAudit.
 /// Jitter is the root mean square of step − 1/rate over the steps within half a nominal step of it.
 /// The LSB is the step that the differences between neighbouring distinct values are whole
 /// multiples of, fitted by how often they are read; none if fewer than half of the values repeat
 /// one another. Values count as clipped where the exact extreme is read three times running or
 /// more, and more often than the fiftieth of the range next to it; only channels that a converter's
-/// range can clip. Cost: a few passes over each channel and a sort of at most a quarter of a
-/// million of its values.
+/// range can clip. Of LSB and clipping see running_audit.hpp for recordings of more than a quarter
+/// of a million samples. Cost: one pass, and a sort of at most a quarter of a million values of
+/// each channel.
 [[nodiscard]] RecordingAudit audit(const Recording& recording);
 
 }  // namespace proofmass::signal

@@ -1,9 +1,9 @@
 #include "proofmass/signal/channel_audit.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
+#include <vector>
+
+#include "proofmass/signal/thinned_sample.hpp"
 
 namespace proofmass::signal {
 namespace {
@@ -59,73 +59,9 @@ GridFit fit_grid(const std::vector<Difference>& differences, double step) {
   return fit;
 }
 
-bool has_range(Quantity quantity) {
-  return quantity == Quantity::acceleration || quantity == Quantity::angular_rate ||
-         quantity == Quantity::voltage || quantity == Quantity::counts;
-}
-
-/// Runs of equal values: those at a rail, and the longest elsewhere.
-struct RailRuns {
-  std::size_t samples = 0;  ///< in runs of three or more at the rail
-  std::size_t runs = 0;     ///< of these
-  std::size_t longest_at_rail = 0;
-  std::size_t longest_elsewhere = 0;
-  std::size_t beside = 0;  ///< samples near the rail, but not at it
-
-  void add(double distance, double nearby, std::size_t run) {
-    constexpr std::size_t shortest_run = 3;
-    if (distance != 0.0) {
-      longest_elsewhere = std::max(longest_elsewhere, run);
-      beside += distance <= nearby ? run : 0;
-      return;
-    }
-    longest_at_rail = std::max(longest_at_rail, run);
-    samples += run >= shortest_run ? run : 0;
-    runs += run >= shortest_run ? 1 : 0;
-  }
-};
-
-/// Samples in runs of three or more at exactly `rail`, if the signal piles up there: more often
-/// than in the fiftieth of the range beside it, and not just for once as a value that is held is.
-std::size_t count_clipped(View<double> series, double rail, double other_rail) {
-  RailRuns seen;
-  for (std::size_t k = 0; k < series.size();) {
-    std::size_t end = k + 1;
-    while (end < series.size() && series[end] == series[k]) ++end;
-    seen.add(std::abs(series[k] - rail), std::abs(rail - other_rail) / 50.0, end - k);
-    k = end;
-  }
-  const bool is_rail = seen.runs >= 2 || seen.longest_at_rail > seen.longest_elsewhere;
-  return is_rail && seen.samples > seen.beside ? seen.samples : 0;
-}
-
-void audit_clipping(const Channel& channel, ChannelAudit& out) {
-  const double low = out.moments.min;
-  const double high = out.moments.max;
-  if (!has_range(channel.unit.quantity) || !(high > low)) return;
-  // Of a handful of levels the outermost are no rails, only the ends of the noise.
-  constexpr double fewest_levels = 32.0;
-  if (out.lsb && high - low < fewest_levels * *out.lsb) return;
-  if (high != 0.0) out.clipped += count_clipped(channel.values, high, low);
-  if (low != 0.0) out.clipped += count_clipped(channel.values, low, high);
-}
-
 }  // namespace
 
-bool is_denormal(double value) {
-  return value != 0.0 && std::abs(value) < double{std::numeric_limits<float>::min()};
-}
-
-bool is_plausible(double value) {
-  return std::abs(value) <= absurd_magnitude && !is_denormal(value);
-}
-
-std::optional<double> find_lsb(View<double> series) {
-  constexpr std::size_t most = 1u << 18;
-  const std::size_t stride = series.size() / most + 1;
-  std::vector<double> values;
-  for (std::size_t k = 0; k < series.size(); k += stride)
-    if (is_plausible(series[k])) values.push_back(series[k]);
+std::optional<double> find_lsb_of_plausible(std::vector<double> values) {
   std::ranges::sort(values);
   const std::vector<Difference> differences = differences_of(values);
   if (differences.empty() || (differences.size() + 1) * 2 > values.size()) return std::nullopt;
@@ -142,34 +78,17 @@ std::optional<double> find_lsb(View<double> series) {
   return std::nullopt;
 }
 
-ChannelAudit audit_channel(const Channel& channel, const TimeBase& time) {
-  ChannelAudit out;
-  out.name = channel.name;
-  out.unit = channel.unit;
-  std::size_t run = 0;
-  double last = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t k = 0; k < channel.values.size(); ++k) {
-    const double x = channel.values[k];
-    if (!std::isfinite(x)) {
-      ++out.nonfinite;
-      if (std::isinf(x)) ++out.infinite;
-    } else if (std::abs(x) > absurd_magnitude) {
-      ++out.absurd;
-    } else if (is_denormal(x)) {
-      ++out.denormal;
-    } else {
-      out.moments.add(x);
-    }
-    run = x == last ? run + 1 : 1;
-    last = x;
-    if (is_plausible(x) && run > out.longest_stuck) {
-      out.longest_stuck = run;
-      out.longest_stuck_start_s = time.at(k + 1 - run);
-    }
+std::optional<double> find_lsb(View<double> series) {
+  ThinnedSample sample;
+  std::vector<double> plausible;
+  constexpr std::size_t piece = 4096;
+  for (std::size_t from = 0; from < series.size(); from += piece) {
+    plausible.clear();
+    std::ranges::copy_if(series.subspan(from, std::min(piece, series.size() - from)),
+                         std::back_inserter(plausible), is_plausible);
+    sample.add(plausible);
   }
-  out.lsb = find_lsb(channel.values);
-  audit_clipping(channel, out);
-  return out;
+  return find_lsb_of_plausible(std::move(sample).values());
 }
 
 }  // namespace proofmass::signal

@@ -1,23 +1,38 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <optional>
+#include <vector>
 
-#include "proofmass/core/recording.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/audit.hpp"
 
 namespace proofmass::signal {
 
+/// The smallest normal single-precision number.
+inline constexpr double least_normal = 0x1p-126;
+
+/// Not zero, but below least_normal.
+[[nodiscard]] inline bool is_denormal(double value) {
+  return value != 0.0 && std::abs(value) < least_normal;
+}
+
 /// Finite, of a size that a measurement can have, and not denormal.
-[[nodiscard]] bool is_plausible(double value);
+[[nodiscard]] inline bool is_plausible(double value) {
+  return std::abs(value) <= absurd_magnitude && !is_denormal(value);
+}
 
-/// Not zero, but below the smallest normal single-precision number.
-[[nodiscard]] bool is_denormal(double value);
+/// The value, or NaN where it is no measurement.
+[[nodiscard]] inline double plausible_or_nan(double value) {
+  return is_plausible(value) ? value : std::numeric_limits<double>::quiet_NaN();
+}
 
-/// The step of the converter behind a series, or nullopt if it looks continuous.
+/// The step of the converter behind a series, or nullopt if it looks continuous: told by a
+/// ThinnedSample of 2^18 of its plausible values.
 [[nodiscard]] std::optional<double> find_lsb(View<double> series);
 
-/// Judges one channel; `time` places the longest run of equal values.
-[[nodiscard]] ChannelAudit audit_channel(const Channel& channel, const TimeBase& time);
+/// The same of a sample of plausible values.
+[[nodiscard]] std::optional<double> find_lsb_of_plausible(std::vector<double> values);
 
 }  // namespace proofmass::signal

@@ -20,19 +20,29 @@ bool ran_over(double last, double next) {
   });
 }
 
-bool counts_rows(View<double> values) {
-  std::size_t ones = 0;
-  double last = std::nan("");
+}  // namespace
+
+void RunningCounter::add(View<double> values) {
+  rows_ += values.size();
   for (const double value : values) {
+    ++rows_since_;
     if (!is_count(value)) continue;
-    if (value < last && !ran_over(last, value)) return false;
-    if (value - last == 1.0) ++ones;
-    last = value;
+    if (started_) {
+      const double step = value - last_;
+      const double missing = step - static_cast<double>(rows_since_);
+      if (step == 1.0) ++ones_;
+      if (step < 0.0 && !ran_over(last_, value)) went_back_ = true;
+      if (missing > 0.0 && missing < 1e6) lost_ += missing;
+    }
+    started_ = true;
+    last_ = value;
+    rows_since_ = 0;
   }
-  return values.size() > 1 && ones * 10 >= (values.size() - 1) * 8;
 }
 
-}  // namespace
+bool RunningCounter::counts_rows() const {
+  return !went_back_ && rows_ > 1 && ones_ * 10 >= (rows_ - 1) * 8;
+}
 
 bool is_counter_name(std::string_view name) {
   std::string bare;
@@ -50,24 +60,18 @@ bool is_counter_name(std::string_view name) {
 std::optional<std::size_t> find_counter(const Recording& recording) {
   for (std::size_t c = 0; c < recording.channels.size(); ++c) {
     const Channel& channel = recording.channels[c];
-    if (is_counter_name(channel.name) && counts_rows(channel.values)) return c;
+    if (!is_counter_name(channel.name)) continue;
+    RunningCounter counter;
+    counter.add(channel.values);
+    if (counter.counts_rows()) return c;
   }
   return std::nullopt;
 }
 
-std::size_t count_lost_rows(View<double> counter) {
-  double lost = 0.0;
-  double last = std::nan("");
-  std::size_t rows_since = 0;
-  for (const double count : counter) {
-    ++rows_since;
-    if (!is_count(count)) continue;
-    const double missing = count - last - static_cast<double>(rows_since);
-    if (missing > 0.0 && missing < 1e6) lost += missing;
-    last = count;
-    rows_since = 0;
-  }
-  return static_cast<std::size_t>(lost);
+std::size_t count_lost_rows(View<double> values) {
+  RunningCounter counter;
+  counter.add(values);
+  return counter.lost_rows();
 }
 
 }  // namespace proofmass::signal

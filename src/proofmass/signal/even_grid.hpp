@@ -31,7 +31,7 @@ struct EvenGrid {
 /// rate is the nominal one, or where there are stamps (and none runs backwards by more than a step)
 /// that of the grid over their duration, if the two are within 2 %.
 /// Errors: invalid_argument (no rate known), corrupt (the grid would have more than four times as
-/// many places as there are samples). Cost: O(N).
+/// many places as there are samples). Cost: O(N). Of a recording in pieces: RunningEvenGrid.
 [[nodiscard]] Result<EvenGrid> even_grid(const TimeBase& time, std::size_t samples);
 
 /// The values of a channel on the grid: NaN in the holes, and for values that are no measurement

@@ -2,46 +2,57 @@
 
 #include <cmath>
 
-#include "proofmass/signal/counter.hpp"
+#include "proofmass/signal/chunk_figures.hpp"
 
 namespace proofmass::signal {
-namespace {
 
-void audit_steps(View<double> stamps_s, double nominal_s, TimingAudit& out) {
-  double squares = 0.0;
-  std::size_t regular = 0;
-  for (std::size_t k = 1; k < stamps_s.size(); ++k) {
-    const double step_s = stamps_s[k] - stamps_s[k - 1];
-    const double deviation_s = step_s - nominal_s;
-    if (step_s < 0.0) ++out.backwards;
-    if (step_s == 0.0) ++out.repeated;
-    if (step_s > 1.5 * nominal_s) out.gaps.push_back({stamps_s[k - 1], step_s});
-    if (std::abs(deviation_s) > 0.5 * nominal_s) continue;
-    squares += deviation_s * deviation_s;
-    ++regular;
+void RunningTiming::add(View<double> stamps_s) {
+  if (stamps_s.empty()) return;
+  if (rate_hz_ > 0.0) {
+    if (stamps_ > 0) add_step(last_s_, stamps_s[0] - last_s_);
+    const StepFigures steps = step_figures(stamps_s, 1.0 / rate_hz_);
+    if (steps.regular) {
+      squares_ += steps.squares;
+      regular_ += stamps_s.size() - 1;
+    } else {
+      for (std::size_t k = 1; k < stamps_s.size(); ++k)
+        add_step(stamps_s[k - 1], stamps_s[k] - stamps_s[k - 1]);
+    }
   }
-  if (regular == 0) return;
-  const double jitter_s = std::sqrt(squares / static_cast<double>(regular));
-  // Below this it is the rounding of doubles, not of a clock.
-  out.jitter_s = jitter_s < 1e-9 * nominal_s ? 0.0 : jitter_s;
+  stamps_ += stamps_s.size();
+  last_s_ = stamps_s.back();
 }
 
-}  // namespace
+void RunningTiming::add_step(double before_s, double step_s) {
+  const double nominal_s = 1.0 / rate_hz_;
+  const double deviation_s = step_s - nominal_s;
+  if (step_s < 0.0) ++found_.backwards;
+  if (step_s == 0.0) ++found_.repeated;
+  if (step_s > 1.5 * nominal_s) {
+    const Gap gap{before_s, step_s};
+    ++found_.gap_count;
+    if (found_.gaps.size() < most_listed) found_.gaps.push_back(gap);
+    if (step_s > found_.longest_gap.duration_s) found_.longest_gap = gap;
+  }
+  if (!(std::abs(deviation_s) <= 0.5 * nominal_s)) return;
+  squares_ += deviation_s * deviation_s;
+  ++regular_;
+}
 
-TimingAudit audit_timing(const Recording& recording) {
-  const TimeBase& time = recording.time;
-  TimingAudit out;
+TimingAudit RunningTiming::finish(const TimeBase& time) const {
+  TimingAudit out = found_;
   out.source = time.source;
   out.channel = time.channel;
   out.rate_hz = time.rate_hz;
   out.mended = time.mended;
-  out.backwards = time.mended_backwards;
-  if (!time.is_uniform() && time.rate_hz > 0.0)
-    audit_steps(time.stamps_s, 1.0 / time.rate_hz, out);
-  else if (time.source == TimeSource::stamps)
-    out.jitter_s = 0.0;
-  if (const auto counter = find_counter(recording))
-    out.lost = count_lost_rows(recording.channels[*counter].values);
+  out.backwards += time.mended_backwards;
+  if (stamps_ == 0 || !(rate_hz_ > 0.0)) {
+    if (time.source == TimeSource::stamps) out.jitter_s = 0.0;
+  } else if (regular_ > 0) {
+    const double jitter_s = std::sqrt(squares_ / static_cast<double>(regular_));
+    // Below this it is the rounding of doubles, not of a clock.
+    out.jitter_s = jitter_s * rate_hz_ < 1e-9 ? 0.0 : jitter_s;
+  }
   return out;
 }
 

@@ -1,0 +1,179 @@
+#include "proofmass/signal/running_audit.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "proofmass/core/contract.hpp"
+#include "proofmass/signal/audit_notes.hpp"
+#include "proofmass/signal/counter.hpp"
+#include "proofmass/signal/running_channel.hpp"
+#include "proofmass/signal/timing_audit.hpp"
+
+namespace proofmass::signal {
+namespace {
+
+// Everything is done in chunks that begin at multiples of this, lest it matter how the recording is
+// cut. Short enough that a chunk stays in the first cache while it is looked at.
+constexpr std::size_t chunk = 1024;
+
+std::size_t sample_capacity(std::size_t channels) {
+  constexpr std::size_t channels_in_full = 32, least = std::size_t{1} << 13;
+  const std::size_t all = ThinnedSample::usual_capacity * channels_in_full;
+  return std::clamp(std::bit_floor(all / std::max<std::size_t>(channels, 1)), least,
+                    ThinnedSample::usual_capacity);
+}
+
+bool is_inertial(const Channel& channel) {
+  return channel.unit.quantity == Quantity::acceleration ||
+         channel.unit.quantity == Quantity::angular_rate;
+}
+
+struct CounterColumn {
+  std::size_t channel;
+  RunningCounter counter;
+};
+
+}  // namespace
+
+struct RunningAudit::State {
+  explicit State(const Recording& head)
+      : rate_hz(head.time.rate_hz), timing(head.time.rate_hz), waiting(head.channels.size()) {
+    const std::size_t count = head.channels.size();
+    channels.assign(count, RunningChannel(sample_capacity(count)));
+    views.resize(count);
+    for (std::size_t c = 0; c < count; ++c) {
+      names.push_back(head.channels[c].name);
+      if (is_inertial(head.channels[c])) inertial.push_back(c);
+      if (is_counter_name(head.channels[c].name)) counters.push_back({c, {}});
+    }
+  }
+
+  void take(const Block& block, std::size_t from, std::size_t rows);
+  void wait(const Block& block, std::size_t from, std::size_t rows);
+  void take_waiting();
+  void take_views(View<double> stamps_s);
+  void find_zero_rows(const SampleTimes& times);
+  [[nodiscard]] std::size_t waiting_rows() const {
+    return waiting.empty() ? 0 : waiting.front().size();
+  }
+
+  double rate_hz;
+  RunningTiming timing;
+  std::vector<std::string> names;
+  std::vector<RunningChannel> channels;
+  std::vector<CounterColumn> counters;
+  std::vector<std::size_t> inertial;
+  std::vector<std::size_t> zero_rows;
+  OddValues zeros;
+  std::size_t samples = 0;  ///< judged
+  double last_s = 0.0;
+  bool has_stamps = false, is_finished = false;
+  std::vector<std::vector<double>> waiting;  ///< rows that make no chunk yet
+  std::vector<double> waiting_stamps_s;
+  std::vector<View<double>> views;  ///< of the chunk under way
+};
+
+void RunningAudit::State::take(const Block& block, std::size_t from, std::size_t rows) {
+  for (std::size_t c = 0; c < views.size(); ++c) views[c] = block.channels[c].subspan(from, rows);
+  take_views(has_stamps ? block.stamps_s.subspan(from, rows) : View<double>{});
+}
+
+void RunningAudit::State::wait(const Block& block, std::size_t from, std::size_t rows) {
+  const auto append = [&](View<double> values, std::vector<double>& to) {
+    const View<double> part = values.subspan(from, rows);
+    to.insert(to.end(), part.begin(), part.end());
+  };
+  for (std::size_t c = 0; c < waiting.size(); ++c) append(block.channels[c], waiting[c]);
+  if (has_stamps) append(block.stamps_s, waiting_stamps_s);
+}
+
+void RunningAudit::State::take_waiting() {
+  std::ranges::copy(waiting, views.begin());
+  take_views(waiting_stamps_s);
+  for (std::vector<double>& values : waiting) values.clear();
+  waiting_stamps_s.clear();
+}
+
+void RunningAudit::State::take_views(View<double> stamps_s) {
+  const std::size_t rows = views.front().size();
+  const SampleTimes times{samples, stamps_s, rate_hz};
+  timing.add(stamps_s);
+  for (std::size_t c = 0; c < channels.size(); ++c) channels[c].add(views[c], times);
+  for (CounterColumn& column : counters) column.counter.add(views[column.channel]);
+  find_zero_rows(times);
+  last_s = times.at(samples + rows - 1).s;
+  samples += rows;
+}
+
+// Gravity alone keeps a sensor that works from reading zero on all inertial channels, three at
+// least.
+void RunningAudit::State::find_zero_rows(const SampleTimes& times) {
+  if (inertial.size() < 3) return;
+  if (!std::ranges::all_of(inertial, [&](std::size_t c) { return channels[c].has_zero(); })) return;
+  const View<double> one = views[inertial.front()];
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    if (one[k] != 0.0) continue;
+    if (!std::ranges::all_of(inertial, [&](std::size_t c) { return views[c][k] == 0.0; })) continue;
+    zeros.add(times.at(samples + k));
+    if (zero_rows.size() < most_listed) zero_rows.push_back(samples + k);
+  }
+}
+
+RunningAudit::RunningAudit(const Recording& head) : state_(std::make_unique<State>(head)) {}
+RunningAudit::RunningAudit(RunningAudit&&) noexcept = default;
+RunningAudit& RunningAudit::operator=(RunningAudit&&) noexcept = default;
+RunningAudit::~RunningAudit() = default;
+
+void RunningAudit::add(const Block& block) {
+  State& s = *state_;
+  const std::size_t rows = block.rows();
+  PM_EXPECTS(!s.is_finished && block.channels.size() == s.channels.size());
+  if (rows == 0) return;
+  if (s.samples + s.waiting_rows() == 0) s.has_stamps = !block.stamps_s.empty();
+  PM_EXPECTS(block.stamps_s.size() == (s.has_stamps ? rows : 0));
+  PM_EXPECTS(std::ranges::all_of(block.channels, [&](View<double> c) { return c.size() == rows; }));
+  std::size_t from = 0;
+  if (s.waiting_rows() > 0) {
+    from = std::min(rows, chunk - s.waiting_rows());
+    s.wait(block, 0, from);
+    if (s.waiting_rows() == chunk) s.take_waiting();
+  }
+  for (; from + chunk <= rows; from += chunk) s.take(block, from, chunk);
+  if (from < rows) s.wait(block, from, rows - from);
+}
+
+RecordingAudit RunningAudit::finish(const Recording& head) {
+  State& s = *state_;
+  PM_EXPECTS(!s.is_finished);
+  if (s.waiting_rows() > 0) s.take_waiting();
+  s.is_finished = true;
+  RecordingAudit out;
+  out.format = head.format;
+  out.samples = s.samples;
+  out.duration_s = s.samples < 2 ? 0.0 : s.last_s;
+  out.notes = head.notes;
+  out.timing = s.timing.finish(head.time);
+  const auto counter = std::ranges::find_if(
+      s.counters, [](const CounterColumn& column) { return column.counter.counts_rows(); });
+  if (counter != s.counters.end()) out.timing.lost = counter->counter.lost_rows();
+  tell_timing(out.timing, out.notes);
+  const PlaceWords words{head.first_line, s.rate_hz > 0.0 || s.has_stamps};
+  std::size_t c = 0;
+  for (const Channel& channel : head.channels) {
+    // A channel may be missing from the head by now, but those that are there keep their order.
+    if (head.channels.size() < s.channels.size())
+      while (c < s.names.size() && s.names[c] != channel.name) ++c;
+    PM_EXPECTS(c < s.channels.size());
+    out.channels.push_back(s.channels[c].finish(channel));
+    tell_values(channel.name, s.channels[c], words, out.notes);
+    tell_channel(out.channels.back(), head.time.rate_hz, out.notes);
+    ++c;
+  }
+  out.zero_rows = std::move(s.zero_rows);
+  out.zero_row_count = s.zeros.count;
+  tell_zero_rows(s.zeros, words, out.notes);
+  return out;
+}
+
+}  // namespace proofmass::signal

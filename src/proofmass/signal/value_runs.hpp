@@ -1,0 +1,69 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "proofmass/core/view.hpp"
+#include "proofmass/signal/sample_times.hpp"
+
+namespace proofmass::signal {
+
+/// The runs of equal values that stand at the lowest or highest value so far.
+struct RailRuns {
+  static constexpr std::size_t shortest_run = 3;
+
+  double rail = 0.0;
+  std::size_t samples = 0;  ///< in runs of shortest_run or more
+  std::size_t runs = 0;     ///< of these
+  std::size_t longest = 0;  ///< of all
+
+  void add(std::size_t run) {
+    longest = std::max(longest, run);
+    samples += run >= shortest_run ? run : 0;
+    runs += run >= shortest_run ? 1 : 0;
+  }
+};
+
+/// Runs of one and the same value in a channel that comes in chunks: the longest, those at either
+/// extreme, and the longest elsewhere.
+///
+/// While the extremes move, so do the rails. That loses nothing: a new extreme was never read
+/// before, and the runs at the old one are runs elsewhere from then on.
+class ValueRuns {
+ public:
+  /// Values among which none is odd, that follow those before; `low` and `high` are the extremes of
+  /// the chunk that they belong to.
+  void add(
+      View<double> values, std::size_t first, const SampleTimes& times, double low, double high);
+  /// What follows is another run.
+  void end_run();
+
+  [[nodiscard]] const RailRuns& low() const { return low_; }
+  [[nodiscard]] const RailRuns& high() const { return high_; }
+  /// The longest run at any value but the lowest.
+  [[nodiscard]] std::size_t longest_but_low() const {
+    return high_.rail == low_.rail ? elsewhere_ : std::max(elsewhere_, high_.longest);
+  }
+  [[nodiscard]] std::size_t longest_but_high() const {
+    return high_.rail == low_.rail ? elsewhere_ : std::max(elsewhere_, low_.longest);
+  }
+  [[nodiscard]] std::size_t longest() const { return longest_; }
+  [[nodiscard]] Place longest_start() const { return longest_start_; }
+
+ private:
+  void move_rails(double low, double high);
+  void take_run(double value, std::size_t run, Place start);
+  void take_rail_runs(View<double> values, std::size_t first, const SampleTimes& times);
+  void take_long_runs(View<double> values, std::size_t first, const SampleTimes& times);
+
+  RailRuns low_, high_;
+  bool has_rails_ = false;
+  std::size_t elsewhere_ = 0;
+  std::size_t longest_ = 0;
+  Place longest_start_;
+  double value_ = 0.0;  ///< of the run under way
+  std::size_t run_ = 0;
+  Place start_;
+};
+
+}  // namespace proofmass::signal
