@@ -24,6 +24,9 @@ class BlockMeans {
   /// NaN is missing.
   void add(View<double> samples);
 
+  /// The rate as it is known at the end.
+  void set_rate(double rate_hz) { rate_hz_ = rate_hz; }
+
   [[nodiscard]] std::size_t block() const { return block_; }
 
   /// Mean of each complete block, NaN where more than half of it is missing.

@@ -33,6 +33,17 @@ std::vector<std::size_t> factors_for(const NoiseOptions& options, std::size_t sa
   return averaging_factors(options.taus, options.statistic, samples, 1.0 / options.rate_hz);
 }
 
+// A spectrum made at another rate.
+signal::Spectrum at_rate(signal::Spectrum spectrum, double rate_hz) {
+  if (spectrum.rate_hz == rate_hz) return spectrum;
+  const double scale = rate_hz / spectrum.rate_hz;
+  spectrum.rate_hz = rate_hz;
+  spectrum.window_bandwidth_hz *= scale;
+  for (double& frequency_hz : spectrum.frequency_hz) frequency_hz *= scale;
+  for (double& psd : spectrum.one_sided_psd) psd /= scale;
+  return spectrum;
+}
+
 }  // namespace
 
 NoiseAccumulator::NoiseAccumulator(const NoiseOptions& options, std::size_t expected_samples)
@@ -57,12 +68,17 @@ void NoiseAccumulator::add(View<double> samples) {
   samples_ += samples.size();
 }
 
+void NoiseAccumulator::set_rate(double rate_hz) {
+  options_.rate_hz = rate_hz;
+  slow_.set_rate(rate_hz);
+}
+
 NoiseAnalysis NoiseAccumulator::finish_spectrum() const {
   NoiseAnalysis analysis;
   analysis.rate_hz = options_.rate_hz;
   analysis.samples = samples_;
   analysis.duration_s = static_cast<double>(samples_) / options_.rate_hz;
-  analysis.spectrum = spectrum_.finish();
+  analysis.spectrum = at_rate(spectrum_.finish(), options_.rate_hz);
   if (analysis.spectrum.averaged == 0) return analysis;
   analysis.lines = signal::find_lines(analysis.spectrum);
   auto model = fit_noise_model({slow_, analysis.spectrum, analysis.lines, analysis.duration_s});

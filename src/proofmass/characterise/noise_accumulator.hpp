@@ -13,8 +13,9 @@ namespace proofmass::characterise {
 /// A noise analysis of samples as they come, for recordings longer than memory: deviation,
 /// spectrum, lines and coefficients in one pass. analyse_noise is a fold over it, with the events
 /// found before. Of the statistics those that are differences of the phase (adev … ohdev); the
-/// others need the whole record at once, and so do noise types by lag 1. Memory: a 128th of the
-/// samples, and some hundred kilobytes.
+/// others need the whole record at once, and so do noise types by lag 1. Memory: ten bytes for
+/// every 128 samples and, of overlapping statistics, some hundred kilobytes; without overlap (adev,
+/// hdev) up to two or three times the longest τ.
 class NoiseAccumulator {
  public:
   /// expected_samples sets the length of the spectrum's segments and how densely terms start; 0 if
@@ -25,6 +26,10 @@ class NoiseAccumulator {
 
   /// NaN is missing.
   void add(View<double> samples);
+
+  /// The rate as it is known at the end, within a few per cent of that in the options: it scales
+  /// frequencies, densities and times.
+  void set_rate(double rate_hz);
 
   /// Spectrum, lines, model and deviation; samples, duration and rate. May be asked at any time.
   [[nodiscard]] NoiseAnalysis finish() const;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+
+#include "proofmass/characterise/noise_analysis.hpp"
+#include "proofmass/core/result.hpp"
+
+// What a noise analysis refuses, of a whole series and of one that comes in pieces.
+namespace proofmass::characterise {
+
+inline constexpr std::size_t fewest_noise_samples = 3;
+
+/// Errors: invalid_argument.
+[[nodiscard]] Status check_options(const NoiseOptions& options);
+
+[[nodiscard]] Error too_few_samples(std::size_t samples);
+
+/// Of a curve without a point.
+[[nodiscard]] Error no_time_fits(const NoiseOptions& options, std::size_t samples);
+
+}  // namespace proofmass::characterise

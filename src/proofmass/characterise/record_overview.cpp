@@ -1,0 +1,134 @@
+#include "proofmass/characterise/record_overview.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <iterator>
+
+#include "proofmass/signal/chunk_figures.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+constexpr std::size_t block = 64;
+
+}  // namespace
+
+void RecordOverview::add(View<double> samples) {
+  constexpr std::size_t longest_look = 1024;
+  for (std::size_t from = 0; from < samples.size(); from += longest_look) {
+    const View<double> part = samples.subspan(from, std::min(longest_look, samples.size() - from));
+    add_sums(part);
+    finite_.clear();
+    std::ranges::copy_if(part, std::back_inserter(finite_),
+                         [](double x) { return std::isfinite(x); });
+    missing_ += part.size() - finite_.size();
+    look_at_extremes(finite_);
+  }
+}
+
+void RecordOverview::add_sums(View<double> samples) {
+  while (!samples.empty()) {
+    const std::size_t count = std::min(samples.size(), block - samples_ % block);
+    // A copy, which stays in registers.
+    Sums sums = block_;
+    for (const double sample : samples.first(count)) {
+      if (!std::isfinite(sample)) continue;
+      if (sums.count == 0.0) sums.first = sample;
+      // About the block's first sample, so that an offset takes no digits.
+      const double departure = sample - sums.first;
+      sums.sum += departure;
+      sums.squares += departure * departure;
+      sums.count += 1.0;
+    }
+    block_ = sums;
+    samples_ += count;
+    samples = samples.subspan(count);
+    if (samples_ % block == 0) close_block();
+  }
+}
+
+void RecordOverview::close_block() {
+  if (block_.count > 0.0) {
+    total_ += block_.count * block_.first + block_.sum;
+    squares_ += block_.squares - block_.sum * block_.sum / block_.count;
+    freedom_ += block_.count - 1.0;
+  }
+  block_ = {};
+}
+
+void RecordOverview::look_at_extremes(View<double> finite) {
+  if (finite.empty()) return;
+  const signal::ChunkFigures figures = signal::chunk_figures(finite);
+  const auto take = [&](double value, bool is_new, Extreme& extreme) {
+    if (is_new) extreme = {.value = value};
+    if (value == extreme.value)
+      extreme.count += static_cast<std::size_t>(std::ranges::count(finite, value));
+  };
+  take(figures.min, figures.min < low_.value, low_);
+  take(figures.max, figures.max > high_.value, high_);
+  sample_.add(finite);
+  lowest_.add(finite, figures.min);
+  highest_.add(finite, figures.max);
+}
+
+double RecordOverview::mean() const {
+  const auto present = static_cast<double>(samples_ - missing_);
+  return present > 0.0 ? (total_ + block_.count * block_.first + block_.sum) / present : 0.0;
+}
+
+double RecordOverview::short_term_std() const {
+  const double last =
+      block_.count > 0.0 ? block_.squares - block_.sum * block_.sum / block_.count : 0.0;
+  const double freedom = freedom_ + std::max(0.0, block_.count - 1.0);
+  return freedom > 0.0 ? std::sqrt(std::max(0.0, squares_ + last) / freedom) : 0.0;
+}
+
+// Noise of half a step is what still makes rounding a white noise of its own, of variance step²/12:
+// B. Widrow, I. Kollár, Quantization Noise (2008), section 4.
+Status RecordOverview::check_spread(std::optional<double> lsb) const {
+  if (missing_ == samples_) return Error{Errc::not_finite, "no sample is a number"};
+  const double spread = short_term_std();
+  if (!(spread > 0.0)) return Error{Errc::not_observable, "the samples do not vary"};
+  // The likelihood divides by squares of squares.
+  constexpr double least_spread = 1e-60, most_spread = 1e60;
+  if (spread < least_spread || spread > most_spread)
+    return Error{Errc::not_observable,
+                 fmt::format("the samples spread by {:.3g}, expected {:g} to {:g}: bring them to "
+                             "another unit",
+                             spread, least_spread, most_spread)};
+  if (!lsb) return Done{};
+  const double added = *lsb * *lsb / 12.0, least = 0.25 * *lsb * *lsb;
+  if (spread * spread - added >= least) return Done{};
+  return Error{Errc::not_observable,
+               fmt::format("the readings spread by {:.2f} steps of the converter, of which the "
+                           "steps themselves make 0.29: noise below half a step cannot be told "
+                           "from rounding: record with a finer converter or more gain",
+                           spread / *lsb)};
+}
+
+// Noise thins out towards its extremes. Where the very last value comes up more often than all that
+// lies beside it, the converter, or the sensor, could go no further.
+Status RecordOverview::check_rails(std::optional<double> lsb) const {
+  constexpr double beside_share = 0.02, times = 1.3;
+  constexpr std::size_t fewest = 10;
+  const double width =
+      std::max(beside_share * (high_.value - low_.value), 1.01 * lsb.value_or(0.0));
+  const auto is_rail = [&](const Extreme& extreme, const signal::ValueTail& tail) {
+    if (extreme.count < fewest) return false;
+    const double beside = tail.beside(std::nextafter(width, 0.0), sample_);
+    return static_cast<double>(extreme.count) > times * beside;
+  };
+  for (const bool lowest : {true, false}) {
+    const Extreme& extreme = lowest ? low_ : high_;
+    if (!is_rail(extreme, lowest ? lowest_ : highest_)) continue;
+    return Error{
+        Errc::not_observable,
+        fmt::format("clipped: {} of {} samples read exactly {:.6g}, the {} value there is: "
+                    "what is cut off there is not in the figures",
+                    extreme.count, samples_, extreme.value, lowest ? "lowest" : "highest")};
+  }
+  return Done{};
+}
+
+}  // namespace proofmass::characterise

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/core/view.hpp"
+#include "proofmass/signal/thinned_sample.hpp"
+#include "proofmass/signal/value_tail.hpp"
+
+namespace proofmass::characterise {
+
+/// A first look at a series that comes in pieces, and whether its noise can be the sensor's at all.
+/// NaN and infinities are missing.
+class RecordOverview {
+ public:
+  void add(View<double> samples);
+
+  [[nodiscard]] std::size_t samples() const { return samples_; }
+  [[nodiscard]] std::size_t missing() const { return missing_; }
+  [[nodiscard]] double mean() const;
+  /// About the means of blocks short enough for drift not to count.
+  [[nodiscard]] double short_term_std() const;
+
+  /// Errors: not_finite (no sample is a number), not_observable (they do not vary, vary beyond what
+  /// can be computed with, or vary by less than half a step of the converter).
+  [[nodiscard]] Status check_spread(std::optional<double> lsb) const;
+  /// Errors: not_observable (clipped). How much lies beside a rail is counted by a ValueTail.
+  [[nodiscard]] Status check_rails(std::optional<double> lsb) const;
+
+ private:
+  struct Sums {
+    double first = 0.0, sum = 0.0, squares = 0.0, count = 0.0;
+  };
+  struct Extreme {
+    double value = 0.0;
+    std::size_t count = 0;  ///< of samples that read exactly this
+  };
+
+  void add_sums(View<double> samples);
+  void close_block();
+  void look_at_extremes(View<double> finite);
+
+  std::size_t samples_ = 0, missing_ = 0;
+  double total_ = 0.0, squares_ = 0.0, freedom_ = 0.0;
+  Sums block_;  ///< under way
+  Extreme low_{.value = std::numeric_limits<double>::infinity()};
+  Extreme high_{.value = -std::numeric_limits<double>::infinity()};
+  signal::ThinnedSample sample_;
+  signal::ValueTail lowest_{signal::ValueTail::Side::lowest};
+  signal::ValueTail highest_{signal::ValueTail::Side::highest};
+  std::vector<double> finite_;  ///< of the samples that are looked at
+};
+
+}  // namespace proofmass::characterise
