@@ -30,7 +30,30 @@ mapfile -t missing < <(
     awk '/ install ok installed$/ { print $1 }' | sort -u |
     comm -13 - <(printf '%s\n' "${wanted[@]}" | sort -u)
 )
-((${#missing[@]})) || exit 0
+# Node.js is taken as it is wherever it comes from; it is named here for that.
+if [[ $groups == *test* ]] && ! command -v npm >/dev/null; then
+  missing+=(nodejs npm)
+fi
+
+# Programs of others that tests/readers/ holds our files against. Those tests are skipped without.
+install_readers() {
+  local folder=$here/../tests/readers
+  local installed=$folder/node_modules/.installed
+  [[ $groups == *test* ]] || return 0
+  if cmp -s "$folder/package.json" "$installed"; then return 0; fi
+  say "installing what tests/readers/package.json names"
+  if npm --prefix "$folder" install --no-package-lock --ignore-scripts --no-audit --no-fund \
+    --loglevel=error </dev/null >&2; then
+    cp "$folder/package.json" "$installed"
+  else
+    say "npm could not install them: tests/readers will be skipped"
+  fi
+}
+
+if ((${#missing[@]} == 0)); then
+  install_readers
+  exit 0
+fi
 
 as_root=()
 if ((EUID != 0)); then
@@ -49,3 +72,4 @@ apt() {
 say "installing ${missing[*]}"
 apt update
 apt install --no-install-recommends "${missing[@]}"
+install_readers

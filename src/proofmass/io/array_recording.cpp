@@ -1,75 +1,100 @@
 #include "proofmass/io/array_recording.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
+#include <utility>
 
-#include "proofmass/io/csv_columns.hpp"
 #include "proofmass/io/finish_recording.hpp"
 
 namespace proofmass::io {
 namespace {
 
-/// Names for columns that have none as for a CSV without a header.
-CsvHeader header_of(const std::vector<std::string>& headings, const CsvLayout& layout) {
-  if (headings.empty()) return read_header(layout);
-  CsvHeader header;
-  header.found = true;
-  for (const std::string& heading : headings) header.labels.push_back(read_label(heading));
-  complete_names(header.labels, header.notes);
-  return header;
-}
+/// Columns that are in memory: handed over whole, or a piece at a time.
+class LoadedReader final : public RecordingReader {
+ public:
+  LoadedReader(RawHead head, RawRows rows) : head_(std::move(head)), rows_(std::move(rows)) {}
 
-StampColumn stamps_of(const ColumnLabel& label, std::vector<double> values, bool is_named) {
-  StampColumn stamps{label.name, label.unit, {}, std::move(values), is_named};
-  const auto sane =
-      std::ranges::find_if(stamps.values, [](double stamp) { return std::abs(stamp) < 9e18; });
-  if (sane == stamps.values.end()) return stamps;
-  const double first = *sane;
-  stamps.origin = std::abs(first) < 9e9 ? StampOrigin{std::llround(first * 1e9), -9}
-                                        : StampOrigin{std::llround(first), 0};
-  for (double& stamp : stamps.values) stamp -= first;
-  return stamps;
+  [[nodiscard]] const RawHead& head() const override { return head_; }
+  [[nodiscard]] Status next(std::size_t most, RawRows& rows) override {
+    const std::size_t left = *head_.rows - at_;
+    if (at_ == 0 && most >= left) {
+      rows = std::exchange(rows_, {});
+      rows_.channels.resize(rows.channels.size());
+    } else {
+      const std::size_t count = std::min(most, left);
+      rows.channels.resize(rows_.channels.size());
+      for (std::size_t c = 0; c < rows_.channels.size(); ++c)
+        copy(rows_.channels[c], count, rows.channels[c]);
+      if (head_.stamps) copy(rows_.stamps, count, rows.stamps);
+      at_ += count;
+      return Done{};
+    }
+    at_ = *head_.rows;
+    return Done{};
+  }
+  void finish(Recording&) override {}
+  [[nodiscard]] double fraction_read() const override { return 1.0; }
+
+ private:
+  void copy(const std::vector<double>& from, std::size_t count, std::vector<double>& to) const {
+    const auto part = View<double>(from).subspan(std::min(at_, from.size()));
+    to.assign(part.begin(),
+              part.begin() + static_cast<std::ptrdiff_t>(std::min(count, part.size())));
+  }
+
+  RawHead head_;
+  RawRows rows_;
+  std::size_t at_ = 0;
+};
+
+/// Moves the origin of stamps in seconds, which is one to a nanosecond, to where the clock stood.
+void begin_at(std::int64_t start_ns, StampColumn& stamps) {
+  if (stamps.origin.exponent10 == -9 && stamps.unit == *parse_unit("s"))
+    stamps.origin.mantissa += start_ns;
 }
 
 }  // namespace
 
-bool ascends(View<double> values) {
-  return values.size() > 2 && std::ranges::adjacent_find(values, [](double a, double b) {
-                                return !(a < b) || !std::isfinite(b);
-                              }) == values.end();
-}
-
-std::optional<std::size_t> time_among(const std::vector<std::string>& headings,
-                                      const ReadOptions& options) {
-  if (headings.empty()) return std::nullopt;
-  CsvLayout layout;
-  layout.columns.assign(headings.size(), ColumnKind::number);
-  const auto chosen = choose_columns(layout, header_of(headings, layout), options);
-  return chosen ? chosen->stamps : std::nullopt;
+Result<std::unique_ptr<RecordingReader>> recording_reader_of(ArrayColumns columns,
+                                                             Recording recording,
+                                                             const ReadOptions& options) {
+  const std::size_t count = columns.values.size();
+  if (count == 0) return Error{Errc::too_few_samples, "has no column of numbers"};
+  auto named = name_columns(columns.headings, count, ascends(columns.values[0]), options);
+  if (!named) return named.error();
+  NamedColumns names = std::move(named).value();
+  RawHead head;
+  head.rows = columns.values[0].size();
+  head.rate_hz = columns.rate_hz;
+  head.start_ns = columns.start_ns;
+  head.recording = std::move(recording);
+  std::ranges::move(names.notes, std::back_inserter(head.recording.notes));
+  RawRows rows;
+  for (std::size_t c = 0; c < count; ++c) {
+    const ColumnLabel& label = names.labels[c];
+    if (names.time != c) {
+      head.recording.channels.push_back({label.name, label.unit, {}});
+      rows.channels.push_back(std::move(columns.values[c]));
+      continue;
+    }
+    rows.stamps = std::move(columns.values[c]);
+    head.stamps = StampColumn{label.name, label.unit, {}, {}, !names.are_made_up};
+    const auto origin = origin_of(rows.stamps);
+    if (!origin) continue;
+    head.stamps->origin = *origin;
+    for (double& stamp : rows.stamps) stamp -= origin->value();
+    if (columns.start_ns) begin_at(*columns.start_ns, *head.stamps);
+  }
+  return std::unique_ptr<RecordingReader>(
+      std::make_unique<LoadedReader>(std::move(head), std::move(rows)));
 }
 
 Result<Recording> recording_of(ArrayColumns columns,
                                Recording recording,
                                const ReadOptions& options) {
-  CsvLayout layout;
-  layout.columns.assign(columns.values.size(), ColumnKind::number);
-  layout.first_ascends =
-      columns.headings.empty() && columns.values.size() > 1 && ascends(columns.values[0]);
-  const CsvHeader header = header_of(columns.headings, layout);
-  recording.notes.insert(recording.notes.end(), header.notes.begin(), header.notes.end());
-  const auto chosen = choose_columns(layout, header, options);
-  if (!chosen) return chosen.error();
-  std::optional<StampColumn> stamps;
-  for (std::size_t c = 0; c < columns.values.size(); ++c) {
-    ColumnLabel label = header.labels[c];
-    if (chosen->stamps != c) {
-      recording.channels.push_back({label.name, label.unit, std::move(columns.values[c])});
-      continue;
-    }
-    if (!header.found) label.unit = *parse_unit("s");
-    stamps = stamps_of(label, std::move(columns.values[c]), header.found);
-  }
-  return finish_recording(std::move(recording), std::move(stamps), columns.rate_hz, options);
+  auto reader = recording_reader_of(std::move(columns), std::move(recording), options);
+  if (!reader) return reader.error();
+  return read_whole(**reader, options);
 }
 
 }  // namespace proofmass::io

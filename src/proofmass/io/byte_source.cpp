@@ -57,6 +57,7 @@ class MemorySource final : public ByteSource {
     return count;
   }
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return bytes_.size(); }
+  [[nodiscard]] std::optional<std::span<const std::byte>> memory() const override { return bytes_; }
   [[nodiscard]] double fraction_read() const override {
     if (bytes_.empty()) return 0.0;
     return static_cast<double>(position_) / static_cast<double>(bytes_.size());
@@ -132,8 +133,10 @@ Result<std::unique_ptr<PeekSource>> unwrap(std::unique_ptr<ByteSource> source) {
   if (!head) return head.error();
   const bool gzip = head->starts_with("\x1F\x8B"sv);
   const bool xz = head->starts_with("\xFD\x37\x7A\x58\x5A\0"sv);
+  const bool zstd = head->starts_with("\x28\xB5\x2F\xFD"sv);
   if (gzip) opened = std::make_unique<PeekSource>(gunzip(std::move(opened)));
   if (xz) opened = std::make_unique<PeekSource>(unxz(std::move(opened)));
+  if (zstd) opened = std::make_unique<PeekSource>(unzstd(std::move(opened)));
   head = opened->peek(1024);
   if (!head) return head.error();
   const bool little = head->starts_with("\xFF\xFE"sv);

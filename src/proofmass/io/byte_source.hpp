@@ -29,6 +29,10 @@ class ByteSource {
   /// The regular file that these bytes are, from its front, where they are one as it lies on the
   /// disk: for libraries that want a file. Open as long as this is.
   [[nodiscard]] virtual std::optional<int> descriptor() const { return std::nullopt; }
+  /// The memory that these bytes are, from its front, where they are; it outlives this.
+  [[nodiscard]] virtual std::optional<std::span<const std::byte>> memory() const {
+    return std::nullopt;
+  }
   /// How much of the file behind it is read, in [0, 1]; 0 where its length is not known.
   [[nodiscard]] virtual double fraction_read() const = 0;
   /// What went wrong and could be salvaged, complete once read() has returned 0.
@@ -45,6 +49,9 @@ class PeekSource final : public ByteSource {
   Result<std::size_t> read(std::span<char> into) override;
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return source_->size(); }
   [[nodiscard]] std::optional<int> descriptor() const override { return source_->descriptor(); }
+  [[nodiscard]] std::optional<std::span<const std::byte>> memory() const override {
+    return source_->memory();
+  }
   [[nodiscard]] double fraction_read() const override { return source_->fraction_read(); }
   [[nodiscard]] std::vector<Note> notes() const override { return source_->notes(); }
 
@@ -59,17 +66,18 @@ class PeekSource final : public ByteSource {
 /// The bytes must outlive the source.
 [[nodiscard]] std::unique_ptr<ByteSource> open_memory(std::span<const std::byte> bytes);
 
-/// One gzip or xz file, or several one after another. Data that break off or fail their checksum
-/// end the stream there, with a note of Severity::bad; if nothing at all could be read, read()
-/// fails as corrupt.
+/// One gzip, xz or zstd file, or several one after another. Data that break off or fail their
+/// checksum end the stream there, with a note of Severity::bad; if nothing at all could be read,
+/// read() fails as corrupt.
 [[nodiscard]] std::unique_ptr<ByteSource> gunzip(std::unique_ptr<ByteSource> compressed);
 [[nodiscard]] std::unique_ptr<ByteSource> unxz(std::unique_ptr<ByteSource> compressed);
+[[nodiscard]] std::unique_ptr<ByteSource> unzstd(std::unique_ptr<ByteSource> compressed);
 /// UTF-16 as UTF-8; a byte-order mark must have been taken off.
 [[nodiscard]] std::unique_ptr<ByteSource> utf8_from_utf16(std::unique_ptr<ByteSource> source,
                                                           bool big_endian);
 
-/// Whatever stands in front of the content is taken off by what the first bytes say: gzip or xz
-/// compression, UTF-16.
+/// Whatever stands in front of the content is taken off by what the first bytes say: gzip, xz or
+/// zstd compression, UTF-16.
 [[nodiscard]] Result<std::unique_ptr<PeekSource>> unwrap(std::unique_ptr<ByteSource> source);
 
 }  // namespace proofmass::io

@@ -38,22 +38,25 @@ constexpr std::array instruments = std::to_array<Instrument>({
        {"pitch", "deg"},
        {"yaw", "deg"},
        {"dv", "m/s"}}}},
-    // Source: Physics Toolbox Sensor Suite, "G-Force Meter".
-    {"Physics Toolbox", {"gfx", "gfy"}, {{{"gfx", "g"}, {"gfy", "g"}, {"gfz", "g"}}}},
+    // Source: Vieyra Software, Physics Toolbox Sensor Suite: G-Force Meter, Linear Accelerometer,
+    // Gyroscope, Magnetometer.
+    {"Physics Toolbox",
+     {"gfx", "gfy"},
+     {{{"gf", "g"},
+       {"tgf", "g"},
+       {"wx", "rad/s"},
+       {"wy", "rad/s"},
+       {"wz", "rad/s"},
+       {"bx", "uT"},
+       {"by", "uT"},
+       {"bz", "uT"}}}},
+    {"Physics Toolbox",
+     {"ax", "at"},
+     {{{"ax", "m/s^2"}, {"ay", "m/s^2"}, {"az", "m/s^2"}, {"at", "m/s^2"}}}},
 });
 
 bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
-}
-
-/// Whether a name is an accelerometer's: by "acc", or by an axis and nothing else ("x", "ay2").
-bool is_accelerometer_name(std::string_view name) {
-  std::string bare = bare_name(name);
-  if (contains(bare, "acc") && !contains(bare, "accuracy")) return true;
-  std::erase_if(bare, [](char c) { return c >= '0' && c <= '9'; });
-  constexpr std::array<std::string_view, 3> stems{"", "a", "gf"};
-  return !bare.empty() && bare.back() >= 'x' && bare.back() <= 'z' &&
-         std::ranges::find(stems, std::string_view(bare).substr(0, bare.size() - 1)) != stems.end();
 }
 
 bool is_unknown(const Channel& channel) {
@@ -239,6 +242,15 @@ void recognise_gravity(Recording& recording) {
 }
 
 }  // namespace
+
+bool is_accelerometer_name(std::string_view name) {
+  std::string bare = bare_name(name);
+  if (contains(bare, "acc") && !contains(bare, "accuracy")) return true;
+  std::erase_if(bare, [](char c) { return c >= '0' && c <= '9'; });
+  constexpr std::array<std::string_view, 3> stems{"", "a", "gf"};
+  return !bare.empty() && bare.back() >= 'x' && bare.back() <= 'z' &&
+         std::ranges::find(stems, std::string_view(bare).substr(0, bare.size() - 1)) != stems.end();
+}
 
 void settle_units(Recording& recording, const ReadOptions& options) {
   for (Channel& channel : recording.channels)

@@ -80,7 +80,7 @@ std::int64_t read_fraction_ns(Scanner& at) {
   return ns;
 }
 
-/// 8:14, 08:14:46, 08:14:46.069, 08:14:46,069
+/// 8:14, 08:14:46, 08:14:46.069, 08:14:46,069, 08:14:46:069
 std::optional<std::int64_t> read_time_of_day(Scanner& text) {
   Scanner at = text;
   const auto hours = at.digits(1, 2);
@@ -92,7 +92,8 @@ std::optional<std::int64_t> read_time_of_day(Scanner& text) {
     const auto seconds = at.digits(2, 2);
     if (!seconds || *seconds > 60) return std::nullopt;
     ns += *seconds * ns_per_s;
-    if (at.take('.') || at.take(',')) ns += read_fraction_ns(at);
+    // Some write milliseconds as if they were a smaller hand.
+    if (at.take('.') || at.take(',') || at.take(':')) ns += read_fraction_ns(at);
   }
   if (*hours > 24 || *minutes > 59) return std::nullopt;
   text = at;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <sys/mman.h>
+#include <utility>
 
 namespace proofmass::io {
 namespace {
@@ -39,13 +40,17 @@ void GrowingColumn::append(std::span<const double> values) {
 }
 
 std::vector<double> GrowingColumn::take() {
-  if (pieces_.size() == 1) return std::move(pieces_.front());
+  if (pieces_.size() == 1) {
+    size_ = 0;
+    return std::exchange(pieces_.front(), {});
+  }
   std::vector<double> all;
-  reserve(all, size_);
+  reserve(all, std::exchange(size_, 0));
   for (std::vector<double>& piece : pieces_) {
     all.insert(all.end(), piece.begin(), piece.end());
     std::vector<double>().swap(piece);  // assigning {} would keep its memory
   }
+  pieces_.resize(1);
   return all;
 }
 

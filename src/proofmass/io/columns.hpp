@@ -14,7 +14,7 @@ class GrowingColumn {
   explicit GrowingColumn(std::size_t expected);
 
   void append(std::span<const double> values);
-  /// All values in one; the column is empty afterwards.
+  /// All values in one; the column is empty afterwards, of no expected length.
   [[nodiscard]] std::vector<double> take();
 
  private:

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <lzma.h>
 #include <zlib.h>
+#include <zstd.h>
 
 #include "proofmass/io/deflate_test_support.hpp"
 #include "proofmass/io/test_support.hpp"
@@ -25,8 +26,21 @@ std::string xz(const std::string& text) {
   return out;
 }
 
+/// With the checksum that the program zstd adds.
+std::string zstd(const std::string& text) {
+  ZSTD_CCtx* context = ZSTD_createCCtx();
+  ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);
+  std::string out(ZSTD_compressBound(text.size()), '\0');
+  const std::size_t used =
+      ZSTD_compress2(context, out.data(), out.size(), text.data(), text.size());
+  EXPECT_EQ(ZSTD_isError(used), 0u);
+  ZSTD_freeCCtx(context);
+  out.resize(used);
+  return out;
+}
+
 using Pack = std::string (*)(const std::string&);
-constexpr std::array<Pack, 2> packs{gzip, xz};
+constexpr std::array<Pack, 3> packs{gzip, xz, zstd};
 
 std::string rows(int first, int count) {
   std::string text;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <iterator>
 #include <map>
 #include <set>
 
 #include "proofmass/io/cell.hpp"
+#include "proofmass/io/csv_start.hpp"
 #include "proofmass/io/names.hpp"
 
 namespace proofmass::io {
@@ -295,6 +297,9 @@ CsvHeader read_header(const CsvLayout& layout) {
   CsvHeader header = HeaderFinder(layout).find();
   for (const PreambleLine& line : layout.preamble)
     if (!header.rate_hz && line.number != header.line) header.rate_hz = rate_in(line.text);
+  CsvStart start = read_csv_start(layout);
+  header.zero_ns = start.zero_ns;
+  std::ranges::move(start.notes, std::back_inserter(header.notes));
   return header;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,6 +31,8 @@ struct CsvHeader {
   bool found = false;               ///< false: the names are made up
   std::size_t line = 0;             ///< of the lowest line of it
   std::optional<double> rate_hz;    ///< "SampleRate, 64,Hz"
+  /// Time since 1970 at which stamps that count the seconds from a start are zero.
+  std::optional<std::int64_t> zero_ns;
   std::vector<Note> notes;
 };
 

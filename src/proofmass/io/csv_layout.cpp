@@ -113,6 +113,33 @@ std::size_t commonest(const std::vector<std::size_t>& widths) {
   return best;
 }
 
+/// Whether a line has so many names and nothing else: a header.
+bool names_columns(const std::vector<std::string_view>& fields, std::size_t width, char point) {
+  return fields.size() == width && std::ranges::all_of(fields, [&](std::string_view field) {
+           return read_cell(field, point).kind == CellKind::text && !read_clock(field);
+         });
+}
+
+/// Whether what follows the last column is one more, blank in most rows: it has a name, or figures
+/// too often for rows that are a field too long. Else it is a mere separator at the end.
+bool has_last_column(const std::vector<Line>& lines,
+                     const std::vector<std::vector<std::string_view>>& rows,
+                     const Trial& trial) {
+  std::size_t blank = 0;
+  std::size_t filled = 0;
+  for (const auto& fields : rows)
+    if (fields.size() == trial.width + 1) ++(trimmed(fields.back()).empty() ? blank : filled);
+  constexpr std::size_t often = 20;
+  if (blank == 0 || filled * often >= rows.size()) return blank > 0;
+  constexpr std::size_t longest_preamble = 64;
+  std::vector<std::string_view> fields;
+  for (std::size_t l = 0; l < std::min(lines.size(), longest_preamble); ++l) {
+    split_fields(lines[l].text, trial.separator, fields);
+    if (names_columns(fields, trial.width + 1, trial.point)) return true;
+  }
+  return false;
+}
+
 /// Scores the rows, and settles what the columns are by the last half of them: a header of several
 /// lines may outnumber the rows of a short file.
 void tally_columns(const std::vector<std::vector<std::string_view>>& rows, Trial& trial) {
@@ -129,7 +156,10 @@ void tally_columns(const std::vector<std::vector<std::string_view>>& rows, Trial
         static_cast<double>(tally.number + tally.clocks()) - 1.5 * static_cast<double>(tally.text);
 }
 
-Trial attempt(const std::vector<Line>& sample, char separator, char point) {
+Trial attempt(const std::vector<Line>& lines,
+              const std::vector<Line>& sample,
+              char separator,
+              char point) {
   Trial trial{separator, point, 0, false, 0.0, {}};
   std::vector<std::vector<std::string_view>> split;
   std::vector<std::size_t> widths;
@@ -139,9 +169,12 @@ Trial attempt(const std::vector<Line>& sample, char separator, char point) {
     widths.push_back(width_of(split.back()));
   }
   trial.width = std::min(commonest(widths), most_columns + 1);
-  const std::size_t lines = split.size();
-  std::erase_if(split, [&](const auto& fields) { return width_of(fields) != trial.width; });
-  trial.score = -static_cast<double>(lines - split.size());
+  if (has_last_column(lines, split, trial)) ++trial.width;
+  const std::size_t tried = split.size();
+  std::erase_if(split, [&](const auto& fields) {
+    return width_of(fields) != trial.width && fields.size() != trial.width;
+  });
+  trial.score = -static_cast<double>(tried - split.size());
   const auto trailing =
       std::ranges::count_if(split, [&](const auto& fields) { return fields.size() > trial.width; });
   trial.trailing = 2 * static_cast<std::size_t>(trailing) > split.size();
@@ -159,7 +192,7 @@ bool header_is_one_wide(const std::vector<Line>& lines) {
 /// "0,5" below one name is half, not two columns.
 Trial halves_instead(const std::vector<Line>& lines, const std::vector<Line>& sample, Trial best) {
   if (best.separator != ',' || best.width != 2 || !header_is_one_wide(lines)) return best;
-  Trial halves = attempt(sample, ';', ',');
+  Trial halves = attempt(lines, sample, ';', ',');
   return halves.width == 1 && halves.score > 0.0 ? halves : best;
 }
 
@@ -175,7 +208,7 @@ Trial best_trial(const std::vector<Line>& lines,
   for (const char point : {'.', ','}) {
     for (const char separator : separators_of(given)) {
       if (separator == point) continue;
-      Trial trial = attempt(sample, separator, point);
+      Trial trial = attempt(lines, sample, separator, point);
       // A comma in a line without any separator is one, but for the exception below.
       const bool separates = point != ',' || trial.width > 1;
       if (separates && trial.score > best.score) best = std::move(trial);

@@ -1,13 +1,16 @@
 #include "proofmass/io/csv_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fmt/format.h>
 #include <iterator>
+#include <limits>
 
 #include "proofmass/io/csv_columns.hpp"
 #include "proofmass/io/csv_notes.hpp"
-#include "proofmass/io/finish_recording.hpp"
+#include "proofmass/io/dense_rows.hpp"
+#include "proofmass/io/stamp_shift.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -38,28 +41,29 @@ std::size_t expected_rows(const PeekSource& source, const CsvLayout& layout) {
 /// Feeds the text from the first row on to `rows`, a piece at a time.
 class LineFeed {
  public:
-  LineFeed(PeekSource& source, CsvRows& rows, const CsvLayout& layout, const Progress& progress)
-      : source_(source), rows_(rows), layout_(layout), progress_(progress) {}
+  LineFeed(PeekSource& source, const CsvLayout& layout)
+      : source_(source), layout_(layout), to_skip_(layout.data_offset) {}
 
-  Status run() {
-    std::size_t to_skip = layout_.data_offset;
-    for (;;) {
-      if (filled_ == buffer_.size() - decimal_padding && !make_room())
-        return Error{Errc::corrupt, fmt::format("line {}: longer than {} MiB: no table",
-                                                rows_.line(), longest_line >> 20)};
-      const auto count = source_.read(
-          std::span(buffer_).subspan(filled_, buffer_.size() - decimal_padding - filled_));
-      if (!count) return count.error().at(fmt::format("line {}", rows_.line()));
-      if (*count == 0) break;
-      filled_ += *count;
-      const std::size_t skipped = std::min(to_skip, filled_);
-      if (skipped > 0) drop_front(skipped);
-      to_skip -= skipped;
-      parse_whole_lines();
-      if (progress_) progress_("reading", source_.fraction_read());
+  /// Reads one piece and parses its whole lines, at the end of the text all; false there.
+  Result<bool> step(CsvRows& rows) {
+    if (at_end_) return false;
+    if (filled_ == buffer_.size() - decimal_padding && !make_room())
+      return Error{Errc::corrupt, fmt::format("line {}: longer than {} MiB: no table", rows.line(),
+                                              longest_line >> 20)};
+    const auto count = source_.read(
+        std::span(buffer_).subspan(filled_, buffer_.size() - decimal_padding - filled_));
+    if (!count) return count.error().at(fmt::format("line {}", rows.line()));
+    if (*count == 0) {
+      at_end_ = true;
+      if (filled_ > 0) rows.parse_last({buffer_.data(), filled_});
+      return true;
     }
-    if (filled_ > 0) rows_.parse_last({buffer_.data(), filled_});
-    return Done{};
+    filled_ += *count;
+    const std::size_t skipped = std::min(to_skip_, filled_);
+    if (skipped > 0) drop_front(skipped);
+    to_skip_ -= skipped;
+    parse_whole_lines(rows);
+    return true;
   }
 
  private:
@@ -83,7 +87,7 @@ class LineFeed {
     return true;
   }
 
-  void parse_whole_lines() {
+  void parse_whole_lines(CsvRows& rows) {
     const std::string_view fresh(buffer_.data() + searched_, filled_ - searched_);
     const auto last = fresh.rfind(layout_.line_end);
     if (last == std::string_view::npos) {
@@ -91,115 +95,193 @@ class LineFeed {
       return;
     }
     const std::size_t end = searched_ + last + 1;
-    rows_.parse(buffer_.data(), buffer_.data() + end);
+    rows.parse(buffer_.data(), buffer_.data() + end);
     drop_front(end);
     searched_ = filled_;
   }
 
   PeekSource& source_;
-  CsvRows& rows_;
   const CsvLayout& layout_;
-  const Progress& progress_;
+  std::size_t to_skip_;
+  bool at_end_ = false;
   std::vector<char> buffer_ = std::vector<char>(std::size_t{256} << 10);
   std::size_t filled_ = 0;
   std::size_t searched_ = 0;  ///< bytes known to hold no line end
 };
 
-/// The time column as it was read.
-std::optional<StampColumn> take_stamps(const CsvColumns& columns,
-                                       const CsvHeader& header,
-                                       CsvRows& rows,
-                                       std::vector<Note>& notes) {
-  if (!columns.stamps) return std::nullopt;
-  const ColumnLabel& label = header.labels[*columns.stamps];
-  const StampReader& reader = *rows.stamps();
-  StampColumn stamps{label.name, label.unit, reader.origin().value_or(StampOrigin{}), {}};
-  if (columns.spelling != StampSpelling::figures) {
-    stamps.unit = *parse_unit("s");
-    if (reader.zone_missing())
-      notes.push_back({Severity::info, label.name + ": no time zone is given: taken for UTC"});
-  }
-  stamps.values = rows.take(*columns.stamps);
-  stamps.is_named = header.found;
-  return stamps;
-}
-
-/// Whether the words of a column may be labels: it is read as words, or holds no figure at all.
-bool is_all_words(std::size_t column, const CsvColumns& columns, const Recording& recording) {
-  if (columns.uses[column] == ColumnUse::words) return true;
-  if (columns.uses[column] != ColumnUse::keep) return false;
-  const auto place =
-      std::count(columns.uses.begin(), columns.uses.begin() + static_cast<std::ptrdiff_t>(column),
-                 ColumnUse::keep);
-  return std::ranges::all_of(recording.channels[static_cast<std::size_t>(place)].values,
-                             [](double value) { return std::isnan(value); });
-}
-
-/// The first column of words that says more than one thing for all rows, else the first.
+/// The first column of words that says more than one thing for all rows, else the first;
+/// `has_figures` says of each column of the file whether it does.
 std::optional<std::size_t> label_column(const CsvColumns& columns,
                                         const CsvRows& rows,
-                                        const Recording& recording) {
+                                        const std::vector<bool>& has_figures) {
   std::optional<std::size_t> constant;
   for (const auto& [column, words] : rows.words()) {
-    if (words.runs() == 0 || !is_all_words(column, columns, recording)) continue;
+    const bool is_kept = columns.uses[column] == ColumnUse::keep && !has_figures[column];
+    if (words.runs() == 0 || !(is_kept || columns.uses[column] == ColumnUse::words)) continue;
     if (words.changes(rows.rows())) return column;
     if (!constant) constant = column;
   }
   return constant;
 }
 
-/// Makes the column of words the recording's labels; it is no channel then.
-void take_labels(std::size_t column,
-                 CsvColumns& columns,
-                 const CsvHeader& header,
-                 const CsvRows& rows,
-                 Recording& recording) {
-  const WordRuns& words = rows.words().at(column);
-  recording.labels = words.labels();
-  recording.label_channel = header.labels[column].name;
-  columns.labels = column;
-  std::erase_if(recording.channels,
-                [&](const Channel& channel) { return channel.name == recording.label_channel; });
-}
+class CsvReader final : public RecordingReader {
+ public:
+  CsvReader(std::unique_ptr<PeekSource> source,
+            CsvLayout layout,
+            CsvHeader header,
+            CsvColumns columns,
+            Progress progress)
+      : source_(std::move(source)),
+        layout_(std::move(layout)),
+        header_(std::move(header)),
+        columns_(std::move(columns)),
+        has_figures_(columns_.uses.size(), false),
+        feed_(*source_, layout_),
+        progress_(std::move(progress)) {
+    head_.recording.format = "CSV";
+    head_.rate_hz = header_.rate_hz;
+    if (source_->size() && layout_.bytes_per_row > 0.0)
+      head_.rows =
+          static_cast<std::uint64_t>(static_cast<double>(*source_->size()) / layout_.bytes_per_row);
+    for (std::size_t c = 0; c < columns_.uses.size(); ++c)
+      if (columns_.uses[c] == ColumnUse::keep)
+        head_.recording.channels.push_back({header_.labels[c].name, header_.labels[c].unit, {}});
+    if (columns_.stamps) begin_stamps();
+  }
+
+  [[nodiscard]] const RawHead& head() const override { return head_; }
+  [[nodiscard]] double fraction_read() const override { return source_->fraction_read(); }
+
+  [[nodiscard]] Status next(std::size_t most, RawRows& rows) override {
+    if (!rows_) begin_rows(most);
+    const std::size_t before = rows_->rows();
+    while (rows_->rows() - before < most) {
+      const auto more = feed_.step(*rows_);
+      if (!more) return more.error();
+      if (!*more) break;
+      if (progress_) progress_("reading", source_->fraction_read());
+    }
+    rows_->flush();
+    take(rows);
+    return Done{};
+  }
+
+  void finish(Recording& recording) override {
+    if (!rows_->faults().out_of_step) recording.first_line = layout_.first_line;
+    if (const auto labels = label_column(columns_, *rows_, has_figures_))
+      take_labels(*labels, recording);
+    tell_layout(layout_, header_, columns_, recording.notes);
+    tell_faults(rows_->faults(), header_, columns_, recording.notes);
+    std::ranges::move(source_->notes(), std::back_inserter(recording.notes));
+    if (rows_->stamps() && rows_->stamps()->zone_missing())
+      recording.notes.push_back({Severity::info, header_.labels[*columns_.stamps].name +
+                                                     ": no time zone is given: taken for UTC"});
+  }
+
+ private:
+  void begin_stamps() {
+    const ColumnLabel& label = header_.labels[*columns_.stamps];
+    head_.stamps = StampColumn{label.name, label.unit, {}, {}, header_.found};
+    const bool counts_seconds = header_.zero_ns && label.unit.quantity == Quantity::unknown;
+    if (columns_.spelling != StampSpelling::figures || counts_seconds)
+      head_.stamps->unit = *parse_unit("s");
+  }
+
+  void begin_rows(std::size_t most) {
+    std::optional<StampReader> stamps;
+    if (columns_.stamps) stamps.emplace(columns_.spelling, layout_.point);
+    rows_.emplace(layout_, columns_.uses, stamps, columns_.date,
+                  std::min(expected_rows(*source_, layout_), most));
+  }
+
+  void take(RawRows& rows) {
+    rows.channels.resize(head_.recording.channels.size());
+    std::size_t channel = 0;
+    for (std::size_t c = 0; c < columns_.uses.size(); ++c) {
+      if (columns_.uses[c] != ColumnUse::keep) continue;
+      rows.channels[channel] = rows_->take(c);
+      const auto is_figure = [](double x) { return !std::isnan(x); };
+      has_figures_[c] = has_figures_[c] || std::ranges::any_of(rows.channels[channel], is_figure);
+      ++channel;
+    }
+    if (!columns_.stamps) return;
+    rows.stamps = rows_->take(*columns_.stamps);
+    head_.stamps->origin = rows_->stamps()->origin().value_or(StampOrigin{});
+    // Loggers that can also write the seconds since 1970 name the start all the same.
+    constexpr double latest_since_start_s = 1e8;
+    if (header_.zero_ns && head_.stamps->unit.to_si == 1.0 &&
+        head_.stamps->origin.value() < latest_since_start_s)
+      head_.stamps->origin = moved(head_.stamps->origin, *header_.zero_ns);
+    if (columns_.spelling != StampSpelling::figures)
+      head_.stamps->clock = rows_->stamps()->zone_missing() ? StampClock::wall : StampClock::zoned;
+  }
+
+  /// Makes a column of words the recording's labels; it is no channel then.
+  void take_labels(std::size_t column, Recording& recording) {
+    recording.labels = rows_->words().at(column).labels();
+    recording.label_channel = header_.labels[column].name;
+    columns_.labels = column;
+    std::erase_if(recording.channels,
+                  [&](const Channel& channel) { return channel.name == recording.label_channel; });
+  }
+
+  std::unique_ptr<PeekSource> source_;
+  CsvLayout layout_;
+  CsvHeader header_;
+  CsvColumns columns_;
+  std::vector<bool> has_figures_;  ///< of each column of the file, so far
+  LineFeed feed_;
+  std::optional<CsvRows> rows_;
+  RawHead head_;
+  Progress progress_;
+};
 
 }  // namespace
 
-Result<Recording> read_csv(PeekSource& source, const ReadOptions& options) {
-  const auto head = peek_head(source);
+Result<std::unique_ptr<RecordingReader>> csv_reader(std::unique_ptr<PeekSource> source,
+                                                    const ReadOptions& options) {
+  const auto head = peek_head(*source);
   if (!head) return head.error();
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   const std::size_t mark = head->starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
   auto layout = infer_layout(head->substr(mark), head->size() < (std::size_t{64} << 10));
   if (!layout) return layout.error();
-  CsvLayout table = *layout;
+  CsvLayout table = std::move(layout).value();
   table.data_offset += mark;
-  const CsvHeader header = read_header(table);
-  const auto chosen = choose_columns(table, header, options);
-  if (!chosen) return chosen.error();
-  CsvColumns columns = *chosen;
-  if (std::ranges::count(columns.uses, ColumnUse::keep) == 0)
+  CsvHeader header = read_header(table);
+  auto columns = choose_columns(table, header, options);
+  if (!columns) return columns.error();
+  if (std::ranges::count(columns->uses, ColumnUse::keep) == 0)
     return Error{Errc::too_few_samples, "has no column of numbers beside the time"};
+  return std::unique_ptr<RecordingReader>(
+      std::make_unique<CsvReader>(std::move(source), std::move(table), std::move(header),
+                                  std::move(columns).value(), options.progress));
+}
 
-  std::optional<StampReader> stamps;
-  if (columns.stamps) stamps.emplace(columns.spelling, table.point);
-  CsvRows rows(table, columns.uses, stamps, columns.date, expected_rows(source, table));
-  if (const Status fed = LineFeed(source, rows, table, options.progress).run(); !fed)
-    return fed.error();
-  rows.finish();
+namespace {
 
-  Recording recording;
-  recording.format = "CSV";
-  for (std::size_t c = 0; c < columns.uses.size(); ++c)
-    if (columns.uses[c] == ColumnUse::keep)
-      recording.channels.push_back({header.labels[c].name, header.labels[c].unit, rows.take(c)});
-  if (!rows.faults().out_of_step) recording.first_line = table.first_line;
-  if (const auto labels = label_column(columns, rows, recording))
-    take_labels(*labels, columns, header, rows, recording);
-  tell_layout(table, header, columns, recording.notes);
-  tell_faults(rows.faults(), header, columns, recording.notes);
-  std::ranges::move(source.notes(), std::back_inserter(recording.notes));
-  auto time = take_stamps(columns, header, rows, recording.notes);
-  return finish_recording(std::move(recording), std::move(time), header.rate_hz, options);
+/// The rows in the first 64 KiB, which are still to be read; none if they cannot be.
+RawRows first_rows_of(PeekSource& source, const ReadOptions& options) {
+  RawRows rows;
+  const auto head = source.peek(std::size_t{64} << 10);
+  if (!head) return rows;
+  const std::string text(*head);
+  ReadOptions silent = options;
+  silent.progress = {};
+  auto reader =
+      csv_reader(std::make_unique<PeekSource>(open_memory(std::as_bytes(std::span(text)))), silent);
+  if (reader && !(*reader)->next(std::numeric_limits<std::size_t>::max(), rows)) rows = {};
+  return rows;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<TableFile>> open_csv(std::unique_ptr<PeekSource> source,
+                                            const ReadOptions& options) {
+  const RawRows first = first_rows_of(*source, options);
+  auto reader = csv_reader(std::move(source), options);
+  if (!reader) return reader.error();
+  return only_table(rows_of_one_sensor(std::move(reader).value(), first, options));
 }
 
 }  // namespace proofmass::io

@@ -1,11 +1,21 @@
 #pragma once
 
+#include <memory>
+
 #include "proofmass/io/byte_source.hpp"
 #include "proofmass/io/read_recording.hpp"
+#include "proofmass/io/recording_reader.hpp"
+#include "proofmass/io/table_file.hpp"
 
 namespace proofmass::io {
 
-/// Reads a table of text of any dialect from where `source` stands.
-[[nodiscard]] Result<Recording> read_csv(PeekSource& source, const ReadOptions& options);
+/// A table of text of any dialect, from where `source` stands.
+/// Errors: too_few_samples (no row of numbers), corrupt (no table), invalid_argument.
+[[nodiscard]] Result<std::unique_ptr<RecordingReader>> csv_reader(
+    std::unique_ptr<PeekSource> source, const ReadOptions& options);
+
+/// The same as a file of one table.
+[[nodiscard]] Result<std::unique_ptr<TableFile>> open_csv(std::unique_ptr<PeekSource> source,
+                                                          const ReadOptions& options);
 
 }  // namespace proofmass::io

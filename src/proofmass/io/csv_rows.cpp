@@ -118,11 +118,6 @@ void CsvRows::flush() {
   gathered_rows_ = 0;
 }
 
-void CsvRows::finish() {
-  flush();
-  std::vector<double>().swap(gathered_);
-}
-
 std::vector<double> CsvRows::take(std::size_t column) {
   return columns_[slots_[column]].take();
 }

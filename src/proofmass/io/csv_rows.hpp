@@ -56,14 +56,15 @@ class CsvRows {
   void parse(const char* begin, const char* end);
   /// Parses what is left at the end of the text, without its line end.
   void parse_last(std::string_view line);
-  /// Hands over what parse() has gathered. Call once, at the end.
-  void finish();
+  /// Hands over what parse() has gathered to the columns, before they are taken.
+  void flush();
 
   [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] std::size_t line() const { return line_; }
   [[nodiscard]] const RowFaults& faults() const { return faults_; }
   [[nodiscard]] const std::optional<StampReader>& stamps() const { return stamps_; }
-  /// The values of the file's column c, which must be kept or stamps; after finish().
+  /// The values of the file's column c, which must be kept or stamps, since they were last taken;
+  /// after flush().
   [[nodiscard]] std::vector<double> take(std::size_t column);
   /// The words of the file's columns that are read as words, and those in columns where the layout
   /// saw nothing at all.
@@ -83,7 +84,6 @@ class CsvRows {
   double read_field(std::size_t column, std::size_t fields);
   void commit();
   void commit_words();
-  void flush();
 
   static constexpr std::size_t block = 512;  ///< rows gathered before columns are appended to
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "proofmass/io/recording_writers.hpp"
+#include "proofmass/io/row_times.hpp"
 #include "proofmass/io/stamp_reader.hpp"
 
 namespace proofmass::io {
@@ -33,7 +34,8 @@ void append_heading(std::string& out, std::string_view name, std::string_view un
   append_words(out, std::string(name) + (unit.empty() ? "" : " (" + std::string(unit) + ")"));
 }
 
-std::string header_of(const Recording& recording, bool timed) {
+std::string header_of(const Recording& recording) {
+  const bool timed = recording.time.source != TimeSource::none;
   std::string out = timed ? "time (s)" : "";
   if (!recording.labels.empty()) {
     if (timed) out += ',';
@@ -48,11 +50,12 @@ std::string header_of(const Recording& recording, bool timed) {
 
 constexpr int finest = -27;  ///< decimals that a clock of 19 digits leaves room for in 128 bits
 
-/// The shortest decimal that reads back as `value` >= 0, to 10^finest; nullopt if it is finer.
+/// A figure as a decimal of the shortest form that reads back, to 10^finest; nullopt beyond 317
+/// years.
 std::optional<Int128> shortest_decimal(double value) {
   std::array<char, 32> text;
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific);
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), std::abs(value),
+                                 std::chars_format::scientific);
   Int128 mantissa = 0;
   int exponent = 0;
   const char* p = text.data();
@@ -68,32 +71,26 @@ std::optional<Int128> shortest_decimal(double value) {
   std::from_chars(p + (p[1] == '+' ? 2 : 1), end.ptr, power);
   exponent += power;
   if (mantissa == 0) return Int128{0};
-  if (exponent < finest || power > 9) return std::nullopt;
+  if (power > 9) return std::nullopt;
   for (; exponent > finest; --exponent) mantissa *= 10;
-  return mantissa;
+  for (; exponent < finest; ++exponent) mantissa /= 10;
+  return value < 0.0 ? -mantissa : mantissa;
 }
 
 /// Writes the time column: on the recording's own clock, digit for digit the sum of its first
 /// stamp and the seconds since; seconds since the first where it has no clock.
 class TimeWriter {
  public:
-  explicit TimeWriter(const Recording& recording) : time_(recording.time) {
-    if (!time_.start_ns || *time_.start_ns == 0) return;
-    for (std::size_t k = 0; k < recording.samples(); ++k) {
-      const double t = time_.at(k);
-      if (!(t >= 0.0) || !shortest_decimal(t)) return;
-    }
-    on_own_clock_ = true;
+  explicit TimeWriter(const TimeBase& time) : start_(time.start_ns.value_or(0)) {
+    for (int e = -9; e > finest; --e) start_ *= 10;
   }
 
-  void append(std::string& out, std::size_t k) const {
-    if (!on_own_clock_) {
-      append_figure(out, time_.at(k));
-      return;
-    }
-    Int128 start = *time_.start_ns;
-    for (int e = -9; e > finest; --e) start *= 10;
-    append_decimal(out, start + *shortest_decimal(time_.at(k)));
+  void append(std::string& out, double time_s) const {
+    const auto since = start_ != 0 ? shortest_decimal(time_s) : std::nullopt;
+    if (since)
+      append_decimal(out, start_ + *since);
+    else
+      append_figure(out, time_s);
   }
 
  private:
@@ -118,8 +115,7 @@ class TimeWriter {
     while (count > 0) out += digits[--count];
   }
 
-  const TimeBase& time_;
-  bool on_own_clock_ = false;
+  Int128 start_;
 };
 
 /// Writes the column of labels; a sample without one has an empty field.
@@ -138,34 +134,65 @@ class LabelWriter {
   std::size_t next_ = 0;
 };
 
-/// The channels' figures of a sample and the end of its row.
-void append_values(std::string& out, const Recording& recording, std::size_t k, bool is_behind) {
-  for (const Channel& channel : recording.channels) {
-    if (std::exchange(is_behind, true)) out += ',';
-    append_figure(out, channel.values[k]);
+class CsvWriter final : public RecordingWriter {
+ public:
+  CsvWriter(std::unique_ptr<OutputFile> file, const Recording& head, std::string header)
+      : file_(std::move(file)),
+        out_(std::move(header)),
+        times_(head.time),
+        clock_(head.time),
+        labels_(head.labels) {}
+
+  [[nodiscard]] Status write(const Block& block) override {
+    const bool timed = times_.is_timed();
+    const bool labelled = !labels_.empty();
+    LabelWriter labels(labels_);
+    for (std::size_t r = 0; r < block.rows(); ++r) {
+      if (timed) clock_.append(out_, times_.at(block, r));
+      // Not in the last column, where an empty field is taken for none.
+      if (timed && labelled) out_ += ',';
+      if (labelled) labels.append(out_, block.first + r);
+      append_values(block, r, timed || labelled);
+      if (out_.size() < (1u << 16)) continue;
+      if (const Status done = pass_on(); !done) return done;
+    }
+    return Done{};
   }
-  out += '\n';
-}
+  [[nodiscard]] Status finish(const Recording&) override {
+    const Status done = pass_on();
+    return done ? file_->keep() : done;
+  }
+
+ private:
+  /// The channels' figures of a row and its end.
+  void append_values(const Block& block, std::size_t row, bool is_behind) {
+    for (const View<double>& channel : block.channels) {
+      if (std::exchange(is_behind, true)) out_ += ',';
+      append_figure(out_, channel[row]);
+    }
+    out_ += '\n';
+  }
+  Status pass_on() {
+    const Status done = file_->append(out_);
+    out_.clear();
+    return done;
+  }
+
+  std::unique_ptr<OutputFile> file_;
+  std::string out_;
+  RowTimes times_;
+  TimeWriter clock_;
+  std::vector<Label> labels_;
+};
 
 }  // namespace
 
-bool write_csv(const Recording& recording, const Sink& sink) {
-  const bool timed = recording.time.source != TimeSource::none;
-  const bool labelled = !recording.labels.empty();
-  const TimeWriter time(recording);
-  LabelWriter labels(recording.labels);
-  std::string out = header_of(recording, timed);
-  for (std::size_t k = 0; k < recording.samples(); ++k) {
-    if (timed) time.append(out, k);
-    // Not in the last column, where an empty field is taken for none.
-    if (timed && labelled) out += ',';
-    if (labelled) labels.append(out, k);
-    append_values(out, recording, k, timed || labelled);
-    if (out.size() < (1u << 16)) continue;
-    if (!sink(out)) return false;
-    out.clear();
-  }
-  return sink(out);
+Result<std::unique_ptr<RecordingWriter>> csv_writer(std::unique_ptr<OutputFile> file,
+                                                    const WriterHead& head,
+                                                    const WriteOptions&) {
+  const Recording& recording = head.recording;
+  return std::unique_ptr<RecordingWriter>(
+      std::make_unique<CsvWriter>(std::move(file), recording, header_of(recording)));
 }
 
 }  // namespace proofmass::io

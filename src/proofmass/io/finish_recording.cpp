@@ -3,22 +3,26 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
+#include <limits>
 #include <set>
 
 #include "proofmass/io/channel_units.hpp"
+#include "proofmass/io/clock_pair.hpp"
 #include "proofmass/signal/counter.hpp"
+#include "proofmass/signal/skew.hpp"
 
 namespace proofmass::io {
 namespace {
 
 void attach_time(Recording& recording,
-                 std::optional<StampColumn> stamps,
-                 std::optional<double> header_rate_hz,
+                 const RawHead& head,
+                 std::vector<double> stamps,
                  const ReadOptions& options) {
   TimeEvidence evidence;
-  evidence.samples = stamps ? stamps->values.size() : recording.samples();
-  evidence.stamps = std::move(stamps);
-  evidence.header_rate_hz = header_rate_hz;
+  evidence.samples = head.stamps ? stamps.size() : recording.samples();
+  evidence.stamps = head.stamps;
+  if (evidence.stamps) evidence.stamps->values = std::move(stamps);
+  evidence.header_rate_hz = head.rate_hz;
   evidence.first_line = recording.first_line;
   if (const auto counter = signal::find_counter(recording)) {
     evidence.counter_name = recording.channels[*counter].name;
@@ -26,6 +30,8 @@ void attach_time(Recording& recording,
   }
   TimeBaseFound found = find_time_base(std::move(evidence), options);
   recording.time = std::move(found.base);
+  const bool is_by_rate = recording.time.source == TimeSource::given_rate;
+  if (is_by_rate && !recording.time.start_ns) recording.time.start_ns = head.start_ns;
   std::ranges::move(found.notes, std::back_inserter(recording.notes));
   if (!found.rejected) return;
   // What is no time is a channel like any other.
@@ -45,40 +51,61 @@ std::string names_of(const Recording& recording) {
   return names;
 }
 
-Status keep_chosen(Recording& recording, const std::vector<std::string>& names) {
-  std::set<const Channel*> chosen;
+}  // namespace
+
+Status check_rate(const ReadOptions& options) {
+  if (options.rate_hz && !(*options.rate_hz > 0.0 && *options.rate_hz < 1e12))
+    return Error{Errc::invalid_argument, "the rate must be above zero"};
+  return Done{};
+}
+
+Result<std::vector<std::size_t>> chosen_channels(const Recording& recording,
+                                                 const std::vector<std::string>& names) {
+  std::set<std::size_t> chosen;
   for (const std::string& name : names) {
     const Channel* channel = recording.find(name);
     if (channel == nullptr)
       return Error{Errc::invalid_argument,
                    fmt::format("has no channel {}; it has {}", name, names_of(recording))};
-    chosen.insert(channel);
+    chosen.insert(static_cast<std::size_t>(channel - recording.channels.data()));
   }
-  std::vector<Channel> kept;
-  for (Channel& channel : recording.channels)
-    if (names.empty() || chosen.contains(&channel)) kept.push_back(std::move(channel));
-  recording.channels = std::move(kept);
-  return Done{};
+  if (names.empty())
+    for (std::size_t c = 0; c < recording.channels.size(); ++c) chosen.insert(c);
+  return std::vector<std::size_t>(chosen.begin(), chosen.end());
 }
 
-bool is_positive(double rate_hz) {
-  return rate_hz > 0.0 && rate_hz < 1e12;
-}
-
-}  // namespace
-
-Result<Recording> finish_recording(Recording recording,
-                                   std::optional<StampColumn> stamps,
-                                   std::optional<double> header_rate_hz,
+Result<Recording> finish_recording(RecordingReader& reader,
+                                   RawRows rows,
                                    const ReadOptions& options) {
-  if (options.rate_hz && !is_positive(*options.rate_hz))
-    return Error{Errc::invalid_argument, "the rate must be above zero"};
-  attach_time(recording, std::move(stamps), header_rate_hz, options);
+  if (const Status rate = check_rate(options); !rate) return rate.error();
+  Recording recording = reader.head().recording;
+  for (std::size_t c = 0; c < recording.channels.size(); ++c)
+    recording.channels[c].values = std::move(rows.channels[c]);
+  reader.finish(recording);
+  attach_time(recording, reader.head(), std::move(rows.stamps), options);
   if (recording.channels.empty())
     return Error{Errc::too_few_samples, "has no column of numbers beside the time"};
   settle_units(recording, options);
-  if (const Status kept = keep_chosen(recording, options.channels); !kept) return kept.error();
+  tell_other_clocks(recording);
+  if (options.skew_s != 0.0) {
+    auto even = signal::without_skew(recording, options.skew_s);
+    if (!even) return even.error();
+    recording = std::move(even).value();
+  }
+  const auto chosen = chosen_channels(recording, options.channels);
+  if (!chosen) return chosen.error();
+  std::vector<Channel> kept;
+  for (const std::size_t c : *chosen) kept.push_back(std::move(recording.channels[c]));
+  recording.channels = std::move(kept);
   return recording;
+}
+
+Result<Recording> read_whole(RecordingReader& reader, const ReadOptions& options) {
+  if (const Status rate = check_rate(options); !rate) return rate.error();
+  RawRows rows;
+  if (const Status read = reader.next(std::numeric_limits<std::size_t>::max(), rows); !read)
+    return read.error();
+  return finish_recording(reader, std::move(rows), options);
 }
 
 }  // namespace proofmass::io

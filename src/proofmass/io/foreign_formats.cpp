@@ -13,18 +13,9 @@ struct Foreign {
   std::string_view refusal;
 };
 constexpr std::array foreign = std::to_array<Foreign>({
-    {"TDSm"sv, "is a TDMS file, which is not read: export it as CSV"sv},
-    {"LabVIEW Measurement"sv,
-     "is a LabVIEW measurement file, which is not read: export it as CSV"sv},
-    {"\x89MCAP"sv, "is an MCAP file, which is not read: export the topic as CSV"sv},
-    {"#ROSBAG"sv, "is a ROS bag, which is not read: export the topic as CSV"sv},
-    {"RIFF"sv, "is a RIFF (WAV) file, which is not read: export it as CSV"sv},
-    {"PK\x03\x04"sv, "is a zip archive (npz, xlsx, …), which is not read: unpack it first"sv},
-    {"\x28\xB5\x2F\xFD"sv,
-     "is compressed by zstd, which is not read: unpack it, or use gzip or xz"sv},
+    {"#ROSBAG"sv, "is a ROS 1 bag, which is not read: make an MCAP file of it (mcap convert)"sv},
     {"BZh"sv, "is compressed by bzip2, which is not read: unpack it, or use gzip or xz"sv},
     {"SQLite format 3"sv, "is an SQLite data base, which is not read: export the table as CSV"sv},
-    {"PAR1"sv, "is a Parquet file, which is not read: export it as CSV"sv},
     {"%PDF"sv, "is a PDF: expected a recording"sv},
     {"{"sv, "is a JSON document: expected a table, such as CSV"sv},
     {"<"sv, "is an XML or HTML document: expected a table, such as CSV"sv},
@@ -42,8 +33,9 @@ bool claims_foreign(std::string_view head, std::string_view) {
   return find_foreign(head) != nullptr;
 }
 
-Result<Recording> refuse_foreign(PeekSource& source, const ReadOptions&) {
-  const auto head = source.peek(64);
+Result<std::unique_ptr<TableFile>> refuse_foreign(std::unique_ptr<PeekSource> source,
+                                                  const ReadOptions&) {
+  const auto head = source->peek(64);
   if (!head) return head.error();
   const Foreign* found = find_foreign(*head);
   return Error{Errc::unsupported,

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <string_view>
 
 #include "proofmass/io/byte_source.hpp"
 #include "proofmass/io/read_recording.hpp"
+#include "proofmass/io/table_file.hpp"
 
 namespace proofmass::io {
 
@@ -11,6 +13,7 @@ namespace proofmass::io {
 [[nodiscard]] bool claims_foreign(std::string_view head, std::string_view file_name);
 
 /// Says which format it is and what to do. Errors: unsupported, always.
-[[nodiscard]] Result<Recording> refuse_foreign(PeekSource& source, const ReadOptions& options);
+[[nodiscard]] Result<std::unique_ptr<TableFile>> refuse_foreign(std::unique_ptr<PeekSource> source,
+                                                                const ReadOptions& options);
 
 }  // namespace proofmass::io

@@ -1,36 +1,67 @@
 #include "proofmass/io/formats.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "proofmass/io/csv_reader.hpp"
 #include "proofmass/io/foreign_formats.hpp"
 #include "proofmass/io/hdf5_reader.hpp"
+#include "proofmass/io/lvm_reader.hpp"
 #include "proofmass/io/mat_reader.hpp"
+#include "proofmass/io/mcap_reader.hpp"
 #include "proofmass/io/npy_reader.hpp"
+#include "proofmass/io/parquet_reader.hpp"
+#include "proofmass/io/tdms_reader.hpp"
+#include "proofmass/io/wav_reader.hpp"
+#include "proofmass/io/ximu_reader.hpp"
+#include "proofmass/io/zip_reader.hpp"
 
 namespace proofmass::io {
 namespace {
-
-bool claims_npy(std::string_view head, std::string_view) {
-  return head.starts_with("\x93NUMPY");
-}
 
 bool claims_anything(std::string_view, std::string_view) {
   return true;
 }
 
 constexpr std::array all_formats = std::to_array<Format>({
-    {"npy", claims_npy, read_npy},
-    {"MAT", claims_mat, read_mat, true},
-    {"HDF5", claims_hdf5, read_hdf5_file, true},
+    {"npy", claims_npy, open_npy},
+    {"MAT", claims_mat, open_mat, true},
+    {"HDF5", claims_hdf5, open_hdf5, true},
+    {"TDMS", claims_tdms, open_tdms},
+    {"LVM", claims_lvm, open_lvm},
+    {"MCAP", claims_mcap, open_mcap},
+    {"WAV", claims_wav, open_wav},
+    {"x-IMU", claims_ximu, open_ximu},
+    {"zip", claims_zip, open_zip_tables, true},
+    {"Parquet", claims_parquet, open_parquet},
     {"foreign", claims_foreign, refuse_foreign},
-    {"CSV", claims_anything, read_csv},
+    {"CSV", claims_anything, open_csv},
 });
 
 }  // namespace
 
 std::span<const Format> formats() {
   return all_formats;
+}
+
+Result<std::unique_ptr<TableFile>> open_tables(std::unique_ptr<ByteSource> bytes,
+                                               const std::string& name,
+                                               const ReadOptions& options) {
+  auto source = unwrap(std::move(bytes));
+  if (!source) return source.error();
+  std::unique_ptr<PeekSource> opened = std::move(source).value();
+  const auto head = opened->peek(4096);
+  if (!head) return head.error();
+  const auto all = formats();
+  const auto format =
+      std::ranges::find_if(all, [&](const Format& f) { return f.claims(*head, name); });
+  auto file = format->open(std::move(opened), options);
+  if (!file) return file.error();
+  if (!options.variables.empty() && !format->has_variables && (*file)->tables().size() < 2)
+    return Error{Errc::invalid_argument,
+                 "has one table only and nothing to choose from: --variable is for files of "
+                 "several, as MAT, HDF5, TDMS and MCAP have"};
+  return file;
 }
 
 }  // namespace proofmass::io

@@ -1,5 +1,6 @@
 // What stands in for the HDF5 library where it was not there at build time.
 #include "proofmass/io/hdf5_library.hpp"
+#include "proofmass/io/recording_writers.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -20,6 +21,13 @@ Result<Hdf5Catalogue> list_hdf5(const Hdf5Source&, bool) {
 
 Status read_hdf5(const Hdf5Source&, const std::vector<Hdf5Request>&, const ByteSink&) {
   return absent();
+}
+
+Result<std::unique_ptr<RecordingWriter>> hdf5_writer(std::unique_ptr<OutputFile>,
+                                                     const WriterHead&,
+                                                     const WriteOptions&) {
+  return Error{Errc::unsupported,
+               "HDF5 is not written: this program was built without the HDF5 library"};
 }
 
 }  // namespace proofmass::io

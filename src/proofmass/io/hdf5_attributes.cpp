@@ -1,6 +1,7 @@
 #include "proofmass/io/hdf5_attributes.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 #include "proofmass/io/hdf5_handle.hpp"
@@ -60,6 +61,9 @@ Hdf5Attribute read_attribute(hid_t attribute, const char* name) {
   if (count == 1 && (kind == H5T_INTEGER || kind == H5T_FLOAT) &&
       H5Aread(attribute, H5T_NATIVE_DOUBLE, &figure) >= 0)
     read.figure = figure;
+  std::int64_t integer = 0;
+  if (read.figure && kind == H5T_INTEGER && H5Aread(attribute, H5T_NATIVE_INT64, &integer) >= 0)
+    read.integer = integer;
   return read;
 }
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "proofmass/io/array_recording.hpp"
+#include "proofmass/io/column_names.hpp"
 #include "proofmass/io/hdf5_path.hpp"
 #include "proofmass/io/names.hpp"
 
@@ -27,7 +27,7 @@ class Chooser {
           const ReadOptions& options)
       : catalogue_(catalogue), arrays_(arrays), options_(options) {
     for (const MatArray& array : arrays)
-      if (const auto table = table_of(array)) tables_.push_back(*table);
+      if (const auto table = table_in(array)) tables_.push_back(*table);
   }
 
   Status run() {
@@ -73,8 +73,21 @@ class Chooser {
     return Done{};
   }
 
+  /// Rows of named fields are samples, however few there are.
+  [[nodiscard]] std::optional<MatTable> table_in(const MatArray& array) const {
+    if (!dataset_of(array).is_compound) return table_of(array);
+    const MatTable table{&array, array.shape[1], array.shape[0], true};
+    const bool is_table = table.rows > 1 && table.width > 0 && table.width <= most_mat_channels;
+    return is_table ? std::optional(table) : std::nullopt;
+  }
+
   /// What has that length in a group, around it, and below it or the group that has its time.
   void take_around(std::string_view group, std::size_t rows) {
+    const MatTable* time = time_in(group, rows);
+    if (time != nullptr && dataset_of(*time->array).is_compound) {
+      chosen_.insert(time->array);
+      return;
+    }
     std::string_view scope = group;
     for (std::string_view above = group;; above = group_of(above)) {
       if (has_time(above, rows)) {
@@ -103,13 +116,24 @@ class Chooser {
   [[nodiscard]] const MatTable* time_in(std::string_view group, std::size_t rows) const {
     std::vector<const MatTable*> vectors;
     std::vector<std::string> names;
-    for (const MatTable& table : tables_)
-      if (table.width == 1 && table.rows == rows && table.array->group() == group) {
+    for (const MatTable& table : tables_) {
+      const bool is_there = table.rows == rows && table.array->group() == group;
+      if (is_there && dataset_of(*table.array).is_compound && has_time_field(table)) return &table;
+      if (is_there && table.width == 1) {
         vectors.push_back(&table);
         names.push_back(table.name());
       }
+    }
     const auto time = time_among(names, options_);
     return time ? vectors[*time] : nullptr;
+  }
+
+  [[nodiscard]] bool has_time_field(const MatTable& table) const {
+    const auto columns = std::ranges::find_if(catalogue_.attributes, [&](const auto& attribute) {
+      return attribute.owner == table.array->path && attribute.name == "columns";
+    });
+    return columns != catalogue_.attributes.end() &&
+           time_among(columns->texts, options_).has_value();
   }
 
   /// Whether a group, or one between it and `scope`, keeps its own time.
@@ -136,7 +160,7 @@ class Chooser {
     if (array == arrays_.end()) array = std::ranges::find_if(arrays_, alike);
     if (array != arrays_.end()) {
       chosen_.insert(&*array);
-      if (table_of(*array)) return Done{};
+      if (table_in(*array)) return Done{};
       return Error{Errc::invalid_argument,
                    fmt::format("{} is no table of samples, at most {} channels",
                                description(dataset_of(*array)), most_mat_channels)};
@@ -221,7 +245,8 @@ std::vector<MatArray> arrays_of(const Hdf5Catalogue& catalogue) {
   for (const Hdf5Dataset& dataset : catalogue.datasets) {
     MatArray array;
     array.path = dataset.path;
-    array.group_length = dataset.group_length;
+    // A table of named fields is a group of its own: others do not lie beside its fields.
+    array.group_length = dataset.is_compound ? dataset.path.size() : dataset.group_length;
     array.class_name = dataset.type;
     array.shape.assign(dataset.shape.rbegin(), dataset.shape.rend());
     while (array.shape.size() < 2) array.shape.insert(array.shape.begin(), 1);

@@ -17,7 +17,7 @@ std::string hdf5_reason() {
   return reason.empty() ? "no reason given" : reason.substr(0, 300);
 }
 
-Result<Hdf5Handle> open_hdf5(const Hdf5Source& source) {
+Result<Hdf5Handle> open_source(const Hdf5Source& source) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   H5PLset_loading_state(0);
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);

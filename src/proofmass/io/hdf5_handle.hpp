@@ -15,15 +15,20 @@ class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);
 
-  Hdf5Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Hdf5Handle(hid_t id, Close closing) : id_(id), close_(closing) {}
   Hdf5Handle(Hdf5Handle&& other) noexcept
       : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Hdf5Handle(const Hdf5Handle&) = delete;
   Hdf5Handle& operator=(const Hdf5Handle&) = delete;
-  Hdf5Handle& operator=(Hdf5Handle&&) = delete;
-  ~Hdf5Handle() {
-    if (id_ >= 0) close_(id_);
+  Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
   }
+  ~Hdf5Handle() { close(); }
+
+  /// False where what was still to be written could not be.
+  bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
 
   explicit operator bool() const { return id_ >= 0; }
   operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor)
@@ -35,7 +40,7 @@ class Hdf5Handle {
 
 /// Opens a file to read; no other can be opened by this process from then on, so that nothing in
 /// the file can name one. Errors: corrupt, with the library's reason.
-[[nodiscard]] Result<Hdf5Handle> open_hdf5(const Hdf5Source& source);
+[[nodiscard]] Result<Hdf5Handle> open_source(const Hdf5Source& source);
 
 /// Why the last call failed, in the library's words.
 [[nodiscard]] std::string hdf5_reason();

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <iterator>
 
-#include "proofmass/io/array_recording.hpp"
+#include "proofmass/io/column_names.hpp"
 #include "proofmass/io/csv_header.hpp"
 #include "proofmass/io/hdf5_path.hpp"
 #include "proofmass/io/names.hpp"
@@ -17,6 +17,10 @@ namespace {
 bool is_unit_name(std::string_view name) {
   constexpr std::array<std::string_view, 3> names{"unit", "units", "physicalunit"};
   return is_one_of(name, names);
+}
+
+bool is_exact_name(std::string_view name) {
+  return name == "channel_name";
 }
 
 bool is_columns_name(std::string_view name) {
@@ -64,20 +68,6 @@ bool is_quaternion_name(std::string_view name) {
          bare.find("rot") != std::string::npos;
 }
 
-/// Names of columns that only their number tells apart.
-std::vector<std::string> names_by_place(const std::string& stem, std::size_t width) {
-  constexpr std::array<std::string_view, 4> axes{"w", "x", "y", "z"};
-  if (width == 1) return {stem};
-  const bool is_quaternion = width == 4 && is_quaternion_name(stem);
-  std::vector<std::string> names;
-  names.reserve(width);
-  for (std::size_t c = 0; c < width; ++c)
-    names.push_back(width == 3 || is_quaternion
-                        ? fmt::format("{}_{}", stem, axes[axes.size() - width + c])
-                        : fmt::format("{} {}", stem, c + 1));
-  return names;
-}
-
 /// Headings of one file's tables.
 class Labeller {
  public:
@@ -95,7 +85,12 @@ class Labeller {
                                     bool has_time,
                                     std::vector<Note>& notes) const {
     const std::string& path = table.array->path;
-    const auto [stem, name_unit] = read_label(stems_[number]);
+    auto [stem, name_unit] = read_label(stems_[number]);
+    const Hdf5Attribute* exact = table.width == 1 ? find(path, is_exact_name) : nullptr;
+    if (exact != nullptr) {
+      stem = exact->texts[0];
+      name_unit = {};
+    }
     const std::vector<std::string> names = column_names(table, stem, has_time);
     std::vector<std::string> units(table.width, std::string(name_unit.symbol));
     const Hdf5Attribute* unit = find(path, is_unit_name);
@@ -111,7 +106,7 @@ class Labeller {
     if (!unread.empty())
       notes.push_back({Severity::info, fmt::format("{}: unit \"{}\" is not known", path, unread)});
     if (given.empty() && name_unit.symbol.empty()) use_told_unit(path, units, notes);
-    if (has_time) units[0] = "s";
+    if (has_time) units[0] = std::string("s");
     std::vector<std::string> headings;
     headings.reserve(table.width);
     for (std::size_t c = 0; c < table.width; ++c)
@@ -188,6 +183,19 @@ class Labeller {
 
 }  // namespace
 
+std::vector<std::string> names_by_place(const std::string& stem, std::size_t width) {
+  constexpr std::array<std::string_view, 4> axes{"w", "x", "y", "z"};
+  if (width == 1) return {stem};
+  const bool is_quaternion = width == 4 && is_quaternion_name(stem);
+  std::vector<std::string> names;
+  names.reserve(width);
+  for (std::size_t c = 0; c < width; ++c)
+    names.push_back(width == 3 || is_quaternion
+                        ? fmt::format("{}_{}", stem, axes[axes.size() - width + c])
+                        : fmt::format("{} {}", stem, c + 1));
+  return names;
+}
+
 std::vector<std::string> hdf5_headings(const Hdf5Catalogue& catalogue,
                                        const std::vector<MatTable>& tables,
                                        const std::vector<std::vector<std::vector<double>>>& values,
@@ -204,6 +212,15 @@ std::vector<std::string> hdf5_headings(const Hdf5Catalogue& catalogue,
       headings.push_back(std::move(heading));
   }
   return headings;
+}
+
+std::optional<std::int64_t> hdf5_start_ns(const Hdf5Catalogue& catalogue, std::string_view path) {
+  for (;; path = group_of(path)) {
+    for (const Hdf5Attribute& attribute : catalogue.attributes)
+      if (attribute.owner == path && attribute.name == "start_time_ns" && attribute.integer)
+        return attribute.integer;
+    if (path.empty()) return std::nullopt;
+  }
 }
 
 }  // namespace proofmass::io

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <iterator>
 #include <set>
 
 #include "proofmass/io/hdf5_attributes.hpp"
+#include "proofmass/io/hdf5_fields.hpp"
 #include "proofmass/io/hdf5_handle.hpp"
+#include "proofmass/io/hdf5_labels.hpp"
+#include "proofmass/io/hdf5_runs.hpp"
 #include "proofmass/io/hdf5_storage.hpp"
 
 namespace proofmass::io {
@@ -79,8 +83,17 @@ class Lister {
     keep_attributes(group, place.path);
     Members members{this, &place, group, {}};
     hsize_t index = 0;
-    H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, &index, collect, &members);
+    H5Literate(group, order_of(group), H5_ITER_INC, &index, collect, &members);
     for (const std::string& name : members.names) visit(group, name, place);
+  }
+
+  /// As its members were made, where the group keeps that; else by name.
+  static H5_index_t order_of(hid_t group) {
+    const Hdf5Handle creation(H5Gget_create_plist(group), H5Pclose);
+    unsigned kept = 0;
+    const bool is_kept = creation && H5Pget_link_creation_order(creation, &kept) >= 0 &&
+                         (kept & H5P_CRT_ORDER_INDEXED) != 0;
+    return is_kept ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME;
   }
 
   void visit(hid_t group, const std::string& name, const Place& parent) {
@@ -97,10 +110,18 @@ class Lister {
     const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
     const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
     if (!type || !space) return skip(place, "damaged");
+    if (!is_matlab_ && holds_runs(dataset)) {
+      if (!read_runs(dataset, catalogue_)) skip(place, "labels that cannot be read");
+      return;
+    }
     const std::string class_name = is_matlab_ ? text_attribute(dataset, "MATLAB_class") : "";
     if (is_matlab_ && H5Tget_class(type) == H5T_REFERENCE)
       return visit_references(dataset, class_name == "cell", place);
-    const std::string stored = type_name(type);
+    std::string stored = type_name(type);
+    const CompoundFields fields =
+        stored.empty() && !is_matlab_ ? fields_of(type) : CompoundFields{};
+    const bool is_compound = !fields.numeric.empty();
+    if (is_compound) stored = "compound";
     std::string refusal = meaning_refusal(dataset, class_name);
     if (refusal.empty() && stored.empty()) refusal = kind_of(type);
     if (refusal.empty()) refusal = storage_refusal(dataset);
@@ -113,11 +134,31 @@ class Lister {
     const int rank = H5Sget_simple_extent_dims(space, lengths.data(), nullptr);
     if (rank < 0) return skip(place, "damaged");
     found.shape.assign(lengths.begin(), lengths.begin() + rank);
+    if (is_compound && !keep_fields(fields, place, found)) return;
     const bool is_single =
         std::ranges::all_of(found.shape, [](auto length) { return length == 1; });
-    if (is_single && !found.is_complex) found.figure = figure_of(dataset);
+    if (is_single && !found.is_complex && !is_compound) found.figure = figure_of(dataset);
     catalogue_.datasets.push_back(std::move(found));
     keep_attributes(dataset, place.path);
+  }
+
+  /// Makes columns of the fields of a compound type, and names them; false where it is no table.
+  bool keep_fields(const CompoundFields& fields, const Place& place, Hdf5Dataset& found) {
+    for (const std::string& other : fields.others) skip(place.path + '/' + other);
+    if (found.shape.size() != 1 || fields.columns() > most_mat_channels) {
+      skip(place, found.shape.size() != 1 ? "compound, of several dimensions"
+                                          : "compound, of more than 64 columns");
+      return false;
+    }
+    found.is_compound = true;
+    found.shape.push_back(fields.columns());
+    Hdf5Attribute columns{.owner = place.path, .name = "columns"};
+    for (const NumericField& field : fields.numeric)
+      std::ranges::move(names_by_place(field.name, field.columns),
+                        std::back_inserter(columns.texts));
+    if (catalogue_.attributes.size() < most_hdf5_objects)
+      catalogue_.attributes.push_back(std::move(columns));
+    return true;
   }
 
   /// Why what a dataset stands for is no figures, whatever it is stored as; empty where it is.
@@ -196,8 +237,11 @@ class Lister {
   }
 
   void skip(const Place& place, const std::string& why) {
+    skip(fmt::format("{} ({})", place.path, why));
+  }
+  void skip(std::string what) {
     if (catalogue_.skipped.size() < most_hdf5_objects)
-      catalogue_.skipped.push_back(fmt::format("{} ({})", place.path, why));
+      catalogue_.skipped.push_back(std::move(what));
   }
 
   bool is_matlab_;
@@ -213,7 +257,7 @@ bool has_hdf5_library() {
 }
 
 Result<Hdf5Catalogue> list_hdf5(const Hdf5Source& source, bool is_matlab) {
-  const auto file = open_hdf5(source);
+  const auto file = open_source(source);
   if (!file) return file.error();
   const Hdf5Handle root(H5Gopen2(*file, "/", H5P_DEFAULT), H5Gclose);
   if (!root)

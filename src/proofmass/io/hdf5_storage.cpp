@@ -57,7 +57,7 @@ std::string_view kind_of(hid_t type) {
     case H5T_STRING:
       return "text";
     case H5T_COMPOUND:
-      return "compound: export its fields as datasets of their own";
+      return "compound";
     case H5T_REFERENCE:
       return "references";
     case H5T_OPAQUE:

@@ -9,7 +9,7 @@ namespace proofmass::io {
 /// "float64", "int16", "bool"; empty for what is no number.
 [[nodiscard]] std::string type_name(hid_t type);
 
-/// What a type is that is no number: "text", "compound …".
+/// What a type is that is no number: "text", "references".
 [[nodiscard]] std::string_view kind_of(hid_t type);
 
 /// Why a dataset's storage is not read: in another file, in chunks too large, packed by a filter

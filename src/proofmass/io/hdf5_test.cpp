@@ -111,9 +111,8 @@ TEST_F(Hdf5, SaysWhatElseThereIsAndFollowsNoLink) {
   ASSERT_TRUE(recording) << recording.error().message;
   EXPECT_TRUE(
       is_noted(*recording,
-               "also in the file: other (7 uint64), far (link), soft (link), rows (compound: "
-               "export its fields as datasets of their own), title (text); --dataset NAME "
-               "reads another"))
+               "also in the file: other (7 uint64), rows (40 x 2 compound), far (link), soft "
+               "(link), title (text); --dataset NAME reads another"))
       << notes_of(*recording);
 }
 
@@ -143,7 +142,7 @@ TEST_F(Hdf5, ReadsTheDatasetsAndGroupsThatAreNamed) {
   const auto lengths = read("groups.h5", {"imu/acc", "other"});
   ASSERT_FALSE(lengths);
   EXPECT_NE(lengths.error().message.find("they do not belong together"), std::string::npos);
-  for (const char* name : {"", "rows", "left"}) {
+  for (const char* name : {"", "title", "left"}) {
     const auto absent = read("groups.h5", {name});
     ASSERT_FALSE(absent) << name;
     EXPECT_EQ(absent.error().code, Errc::invalid_argument);
@@ -158,6 +157,33 @@ TEST_F(Hdf5, CallsColumnsAsAnAttributeDoes) {
   EXPECT_EQ(unit_of(*recording, "ay"), "g");
   EXPECT_EQ(unit_of(*recording, "T"), "degC");
   expect_ramp(*recording, "az", 3.0);
+}
+
+TEST_F(Hdf5, ReadsTheFieldsOfACompoundTypeThatAreNumbers) {
+  const auto recording = read("compound.h5");
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(names_of(*recording), (Names{"acc_x", "acc_y", "acc_z", "temp", "on"}));
+  EXPECT_EQ(recording->time.channel, "time");
+  EXPECT_EQ(recording->time.rate_hz, 50.0);
+  expect_ramp(*recording, "acc_x", 1.0);
+  expect_ramp(*recording, "acc_z", 3.0);
+  EXPECT_EQ(recording->find("temp")->values[39], 11.0);
+  EXPECT_EQ(recording->find("on")->values[3], 1.0);
+  EXPECT_TRUE(is_noted(*recording, "log/imu/word (text), log/imu/grid (arrays in an array)"))
+      << notes_of(*recording);
+  const auto other = read("compound.h5", {"log/gps"});
+  ASSERT_TRUE(other) << other.error().message;
+  EXPECT_EQ(names_of(*other), (Names{"lat", "lon"}));
+}
+
+TEST_F(Hdf5, KeepsEveryDigitOfStampsAndTheOrderOfAGroupThatHasOne) {
+  const auto recording = read("stamps.h5");
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(names_of(*recording), (Names{"z", "x", "y"}));
+  EXPECT_EQ(recording->time.start_ns, 1'700'000'000'000'000'001);
+  for (std::size_t k = 0; k < 40; ++k)
+    EXPECT_DOUBLE_EQ(recording->time.at(k),
+                     1e-9 * (5e6 * static_cast<double>(k) + static_cast<double>(k % 3)));
 }
 
 TEST_F(Hdf5, ReadsTheSameFromADiskFromMemoryAndCompressed) {

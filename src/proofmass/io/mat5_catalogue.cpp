@@ -69,6 +69,7 @@ class Walker {
     if (is_nest && place.depth >= deepest) return leave_out(place, "nested too deeply");
     if (array_class == MatClass::cell) return cell(place, preface, end);
     if (array_class == MatClass::structure) return structure(place, preface, end);
+    if (array_class == MatClass::text && is_about_others(place)) return text(place, preface, end);
     if (array_class < MatClass::double_precision || array_class > MatClass::uint64)
       return leave_out(place, name_of(array_class));
     if (preface.count == 0) return leave_out(place, "empty");
@@ -96,6 +97,21 @@ class Walker {
       return stream_.corrupt(figures->at, fmt::format("{} claims {}, and has {} bytes", place.path,
                                                       array.description(), figures->size));
     catalogue_.arrays.push_back(std::move(array));
+    return Done{};
+  }
+
+  static bool is_about_others(const Place& place) {
+    const std::string_view group = std::string_view(place.path).substr(0, place.group_length);
+    return group == "names" || group == "units";
+  }
+
+  Status text(const Place& place, const MatPreface& preface, std::uint64_t end) {
+    constexpr std::size_t most_bytes = 512;
+    if (preface.count == 0) return Done{};
+    if (preface.count > most_bytes / 2) return leave_out(place, "text");
+    auto read = elements_.text(end, most_bytes);
+    if (!read) return read.error();
+    catalogue_.texts.push_back({place.path, std::move(read).value()});
     return Done{};
   }
 
@@ -155,7 +171,8 @@ class Walker {
   }
 
   bool is_full() {
-    if (catalogue_.arrays.size() + catalogue_.skipped.size() >= most_mat_arrays)
+    if (catalogue_.arrays.size() + catalogue_.skipped.size() >= most_mat_arrays ||
+        catalogue_.texts.size() >= 4 * most_mat_arrays)
       catalogue_.is_cut = true;
     return catalogue_.is_cut;
   }

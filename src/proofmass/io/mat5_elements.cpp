@@ -6,6 +6,27 @@
 #include "proofmass/io/mat_catalogue.hpp"
 
 namespace proofmass::io {
+namespace {
+
+constexpr std::uint32_t mi_uint16 = 4;
+
+/// A character of two bytes at most; halves of larger ones are no text that names anything.
+void append_utf8(std::uint32_t character, std::string& out) {
+  if (character >= 0xD800 && character < 0xE000) character = '?';
+  if (character < 0x80) {
+    out += static_cast<char>(character);
+    return;
+  }
+  if (character < 0x800) {
+    out += static_cast<char>(0xC0 | character >> 6);
+  } else {
+    out += static_cast<char>(0xE0 | character >> 12);
+    out += static_cast<char>(0x80 | (character >> 6 & 0x3F));
+  }
+  out += static_cast<char>(0x80 | (character & 0x3F));
+}
+
+}  // namespace
 
 std::uint32_t mat_word(const char* bytes, bool big_endian) {
   return static_cast<std::uint32_t>(load_figure(bytes, {'u', 4, big_endian}));
@@ -150,6 +171,27 @@ Result<std::vector<std::string>> Mat5Elements::field_names(std::uint64_t end) {
   for (std::size_t i = 0; each > 0 && i + each <= names->size(); i += each)
     fields.push_back(mat_name(std::string_view(*names).substr(i, each)));
   return fields;
+}
+
+Result<std::string> Mat5Elements::text(std::uint64_t end, std::size_t most) {
+  const auto next = tag(end);
+  if (!next) return next.error();
+  constexpr std::uint32_t utf8 = 16;
+  constexpr std::uint32_t utf16 = 17;
+  const auto type = mat_figure_type(next->type == utf16 ? mi_uint16 : next->type, big_endian_);
+  const bool is_wide = type && type->kind == 'u' && type->bytes == 2;
+  if (next->type != utf8 && !is_wide && (!type || type->bytes != 1))
+    return stream_.corrupt(next->at,
+                           fmt::format("an element of type {} where a text belongs", next->type));
+  auto bytes = data(*next, end, most);
+  if (!bytes || next->type == utf8) return bytes;
+  std::string characters;
+  const std::size_t step = is_wide ? 2 : 1;
+  for (std::size_t i = 0; i + step <= bytes->size(); i += step) {
+    const FigureType unit{'u', step, big_endian_};
+    append_utf8(static_cast<std::uint32_t>(load_figure(bytes->data() + i, unit)), characters);
+  }
+  return characters;
 }
 
 }  // namespace proofmass::io

@@ -71,6 +71,8 @@ class Mat5Elements {
   [[nodiscard]] Result<MatPreface> preface(std::uint64_t end);
   /// The names of a struct's fields.
   [[nodiscard]] Result<std::vector<std::string>> field_names(std::uint64_t end);
+  /// Characters of one byte, UTF-8 or UTF-16, as UTF-8; `most` bytes at most.
+  [[nodiscard]] Result<std::string> text(std::uint64_t end, std::size_t most);
 
  private:
   [[nodiscard]] Result<std::string> words(std::uint64_t end, std::size_t most);

@@ -30,10 +30,18 @@ struct MatArray {
   [[nodiscard]] std::string description() const;
 };
 
+/// A short text in a struct that says something about other variables: "units.acc_x" or
+/// "names.acc_x".
+struct MatText {
+  std::string path;
+  std::string text;  ///< UTF-8
+};
+
 /// What is in a MAT file.
 struct MatCatalogue {
   std::string_view version;          ///< "MAT v5"
   std::vector<MatArray> arrays;      ///< in the order of the file
+  std::vector<MatText> texts;        ///< those of the structs "names" and "units"
   std::vector<std::string> skipped;  ///< "title (text)", "f (function handle)"
   bool is_cut = false;               ///< there is more than is listed
 };

@@ -67,6 +67,7 @@ class Chooser {
     if (!tables) return tables.error();
     choice.tables = std::move(tables).value();
     choice.rate = rate_beside(choice.tables.front());
+    choice.start = start_beside(choice.tables.front());
     tell(choice);
     return choice;
   }
@@ -146,6 +147,14 @@ class Chooser {
     return nullptr;
   }
 
+  [[nodiscard]] const MatArray* start_beside(const MatTable& table) const {
+    for (const MatArray& array : catalogue_.arrays)
+      if (size_of(array) == 1 && array.class_name == "int64" &&
+          array.group() == table.array->group() && MatTable{&array}.name() == "start_ns")
+        return &array;
+    return nullptr;
+  }
+
   void tell(MatChoice& choice) const {
     std::string read;
     for (const MatTable& table : choice.tables) {
@@ -161,6 +170,7 @@ class Chooser {
                         {Severity::info, fmt::format("{}: {} read", catalogue_.version, read)});
     std::set<const MatArray*> used(chosen_);
     used.insert(choice.rate);
+    used.insert(choice.start);
     if (const std::string others = contents(catalogue_, used); !others.empty())
       choice.notes.push_back(
           {Severity::info,

@@ -45,9 +45,10 @@ inline constexpr std::size_t most_mat_channels = 64;
 
 /// The arrays that make the recording.
 struct MatChoice {
-  std::vector<MatTable> tables;    ///< equally long, in the order of the file
-  const MatArray* rate = nullptr;  ///< a single number called "fs" and the like
-  std::vector<Note> notes;         ///< what was chosen, and what else there is
+  std::vector<MatTable> tables;     ///< equally long, in the order of the file
+  const MatArray* rate = nullptr;   ///< a single number called "fs" and the like
+  const MatArray* start = nullptr;  ///< an int64 called "start_ns": the clock's time at time 0
+  std::vector<Note> notes;          ///< what was chosen, and what else there is
 };
 
 /// Chooses the largest table, with the vectors of its length that stand beside it; or what the user

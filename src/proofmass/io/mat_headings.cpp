@@ -4,9 +4,11 @@
 #include <array>
 #include <fmt/format.h>
 #include <iterator>
+#include <map>
 
 #include "proofmass/io/array_recording.hpp"
 #include "proofmass/io/names.hpp"
+#include "proofmass/io/shown_text.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -65,6 +67,27 @@ std::vector<std::string> headings_of(const std::vector<MatTable>& tables,
                       std::back_inserter(headings));
   }
   return headings;
+}
+
+void tell_headings(const MatCatalogue& catalogue,
+                   const std::vector<MatTable>& tables,
+                   std::vector<std::string>& headings) {
+  std::map<std::string_view, std::string_view> texts;
+  for (const MatText& text : catalogue.texts) texts.emplace(text.path, text.text);
+  const auto told = [&](std::string_view about, const std::string& path) {
+    const auto found = texts.find(fmt::format("{}.{}", about, path));
+    return found == texts.end() ? std::string{} : shown(found->second);
+  };
+  std::size_t column = 0;
+  for (const MatTable& table : tables) {
+    const std::size_t at = column;
+    column += table.width;
+    if (table.width > 1 || at >= headings.size()) continue;
+    const std::string name = told("names", table.array->path);
+    const std::string unit = told("units", table.array->path);
+    if (!name.empty()) headings[at] = name;
+    if (!unit.empty()) headings[at] += fmt::format(" ({})", unit);
+  }
 }
 
 }  // namespace proofmass::io

@@ -16,4 +16,9 @@ namespace proofmass::io {
     const std::vector<std::vector<std::vector<double>>>& values,
     const ReadOptions& options);
 
+/// Puts what the structs "names" and "units" of the file say of vectors into their headings.
+void tell_headings(const MatCatalogue& catalogue,
+                   const std::vector<MatTable>& tables,
+                   std::vector<std::string>& headings);
+
 }  // namespace proofmass::io

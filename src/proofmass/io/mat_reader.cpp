@@ -1,6 +1,9 @@
 #include "proofmass/io/mat_reader.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <fmt/format.h>
 #include <iterator>
 #include <memory>
@@ -37,6 +40,16 @@ using Columns = std::vector<std::vector<double>>;
 class FigureReader {
  public:
   explicit FigureReader(std::string_view file) : file_(file) {}
+
+  /// The whole number of eight bytes, exact.
+  Result<std::int64_t> read_whole(const MatArray& array) {
+    std::array<char, 8> bytes{};
+    if (const Status found = go_to(array); !found) return found.error();
+    if (const Status read = stream_->read(bytes); !read) return read.error();
+    const bool is_native = array.stored.big_endian == (std::endian::native == std::endian::big);
+    if (!is_native) std::ranges::reverse(bytes);
+    return std::bit_cast<std::int64_t>(bytes);
+  }
 
   Result<Columns> read(const MatTable& table) {
     Columns columns(table.width);
@@ -94,8 +107,9 @@ bool claims_mat(std::string_view head, std::string_view) {
   return is_mat5(head) || is_mat4(head);
 }
 
-Result<Recording> read_mat(PeekSource& source, const ReadOptions& options) {
-  const auto file = read_all(source, options.progress);
+Result<std::unique_ptr<TableFile>> open_mat(std::unique_ptr<PeekSource> source,
+                                            const ReadOptions& options) {
+  const auto file = read_all(*source, options.progress);
   if (!file) return file.error();
   const auto catalogue = is_mat5(*file) ? list_mat5(*file) : list_mat4(*file);
   if (!catalogue) return catalogue.error();
@@ -104,7 +118,7 @@ Result<Recording> read_mat(PeekSource& source, const ReadOptions& options) {
   Recording recording;
   recording.format = std::string(catalogue->version);
   recording.notes = choice->notes;
-  std::ranges::move(source.notes(), std::back_inserter(recording.notes));
+  std::ranges::move(source->notes(), std::back_inserter(recording.notes));
   FigureReader reader(*file);
   std::vector<Columns> values;
   for (const MatTable& table : choice->tables) {
@@ -114,13 +128,21 @@ Result<Recording> read_mat(PeekSource& source, const ReadOptions& options) {
   }
   ArrayColumns columns;
   columns.headings = headings_of(choice->tables, values, options);
+  tell_headings(*catalogue, choice->tables, columns.headings);
   for (Columns& some : values) std::ranges::move(some, std::back_inserter(columns.values));
   if (choice->rate != nullptr) {
     const auto rate_hz = rate_of(*choice->rate, reader, recording.notes);
     if (!rate_hz) return rate_hz.error();
     columns.rate_hz = *rate_hz;
   }
-  return recording_of(std::move(columns), std::move(recording), options);
+  if (choice->start != nullptr && choice->start->stored.bytes == 8) {
+    const auto start_ns = reader.read_whole(*choice->start);
+    if (!start_ns) return start_ns.error();
+    columns.start_ns = *start_ns;
+  }
+  auto made = recording_reader_of(std::move(columns), std::move(recording), options);
+  if (!made) return made.error();
+  return only_table(std::move(made).value());
 }
 
 }  // namespace proofmass::io

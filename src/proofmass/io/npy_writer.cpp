@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <fmt/format.h>
 #include <string>
+#include <utility>
 
 #include "proofmass/io/recording_writers.hpp"
+#include "proofmass/io/row_times.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -16,28 +18,65 @@ void append_little_endian(std::string& out, double value) {
   out.append(bytes.data(), bytes.size());
 }
 
+/// Of one length whatever the number of rows, so that it can be written over when that is known;
+/// the figures begin at a multiple of 64 bytes, as the format asks, behind a line's end.
+std::string header_of(std::size_t rows, std::size_t columns) {
+  std::string text =
+      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns);
+  constexpr std::size_t magic_bytes = 10;
+  constexpr std::size_t all_bytes = 128;
+  text.resize(all_bytes - magic_bytes - 1, ' ');
+  std::string out("\x93NUMPY\x01\x00", 8);
+  out += static_cast<char>(text.size() + 1);
+  out += '\0';
+  return out + text + '\n';
+}
+
+class NpyWriter final : public RecordingWriter {
+ public:
+  NpyWriter(std::unique_ptr<OutputFile> file, const Recording& head)
+      : file_(std::move(file)),
+        times_(head.time),
+        columns_(head.channels.size() + (times_.is_timed() ? 1 : 0)),
+        out_(header_of(0, columns_)) {}
+
+  [[nodiscard]] Status write(const Block& block) override {
+    for (std::size_t r = 0; r < block.rows(); ++r) {
+      if (times_.is_timed()) append_little_endian(out_, times_.at(block, r));
+      for (const View<double>& channel : block.channels) append_little_endian(out_, channel[r]);
+      if (out_.size() < (1u << 16)) continue;
+      if (const Status done = pass_on(); !done) return done;
+    }
+    rows_ += block.rows();
+    return Done{};
+  }
+  [[nodiscard]] Status finish(const Recording&) override {
+    if (const Status done = pass_on(); !done) return done;
+    const Status done = file_->overwrite(0, header_of(rows_, columns_));
+    return done ? file_->keep() : done;
+  }
+
+ private:
+  Status pass_on() {
+    const Status done = file_->append(out_);
+    out_.clear();
+    return done;
+  }
+
+  std::unique_ptr<OutputFile> file_;
+  RowTimes times_;
+  std::size_t columns_;
+  std::string out_;
+  std::size_t rows_ = 0;
+};
+
 }  // namespace
 
-bool write_npy(const Recording& recording, const Sink& sink) {
-  const bool timed = recording.time.source != TimeSource::none;
-  std::string header =
-      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}",
-                  recording.samples(), recording.channels.size() + (timed ? 1 : 0));
-  // The figures begin at a multiple of 64 bytes, as the format asks, behind a line's end.
-  header.resize((10 + header.size() + 1 + 63) / 64 * 64 - 10 - 1, ' ');
-  header += '\n';
-  std::string out("\x93NUMPY\x01\x00", 8);
-  out += static_cast<char>(header.size() & 0xFF);
-  out += static_cast<char>(header.size() >> 8);
-  out += header;
-  for (std::size_t k = 0; k < recording.samples(); ++k) {
-    if (timed) append_little_endian(out, recording.time.at(k));
-    for (const Channel& channel : recording.channels) append_little_endian(out, channel.values[k]);
-    if (out.size() < (1u << 16)) continue;
-    if (!sink(out)) return false;
-    out.clear();
-  }
-  return sink(out);
+Result<std::unique_ptr<RecordingWriter>> npy_writer(std::unique_ptr<OutputFile> file,
+                                                    const WriterHead& head,
+                                                    const WriteOptions&) {
+  return std::unique_ptr<RecordingWriter>(
+      std::make_unique<NpyWriter>(std::move(file), head.recording));
 }
 
 }  // namespace proofmass::io

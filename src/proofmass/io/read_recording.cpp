@@ -1,34 +1,96 @@
 #include "proofmass/io/read_recording.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <iterator>
 #include <new>
 
+#include "proofmass/io/archive_tables.hpp"
 #include "proofmass/io/byte_source.hpp"
+#include "proofmass/io/finish_recording.hpp"
 #include "proofmass/io/formats.hpp"
+#include "proofmass/io/open_recording.hpp"
 
 namespace proofmass::io {
 namespace {
 
-Result<Recording> read_from(std::unique_ptr<ByteSource> bytes,
-                            const std::string& name,
-                            const ReadOptions& options) {
-  auto source = unwrap(std::move(bytes));
-  if (!source) return source.error();
-  const std::unique_ptr<PeekSource> opened = std::move(source).value();
-  const auto head = opened->peek(4096);
-  if (!head) return head.error();
-  const auto all = formats();
-  const auto format =
-      std::ranges::find_if(all, [&](const Format& f) { return f.claims(*head, name); });
-  if (!options.variables.empty() && !format->has_variables)
-    return Error{Errc::invalid_argument,
-                 "has no datasets to choose from: --dataset and --variable are for HDF5 and MAT "
-                 "files"};
-  return format->read(*opened, options);
+Result<Recording> read_table(TableFile& file, std::size_t table, const ReadOptions& options) {
+  auto reader = file.open(table, options);
+  if (!reader) return reader.error();
+  auto read = read_whole(**reader, options);
+  if (!read || !options.resample) return read;
+  return signal::resample(*read, *options.resample);
 }
 
-Result<Recording> named(Result<Recording> read, const std::string& name) {
-  if (!read) return read.error().at(name == "-" ? "standard input" : name);
+/// Several tables have clocks of their own.
+Result<Recording> read_joined(TableFile& file,
+                              const std::vector<std::size_t>& chosen,
+                              const ReadOptions& options) {
+  ReadOptions as_it_is = options;
+  as_it_is.resample.reset();
+  std::vector<Recording> parts;
+  for (const std::size_t table : chosen) {
+    const std::string& name = file.tables()[table].name;
+    auto part = read_table(file, table, as_it_is);
+    if (!part) return part.error().at(name);
+    parts.push_back(std::move(part).value());
+    parts.back().source = name;
+  }
+  return signal::join(parts, *options.resample);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<TableFile>> open_path(const std::string& path, const ReadOptions& options) {
+  std::error_code problem;
+  if (path != "-" && std::filesystem::is_directory(path, problem)) {
+    auto folder = open_folder(path);
+    if (!folder) return folder.error();
+    return open_tables_in(std::move(folder).value(), options);
+  }
+  auto bytes = open_file(path);
+  if (!bytes) return bytes.error();
+  return open_tables(std::move(bytes).value(), path, options);
+}
+
+Result<ChosenTables> chosen_tables_of(const TableFile& file, const ReadOptions& options) {
+  ChosenTables chosen{{0}, {}};
+  if (file.tables().size() < 2) return chosen;
+  auto choice = choose_table(file.tables(), options, chosen.notes);
+  if (!choice) return choice.error();
+  chosen.tables = std::move(choice).value();
+  if (chosen.tables.size() > 1 && !options.resample)
+    return Error{
+        Errc::invalid_argument,
+        fmt::format("{} and {} have each a clock of their own: name one of them, or give "
+                    "--resample HZ to bring them together",
+                    file.tables()[chosen.tables[0]].name, file.tables()[chosen.tables[1]].name)};
+  return chosen;
+}
+
+Result<Recording> read_tables(TableFile& file,
+                              const ChosenTables& chosen,
+                              const ReadOptions& options) {
+  auto read = chosen.tables.size() > 1 ? read_joined(file, chosen.tables, options)
+                                       : read_table(file, chosen.tables.front(), options);
+  if (!read) return read.error();
+  Recording recording = std::move(read).value();
+  recording.notes.insert(recording.notes.begin(), chosen.notes.begin(), chosen.notes.end());
+  return recording;
+}
+
+namespace {
+
+Result<Recording> read_from(Result<std::unique_ptr<TableFile>> opened,
+                            const std::string& name,
+                            const ReadOptions& options) {
+  const std::string shown = name == "-" ? "standard input" : name;
+  if (!opened) return opened.error().at(shown);
+  const auto chosen = chosen_tables_of(**opened, options);
+  if (!chosen) return chosen.error().at(shown);
+  auto read = read_tables(**opened, *chosen, options);
+  if (!read) return read.error().at(shown);
   Recording recording = std::move(read).value();
   recording.source = name;
   return recording;
@@ -37,9 +99,7 @@ Result<Recording> named(Result<Recording> read, const std::string& name) {
 }  // namespace
 
 Result<Recording> read_recording(const std::string& path, const ReadOptions& options) try {
-  auto file = open_file(path);
-  if (!file) return file.error().at(path);
-  return named(read_from(std::move(file).value(), path, options), path);
+  return read_from(open_path(path, options), path, options);
 } catch (const std::bad_alloc&) {
   return Error{Errc::unreadable, "does not fit into memory: cut it, or choose channels"}.at(path);
 }
@@ -47,7 +107,7 @@ Result<Recording> read_recording(const std::string& path, const ReadOptions& opt
 Result<Recording> read_recording(std::span<const std::byte> bytes,
                                  const std::string& name,
                                  const ReadOptions& options) {
-  return named(read_from(open_memory(bytes), name, options), name);
+  return read_from(open_tables(open_memory(bytes), name, options), name, options);
 }
 
 }  // namespace proofmass::io

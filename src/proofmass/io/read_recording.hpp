@@ -10,6 +10,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/units.hpp"
+#include "proofmass/signal/resample.hpp"
 
 namespace proofmass::io {
 
@@ -20,7 +21,12 @@ struct ReadOptions {
   std::string time_channel{};           ///< name of the time column; empty: find it
   std::vector<std::string> channels{};  ///< keep these only, in the order of the file; empty: all
   std::vector<std::string> variables{};  ///< of a file of named arrays; empty: choose
-  Progress progress{};                   ///< told the fraction of the file read; may be empty
+  std::string duckdb_library{};  ///< path of libduckdb.so, which reads Parquet; empty: the system's
+  /// Brings the samples onto an even grid, and several tables onto one; none: as they were taken.
+  std::optional<signal::ResampleOptions> resample{};
+  /// Each channel of a row was sampled so much behind the one before; undone if not 0.
+  double skew_s = 0.0;
+  Progress progress{};  ///< told the fraction of the file read; may be empty
 };
 
 /// Reads a recording: CSV and TSV of any dialect, .npy (a table of samples × channels, or a

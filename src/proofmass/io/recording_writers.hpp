@@ -1,17 +1,41 @@
 #pragma once
 
-#include <functional>
-#include <string_view>
+#include <memory>
 
-#include "proofmass/core/recording.hpp"
+#include "proofmass/core/result.hpp"
+#include "proofmass/io/output_file.hpp"
+#include "proofmass/io/recording_writer.hpp"
 
 namespace proofmass::io {
 
-/// Takes the next bytes of a file; false if they could not be written.
-using Sink = std::function<bool(std::string_view)>;
+// The writers behind write_recording(), one a format; it says what each of them keeps.
 
-/// Write a recording as write_recording says; false if the sink refused.
-[[nodiscard]] bool write_csv(const Recording& recording, const Sink& sink);
-[[nodiscard]] bool write_npy(const Recording& recording, const Sink& sink);
+[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> csv_writer(std::unique_ptr<OutputFile> file,
+                                                                  const WriterHead& head,
+                                                                  const WriteOptions& options);
+[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> npy_writer(std::unique_ptr<OutputFile> file,
+                                                                  const WriterHead& head,
+                                                                  const WriteOptions& options);
+/// A group "recording" with a dataset of doubles for each channel, in chunks. Errors: unsupported
+/// (built without the library).
+[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> hdf5_writer(std::unique_ptr<OutputFile> file,
+                                                                   const WriterHead& head,
+                                                                   const WriteOptions& options);
+/// A column of doubles for each channel, by DuckDB's library, which is loaded when this is called.
+/// Errors: unsupported (no such library).
+[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> parquet_writer(
+    std::unique_ptr<OutputFile> file, const WriterHead& head, const WriteOptions& options);
+
+[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> mat_writer(std::unique_ptr<OutputFile> file,
+                                                                  const WriterHead& head,
+                                                                  const WriteOptions& options);
+
+[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> tdms_writer(std::unique_ptr<OutputFile> file,
+                                                                   const WriterHead& head,
+                                                                   const WriteOptions& options);
+
+[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> mcap_writer(std::unique_ptr<OutputFile> file,
+                                                                   const WriterHead& head,
+                                                                   const WriteOptions& options);
 
 }  // namespace proofmass::io

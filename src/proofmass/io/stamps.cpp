@@ -1,277 +1,236 @@
 #include "proofmass/io/stamps.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <iterator>
-#include <optional>
-#include <tuple>
-#include <utility>
+#include <fmt/format.h>
 
-#include "proofmass/core/statistics.hpp"
+#include "proofmass/io/onlooker.hpp"
+#include "proofmass/io/wording.hpp"
 
 namespace proofmass::io {
 namespace {
 
-/// Beyond this a stamp is a decoder's accident, in any unit: nanoseconds of 300 years are 1e19.
-constexpr double largest_stamp = 1e20;
-
-bool is_stamp(double value) {
-  return std::abs(value) < largest_stamp;
-}
-
-/// The largest figure that the steps up to five medians are multiples of, if it is more
-/// than 1 % of the median: then the clock was read, or written, that coarsely.
-double rounding_of(const std::vector<double>& steps, double median) {
-  constexpr std::size_t most = 4096;
-  std::vector<double> sorted;
-  for (std::size_t i = 0; i < steps.size(); i += steps.size() / most + 1)
-    if (steps[i] < 5.0 * median) sorted.push_back(steps[i]);
-  std::ranges::sort(sorted);
-  const double noise = 1e-6 * median;
-  double smallest = 0.0;
-  double previous = 0.0;
-  for (const double step : sorted) {
-    const double rise = step - previous;
-    if (rise > noise && (smallest == 0.0 || rise < smallest)) smallest = rise;
-    previous = step;
-  }
-  if (smallest < 0.01 * median || smallest > 0.99 * median) return 0.0;
-  const auto off_grid = std::ranges::count_if(sorted, [&](double step) {
-    return std::abs(std::remainder(step, smallest)) > 1e-3 * median;
-  });
-  return static_cast<std::size_t>(off_grid) * 100 > sorted.size() ? 0.0 : smallest;
-}
-
-/// Steps from one stamp to the next, at most 65 536 of them spread over the file.
-std::vector<double> sampled_steps(View<double> stamps) {
-  constexpr std::size_t most = 1u << 16;
-  std::vector<double> steps;
-  for (std::size_t k = 0; k + 1 < stamps.size(); k += stamps.size() / most + 1)
-    if (is_stamp(stamps[k]) && is_stamp(stamps[k + 1])) steps.push_back(stamps[k + 1] - stamps[k]);
-  return steps;
-}
-
-/// Where sample k's stamp belongs among what follows it.
-class Onlooker {
- public:
-  Onlooker(View<double> stamps, double step) : stamps_(stamps), step_(step) {}
-
-  /// Whether a stamp that is ahead of its time is alone in being so: what follows lies between the
-  /// last good one and it.
-  [[nodiscard]] bool leaps_alone(std::size_t k, double last) const {
-    const auto next = following(k);
-    const auto between = [&](double stamp) { return stamp >= last && stamp < stamps_[k]; };
-    if (next.empty() || goes_on(k, next)) return false;
-    if (std::ranges::count_if(next, between) * 2 > std::ssize(next)) return true;
-    return next.size() >= 2 && between(next[0]) && next[1] >= next[0] &&
-           (next[1] < stamps_[k] || next[1] - next[0] <= 1.5 * step_);
-  }
-
-  /// Whether a stamp below the last good one is alone in being so.
-  [[nodiscard]] bool falls_alone(std::size_t k, double last) const {
-    const auto next = following(k);
-    return !next.empty() &&
-           std::ranges::count_if(next, [&](double stamp) { return stamp >= last; }) * 2 >
-               std::ssize(next);
-  }
-
-  /// Whether sample k can be the first: most of what follows comes after it and not ages later.
-  [[nodiscard]] bool can_be_first(std::size_t k) const {
-    const auto next = following(k);
-    const auto near = [&](double stamp) {
-      return stamp >= stamps_[k] && stamp - stamps_[k] < 1e4 * step_;
-    };
-    return next.empty() || std::ranges::count_if(next, near) * 2 > std::ssize(next);
-  }
-
- private:
-  static constexpr std::size_t window = 8;
-
-  /// Whether the next two follow at the usual pace: a clock that was set, not an accident.
-  [[nodiscard]] bool goes_on(std::size_t k, std::span<const double> next) const {
-    const auto is_usual = [&](double step) { return step >= 0.0 && step < 1.5 * step_; };
-    return next.size() >= 2 && is_usual(next[0] - stamps_[k]) && is_usual(next[1] - next[0]);
-  }
-
-  /// The next few stamps that are stamps.
-  [[nodiscard]] std::span<const double> following(std::size_t k) const {
-    std::size_t count = 0;
-    for (std::size_t i = k + 1; i < stamps_.size() && i < k + 3 * window && count < window; ++i)
-      if (is_stamp(stamps_[i])) next_[count++] = stamps_[i];
-    return std::span(next_).first(count);
-  }
-
-  View<double> stamps_;
-  double step_;
-  mutable std::array<double, window> next_{};
-};
-
-/// Whether sample k's stamp, a number at all, can stand behind that of sample `last`.
-bool can_follow(View<double> stamps, double step, std::size_t k, std::size_t last) {
-  const Onlooker onlooker(stamps, step);
-  const double rise = stamps[k] - stamps[last];
-  if (rise < 0.0) return !onlooker.falls_alone(k, stamps[last]);
-  const bool usual = rise <= 1.5 * step * static_cast<double>(k - last);
-  return usual || !onlooker.leaps_alone(k, stamps[last]);
-}
-
-/// Samples whose stamps are to be replaced, and how many of them stepped back.
-std::pair<std::vector<std::size_t>, std::size_t> find_bad(View<double> stamps, double step) {
-  // If none of so many can be the first, the next that is a number has to be.
-  constexpr std::size_t most_bad_at_first = 64;
-  std::vector<std::size_t> bad;
-  std::size_t backwards = 0;
-  std::optional<std::size_t> last;
-  for (std::size_t k = 0; k < stamps.size(); ++k) {
-    const bool number = is_stamp(stamps[k]);
-    const bool fits =
-        last ? number && can_follow(stamps, step, k, *last)
-             : number && (k > most_bad_at_first || Onlooker(stamps, step).can_be_first(k));
-    if (fits) {
-      last = k;
-      continue;
-    }
-    if (number && last && stamps[k] < stamps[*last]) ++backwards;
-    bad.push_back(k);
-  }
-  return {std::move(bad), backwards};
-}
-
-/// Puts the samples between good neighbours `left` and `right` (either may be missing).
-class Mender {
- public:
-  Mender(std::vector<double>& stamps, double step, View<double> counter)
-      : stamps_(stamps), step_(step), counter_(counter) {}
-
-  /// True if the counter said where.
-  bool place(std::size_t k, std::optional<std::size_t> left, std::optional<std::size_t> right) {
-    if (!left && !right) return false;
-    if (!left || !right) {
-      const std::size_t anchor = left ? *left : *right;
-      const double rows = static_cast<double>(k) - static_cast<double>(anchor);
-      stamps_[k] = stamps_[anchor] + rows * step_;
-      return false;
-    }
-    const bool counted =
-        !counter_.empty() && counter_[*left] < counter_[k] && counter_[k] < counter_[*right];
-    const double fraction =
-        counted ? (counter_[k] - counter_[*left]) / (counter_[*right] - counter_[*left])
-                : static_cast<double>(k - *left) / static_cast<double>(*right - *left);
-    stamps_[k] = std::lerp(stamps_[*left], stamps_[*right], fraction);
-    return counted;
-  }
-
- private:
-  std::vector<double>& stamps_;
-  double step_;
-  View<double> counter_;
-};
+constexpr double hour_s = 3600.0;
+constexpr double ten_years_s = 3.2e8;
 
 }  // namespace
 
-StampSteps measure_steps(View<double> stamps) {
-  StampSteps out;
-  const std::vector<double> all = sampled_steps(stamps);
-  if (all.empty()) return out;
-  const auto fraction = [&](auto is_such) {
-    return static_cast<double>(std::ranges::count_if(all, is_such)) /
-           static_cast<double>(all.size());
-  };
-  out.ascending = fraction([](double step) { return step >= 0.0; });
-  out.repeated = fraction([](double step) { return step == 0.0; });
-  std::vector<double> up;
-  std::ranges::copy_if(all, std::back_inserter(up), [](double step) { return step > 0.0; });
-  if (up.empty()) return out;
-  out.median = *median(up);
-  out.rounding = rounding_of(up, out.median);
-  Moments near;
-  for (const double step : up)
-    if (std::abs(step - out.median) <= 1.001 * out.rounding) near.add(step);
-  out.mean_near = near.count > 0 ? near.mean : out.median;
+void SampleTally::add(std::size_t sample) {
+  if (++count <= 5) first.push_back(sample);
+}
+
+std::string SampleTally::where(std::size_t first_line) const {
+  const std::string some = places(first, first_line);
+  return count > first.size() ? fmt::format("{} and {} more", some, count - first.size()) : some;
+}
+
+std::optional<std::size_t> StampMender::first_good(View<double> stamps, const StampRules& rules) {
+  // If none of so many can be the first, the next that is a number has to be.
+  constexpr std::size_t most_bad_at_first = 64;
+  const WrapFinder wraps(rules.unit_s);
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    if (!is_stamp(stamps[k])) continue;
+    Onlooker next(stamps, k, 0.0);
+    next.unroll(stamps[k], wraps, rules.origin, rules.usual);
+    const auto is_near = [&](double stamp) {
+      return stamp >= stamps[k] && stamp - stamps[k] < 1e4 * rules.usual;
+    };
+    if (k > most_bad_at_first || next.count() == 0 || next.most_are(is_near)) return k;
+  }
+  return std::nullopt;
+}
+
+double StampMender::rows_since_last(std::size_t k) const {
+  return static_cast<double>(row_ + k - last_->row);
+}
+
+/// Whether the instrument's counter says that no row is missing before row k.
+bool StampMender::counts_on(const Rows& rows, std::size_t k) const {
+  return rows.counter.empty() || rows.counter[k] - last_->count <= 1.5 * rows_since_last(k);
+}
+
+/// A stamp below the last good one: alone in being so, or for good, and then why.
+StampMender::Judgement StampMender::judge_fall(const Rows& rows, std::size_t k) const {
+  const double reading = rows.stamps[k];
+  const double stamp = reading + shift_;
+  const Onlooker next(rows.stamps, k, shift_);
+  const auto is_back = [&](double other) { return other >= last_->stamp; };
+  if (next.count() > 0 && next.most_are(is_back)) return {Event::bad};
+  const double usual = rules_.usual * rows_since_last(k);
+  if (const auto wrap =
+          wraps_.find(rules_.origin + last_->reading, rules_.origin + reading, usual, seen_))
+    return {Event::wrap, shift_ + wraps_[*wrap].range(), wrap};
+  const double hour = hour_s / rules_.unit_s;
+  const double without = stamp + hour - last_->stamp;
+  // Steps of a computer's clock are late by some hundredths of a second.
+  if (rules_.has_summer_time && without >= 0.0 && without <= usual + 0.1 / rules_.unit_s)
+    return {Event::hour, shift_ + hour};
+  // One or two stamps at the very end tell nothing: they are no clock that was set.
+  if (next.count() < 2) return {Event::bad};
+  return {Event::restart, last_->stamp + rules_.nominal * rows_since_last(k) - reading};
+}
+
+/// A stamp further on than a usual step: an accident, a clock that was set, or a gap.
+StampMender::Judgement StampMender::judge_leap(const Rows& rows, std::size_t k) const {
+  const double reading = rows.stamps[k];
+  const double stamp = reading + shift_;
+  Onlooker next(rows.stamps, k, shift_);
+  next.unroll(stamp, wraps_, rules_.origin - shift_, rules_.usual);
+  if (next.leave_behind(stamp, last_->stamp, rules_.usual)) return {Event::bad};
+  const double rise = stamp - last_->stamp;
+  const double nominal = rules_.nominal * rows_since_last(k);
+  if (rise * rules_.unit_s > ten_years_s) {
+    if (next.count() < 2) return {Event::bad};
+    return {Event::setting, last_->stamp + nominal - reading};
+  }
+  const double hour = hour_s / rules_.unit_s;
+  const bool is_hour = rise >= hour && rise - hour <= rules_.usual * rows_since_last(k);
+  // Of a slow logger's rows those of a whole hour may be missing.
+  const bool is_fast = rules_.usual * rules_.unit_s < 30.0;
+  if (rules_.has_summer_time && is_hour && is_fast && next.go_on(stamp, rules_.usual) &&
+      counts_on(rows, k))
+    return {Event::hour, shift_ - hour};
+  return {Event::none, shift_};
+}
+
+StampMender::Judgement StampMender::judge(const Rows& rows, std::size_t k) const {
+  if (!is_stamp(rows.stamps[k])) return {Event::bad};
+  if (!last_) return {Event::none, shift_};
+  const double rise = rows.stamps[k] + shift_ - last_->stamp;
+  if (rise >= 0.0 && rise <= rules_.usual * rows_since_last(k)) return {Event::none, shift_};
+  if (!rows.is_end && k + window > rows.stamps.size()) return {Event::undecided};
+  return rise < 0.0 ? judge_fall(rows, k) : judge_leap(rows, k);
+}
+
+void StampMender::tell(const Judgement& as, double reading, std::size_t row) {
+  switch (as.event) {
+    case Event::wrap: {
+      if (done_.wraps.count == 0) done_.wrapped = wraps_[*as.wrap].words;
+      done_.wraps.add(row);
+      const double rise = reading + as.shift - last_->stamp;
+      if (rise > rules_.usual * static_cast<double>(row - last_->row))
+        done_.longest_wrap_gap = std::max(done_.longest_wrap_gap, rise);
+      seen_ = as.wrap;
+      break;
+    }
+    case Event::hour:
+      done_.hours.add(row);
+      if (as.shift > shift_) ++done_.hours_back;
+      break;
+    case Event::restart:
+      if (done_.restarts.count == 0) {
+        done_.fell_from = rules_.origin + last_->reading;
+        done_.fell_to = rules_.origin + reading;
+      }
+      done_.restarts.add(row);
+      break;
+    case Event::setting:
+      done_.settings.add(row);
+      break;
+    default:
+      break;
+  }
+}
+
+void StampMender::accept(const Rows& rows, std::size_t k, const Judgement& as) {
+  const double reading = rows.stamps[k];
+  tell(as, reading, row_ + k);
+  shift_ = as.shift;
+  rows.stamps[k] = reading + shift_;
+  last_ = {row_ + k, reading, rows.stamps[k], rows.counter.empty() ? 0.0 : rows.counter[k]};
+}
+
+/// The rows from k on, bad itself, up to the next good one.
+StampMender::Stretch StampMender::stretch_from(const Rows& rows, std::size_t k) const {
+  Stretch out{k, k + 1};
+  for (; out.end < rows.stamps.size() && out.end - k < longest_stretch; ++out.end) {
+    const Judgement next = judge(rows, out.end);
+    if (next.event == Event::bad) continue;
+    out.is_open = next.event == Event::undecided;
+    out.right = rows.stamps[out.end] + next.shift;
+    return out;
+  }
+  out.is_open = !rows.is_end && out.end - k < longest_stretch;
   return out;
 }
 
-bool are_regular(View<double> stamps, double step) {
-  // Without a branch, so that the compiler can take several at once.
-  std::size_t odd = 0;
-  for (std::size_t k = 1; k < stamps.size(); ++k) {
-    const double rise = stamps[k] - stamps[k - 1];
-    odd +=
-        static_cast<std::size_t>(!(rise >= 0.0)) + static_cast<std::size_t>(!(rise <= 1.5 * step));
-  }
-  return odd == 0;
-}
-
-std::size_t unroll(std::vector<double>& stamps, double origin, double step) {
-  struct Range {
-    double bottom, top;
-  };
-  constexpr std::array<Range, 6> ranges{{{0.0, 0x1p16},
-                                         {0.0, 0x1p24},
-                                         {0.0, 0x1p31},
-                                         {0.0, 0x1p32},
-                                         {-0x1p15, 0x1p15},
-                                         {-0x1p31, 0x1p31}}};
-  const double near = 100.0 * step;
-  std::size_t turns = 0;
-  double added = 0.0;
-  double last = stamps.empty() ? 0.0 : origin + stamps.front();
-  for (double& stamp : stamps) {
-    if (!is_stamp(stamp)) continue;
-    const double reading = origin + stamp;
-    if (reading < last && reading == std::trunc(reading)) {
-      for (const Range& range : ranges) {
-        const bool ran_over = last < range.top && range.top - last <= near &&
-                              reading >= range.bottom && reading - range.bottom <= near &&
-                              2.0 * near < range.top - range.bottom;
-        if (!ran_over) continue;
-        added += range.top - range.bottom;
-        ++turns;
-        break;
+void StampMender::place(const Rows& rows, const Stretch& stretch) {
+  for (std::size_t k = stretch.first; k < stretch.end; ++k) {
+    if (is_stamp(rows.stamps[k]) && rows.stamps[k] + shift_ < last_->stamp) ++done_.backwards;
+    done_.samples.add(row_ + k);
+    const double behind = rows_since_last(k);
+    if (!stretch.right) {
+      rows.stamps[k] = last_->stamp + behind * rules_.nominal;
+      continue;
+    }
+    double fraction = behind / rows_since_last(stretch.end);
+    if (!rows.counter.empty()) {
+      const double count = rows.counter[k];
+      const double end = rows.counter[stretch.end];
+      if (last_->count < count && count < end) {
+        fraction = (count - last_->count) / (end - last_->count);
+        ++done_.by_counter;
       }
     }
-    last = reading;
-    stamp += added;
+    rows.stamps[k] = std::lerp(last_->stamp, *stretch.right, fraction);
   }
-  return turns;
 }
 
-MendedStamps mend(std::vector<double>& stamps, double step, View<double> counter) {
-  MendedStamps out;
-  std::tie(out.samples, out.backwards) = find_bad(stamps, step);
-  Mender mender(stamps, step, counter);
-  for (std::size_t i = 0; i < out.samples.size();) {
-    std::size_t end = i + 1;
-    while (end < out.samples.size() && out.samples[end] == out.samples[end - 1] + 1) ++end;
-    std::optional<std::size_t> left;
-    std::optional<std::size_t> right;
-    if (out.samples[i] > 0) left = out.samples[i] - 1;
-    if (out.samples[end - 1] + 1 < stamps.size()) right = out.samples[end - 1] + 1;
-    for (; i < end; ++i)
-      if (mender.place(out.samples[i], left, right)) ++out.by_counter;
+/// Those in front of the first row that is a time; says how many.
+std::size_t StampMender::place_before_first(const Rows& rows) {
+  std::size_t k = 0;
+  for (; k < rows.stamps.size() && row_ + k < rules_.first_good; ++k) {
+    const double ahead = static_cast<double>(rules_.first_good - row_ - k);
+    rows.stamps[k] = rules_.first_stamp - ahead * rules_.nominal;
+    done_.samples.add(row_ + k);
   }
-  return out;
+  return k;
 }
 
-double uniform_rate_hz(View<double> stamps_s) {
-  if (stamps_s.size() < 3 || !(stamps_s.back() > 0.0)) return 0.0;
-  const auto fits = [&](double rate_hz) {
-    for (std::size_t k = 0; k < stamps_s.size(); ++k)
-      if (static_cast<double>(k) / rate_hz != stamps_s[k]) return false;
-    return true;
-  };
-  const double rough_hz = static_cast<double>(stamps_s.size() - 1) / stamps_s.back();
-  for (int digits = 1; digits <= 17; ++digits) {
-    std::array<char, 32> text;
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), rough_hz,
-                                   std::chars_format::scientific, digits);
-    double rate_hz = 0.0;
-    std::from_chars(text.data(), end.ptr, rate_hz);
-    if (rate_hz > 0.0 && std::isfinite(rate_hz) && fits(rate_hz)) return rate_hz;
+/// Whether `count` rows from k on go on at the usual pace; then they are settled.
+bool StampMender::pass_regular(const Rows& rows, std::size_t k, std::size_t count) {
+  const std::span<double> stamps = rows.stamps.subspan(k, count);
+  if (!is_stamp(stamps.front())) return false;
+  if (last_) {
+    const double rise = stamps.front() + shift_ - last_->stamp;
+    if (!(rise >= 0.0 && rise <= rules_.usual)) return false;
   }
-  return 0.0;
+  if (!are_regular(stamps, rules_.usual)) return false;
+  const double reading = stamps.back();
+  if (shift_ != 0.0)
+    for (double& stamp : stamps) stamp += shift_;
+  last_ = {row_ + k + count - 1, reading, stamps.back(),
+           rows.counter.empty() ? 0.0 : rows.counter[k + count - 1]};
+  return true;
+}
+
+std::size_t StampMender::fold(std::span<double> stamps, View<double> counter, bool is_end) {
+  // Long enough to be fast, short enough that one accident holds up few.
+  constexpr std::size_t stretch_rows = 1024;
+  const Rows rows{stamps, counter, is_end};
+  std::size_t k = place_before_first(rows);
+  for (std::size_t next_try = k; k < stamps.size();) {
+    if (k >= next_try) {
+      const std::size_t count = std::min(stretch_rows, stamps.size() - k);
+      next_try = k + count;
+      if (pass_regular(rows, k, count)) {
+        k += count;
+        continue;
+      }
+    }
+    const Judgement here = judge(rows, k);
+    if (here.event == Event::undecided) break;
+    if (here.event != Event::bad) {
+      accept(rows, k++, here);
+      continue;
+    }
+    const Stretch stretch = stretch_from(rows, k);
+    if (stretch.is_open) break;
+    place(rows, stretch);
+    k = stretch.end;
+  }
+  row_ += k;
+  return k;
 }
 
 }  // namespace proofmass::io

@@ -12,6 +12,13 @@
 
 namespace proofmass::io {
 
+/// What the figures of a column of stamps were before they were figures.
+enum class StampClock {
+  figures,  ///< figures
+  wall,     ///< dates or times of day without a zone: summer time may begin or end in it
+  zoned,    ///< with a zone
+};
+
 /// A column of stamps as a reader found it.
 struct StampColumn {
   std::string name;
@@ -19,6 +26,7 @@ struct StampColumn {
   StampOrigin origin;          ///< exact first stamp
   std::vector<double> values;  ///< stamps less the origin, in `unit`; NaN where there is none
   bool is_named = true;        ///< false: only its ascending says that it is a time
+  StampClock clock = StampClock::figures;
 };
 
 /// All that a file says about when its samples were taken.
@@ -39,13 +47,12 @@ struct TimeBaseFound {
 };
 
 /// Decides on the time base: --rate before stamps, stamps before a rate in the preamble.
-/// Stamps: the unit from the header, else the one that makes an epoch of the first stamp at a
-/// plausible rate, else the one whose rate is nearest 100 Hz; a counter that ran over (2^16, 2^24,
-/// 2^31, 2^32) is unrolled; stamps that are no number, or lie apart from those before and after
-/// them, are put where the instrument's counter says, or evenly between their good neighbours.
-/// Stamps that repeat or go back for good are kept. The rate is 1 / median step; where the
-/// stamps are rounded to more than 1 % of a step, 1 / mean of the steps within one rounding of the
-/// median. Stamps that are k / rate to the last bit are dropped: the base is uniform then.
+/// Stamps: the unit from the header, else by their size (stamp_unit.hpp). What ran over is unrolled
+/// and what is no time is mended (stamps.hpp); gaps and repeats are kept. The rate is 1 / median
+/// step; where the stamps are rounded to more than 1 % of a step, 1 / mean of the steps within one
+/// rounding of the median; where they come in bursts, that of the long run (stamp_steps.hpp).
+/// Stamps that are k / rate to the last bit are dropped: the base is uniform then.
+/// The same as RunningTimeBase with all rows at once, but that the rate is by all of them.
 [[nodiscard]] TimeBaseFound find_time_base(TimeEvidence evidence, const ReadOptions& options);
 
 }  // namespace proofmass::io

@@ -143,14 +143,17 @@ TEST(TimeBase, PutsAMendedStampWhereTheCounterSays) {
   EXPECT_TRUE(is_noted(*read, "set from PacketCounter")) << notes_of(*read);
 }
 
-TEST(TimeBase, KeepsGapsRepeatsAndAClockThatWasSetBack) {
+TEST(TimeBase, KeepsGapsAndRepeatsAndGoesOnWhereTheClockWasSetBack) {
   const auto read = read_text(table("t (s)", {"0", "1", "2", "9", "10", "10", "11", "4", "5", "6",
                                               "7", "8", "9", "10", "11", "12", "13", "14", "15"}));
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(read->time.mended, 0u);
+  EXPECT_EQ(read->time.mended_backwards, 1u);
   EXPECT_EQ(read->time.at(3), 9.0);
   EXPECT_EQ(read->time.at(5), 10.0);
-  EXPECT_EQ(read->time.at(7), 4.0);
+  EXPECT_EQ(read->time.at(7), 12.0);
+  EXPECT_EQ(read->time.at(18), 23.0);
+  EXPECT_TRUE(is_noted(*read, "fell back once for good (line 9; first from 11 to 4)"));
 }
 
 TEST(TimeBase, TakesTheGivenRateBeforeTheStamps) {

@@ -6,6 +6,7 @@
 
 #include "proofmass/io/mat_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
+#include "proofmass/io/ximu_specimens.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -47,8 +48,33 @@ TEST(BrokenOff, MatIsReadOrRefused) {
                        {specimen::mat5_header(), specimen::mat5_header(specimen::Order::big), ""});
 }
 
+TEST(BrokenOff, LvmIsReadOrRefused) {
+  break_off_everywhere("lvm", {"LabVIEW Measurement"});
+}
+
+TEST(BrokenOff, WavIsReadOrRefused) {
+  break_off_everywhere("wav", {"RIFFsizeWAVE", "RIFXsizeWAVE", "RF64sizeWAVE"});
+}
+
+TEST(BrokenOff, TdmsIsReadOrRefused) {
+  break_off_everywhere("tdms", {"TDSm"});
+}
+
 TEST(BrokenOff, CompressedIsReadOrRefused) {
-  break_off_everywhere("compressed", {"\x1F\x8B\x08", std::string("\xFD\x37zXZ\0", 6)});
+  break_off_everywhere("compressed",
+                       {"\x1F\x8B\x08", std::string("\xFD\x37zXZ\0", 6), "\x28\xB5\x2F\xFD"});
+}
+
+TEST(BrokenOff, McapIsReadOrRefused) {
+  break_off_everywhere("mcap", {"\x89MCAP0\r\n"});
+}
+
+TEST(BrokenOff, ZipIsReadOrRefused) {
+  break_off_everywhere("zip", {"PK\x03\x04"});
+}
+
+TEST(BrokenOff, XimuIsReadOrRefused) {
+  break_off_everywhere("ximu", {"", specimen::ximu_date_time(1)});
 }
 
 }  // namespace

@@ -17,17 +17,11 @@
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
-#include <vector>
+
+#include "proofmass/io/watched_frames.hpp"
 
 namespace proofmass::io {
 namespace {
-
-enum class FrameKind : std::uint32_t { data = 0x61746164, error = 0x6F727265, end = 0x20646E65 };
-
-struct FrameHeader {
-  FrameKind kind = FrameKind::end;
-  std::uint32_t bytes = 0;
-};
 
 // ---- the child's side ----
 
@@ -91,9 +85,7 @@ void shut_in(const ChildLimits& limits, int parent) {
   limit(RLIMIT_FSIZE, 0, 0);
 }
 
-[[noreturn]] void be_child(int out,
-                           const std::function<Status(const ByteSink&)>& work,
-                           const ChildLimits& limits) {
+[[noreturn]] void be_child(int out, const ChildWork& work, const ChildLimits& limits) {
   const ByteSink sink = [out](std::span<const char> bytes) {
     while (!bytes.empty()) {
       const auto piece = bytes.first(std::min(bytes.size(), most_frame_bytes));
@@ -119,45 +111,6 @@ void shut_in(const ChildLimits& limits, int parent) {
 
 // ---- the parent's side ----
 
-/// A pipe's reading end and the process behind it; both are gone with it.
-class Child {
- public:
-  Child(pid_t process, int pipe) : process_(process), pipe_(pipe) {}
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-  ~Child() { end(true); }
-
-  /// Waits for the process, ended by force or not; its status, where the system still has it.
-  int end(bool by_force) {
-    if (process_ <= 0) return status_;
-    if (by_force) ::kill(process_, SIGKILL);
-    ::close(pipe_);
-    while (::waitpid(process_, &status_, 0) < 0 && errno == EINTR) continue;
-    process_ = 0;
-    return status_;
-  }
-
-  Result<std::size_t> read(std::span<char> into, unsigned silence_s) const {
-    for (;;) {
-      struct pollfd waiting{pipe_, POLLIN, 0};
-      const int ready = ::poll(&waiting, 1, static_cast<int>(silence_s) * 1000);
-      if (ready < 0 && errno == EINTR) continue;
-      if (ready == 0)
-        return Error{Errc::corrupt, fmt::format("gives nothing within {} s: it is damaged, or its "
-                                                "disk does not answer",
-                                                silence_s)};
-      const ssize_t count = ::read(pipe_, into.data(), into.size());
-      if (count < 0 && errno == EINTR) continue;
-      return count < 0 ? 0 : static_cast<std::size_t>(count);
-    }
-  }
-
- private:
-  pid_t process_;
-  int pipe_;
-  int status_ = 0;
-};
-
 /// What became of a child that did not end its message.
 Error how_it_ended(int status, const ChildLimits& limits) {
   const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
@@ -170,55 +123,74 @@ Error how_it_ended(int status, const ChildLimits& limits) {
   return {Errc::corrupt, "is damaged: the library that unpacks it stopped"};
 }
 
-Error broken_off() {
-  return {Errc::corrupt, "is damaged: what was unpacked of it breaks off"};
-}
-
-/// Fills all of `into`.
-Status fill(const ByteFeed& feed, std::span<char> into) {
-  while (!into.empty()) {
-    const auto count = feed(into);
-    if (!count) return count.error();
-    if (*count == 0 || *count > into.size()) return broken_off();
-    into = into.subspan(*count);
-  }
-  return Done{};
-}
-
-Error told_error(std::span<const char> bytes) {
-  constexpr std::array codes{Errc::corrupt, Errc::unsupported, Errc::too_few_samples,
-                             Errc::unreadable, Errc::invalid_argument};
-  const auto code = std::ranges::find_if(
-      codes, [&](Errc known) { return !bytes.empty() && bytes[0] == static_cast<char>(known); });
-  std::string message;
-  for (const char c : bytes.empty() ? bytes : bytes.subspan(1))
-    message += static_cast<unsigned char>(c) < 32 || c == 127 ? ' ' : c;
-  if (message.empty()) message = "cannot be unpacked";
-  return {code == codes.end() ? Errc::corrupt : *code, std::move(message)};
-}
-
 }  // namespace
 
-Status take_message(const ByteFeed& feed, const ByteTaker& take) {
-  std::vector<char> bytes;
-  for (;;) {
-    std::array<char, sizeof(FrameHeader)> start;
-    if (const Status begun = fill(feed, start); !begun) return begun;
-    FrameHeader header;
-    std::memcpy(&header, start.data(), sizeof header);
-    if (header.bytes > most_frame_bytes) return broken_off();
-    bytes.resize(header.bytes);
-    if (const Status filled = fill(feed, bytes); !filled) return filled;
-    if (header.kind == FrameKind::end) return Done{};
-    if (header.kind == FrameKind::error) return told_error(bytes);
-    if (header.kind != FrameKind::data) return broken_off();
-    if (const Status taken = take(bytes); !taken) return taken;
+/// A pipe's reading end and the process behind it; both are gone with it.
+class WatchedChild::Process {
+ public:
+  Process(pid_t process, int pipe, const ChildLimits& limits)
+      : process_(process), pipe_(pipe), limits_(limits), message_([this](std::span<char> into) {
+          auto count = read(into);
+          broke_off_ = broke_off_ || (count && *count == 0);
+          return count;
+        }) {}
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  ~Process() { end(true); }
+
+  Result<std::span<const char>> next() {
+    if (process_ <= 0) return std::span<const char>{};
+    auto bytes = message_.next();
+    if (bytes && !bytes->empty()) return bytes;
+    const int status = end(!bytes && !broke_off_);
+    if (!bytes && broke_off_) return how_it_ended(status, limits_);
+    return bytes;
   }
+
+ private:
+  /// Waits for the process, ended by force or not; its status, where the system still has it.
+  int end(bool by_force) {
+    int status = 0;
+    if (process_ <= 0) return status;
+    if (by_force) ::kill(process_, SIGKILL);
+    ::close(pipe_);
+    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) continue;
+    process_ = 0;
+    return status;
+  }
+
+  Result<std::size_t> read(std::span<char> into) const {
+    for (;;) {
+      struct pollfd waiting{pipe_, POLLIN, 0};
+      const int ready = ::poll(&waiting, 1, static_cast<int>(limits_.silence_s) * 1000);
+      if (ready < 0 && errno == EINTR) continue;
+      if (ready == 0)
+        return Error{Errc::corrupt, fmt::format("gives nothing within {} s: it is damaged, or its "
+                                                "disk does not answer",
+                                                limits_.silence_s)};
+      const ssize_t count = ::read(pipe_, into.data(), into.size());
+      if (count < 0 && errno == EINTR) continue;
+      return count < 0 ? 0 : static_cast<std::size_t>(count);
+    }
+  }
+
+  pid_t process_;
+  int pipe_;
+  ChildLimits limits_;
+  MessageReader message_;
+  bool broke_off_ = false;
+};
+
+WatchedChild::WatchedChild(std::unique_ptr<Process> process) : process_(std::move(process)) {}
+WatchedChild::WatchedChild(WatchedChild&&) noexcept = default;
+WatchedChild& WatchedChild::operator=(WatchedChild&&) noexcept = default;
+WatchedChild::~WatchedChild() = default;
+
+Result<std::span<const char>> WatchedChild::next() {
+  return process_->next();
 }
 
-Status run_in_child(const std::function<Status(const ByteSink&)>& work,
-                    const ByteTaker& take,
-                    const ChildLimits& limits) {
+Result<WatchedChild> WatchedChild::start(const ChildWork& work, const ChildLimits& limits) {
   const auto failed = [](const char* what) {
     return Error{Errc::unreadable, fmt::format("cannot be unpacked: {}: {}", what,
                                                std::generic_category().message(errno))};
@@ -243,17 +215,19 @@ Status run_in_child(const std::function<Status(const ByteSink&)>& work,
     ::close(ends[0]);
     return error;
   }
-  Child child(process, ends[0]);
-  bool broke_off = false;
-  const ByteFeed feed = [&](std::span<char> into) {
-    auto count = child.read(into, limits.silence_s);
-    broke_off = broke_off || (count && *count == 0);
-    return count;
-  };
-  const Status taken = take_message(feed, take);
-  const int status = child.end(!taken && !broke_off);
-  if (!taken && broke_off) return how_it_ended(status, limits);
-  return taken;
+  return WatchedChild(std::make_unique<Process>(process, ends[0], limits));
+}
+
+Status run_in_child(const ChildWork& work, const ByteTaker& take, const ChildLimits& limits) {
+  auto started = WatchedChild::start(work, limits);
+  if (!started) return started.error();
+  WatchedChild child = std::move(started).value();
+  for (;;) {
+    const auto bytes = child.next();
+    if (!bytes) return bytes.error();
+    if (bytes->empty()) return Done{};
+    if (const Status taken = take(*bytes); !taken) return taken;
+  }
 }
 
 }  // namespace proofmass::io

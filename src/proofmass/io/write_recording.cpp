@@ -2,88 +2,84 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstdio>
-#include <filesystem>
-#include <memory>
-#include <system_error>
-#include <zlib.h>
+#include <string>
+#include <utility>
 
+#include "proofmass/io/output_file.hpp"
 #include "proofmass/io/recording_writers.hpp"
 
 namespace proofmass::io {
 namespace {
 
-using Write = bool (*)(const Recording&, const Sink&);
-
+using Opener = Result<std::unique_ptr<RecordingWriter>> (*)(std::unique_ptr<OutputFile>,
+                                                            const WriterHead&,
+                                                            const WriteOptions&);
 struct Extension {
   std::string_view ending;
-  Write write;
-  bool compressed;
+  Opener open;
+  bool is_compressed = false;
 };
 constexpr std::array extensions = std::to_array<Extension>({
-    {".csv", write_csv, false},
-    {".csv.gz", write_csv, true},
-    {".npy", write_npy, false},
+    {".csv", csv_writer},
+    {".csv.gz", csv_writer, true},
+    {".npy", npy_writer},
+    {".mat", mat_writer},
+    {".tdms", tdms_writer},
+    {".h5", hdf5_writer},
+    {".hdf5", hdf5_writer},
+    {".mcap", mcap_writer},
+    {".parquet", parquet_writer},
 });
 
-Error cannot_write(const std::string& path) {
-  return Error{Errc::unreadable,
-               path + ": cannot be written: " + std::generic_category().message(errno)};
+std::string all_endings() {
+  std::string all;
+  for (const Extension& extension : extensions)
+    all += (all.empty() ? "" : ", ") + std::string(extension.ending);
+  return all;
 }
 
-bool write_plain(const Recording& recording, Write write, const std::string& path) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr) return false;
-  const bool written = write(recording, [&](std::string_view bytes) {
-    return std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  });
-  return (std::fclose(file) == 0) && written;
-}
-
-bool write_gzip(const Recording& recording, Write write, const std::string& path) {
-  gzFile file = gzopen(path.c_str(), "wb6");
-  if (file == nullptr) return false;
-  const bool written = write(recording, [&](std::string_view bytes) {
-    return bytes.empty() || gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size())) > 0;
-  });
-  return (gzclose(file) == Z_OK) && written;
-}
-
-bool write_standard_output(const Recording& recording) {
-  const bool written = write_csv(recording, [](std::string_view bytes) {
-    return std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size();
-  });
-  return std::fflush(stdout) == 0 && written;
+const Extension* extension_of(std::string_view path) {
+  if (path == "-") return &extensions[0];
+  const auto* found = std::ranges::find_if(
+      extensions, [&](const Extension& e) { return path.ends_with(e.ending); });
+  return found == extensions.end() ? nullptr : found;
 }
 
 }  // namespace
 
-Status write_recording(const Recording& recording, const std::string& path) {
-  if (recording.channels.empty())
+Result<std::unique_ptr<RecordingWriter>> open_writer(const std::string& path,
+                                                     const WriterHead& head,
+                                                     const WriteOptions& options) {
+  if (head.recording.channels.empty())
     return Error{Errc::too_few_samples, path + ": there is no channel to write"};
-  if (path == "-")
-    return write_standard_output(recording) ? Status(Done{}) : cannot_write("standard output");
-  const auto extension = std::ranges::find_if(
-      extensions, [&](const Extension& e) { return path.ends_with(e.ending); });
-  if (extension == extensions.end())
+  const Extension* extension = extension_of(path);
+  if (extension == nullptr)
     return Error{Errc::unsupported,
-                 path + ": the extension names no format that is written: .csv, .csv.gz, .npy"};
-  const std::string part = path + ".part";
-  const bool written = extension->compressed ? write_gzip(recording, extension->write, part)
-                                             : write_plain(recording, extension->write, part);
-  if (!written) {
-    Error error = cannot_write(path);
-    std::remove(part.c_str());
-    return error;
-  }
-  std::error_code problem;
-  std::filesystem::rename(part, path, problem);
-  if (problem) {
-    std::remove(part.c_str());
-    return Error{Errc::unreadable, path + ": cannot be written: " + problem.message()};
-  }
-  return Done{};
+                 path + ": the extension names no format that is written: " + all_endings()};
+  auto file = create_file(path);
+  if (!file) return file.error();
+  std::unique_ptr<OutputFile> output = std::move(file).value();
+  if (extension->is_compressed) output = gzipped(std::move(output));
+  auto writer = extension->open(std::move(output), head, options);
+  if (!writer) return writer.error().at(path);
+  return writer;
+}
+
+Block whole_of(const Recording& recording) {
+  Block block;
+  for (const Channel& channel : recording.channels) block.channels.emplace_back(channel.values);
+  block.stamps_s = recording.time.stamps_s;
+  return block;
+}
+
+Status write_recording(const Recording& recording,
+                       const std::string& path,
+                       const WriteOptions& options) {
+  auto writer = open_writer(
+      path, {.recording = recording, .has_stamps = !recording.time.is_uniform()}, options);
+  if (!writer) return writer.error();
+  if (const Status written = (*writer)->write(whole_of(recording)); !written) return written;
+  return (*writer)->finish(recording);
 }
 
 }  // namespace proofmass::io

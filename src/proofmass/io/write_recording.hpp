@@ -1,9 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
+#include "proofmass/core/block.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
+#include "proofmass/io/recording_writer.hpp"
 
 namespace proofmass::io {
 
@@ -15,9 +18,25 @@ namespace proofmass::io {
 ///  - .npy: little-endian float64, C order, samples × (1 + channels): column 0 is the time in
 ///    seconds since the first sample (absent where the recording has no time base), the others the
 ///    channels in their order and unit. Names and units are not kept by this format.
-/// The file appears under its name only when it is complete.
-/// Errors: unsupported (another extension: names those there are), unreadable (cannot be written),
-/// too_few_samples (no channels).
-[[nodiscard]] Status write_recording(const Recording& recording, const std::string& path);
+///  - .mat: version 5, a vector of doubles a channel, with their names and units beside.
+///  - .tdms: version 2, interleaved, in segments that are each complete.
+///  - .h5, .hdf5: a dataset of doubles a channel, in chunks.
+///  - .mcap: blocks of samples as messages, chunks with checksums, an index.
+///  - .parquet: a column of doubles a channel, by DuckDB's library where it is there.
+/// docs/formats.md has the layout of each. The file appears under its name only when it is
+/// complete.
+/// Errors: unsupported (another extension: names those there are; a library that is not there),
+/// unreadable (cannot be written), too_few_samples (no channels).
+[[nodiscard]] Status write_recording(const Recording& recording,
+                                     const std::string& path,
+                                     const WriteOptions& options = {});
+
+/// The same for a recording that comes a piece at a time.
+[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> open_writer(const std::string& path,
+                                                                   const WriterHead& head,
+                                                                   const WriteOptions& options);
+
+/// All samples of a recording as one piece, which holds as long as the recording.
+[[nodiscard]] Block whole_of(const Recording& recording);
 
 }  // namespace proofmass::io

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "proofmass/io/figure_type.hpp"
+
+namespace proofmass::io {
+
+/// Figures that lie `stride` bytes apart, the first at `bytes`, as the nearest doubles: out.size()
+/// of them. Of any kind but 0; whole numbers of three bytes are read too.
+void load_figures(const char* bytes,
+                  std::size_t stride,
+                  const FigureType& type,
+                  std::span<double> out);
+
+}  // namespace proofmass::io

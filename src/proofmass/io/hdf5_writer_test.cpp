@@ -1,0 +1,188 @@
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+
+#include "proofmass/io/hdf5_library.hpp"
+#include "proofmass/io/recording_writers.hpp"
+#include "proofmass/io/test_support.hpp"
+
+namespace proofmass::io {
+namespace {
+
+class Hdf5Written : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_hdf5_library()) GTEST_SKIP() << "built without the HDF5 library";
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() / ("proofmass_" + std::string(test->name()));
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directory(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string path() const { return folder_ / "a.h5"; }
+
+  /// Writes a recording in blocks of so many samples.
+  [[nodiscard]] Status write(const Recording& recording,
+                             std::size_t rows,
+                             const WriteOptions& options = {}) const {
+    auto file = create_file(path());
+    if (!file) return file.error();
+    const bool has_stamps = !recording.time.is_uniform();
+    auto opened = hdf5_writer(std::move(file).value(), {recording, has_stamps}, options);
+    if (!opened) return opened.error();
+    const auto writer = std::move(opened).value();
+    for (std::size_t k = 0; k < recording.samples(); k += rows) {
+      Block block{.first = k};
+      const std::size_t count = std::min(rows, recording.samples() - k);
+      for (const Channel& channel : recording.channels)
+        block.channels.push_back(View<double>(channel.values).subspan(k, count));
+      if (has_stamps) block.stamps_s = View<double>(recording.time.stamps_s).subspan(k, count);
+      if (const Status written = writer->write(block); !written) return written;
+    }
+    return writer->finish(recording);
+  }
+
+  [[nodiscard]] Result<Recording> through(const Recording& recording, std::size_t rows) const {
+    if (const Status written = write(recording, rows); !written) return written.error();
+    return read_recording(path(), {});
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// Random doubles of every size with some of every kind of trouble, on a clock with jitter.
+Recording troubled(std::size_t samples) {
+  std::mt19937_64 random(11);
+  Recording recording;
+  recording.time = {TimeSource::stamps, "time", 100.0, {}, 1'705'479'286'000'000'123};
+  for (const char* name : {"z", "a/b", "odd, name", "a_b", "x (g)", "."})
+    recording.channels.push_back({name, *parse_unit("m/s^2"), {}});
+  recording.channels[1].unit = *parse_unit("deg/s");
+  recording.channels[3].unit = *parse_unit("degC");
+  std::uniform_real_distribution<double> jitter(0.0, 0.004);
+  for (std::size_t k = 0; k < samples; ++k) {
+    recording.time.stamps_s.push_back(k == 0 ? 0.0
+                                             : 0.01 * static_cast<double>(k) + jitter(random));
+    for (Channel& channel : recording.channels)
+      channel.values.push_back(std::bit_cast<double>(random()));
+  }
+  auto& values = recording.channels[0].values;
+  values[1] = std::numeric_limits<double>::quiet_NaN();
+  values[2] = -std::numeric_limits<double>::infinity();
+  values[3] = 5e-324;
+  values[4] = -0.0;
+  return recording;
+}
+
+void expect_same(const Recording& a, const Recording& b) {
+  ASSERT_EQ(a.channels.size(), b.channels.size());
+  ASSERT_EQ(a.samples(), b.samples());
+  for (std::size_t c = 0; c < a.channels.size(); ++c) {
+    EXPECT_EQ(a.channels[c].name, b.channels[c].name);
+    EXPECT_EQ(a.channels[c].unit, b.channels[c].unit) << a.channels[c].name;
+    for (std::size_t k = 0; k < a.samples(); ++k)
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(a.channels[c].values[k]),
+                std::bit_cast<std::uint64_t>(b.channels[c].values[k]))
+          << a.channels[c].name << ' ' << k;
+  }
+  for (std::size_t k = 0; k < a.samples(); ++k) ASSERT_EQ(a.time.at(k), b.time.at(k)) << k;
+  EXPECT_EQ(a.time.start_ns, b.time.start_ns);
+}
+
+TEST_F(Hdf5Written, ComesBackToTheLastBitHoweverItWasCut) {
+  const Recording recording = troubled(3000);
+  for (const std::size_t rows : {std::size_t{1}, std::size_t{700}, std::size_t{3000}}) {
+    const auto back = through(recording, rows);
+    ASSERT_TRUE(back) << back.error().message;
+    expect_same(recording, *back);
+    EXPECT_EQ(back->time.channel, "time");
+  }
+}
+
+TEST_F(Hdf5Written, KeepsAnEvenTimeBaseAsARate) {
+  for (const auto start_ns : {std::optional<std::int64_t>{}, std::optional<std::int64_t>{-5}}) {
+    Recording recording = troubled(100);
+    recording.time = {TimeSource::given_rate, "", 100.0 / 3.0, {}, start_ns};
+    const auto back = through(recording, 64);
+    ASSERT_TRUE(back) << back.error().message;
+    expect_same(recording, *back);
+    EXPECT_TRUE(back->time.is_uniform());
+    EXPECT_EQ(back->time.rate_hz, 100.0 / 3.0);
+  }
+}
+
+TEST_F(Hdf5Written, NeedsNoTimeBase) {
+  Recording recording = troubled(100);
+  recording.time = {};
+  const auto back = through(recording, 64);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->time.source, TimeSource::none);
+  expect_same(recording, *back);
+}
+
+TEST_F(Hdf5Written, KeepsLabels) {
+  Recording recording = troubled(100);
+  recording.labels = {{"x, up", 0, 7}, {"übrig", 8, 8}, {"x, up", 90, 99}};
+  recording.label_channel = "part";
+  const auto back = through(recording, 64);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->labels, recording.labels);
+  EXPECT_EQ(back->label_channel, "part");
+}
+
+TEST_F(Hdf5Written, HasRoomForTextsOfAnyLength) {
+  WriteOptions options;
+  options.metadata = {{"command", "proofmass convert"}, {"long", std::string(100'000, 'x')}};
+  options.sensor_file = std::string(100'000, '#');
+  const Recording recording = troubled(100);
+  const Status written = write(recording, 64, options);
+  ASSERT_TRUE(written) << written.error().message;
+  const auto back = read_recording(path(), {});
+  ASSERT_TRUE(back) << back.error().message;
+  expect_same(recording, *back);
+  EXPECT_TRUE(is_noted(*back, "command: proofmass convert")) << notes_of(*back);
+  EXPECT_TRUE(is_noted(*back, "long (text), sensor_file (text)")) << notes_of(*back);
+}
+
+TEST_F(Hdf5Written, HasRoomForManyChannels) {
+  Recording recording = troubled(5);
+  const Channel first = recording.channels[0];
+  recording.channels.assign(500, first);
+  for (std::size_t c = 0; c < 500; ++c) recording.channels[c].name = "ch " + std::to_string(c);
+  const auto back = through(recording, 2);
+  ASSERT_TRUE(back) << back.error().message;
+  expect_same(recording, *back);
+}
+
+TEST_F(Hdf5Written, LeavesNothingBehindWhereItIsNotFinished) {
+  const Recording recording = troubled(100);
+  {
+    auto file = create_file(path());
+    ASSERT_TRUE(file);
+    auto writer = hdf5_writer(std::move(file).value(), {recording, true}, {});
+    ASSERT_TRUE(writer) << writer.error().message;
+    EXPECT_TRUE(std::filesystem::exists(path() + ".part"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path() + ".part"));
+  EXPECT_FALSE(std::filesystem::exists(path()));
+}
+
+TEST_F(Hdf5Written, SaysWhenThereIsNoRoom) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  std::filesystem::create_symlink("/dev/full", path() + ".part");
+  auto file = create_file(path());
+  ASSERT_TRUE(file);
+  const Recording recording = troubled(100);
+  const auto writer = hdf5_writer(std::move(file).value(), {recording, true}, {});
+  if (writer) GTEST_SKIP() << "the library writes to it";
+  EXPECT_EQ(writer.error().code, Errc::unreadable);
+  EXPECT_EQ(writer.error().message.find('\n'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace proofmass::io

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+
+#include "proofmass/core/view.hpp"
+
+namespace proofmass::io {
+
+/// Appends the lowest `count` bytes of a number, the lowest first.
+inline void append_little_endian(std::string& out, std::uint64_t value, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) out += static_cast<char>(value >> (8 * i) & 0xFF);
+}
+
+/// Appends figures as they lie in a little-endian file.
+inline void append_doubles(std::string& out, View<double> values) {
+  if constexpr (std::endian::native == std::endian::little) {
+    if (!values.empty())
+      out.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+  } else {
+    for (const double value : values)
+      append_little_endian(out, std::bit_cast<std::uint64_t>(value), 8);
+  }
+}
+
+/// Figures of a little-endian file, which may begin at any byte.
+inline void load_doubles(const char* bytes, std::span<double> into) {
+  if (into.empty()) return;
+  std::memcpy(into.data(), bytes, into.size_bytes());
+  if constexpr (std::endian::native == std::endian::big) {
+    for (double& value : into)
+      value = std::bit_cast<double>(__builtin_bswap64(std::bit_cast<std::uint64_t>(value)));
+  }
+}
+
+}  // namespace proofmass::io

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proofmass/io/mcap_records.hpp"
+
+namespace proofmass::io {
+
+/// When a chunk is closed: as soon as it is as large or its messages span as much time.
+struct McapChunking {
+  std::size_t bytes = std::size_t{1} << 20;
+  std::uint64_t span_ns = ~std::uint64_t{0};
+};
+
+/// Puts an MCAP file together in memory, from front to end; whoever uses it takes the bytes away
+/// and writes them. Chunks are not compressed, so that a file that is cut off anywhere opens up to
+/// its last whole chunk; each has its checksum and message indexes, the end a summary with schemas,
+/// channels, chunk, attachment and metadata indexes and statistics.
+class McapBuilder {
+ public:
+  explicit McapBuilder(const std::string& library, McapChunking chunking = {});
+
+  /// Both stand in front of the first message that needs them. Numbers count from 1.
+  [[nodiscard]] std::uint16_t add_schema(McapSchema schema);
+  [[nodiscard]] std::uint16_t add_channel(McapChannel channel);
+  /// Messages of a channel are numbered from 0.
+  void add_message(std::uint16_t channel, std::uint64_t log_ns, std::string_view data);
+  /// Both close the chunk before them.
+  void add_metadata(const McapMetadata& metadata);
+  void add_attachment(const std::string& name,
+                      const std::string& media_type,
+                      std::uint64_t log_ns,
+                      std::string_view data);
+  /// What was added so far can be taken and outlives a crash.
+  void close_chunk();
+  /// The end of the data and the summary. Nothing can be added afterwards.
+  void finish();
+
+  /// Bytes that follow those taken before.
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+  void drop_bytes();
+
+ private:
+  struct Entry {
+    std::uint64_t log_ns;
+    std::uint64_t offset;
+  };
+  void record(std::string& out, McapOp op, std::string_view content);
+  void put_definitions();
+  [[nodiscard]] std::uint64_t position() const { return taken_ + bytes_.size(); }
+  void write_chunk();
+  void write_indexes(std::string& index);
+  void write_summary();
+  void summary_group(McapOp op, std::string_view records, std::string& offsets);
+  [[nodiscard]] std::string statistics() const;
+
+  McapChunking chunking_;
+  std::string bytes_;
+  std::uint64_t taken_ = 0;     ///< bytes that were dropped
+  std::uint32_t data_crc_ = 0;  ///< of those
+  std::vector<McapSchema> schemas_;
+  std::vector<McapChannel> channels_;
+  std::size_t schemas_put_ = 0;
+  std::size_t channels_put_ = 0;
+  std::vector<std::uint32_t> sequences_;  ///< messages of each channel
+
+  std::string chunk_;
+  std::map<std::uint16_t, std::vector<Entry>> chunk_entries_;
+  std::uint64_t chunk_start_ns_ = 0;
+  std::uint64_t chunk_end_ns_ = 0;
+
+  std::string chunk_indexes_;
+  std::string attachment_indexes_;
+  std::string metadata_indexes_;
+  std::uint32_t chunks_ = 0;
+  std::uint32_t attachments_ = 0;
+  std::uint32_t metadata_ = 0;
+  std::uint64_t start_ns_ = 0;
+  std::uint64_t end_ns_ = 0;
+  std::uint64_t messages_ = 0;
+};
+
+}  // namespace proofmass::io

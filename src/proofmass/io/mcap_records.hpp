@@ -1,0 +1,133 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace proofmass::io {
+
+/// What the records of an MCAP file are. Source: MCAP format specification, "Records".
+enum class McapOp : unsigned char {
+  header = 0x01,
+  footer = 0x02,
+  schema = 0x03,
+  channel = 0x04,
+  message = 0x05,
+  chunk = 0x06,
+  message_index = 0x07,
+  chunk_index = 0x08,
+  attachment = 0x09,
+  attachment_index = 0x0A,
+  statistics = 0x0B,
+  metadata = 0x0C,
+  metadata_index = 0x0D,
+  summary_offset = 0x0E,
+  data_end = 0x0F,
+};
+
+inline constexpr std::string_view mcap_magic{"\x89MCAP0\r\n", 8};
+inline constexpr std::size_t mcap_record_head = 9;    ///< bytes: what it is, and its length
+inline constexpr std::size_t mcap_footer_bytes = 20;  ///< less its head
+
+using McapMap = std::map<std::string, std::string>;
+
+struct McapSchema {
+  std::uint16_t id = 0;
+  std::string name;
+  std::string encoding;
+  std::string data;
+};
+
+struct McapChannel {
+  std::uint16_t id = 0;
+  std::uint16_t schema = 0;  ///< 0: none
+  std::string topic;
+  std::string encoding;
+  McapMap metadata;
+};
+
+struct McapMessage {
+  std::uint16_t channel = 0;
+  std::uint32_t sequence = 0;
+  std::uint64_t log_ns = 0;
+  std::uint64_t publish_ns = 0;
+  std::string_view data;
+};
+
+/// A chunk's record up to where its bytes begin.
+struct McapChunkHead {
+  std::uint64_t start_ns = 0;
+  std::uint64_t end_ns = 0;
+  std::uint64_t unpacked_bytes = 0;
+  std::uint32_t crc = 0;  ///< of the unpacked bytes; 0: none
+  std::string compression;
+  std::uint64_t packed_bytes = 0;
+  std::size_t head_bytes = 0;  ///< of the record's content before the packed bytes
+};
+
+struct McapMetadata {
+  std::string name;
+  McapMap values;
+};
+
+/// An attachment's record up to where its bytes begin.
+struct McapAttachmentHead {
+  std::string name;
+  std::string media_type;
+  std::uint64_t bytes = 0;
+  std::size_t head_bytes = 0;  ///< of the record's content before the attachment's
+};
+
+struct McapFooter {
+  std::uint64_t summary_start = 0;  ///< 0: none
+  std::uint64_t summary_offset_start = 0;
+  std::uint32_t summary_crc = 0;  ///< 0: none
+};
+
+struct McapStatistics {
+  std::uint64_t messages = 0;
+  std::map<std::uint16_t, std::uint64_t> of_channels;  ///< messages
+};
+
+/// Reads numbers and texts, little-endian, from the front of bytes that may be too few: after the
+/// first that is not there everything is zero or empty, and is_whole() false.
+class McapFields {
+ public:
+  explicit McapFields(std::string_view bytes) : bytes_(bytes) {}
+
+  std::uint8_t u8() { return static_cast<std::uint8_t>(number(1)); }
+  std::uint16_t u16() { return static_cast<std::uint16_t>(number(2)); }
+  std::uint32_t u32() { return static_cast<std::uint32_t>(number(4)); }
+  std::uint64_t u64() { return number(8); }
+  std::string_view text() { return take(u32()); }  ///< its length before it
+  std::string_view take(std::uint64_t count);
+  McapMap map();
+  [[nodiscard]] bool is_whole() const { return is_whole_; }
+  [[nodiscard]] std::size_t left() const { return bytes_.size(); }
+
+ private:
+  std::uint64_t number(std::size_t count);
+
+  std::string_view bytes_;
+  bool is_whole_ = true;
+};
+
+/// What is in the content of a record; nullopt where it breaks off. Bytes behind the last field are
+/// passed over, as later versions may add some.
+[[nodiscard]] std::optional<McapSchema> mcap_schema(std::string_view content);
+[[nodiscard]] std::optional<McapChannel> mcap_channel(std::string_view content);
+[[nodiscard]] std::optional<McapMessage> mcap_message(std::string_view content);
+[[nodiscard]] std::optional<McapChunkHead> mcap_chunk_head(std::string_view content);
+[[nodiscard]] std::optional<McapMetadata> mcap_metadata(std::string_view content);
+[[nodiscard]] std::optional<McapAttachmentHead> mcap_attachment_head(std::string_view content);
+[[nodiscard]] std::optional<McapFooter> mcap_footer(std::string_view content);
+[[nodiscard]] std::optional<McapStatistics> mcap_statistics(std::string_view content);
+
+/// "a chunk", "a message"; "a record of kind 0x85" for what is not known.
+[[nodiscard]] std::string mcap_record_name(McapOp op);
+
+}  // namespace proofmass::io

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/result.hpp"
+#include "proofmass/core/view.hpp"
+
+namespace proofmass::io {
+
+/// Our own encoding of messages: blocks of samples, little-endian.
+///   byte 0  u8   version, 1
+///        1  u8   flags; bit 0: stamps are there
+///        2  u16  columns
+///        4  u32  rows
+///        8  u64  number of the first row, from 0 at the recording's first sample
+///       16  f64  stamps, as many as rows: seconds since the recording's first sample
+///           f64  column after column, as many figures each as there are rows
+inline constexpr std::string_view mcap_samples_encoding = "proofmass-samples";
+inline constexpr std::size_t mcap_samples_head = 16;
+
+/// What the schema and the channel say of these blocks.
+struct McapSamplesLayout {
+  struct Column {
+    std::string name;
+    std::string unit;  ///< symbol; may be empty
+  };
+  std::vector<Column> columns;
+  bool has_stamps = false;
+  std::optional<double> rate_hz;         ///< without stamps
+  std::optional<std::int64_t> start_ns;  ///< time of the first sample
+};
+
+struct McapSamplesHead {
+  bool has_stamps = false;
+  std::uint16_t columns = 0;
+  std::uint32_t rows = 0;
+  std::uint64_t first = 0;
+};
+
+/// Reads a block's head and holds it against the bytes there are.
+/// Errors: corrupt (of another length than it says), unsupported (another version).
+[[nodiscard]] Result<McapSamplesHead> read_samples_head(std::string_view message);
+/// Puts a block into bytes, in place of what they are.
+void write_samples(std::uint64_t first,
+                   View<double> stamps_s,
+                   std::span<const View<double>> columns,
+                   std::string& message);
+
+/// The JSON schema: `columns` lists name and unit of each.
+[[nodiscard]] std::string samples_schema(const McapSamplesLayout& layout);
+/// Metadata of the channel: "stamps", "rate_hz", "start_ns".
+[[nodiscard]] std::map<std::string, std::string> samples_metadata(const McapSamplesLayout& layout);
+/// Errors: corrupt (not such a schema).
+[[nodiscard]] Result<McapSamplesLayout> read_samples_layout(
+    std::string_view schema, const std::map<std::string, std::string>& metadata);
+
+}  // namespace proofmass::io

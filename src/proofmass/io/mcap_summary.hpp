@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/result.hpp"
+#include "proofmass/io/file_window.hpp"
+
+namespace proofmass::io {
+
+/// What the end of an MCAP file says of its data.
+struct McapSummary {
+  std::map<std::uint16_t, std::uint64_t> messages;  ///< of each channel
+  std::vector<std::uint64_t> chunk_starts;          ///< ascending
+  bool has_data_checksum = false;
+};
+
+/// Reads the summary that the footer points to; nullopt where there is none, or none that counts
+/// the messages of each channel, or it is damaged, which a note then says.
+/// Errors: unreadable.
+[[nodiscard]] Result<std::optional<McapSummary>> read_mcap_summary(FileWindow& window,
+                                                                   std::vector<Note>& notes);
+
+}  // namespace proofmass::io

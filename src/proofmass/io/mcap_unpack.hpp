@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/io/mcap_records.hpp"
+
+namespace proofmass::io {
+
+/// Chunks that unpack to more are not read.
+inline constexpr std::uint64_t mcap_most_unpacked = std::uint64_t{1} << 30;
+
+/// Unpacks the records of chunks into memory that it keeps from one to the next.
+class McapUnpacker {
+ public:
+  McapUnpacker();
+  McapUnpacker(const McapUnpacker&) = delete;
+  McapUnpacker& operator=(const McapUnpacker&) = delete;
+  ~McapUnpacker();
+
+  /// The records as they were before compression (none, lz4, zstd), their checksum compared. What
+  /// is not compressed comes back as it is, else it is valid until the next call.
+  /// Errors: unsupported (another compression), corrupt (damaged; more or less than the head says,
+  /// the checksum differs). Nothing is reserved that so few bytes cannot unpack to.
+  [[nodiscard]] Result<std::string_view> unpack(const McapChunkHead& head, std::string_view packed);
+
+ private:
+  struct Contexts;
+
+  [[nodiscard]] Result<std::string_view> unzstd(std::size_t unpacked, std::string_view packed);
+  [[nodiscard]] Result<std::string_view> unlz4(std::size_t unpacked, std::string_view packed);
+  char* room_for(std::size_t bytes);
+
+  std::unique_ptr<Contexts> contexts_;
+  std::unique_ptr<char[]> room_;
+  std::size_t room_bytes_ = 0;
+};
+
+}  // namespace proofmass::io

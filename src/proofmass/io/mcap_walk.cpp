@@ -1,0 +1,221 @@
+#include "proofmass/io/mcap_walk.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "proofmass/io/crc32.hpp"
+
+namespace proofmass::io {
+namespace {
+
+constexpr std::size_t most_notes = 6;
+
+bool is_wanted(McapOp op) {
+  return op == McapOp::header || op == McapOp::schema || op == McapOp::channel ||
+         op == McapOp::message || op == McapOp::attachment || op == McapOp::metadata;
+}
+
+/// The most of a record's content that is held in memory.
+std::uint64_t most_held(McapOp op) {
+  constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20;
+  if (op == McapOp::chunk || op == McapOp::message) return mcap_most_unpacked + mebibyte;
+  return 16 * mebibyte;
+}
+
+/// "1700000000.125 s"
+std::string seconds(std::uint64_t ns) {
+  return fmt::format("{}.{:03} s", ns / 1'000'000'000, ns / 1'000'000 % 1000);
+}
+
+}  // namespace
+
+McapWalk::McapWalk(std::shared_ptr<const RandomBytes> bytes, McapWalkHints hints)
+    : window_(std::move(bytes)), hints_(std::move(hints)) {}
+
+Result<bool> McapWalk::next(McapRecord& record) {
+  for (;;) {
+    if (!in_chunk_.empty()) {
+      if (next_in_chunk(record)) return true;
+      continue;
+    }
+    if (const Status passed = pass(position_); !passed) return passed.error();
+    if (ended_) return false;
+    const auto found = step(record);
+    if (!found) return found.error();
+    if (*found) return true;
+  }
+}
+
+bool McapWalk::next_in_chunk(McapRecord& record) {
+  McapFields fields(in_chunk_);
+  const auto op = static_cast<McapOp>(fields.u8());
+  const std::uint64_t length = fields.u64();
+  const std::string_view content = fields.take(length);
+  if (!fields.is_whole()) {
+    note(Severity::bad, fmt::format("the chunk at byte {} breaks off within {}: the records before "
+                                    "it are kept",
+                                    chunk_at_, mcap_record_name(op)));
+    in_chunk_ = {};
+    return false;
+  }
+  in_chunk_ = in_chunk_.substr(in_chunk_.size() - fields.left());
+  record = {op, content, chunk_at_};
+  return op == McapOp::schema || op == McapOp::channel || op == McapOp::message;
+}
+
+/// One record of the file; false where it is none of those wanted.
+Result<bool> McapWalk::step(McapRecord& record) {
+  const auto head = window_.view(position_, mcap_record_head);
+  if (!head) return head.error();
+  if (head->empty()) {
+    note(Severity::bad,
+         fmt::format("ends at byte {} without its closing records, as it was cut off or never "
+                     "closed: what was written before is kept",
+                     position_));
+    ended_ = true;
+    return false;
+  }
+  McapFields fields(*head);
+  record = {static_cast<McapOp>(fields.u8()), {}, position_};
+  const std::uint64_t length = fields.u64();
+  if (!fields.is_whole()) {
+    break_off("within the head of a record");
+    return false;
+  }
+  if (record.op == McapOp{0}) {
+    break_off("where a record should begin there is a zero");
+    return false;
+  }
+  const std::uint64_t left = window_.size() - position_ - mcap_record_head;
+  if (length > left) {
+    break_off(fmt::format("within {}, of whose {} bytes {} are there", mcap_record_name(record.op),
+                          length, left));
+    return false;
+  }
+  return enter(length, record);
+}
+
+Result<bool> McapWalk::enter(std::uint64_t length, McapRecord& record) {
+  const std::uint64_t content_at = position_ + mcap_record_head;
+  if (record.op == McapOp::footer || record.op == McapOp::data_end) {
+    const auto content = window_.view(content_at, std::min<std::uint64_t>(length, 4));
+    if (!content) return content.error();
+    const std::string found(*content);
+    if (record.op == McapOp::data_end)
+      if (const Status closed = close(found); !closed) return closed.error();
+    ended_ = true;
+    return false;
+  }
+  if (record.op == McapOp::chunk) {
+    if (const Status entered = enter_chunk(length); !entered) return entered.error();
+    position_ = content_at + length;
+    return false;
+  }
+  position_ = content_at + length;
+  if (!is_wanted(record.op)) return false;
+  if (length > most_held(record.op) && record.op != McapOp::attachment) {
+    note(Severity::bad, fmt::format("byte {}: {} of {} bytes is more than is read: passed over",
+                                    record.offset, mcap_record_name(record.op), length));
+    return false;
+  }
+  const auto content = window_.view(content_at, std::min(length, most_held(record.op)));
+  if (!content) return content.error();
+  record.content = *content;
+  return true;
+}
+
+Status McapWalk::enter_chunk(std::uint64_t length) {
+  chunk_at_ = position_;
+  constexpr std::uint64_t most_head_bytes = 4096;
+  const std::uint64_t content_at = position_ + mcap_record_head;
+  const auto start = window_.view(content_at, std::min(length, most_head_bytes));
+  if (!start) return start.error();
+  const auto head = mcap_chunk_head(*start);
+  if (!head || head->packed_bytes > length - head->head_bytes) {
+    lose_chunk({}, "its head is damaged");
+    return Done{};
+  }
+  if (head->packed_bytes > mcap_most_unpacked || head->unpacked_bytes > mcap_most_unpacked) {
+    lose_chunk(*head, "it is larger than 1 GiB");
+    return Done{};
+  }
+  // The record as a whole, so that the checksum of the data section finds it in the window.
+  const std::uint64_t before = mcap_record_head + head->head_bytes;
+  const auto whole = window_.view(position_, before + head->packed_bytes);
+  if (!whole) return whole.error();
+  const auto unpacked = unpacker_.unpack(*head, whole->substr(std::min(before, whole->size())));
+  if (unpacked)
+    in_chunk_ = *unpacked;
+  else
+    lose_chunk(*head, unpacked.error().message);
+  return Done{};
+}
+
+/// Carries the checksum of the data section on; the bytes are in the window still.
+Status McapWalk::pass(std::uint64_t end) {
+  constexpr std::uint64_t piece = std::uint64_t{1} << 20;
+  while (hints_.check_data && passed_ < end) {
+    const auto bytes = window_.view(passed_, std::min(end - passed_, piece));
+    if (!bytes) return bytes.error();
+    if (bytes->empty()) break;
+    data_crc_ = crc32(data_crc_, *bytes);
+    passed_ += bytes->size();
+  }
+  return Done{};
+}
+
+Status McapWalk::close(std::string_view data_end) {
+  const std::uint32_t expected = McapFields(data_end).u32();
+  if (!hints_.check_data || expected == 0 || lost_chunks_ > 0) return Done{};
+  if (const Status passed = pass(position_); !passed) return passed.error();
+  if (data_crc_ != expected)
+    note(Severity::bad,
+         "the checksum of the data section is wrong: some byte is damaged that no checksum of a "
+         "chunk stands for");
+  return Done{};
+}
+
+void McapWalk::break_off(const std::string& why) {
+  const auto next = std::ranges::upper_bound(hints_.chunk_starts, position_);
+  hints_.check_data = false;
+  if (next == hints_.chunk_starts.end() || *next >= window_.size()) {
+    note(Severity::bad,
+         fmt::format("breaks off at byte {}, {}: what was read before is kept", position_, why));
+    ended_ = true;
+    return;
+  }
+  note(
+      Severity::bad,
+      fmt::format("is damaged at byte {}, {}: passed over up to byte {}, where the summary has the "
+                  "next chunk",
+                  position_, why, *next));
+  lost_bytes_ += *next - position_;
+  position_ = *next;
+}
+
+void McapWalk::lose_chunk(const McapChunkHead& head, const std::string& why) {
+  ++lost_chunks_;
+  constexpr std::uint64_t usual_ratio = 64;
+  lost_bytes_ += std::min(head.unpacked_bytes, usual_ratio * head.packed_bytes);
+  note(Severity::bad,
+       fmt::format("the chunk at byte {} ({} … {} on the clock of the file) is passed over: {}",
+                   chunk_at_, seconds(head.start_ns), seconds(head.end_ns), why));
+}
+
+void McapWalk::note(Severity severity, std::string text) {
+  if (notes_.size() < most_notes) notes_.push_back({severity, std::move(text)});
+}
+
+std::vector<Note> McapWalk::notes() const {
+  std::vector<Note> notes = notes_;
+  if (lost_chunks_ > 1)
+    notes.push_back({Severity::bad, fmt::format("{} chunks are passed over in all", lost_chunks_)});
+  return notes;
+}
+
+double McapWalk::fraction_read() const {
+  return static_cast<double>(std::min(position_, window_.size())) /
+         static_cast<double>(std::max<std::uint64_t>(window_.size(), 1));
+}
+
+}  // namespace proofmass::io

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/io/table_reader.hpp"
+
+namespace proofmass::io {
+
+/// The time column of messages that bring a stamp of the device, and one of the host that logged
+/// them: the device's, where it has one.
+class MessageClock {
+ public:
+  /// `stamp_ns` is the first message's; none: the host's clock is the time.
+  MessageClock(std::optional<std::int64_t> stamp_ns, std::uint64_t log_ns, std::string stamp_name);
+
+  [[nodiscard]] bool has_stamps() const { return has_stamps_; }
+  /// For column 0 of the table, in nanoseconds less the first message's.
+  [[nodiscard]] DeclaredStamps declared() const;
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// A message's figure in that column; NaN where it has none.
+  [[nodiscard]] double take(std::optional<std::int64_t> stamp_ns, std::uint64_t log_ns);
+  /// How the host's clock went against the device's; where messages were logged out of order.
+  [[nodiscard]] std::vector<Note> notes() const;
+
+ private:
+  void compare(double device_s, double host_less_device_s);
+
+  bool has_stamps_;
+  std::string name_;
+  std::int64_t origin_ns_ = 0;
+  double first_offset_s_ = 0.0;  ///< host's clock less the device's, at the first message
+  std::uint64_t last_log_ns_ = 0;
+  std::size_t backwards_ = 0;
+  // Running least squares of the difference over the device's time.
+  double count_ = 0.0;
+  double mean_t_ = 0.0;
+  double mean_d_ = 0.0;
+  double sum_tt_ = 0.0;
+  double sum_td_ = 0.0;
+  double sum_dd_ = 0.0;
+};
+
+/// Seconds and nanoseconds as nanoseconds; nullopt beyond 1970 ± 285 years.
+[[nodiscard]] std::optional<std::int64_t> stamp_ns(std::int64_t seconds, std::int64_t nanoseconds);
+
+}  // namespace proofmass::io

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/io/archive.hpp"
+#include "proofmass/io/byte_source.hpp"
+#include "proofmass/io/read_recording.hpp"
+#include "proofmass/io/table_file.hpp"
+
+namespace proofmass::io {
+
+/// Whether the first bytes are those of a zip archive whose first file is a NumPy array, or of any
+/// zip archive called .npz.
+[[nodiscard]] bool claims_npz(std::string_view head, std::string_view file_name);
+
+/// Whether there is a NumPy array among the files of an archive.
+[[nodiscard]] bool holds_npy(const Archive& archive);
+
+/// Opens an archive of NumPy arrays, which are chosen as the variables of a MAT file are: the
+/// largest table with the vectors of its length beside it, or those that ReadOptions::variables
+/// names; a single number called "fs" is the rate. The fields of a structured array are
+/// "name.field". Errors: corrupt, unreadable, unsupported, too_few_samples (no table),
+/// invalid_argument.
+[[nodiscard]] Result<std::unique_ptr<TableFile>> open_npz(std::unique_ptr<Archive> archive,
+                                                          const ReadOptions& options);
+
+/// The same from the bytes of the zip archive.
+[[nodiscard]] Result<std::unique_ptr<TableFile>> open_npz(std::unique_ptr<PeekSource> source,
+                                                          const ReadOptions& options);
+
+}  // namespace proofmass::io

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "proofmass/core/result.hpp"
+
+namespace proofmass::io {
+
+/// A file on its way: "<path>.part" until keep() gives it its name; without that it goes again.
+/// Path "-" is standard output, where nothing can be written over.
+class OutputFile {
+ public:
+  OutputFile() = default;
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  virtual ~OutputFile() = default;
+
+  /// Errors of all: unreadable, "<path>: cannot be written: No space left on device".
+  [[nodiscard]] virtual Status append(std::string_view bytes) = 0;
+  /// Writes over what was written before; it ends within it.
+  [[nodiscard]] virtual Status overwrite(std::uint64_t offset, std::string_view bytes) = 0;
+  [[nodiscard]] virtual std::uint64_t size() const = 0;  ///< bytes appended
+  /// "<path>.part", for libraries that write files themselves.
+  [[nodiscard]] virtual const std::string& part_path() const = 0;
+  [[nodiscard]] virtual Status keep() = 0;
+};
+
+[[nodiscard]] Result<std::unique_ptr<OutputFile>> create_file(const std::string& path);
+
+/// The same file, compressed by gzip on its way; nothing can be written over in it.
+[[nodiscard]] std::unique_ptr<OutputFile> gzipped(std::unique_ptr<OutputFile> file);
+
+}  // namespace proofmass::io

@@ -1,0 +1,147 @@
+#include "proofmass/io/stamp_steps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+
+#include "proofmass/core/statistics.hpp"
+
+namespace proofmass::io {
+namespace {
+
+/// The largest figure that the steps up to five medians are multiples of, if it is more
+/// than 1 % of the median: then the clock was read, or written, that coarsely.
+double rounding_of(const std::vector<double>& steps, double median) {
+  constexpr std::size_t most = 4096;
+  std::vector<double> sorted;
+  for (std::size_t i = 0; i < steps.size(); i += steps.size() / most + 1)
+    if (steps[i] < 5.0 * median) sorted.push_back(steps[i]);
+  std::ranges::sort(sorted);
+  const double noise = 1e-6 * median;
+  double smallest = 0.0;
+  double previous = 0.0;
+  for (const double step : sorted) {
+    const double rise = step - previous;
+    if (rise > noise && (smallest == 0.0 || rise < smallest)) smallest = rise;
+    previous = step;
+  }
+  if (smallest < 0.01 * median || smallest > 0.99 * median) return 0.0;
+  const auto off_grid = std::ranges::count_if(sorted, [&](double step) {
+    return std::abs(std::remainder(step, smallest)) > 1e-3 * median;
+  });
+  return static_cast<std::size_t>(off_grid) * 100 > sorted.size() ? 0.0 : smallest;
+}
+
+/// Steps from one stamp to the next, at most 65 536 of them spread over the file.
+std::vector<double> sampled_steps(View<double> stamps) {
+  constexpr std::size_t most = 1u << 16;
+  std::vector<double> steps;
+  for (std::size_t k = 0; k + 1 < stamps.size(); k += stamps.size() / most + 1)
+    if (is_stamp(stamps[k]) && is_stamp(stamps[k + 1])) steps.push_back(stamps[k + 1] - stamps[k]);
+  return steps;
+}
+
+/// Time a row: the mean over stretches of rows, without those that gaps make outliers; 0 where
+/// there are fewer than eight. Long stretches, so that bursts average out; several, so that gaps
+/// fall into few of them.
+double long_run_of(View<double> stamps) {
+  const std::size_t count = stamps.size() < 1024 ? 16 : 64;
+  const std::size_t rows = (stamps.size() - 1) / count;
+  if (rows < 4) return 0.0;
+  std::vector<double> means;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double from = stamps[i * rows];
+    const double to = stamps[(i + 1) * rows];
+    if (is_stamp(from) && is_stamp(to) && to > from)
+      means.push_back((to - from) / static_cast<double>(rows));
+  }
+  if (means.size() < 8) return 0.0;
+  const double middle = *median(means);
+  // A stretch holds whole bursts: their number alone scatters it by some per cent.
+  const double near = std::max(3.0 * *robust_std(means), 0.25 * middle);
+  Moments usual;
+  for (const double mean : means)
+    if (std::abs(mean - middle) <= near) usual.add(mean);
+  return usual.mean;
+}
+
+/// Whether the steps are what the loss of rows leaves: nine in ten whole multiples of the single
+/// step within a fifth of it, and half of them the single step itself.
+bool are_multiples(const std::vector<double>& steps, double single) {
+  std::size_t multiples = 0;
+  std::size_t singles = 0;
+  for (const double step : steps) {
+    const double whole = std::round(step / single);
+    if (whole < 1.0 || std::abs(step / single - whole) > 0.2) continue;
+    ++multiples;
+    if (whole == 1.0) ++singles;
+  }
+  return multiples * 10 >= steps.size() * 9 && singles * 2 >= steps.size();
+}
+
+bool come_in_bursts(const StampSteps& out, const std::vector<double>& steps) {
+  const double single = out.rounding > 0.0 ? out.mean_near : out.median;
+  if (out.long_run <= 0.0 || std::abs(out.long_run / single - 1.0) <= 0.05) return false;
+  if (out.long_run < single) return out.repeated > 0.12;
+  return !are_multiples(steps, single);
+}
+
+}  // namespace
+
+StampSteps measure_steps(View<double> stamps) {
+  StampSteps out;
+  const std::vector<double> all = sampled_steps(stamps);
+  if (all.empty()) return out;
+  const auto fraction = [&](auto is_such) {
+    return static_cast<double>(std::ranges::count_if(all, is_such)) /
+           static_cast<double>(all.size());
+  };
+  out.middle = *median(all);
+  out.ascending = fraction([](double step) { return step >= 0.0; });
+  out.repeated = fraction([](double step) { return step == 0.0; });
+  std::vector<double> up;
+  std::ranges::copy_if(all, std::back_inserter(up), [](double step) { return step > 0.0; });
+  if (up.empty()) return out;
+  out.median = *median(up);
+  out.rounding = rounding_of(up, out.median);
+  Moments near;
+  for (const double step : up)
+    if (std::abs(step - out.median) <= 1.001 * out.rounding) near.add(step);
+  out.mean_near = near.count > 0 ? near.mean : out.median;
+  out.long_run = long_run_of(stamps);
+  out.in_bursts = come_in_bursts(out, all);
+  return out;
+}
+
+bool are_regular(View<double> stamps, double usual) {
+  // Without a branch, so that the compiler can take several at once.
+  std::size_t odd = 0;
+  for (std::size_t k = 1; k < stamps.size(); ++k) {
+    const double rise = stamps[k] - stamps[k - 1];
+    odd += static_cast<std::size_t>(!(rise >= 0.0)) + static_cast<std::size_t>(!(rise <= usual));
+  }
+  return odd == 0;
+}
+
+double uniform_rate_hz(View<double> stamps_s) {
+  if (stamps_s.size() < 3 || !(stamps_s.back() > 0.0)) return 0.0;
+  const auto fits = [&](double rate_hz) {
+    for (std::size_t k = 0; k < stamps_s.size(); ++k)
+      if (static_cast<double>(k) / rate_hz != stamps_s[k]) return false;
+    return true;
+  };
+  const double rough_hz = static_cast<double>(stamps_s.size() - 1) / stamps_s.back();
+  for (int digits = 1; digits <= 17; ++digits) {
+    std::array<char, 32> text;
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), rough_hz,
+                                   std::chars_format::scientific, digits);
+    double rate_hz = 0.0;
+    std::from_chars(text.data(), end.ptr, rate_hz);
+    if (rate_hz > 0.0 && std::isfinite(rate_hz) && fits(rate_hz)) return rate_hz;
+  }
+  return 0.0;
+}
+
+}  // namespace proofmass::io

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/io/random_bytes.hpp"
+#include "proofmass/io/tdms_decode.hpp"
+#include "proofmass/io/tdms_map.hpp"
+
+namespace proofmass::io {
+
+/// A stretch of the file that several columns read their values from, one after another.
+class TdmsWindow {
+ public:
+  static constexpr std::uint64_t bytes = 256 << 10;
+
+  /// `file` must outlive the window.
+  explicit TdmsWindow(const RandomBytes& file) : file_(file) {}
+
+  /// The bytes from `offset` on, at most TdmsWindow::bytes, valid until the next call. Where they
+  /// are not at hand a whole window is read, as others will want what lies around them.
+  /// Errors: unreadable, corrupt (the file has become shorter).
+  [[nodiscard]] Result<const char*> view(std::uint64_t offset, std::size_t size);
+  /// The same for bytes that no other column wants.
+  [[nodiscard]] Status read(std::uint64_t offset, std::span<char> into) const;
+
+ private:
+  const RandomBytes& file_;
+  std::vector<char> held_;
+  std::uint64_t held_at_ = 0;
+  std::size_t held_size_ = 0;
+};
+
+/// The values of one channel, or of one scaler of it, from its first to its last.
+class TdmsColumn {
+ public:
+  /// `map` must outlive the column. Precondition: figures or points in time.
+  TdmsColumn(const TdmsMap& map, std::uint32_t channel, std::uint32_t scaler);
+
+  /// How many values can be read next from one window together with the other columns' that lie
+  /// beside them.
+  [[nodiscard]] std::size_t comfortable() const;
+  /// Fills `into`, with NaN behind the last value. Errors: those of the window.
+  [[nodiscard]] Status read(TdmsWindow& window, std::span<double> into);
+  /// The first point in time that is set; nullopt if there is none.
+  [[nodiscard]] Result<std::optional<TdmsInstant>> first_instant(TdmsWindow& window) const;
+  void count_from(Int128 origin_ns) { encoding_.origin_ns = origin_ns; }
+
+ private:
+  /// Values at even distances that come next.
+  struct Extent {
+    std::uint64_t offset = 0;
+    std::uint64_t stride = 0;
+    std::uint64_t values = 0;
+    std::uint64_t bytes_a_value = 0;  ///< of the file, those of other channels included
+    std::uint64_t reach = 0;  ///< bytes over which other channels' values of one time are spread
+    bool is_shared = false;   ///< values of others lie between, near enough for one window
+  };
+
+  void find_run();
+  void find_extent();
+  void advance(std::uint64_t count);
+  [[nodiscard]] Status take(TdmsWindow& window, std::span<double> into);
+
+  const TdmsMap& map_;
+  std::uint32_t channel_;
+  std::uint32_t scaler_;
+  TdmsEncoding encoding_;
+  std::size_t run_ = 0;
+  const TdmsEntry* entry_ = nullptr;  ///< in the present run; nullptr: no more values
+  std::uint64_t done_ = 0;            ///< values of the present run
+  Extent extent_;
+  std::vector<char> own_;
+};
+
+}  // namespace proofmass::io

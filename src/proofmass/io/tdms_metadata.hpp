@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/io/tdms_cursor.hpp"
+#include "proofmass/io/tdms_layout.hpp"
+#include "proofmass/io/tdms_map.hpp"
+
+namespace proofmass::io {
+
+/// The objects of a file and which of them have values in the present segment, as one segment's
+/// metadata after another is read.
+class TdmsMetadata {
+ public:
+  /// Reads the metadata that begins at the cursor. `new_list`: it lists all objects of the segment;
+  /// else it changes the list of the segment before.
+  /// Errors: corrupt, unsupported; objects read before stay as they are then.
+  [[nodiscard]] Status read(TdmsCursor& cursor, bool new_list);
+
+  /// Channels that have values in the segment, in the order of the list.
+  [[nodiscard]] std::vector<TdmsPart> parts() const;
+  /// The same for as long as parts() is.
+  [[nodiscard]] std::string key() const;
+  [[nodiscard]] std::vector<TdmsObject>& objects() { return objects_; }
+
+ private:
+  struct Listed {
+    std::uint32_t object = 0;
+    std::uint32_t index = 0;
+  };
+
+  [[nodiscard]] Status read_object(TdmsCursor& cursor);
+  [[nodiscard]] Status read_index(TdmsCursor& cursor, std::uint32_t object);
+  void list(std::uint32_t object, std::optional<std::uint32_t> index);
+  void note_kind(std::uint32_t object, const TdmsIndex& index);
+  [[nodiscard]] std::uint32_t object_of(const std::string& path);
+  [[nodiscard]] std::uint32_t known_index(const TdmsIndex& index);
+
+  std::vector<TdmsObject> objects_;
+  std::unordered_map<std::string, std::uint32_t> by_path_;
+  std::vector<std::optional<std::uint32_t>> last_index_;  ///< of each object
+  std::vector<std::unique_ptr<const TdmsIndex>> indices_;
+  std::unordered_map<std::string, std::uint32_t> by_index_;
+  std::vector<std::uint32_t> listed_;  ///< objects of the present segment
+  std::vector<bool> is_listed_;
+  std::vector<std::optional<std::uint32_t>> index_now_;  ///< of each object; none: no values
+};
+
+}  // namespace proofmass::io

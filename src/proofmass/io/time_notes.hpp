@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/io/counter_clock.hpp"
+#include "proofmass/io/stamps.hpp"
+
+namespace proofmass::io {
+
+/// What the notes on a column of stamps name.
+struct NamedStamps {
+  std::string name;
+  std::string counter_name;  ///< empty if there is no counter
+  double unit_s = 1.0;
+  std::size_t first_line = 0;
+};
+
+/// What ran over, was taken out, fell back, was replaced: where, and what was done.
+[[nodiscard]] std::vector<Note> notes_on_mending(const MendedStamps& done,
+                                                 const NamedStamps& stamps);
+/// That stamps come in bursts; that a rate in the preamble is another.
+[[nodiscard]] std::vector<Note> notes_on_rate(const TimeBase& base,
+                                              const StampSteps& steps,
+                                              double unit_s,
+                                              std::optional<double> header_rate_hz);
+[[nodiscard]] std::vector<Note> notes_on_counter(const std::string& name,
+                                                 const CounterClock& clock);
+
+}  // namespace proofmass::io
