@@ -20,6 +20,9 @@ struct InputFlags {
   std::optional<double> from_s, to_s;
   std::vector<std::string> sensors;
   std::optional<double> supply_v;
+  std::optional<double> resample_hz, skew_s;
+  std::string resample_method = "sinc";
+  double memory_mb = 1024.0;  ///< of verbs that read larger tables a piece at a time
   std::optional<double> gravity_mps2, latitude_deg, height_m;
   /// How long the sensors had been on at the file's first sample; of verbs that know warm-up only.
   std::optional<double> since_switch_on_s;
@@ -33,6 +36,7 @@ struct OutputFlags {
 
 struct InspectCommand {
   std::vector<std::string> files;
+  bool pyramid = false;
   InputFlags input;
   OutputFlags output;
 };

@@ -1,28 +1,96 @@
 #include <fmt/format.h>
+#include <fstream>
+#include <iterator>
 
 #include "console.hpp"
 #include "exit_status.hpp"
 #include "input.hpp"
 #include "output.hpp"
+#include "piece_source.hpp"
+#include "proofmass/core/version.hpp"
+#include "proofmass/io/write_recording.hpp"
 #include "proofmass/report/convert_report.hpp"
 #include "proofmass/report/document.hpp"
 #include "verbs.hpp"
 
 namespace proofmass::app {
+namespace {
+
+// What was written: its channels without values.
+struct Converted {
+  Recording head;
+  std::size_t samples = 0;
+  std::vector<Note> notes;
+};
+
+// What a format with room for it says of where the samples come from.
+io::WriteOptions write_options(const ConvertCommand& command) {
+  io::WriteOptions options;
+  options.metadata = {{"software", fmt::format("proofmass {}", version())},
+                      {"source", command.file}};
+  for (const std::string& path : command.input.sensors) {
+    std::ifstream file(path, std::ios::binary);
+    options.sensor_file.append(std::istreambuf_iterator<char>(file), {});
+  }
+  options.duckdb_library = duckdb_library();
+  return options;
+}
+
+Converted convert(Recording recording,
+                  const ConvertCommand& command,
+                  const std::vector<sensor::SensorModel>& models) {
+  std::vector<Recording> recordings{std::move(recording)};
+  if (!models.empty()) calibrate(models, accelerometers(recordings), recordings);
+  Recording& calibrated = recordings.front();
+  write_series(calibrated, command.output.output, write_options(command));
+  const std::size_t samples = calibrated.samples();
+  std::vector<Note> notes = calibrated.notes;
+  return {std::move(calibrated), samples, std::move(notes)};
+}
+
+void hold(const Status& status) {
+  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error().message);
+}
+
+Converted convert(io::RecordingStream stream,
+                  const ConvertCommand& command,
+                  const std::vector<sensor::SensorModel>& models) {
+  PieceSource source(std::move(stream), command.input, models);
+  Converted out;
+  const auto write = [&] {
+    auto writer =
+        need(io::open_writer(command.output.output,
+                             {.recording = source.head(), .has_stamps = source.has_stamps()},
+                             write_options(command)),
+             Stage::writing);
+    for (Block block = source.next(); block.rows() > 0; block = source.next()) {
+      hold(writer->write(block));
+      out.samples += block.rows();
+    }
+    hold(writer->finish(source.head()));
+  };
+  command.output.output == "-" ? write() : without_interruption(write);
+  out.head = source.head();
+  out.notes = source.head().notes;
+  return out;
+}
+
+}  // namespace
 
 void run(const ConvertCommand& command) {
   if (command.output.output == "-" && command.output.json == "-") {
     throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
   }
-  std::vector<Recording> recordings{
-      load(command.file, command.input, progress_bar(command.output))};
-  std::vector<Note> notes = recordings.front().notes;
-  const auto models = load_sensors(command.input, notes);
-  if (!models.empty()) calibrate(models, accelerometers(recordings), recordings);
+  std::vector<Note> sensor_notes;
+  const auto models = load_sensors(command.input, sensor_notes);
+  auto opened = open_input(command.file, command.input, progress_bar(command.output));
+  Converted converted =
+      std::visit([&](auto& input) { return convert(std::move(input), command, models); }, opened);
+  std::vector<Note>& notes = converted.notes;
+  notes.insert(notes.end(), sensor_notes.begin(), sensor_notes.end());
   show_notes(notes, "", command.output);
-  write_series(recordings.front(), command.output.output);
-  const report::ConvertReport result{command.file, command.output.output, recordings.front(),
-                                     notes};
+  const report::ConvertReport result{command.file, command.output.output, converted.head,
+                                     converted.samples, notes};
   publish({.text = [&] { return report::convert_text(result); },
            .json = [&] { return report::convert_json(result); },
            .html = {}},

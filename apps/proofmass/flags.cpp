@@ -41,12 +41,21 @@ void add_input_flags(CLI::App& verb, InputFlags& flags) {
   add("--channel", flags.channels, "NAME", "use this channel; may be repeated (default: all)")
       ->allow_extra_args(false);
   add("--dataset,--variable", flags.variables, "NAME",
-      "of an HDF5 or MAT file, read this dataset or variable; may be repeated (default: chosen by "
-      "size and name)")
+      "of a file or folder of several tables, read this dataset, variable, group, topic or file; "
+      "may be repeated (default: chosen by size and name)")
       ->allow_extra_args(false);
   add("--time", flags.time, "NAME", "the time column (default: found by name and content)");
   add("--from", flags.from_s, "S", "leave out what comes before")->check(finite());
   add("--to", flags.to_s, "S", "leave out what comes from here on")->check(finite());
+  add("--resample", flags.resample_hz, "HZ",
+      "bring the samples, or several --variable, onto an even grid (default: as they were taken)")
+      ->check(positive());
+  add("--resample-method", flags.resample_method, "METHOD",
+      "of --resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc)")
+      ->check(CLI::IsMember({"sinc", "cubic", "linear", "nearest", "mean"}));
+  add("--skew", flags.skew_s, "S",
+      "the channels were sampled one after another, so far apart: brings them to one instant")
+      ->check(finite());
   CLI::Option* sensor =
       add("--sensor", flags.sensors, "FILE.toml",
           "apply this sensor file's calibration first; once for all sensors or once for each");
@@ -62,6 +71,14 @@ void add_input_flags(CLI::App& verb, InputFlags& flags) {
   add("--height", flags.height_m, "M", "and from the height above the ellipsoid")
       ->check(finite())
       ->needs(where);
+}
+
+void add_memory_flag(CLI::App& verb, InputFlags& flags) {
+  verb.add_option("--memory", flags.memory_mb,
+                  "a recording whose table is larger is read a piece at a time (default 1024)")
+      ->type_name("MB")
+      ->group("Input")
+      ->check(not_negative());
 }
 
 void add_switch_on_flag(CLI::App& verb, InputFlags& flags, const char* help) {

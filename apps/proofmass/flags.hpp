@@ -16,6 +16,9 @@ namespace proofmass::app {
 [[nodiscard]] CLI::Validator latitude();
 
 void add_input_flags(CLI::App& verb, InputFlags& flags);
+/// --memory, of verbs that can do with a piece of a recording at a time.
+void add_memory_flag(CLI::App& verb, InputFlags& flags);
+
 void add_switch_on_flag(CLI::App& verb, InputFlags& flags, const char* help);
 void add_output_flags(CLI::App& verb, OutputFlags& flags);
 void add_report_flag(CLI::App& verb, OutputFlags& flags);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <limits>
 
 #include "exit_status.hpp"
-#include "proofmass/io/read_recording.hpp"
 #include "proofmass/sensor/calibration.hpp"
 #include "proofmass/sensor/gravity.hpp"
 #include "proofmass/sensor/warm_up.hpp"
@@ -84,20 +84,43 @@ void set_supply(double supply_v,
 
 }  // namespace
 
-Recording load(const std::string& file, const InputFlags& flags, const Progress& progress) {
+io::ReadOptions read_options(const InputFlags& flags, const Progress& progress) {
   io::ReadOptions options;
   options.rate_hz = flags.rate_hz;
   if (!flags.unit.empty()) options.unit = parse_unit(flags.unit);
   options.time_channel = flags.time;
   options.channels = flags.channels;
   options.variables = flags.variables;
+  if (flags.resample_hz) {
+    options.resample = signal::ResampleOptions{*flags.resample_hz,
+                                               signal::parse_resample_method(flags.resample_method)
+                                                   .value_or(signal::ResampleMethod::sinc)};
+  }
+  options.skew_s = flags.skew_s.value_or(0.0);
+  options.duckdb_library = duckdb_library();
   options.progress = progress;
-  Recording recording = need(io::read_recording(file, options), Stage::reading);
+  return options;
+}
+
+std::string duckdb_library() {
+  const char* path = std::getenv("PROOFMASS_DUCKDB_LIB");
+  return path != nullptr ? path : "";
+}
+
+Recording load(const std::string& file, const InputFlags& flags, const Progress& progress) {
+  return cut_to_window(
+      need(io::read_recording(file, read_options(flags, progress)), Stage::reading), flags);
+}
+
+Recording cut_to_window(Recording recording, const InputFlags& flags) {
   if (!flags.from_s && !flags.to_s) return recording;
   Result<Recording> part =
       cut(recording, flags.from_s.value_or(-std::numeric_limits<double>::infinity()),
           flags.to_s.value_or(std::numeric_limits<double>::infinity()));
-  if (!part) throw Failure(status_of(part.error(), Stage::reading), part.error().at(file).message);
+  if (!part) {
+    throw Failure(status_of(part.error(), Stage::reading),
+                  part.error().at(recording.source).message);
+  }
   return std::move(part).value();
 }
 

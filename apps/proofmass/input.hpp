@@ -8,6 +8,7 @@
 #include "proofmass/core/progress.hpp"
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/core/recording.hpp"
+#include "proofmass/io/read_recording.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 
 // From the input flags to recordings.
@@ -17,6 +18,15 @@ namespace proofmass::app {
 [[nodiscard]] Recording load(const std::string& file,
                              const InputFlags& flags,
                              const Progress& progress);
+
+/// What the flags say to the readers.
+[[nodiscard]] io::ReadOptions read_options(const InputFlags& flags, const Progress& progress);
+
+/// Of PROOFMASS_DUCKDB_LIB, which Parquet is read and written with; empty if it is not set.
+[[nodiscard]] std::string duckdb_library();
+
+/// What --from and --to leave. Throws Failure.
+[[nodiscard]] Recording cut_to_window(Recording recording, const InputFlags& flags);
 
 /// One accelerometer of the input: its channels of a recording.
 struct Accelerometer {

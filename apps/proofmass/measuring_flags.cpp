@@ -9,8 +9,12 @@ void add_flags(CLI::App& app, InspectCommand& command) {
       ->type_name("")
       ->required();
   add_input_flags(verb, command.input);
+  verb.add_flag("--pyramid", command.pyramid,
+                "store the smallest and largest values at every scale beside each file, as "
+                "FILE.pyramid.npz, for pictures of any stretch without reading it again");
   add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);
+  add_memory_flag(verb, command.input);
   verb.footer("Example:\n  proofmass inspect wheel.csv --report wheel.html");
 }
 
@@ -19,10 +23,13 @@ void add_flags(CLI::App& app, ConvertCommand& command) {
   verb.add_option("FILE", command.file, "a recording; - is standard input (CSV)")
       ->type_name("")
       ->required();
-  add_output_file(verb, command.output, "the new file: .csv, .csv.gz or .npy; - is CSV")
+  add_output_file(
+      verb, command.output,
+      "the new file: .csv, .csv.gz, .npy, .mat, .tdms, .h5, .mcap or .parquet; - is CSV")
       ->required();
   add_input_flags(verb, command.input);
   add_output_flags(verb, command.output);
+  add_memory_flag(verb, command.input);
   verb.footer("Example:\n  proofmass convert log.csv.xz --unit mg -o log.npy");
 }
 
@@ -91,6 +98,7 @@ void add_flags(CLI::App& app, NoiseCommand& command) {
   add_output_file(verb, command.output, "write the deviation curves");
   add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);
+  add_memory_flag(verb, command.input);
   verb.footer("Example:\n  proofmass noise rest.csv --rate 100 --unit g --report noise.html");
 }
 

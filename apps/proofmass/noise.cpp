@@ -1,10 +1,13 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "noise_pieces.hpp"
 #include "output.hpp"
 #include "parallel.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
@@ -23,11 +26,6 @@ using characterise::NoiseAnalysis;
 using characterise::NoiseOptions;
 using characterise::NoiseTypeSource;
 using characterise::TauGrid;
-
-struct NoiseChannel {
-  RestChannel rest;
-  report::ChannelNoise shown;
-};
 
 template <class Number>
 std::optional<Number> number_of(std::string_view text) {
@@ -128,24 +126,45 @@ void take_temperature_out(const RestTemperature& cause,
                                    channel.shown.temperature->per, cause.name)});
 }
 
-std::vector<NoiseChannel> noise_channels(std::vector<RestRecording> recordings,
-                                         std::vector<Note>& notes) {
+std::vector<NoiseChannel> noise_channels(RestRecording recording, std::vector<Note>& notes) {
   std::vector<NoiseChannel> channels;
-  for (RestRecording& recording : recordings) {
-    for (RestChannel& rest : recording.channels) {
-      NoiseChannel& channel = channels.emplace_back();
-      channel.rest = std::move(rest);
-      channel.shown.name = channel.rest.title;
-      channel.shown.unit = channel.rest.unit;
-      channel.shown.refused = channel.rest.refused;
-      if (recording.temperature) take_temperature_out(*recording.temperature, channel, notes);
-    }
+  for (RestChannel& rest : recording.channels) {
+    NoiseChannel& channel = channels.emplace_back();
+    channel.rest = std::move(rest);
+    channel.shown.name = channel.rest.title;
+    channel.shown.unit = channel.rest.unit;
+    channel.shown.refused = channel.rest.refused;
+    if (recording.temperature) take_temperature_out(*recording.temperature, channel, notes);
   }
   return channels;
 }
 
+// All files' channels: prepared, or of a file larger than --memory analysed.
+std::vector<NoiseChannel> noise_channels(const NoiseCommand& command,
+                                         const NoiseOptions& options,
+                                         std::vector<Note>& notes) {
+  const RestOptions rest{.files = command.files,
+                         .input = command.input,
+                         .output = command.output,
+                         .temperature = command.temperature,
+                         .for_sensor_file = !command.update_sensor.empty(),
+                         .is_phase = command.data == "phase"};
+  std::vector<NoiseChannel> all;
+  for (const std::string& file : command.files) {
+    auto opened = open_rest(file, rest);
+    auto* recording = std::get_if<Recording>(&opened);
+    std::vector<NoiseChannel> channels =
+        recording != nullptr
+            ? noise_channels(rest_recording(std::move(*recording), rest, notes), notes)
+            : analyse_pieces(std::get<io::RecordingStream>(std::move(opened)), rest, options,
+                             notes);
+    std::ranges::move(channels, std::back_inserter(all));
+  }
+  return all;
+}
+
 void analyse(NoiseChannel& channel, NoiseOptions options) {
-  if (!channel.shown.refused.empty()) return;
+  if (channel.shown.analysis || !channel.shown.refused.empty()) return;
   options.rate_hz = channel.rest.rate_hz;
   options.lsb = channel.rest.lsb;
   Result<NoiseAnalysis> found = characterise::analyse_noise(channel.rest.series, options);
@@ -206,15 +225,7 @@ void run(const NoiseCommand& command) {
   report::NoiseReport report;
   report.inputs = command.files;
   report.events_excluded = command.exclude_events;
-  std::vector<NoiseChannel> channels =
-      noise_channels(rest_recordings({.files = command.files,
-                                      .input = command.input,
-                                      .output = command.output,
-                                      .temperature = command.temperature,
-                                      .for_sensor_file = !command.update_sensor.empty(),
-                                      .is_phase = command.data == "phase"},
-                                     report.notes),
-                     report.notes);
+  std::vector<NoiseChannel> channels = noise_channels(command, options, report.notes);
   in_parallel(channels.size(), progress_bar(command.output), [&](std::size_t k, Progress progress) {
     NoiseOptions own = options;
     own.progress = std::move(progress);

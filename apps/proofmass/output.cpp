@@ -9,6 +9,7 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "input.hpp"
 #include "proofmass/io/write_recording.hpp"
 
 namespace proofmass::app {
@@ -59,9 +60,13 @@ void publish(const Results& results, const OutputFlags& flags) {
   print_out(flags.json == "-" ? results.json() : results.text());
 }
 
-void write_series(const Recording& recording, const std::string& path) {
+void write_series(const Recording& recording,
+                  const std::string& path,
+                  const io::WriteOptions& options) {
   const auto write = [&] {
-    const Status status = io::write_recording(recording, path);
+    io::WriteOptions all = options;
+    all.duckdb_library = duckdb_library();
+    const Status status = io::write_recording(recording, path, all);
     if (status) return;
     throw Failure(status_of(status.error(), Stage::writing), status.error().message);
   };

@@ -5,6 +5,7 @@
 
 #include "command_line.hpp"
 #include "proofmass/core/recording.hpp"
+#include "proofmass/io/recording_writer.hpp"
 
 namespace proofmass::app {
 
@@ -24,7 +25,9 @@ struct Results {
 void publish(const Results& results, const OutputFlags& flags);
 
 /// io::write_recording, or Failure.
-void write_series(const Recording& recording, const std::string& path);
+void write_series(const Recording& recording,
+                  const std::string& path,
+                  const io::WriteOptions& options = {});
 
 /// Throws Failure (bad_data) if --strict was given and the data are bad.
 void hold_to_strict(const OutputFlags& flags, bool bad);

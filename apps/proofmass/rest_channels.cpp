@@ -4,15 +4,16 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <numeric>
+#include <limits>
 
 #include "console.hpp"
 #include "exit_status.hpp"
 #include "input.hpp"
+#include "piece_source.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/signal/audit.hpp"
-#include "proofmass/signal/counter.hpp"
 #include "proofmass/signal/even_grid.hpp"
+#include "rest_choice.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -27,16 +28,10 @@ struct Source {
   signal::EvenGrid grid;
 };
 
-Recording load_rest(const std::string& file, const RestOptions& options) {
-  InputFlags flags = options.input;
-  if (!flags.channels.empty() && !options.temperature.empty()) {
-    flags.channels.push_back(options.temperature);
-  }
-  Recording recording = load(file, flags, progress_bar(options.output));
-  if (recording.time.source == TimeSource::none) {
-    throw Failure(usage, file + ": no time column and no --rate: give --rate HZ or --time NAME");
-  }
-  return recording;
+void expect_time(const Recording& recording) {
+  if (recording.time.source != TimeSource::none) return;
+  throw Failure(usage,
+                recording.source + ": no time column and no --rate: give --rate HZ or --time NAME");
 }
 
 std::size_t place_of(const Recording& recording, const std::string& name) {
@@ -76,48 +71,6 @@ std::optional<std::size_t> temperature_in(const Recording& recording,
   return options.find_temperature ? only_temperature(recording, notes) : std::nullopt;
 }
 
-std::vector<std::size_t> axes_in(const Recording& recording) {
-  std::vector<std::size_t> axes;
-  for (const Triad& triad : accelerometer_triads(recording)) {
-    for (const auto& axis : {triad.x, triad.y, triad.z}) {
-      if (axis) axes.push_back(*axis);
-    }
-  }
-  std::ranges::sort(axes);
-  return axes;
-}
-
-// All accelerations; else the voltages or counts that look like axes; else all that is no counter.
-// Of channels that were named, all.
-std::vector<std::size_t> choose(const Source& source, bool named) {
-  const std::vector<Channel>& channels = source.recording.channels;
-  std::vector<std::size_t> all(channels.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  std::erase_if(all, [&](std::size_t k) { return k == source.temperature; });
-  if (named) return all;
-  std::vector<std::size_t> accelerations = all;
-  std::erase_if(accelerations,
-                [&](std::size_t k) { return channels[k].unit.quantity != Quantity::acceleration; });
-  if (!accelerations.empty()) return accelerations;
-  if (std::vector<std::size_t> axes = axes_in(source.recording); !axes.empty()) return axes;
-  const auto counter = signal::find_counter(source.recording);
-  std::erase_if(all, [&](std::size_t k) { return k == counter; });
-  return all;
-}
-
-std::vector<std::optional<std::size_t>> axes_of(const Source& source) {
-  std::vector<std::optional<std::size_t>> axes(source.chosen.size());
-  const std::vector<Triad> triads = accelerometer_triads(source.recording);
-  if (triads.size() != 1) return axes;
-  const std::array places{triads[0].x, triads[0].y, triads[0].z};
-  for (std::size_t k = 0; k < axes.size(); ++k) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (places[axis] == source.chosen[k]) axes[k] = axis;
-    }
-  }
-  return axes;
-}
-
 // What is wrong with the chosen channels and their stamps, before any of it is scaled.
 void audit(Source& source, const std::string& prefix, std::vector<Note>& notes) {
   Recording part{source.recording.source, source.recording.format, {}, {}, {}, 0};
@@ -144,66 +97,14 @@ void lay_out(Source& source, const std::string& prefix, std::vector<Note>& notes
     throw Failure(status_of(error, Stage::reading), error.message);
   }
   source.grid = std::move(grid).value();
-  if (source.grid.missing > 0) {
-    notes.push_back(
-        {Severity::warning, fmt::format("{}{} missing by the stamps, in {}: left blank", prefix,
-                                        report::count_words(source.grid.missing, "sample"),
-                                        report::count_words(source.grid.holes.size(), "place"))});
-  }
-  constexpr double much = 0.1;
-  if (source.grid.relative_jitter > much) {
-    notes.push_back(
-        {Severity::warning,
-         fmt::format("{}the stamps jitter by {} % of a step: the samples are taken to be even, {} "
-                     "Hz",
-                     prefix, report::significant(100.0 * source.grid.relative_jitter, 2),
-                     report::compact(source.grid.rate_hz, 6))});
-  }
-}
-
-// The unit that values of a kind are brought to; none where they are left as recorded.
-std::optional<Unit> si_unit(Quantity quantity) {
-  constexpr std::array<std::pair<Quantity, const char*>, 8> symbols{
-      {{Quantity::acceleration, "m/s^2"},
-       {Quantity::angular_rate, "rad/s"},
-       {Quantity::angle, "rad"},
-       {Quantity::voltage, "V"},
-       {Quantity::speed, "m/s"},
-       {Quantity::length, "m"},
-       {Quantity::time, "s"},
-       {Quantity::temperature, "K"}}};
-  for (const auto& [known, symbol] : symbols) {
-    if (quantity == known) return parse_unit(symbol);
-  }
-  return std::nullopt;
+  tell_grid(source.grid, source.grid.holes.size(), prefix, notes);
 }
 
 void bring_to_si(Channel& channel) {
-  const std::optional<Unit> si = si_unit(channel.unit.quantity);
-  if (!si || channel.unit == *si) return;
+  const Unit si = si_unit(channel.unit);
+  if (channel.unit == si) return;
   for (double& value : channel.values) value = channel.unit.si(value);
-  channel.unit = *si;
-}
-
-// Of the rate that a series in this unit is the integral of.
-Unit rate_unit(const Unit& unit) {
-  if (unit.symbol == "m/s") return *parse_unit("m/s^2");
-  if (unit.symbol == "rad") return *parse_unit("rad/s");
-  if (unit.symbol == "s" || unit.symbol == "1") return {Quantity::unknown, 1.0, 0.0, "1"};
-  return {Quantity::unknown, 1.0, 0.0, unit.symbol + "/s"};
-}
-
-// Many samples at the rails: their noise is cut off.
-std::string clipping(const signal::ChannelAudit& audit, std::size_t samples) {
-  constexpr std::size_t fewest = 3;
-  constexpr double share = 1e-4;
-  const auto clipped = static_cast<double>(audit.clipped);
-  if (audit.clipped < fewest || clipped <= share * static_cast<double>(samples)) return {};
-  return fmt::format(
-      "{} of {} stand at the rails ({} or {} {}): what is cut off there is not in the figures",
-      report::grouped(audit.clipped), report::count_words(samples, "sample"),
-      report::significant(audit.moments.min, 5), report::significant(audit.moments.max, 5),
-      audit.unit.symbol);
+  channel.unit = si;
 }
 
 RestChannel prepared(Source& source, std::size_t k, bool is_phase) {
@@ -216,9 +117,7 @@ RestChannel prepared(Source& source, std::size_t k, bool is_phase) {
   out.refused = clipping(audit, channel.values.size());
   const bool calibrated = channel.unit != audit.unit;
   bring_to_si(channel);
-  out.unit = channel.unit;
-  if (channel.unit.symbol.empty()) out.unit = {Quantity::unknown, 1.0, 0.0, "1"};
-  if (is_phase) out.unit = rate_unit(out.unit);
+  out.unit = series_unit(channel.unit, is_phase);
   if (!out.refused.empty()) return out;
   if (audit.lsb && !is_phase) {
     // A sensor file may have scaled it: the step grew as the spread did.
@@ -246,26 +145,48 @@ void calibrate_chosen(Source& source, const InputFlags& flags, std::vector<Note>
   source.recording = std::move(one.front());
 }
 
-void expect_axes(const RestRecording& recording) {
-  for (const RestChannel& channel : recording.channels) {
-    if (channel.axis && channel.unit.symbol == "m/s^2") continue;
-    throw Failure(usage, fmt::format("--update-sensor: {} is no x, y or z axis of one "
-                                     "accelerometer, in m/s^2: choose with --channel, say --unit",
-                                     channel.title));
-  }
+}  // namespace
+
+void expect_axis(const RestChannel& channel) {
+  if (channel.axis && channel.unit.symbol == "m/s^2") return;
+  throw Failure(usage, fmt::format("--update-sensor: {} is no x, y or z axis of one "
+                                   "accelerometer, in m/s^2: choose with --channel, say --unit",
+                                   channel.title));
 }
 
-RestRecording rest_recording(const std::string& file,
+std::string file_prefix(const std::string& file, const RestOptions& options) {
+  return options.files.size() > 1 ? report::file_name(file) + ": " : "";
+}
+
+std::variant<Recording, io::RecordingStream> open_rest(const std::string& file,
+                                                       const RestOptions& options) {
+  if (options.for_sensor_file && options.files.size() > 1) {
+    throw Failure(usage, "--update-sensor: a sensor file takes the figures of one recording");
+  }
+  InputFlags flags = options.input;
+  if (!flags.channels.empty() && !options.temperature.empty()) {
+    flags.channels.push_back(options.temperature);
+  }
+  auto opened = open_input(file, flags, progress_bar(options.output));
+  const auto* recording = std::get_if<Recording>(&opened);
+  expect_time(recording != nullptr ? *recording : std::get<io::RecordingStream>(opened).head());
+  return opened;
+}
+
+RestRecording rest_recording(Recording recording,
                              const RestOptions& options,
                              std::vector<Note>& notes) {
   RestRecording out;
-  const std::string prefix = options.files.size() > 1 ? report::file_name(file) + ": " : "";
+  const std::string file = recording.source;
+  const std::string prefix = file_prefix(file, options);
   Source source;
-  source.recording = load_rest(file, options);
+  source.recording = std::move(recording);
   source.temperature = temperature_in(source.recording, options, notes);
-  source.chosen = choose(source, !options.input.channels.empty());
+  RestChoice choice =
+      choose_rest(source.recording, source.temperature, !options.input.channels.empty());
+  source.chosen = std::move(choice.channels);
+  source.axes = std::move(choice.axes);
   if (source.chosen.empty()) throw Failure(usage, file + ": no channel to analyse");
-  source.axes = axes_of(source);
   audit(source, prefix, notes);
   calibrate_chosen(source, options.input, notes);
   lay_out(source, prefix, notes);
@@ -273,22 +194,20 @@ RestRecording rest_recording(const std::string& file,
     RestChannel channel = prepared(source, k, options.is_phase);
     channel.title = prefix + channel.name;
     channel.file = file;
+    if (options.for_sensor_file) expect_axis(channel);
     out.channels.push_back(std::move(channel));
   }
   if (source.temperature) out.temperature = prepared_temperature(source);
   return out;
 }
 
-}  // namespace
-
 std::vector<RestRecording> rest_recordings(const RestOptions& options, std::vector<Note>& notes) {
-  if (options.for_sensor_file && options.files.size() > 1) {
-    throw Failure(usage, "--update-sensor: a sensor file takes the figures of one recording");
-  }
+  RestOptions whole = options;
+  whole.input.memory_mb = std::numeric_limits<double>::infinity();
   std::vector<RestRecording> recordings;
   for (const std::string& file : options.files) {
-    recordings.push_back(rest_recording(file, options, notes));
-    if (options.for_sensor_file) expect_axes(recordings.back());
+    recordings.push_back(
+        rest_recording(std::get<Recording>(open_rest(file, whole)), options, notes));
   }
   return recordings;
 }

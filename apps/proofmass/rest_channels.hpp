@@ -3,11 +3,13 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "command_line.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/units.hpp"
+#include "proofmass/io/recording_stream.hpp"
 
 // From recordings at rest to the evenly sampled series that the analyses of them take.
 namespace proofmass::app {
@@ -47,6 +49,22 @@ struct RestRecording {
   std::vector<RestChannel> channels;
   std::optional<RestTemperature> temperature;
 };
+
+/// Opens one of the files, whole or as a stream where it is larger than --memory. Throws Failure,
+/// also where there is no time base.
+[[nodiscard]] std::variant<Recording, io::RecordingStream> open_rest(const std::string& file,
+                                                                     const RestOptions& options);
+
+/// What is to be analysed of a recording, as rest_recordings() says.
+[[nodiscard]] RestRecording rest_recording(Recording recording,
+                                           const RestOptions& options,
+                                           std::vector<Note>& notes);
+
+/// "run1.csv: " where there are several files, else nothing.
+[[nodiscard]] std::string file_prefix(const std::string& file, const RestOptions& options);
+
+/// Throws Failure unless a sensor file can take the channel's figures.
+void expect_axis(const RestChannel& channel);
 
 /// All files, each with its channels to analyse: without --channel all accelerations, else the
 /// voltages or counts that look like axes, else all but a counter. Notes of reading and preparing

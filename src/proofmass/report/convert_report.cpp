@@ -22,7 +22,7 @@ std::string convert_json(const ConvertReport& report) {
   return to_json({"convert", {report.input}, std::move(warnings)},
                  {{"file", report.output},
                   {"format", recording.format},
-                  {"samples", recording.samples()},
+                  {"samples", report.samples},
                   {"rate_hz", timed ? Value(recording.time.rate_hz) : Value()},
                   {"channels", std::move(channels)}});
 }
@@ -30,7 +30,7 @@ std::string convert_json(const ConvertReport& report) {
 std::string convert_text(const ConvertReport& report) {
   return fmt::format("{} ({}): {} of {} written to {}\n", report.input, report.recording.format,
                      count_words(report.recording.channels.size(), "channel"),
-                     count_words(report.recording.samples(), "sample"), report.output);
+                     count_words(report.samples, "sample"), report.output);
 }
 
 }  // namespace proofmass::report

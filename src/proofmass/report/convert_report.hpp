@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,9 @@
 namespace proofmass::report {
 
 struct ConvertReport {
-  std::string input, output;  ///< files
-  const Recording& recording;
+  std::string input, output;   ///< files
+  const Recording& recording;  ///< what there is besides values
+  std::size_t samples = 0;
   const std::vector<Note>& notes;
 };
 

@@ -45,7 +45,7 @@ Table timing_table(const RecordingAudit& audit) {
       {"Time column", timing.channel.empty() ? "none" : timing.channel},
       {"Rate", timing.rate_hz > 0.0 ? compact(timing.rate_hz, 7) + " Hz" : "unknown"},
       {"Jitter of the steps", jitter_words(timing)},
-      {"Gaps", std::to_string(timing.gaps.size())},
+      {"Gaps", std::to_string(timing.gap_count)},
       {"Stamps that go backwards", std::to_string(timing.backwards)},
       {"Stamps repeated", std::to_string(timing.repeated)},
       {"Stamps mended", std::to_string(timing.mended)},
@@ -83,7 +83,11 @@ std::vector<Figure> channel_figures(const InspectedFile& file) {
     if (unit == nullptr || *unit != channel.unit || figures.back().curves.size() == inks.size()) {
       unit = &channel.unit;
       figures.push_back({.title = channel.name,
-                         .description = "As recorded; every spike is kept.",
+                         .description = file.overview_span == 0
+                                            ? "As recorded; every spike is kept."
+                                            : fmt::format("The smallest and the largest of every "
+                                                          "{} samples.",
+                                                          file.overview_span),
                          .x = {.label = timed ? "Time (s)" : "Sample"},
                          .y = {.label = unit_label(channel.unit)},
                          .height = 200.0});
@@ -150,6 +154,7 @@ std::string inspect_html(const std::vector<InspectedFile>& files) {
     page.sections.push_back({.heading = file_name(file.name),
                              .tables = file_tables(file),
                              .figures = channel_figures(file)});
+    if (file.overview_span > 0) continue;
     for (Figure& figure : step_figures(file.recording)) {
       page.sections.back().figures.push_back(std::move(figure));
     }

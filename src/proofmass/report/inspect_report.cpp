@@ -63,6 +63,7 @@ Value timing_value(const TimingAudit& timing) {
                 {"channel", timing.channel.empty() ? Value() : Value(timing.channel)},
                 {"jitter_s", optional(timing.jitter_s)},
                 {"gaps", std::move(gaps)},
+                {"gap_count", timing.gap_count},
                 {"backwards", timing.backwards},
                 {"repeated", timing.repeated},
                 {"mended", timing.mended},
@@ -94,7 +95,7 @@ Object file_members(const InspectedFile& file) {
           {"channels", std::move(channels)},
           {"labels", labels_value(file.recording)},
           {"timing", timing_value(audit.timing)},
-          {"zero_rows", audit.zero_rows.size()},
+          {"zero_rows", audit.zero_row_count},
           {"bad", audit.is_bad()},
           {"notes", array_of(texts(audit.notes, Severity::info))}};
 }
@@ -197,7 +198,7 @@ std::string inspect_text(const InspectedFile& file) {
                                         timing.channel.empty() ? "" : " (" + timing.channel + ")")},
                    {"rate", has_rate(audit) ? compact(timing.rate_hz, 7) + " Hz" : "unknown"},
                    {"jitter", jitter_words(timing)},
-                   {"gaps", std::to_string(timing.gaps.size())},
+                   {"gaps", std::to_string(timing.gap_count)},
                    {"stamps", fmt::format("{} backwards, {} repeated, {} mended", timing.backwards,
                                           timing.repeated, timing.mended)}});
   std::vector<std::vector<std::string>> rows{

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct InspectedFile {
   std::string name;  ///< as the user named it
   const Recording& recording;
   const signal::RecordingAudit& audit;
+  /// The recording is an overview, the smallest and largest value of spans of so many samples; 0:
+  /// it is whole.
+  std::size_t overview_span = 0;
 };
 
 /// The document of `inspect`: docs/schema/inspect.schema.json. The fields of the first file stand
