@@ -65,6 +65,24 @@ def columns():
         data.attrs["units"] = ["s", "g", "g", "g", "degC"]
 
 
+def compound():
+    fields = [("time", "<f8"), ("acc", "<f4", (3,)), ("temp", ">i2"), ("on", "?"), ("word", "S4"), ("grid", "<f4", (2, 2))]
+    rows = np.zeros(N, dtype=fields)
+    rows["time"], rows["acc"], rows["temp"], rows["on"] = K / 50, vectors(1), K - 28, K % 3 == 0
+    with h5py.File(FOLDER / "compound.h5", "w") as f:
+        f.create_dataset("log/imu", data=rows, chunks=(7,), compression="gzip")
+        f["log/gps"] = np.zeros(5, dtype=[("lat", "<f8"), ("lon", "<f8")])
+        f["other"] = vectors(20)
+
+
+def stamps():
+    with h5py.File(FOLDER / "stamps.h5", "w", track_order=True) as f:
+        f["time"] = 1_700_000_000_000_000_001 + 5_000_000 * K + K % 3
+        f["time"].attrs["units"] = "ns"
+        for name, first in (("z", 3), ("x", 1), ("y", 2)):
+            f[name] = vectors(first, 1)
+
+
 def matlab():
     path = FOLDER / "matlab.mat"
     with h5py.File(path, "w", userblock_size=512) as f:
@@ -93,7 +111,21 @@ def matlab():
         f.write(b"MATLAB 7.3 MAT-file, made by a test".ljust(124) + b"\0\2IM")
 
 
+def frame(kind, data=b""):
+    return kind + len(data).to_bytes(4, "little") + data
+
+
+def messages():
+    """What a child process says: of the contents, and of 20 samples of five columns."""
+    contents = (FOLDER / "groups.contents").read_bytes()
+    (FOLDER / "contents.message").write_bytes(frame(b"data", contents) + frame(b"end "))
+    figures = [vectors(1)[:20].T, 5_000_000 * K[:20] - 7, K[:20].astype("<u8")]
+    said = b"".join(frame(b"data", np.ascontiguousarray(f).tobytes()) for f in figures)
+    (FOLDER / "figures.message").write_bytes(said + frame(b"end "))
+    (FOLDER / "error.message").write_bytes(frame(b"erro", b"\2is damaged"))
+
+
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
-    for specimen in (tiny, groups, sensors, columns, matlab):
+    for specimen in (tiny, groups, sensors, columns, compound, stamps, matlab, messages):
         specimen()

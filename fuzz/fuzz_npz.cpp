@@ -1,0 +1,22 @@
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "check_reading.hpp"
+#include "proofmass/io/npz_specimens.hpp"
+
+// The bytes are taken for arrays less their magic, parted by the word NEXT, and put into an archive
+// with the checksums that chance does not find.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::string rest(reinterpret_cast<const char*>(data), size);
+  std::vector<proofmass::io::specimen::ZipMember> members;
+  for (const char* name : {"imu/acc.npy", "imu/t.npy", "fs.npy", "more.npy"}) {
+    const std::size_t end = rest.find("NEXT");
+    members.push_back({name, "\x93NUMPY" + rest.substr(0, end)});
+    if (end == std::string::npos) break;
+    rest.erase(0, end + 4);
+  }
+  const std::string file = proofmass::io::specimen::zip(members);
+  check_reading(std::as_bytes(std::span(file)));
+  return 0;
+}

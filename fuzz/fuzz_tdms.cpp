@@ -1,0 +1,47 @@
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "check_reading.hpp"
+#include "proofmass/io/tdms_table.hpp"
+
+namespace {
+
+/// Every table of the file, a few rows at a time.
+void read_all_tables(std::span<const std::byte> bytes) {
+  using namespace proofmass::io;
+  auto source = std::make_unique<PeekSource>(open_memory(bytes));
+  auto random = random_bytes_of(std::move(source), {});
+  if (!random) return;
+  const auto contents = read_tdms_contents(std::move(random).value());
+  if (!contents) return;
+  constexpr std::size_t rows_at_once = 37;
+  for (std::size_t group = 0; group < (*contents)->groups.size(); ++group) {
+    const auto table = open_tdms_table(*contents, group);
+    if (!table) continue;
+    const std::size_t columns = (*table)->head().columns;
+    std::vector<std::vector<double>> block(columns, std::vector<double>(rows_at_once));
+    const std::vector<std::span<double>> into(block.begin(), block.end());
+    std::uint64_t rows = 0;
+    while (true) {
+      const auto count = (*table)->read(into);
+      if (!count || *count == 0) break;
+      rows += *count;
+    }
+    if (rows > bytes.size()) std::abort();
+  }
+}
+
+}  // namespace
+
+// The magic is put before the bytes, so that none of them is spent on finding it.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::vector<std::uint8_t> file{'T', 'D', 'S', 'm'};
+  file.insert(file.end(), data, data + size);
+  const auto bytes = std::as_bytes(std::span(file));
+  read_all_tables(bytes);
+  check_reading(bytes);
+  return 0;
+}
