@@ -48,7 +48,7 @@ struct TimeBase {
   /// nothing at all): what two recordings of one clock are laid beside each other with.
   std::optional<std::int64_t> start_ns;
   std::size_t mended = 0;            ///< stamps that a reader replaced, being no number or far off
-  std::size_t mended_backwards = 0;  ///< those of them that were below the stamp before
+  std::size_t mended_backwards = 0;  ///< stamps below the one before that no longer are
 
   [[nodiscard]] bool is_uniform() const { return stamps_s.empty(); }
   /// Seconds from the first sample to sample k; k itself where no rate is known.
