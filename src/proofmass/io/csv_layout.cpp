@@ -351,7 +351,8 @@ Result<CsvLayout> infer_layout(std::string_view head, bool is_whole_text) {
     return Error{Errc::too_few_samples, "is empty: expected a table of numbers"};
   if (looks_binary(head))
     return Error{Errc::corrupt,
-                 "is binary, and no format that is known: expected CSV, .npy or MAT"};
+                 "is binary, and no format that is known: expected a table of text, or a format "
+                 "that docs/formats.md lists"};
   CsvLayout layout;
   if (head.find('\n') == std::string_view::npos && head.find('\r') != std::string_view::npos)
     layout.line_end = '\r';

@@ -4,6 +4,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <string>
+#include <string_view>
 
 namespace proofmass::io {
 namespace {
@@ -76,6 +77,10 @@ const char* find_calls(void* library, DuckdbCalls& calls) {
 
 std::string duckdb_words(const char* words) {
   std::string text = words == nullptr ? "no reason given" : words;
+  // The reason comes behind what came of it.
+  constexpr std::string_view consequence = "pending query result\nError: ";
+  if (const std::size_t at = text.find(consequence); at != std::string::npos)
+    text.erase(0, at + consequence.size());
   text = text.substr(0, std::min(text.find("\n\nLINE "), std::size_t{600}));
   std::ranges::replace_if(text, [](unsigned char c) { return c < 32 || c == 127; }, ' ');
   return text;

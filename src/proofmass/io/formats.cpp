@@ -57,7 +57,9 @@ Result<std::unique_ptr<TableFile>> open_tables(std::unique_ptr<ByteSource> bytes
       std::ranges::find_if(all, [&](const Format& f) { return f.claims(*head, name); });
   auto file = format->open(std::move(opened), options);
   if (!file) return file.error();
-  if (!options.variables.empty() && !format->has_variables && (*file)->tables().size() < 2)
+  const auto tables = (*file)->tables();
+  const bool is_nameless = tables.size() == 1 && tables.front().name.empty();
+  if (!options.variables.empty() && !format->has_variables && is_nameless)
     return Error{Errc::invalid_argument,
                  "has one table only and nothing to choose from: --variable is for files of "
                  "several, as MAT, HDF5, TDMS and MCAP have"};

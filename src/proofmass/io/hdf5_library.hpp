@@ -34,8 +34,8 @@ enum class Hdf5Figures { doubles, int64, uint64 };
 
 /// A dataset to be read as samples × columns.
 struct Hdf5Request {
-  std::string name;     ///< for people
-  std::string address;  ///< Hdf5Dataset::address
+  std::string name{};     ///< for people
+  std::string address{};  ///< Hdf5Dataset::address
   std::uint64_t rows = 0;
   std::uint64_t width = 0;
   bool is_by_row = true;  ///< time runs along the first dimension, not along the last

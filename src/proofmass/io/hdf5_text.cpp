@@ -26,7 +26,12 @@ bool put_attribute(hid_t owner, const char* name, hid_t type, const void* value)
 }
 
 bool put_text(hid_t owner, const std::string& name, const std::string& text) {
-  return put_attribute(owner, name.c_str(), text_type(text), text.c_str());
+  // Of variable length, as h5py has texts.
+  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, H5T_VARIABLE);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  const char* value = text.c_str();
+  return put_attribute(owner, name.c_str(), type, &value);
 }
 
 bool put_text_dataset(hid_t group, const std::string& name, const std::string& text) {

@@ -104,6 +104,14 @@ TEST_F(Hdf5Written, ComesBackToTheLastBitHoweverItWasCut) {
   }
 }
 
+TEST_F(Hdf5Written, ComesBackWhereItIsLongerThanABlock) {
+  Recording recording = troubled(300'000);
+  recording.channels.resize(1);
+  const auto back = through(recording, 65'536);
+  ASSERT_TRUE(back) << back.error().message;
+  expect_same(recording, *back);
+}
+
 TEST_F(Hdf5Written, KeepsAnEvenTimeBaseAsARate) {
   for (const auto start_ns : {std::optional<std::int64_t>{}, std::optional<std::int64_t>{-5}}) {
     Recording recording = troubled(100);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -56,11 +57,10 @@ constexpr std::array<std::string_view, 31> tags{"Channels",
 std::string_view tag_of(std::string_view line) {
   std::string_view longest;
   for (const std::string_view tag : tags) {
-    const bool is_it =
-        line.starts_with(tag) && tag.size() > longest.size() &&
-        (line.size() == tag.size() ||
-         !(std::isalnum(static_cast<unsigned char>(line[tag.size()])) || line[tag.size()] == '_'));
-    if (is_it) longest = tag;
+    if (!line.starts_with(tag) || tag.size() <= longest.size()) continue;
+    const char behind = line.size() == tag.size() ? '\t' : line[tag.size()];
+    const bool goes_on = std::isalnum(static_cast<unsigned char>(behind)) != 0 || behind == '_';
+    if (!goes_on) longest = tag;
   }
   return longest;
 }
@@ -231,19 +231,22 @@ LvmChannel LvmSegmentHeader::channel(std::size_t index, Fields& unknown_units) c
   return channel;
 }
 
-LvmSegment LvmSegmentHeader::finish(std::string_view names) {
-  names_ = fields_of(names);
-  LvmSegment segment;
-  const std::size_t step = file_.x == LvmX::multi ? 2 : 1;
+/// No more than what is written in lines that are there.
+std::size_t LvmSegmentHeader::count_channels() const {
   std::size_t told = std::max({names_.size(), samples_.size(), delta_x_.size()});
   while (told > 0 && field(names_, told - 1).empty() && field(samples_, told - 1).empty() &&
          field(delta_x_, told - 1).empty())
     --told;
   if (told > 1 && lower(field(names_, told - 1)) == "comment") --told;
-  // No more than what is written in lines that are there.
-  std::size_t count = told / step;
-  if (step == 1 && told > 0) count = told - 1;
-  if (channels_ > 0) count = std::min(count, channels_);
+  if (told == 0) return 0;
+  const std::size_t count = file_.x == LvmX::multi ? told / 2 : told - 1;
+  return channels_ > 0 ? std::min(count, channels_) : count;
+}
+
+LvmSegment LvmSegmentHeader::finish(std::string_view names) {
+  names_ = fields_of(names);
+  LvmSegment segment;
+  const std::size_t count = count_channels();
   Fields unknown_units;
   for (std::size_t i = 0; i < count; ++i) segment.channels.push_back(channel(i, unknown_units));
   const std::string_view dimension = field(dimensions_, 1);

@@ -71,6 +71,7 @@ class LvmSegmentHeader {
 
  private:
   [[nodiscard]] std::vector<std::string> fields_of(std::string_view line) const;
+  [[nodiscard]] std::size_t count_channels() const;
   [[nodiscard]] LvmChannel channel(std::size_t index,
                                    std::vector<std::string>& unknown_units) const;
 

@@ -121,11 +121,7 @@ class LvmReader final : public TableReader {
       return;
     }
     if (table_.x_column) {
-      const std::int64_t first_ns = rows_.first_x() ? rows_.first_x()->ns(1.0).value_or(0) : 0;
-      constexpr std::int64_t surely_absolute_ns = 1'000'000'000 * second_ns;
-      const bool is_absolute = file_->contents.file.is_absolute && first_ns > surely_absolute_ns;
-      if (is_absolute) timing_.starts_s.assign(table_.segments.size(), 0.0);
-      declare_time(first_ns, is_absolute ? -seconds_1904_to_1970 * second_ns : start_ns);
+      place_x_values(start_ns);
       return;
     }
     const auto offset_ns = static_cast<std::int64_t>(std::llround(timing_.starts_s[0] * 1e9));
@@ -141,6 +137,15 @@ class LvmReader final : public TableReader {
     std::int64_t at_ns = 0;
     if (timing_.start_ns && !__builtin_add_overflow(start_ns, offset_ns, &at_ns))
       head_.start_ns = at_ns;
+  }
+
+  /// The X values are seconds since the start, or since the beginning of LabVIEW's calendar.
+  void place_x_values(std::int64_t start_ns) {
+    const std::int64_t first_ns = rows_.first_x() ? rows_.first_x()->ns(1.0).value_or(0) : 0;
+    constexpr std::int64_t surely_absolute_ns = 1'000'000'000 * second_ns;
+    const bool is_absolute = file_->contents.file.is_absolute && first_ns > surely_absolute_ns;
+    if (is_absolute) timing_.starts_s.assign(table_.segments.size(), 0.0);
+    declare_time(first_ns, is_absolute ? -seconds_1904_to_1970 * second_ns : start_ns);
   }
 
   /// Column 0 is the time, seconds since the first row's at `first_ns` + `zero_ns`.

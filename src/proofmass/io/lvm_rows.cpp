@@ -63,41 +63,44 @@ const char* LvmRowParser::end_of_field(const char* begin, const char* end) const
 void LvmRowParser::parse(std::string_view line, std::span<double> figures, double& x) {
   std::ranges::fill(figures, nan);
   x = nan;
+  Row row;
   const char* p = line.data();
   const char* const end = p + line.size();
-  std::string_view x_field;
-  std::string_view last_field;
-  int last = passed_over;
-  bool has_other_x = false;
   for (const int use : uses_) {
-    const char* const behind = use == comment ? end
-                               : use >= 0
-                                   ? parse_figure(p, end, figures[static_cast<std::size_t>(use)])
-                                   : end_of_field(p, end);
-    const std::string_view field(p, static_cast<std::size_t>(behind - p));
+    const char* behind = nullptr;
     if (use >= 0) {
-      last = use;
-      last_field = field;
-    } else if (use == x_value) {
-      x_field = field;
-      x = stamps_.read(trimmed(field));
-    } else if (use == further_x) {
-      has_other_x = has_other_x || (field != x_field && !trimmed(field).empty());
-    } else if (use == comment) {
-      take_comment(field);
+      behind = parse_figure(p, end, figures[static_cast<std::size_t>(use)]);
+      row.figures = static_cast<std::size_t>(use) + 1;
+      row.last = {p, static_cast<std::size_t>(behind - p)};
+    } else {
+      behind = use == comment ? end : end_of_field(p, end);
+      const std::string_view field(p, static_cast<std::size_t>(behind - p));
+      if (use == x_value) x = stamps_.read(trimmed(field));
+      take_field(use, field, row);
     }
     if (behind == end) break;
     p = behind + 1;
   }
-  if (has_other_x && faults_.other_x++ == 0) faults_.other_x_line = lines_->number();
+  judge(row, figures);
+}
+
+/// What is beside the figures.
+void LvmRowParser::take_field(int use, std::string_view field, Row& row) {
+  if (use == x_value) row.x = field;
+  if (use == further_x && field != row.x && !trimmed(field).empty()) row.has_other_x = true;
+  if (use == comment) take_comment(field);
+}
+
+void LvmRowParser::judge(const Row& row, std::span<double> figures) {
+  if (row.has_other_x && faults_.other_x++ == 0) faults_.other_x_line = lines_->number();
   if (decimals_ && lines_->is_ended()) return;
-  const int decimals = decimals_in(last_field, file_.point);
-  if (!decimals_) decimals_ = decimals;
   // Figures are written with as many decimals all: fewer where the file ends are one cut short.
-  const bool is_short = static_cast<std::size_t>(last + 1) < figures.size() ||
-                        (!last_field.empty() && decimals < *decimals_);
+  const int decimals = decimals_in(row.last, file_.point);
+  if (!decimals_) decimals_ = decimals;
+  const bool is_short =
+      row.figures < figures.size() || (!row.last.empty() && decimals < *decimals_);
   if (lines_->is_ended() || !is_short) return;
-  if (last >= 0) figures[static_cast<std::size_t>(last)] = nan;
+  if (row.figures > 0) figures[row.figures - 1] = nan;
   faults_.cut_line = lines_->number();
 }
 

@@ -50,13 +50,22 @@ class LvmRowParser {
   [[nodiscard]] std::uint64_t offset() const { return lines_ ? lines_->offset() : 0; }
 
  private:
+  /// What is seen of a row while it is read.
+  struct Row {
+    std::string_view x;
+    std::string_view last;    ///< figure that is there
+    std::size_t figures = 0;  ///< up to that one
+    bool has_other_x = false;
+  };
   enum : int { passed_over = -1, x_value = -2, further_x = -3, comment = -4 };
 
   void parse(std::string_view line, std::span<double> figures, double& x);
   const char* parse_figure(const char* begin, const char* end, double& figure);
   double read_figure(std::string_view field);
   [[nodiscard]] const char* end_of_field(const char* begin, const char* end) const;
+  void take_field(int use, std::string_view field, Row& row);
   void take_comment(std::string_view field);
+  void judge(const Row& row, std::span<double> figures);
 
   const RandomBytes& bytes_;
   const LvmFile& file_;

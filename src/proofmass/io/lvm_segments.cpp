@@ -1,13 +1,11 @@
 #include "proofmass/io/lvm_segments.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
-#include <iterator>
 #include <map>
 #include <utility>
 
-#include "proofmass/io/cell.hpp"
+#include "proofmass/io/lvm_table.hpp"
 #include "proofmass/io/shown_text.hpp"
 #include "proofmass/io/wording.hpp"
 
@@ -123,54 +121,13 @@ class Lister {
     end_segment();
     current_.clear();
     is_begun_ = false;
-    pending_ = groups_of(segment);
-    if (pending_.size() < 2) return;
-    for (LvmTable& group : pending_)
-      if (const double delta_x = group.channels.front().delta_x; delta_x > 0.0)
-        group.name = fmt::format(" at {} Hz", in_words(1.0 / delta_x));
+    pending_ = tables_of(segment, contents_.file.x);
   }
 
   /// A segment that says it has samples and has none.
   void end_segment() {
     if (pending_.empty() || pending_.front().channels.front().samples == 0) return;
     if (++empty_segments_ == 1) first_empty_line_ = lines_.number();
-  }
-
-  /// Channels of one Delta_X that began together, as a table each.
-  std::vector<LvmTable> groups_of(LvmSegment& segment) const {
-    constexpr std::size_t most_groups = 64;
-    std::vector<LvmTable> groups;
-    const LvmX x = contents_.file.x;
-    const auto longest = std::ranges::max_element(segment.channels, {}, &LvmChannel::samples);
-    for (auto channel = segment.channels.begin(); channel != segment.channels.end(); ++channel) {
-      auto group = std::ranges::find_if(groups, [&](const LvmTable& table) {
-        return is_together(table.channels.front(), *channel);
-      });
-      if (group == groups.end() && groups.size() == most_groups) group = groups.end() - 1;
-      if (group == groups.end()) {
-        group = groups.insert(groups.end(), LvmTable{});
-        group->x_is_time = segment.x_is_time;
-        group->x_heading = segment.x_heading;
-        if (x == LvmX::multi) group->x_column = channel->column - 1;
-        if (groups.size() == 1) group->notes = segment.notes;
-      }
-      if (x == LvmX::one && channel == longest) group->x_column = 0;
-      group->columns_in_file = std::max(group->columns_in_file, channel->column + 1);
-      group->channels.push_back(*channel);
-    }
-    return groups;
-  }
-
-  static bool is_together(const LvmChannel& one, const LvmChannel& other) {
-    if (one.delta_text != other.delta_text) return false;
-    if (one.start_ns.has_value() != other.start_ns.has_value()) return false;
-    const double apart_s = other.x0 - one.x0 +
-                           (one.start_ns ? static_cast<double>(*other.start_ns) * 1e-9 -
-                                               static_cast<double>(*one.start_ns) * 1e-9
-                                         : 0.0);
-    // Channels that a multiplexer takes one after another are of one scan; software may take a
-    // while between its single readings.
-    return std::abs(apart_s) <= std::max(one.delta_x, 1e-3) || one.delta_x == 0.0;
   }
 
   /// A row: of the tables that were announced last.
@@ -274,32 +231,6 @@ class Lister {
 };
 
 }  // namespace
-
-std::uint64_t LvmTable::rows() const {
-  std::uint64_t all = 0;
-  for (const LvmRows& segment : segments) all += segment.count;
-  return all;
-}
-
-bool is_lvm_row(std::string_view line, const LvmFile& file) {
-  if (line.empty()) return false;
-  const auto begins_figure = [](char c) { return (c >= '0' && c <= '9') || c == '-' || c == '+'; };
-  // Nearly all rows begin with a figure, or with a blank X value before one.
-  if (begins_figure(line.front())) return true;
-  if (line.front() == file.separator && line.size() > 1 && begins_figure(line[1])) return true;
-  if (line.front() == '*') return false;
-  if (is_lvm_tag(line)) return false;
-  // The first field may be blank, or a word for no figure; others any word.
-  for (bool is_first = true; !line.empty(); is_first = false) {
-    const std::size_t end = std::min(line.find(file.separator), line.size());
-    const Cell cell = read_cell(line.substr(0, end), file.point);
-    if (cell.kind == CellKind::number) return true;
-    if (cell.kind == CellKind::text && is_first) return false;
-    if (cell.kind == CellKind::missing && !trimmed(line.substr(0, end)).empty()) return true;
-    line.remove_prefix(std::min(end + 1, line.size()));
-  }
-  return false;
-}
 
 Result<LvmContents> list_lvm(const RandomBytes& file, const Progress& progress) {
   return Lister(file, progress).run();

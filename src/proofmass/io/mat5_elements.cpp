@@ -4,27 +4,12 @@
 #include <fmt/format.h>
 
 #include "proofmass/io/mat_catalogue.hpp"
+#include "proofmass/io/utf8.hpp"
 
 namespace proofmass::io {
 namespace {
 
 constexpr std::uint32_t mi_uint16 = 4;
-
-/// A character of two bytes at most; halves of larger ones are no text that names anything.
-void append_utf8(std::uint32_t character, std::string& out) {
-  if (character >= 0xD800 && character < 0xE000) character = '?';
-  if (character < 0x80) {
-    out += static_cast<char>(character);
-    return;
-  }
-  if (character < 0x800) {
-    out += static_cast<char>(0xC0 | character >> 6);
-  } else {
-    out += static_cast<char>(0xE0 | character >> 12);
-    out += static_cast<char>(0x80 | (character >> 6 & 0x3F));
-  }
-  out += static_cast<char>(0x80 | (character & 0x3F));
-}
 
 }  // namespace
 
@@ -189,7 +174,7 @@ Result<std::string> Mat5Elements::text(std::uint64_t end, std::size_t most) {
   const std::size_t step = is_wide ? 2 : 1;
   for (std::size_t i = 0; i + step <= bytes->size(); i += step) {
     const FigureType unit{'u', step, big_endian_};
-    append_utf8(static_cast<std::uint32_t>(load_figure(bytes->data() + i, unit)), characters);
+    append_utf8(characters, static_cast<std::uint32_t>(load_figure(bytes->data() + i, unit)));
   }
   return characters;
 }

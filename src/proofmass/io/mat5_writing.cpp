@@ -4,17 +4,19 @@
 #include <array>
 #include <bit>
 
+#include "proofmass/io/utf8.hpp"
+
 namespace proofmass::io {
 namespace {
 
 enum Type : std::uint32_t {
   mi_int8 = 1,
-  mi_uint16 = 4,
   mi_int32 = 5,
   mi_uint32 = 6,
   mi_double = 9,
   mi_int64 = 12,
   mi_matrix = 14,
+  mi_utf8 = 16,
 };
 enum Class : std::uint32_t { mx_struct = 2, mx_char = 4, mx_double = 6, mx_int64 = 14 };
 
@@ -65,35 +67,19 @@ std::string matrix(const std::string& body) {
   return matrix_tag(body.size()) + body;
 }
 
-/// The next character of UTF-8 and how many bytes it takes; a byte that is none stands for itself.
-std::uint32_t next_character(std::string_view text, std::size_t& length) {
-  const auto lead = static_cast<unsigned char>(text[0]);
-  length = lead < 0xC0 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
-  const std::uint32_t mask = length == 1 ? 0xFF : 0x7Fu >> length;
-  std::uint32_t character = lead & mask;
-  for (std::size_t i = 1; i < length; ++i) {
-    const bool goes_on = i < text.size() && (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80;
-    if (!goes_on) {
-      length = 1;
-      return lead;
-    }
-    character = character << 6 | (static_cast<unsigned char>(text[i]) & 0x3Fu);
-  }
-  return character;
-}
-
-std::string utf16_of(std::string_view text) {
-  std::string out;
+/// A text as MATLAB keeps it: its bytes in UTF-8, and how many units of UTF-16 they are.
+struct StoredText {
+  std::string bytes;
+  std::size_t units = 0;
+};
+StoredText stored(std::string_view text) {
+  StoredText out;
   while (!text.empty()) {
     std::size_t length = 0;
     const std::uint32_t character = next_character(text, length);
     text.remove_prefix(length);
-    if (character < 0x10000) {
-      append(out, static_cast<std::uint16_t>(character));
-    } else {
-      append(out, static_cast<std::uint16_t>(0xD800 + ((character - 0x10000) >> 10 & 0x3FF)));
-      append(out, static_cast<std::uint16_t>(0xDC00 + (character & 0x3FF)));
-    }
+    append_utf8(out.bytes, character);
+    out.units += character < 0x10000 ? 1 : 2;
   }
   return out;
 }
@@ -138,10 +124,9 @@ std::string mat5_texts(std::string_view name, const std::vector<Mat5Text>& texts
   for (const Mat5Text& text : texts) {
     fields += text.field;
     fields.resize((fields.size() / field_bytes + 1) * field_bytes, '\0');
-    const std::string characters = utf16_of(text.text);
-    const std::size_t count = characters.size() / 2;
-    values +=
-        matrix(preface(mx_char, count > 0 ? 1 : 0, count, "") + element(mi_uint16, characters));
+    const StoredText characters = stored(text.text);
+    values += matrix(preface(mx_char, characters.units > 0 ? 1 : 0, characters.units, "") +
+                     element(mi_utf8, characters.bytes));
   }
   return matrix(preface(mx_struct, 1, 1, name) + element(mi_int32, length) +
                 element(mi_int8, fields) + values);

@@ -87,6 +87,7 @@ class MatWriter final : public RecordingWriter {
   [[nodiscard]] std::string origin() const {
     MatNames names;
     std::vector<Mat5Text> texts;
+    texts.reserve(options_.metadata.size() + 1);
     for (const auto& [key, value] : options_.metadata)
       texts.push_back({names.name_for(key), value});
     if (!options_.sensor_file.empty())

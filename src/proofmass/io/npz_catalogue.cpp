@@ -69,14 +69,21 @@ class Lister {
       catalogue_.places.push_back({entry, *preface, 0, std::nullopt});
       return;
     }
+    add_fields(entry, name, *preface, layout->rows);
+  }
+
+  void add_fields(std::size_t entry,
+                  std::string_view name,
+                  const NpyPreface& preface,
+                  std::size_t rows) {
     std::size_t column = 0;
-    for (const NpyField& field : header.fields) {
+    for (const NpyField& field : preface.header.fields) {
       if (field.type.kind == 0) continue;
       if (catalogue_.places.size() >= most_mat_arrays) break;
-      if (field.count <= layout->rows) {
-        add_array(fmt::format("{}.{}", name, field.name), name.size(), {layout->rows, field.count},
+      if (field.count <= rows) {
+        add_array(fmt::format("{}.{}", name, field.name), name.size(), {rows, field.count},
                   field.type);
-        catalogue_.places.push_back({entry, *preface, column, field.count});
+        catalogue_.places.push_back({entry, preface, column, field.count});
       }
       column += field.count;
     }

@@ -207,6 +207,7 @@ Status read_parquet(const std::string& path, const ReadOptions& options, const B
   std::string message = done.error().message;
   for (std::size_t at = message.find(path); at != std::string::npos; at = message.find(path))
     message.replace(at, path.size(), "it");
+  if (done.error().code == Errc::corrupt) message = "is damaged, or breaks off: " + message;
   return Error{done.error().code, message};
 }
 

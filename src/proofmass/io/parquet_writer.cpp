@@ -63,7 +63,7 @@ class ParquetWriter final : public RecordingWriter {
 
   Status begin(const WriterHead& head, const WriteOptions& options) {
     auto opened = Duckdb::open(options.duckdb_library, room_.path());
-    if (!opened) return opened.error().at(path());
+    if (!opened) return opened.error();
     database_.emplace(std::move(opened).value());
     std::string table = "CREATE TABLE recording (";
     for (std::size_t c = 0; c < columns_.size(); ++c)

@@ -56,7 +56,9 @@ Result<std::unique_ptr<TableFile>> open_path(const std::string& path, const Read
 
 Result<ChosenTables> chosen_tables_of(const TableFile& file, const ReadOptions& options) {
   ChosenTables chosen{{0}, {}};
-  if (file.tables().size() < 2) return chosen;
+  const auto tables = file.tables();
+  const bool is_named = !tables.empty() && !tables.front().name.empty();
+  if (tables.size() == 1 && (options.variables.empty() || !is_named)) return chosen;
   auto choice = choose_table(file.tables(), options, chosen.notes);
   if (!choice) return choice.error();
   chosen.tables = std::move(choice).value();

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <map>
 #include <string_view>
 
@@ -47,33 +48,44 @@ std::optional<std::int64_t> instant_of(std::string_view text) {
   return ns;
 }
 
+/// The full scale in g that the comment names for an acceleration of whole numbers.
+std::optional<double> scale_of(const WavHeader& header,
+                               const Fields& fields,
+                               const std::string& name,
+                               const std::string& number) {
+  if (header.figure.kind == 'u' || !bare_name(name).starts_with("accel")) return std::nullopt;
+  const Cell scale = read_cell(find(fields, "scale-" + number), '.');
+  const bool is_told =
+      scale.kind == CellKind::number && scale.value > 0.0 && std::isfinite(scale.value);
+  return is_told ? std::optional(scale.value) : std::nullopt;
+}
+
+/// Whether a channel says which samples are there: only 16 bits have the layout for it.
+bool is_auxiliary(const WavHeader& header, std::string_view name) {
+  return bare_name(name) == "aux" && header.figure.kind == 'i' && header.figure.bytes == 2;
+}
+
 void label_channels(const WavHeader& header, const Fields& fields, WavLabels& labels) {
   const bool is_whole = header.figure.kind != 'f';
+  const std::string_view own_unit = is_whole ? " (counts)" : "";
   const double full_scale =
       is_whole ? std::ldexp(1.0, static_cast<int>(8 * header.figure.bytes) - 1) : 1.0;
-  std::string scaled;
+  std::vector<std::string> scaled;
   for (std::size_t c = 0; c < header.channels; ++c) {
     const std::string number = std::to_string(c + 1);
-    const std::string told = find(fields, "channel-" + number);
-    const std::string name = told.empty() ? "channel_" + number : told;
-    const Cell scale = read_cell(find(fields, "scale-" + number), '.');
-    const bool is_scaled = scale.kind == CellKind::number && scale.value > 0.0 &&
-                           std::isfinite(scale.value) && header.figure.kind != 'u' &&
-                           bare_name(name).starts_with("accel");
-    labels.headings.push_back(name + (is_scaled ? " (g)" : is_whole ? " (counts)" : ""));
-    labels.factors.push_back(is_scaled ? scale.value / full_scale : 1.0);
-    if (is_scaled)
-      scaled += fmt::format("{}{} ±{} g", scaled.empty() ? "" : ", ", name, in_words(scale.value));
-    // Only 16 bits have the layout that says which samples are there.
-    if (bare_name(name) == "aux" && header.figure.kind == 'i' && header.figure.bytes == 2)
-      labels.validity = c;
+    std::string name = find(fields, "channel-" + number);
+    if (name.empty()) name = "channel_" + number;
+    const auto scale = scale_of(header, fields, name, number);
+    labels.headings.push_back(name + std::string(scale ? " (g)" : own_unit));
+    labels.factors.push_back(scale.value_or(full_scale) / full_scale);
+    if (scale) scaled.push_back(fmt::format("{} ±{} g", name, in_words(*scale)));
+    if (is_auxiliary(header, name)) labels.validity = c;
   }
-  if (scaled.empty()) {
-    labels.validity.reset();
-    return;
-  }
-  labels.notes.push_back(
-      {Severity::info, fmt::format("full scale as the comment of the file says: {}", scaled)});
+  if (scaled.empty()) labels.validity.reset();
+  if (!scaled.empty())
+    labels.notes.push_back({Severity::info, fmt::format("full scale as the comment of the file "
+                                                        "says: {}",
+                                                        fmt::join(scaled, ", "))});
 }
 
 void tell_scale(const WavHeader& header, WavLabels& labels) {
