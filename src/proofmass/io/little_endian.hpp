@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -16,14 +18,21 @@ inline void append_little_endian(std::string& out, std::uint64_t value, std::siz
   for (std::size_t i = 0; i < count; ++i) out += static_cast<char>(value >> (8 * i) & 0xFF);
 }
 
+/// Appends a number of any kind.
+template <class T>
+void append_value(std::string& out, T value) {
+  auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  if constexpr (std::endian::native == std::endian::big) std::ranges::reverse(bytes);
+  out.append(bytes.data(), bytes.size());
+}
+
 /// Appends figures as they lie in a little-endian file.
 inline void append_doubles(std::string& out, View<double> values) {
   if constexpr (std::endian::native == std::endian::little) {
     if (!values.empty())
       out.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
   } else {
-    for (const double value : values)
-      append_little_endian(out, std::bit_cast<std::uint64_t>(value), 8);
+    for (const double value : values) append_value(out, value);
   }
 }
 

@@ -1,9 +1,6 @@
 #include "proofmass/io/mat5_writing.hpp"
 
-#include <algorithm>
-#include <array>
-#include <bit>
-
+#include "proofmass/io/little_endian.hpp"
 #include "proofmass/io/utf8.hpp"
 
 namespace proofmass::io {
@@ -20,22 +17,15 @@ enum Type : std::uint32_t {
 };
 enum Class : std::uint32_t { mx_struct = 2, mx_char = 4, mx_double = 6, mx_int64 = 14 };
 
-template <class T>
-void append(std::string& out, T value) {
-  auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
-  if constexpr (std::endian::native == std::endian::big) std::ranges::reverse(bytes);
-  out.append(bytes.data(), bytes.size());
-}
-
 /// A data element; one of four bytes or fewer has them in its tag.
 std::string element(Type type, std::string_view data) {
   std::string out;
   if (!data.empty() && data.size() <= 4) {
-    append(out, static_cast<std::uint32_t>(data.size()) << 16 | type);
+    append_value(out, static_cast<std::uint32_t>(data.size()) << 16 | type);
     out += data;
   } else {
-    append<std::uint32_t>(out, type);
-    append(out, static_cast<std::uint32_t>(data.size()));
+    append_value<std::uint32_t>(out, type);
+    append_value(out, static_cast<std::uint32_t>(data.size()));
     out += data;
   }
   out.resize((out.size() + 7) / 8 * 8, '\0');
@@ -48,18 +38,18 @@ std::string preface(Class array_class,
                     std::size_t columns,
                     std::string_view name) {
   std::string flags;
-  append<std::uint32_t>(flags, array_class);
-  append<std::uint32_t>(flags, 0);
+  append_value<std::uint32_t>(flags, array_class);
+  append_value<std::uint32_t>(flags, 0);
   std::string shape;
-  append(shape, static_cast<std::int32_t>(rows));
-  append(shape, static_cast<std::int32_t>(columns));
+  append_value(shape, static_cast<std::int32_t>(rows));
+  append_value(shape, static_cast<std::int32_t>(columns));
   return element(mi_uint32, flags) + element(mi_int32, shape) + element(mi_int8, name);
 }
 
 std::string matrix_tag(std::size_t size) {
   std::string out;
-  append<std::uint32_t>(out, mi_matrix);
-  append(out, static_cast<std::uint32_t>(size));
+  append_value<std::uint32_t>(out, mi_matrix);
+  append_value(out, static_cast<std::uint32_t>(size));
   return out;
 }
 
@@ -91,34 +81,34 @@ std::string mat5_file_header(std::string_view text) {
   header += text;
   header.resize(116, ' ');
   header.append(8, '\0');
-  append<std::uint16_t>(header, 0x0100);
-  append<std::uint16_t>(header, 'M' << 8 | 'I');
+  append_value<std::uint16_t>(header, 0x0100);
+  append_value<std::uint16_t>(header, 'M' << 8 | 'I');
   return header;
 }
 
 std::string mat5_column_head(std::string_view name, std::size_t rows) {
   std::string body = preface(mx_double, rows, 1, name);
-  append<std::uint32_t>(body, mi_double);
-  append(body, static_cast<std::uint32_t>(rows * sizeof(double)));
+  append_value<std::uint32_t>(body, mi_double);
+  append_value(body, static_cast<std::uint32_t>(rows * sizeof(double)));
   return matrix_tag(body.size() + rows * sizeof(double)) + body;
 }
 
 std::string mat5_number(std::string_view name, double value) {
   std::string out = mat5_column_head(name, 1);
-  append(out, value);
+  append_value(out, value);
   return out;
 }
 
 std::string mat5_whole_number(std::string_view name, std::int64_t value) {
   std::string figure;
-  append(figure, value);
+  append_value(figure, value);
   return matrix(preface(mx_int64, 1, 1, name) + element(mi_int64, figure));
 }
 
 std::string mat5_texts(std::string_view name, const std::vector<Mat5Text>& texts) {
   constexpr std::size_t field_bytes = 64;
   std::string length;
-  append(length, static_cast<std::int32_t>(field_bytes));
+  append_value(length, static_cast<std::int32_t>(field_bytes));
   std::string fields;
   std::string values;
   for (const Mat5Text& text : texts) {

@@ -15,6 +15,7 @@
 #include "proofmass/io/recording_writers.hpp"
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/write_recording.hpp"
+#include "proofmass/io/written_test_support.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -41,25 +42,6 @@ class MatWriter : public testing::Test {
  private:
   std::filesystem::path folder_;
 };
-
-void expect_same(const Recording& recording, const Recording& back) {
-  ASSERT_EQ(back.channels.size(), recording.channels.size());
-  for (std::size_t c = 0; c < recording.channels.size(); ++c) {
-    const Channel& one = recording.channels[c];
-    const Channel& other = back.channels[c];
-    EXPECT_EQ(other.name, one.name);
-    EXPECT_EQ(other.unit, one.unit) << one.name;
-    ASSERT_EQ(other.values.size(), one.values.size());
-    for (std::size_t k = 0; k < one.values.size(); ++k)
-      ASSERT_TRUE(std::bit_cast<std::uint64_t>(other.values[k]) ==
-                      std::bit_cast<std::uint64_t>(one.values[k]) ||
-                  (std::isnan(other.values[k]) && std::isnan(one.values[k])))
-          << one.name << " " << k;
-  }
-  ASSERT_EQ(back.samples(), recording.samples());
-  for (std::size_t k = 0; k < recording.samples(); ++k)
-    ASSERT_EQ(back.time.at(k), recording.time.at(k)) << k;
-}
 
 Recording uniform(std::size_t samples, double rate_hz) {
   Recording recording;
@@ -96,7 +78,7 @@ TEST_F(MatWriter, KeepsEveryBitNamesUnitsAndTimes) {
     EXPECT_EQ(back->format, "MAT v5");
     EXPECT_EQ(back->time.channel, "clock");
     EXPECT_EQ(back->time.start_ns.value_or(0), start_ns.value_or(0));
-    expect_same(recording, *back);
+    expect_same_recording(recording, *back);
   }
 }
 
@@ -108,7 +90,7 @@ TEST_F(MatWriter, AUniformBaseStaysUniform) {
     ASSERT_TRUE(back.has_value()) << back.error().message;
     EXPECT_TRUE(back->time.is_uniform()) << rate_hz;
     EXPECT_EQ(back->time.start_ns, recording.time.start_ns);
-    expect_same(recording, *back);
+    expect_same_recording(recording, *back);
   }
 }
 
@@ -118,7 +100,7 @@ TEST_F(MatWriter, NeedsNoTime) {
   const auto back = through(recording);
   ASSERT_TRUE(back.has_value()) << back.error().message;
   EXPECT_EQ(back->time.source, TimeSource::none);
-  expect_same(recording, *back);
+  expect_same_recording(recording, *back);
 }
 
 TEST_F(MatWriter, ColumnsOfAnyLengthComeBackFromTheSpool) {

@@ -10,6 +10,7 @@
 #include "proofmass/io/mcap_specimens.hpp"
 #include "proofmass/io/recording_writers.hpp"
 #include "proofmass/io/test_support.hpp"
+#include "proofmass/io/written_test_support.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -56,46 +57,19 @@ std::string written(const Recording& recording,
   return bytes;
 }
 
-/// Doubles of every size, with every kind of trouble.
 Recording troubled(std::size_t samples, bool has_stamps) {
-  std::mt19937_64 random(17);
-  Recording recording;
+  Recording recording = troubled_recording(samples, {"acc_x", "acc_y", "odd, \"name\"", "temp"});
   recording.source = "rig.csv";
   recording.format = "CSV";
-  recording.time = {TimeSource::given_rate, "", 128.0, {}, 1'705'479'286'000'000'123};
-  for (const char* name : {"acc_x", "acc_y", "odd, \"name\"", "temp"})
-    recording.channels.push_back({name, *parse_unit("m/s^2"), {}});
   recording.channels[3].unit = *parse_unit("degC");
-  std::uniform_real_distribution<double> jitter(0.0, 0.004);
-  for (std::size_t k = 0; k < samples; ++k) {
-    if (has_stamps)
-      recording.time.stamps_s.push_back(
-          k == 0 ? 0.0 : 0.0078125 * static_cast<double>(k) + jitter(random));
-    for (Channel& channel : recording.channels)
-      channel.values.push_back(std::bit_cast<double>(random() & ~(std::uint64_t{1} << 62)));
-  }
-  recording.channels[0].values[1] = std::numeric_limits<double>::quiet_NaN();
-  recording.channels[1].values[2] = -std::numeric_limits<double>::infinity();
-  recording.channels[2].values[0] = -0.0;
+  if (!has_stamps)
+    recording.time = {TimeSource::given_rate, "", 128.0, {}, recording.time.start_ns};
   return recording;
 }
 
-std::vector<std::uint64_t> bits_of(const std::vector<double>& values) {
-  std::vector<std::uint64_t> bits;
-  for (const double value : values)
-    bits.push_back(std::isnan(value) ? 1 : std::bit_cast<std::uint64_t>(value));
-  return bits;
-}
-
-void expect_same(const Recording& read, const Recording& recording) {
-  ASSERT_EQ(read.channels.size(), recording.channels.size());
-  for (std::size_t c = 0; c < read.channels.size(); ++c) {
-    EXPECT_EQ(read.channels[c].name, recording.channels[c].name);
-    EXPECT_EQ(read.channels[c].unit, recording.channels[c].unit);
-    EXPECT_EQ(bits_of(read.channels[c].values), bits_of(recording.channels[c].values));
-  }
-  EXPECT_EQ(read.time.stamps_s, recording.time.stamps_s);
-  EXPECT_EQ(read.time.start_ns, recording.time.start_ns);
+void expect_same(const Recording& read, const Recording& written) {
+  expect_same_recording(read, written);
+  EXPECT_EQ(read.time.start_ns, written.time.start_ns);
 }
 
 TEST(McapWritten, ReadsBackBitForBitHoweverItIsCutIntoBlocks) {

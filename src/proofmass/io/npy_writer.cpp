@@ -1,22 +1,14 @@
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstdint>
+#include <cstddef>
 #include <fmt/format.h>
 #include <string>
 #include <utility>
 
+#include "proofmass/io/little_endian.hpp"
 #include "proofmass/io/recording_writers.hpp"
 #include "proofmass/io/row_times.hpp"
 
 namespace proofmass::io {
 namespace {
-
-void append_little_endian(std::string& out, double value) {
-  auto bytes = std::bit_cast<std::array<char, 8>>(value);
-  if constexpr (std::endian::native == std::endian::big) std::ranges::reverse(bytes);
-  out.append(bytes.data(), bytes.size());
-}
 
 /// Of one length whatever the number of rows, so that it can be written over when that is known;
 /// the figures begin at a multiple of 64 bytes, as the format asks, behind a line's end.
@@ -42,8 +34,8 @@ class NpyWriter final : public RecordingWriter {
 
   [[nodiscard]] Status write(const Block& block) override {
     for (std::size_t r = 0; r < block.rows(); ++r) {
-      if (times_.is_timed()) append_little_endian(out_, times_.at(block, r));
-      for (const View<double>& channel : block.channels) append_little_endian(out_, channel[r]);
+      if (times_.is_timed()) append_value(out_, times_.at(block, r));
+      for (const View<double>& channel : block.channels) append_value(out_, channel[r]);
       if (out_.size() < (1u << 16)) continue;
       if (const Status done = pass_on(); !done) return done;
     }

@@ -13,6 +13,7 @@
 #include "proofmass/io/parquet_reader.hpp"
 #include "proofmass/io/recording_writers.hpp"
 #include "proofmass/io/test_support.hpp"
+#include "proofmass/io/written_test_support.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -98,42 +99,16 @@ class Parquet : public testing::Test {
 };
 
 Recording troubled(std::size_t samples) {
-  std::mt19937_64 random(11);
-  Recording recording;
-  recording.time = {TimeSource::stamps, "time", 100.0, {}, 1'705'479'286'000'000'123};
-  for (const char* name : {"Acc", "acc", "it's \"odd\", here", "temp"})
-    recording.channels.push_back({name, *parse_unit("m/s^2"), {}});
+  Recording recording = troubled_recording(samples, {"Acc", "acc", "it's \"odd\", here", "temp"});
   recording.channels[3].unit = *parse_unit("degC");
-  std::uniform_real_distribution<double> jitter(0.0, 0.004);
-  for (std::size_t k = 0; k < samples; ++k) {
-    recording.time.stamps_s.push_back(k == 0 ? 0.0
-                                             : 0.01 * static_cast<double>(k) + jitter(random));
-    for (Channel& channel : recording.channels)
-      channel.values.push_back(std::bit_cast<double>(random()));
-  }
-  auto& values = recording.channels[0].values;
-  values[1] = std::numeric_limits<double>::quiet_NaN();
-  values[2] = -std::numeric_limits<double>::infinity();
-  values[3] = 5e-324;
-  values[4] = -0.0;
   return recording;
 }
 
-void expect_same(const Recording& a, const Recording& b) {
-  ASSERT_EQ(a.channels.size(), b.channels.size());
-  ASSERT_EQ(a.samples(), b.samples());
-  for (std::size_t c = 0; c < a.channels.size(); ++c) {
-    EXPECT_EQ(a.channels[c].name, b.channels[c].name);
-    EXPECT_EQ(a.channels[c].unit, b.channels[c].unit) << a.channels[c].name;
-    for (std::size_t k = 0; k < a.samples(); ++k)
-      ASSERT_EQ(std::bit_cast<std::uint64_t>(a.channels[c].values[k]),
-                std::bit_cast<std::uint64_t>(b.channels[c].values[k]))
-          << a.channels[c].name << ' ' << k;
-  }
-  for (std::size_t k = 0; k < a.samples(); ++k) ASSERT_EQ(a.time.at(k), b.time.at(k)) << k;
-  EXPECT_EQ(a.time.start_ns, b.time.start_ns);
-  EXPECT_EQ(a.labels, b.labels);
-  EXPECT_EQ(a.label_channel, b.label_channel);
+void expect_same(const Recording& read, const Recording& written) {
+  expect_same_recording(read, written);
+  EXPECT_EQ(read.time.start_ns, written.time.start_ns);
+  EXPECT_EQ(read.labels, written.labels);
+  EXPECT_EQ(read.label_channel, written.label_channel);
 }
 
 TEST_F(Parquet, ComesBackToTheLastBitHoweverItWasCut) {

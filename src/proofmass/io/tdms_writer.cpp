@@ -108,10 +108,10 @@ std::string front_of_segment(std::uint32_t contents,
                              const std::string& metadata,
                              std::size_t data_bytes) {
   std::string out = "TDSm";
-  append_figure(out, contents);
-  append_figure(out, version);
-  append_figure(out, static_cast<std::uint64_t>(metadata.size() + data_bytes));
-  append_figure(out, static_cast<std::uint64_t>(metadata.size()));
+  append_value(out, contents);
+  append_value(out, version);
+  append_value(out, static_cast<std::uint64_t>(metadata.size() + data_bytes));
+  append_value(out, static_cast<std::uint64_t>(metadata.size()));
   return out + metadata;
 }
 
@@ -184,31 +184,31 @@ class TdmsWriter final : public RecordingWriter {
   Status append_labels(const Recording& recording) {
     std::string metadata;
     constexpr std::uint32_t objects = 1;
-    append_figure(metadata, objects);
+    append_value(metadata, objects);
     append_text(metadata, "/");
-    append_figure(metadata, no_values);
+    append_value(metadata, no_values);
     label_properties(recording).append_to(metadata);
     return file_->append(front_of_segment(has_metadata, metadata, 0));
   }
 
   [[nodiscard]] std::string metadata_of(std::size_t rows) const {
     std::string out;
-    append_figure(out, static_cast<std::uint32_t>(columns_.size() + 2));
+    append_value(out, static_cast<std::uint32_t>(columns_.size() + 2));
     append_text(out, "/");
-    append_figure(out, no_values);
+    append_value(out, no_values);
     (is_first_ ? about_file_ : TdmsPropertyList{}).append_to(out);
     append_text(out, path_of({}));
-    append_figure(out, no_values);
+    append_value(out, no_values);
     TdmsPropertyList{}.append_to(out);
     for (const Column& column : columns_) {
       append_text(out, path_of(column.name));
       constexpr std::uint32_t index_bytes = 20;
       constexpr std::uint32_t dimensions = 1;
-      append_figure(out, rows > 0 ? index_bytes : no_values);
+      append_value(out, rows > 0 ? index_bytes : no_values);
       if (rows > 0) {
-        append_figure(out, tdms_double);
-        append_figure(out, dimensions);
-        append_figure(out, static_cast<std::uint64_t>(rows));
+        append_value(out, tdms_double);
+        append_value(out, dimensions);
+        append_value(out, static_cast<std::uint64_t>(rows));
       }
       (is_first_ ? column.properties : TdmsPropertyList{}).append_to(out);
     }
