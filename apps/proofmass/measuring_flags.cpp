@@ -5,7 +5,7 @@ namespace proofmass::app {
 
 void add_flags(CLI::App& app, InspectCommand& command) {
   CLI::App& verb = *app.add_subcommand("inspect", "what is in a file and how good it is");
-  verb.add_option("FILE", command.files, "recordings; - is standard input (CSV)")
+  verb.add_option("FILE", command.files, "recordings: files or folders; - is standard input")
       ->type_name("")
       ->required();
   add_input_flags(verb, command.input);
@@ -20,7 +20,7 @@ void add_flags(CLI::App& app, InspectCommand& command) {
 
 void add_flags(CLI::App& app, ConvertCommand& command) {
   CLI::App& verb = *app.add_subcommand("convert", "between formats");
-  verb.add_option("FILE", command.file, "a recording; - is standard input (CSV)")
+  verb.add_option("FILE", command.file, "a recording: a file or a folder; - is standard input")
       ->type_name("")
       ->required();
   add_output_file(

@@ -11,6 +11,7 @@
 #include "proofmass/io/channel_units.hpp"
 #include "proofmass/io/finish_recording.hpp"
 #include "proofmass/io/open_recording.hpp"
+#include "proofmass/io/raw_rows.hpp"
 #include "proofmass/io/running_time.hpp"
 #include "proofmass/signal/counter.hpp"
 
@@ -23,48 +24,11 @@ std::size_t columns_of(const RawHead& head) {
   return head.recording.channels.size() + (head.stamps ? 1 : 0);
 }
 
-std::size_t rows_of(const RawRows& rows) {
-  return rows.channels.empty() ? rows.stamps.size() : rows.channels.front().size();
-}
-
 /// Some MiB, few enough to be worked on in the processor's caches level by level.
 std::size_t rows_a_block(const RawHead& head) {
   constexpr std::size_t figures = std::size_t{1} << 18;
   return std::clamp<std::size_t>(figures / std::max<std::size_t>(columns_of(head), 1), 1024,
                                  std::size_t{1} << 16);
-}
-
-/// The rows of `from` from `first` on, in front of those of `to`.
-void put_before(const RawRows& from, std::size_t first, RawRows& to) {
-  const auto put = [&](const std::vector<double>& tail, std::vector<double>& values) {
-    if (tail.size() > first)
-      values.insert(values.begin(), tail.begin() + static_cast<std::ptrdiff_t>(first), tail.end());
-  };
-  if (to.channels.empty()) to.channels.resize(from.channels.size());  // at the end
-  for (std::size_t c = 0; c < from.channels.size(); ++c) put(from.channels[c], to.channels[c]);
-  put(from.stamps, to.stamps);
-}
-
-/// Pieces as one, each given up as it is taken over.
-RawRows joined(std::deque<RawRows> pieces) {
-  RawRows all;
-  if (pieces.empty()) return all;
-  all.channels.resize(pieces.front().channels.size());
-  std::size_t rows = 0;
-  for (const RawRows& piece : pieces) rows += rows_of(piece);
-  const auto take = [&](std::vector<double>& into, auto column_of) {
-    into.reserve(rows);
-    for (RawRows& piece : pieces) {
-      const std::vector<double> values = std::exchange(column_of(piece), {});
-      into.insert(into.end(), values.begin(), values.end());
-    }
-  };
-  for (std::size_t c = 0; c < all.channels.size(); ++c)
-    take(all.channels[c],
-         [c](RawRows& piece) -> std::vector<double>& { return piece.channels[c]; });
-  if (!pieces.front().stamps.empty())
-    take(all.stamps, [](RawRows& piece) -> std::vector<double>& { return piece.stamps; });
-  return all;
 }
 
 }  // namespace
