@@ -152,6 +152,7 @@ TEST_P(FolderAndZip, XimuRateIsCountedBetweenDates) {
   std::string dates = "Packet number,Year,Month,Day,Hours,Minutes,Seconds\n";
   for (int s = 0; s <= 20; ++s)
     dates += std::to_string(128 * s + 1) + ",2000,1,5,23,59," + std::to_string(39 + s) + "\n";
+  dates += "9999,133333333333,1,5,0,0,0\n";  // a year that no calendar has
   const auto read = this->read(
       {{"00000_CalInertialAndMag.csv", ximu_table(1400)}, {"00000_DateTime.csv", dates}});
   ASSERT_TRUE(read.has_value()) << read.error().message;

@@ -68,10 +68,11 @@ std::vector<DatedPacket> dates_in(std::string_view text) {
       whole = whole && cell.kind == CellKind::number && cell.value >= 0.0 && cell.value < 1e15;
       part[c] = whole ? cell.value : 0.0;
     }
+    if (!whole || part[1] > 9999.0 || part[2] > 12.0 || part[3] > 31.0) continue;
     const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(part[1])),
                                            std::chrono::month(static_cast<unsigned>(part[2])),
                                            std::chrono::day(static_cast<unsigned>(part[3]))};
-    if (!whole || part[1] > 9999.0 || part[2] > 12.0 || part[3] > 31.0 || !date.ok()) continue;
+    if (!date.ok()) continue;
     const auto days = std::chrono::sys_days(date).time_since_epoch().count();
     dates.push_back(
         {static_cast<std::uint64_t>(part[0]),
