@@ -136,4 +136,14 @@ std::optional<ClockReading> read_clock(std::string_view field) {
   return reading;
 }
 
+std::optional<std::int64_t> instant_ns(const ClockReading& reading) {
+  if (!reading.days || !reading.ns) return std::nullopt;
+  constexpr std::int64_t day_ns = 86'400'000'000'000;
+  std::int64_t ns = 0;
+  if (__builtin_mul_overflow(*reading.days, day_ns, &ns) ||
+      __builtin_add_overflow(ns, *reading.ns, &ns))
+    return std::nullopt;
+  return ns;
+}
+
 }  // namespace proofmass::io

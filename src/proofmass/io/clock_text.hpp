@@ -18,4 +18,8 @@ struct ClockReading {
 /// ("2024-01-17"), a time of day alone ("08:14:46.069"). nullopt for anything else.
 [[nodiscard]] std::optional<ClockReading> read_clock(std::string_view text);
 
+/// The instant of a date with a time of day in nanoseconds since 1970; nullopt where either is
+/// missing or it is beyond what 64 bits hold.
+[[nodiscard]] std::optional<std::int64_t> instant_ns(const ClockReading& reading);
+
 }  // namespace proofmass::io

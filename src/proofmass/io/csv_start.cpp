@@ -16,13 +16,7 @@ constexpr std::string_view logger = "Gulf Coast Data Concepts";
 /// A date with a time of day, as nanoseconds since 1970.
 std::optional<std::int64_t> ns_of(std::string_view text) {
   const auto reading = read_clock(text);
-  if (!reading || !reading->days || !reading->ns) return std::nullopt;
-  std::int64_t ns = 0;
-  constexpr std::int64_t ns_per_day = 86'400'000'000'000;
-  if (__builtin_mul_overflow(*reading->days, ns_per_day, &ns) ||
-      __builtin_add_overflow(ns, *reading->ns, &ns))
-    return std::nullopt;
-  return ns;
+  return reading ? instant_ns(*reading) : std::nullopt;
 }
 
 class StartFinder {

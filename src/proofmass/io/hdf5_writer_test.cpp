@@ -35,16 +35,7 @@ class Hdf5Written : public testing::Test {
     const bool has_stamps = !recording.time.is_uniform();
     auto opened = hdf5_writer(std::move(file).value(), {recording, has_stamps}, options);
     if (!opened) return opened.error();
-    const auto writer = std::move(opened).value();
-    for (std::size_t k = 0; k < recording.samples(); k += rows) {
-      Block block{.first = k};
-      const std::size_t count = std::min(rows, recording.samples() - k);
-      for (const Channel& channel : recording.channels)
-        block.channels.push_back(View<double>(channel.values).subspan(k, count));
-      if (has_stamps) block.stamps_s = View<double>(recording.time.stamps_s).subspan(k, count);
-      if (const Status written = writer->write(block); !written) return written;
-    }
-    return writer->finish(recording);
+    return write_in_pieces(**opened, recording, rows);
   }
 
   [[nodiscard]] Result<Recording> through(const Recording& recording, std::size_t rows) const {

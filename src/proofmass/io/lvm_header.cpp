@@ -97,13 +97,8 @@ std::optional<Figure> figure_of(std::string_view text, char point) {
 std::optional<std::int64_t> start_of(std::string_view date, std::string_view time) {
   if (date.empty() || time.empty()) return std::nullopt;
   const auto clock = read_clock(fmt::format("{} {}", date.substr(0, 16), time.substr(0, 30)));
-  if (!clock || !clock->days || !clock->ns || *clock->days <= 0) return std::nullopt;
-  constexpr std::int64_t day_ns = 86'400'000'000'000;
-  std::int64_t ns = 0;
-  if (__builtin_mul_overflow(*clock->days, day_ns, &ns) ||
-      __builtin_add_overflow(ns, *clock->ns, &ns))
-    return std::nullopt;
-  return ns;
+  if (!clock || clock->days.value_or(0) <= 0) return std::nullopt;
+  return instant_ns(*clock);
 }
 
 void take_file_tag(std::string_view tag, std::string_view value, LvmFile& file) {

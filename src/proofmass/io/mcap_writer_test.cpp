@@ -43,17 +43,7 @@ std::string written(const Recording& recording,
   const bool has_stamps = !recording.time.is_uniform();
   auto opened = mcap_writer(std::make_unique<MemoryFile>(bytes), {recording, has_stamps}, options);
   EXPECT_TRUE(opened.has_value());
-  const auto writer = std::move(opened).value();
-  for (std::size_t k = 0; k < recording.samples(); k += rows) {
-    Block block;
-    block.first = k;
-    const std::size_t count = std::min(rows, recording.samples() - k);
-    for (const Channel& channel : recording.channels)
-      block.channels.push_back(View<double>(channel.values).subspan(k, count));
-    if (has_stamps) block.stamps_s = View<double>(recording.time.stamps_s).subspan(k, count);
-    EXPECT_TRUE(writer->write(block).has_value());
-  }
-  EXPECT_TRUE(writer->finish(recording).has_value());
+  EXPECT_TRUE(write_in_pieces(**opened, recording, rows).has_value());
   return bytes;
 }
 

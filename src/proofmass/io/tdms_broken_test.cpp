@@ -9,22 +9,7 @@ namespace {
 
 using namespace specimen;
 
-using Columns = std::vector<std::vector<double>>;
-
-constexpr std::uint32_t f64 = 10;
 constexpr std::uint32_t i32 = 3;
-
-std::string doubles_of(const std::vector<double>& values, Order order = Order::little) {
-  return bytes_of(values, order);
-}
-
-/// Two channels of three values each.
-TdmsList two_channels(Order order = Order::little) {
-  TdmsList list(order);
-  list.no_values("/").no_values("/'g'");
-  list.channel("/'g'/'a'", f64, 3).channel("/'g'/'b'", f64, 3);
-  return list;
-}
 
 void expect_same(const std::vector<double>& expected, const std::vector<double>& actual) {
   ASSERT_EQ(expected.size(), actual.size());

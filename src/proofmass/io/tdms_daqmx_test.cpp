@@ -6,8 +6,6 @@ namespace proofmass::io {
 namespace {
 
 using namespace specimen;
-using Columns = std::vector<std::vector<double>>;
-
 TEST(TdmsDaqmx, DaqmxScalersLieInTheRowsOfTheirBuffers) {
   TdmsList list;
   list.daqmx("/'g'/'a'", 3, {list.scaler(3, 0, 0, 0)}, {6, 4});

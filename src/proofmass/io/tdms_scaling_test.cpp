@@ -9,7 +9,6 @@ namespace proofmass::io {
 namespace {
 
 using namespace specimen;
-constexpr std::uint32_t f64 = 10;
 
 /// Properties as a channel has them.
 struct Scale {

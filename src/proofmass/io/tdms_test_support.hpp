@@ -13,6 +13,26 @@
 
 namespace proofmass::io {
 
+namespace specimen {
+
+using Columns = std::vector<std::vector<double>>;
+
+inline constexpr std::uint32_t f64 = 10;  ///< the format's number of doubles
+
+inline std::string doubles_of(const std::vector<double>& values, Order order = Order::little) {
+  return bytes_of(values, order);
+}
+
+/// Two channels of three values each.
+inline TdmsList two_channels(Order order = Order::little) {
+  TdmsList list(order);
+  list.no_values("/").no_values("/'g'");
+  list.channel("/'g'/'a'", f64, 3).channel("/'g'/'b'", f64, 3);
+  return list;
+}
+
+}  // namespace specimen
+
 /// A table as a test looks at it.
 struct TdmsRead {
   TableHead head;

@@ -39,13 +39,7 @@ std::string find(const Fields& fields, const std::string& key) {
 /// The instant of a date with a time of day, taken for UTC unless it names its zone.
 std::optional<std::int64_t> instant_of(std::string_view text) {
   const auto clock = read_clock(trimmed(text));
-  if (!clock || !clock->days || !clock->ns) return std::nullopt;
-  constexpr std::int64_t day_ns = 86'400'000'000'000;
-  std::int64_t ns = 0;
-  if (__builtin_mul_overflow(*clock->days, day_ns, &ns) ||
-      __builtin_add_overflow(ns, *clock->ns, &ns))
-    return std::nullopt;
-  return ns;
+  return clock ? instant_ns(*clock) : std::nullopt;
 }
 
 /// The full scale in g that the comment names for an acceleration of whole numbers.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "proofmass/core/recording.hpp"
+#include "proofmass/io/recording_writer.hpp"
 
 namespace proofmass::io {
 
@@ -34,6 +36,22 @@ inline Recording troubled_recording(std::size_t samples, const std::vector<std::
   values[3] = 5e-324;
   values[4] = -0.0;
   return recording;
+}
+
+/// Hands a recording to a writer, so many rows at a time, and closes it.
+inline Status write_in_pieces(RecordingWriter& writer,
+                              const Recording& recording,
+                              std::size_t rows) {
+  for (std::size_t k = 0; k < recording.samples(); k += rows) {
+    Block block{.first = k};
+    const std::size_t count = std::min(rows, recording.samples() - k);
+    for (const Channel& channel : recording.channels)
+      block.channels.push_back(View<double>(channel.values).subspan(k, count));
+    if (!recording.time.is_uniform())
+      block.stamps_s = View<double>(recording.time.stamps_s).subspan(k, count);
+    if (const Status written = writer.write(block); !written) return written;
+  }
+  return writer.finish(recording);
 }
 
 /// Whether all figures are the same to the last bit, any NaN being one, with names, units and
