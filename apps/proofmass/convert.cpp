@@ -36,6 +36,18 @@ io::WriteOptions write_options(const ConvertCommand& command) {
   return options;
 }
 
+// Labels that the new file has no room for.
+void tell_lost_labels(const std::string& output, bool in_pieces, Converted& converted) {
+  const Recording& head = converted.head;
+  if (head.labels.empty() || io::keeps_labels(output, in_pieces)) return;
+  converted.notes.push_back(
+      {Severity::warning,
+       fmt::format("the labels of column {} are not written: {}", head.label_channel,
+                   in_pieces && io::keeps_labels(output, false)
+                       ? "they are known only when all is read: give more --memory"
+                       : "this format has no place for them")});
+}
+
 Converted convert(Recording recording,
                   const ConvertCommand& command,
                   const std::vector<sensor::SensorModel>& models) {
@@ -45,7 +57,9 @@ Converted convert(Recording recording,
   write_series(calibrated, command.output.output, write_options(command));
   const std::size_t samples = calibrated.samples();
   std::vector<Note> notes = calibrated.notes;
-  return {std::move(calibrated), samples, std::move(notes)};
+  Converted out{std::move(calibrated), samples, std::move(notes)};
+  tell_lost_labels(command.output.output, false, out);
+  return out;
 }
 
 void hold(const Status& status) {
@@ -72,6 +86,7 @@ Converted convert(io::RecordingStream stream,
   command.output.output == "-" ? write() : without_interruption(write);
   out.head = source.head();
   out.notes = source.head().notes;
+  tell_lost_labels(command.output.output, true, out);
   return out;
 }
 

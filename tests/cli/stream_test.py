@@ -49,6 +49,14 @@ class Streams(CommandTest):
                 self.assertEqual(len(after["timing"]["gaps"]), len(before["timing"]["gaps"]), ending)
                 self.assertAlmostEqual(after["duration_s"], before["duration_s"], 9, ending)
 
+    def test_lose_labels_only_with_a_word(self):
+        rows = "".join(f"{k / 100},{k % 7},{'up' if k < 50 else 'down'}\n" for k in range(100))
+        self.write("a.csv", "time (s),ax (g),part\n" + rows)
+        for output, memory, lost in (("b.csv", "1000", False), ("b.csv", "0", True), ("b.npy", "1000", True),
+                                     ("b.tdms", "0", False), ("b.h5", "0", False)):
+            warnings = self.document("convert", "a.csv", "-o", output, "--memory", memory)["warnings"]
+            self.assertEqual(any("labels of column part" in text for text in warnings), lost, output + memory)
+
     def test_have_the_noise_that_they_have_when_read_whole(self):
         self.write("a.csv", noisy_csv(120_000))
         whole = self.document("noise", "a.csv", "--channel", "ax", "--channel", "az")

@@ -14,21 +14,25 @@ namespace {
 using Opener = Result<std::unique_ptr<RecordingWriter>> (*)(std::unique_ptr<OutputFile>,
                                                             const WriterHead&,
                                                             const WriteOptions&);
+/// Whether a format has room for labels: beside the samples, or behind them.
+enum class LabelRoom { none, beside, behind };
+
 struct Extension {
   std::string_view ending;
   Opener open;
+  LabelRoom labels = LabelRoom::none;
   bool is_compressed = false;
 };
 constexpr std::array extensions = std::to_array<Extension>({
-    {".csv", csv_writer},
-    {".csv.gz", csv_writer, true},
+    {".csv", csv_writer, LabelRoom::beside},
+    {".csv.gz", csv_writer, LabelRoom::beside, true},
     {".npy", npy_writer},
     {".mat", mat_writer},
-    {".tdms", tdms_writer},
-    {".h5", hdf5_writer},
-    {".hdf5", hdf5_writer},
-    {".mcap", mcap_writer},
-    {".parquet", parquet_writer},
+    {".tdms", tdms_writer, LabelRoom::behind},
+    {".h5", hdf5_writer, LabelRoom::behind},
+    {".hdf5", hdf5_writer, LabelRoom::behind},
+    {".mcap", mcap_writer, LabelRoom::behind},
+    {".parquet", parquet_writer, LabelRoom::behind},
 });
 
 std::string all_endings() {
@@ -63,6 +67,12 @@ Result<std::unique_ptr<RecordingWriter>> open_writer(const std::string& path,
   auto writer = extension->open(std::move(output), head, options);
   if (!writer) return writer.error().at(path);
   return writer;
+}
+
+bool keeps_labels(const std::string& path, bool in_pieces) {
+  const Extension* extension = extension_of(path);
+  if (extension == nullptr || extension->labels == LabelRoom::none) return false;
+  return extension->labels == LabelRoom::behind || !in_pieces;
 }
 
 Block whole_of(const Recording& recording) {

@@ -36,6 +36,10 @@ namespace proofmass::io {
                                                                    const WriterHead& head,
                                                                    const WriteOptions& options);
 
+/// Whether a recording's labels go into a file of that name: most formats have room for them,
+/// some only where they are known before the first sample, as of a whole recording.
+[[nodiscard]] bool keeps_labels(const std::string& path, bool in_pieces);
+
 /// All samples of a recording as one piece, which holds as long as the recording.
 [[nodiscard]] Block whole_of(const Recording& recording);
 
