@@ -19,6 +19,10 @@ bool can_be_time(ColumnKind kind) {
 
 /// How surely a heading is that of the time column: 0 not at all.
 int likeness_to_time(const ColumnLabel& label) {
+  // "T (degC)" is a temperature; ticks may be called counts.
+  const Quantity quantity = label.unit.quantity;
+  if (quantity != Quantity::time && quantity != Quantity::unknown && quantity != Quantity::counts)
+    return 0;
   const std::string bare = bare_name(label.name);
   constexpr std::array<std::string_view, 11> certain{
       "time",           "timestamp", "t",     "sampletimefine", "timestamps", "elapsedtime",

@@ -174,5 +174,14 @@ TEST(CsvDialect, TellsWhatItFound) {
       << notes_of(*read);
 }
 
+TEST(CsvDialect, AColumnWithAnotherUnitIsNoTimeWhateverItsName) {
+  const auto read = read_text("ax (g),T (degC)\n1,20\n2,21\n3,22\n1,23\n");
+  ASSERT_TRUE(read.has_value()) << read.error().message;
+  ASSERT_EQ(read->channels.size(), 2u);
+  EXPECT_EQ(read->channels[0].name, "ax");
+  EXPECT_EQ(read->channels[1].name, "T");
+  EXPECT_EQ(read->time.source, TimeSource::none);
+}
+
 }  // namespace
 }  // namespace proofmass::io
