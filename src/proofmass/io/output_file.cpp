@@ -16,6 +16,7 @@ Error cannot_write(const std::string& path, const std::string& why) {
 class StandardOutput final : public OutputFile {
  public:
   [[nodiscard]] Status append(std::string_view bytes) override {
+    if (bytes.empty()) return Done{};
     if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size()) return failed();
     size_ += bytes.size();
     return Done{};
@@ -48,6 +49,7 @@ class DiskFile final : public OutputFile {
   }
 
   [[nodiscard]] Status append(std::string_view bytes) override {
+    if (bytes.empty()) return Done{};
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) return failed();
     size_ += bytes.size();
     return Done{};

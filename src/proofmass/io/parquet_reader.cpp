@@ -70,7 +70,7 @@ class ParquetTableReader final : public TableReader {
       return Error{Errc::corrupt, "is damaged: what was unpacked of it breaks off"};
     rows_ = bytes->size() / a_row;
     block_.resize(rows_ * head_.columns);
-    std::memcpy(block_.data(), bytes->data(), bytes->size());
+    if (rows_ > 0) std::memcpy(block_.data(), bytes->data(), bytes->size());
     return Done{};
   }
 
