@@ -4,8 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "proofmass/io/finish_recording.hpp"
-
 namespace proofmass::io {
 namespace {
 
@@ -87,14 +85,6 @@ Result<std::unique_ptr<RecordingReader>> recording_reader_of(ArrayColumns column
   }
   return std::unique_ptr<RecordingReader>(
       std::make_unique<LoadedReader>(std::move(head), std::move(rows)));
-}
-
-Result<Recording> recording_of(ArrayColumns columns,
-                               Recording recording,
-                               const ReadOptions& options) {
-  auto reader = recording_reader_of(std::move(columns), std::move(recording), options);
-  if (!reader) return reader.error();
-  return read_whole(**reader, options);
 }
 
 }  // namespace proofmass::io

@@ -29,9 +29,4 @@ struct ArrayColumns {
 [[nodiscard]] Result<std::unique_ptr<RecordingReader>> recording_reader_of(
     ArrayColumns columns, Recording recording, const ReadOptions& options);
 
-/// The same, read whole.
-[[nodiscard]] Result<Recording> recording_of(ArrayColumns columns,
-                                             Recording recording,
-                                             const ReadOptions& options);
-
 }  // namespace proofmass::io

@@ -6,28 +6,16 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fcntl.h>
 #include <filesystem>
 #include <system_error>
-#include <unistd.h>
 
 #include "proofmass/core/contract.hpp"
+#include "proofmass/io/nameless_file.hpp"
 
 namespace proofmass::io {
 namespace {
 
 constexpr std::size_t figure_bytes = sizeof(double);
-
-/// A file that has no name, or has lost it; nullptr if there can be none.
-std::FILE* nameless_file(const std::string& folder) {
-  int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (descriptor < 0) {
-    std::string path = folder + "/proofmass-XXXXXX";
-    descriptor = ::mkostemp(path.data(), O_CLOEXEC);
-    if (descriptor >= 0) ::unlink(path.c_str());
-  }
-  return descriptor < 0 ? nullptr : ::fdopen(descriptor, "w+b");
-}
 
 }  // namespace
 
@@ -62,7 +50,8 @@ Status ColumnSpool::spill() {
   if (!file_) {
     std::filesystem::path folder = std::filesystem::path(beside_).parent_path();
     if (beside_ == "-") folder = P_tmpdir;
-    file_.reset(nameless_file(folder.empty() ? "." : folder.string()));
+    const int descriptor = nameless_file(folder.empty() ? "." : folder.string());
+    if (descriptor >= 0) file_.reset(::fdopen(descriptor, "w+b"));
     if (!file_) return failed();
   }
   if (std::fwrite(piece_.data(), 1, piece_.size(), file_.get()) != piece_.size()) return failed();

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
+#include <cstdio>
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -11,6 +11,8 @@
 #include <unistd.h>
 #include <utility>
 #include <vector>
+
+#include "proofmass/io/nameless_file.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -64,18 +66,6 @@ class MemoryBytes final : public RandomBytes {
   std::span<const std::byte> bytes_;
 };
 
-/// A file that lies in no folder and is gone when it is closed.
-Result<int> nameless_file() {
-  const char* folder = P_tmpdir;
-  const int nameless = ::open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (nameless >= 0) return nameless;
-  std::string path = std::string(folder) + "/proofmass-XXXXXX";
-  const int named = ::mkostemp(path.data(), O_CLOEXEC);
-  if (named < 0) return failed("no room to unpack it to");
-  ::unlink(path.c_str());
-  return named;
-}
-
 Status write_all(int descriptor, std::span<const char> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
@@ -111,10 +101,10 @@ Result<std::unique_ptr<RandomBytes>> random_bytes_of(std::unique_ptr<PeekSource>
     return Opened(
         std::make_unique<FileBytes>(own, source->size().value_or(0), std::vector<Note>{}));
   }
-  const auto file = nameless_file();
-  if (!file) return file.error();
-  const auto size = unpack(*source, *file, progress);
-  auto bytes = std::make_unique<FileBytes>(*file, size ? *size : 0, source->notes());
+  const int file = nameless_file(P_tmpdir);
+  if (file < 0) return failed("no room to unpack it to");
+  const auto size = unpack(*source, file, progress);
+  auto bytes = std::make_unique<FileBytes>(file, size ? *size : 0, source->notes());
   if (!size) return size.error();
   return Opened(std::move(bytes));
 }
