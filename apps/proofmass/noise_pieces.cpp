@@ -126,6 +126,7 @@ std::vector<NoiseChannel> analyse_pieces(io::RecordingStream stream,
   if (!laid) hold(laid.error(), file);
   head.notes = source.head().notes;
   head.first_line = source.head().first_line;
+  head.time = source.head().time;
   const signal::RecordingAudit found = audit.finish(head);
   for (const Note& note : found.notes) notes.push_back({note.severity, prefix + note.text});
   tell_grid(*laid, grid.hole_count(), prefix, notes);

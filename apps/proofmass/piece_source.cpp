@@ -37,9 +37,16 @@ Block PieceSource::next() {
   const Recording& last = stream_.head();
   head_.notes = last.notes;
   head_.first_line = last.first_line;
+  head_.time.mended = last.time.mended;
+  head_.time.mended_backwards = last.time.mended_backwards;
   if (!flags_.from_s && !flags_.to_s) {
     head_.labels = last.labels;
     head_.label_channel = last.label_channel;
+  } else if (!last.labels.empty()) {
+    head_.notes.push_back(
+        {Severity::warning, "the labels of column " + last.label_channel +
+                                " are left out: with --from and --to they need the whole "
+                                "recording in memory: give more --memory"});
   }
   return block;
 }

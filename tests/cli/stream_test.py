@@ -27,6 +27,16 @@ class Streams(CommandTest):
                          self.document("inspect", "a.csv", "--from", "100", "--to", "900", "--memory",
                                        "0")["samples"])
 
+    def test_have_their_stamps_mended_and_counted_likewise(self):
+        lines = noisy_csv(120_000).splitlines()
+        for line, stamp in ((50, "nan"), (70_000, "3e34"), (90_000, "12.5")):
+            lines[line] = ",".join([stamp] + lines[line].split(",")[1:])
+        self.write("a.csv", "\n".join(lines) + "\n")
+        whole = self.document("inspect", "a.csv")
+        self.assertEqual(whole["timing"]["mended"], 3)
+        self.assertEqual(whole["timing"]["backwards"], 1)
+        self.assertEqual(self.document("inspect", "a.csv", "--memory", "0"), whole)
+
     def test_are_converted_to_the_same_bytes(self):
         self.write("a.csv", noisy_csv(120_000))
         self.write("s.toml", '[calibration]\nbias = { value = [1.0, 0.0, 0.0], unit = "m/s^2" }\n'
@@ -56,6 +66,8 @@ class Streams(CommandTest):
                                      ("b.tdms", "0", False), ("b.h5", "0", False)):
             warnings = self.document("convert", "a.csv", "-o", output, "--memory", memory)["warnings"]
             self.assertEqual(any("labels of column part" in text for text in warnings), lost, output + memory)
+        cut = self.document("convert", "a.csv", "-o", "b.mcap", "--memory", "0", "--from", "0.2")["warnings"]
+        self.assertTrue(any("labels of column part" in text for text in cut), cut)
 
     def test_have_the_noise_that_they_have_when_read_whole(self):
         self.write("a.csv", noisy_csv(120_000))
