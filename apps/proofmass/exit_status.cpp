@@ -8,6 +8,8 @@ ExitStatus status_of(const Error& error, Stage stage) {
       return usage;
     case Errc::unsupported:
       return stage == Stage::reading ? bad_input : usage;
+    case Errc::device:
+      return bad_device;
     case Errc::unreadable:
     case Errc::corrupt:
     case Errc::too_few_samples:

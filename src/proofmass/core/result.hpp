@@ -16,6 +16,7 @@ enum class Errc {
   unreadable,        ///< no such file, no permission, a failing disk
   corrupt,           ///< bytes that cannot be what they claim to be
   unsupported,       ///< understood, but not built in
+  device,            ///< a device or a connection that is not there, refuses, or has gone
   too_few_samples,
   not_finite,
   not_positive_definite,
