@@ -6,38 +6,12 @@
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/signal/channel_audit.hpp"
+#include "proofmass/signal/quantum_seeker.hpp"
 
 namespace proofmass::signal {
 namespace {
 
 using Axes = View<View<double>>;
-
-/// Follows one axis for the least step, and for the least that is soon taken back, as noise does
-/// between two codes of a converter.
-class QuantumSeeker {
- public:
-  explicit QuantumSeeker(std::size_t soon) : soon_(soon) {}
-
-  void add(std::size_t k, double x) {
-    if (x == now_) return;
-    const double step = std::abs(x - now_);  // NaN at first, which is less than nothing
-    if (step < least_) least_ = step;
-    if (x == before_ && step < least_returned_ && k - changed_ <= soon_) least_returned_ = step;
-    before_ = now_;
-    now_ = x;
-    changed_ = k;
-  }
-  /// Zero where the least step is never taken back: it is one between levels.
-  [[nodiscard]] double quantum() const {
-    return std::isfinite(least_) && least_returned_ <= 1.5 * least_ ? least_ : 0.0;
-  }
-
- private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::size_t soon_, changed_ = 0;
-  double now_ = std::numeric_limits<double>::quiet_NaN(), before_ = now_;
-  double least_ = infinity, least_returned_ = infinity;
-};
 
 /// The samples of block k but for `left_out`.
 RestBlock block_of(Axes axes, const RestBlocks& blocks, std::size_t k, std::size_t left_out) {
@@ -74,24 +48,32 @@ void look_at_resolution(Axes axes, std::size_t window, RestBlocks& blocks) {
       seeker.add(k, axes[a][k]);
       largest = std::max(largest, std::abs(axes[a][k]));
     }
-    const double rounding = 1e-14 * largest;
-    const double quantum = seeker.quantum();
-    blocks.quantum[a] = quantum;
-    blocks.variance_floor[a] = std::max(
-        {quantum * quantum / 12.0, rounding * rounding, std::numeric_limits<double>::min()});
+    blocks.quantum[a] = seeker.quantum();
+    blocks.variance_floor[a] = variance_floor(seeker.quantum(), largest);
   }
 }
 
 }  // namespace
 
-RestBlocks blocks_of(Axes axes, std::size_t window) {
-  PM_EXPECTS(!axes.empty() && axes.size() <= most_axes);
+double variance_floor(double quantum, double largest) {
+  const double rounding = 1e-14 * largest;
+  return std::max(
+      {quantum * quantum / 12.0, rounding * rounding, std::numeric_limits<double>::min()});
+}
+
+RestBlocks no_blocks(std::size_t axes, std::size_t window) {
+  PM_EXPECTS(axes > 0 && axes <= most_axes);
   constexpr std::size_t least_block = 4;
   RestBlocks blocks;
-  blocks.axes = axes.size();
-  blocks.samples = axes[0].size();
+  blocks.axes = axes;
   blocks.block = std::max(least_block, window / 8);
   blocks.window = std::max<std::size_t>(2, window / blocks.block);
+  return blocks;
+}
+
+RestBlocks blocks_of(Axes axes, std::size_t window) {
+  RestBlocks blocks = no_blocks(axes.size(), window);
+  blocks.samples = axes[0].size();
   blocks.there.assign(blocks.samples, 1);
   for (const View<double> axis : axes) {
     PM_EXPECTS(axis.size() == blocks.samples);

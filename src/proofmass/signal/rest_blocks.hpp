@@ -40,6 +40,12 @@ struct RestBlocks {
   }
 };
 
+/// Below it a variance is one of rounding: of a converter's steps, or of numbers up to `largest`.
+[[nodiscard]] double variance_floor(double quantum, double largest);
+
+/// None yet, with their lengths for windows of so many samples.
+[[nodiscard]] RestBlocks no_blocks(std::size_t axes, std::size_t window);
+
 /// Blocks of an eighth of `window` samples, 4 at least. A sample that is no measurement on one axis
 /// (is_plausible) counts on none. Expects one to three axes of the same length.
 [[nodiscard]] RestBlocks blocks_of(View<View<double>> axes, std::size_t window);

@@ -15,6 +15,10 @@ double bound_of(const RestBlocks& blocks, double dof) {
   return chi_square_quantile(1.0 - 1e-2 / tests, dof) / dof;
 }
 
+double dof_of_block(const RestBlocks& blocks) {
+  return static_cast<double>(blocks.axes * (blocks.block - 1));
+}
+
 /// Runs of the blocks that pass; missing blocks pass if they are no more than a window.
 template <class Passes>
 void add_runs(const RestBlocks& blocks,
@@ -115,27 +119,53 @@ void add_still_parts(const RestBlocks& blocks,
 
 }  // namespace
 
-std::vector<RestRun> quiet_runs(View<View<double>> axes,
-                                RestBlocks& blocks,
-                                const RestNoise& noise) {
-  const auto dof = static_cast<double>(blocks.axes * (blocks.block - 1));
-  const double block_bound = most_noise_ratio * bound_of(blocks, dof);
-  const double window_bound =
-      most_noise_ratio * bound_of(blocks, dof * static_cast<double>(blocks.window));
-  std::vector<RestRun> runs;
-  const auto is_quiet = [&](std::size_t k) { return loudness(blocks, noise, k, 1) <= block_bound; };
-  const auto can_be_quiet = [&](std::size_t k) {
-    if (is_quiet(k)) return true;
+QuietTest::QuietTest(const RestBlocks& blocks)
+    : block_bound(most_noise_ratio * bound_of(blocks, dof_of_block(blocks))),
+      window_bound(most_noise_ratio *
+                   bound_of(blocks, dof_of_block(blocks) * static_cast<double>(blocks.window))) {}
+
+void clean_outliers(View<View<double>> axes, RestBlocks& blocks, const RestNoise& noise) {
+  const QuietTest test(blocks);
+  for (std::size_t k = 0; k < blocks.at.size(); ++k) {
+    if (blocks.missing(k) || test.passes(blocks, noise, k)) continue;
     const RestBlock as_it_was = blocks.at[k];
     blocks.at[k] = without_outlier(axes, blocks, k, noise.block_variance);
-    if (is_quiet(k)) return true;
-    blocks.at[k] = as_it_was;
-    return false;
+    if (!test.passes(blocks, noise, k)) blocks.at[k] = as_it_was;
+  }
+}
+
+void drop_stuck(RestBlocks& blocks, const RestNoise& noise) {
+  bool noisy = false;
+  for (std::size_t a = 0; a < blocks.axes; ++a)
+    noisy = noisy || noise.window_variance[a] > std::max(blocks.quantum[a] * blocks.quantum[a],
+                                                         4.0 * blocks.variance_floor[a]);
+  if (!noisy) return;
+  const auto is_constant = [&](const RestBlock& block) {
+    for (std::size_t a = 0; a < blocks.axes; ++a)
+      if (block.squares[a] > 0.0) return false;
+    return block.count > 0.0;
   };
-  add_runs(blocks, {0, blocks.at.size()}, can_be_quiet, runs);
+  std::size_t run = 0;
+  for (std::size_t k = 0; k <= blocks.at.size(); ++k) {
+    if (k < blocks.at.size() && is_constant(blocks.at[k])) {
+      ++run;
+      continue;
+    }
+    if (run >= blocks.window)
+      for (std::size_t b = k - run; b < k; ++b) blocks.at[b].count = 0.0;
+    run = 0;
+  }
+}
+
+std::vector<RestRun> quiet_runs(const RestBlocks& blocks, const RestNoise& noise) {
+  const QuietTest test(blocks);
+  std::vector<RestRun> runs;
+  add_runs(
+      blocks, {0, blocks.at.size()}, [&](std::size_t k) { return test.passes(blocks, noise, k); },
+      runs);
   std::vector<RestRun> quiet;
   quiet.reserve(runs.size());
-  for (const RestRun& run : runs) add_quiet_parts(blocks, noise, window_bound, run, quiet);
+  for (const RestRun& run : runs) add_quiet_parts(blocks, noise, test.window_bound, run, quiet);
   return quiet;
 }
 

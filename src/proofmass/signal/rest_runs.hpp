@@ -15,15 +15,26 @@ struct RestRun {
   [[nodiscard]] std::size_t size() const { return end - first; }
 };
 
-/// Runs of blocks that are quiet, each for itself (less one outlier, if that helps, of which
-/// `blocks` is then cleaned) and in windows:
-///
-///     Σ_a squares_a / σ_a² ≤ 9 χ²_{1−p}(Σ_a (n − 1)).
-///
-/// Missing blocks divide a run where more than a window of them follow each other.
-[[nodiscard]] std::vector<RestRun> quiet_runs(View<View<double>> axes,
-                                              RestBlocks& blocks,
-                                              const RestNoise& noise);
+/// How loud blocks and windows of them may be: Σ_a squares_a / σ_a² ≤ 9 χ²_{1−p}(Σ_a (n − 1)).
+struct QuietTest {
+  double block_bound, window_bound;  ///< of loudness()
+
+  explicit QuietTest(const RestBlocks& blocks);
+  [[nodiscard]] bool passes(const RestBlocks& blocks, const RestNoise& noise, std::size_t k) const {
+    return loudness(blocks, noise, k, 1) <= block_bound;
+  }
+};
+
+/// Takes one outlier out of each block that is quiet without it.
+void clean_outliers(View<View<double>> axes, RestBlocks& blocks, const RestNoise& noise);
+
+/// Takes out windows that repeat one reading where the sensor has more noise than its converter
+/// hides.
+void drop_stuck(RestBlocks& blocks, const RestNoise& noise);
+
+/// Runs of blocks that are quiet, each for itself and in windows. Missing blocks divide a run where
+/// more than a window of them follow each other.
+[[nodiscard]] std::vector<RestRun> quiet_runs(const RestBlocks& blocks, const RestNoise& noise);
 
 /// What remains of the runs where the means m of neighbouring windows over 1, 2, 4, … blocks up to
 /// 16 windows of the variance agree:

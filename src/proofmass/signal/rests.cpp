@@ -6,50 +6,10 @@
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/signal/rest_ends.hpp"
+#include "proofmass/signal/rest_lengths.hpp"
 
 namespace proofmass::signal {
 namespace {
-
-struct Lengths {
-  std::size_t window, shortest;  ///< samples
-};
-
-Lengths lengths_of(const RestOptions& options) {
-  constexpr double usual_s = 0.5;
-  constexpr double usual_samples = 50.0;
-  constexpr double least_samples = 8.0;
-  const double rate_hz = options.rate_hz > 0.0 ? options.rate_hz : usual_samples / usual_s;
-  const double shortest_s = options.shortest_s.value_or(usual_s);
-  const auto samples = [&](double seconds) {
-    return static_cast<std::size_t>(std::clamp(std::round(seconds * rate_hz), least_samples, 1e15));
-  };
-  return {samples(std::min(shortest_s, usual_s)), samples(shortest_s)};
-}
-
-/// Takes out windows that repeat one reading where the sensor has more noise than its converter
-/// hides.
-void drop_stuck(RestBlocks& blocks, const RestNoise& noise) {
-  bool noisy = false;
-  for (std::size_t a = 0; a < blocks.axes; ++a)
-    noisy = noisy || noise.window_variance[a] > std::max(blocks.quantum[a] * blocks.quantum[a],
-                                                         4.0 * blocks.variance_floor[a]);
-  if (!noisy) return;
-  const auto is_constant = [&](const RestBlock& block) {
-    for (std::size_t a = 0; a < blocks.axes; ++a)
-      if (block.squares[a] > 0.0) return false;
-    return block.count > 0.0;
-  };
-  std::size_t run = 0;
-  for (std::size_t k = 0; k <= blocks.at.size(); ++k) {
-    if (k < blocks.at.size() && is_constant(blocks.at[k])) {
-      ++run;
-      continue;
-    }
-    if (run >= blocks.window)
-      for (std::size_t b = k - run; b < k; ++b) blocks.at[b].count = 0.0;
-    run = 0;
-  }
-}
 
 double samples_in(const RestBlocks& blocks, const RestRun& run) {
   double count = 0.0;
@@ -83,10 +43,22 @@ std::vector<double> std_over(const RestBlocks& blocks, const std::vector<RestRun
 
 }  // namespace
 
+RestLengths rest_lengths(const RestOptions& options) {
+  constexpr double usual_s = 0.5;
+  constexpr double usual_samples = 50.0;
+  constexpr double least_samples = 8.0;
+  const double rate_hz = options.rate_hz > 0.0 ? options.rate_hz : usual_samples / usual_s;
+  const double shortest_s = options.shortest_s.value_or(usual_s);
+  const auto samples = [&](double seconds) {
+    return static_cast<std::size_t>(std::clamp(std::round(seconds * rate_hz), least_samples, 1e15));
+  };
+  return {samples(std::min(shortest_s, usual_s)), samples(shortest_s)};
+}
+
 RestSearch find_rests(View<View<double>> axes, const RestOptions& options) {
   PM_EXPECTS(std::isfinite(options.rate_hz) && options.rate_hz >= 0.0);
   PM_EXPECTS(!options.shortest_s || *options.shortest_s > 0.0);
-  const Lengths lengths = lengths_of(options);
+  const RestLengths lengths = rest_lengths(options);
   RestBlocks blocks = blocks_of(axes, lengths.window);
   RestSearch search;
   search.window = blocks.window * blocks.block;
@@ -105,7 +77,8 @@ RestSearch find_rests(View<View<double>> axes, const RestOptions& options) {
     return search;
   }
   drop_stuck(blocks, *noise);
-  std::vector<RestRun> runs = still_runs(blocks, *noise, quiet_runs(axes, blocks, *noise));
+  clean_outliers(axes, blocks, *noise);
+  std::vector<RestRun> runs = still_runs(blocks, *noise, quiet_runs(blocks, *noise));
   for (RestRun& run : runs) trim_ends(blocks, *noise, run);
   std::erase_if(runs, [](const RestRun& run) { return run.first >= run.end; });
   std::vector<RestRun> joined = runs;

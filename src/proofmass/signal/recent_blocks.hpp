@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "proofmass/core/view.hpp"
+#include "proofmass/signal/quantum_seeker.hpp"
+#include "proofmass/signal/rest_blocks.hpp"
+#include "proofmass/signal/rest_noise.hpp"
+#include "proofmass/signal/rests.hpp"
+
+namespace proofmass::signal {
+
+/// The blocks of the last while, of samples that come one by one.
+class RecentBlocks {
+ public:
+  static constexpr std::size_t most = 512;
+  struct Span {
+    double start_s, end_s;
+  };
+
+  RecentBlocks(std::size_t axes, const RestOptions& options) : axes_(axes), options_(options) {}
+
+  /// How many blocks are full since the last call. Where the rate is not known, rows wait until two
+  /// seconds of stamps tell it. Stamps that step by more than a window, or back, are a gap: more
+  /// than a window of missing blocks. A block that is loud by `noise`, which may not be known, but
+  /// quiet less one outlier, goes without it.
+  [[nodiscard]] std::size_t add(double time_s,
+                                View<double> values,
+                                const std::optional<RestNoise>& noise);
+
+  [[nodiscard]] const RestBlocks& blocks() const { return blocks_; }
+  [[nodiscard]] const std::vector<Span>& spans() const { return spans_; }
+  [[nodiscard]] std::size_t shortest() const { return shortest_; }
+
+ private:
+  std::size_t add_row(double time_s, View<double> values, const std::optional<RestNoise>& noise);
+  void begin();
+  void close(const std::optional<RestNoise>& noise);
+  void push(const RestBlock& block, Span span);
+
+  std::size_t axes_;
+  RestOptions options_;
+  std::vector<double> waiting_s_, waiting_;  ///< rows until the rate is known
+  bool begun_ = false;
+  std::size_t shortest_ = 0;  ///< samples of a rest
+  double window_s_ = 0.0;
+  RestBlocks blocks_;
+  std::vector<Span> spans_;
+  std::array<std::vector<double>, most_axes> open_;  ///< the block that is not full
+  Span open_span_{};
+  std::array<QuantumSeeker, most_axes> seekers_{QuantumSeeker(0), QuantumSeeker(0),
+                                                QuantumSeeker(0)};
+  PerAxis largest_{};
+  std::size_t samples_ = 0;
+  double last_s_ = 0.0;
+};
+
+}  // namespace proofmass::signal
