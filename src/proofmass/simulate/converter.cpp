@@ -6,6 +6,17 @@
 
 namespace proofmass::simulate {
 
+std::optional<RigOutput> output_named(std::string_view name) {
+  for (const auto& [value, word] : output_words)
+    if (word == name) return value;
+  return std::nullopt;
+}
+
+RigDaq with_steps(const RigDaq& daq, double supply_v) {
+  if (daq.bits > 0) return daq;
+  return {.bits = 16, .min_v = 0.0, .max_v = supply_v, .skew_s = daq.skew_s};
+}
+
 double daq_lsb_v(const RigDaq& daq) {
   return std::ldexp(daq.max_v - daq.min_v, -daq.bits);
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <string_view>
+#include <utility>
 
 #include "proofmass/core/units.hpp"
 #include "proofmass/simulate/rig.hpp"
@@ -13,6 +15,12 @@ namespace proofmass::simulate {
 
 /// What the converter makes of a voltage.
 [[nodiscard]] double converted_v(double v, const RigDaq& daq);
+
+/// The words that stand for them in a description.
+inline constexpr std::array<std::pair<RigOutput, std::string_view>, 3> output_words{
+    {{RigOutput::acceleration, "acceleration"},
+     {RigOutput::voltage, "voltage"},
+     {RigOutput::counts, "counts"}}};
 
 /// "m/s^2", "V" or "counts".
 [[nodiscard]] std::string_view unit_of(RigOutput output);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "proofmass/core/result.hpp"
+#include "proofmass/simulate/converter.hpp"
 #include "proofmass/simulate/rig.hpp"
 
 // What the descriptions of rig and procedure (TOML) share: visitors that fill options from text and
@@ -17,10 +18,7 @@ namespace proofmass::simulate {
 
 /// The words that stand for an enumeration's values in a description; one overload for each.
 [[nodiscard]] inline auto choices(RigOutput /*which*/) {
-  return std::to_array<std::pair<RigOutput, std::string_view>>(
-      {{RigOutput::acceleration, "acceleration"},
-       {RigOutput::voltage, "voltage"},
-       {RigOutput::counts, "counts"}});
+  return output_words;
 }
 
 namespace description {

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "proofmass/core/progress.hpp"
@@ -79,6 +81,10 @@ enum class RigOutput {
   voltage,
   counts,  ///< needs RigDaq::bits
 };
+/// Of "acceleration", "voltage", "counts".
+[[nodiscard]] std::optional<RigOutput> output_named(std::string_view name);
+/// The same card, with 16 bits over the supply where it has none: counts are steps of something.
+[[nodiscard]] RigDaq with_steps(const RigDaq& daq, double supply_v);
 
 /// The defaults are the thesis's wheel at 11 rpm, 200 Hz, 60 s, with the errors of
 /// docs/methods/wheel.md: noise, bias, warm-up and ripple, and no others.

@@ -99,44 +99,52 @@ SensorTwin::SensorTwin(const RigOptions& options, std::size_t index)
   M = error_matrix(sensor);
 }
 
+double SensorTwin::warm_up(double t_s) const {
+  return -std::expm1(-t_s / sensor.warm_up_time_s);
+}
+
 AxisTwin::AxisTwin(const SensorTwin& twin,
                    const RigOptions& options,
                    std::size_t sensor,
                    std::size_t axis)
     : sensor_(&twin.sensor),
       axis_(axis),
-      step_s_(1.0 / options.rate_hz),
+      walk_step_mps2_(twin.sensor.bias_walk_mps2_rts[axis] * std::sqrt(1.0 / options.rate_hz)),
       filtered_rms_(sensor::filtered_noise_rms(twin.sensor.noise_density_mps2_rthz[axis],
                                                twin.sensor.bandwidth_hz)),
+      memory_(
+          std::exp(-2.0 * std::numbers::pi * twin.sensor.bandwidth_hz * (1.0 / options.rate_hz))),
+      renewed_mps2_(std::sqrt(1.0 - memory_ * memory_) * filtered_rms_),
       white_(options.seed, "white noise", 3 * sensor + axis),
       density_(options.seed, "filtered noise", 3 * sensor + axis),
       walk_(options.seed, "bias walk", 3 * sensor + axis) {
-  // Stationary from the start.
-  filtered_mps2_ = filtered_rms_ * density_.normal();
-  memory_ = std::exp(-2.0 * std::numbers::pi * twin.sensor.bandwidth_hz * step_s_);
+  if (filtered_rms_ > 0.0)  // stationary from the start
+    filtered_mps2_ = filtered_rms_ * density_.normal();
 }
 
-double AxisTwin::bias_mps2(double t_s) const {
-  const double warm_up = sensor_->warm_up_mps2[axis_] * -std::expm1(-t_s / sensor_->warm_up_time_s);
-  return sensor_->bias_mps2[axis_] + warm_up + walk_mps2_;
+double AxisTwin::bias_mps2(double warm_up) const {
+  return sensor_->bias_mps2[axis_] + sensor_->warm_up_mps2[axis_] * warm_up + walk_mps2_;
 }
 
-double AxisTwin::reading_mps2(double u_mps2, double t_s) const {
+double AxisTwin::reading_mps2(double u_mps2, double warm_up) const {
   const double full_scale = sensor_->full_scale_mps2;
   const double bent = u_mps2 + sensor_->nonlinearity * u_mps2 * u_mps2 / full_scale;
-  return std::clamp(bent + bias_mps2(t_s), -full_scale, full_scale);
+  return std::clamp(bent + bias_mps2(warm_up), -full_scale, full_scale);
 }
 
 // White noise behind one pole is a first-order autoregression at evenly spaced instants, exactly.
+// Each kind draws from a stream of its own: one that is not there need not be drawn.
 double AxisTwin::next_noise_mps2() {
-  const double now = filtered_mps2_;
-  filtered_mps2_ = memory_ * filtered_mps2_ +
-                   std::sqrt(1.0 - memory_ * memory_) * filtered_rms_ * density_.normal();
-  return now + sensor_->noise_rms_mps2[axis_] * white_.normal();
+  double noise = filtered_mps2_;
+  if (filtered_rms_ > 0.0)
+    filtered_mps2_ = memory_ * filtered_mps2_ + renewed_mps2_ * density_.normal();
+  const double white_rms = sensor_->noise_rms_mps2[axis_];
+  if (white_rms > 0.0) noise += white_rms * white_.normal();
+  return noise;
 }
 
 void AxisTwin::step_walk() {
-  walk_mps2_ += sensor_->bias_walk_mps2_rts[axis_] * std::sqrt(step_s_) * walk_.normal();
+  if (walk_step_mps2_ > 0.0) walk_mps2_ += walk_step_mps2_ * walk_.normal();
 }
 
 sensor::Calibration calibration_of(const Eigen::Matrix3d& M, const Axes& bias_mps2) {

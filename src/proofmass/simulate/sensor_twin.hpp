@@ -12,6 +12,9 @@ namespace proofmass::simulate {
 struct SensorTwin {
   SensorTwin(const RigOptions& options, std::size_t index);
 
+  /// Share of the warm-up that is there: 0 at the first instant, 1 in the end.
+  [[nodiscard]] double warm_up(double t_s) const;
+
   RigSensor sensor;            ///< the given one with the draws added
   Eigen::Vector3d position_m;  ///< in the wheel's axes
   Eigen::Matrix3d R_sensor_wheel;
@@ -19,16 +22,15 @@ struct SensorTwin {
   double alignment_std_rad = 0.0;
 };
 
-/// One axis of a sensor over time: what its bias does, its noise and its filter. Asked for at
-/// ascending times that are `step_s` apart.
+/// One axis of a sensor from sample to sample: what its bias does, its noise and its filter.
 class AxisTwin {
  public:
   AxisTwin(const SensorTwin& twin, const RigOptions& options, std::size_t sensor, std::size_t axis);
 
-  /// Bias with warm-up and random walk, in m/s².
-  [[nodiscard]] double bias_mps2(double t_s) const;
+  /// Bias with so large a share of the warm-up, and with the random walk, in m/s².
+  [[nodiscard]] double bias_mps2(double warm_up) const;
   /// Reading of the force along u = M f, in m/s², without noise, clipped at full scale.
-  [[nodiscard]] double reading_mps2(double u_mps2, double t_s) const;
+  [[nodiscard]] double reading_mps2(double u_mps2, double warm_up) const;
   /// Noise of the next sample, in m/s².
   [[nodiscard]] double next_noise_mps2();
   void step_walk();
@@ -36,11 +38,12 @@ class AxisTwin {
  private:
   const RigSensor* sensor_;
   std::size_t axis_;
-  double step_s_;
+  double walk_step_mps2_;  ///< rms of the walk from sample to sample
   double walk_mps2_ = 0.0;
-  double filtered_mps2_ = 0.0;  ///< noise behind the RC filter
   double filtered_rms_;
-  double memory_ = 0.0;  ///< e^(−2π bandwidth · step), of the filter from sample to sample
+  double filtered_mps2_ = 0.0;  ///< noise behind the RC filter
+  double memory_ = 0.0;         ///< e^(−2π bandwidth · step), of the filter from sample to sample
+  double renewed_mps2_ = 0.0;   ///< rms of what comes new into it with each
   Random white_, density_, walk_;
 };
 

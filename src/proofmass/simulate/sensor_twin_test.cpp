@@ -42,7 +42,7 @@ TEST(SensorTwin, WithoutErrorsReadsTheForce) {
   const SensorTwin twin(options, 0);
   EXPECT_TRUE(twin.M.isIdentity(0.0));
   EXPECT_TRUE(twin.R_sensor_wheel.isIdentity(0.0));
-  EXPECT_EQ(AxisTwin(twin, options, 0, 1).reading_mps2(3.25, 10.0), 3.25);
+  EXPECT_EQ(AxisTwin(twin, options, 0, 1).reading_mps2(3.25, twin.warm_up(10.0)), 3.25);
   EXPECT_EQ(twin.alignment_std_rad, 0.0);
 }
 
@@ -73,11 +73,12 @@ TEST(SensorTwin, WarmsUpExponentially) {
   options.sensors[0].warm_up_time_s = 20.0;
   options.sensors[0].bias_mps2 = {1.0, 2.0, 3.0};
   const SensorTwin twin(options, 0);
-  EXPECT_EQ(AxisTwin(twin, options, 0, 0).bias_mps2(0.0), 1.0);
-  EXPECT_NEAR(AxisTwin(twin, options, 0, 0).bias_mps2(20.0), 1.0 + 0.1 * (1.0 - std::exp(-1.0)),
-              1e-14);
-  EXPECT_NEAR(AxisTwin(twin, options, 0, 1).bias_mps2(60.0), 2.0 - 0.2 * 0.950212931632136, 1e-14);
-  EXPECT_EQ(AxisTwin(twin, options, 0, 2).bias_mps2(60.0), 3.0);
+  EXPECT_EQ(AxisTwin(twin, options, 0, 0).bias_mps2(twin.warm_up(0.0)), 1.0);
+  EXPECT_NEAR(AxisTwin(twin, options, 0, 0).bias_mps2(twin.warm_up(20.0)),
+              1.0 + 0.1 * (1.0 - std::exp(-1.0)), 1e-14);
+  EXPECT_NEAR(AxisTwin(twin, options, 0, 1).bias_mps2(twin.warm_up(60.0)),
+              2.0 - 0.2 * 0.950212931632136, 1e-14);
+  EXPECT_EQ(AxisTwin(twin, options, 0, 2).bias_mps2(twin.warm_up(60.0)), 3.0);
 }
 
 TEST(SensorTwin, BiasWalksWithTheRootOfTime) {
@@ -90,7 +91,7 @@ TEST(SensorTwin, BiasWalksWithTheRootOfTime) {
     const SensorTwin twin(options, 0);
     AxisTwin axis(twin, options, 0, 0);
     for (int k = 0; k < 100; ++k) axis.step_walk();
-    after_1_s.add(axis.bias_mps2(1.0));
+    after_1_s.add(axis.bias_mps2(twin.warm_up(1.0)));
   }
   EXPECT_NEAR(after_1_s.std(), 0.01, 5.0 * 0.01 / std::sqrt(2.0 * 2000));
 }
@@ -200,8 +201,8 @@ TEST(SensorTwin, IsCalibratedWhenItHasWarmedUp) {
   const sensor::SensorModel model = model_of(twin, options, 0);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const AxisTwin readings(twin, options, 0, axis);
-    EXPECT_NEAR(model.calibration.bias[axis]->si(), readings.bias_mps2(1e6), 1e-14);
-    EXPECT_EQ(model.drift.a2[axis]->si(), readings.bias_mps2(0.0));
+    EXPECT_NEAR(model.calibration.bias[axis]->si(), readings.bias_mps2(twin.warm_up(1e6)), 1e-14);
+    EXPECT_EQ(model.drift.a2[axis]->si(), readings.bias_mps2(twin.warm_up(0.0)));
   }
 }
 

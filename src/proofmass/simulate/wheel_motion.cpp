@@ -32,6 +32,8 @@ WheelMotion::WheelMotion(double start_angle_rad,
     append(segment.duration_s - segment.ramp_s, segment.speed_radps);
   }
   PM_EXPECTS(!pieces_.empty());
+  if (pieces_.back().accel_radps2 != 0.0)
+    pieces_.push_back({duration_s_, angle_rad, speed_radps, 0.0});
 
   Random random(seed, "speed ripple");
   if (ripple.fraction > 0.0) ripple_.push_back({ripple.order, ripple.fraction, random.phase()});

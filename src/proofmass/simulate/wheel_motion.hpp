@@ -29,7 +29,8 @@ struct WheelState {
   double angle_rad = 0.0, speed_radps = 0.0, accel_radps2 = 0.0;
 };
 
-/// The wheel's motion, exact at any time: no step is integrated.
+/// The wheel's motion, exact at any time: no step is integrated. Behind its profile it keeps the
+/// last speed.
 class WheelMotion {
  public:
   WheelMotion(double start_angle_rad,
