@@ -1,7 +1,6 @@
 #include "proofmass/io/csv_columns.hpp"
 
 #include <algorithm>
-#include <array>
 #include <fmt/format.h>
 
 #include "proofmass/io/names.hpp"
@@ -15,26 +14,6 @@ bool is_calendar(ColumnKind kind) {
 
 bool can_be_time(ColumnKind kind) {
   return kind == ColumnKind::number || kind == ColumnKind::blank || is_calendar(kind);
-}
-
-/// How surely a heading is that of the time column: 0 not at all.
-int likeness_to_time(const ColumnLabel& label) {
-  // "T (degC)" is a temperature; ticks may be called counts.
-  const Quantity quantity = label.unit.quantity;
-  if (quantity != Quantity::time && quantity != Quantity::unknown && quantity != Quantity::counts)
-    return 0;
-  const std::string bare = bare_name(label.name);
-  constexpr std::array<std::string_view, 11> certain{
-      "time",           "timestamp", "t",     "sampletimefine", "timestamps", "elapsedtime",
-      "secondselapsed", "datetime",  "times", "timeelapsed",    "zeit"};
-  constexpr std::array<std::string_view, 12> likely{"sec",   "secs",   "seconds", "elapsed",
-                                                    "epoch", "millis", "micros",  "clock",
-                                                    "utc",   "ms",     "us",      "date"};
-  if (std::ranges::find(certain, std::string_view(bare)) != certain.end()) return 4;
-  if (bare.starts_with("timestamp") || bare.ends_with("timestamp")) return 3;
-  if (std::ranges::find(likely, std::string_view(bare)) != likely.end()) return 3;
-  if (bare.starts_with("time") || bare.ends_with("time")) return 2;
-  return label.unit.quantity == Quantity::time ? 1 : 0;
 }
 
 std::string names_of(const CsvHeader& header) {

@@ -274,6 +274,25 @@ ColumnLabel read_label(std::string_view heading) {
   return {std::string(text), {}};
 }
 
+int likeness_to_time(const ColumnLabel& label) {
+  // "T (degC)" is a temperature; ticks may be called counts.
+  const Quantity quantity = label.unit.quantity;
+  if (quantity != Quantity::time && quantity != Quantity::unknown && quantity != Quantity::counts)
+    return 0;
+  const std::string bare = bare_name(label.name);
+  constexpr std::array<std::string_view, 11> certain{
+      "time",           "timestamp", "t",     "sampletimefine", "timestamps", "elapsedtime",
+      "secondselapsed", "datetime",  "times", "timeelapsed",    "zeit"};
+  constexpr std::array<std::string_view, 12> likely{"sec",   "secs",   "seconds", "elapsed",
+                                                    "epoch", "millis", "micros",  "clock",
+                                                    "utc",   "ms",     "us",      "date"};
+  if (std::ranges::find(certain, std::string_view(bare)) != certain.end()) return 4;
+  if (bare.starts_with("timestamp") || bare.ends_with("timestamp")) return 3;
+  if (std::ranges::find(likely, std::string_view(bare)) != likely.end()) return 3;
+  if (bare.starts_with("time") || bare.ends_with("time")) return 2;
+  return label.unit.quantity == Quantity::time ? 1 : 0;
+}
+
 void complete_names(std::vector<ColumnLabel>& labels, std::vector<Note>& notes) {
   std::set<std::string> taken;
   std::map<std::string, int> next;  // number for the next column of a name that is taken

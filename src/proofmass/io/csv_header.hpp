@@ -22,6 +22,9 @@ struct ColumnLabel {
 /// Reads one heading: "Acc X (m/s^2)", "acc_x [g]", "Acc X, g", "acc_x_g", "Gyr_X_deg_s".
 [[nodiscard]] ColumnLabel read_label(std::string_view heading);
 
+/// How surely a heading is that of the time column: 0 not at all, 1 by its unit alone, 4 certainly.
+[[nodiscard]] int likeness_to_time(const ColumnLabel& label);
+
 /// Gives columns without a name one by their place, and a number to those of the same name.
 void complete_names(std::vector<ColumnLabel>& labels, std::vector<Note>& notes);
 

@@ -25,6 +25,8 @@ struct Headings {
   std::optional<IntervalEdge> start, end;
   std::optional<std::size_t> label;
   std::array<std::optional<std::size_t>, 3> up;
+  std::optional<std::size_t> angle;
+  double angle_unit_rad = rad_per_deg;
 };
 
 /// A heading that may be an edge: "start (s)", "t_end", "first", "end sample", "Start time [ms]".
@@ -70,6 +72,10 @@ Headings headings_of(const std::vector<std::string>& fields) {
     const std::string bare = bare_name(label.name);
     enter_edge(headings, c, label);
     if (is_label(bare) && !headings.label) headings.label = c;
+    if (bare == "angle" && !headings.angle) {
+      headings.angle = c;
+      if (label.unit.quantity == Quantity::angle) headings.angle_unit_rad = label.unit.to_si;
+    }
     if (const auto axis = axis_of_direction(bare); axis && !headings.up[*axis])
       headings.up[*axis] = c;
   }
@@ -83,6 +89,8 @@ Result<IntervalColumns> columns_under(const Headings& headings, char separator) 
   columns.start = *headings.start;
   columns.end = *headings.end;
   columns.label = headings.label;
+  columns.angle = headings.angle;
+  columns.angle_unit_rad = headings.angle_unit_rad;
   const auto is_in_seconds = [](const IntervalEdge& e) { return e.counts == Counts::seconds; };
   if (columns.in_samples() && (is_in_seconds(columns.start) || is_in_seconds(columns.end)))
     return Error{Errc::corrupt, "one of start and end is in seconds, the other in samples"};

@@ -29,6 +29,8 @@ struct IntervalColumns {
   IntervalEdge start, end;
   std::optional<std::size_t> label;
   std::optional<std::array<std::size_t, 3>> up;
+  std::optional<std::size_t> angle;
+  double angle_unit_rad = 1.0;
 
   [[nodiscard]] bool in_samples() const {
     return start.counts == Counts::samples || end.counts == Counts::samples;

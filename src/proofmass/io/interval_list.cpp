@@ -38,6 +38,10 @@ class IntervalReader {
       return wrong(row, "start or end is no number");
     if (const auto fault = fault_of(interval); !fault.empty()) return wrong(row, fault);
     interval.label = label_of(row);
+    if (columns_.angle) {
+      const double angle = figure(row, *columns_.angle) * columns_.angle_unit_rad;
+      if (std::isfinite(angle)) interval.angle_rad = angle;
+    }
     if (!columns_.up) return interval;
     return with_direction(std::move(interval), row);
   }

@@ -33,6 +33,19 @@ TEST(ReadIntervals, ReadsSecondsLabelsAndDirections) {
   EXPECT_EQ((*read)[2].up, std::nullopt);
 }
 
+TEST(ReadIntervals, ReadsTheAngleOfATable) {
+  constexpr double pi = 3.14159265358979;
+  for (const char* heading : {"angle", "angle (deg)", "Angle [°]"}) {
+    const auto read = intervals("start,end," + std::string(heading) + "\n0,1,180\n2,3,\n");
+    ASSERT_TRUE(read.has_value()) << read.error().message;
+    ASSERT_TRUE((*read)[0].angle_rad) << heading;
+    EXPECT_NEAR(*(*read)[0].angle_rad, pi, 1e-12) << heading;
+    EXPECT_FALSE((*read)[1].angle_rad) << heading;
+  }
+  EXPECT_NEAR(*intervals("start,end,angle (rad)\n0,1,2\n").value().front().angle_rad, 2.0, 1e-12);
+  EXPECT_FALSE(intervals("start,end\n0,1\n").value().front().angle_rad);
+}
+
 TEST(ReadIntervals, KnowsTheHeadingsPeopleWrite) {
   for (const char* header : {"start_s,end_s", "Start (s),End (s)", "t_start,t_end", "from,to",
                              "begin,stop", "start time [s],end time [s]"}) {

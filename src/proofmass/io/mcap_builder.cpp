@@ -1,16 +1,19 @@
 #include "proofmass/io/mcap_builder.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/io/crc32.hpp"
 #include "proofmass/io/mcap_put.hpp"
 
 namespace proofmass::io {
-McapBuilder::McapBuilder(const std::string& library, McapChunking chunking)
+McapBuilder::McapBuilder(const std::string& library,
+                         McapChunking chunking,
+                         const std::string& profile)
     : chunking_(chunking), bytes_(mcap_magic) {
   std::string content;
-  put_mcap_text(content, "");
+  put_mcap_text(content, profile);
   put_mcap_text(content, library);
   record(bytes_, McapOp::header, content);
 }
@@ -44,17 +47,25 @@ void McapBuilder::put_definitions() {
 
 void McapBuilder::add_message(std::uint16_t channel, std::uint64_t log_ns, std::string_view data) {
   PM_EXPECTS(channel > 0 && channel <= channels_.size());
+  add_message({channel, sequences_[channel - 1u], log_ns, log_ns, data});
+}
+
+void McapBuilder::add_message(const McapMessage& message) {
+  PM_EXPECTS(message.channel > 0 && message.channel <= channels_.size());
+  if (chunking_.is_self_contained && chunk_.empty()) schemas_put_ = channels_put_ = 0;
   put_definitions();
+  const std::uint64_t log_ns = message.log_ns;
   const bool is_first = chunk_entries_.empty();
   chunk_start_ns_ = is_first ? log_ns : std::min(chunk_start_ns_, log_ns);
   chunk_end_ns_ = is_first ? log_ns : std::max(chunk_end_ns_, log_ns);
-  chunk_entries_[channel].push_back({log_ns, chunk_.size()});
-  put_record_head(chunk_, McapOp::message, 2 + 4 + 8 + 8 + data.size());
-  put_number(chunk_, channel, 2);
-  put_number(chunk_, sequences_[channel - 1u]++, 4);
+  chunk_entries_[message.channel].push_back({log_ns, chunk_.size()});
+  put_record_head(chunk_, McapOp::message, 2 + 4 + 8 + 8 + message.data.size());
+  put_number(chunk_, message.channel, 2);
+  put_number(chunk_, message.sequence, 4);
   put_number(chunk_, log_ns, 8);
-  put_number(chunk_, log_ns, 8);
-  chunk_ += data;
+  put_number(chunk_, message.publish_ns, 8);
+  chunk_ += message.data;
+  ++sequences_[message.channel - 1u];
   start_ns_ = messages_ == 0 ? log_ns : std::min(start_ns_, log_ns);
   end_ns_ = std::max(end_ns_, log_ns);
   ++messages_;
@@ -128,18 +139,15 @@ void McapBuilder::add_metadata(const McapMetadata& metadata) {
   record(metadata_indexes_, McapOp::metadata_index, index);
 }
 
-void McapBuilder::add_attachment(const std::string& name,
-                                 const std::string& media_type,
-                                 std::uint64_t log_ns,
-                                 std::string_view data) {
+void McapBuilder::add_attachment(const McapAttachmentHead& head, std::string_view data) {
   close_chunk();
   ++attachments_;
   const std::uint64_t start = position();
   std::string content;
-  put_number(content, log_ns, 8);
-  put_number(content, 0, 8);
-  put_mcap_text(content, name);
-  put_mcap_text(content, media_type);
+  put_number(content, head.log_ns, 8);
+  put_number(content, head.create_ns, 8);
+  put_mcap_text(content, head.name);
+  put_mcap_text(content, head.media_type);
   put_number(content, data.size(), 8);
   content += data;
   put_number(content, crc32(0, content), 4);
@@ -147,18 +155,54 @@ void McapBuilder::add_attachment(const std::string& name,
   std::string index;
   put_number(index, start, 8);
   put_number(index, position() - start, 8);
-  put_number(index, log_ns, 8);
-  put_number(index, 0, 8);
+  put_number(index, head.log_ns, 8);
+  put_number(index, head.create_ns, 8);
   put_number(index, data.size(), 8);
-  put_mcap_text(index, name);
-  put_mcap_text(index, media_type);
+  put_mcap_text(index, head.name);
+  put_mcap_text(index, head.media_type);
   record(attachment_indexes_, McapOp::attachment_index, index);
 }
 
-void McapBuilder::drop_bytes() {
+std::string McapBuilder::take_bytes() {
   data_crc_ = crc32(data_crc_, bytes_);
   taken_ += bytes_.size();
+  return std::exchange(bytes_, {});
+}
+
+McapMark McapBuilder::mark() const {
+  PM_EXPECTS(bytes_.empty() && chunk_.empty());
+  return {taken_,
+          data_crc_,
+          chunk_indexes_.size(),
+          attachment_indexes_.size(),
+          metadata_indexes_.size(),
+          chunks_,
+          attachments_,
+          metadata_,
+          start_ns_,
+          end_ns_,
+          messages_,
+          sequences_};
+}
+
+void McapBuilder::rewind(const McapMark& mark) {
   bytes_.clear();
+  chunk_.clear();
+  chunk_entries_.clear();
+  taken_ = mark.bytes;
+  data_crc_ = mark.data_crc;
+  chunk_indexes_.resize(mark.chunk_index_bytes);
+  attachment_indexes_.resize(mark.attachment_index_bytes);
+  metadata_indexes_.resize(mark.metadata_index_bytes);
+  chunks_ = mark.chunks;
+  attachments_ = mark.attachments;
+  metadata_ = mark.metadata;
+  start_ns_ = mark.start_ns;
+  end_ns_ = mark.end_ns;
+  messages_ = mark.messages;
+  sequences_ = mark.sequences;
+  sequences_.resize(channels_.size(), 0);
+  schemas_put_ = channels_put_ = 0;
 }
 
 void McapBuilder::finish() {

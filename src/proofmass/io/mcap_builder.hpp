@@ -7,15 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "proofmass/io/mcap_recording.hpp"
 #include "proofmass/io/mcap_records.hpp"
 
 namespace proofmass::io {
-
-/// When a chunk is closed: as soon as it is as large or its messages span as much time.
-struct McapChunking {
-  std::size_t bytes = std::size_t{1} << 20;
-  std::uint64_t span_ns = ~std::uint64_t{0};
-};
 
 /// Puts an MCAP file together in memory, from front to end; whoever uses it takes the bytes away
 /// and writes them. Chunks are not compressed, so that a file that is cut off anywhere opens up to
@@ -23,27 +18,31 @@ struct McapChunking {
 /// channels, chunk, attachment and metadata indexes and statistics.
 class McapBuilder {
  public:
-  explicit McapBuilder(const std::string& library, McapChunking chunking = {});
+  explicit McapBuilder(const std::string& library,
+                       McapChunking chunking = {},
+                       const std::string& profile = "");
 
   /// Both stand in front of the first message that needs them. Numbers count from 1.
   [[nodiscard]] std::uint16_t add_schema(McapSchema schema);
   [[nodiscard]] std::uint16_t add_channel(McapChannel channel);
   /// Messages of a channel are numbered from 0.
   void add_message(std::uint16_t channel, std::uint64_t log_ns, std::string_view data);
+  /// The same with the sequence number and time of publishing that it has.
+  void add_message(const McapMessage& message);
   /// Both close the chunk before them.
   void add_metadata(const McapMetadata& metadata);
-  void add_attachment(const std::string& name,
-                      const std::string& media_type,
-                      std::uint64_t log_ns,
-                      std::string_view data);
+  void add_attachment(const McapAttachmentHead& head, std::string_view data);
   /// What was added so far can be taken and outlives a crash.
   void close_chunk();
   /// The end of the data and the summary. Nothing can be added afterwards.
   void finish();
 
   /// Bytes that follow those taken before.
-  [[nodiscard]] const std::string& bytes() const { return bytes_; }
-  void drop_bytes();
+  [[nodiscard]] std::string take_bytes();
+  /// All of the file, the open chunk too.
+  [[nodiscard]] std::uint64_t bytes() const { return position() + chunk_.size(); }
+  [[nodiscard]] McapMark mark() const;
+  void rewind(const McapMark& mark);
 
  private:
   struct Entry {
@@ -61,7 +60,7 @@ class McapBuilder {
 
   McapChunking chunking_;
   std::string bytes_;
-  std::uint64_t taken_ = 0;     ///< bytes that were dropped
+  std::uint64_t taken_ = 0;     ///< bytes that were handed out
   std::uint32_t data_crc_ = 0;  ///< of those
   std::vector<McapSchema> schemas_;
   std::vector<McapChannel> channels_;

@@ -10,6 +10,7 @@
 #include "proofmass/io/mcap_catalogue.hpp"
 #include "proofmass/io/mcap_decoder.hpp"
 #include "proofmass/io/mcap_labels.hpp"
+#include "proofmass/io/mcap_recording.hpp"
 #include "proofmass/io/mcap_samples.hpp"
 #include "proofmass/io/mcap_table.hpp"
 #include "proofmass/io/random_bytes.hpp"
@@ -50,8 +51,14 @@ std::optional<std::uint64_t> rows_of(const McapTopic& topic,
 /// The topics of a file, and why those are not read that are not.
 struct Topics {
   std::vector<McapTableSpec> read;
+  std::set<std::uint16_t> events;
   std::vector<Note> others;
 };
+
+/// What stands beside the samples of a recording of our own is no table.
+bool is_beside(const McapTopic& topic) {
+  return topic.schema.name == mcap_event_schema || topic.schema.name == mcap_clock_schema;
+}
 
 Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
   Topics out;
@@ -63,6 +70,8 @@ Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
   for (const auto& [id, first] : catalogue.firsts) {
     const McapChannel& channel = catalogue.channels.at(id);
     McapTopic topic{channel, schema_of(catalogue, channel), first};
+    if (topic.schema.name == mcap_event_schema) out.events.insert(id);
+    if (is_beside(topic)) continue;
     const auto key = std::tuple(channel.topic, channel.encoding, topic.schema.data);
     const auto [place, is_new] = known.try_emplace(key, out.read.size());
     if (is_new && out.read.size() == most_topics) {
@@ -102,8 +111,12 @@ Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
 }
 
 TableSummary summary_of(const McapTableSpec& spec) {
-  TableSummary out{
-      .name = spec.topic.channel.topic, .headings = {}, .rows = spec.rows, .rate_hz = std::nullopt};
+  const McapMap& metadata = spec.topic.channel.metadata;
+  TableSummary out{.name = spec.topic.channel.topic,
+                   .headings = {},
+                   .rows = spec.rows,
+                   .rate_hz = std::nullopt,
+                   .is_derived = metadata.contains("derived_from")};
   if (const auto decoder = mcap_decoder(spec.topic)) {
     out.headings = (*decoder)->head().headings;
     out.rate_hz = (*decoder)->head().rate_hz;
@@ -178,6 +191,7 @@ Result<std::unique_ptr<TableFile>> open_mcap(std::unique_ptr<PeekSource> source,
   for (const auto& [channel, first] : catalogue->firsts) known->insert(channel);
   for (McapTableSpec& spec : topics.read) {
     spec.known = known;
+    spec.events = topics.events;
     spec.notes = catalogue->notes;
     spec.notes.push_back({Severity::info, writer_of(*catalogue)});
     spec.notes.insert(spec.notes.end(), topics.others.begin(), topics.others.end());

@@ -4,6 +4,8 @@
 #include <array>
 #include <fmt/format.h>
 
+#include "proofmass/io/crc32.hpp"
+
 namespace proofmass::io {
 
 std::string_view McapFields::take(std::uint64_t count) {
@@ -104,14 +106,24 @@ std::optional<McapMetadata> mcap_metadata(std::string_view content) {
 
 std::optional<McapAttachmentHead> mcap_attachment_head(std::string_view content) {
   McapFields fields(content);
-  fields.u64();
-  fields.u64();
   McapAttachmentHead out;
+  out.log_ns = fields.u64();
+  out.create_ns = fields.u64();
   out.name = fields.text();
   out.media_type = fields.text();
   out.bytes = fields.u64();
   out.head_bytes = content.size() - fields.left();
   return if_whole(fields, std::move(out));
+}
+
+std::optional<std::string_view> mcap_attachment_data(std::string_view content,
+                                                     const McapAttachmentHead& head) {
+  McapFields fields(content.substr(head.head_bytes));
+  const std::string_view data = fields.take(head.bytes);
+  const std::uint32_t crc = fields.u32();
+  const std::string_view checked = content.substr(0, head.head_bytes + data.size());
+  const bool is_damaged = !fields.is_whole() || (crc != 0 && crc32(0, checked) != crc);
+  return is_damaged ? std::nullopt : std::optional(data);
 }
 
 std::optional<McapFooter> mcap_footer(std::string_view content) {

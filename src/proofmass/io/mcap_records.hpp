@@ -76,6 +76,8 @@ struct McapMetadata {
 
 /// An attachment's record up to where its bytes begin.
 struct McapAttachmentHead {
+  std::uint64_t log_ns = 0;
+  std::uint64_t create_ns = 0;  ///< 0: nobody says
   std::string name;
   std::string media_type;
   std::uint64_t bytes = 0;
@@ -124,6 +126,9 @@ class McapFields {
 [[nodiscard]] std::optional<McapChunkHead> mcap_chunk_head(std::string_view content);
 [[nodiscard]] std::optional<McapMetadata> mcap_metadata(std::string_view content);
 [[nodiscard]] std::optional<McapAttachmentHead> mcap_attachment_head(std::string_view content);
+/// The attachment itself; nullopt where it breaks off or its checksum is wrong.
+[[nodiscard]] std::optional<std::string_view> mcap_attachment_data(std::string_view content,
+                                                                   const McapAttachmentHead& head);
 [[nodiscard]] std::optional<McapFooter> mcap_footer(std::string_view content);
 [[nodiscard]] std::optional<McapStatistics> mcap_statistics(std::string_view content);
 

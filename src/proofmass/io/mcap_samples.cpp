@@ -97,6 +97,7 @@ std::map<std::string, std::string> samples_metadata(const McapSamplesLayout& lay
   std::map<std::string, std::string> out{{"stamps", layout.has_stamps ? "yes" : "no"}};
   if (layout.rate_hz) out["rate_hz"] = fmt::format("{}", *layout.rate_hz);
   if (layout.start_ns) out["start_ns"] = std::to_string(*layout.start_ns);
+  if (!layout.derived_from.empty()) out["derived_from"] = layout.derived_from;
   return out;
 }
 

@@ -36,6 +36,7 @@ struct McapSamplesLayout {
   bool has_stamps = false;
   std::optional<double> rate_hz;         ///< without stamps
   std::optional<std::int64_t> start_ns;  ///< time of the first sample
+  std::string derived_from{};            ///< topic that it was worked out of; empty: measured
 };
 
 struct McapSamplesHead {
@@ -56,7 +57,7 @@ void write_samples(std::uint64_t first,
 
 /// The JSON schema: `columns` lists name and unit of each.
 [[nodiscard]] std::string samples_schema(const McapSamplesLayout& layout);
-/// Metadata of the channel: "stamps", "rate_hz", "start_ns".
+/// Metadata of the channel: "stamps", "rate_hz", "start_ns", "derived_from".
 [[nodiscard]] std::map<std::string, std::string> samples_metadata(const McapSamplesLayout& layout);
 /// Errors: corrupt (not such a schema).
 [[nodiscard]] Result<McapSamplesLayout> read_samples_layout(

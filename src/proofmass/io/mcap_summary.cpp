@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "proofmass/io/crc32.hpp"
-#include "proofmass/io/mcap_records.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -37,6 +36,10 @@ std::optional<McapSummary> summary_of(std::string_view records) {
       index.take(16);
       out.chunk_starts.push_back(index.u64());
     }
+    if (op == McapOp::schema)
+      if (auto schema = mcap_schema(content)) out.schemas.push_back(std::move(*schema));
+    if (op == McapOp::channel)
+      if (auto channel = mcap_channel(content)) out.channels.push_back(std::move(*channel));
     if (op != McapOp::statistics) continue;
     const auto statistics = mcap_statistics(content);
     if (!statistics) return std::nullopt;

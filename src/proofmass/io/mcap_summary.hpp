@@ -9,6 +9,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/io/file_window.hpp"
+#include "proofmass/io/mcap_records.hpp"
 
 namespace proofmass::io {
 
@@ -17,6 +18,8 @@ struct McapSummary {
   std::map<std::uint16_t, std::uint64_t> messages;  ///< of each channel
   std::vector<std::uint64_t> chunk_starts;          ///< ascending
   bool has_data_checksum = false;
+  std::vector<McapSchema> schemas;
+  std::vector<McapChannel> channels;
 };
 
 /// Reads the summary that the footer points to; nullopt where there is none, or none that counts

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <iterator>
 
-#include "proofmass/io/crc32.hpp"
+#include "proofmass/io/mcap_events.hpp"
 #include "proofmass/io/mcap_labels.hpp"
 #include "proofmass/io/shown_text.hpp"
 #include "proofmass/io/wording.hpp"
@@ -14,7 +14,7 @@ namespace proofmass::io {
 namespace {
 
 /// What is done with the messages of a channel.
-enum class Use : unsigned char { unknown, known, read };
+enum class Use : unsigned char { unknown, known, event, read };
 
 /// What a note says of a record of metadata: its texts as far as they are short.
 std::string words_of(const McapMetadata& metadata) {
@@ -41,6 +41,7 @@ class McapTable final : public TableReader {
         labels_(spec.labels),
         head_(decoder_->head()) {
     for (const std::uint16_t channel : *spec.known) channels_[channel] = Use::known;
+    for (const std::uint16_t channel : spec.events) channels_[channel] = Use::event;
     for (const std::uint16_t channel : spec.channels) channels_[channel] = Use::read;
     head_.rows = spec.rows;
     std::ranges::move(spec.notes, std::back_inserter(head_.notes));
@@ -82,6 +83,7 @@ class McapTable final : public TableReader {
            fmt::format("{} messages are not looked at, as they are of channels that the "
                        "summary counts no message of, or the file has no record of",
                        strange_)});
+    if (const auto events = events_.note()) notes.push_back(*events);
     notes.insert(notes.end(), beside_.begin(), beside_.end());
     return notes;
   }
@@ -105,6 +107,7 @@ class McapTable final : public TableReader {
       }
       const Use use = channels_[message->channel];
       strange_ += use == Use::unknown ? 1 : 0;
+      if (use == Use::event) events_.add(*message);
       if (use != Use::read) continue;
       const auto rows = decoder_->take(*message, walk_.lost_bytes());
       if (!rows) refuse(record, rows.error().message);
@@ -134,14 +137,13 @@ class McapTable final : public TableReader {
     const auto head = mcap_attachment_head(content);
     if (!head) return;
     constexpr std::size_t most_told = 8;
-    McapFields fields(content.substr(head->head_bytes));
-    const std::string_view data = fields.take(head->bytes);
-    const std::uint32_t crc = fields.u32();
-    const bool is_damaged = fields.is_whole() && crc != 0 &&
-                            crc32(0, content.substr(0, head->head_bytes + data.size())) != crc;
+    const auto data = mcap_attachment_data(content, *head);
+    // Of what is larger than a record that is held there is only the beginning.
+    const bool is_cut = content.size() < head->head_bytes + head->bytes;
+    const bool is_damaged = !data && !is_cut;
     const bool are_labels = head->name == mcap_labels_name && labels_ && labels_->empty();
-    if (are_labels && !is_damaged) {
-      *labels_ = data;
+    if (are_labels && data) {
+      *labels_ = *data;
     } else if (beside_.size() < most_told) {
       beside_.push_back({is_damaged ? Severity::warning : Severity::info,
                          fmt::format("attached: \"{}\", {} bytes{}", shown(head->name), head->bytes,
@@ -161,6 +163,7 @@ class McapTable final : public TableReader {
   std::uint64_t refused_ = 0;
   std::uint64_t refused_at_ = 0;
   std::string refusal_;
+  McapEvents events_;
   std::vector<Note> beside_;
 };
 

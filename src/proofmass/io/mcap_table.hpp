@@ -20,6 +20,7 @@ struct McapTableSpec {
   std::vector<Note> notes;  ///< what is told of the file
   /// All channels of the file that are known beforehand, read or not.
   std::shared_ptr<const std::set<std::uint16_t>> known{};
+  std::set<std::uint16_t> events{};  ///< channels of events, which are summed up in a note
   /// Gets the attachment with the labels, if there is one, once all rows are read.
   std::shared_ptr<std::string> labels{};
 };

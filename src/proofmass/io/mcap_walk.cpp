@@ -78,20 +78,19 @@ Result<bool> McapWalk::step(McapRecord& record) {
   McapFields fields(*head);
   record = {static_cast<McapOp>(fields.u8()), {}, position_};
   const std::uint64_t length = fields.u64();
-  if (!fields.is_whole()) {
-    break_off("within the head of a record");
-    return false;
-  }
-  if (record.op == McapOp{0}) {
-    break_off("where a record should begin there is a zero");
-    return false;
-  }
+  if (!fields.is_whole()) return broken_off("within the head of a record");
+  if (record.op == McapOp{0}) return broken_off("where a record should begin there is a zero");
   const std::uint64_t left = window_.size() - position_ - mcap_record_head;
-  if (length > left) {
-    break_off(fmt::format("within {}, of whose {} bytes {} are there", mcap_record_name(record.op),
-                          length, left));
-    return false;
-  }
+  if (length > left)
+    return broken_off(fmt::format("within {}, of whose {} bytes {} are there",
+                                  mcap_record_name(record.op), length, left));
+  const auto believable = is_believable(record.op, length);
+  if (!believable) return believable.error();
+  if (!*believable)
+    return broken_off(
+        fmt::format("where {} of {} bytes cannot be", mcap_record_name(record.op), length));
+  // Where its length is wrong, a chunk may begin within.
+  search_from_ = position_ + 1;
   return enter(length, record);
 }
 
@@ -103,12 +102,14 @@ Result<bool> McapWalk::enter(std::uint64_t length, McapRecord& record) {
     const std::string found(*content);
     if (record.op == McapOp::data_end)
       if (const Status closed = close(found); !closed) return closed.error();
+    counts_.is_closed = true;
     ended_ = true;
     return false;
   }
   if (record.op == McapOp::chunk) {
-    if (const Status entered = enter_chunk(length); !entered) return entered.error();
-    position_ = content_at + length;
+    const auto entered = enter_chunk(length);
+    if (!entered) return entered.error();
+    position_ = *entered;
     return false;
   }
   position_ = content_at + length;
@@ -124,31 +125,30 @@ Result<bool> McapWalk::enter(std::uint64_t length, McapRecord& record) {
   return true;
 }
 
-Status McapWalk::enter_chunk(std::uint64_t length) {
+/// Says where the record behind the chunk is to be looked for.
+Result<std::uint64_t> McapWalk::enter_chunk(std::uint64_t length) {
   chunk_at_ = position_;
   constexpr std::uint64_t most_head_bytes = 4096;
   const std::uint64_t content_at = position_ + mcap_record_head;
+  const std::uint64_t end = content_at + length;
   const auto start = window_.view(content_at, std::min(length, most_head_bytes));
   if (!start) return start.error();
   const auto head = mcap_chunk_head(*start);
-  if (!head || head->packed_bytes > length - head->head_bytes) {
-    lose_chunk({}, "its head is damaged");
-    return Done{};
-  }
-  if (head->packed_bytes > mcap_most_unpacked || head->unpacked_bytes > mcap_most_unpacked) {
-    lose_chunk(*head, "it is larger than 1 GiB");
-    return Done{};
-  }
+  if (!head || head->packed_bytes > length - head->head_bytes)
+    return lose_chunk({}, end, "its head is damaged");
+  if (head->packed_bytes > mcap_most_unpacked || head->unpacked_bytes > mcap_most_unpacked)
+    return lose_chunk(*head, end, "it is larger than 1 GiB");
   // The record as a whole, so that the checksum of the data section finds it in the window.
   const std::uint64_t before = mcap_record_head + head->head_bytes;
   const auto whole = window_.view(position_, before + head->packed_bytes);
   if (!whole) return whole.error();
   const auto unpacked = unpacker_.unpack(*head, whole->substr(std::min(before, whole->size())));
-  if (unpacked)
-    in_chunk_ = *unpacked;
-  else
-    lose_chunk(*head, unpacked.error().message);
-  return Done{};
+  if (!unpacked) return lose_chunk(*head, end, unpacked.error().message);
+  in_chunk_ = *unpacked;
+  ++counts_.chunks;
+  // The checksum stands for the length within, nothing for the one without.
+  if (hints_.search) search_from_ = position_ + before + head->packed_bytes;
+  return hints_.search ? search_from_ : end;
 }
 
 /// Carries the checksum of the data section on; the bytes are in the window still.
@@ -166,7 +166,7 @@ Status McapWalk::pass(std::uint64_t end) {
 
 Status McapWalk::close(std::string_view data_end) {
   const std::uint32_t expected = McapFields(data_end).u32();
-  if (!hints_.check_data || expected == 0 || lost_chunks_ > 0) return Done{};
+  if (!hints_.check_data || expected == 0 || counts_.damaged_chunks > 0) return Done{};
   if (const Status passed = pass(position_); !passed) return passed.error();
   if (data_crc_ != expected)
     note(Severity::bad,
@@ -175,31 +175,115 @@ Status McapWalk::close(std::string_view data_end) {
   return Done{};
 }
 
-void McapWalk::break_off(const std::string& why) {
-  const auto next = std::ranges::upper_bound(hints_.chunk_starts, position_);
+/// Goes on behind damage, where there is anything to go on with; there is no record yet.
+Result<bool> McapWalk::broken_off(const std::string& why) {
+  const auto listed = std::ranges::upper_bound(hints_.chunk_starts, position_);
+  std::uint64_t next = listed == hints_.chunk_starts.end() ? window_.size() : *listed;
+  if (hints_.search) {
+    const auto found = next_chunk(search_from_);
+    if (!found) return found.error();
+    next = *found;
+    position_ = std::min(position_, next);
+  }
   hints_.check_data = false;
-  if (next == hints_.chunk_starts.end() || *next >= window_.size()) {
+  if (next >= window_.size()) {
     note(Severity::bad,
          fmt::format("breaks off at byte {}, {}: what was read before is kept", position_, why));
+    counts_.passed_over += window_.size() - position_;
     ended_ = true;
-    return;
+    return false;
   }
   note(
       Severity::bad,
-      fmt::format("is damaged at byte {}, {}: passed over up to byte {}, where the summary has the "
-                  "next chunk",
-                  position_, why, *next));
-  lost_bytes_ += *next - position_;
-  position_ = *next;
+      fmt::format("is damaged at byte {}, {}: passed over up to byte {}, where {}", position_, why,
+                  next, hints_.search ? "a whole chunk begins" : "the summary has the next chunk"));
+  lost_bytes_ += next - position_;
+  counts_.passed_over += next - position_;
+  position_ = next;
+  return false;
 }
 
-void McapWalk::lose_chunk(const McapChunkHead& head, const std::string& why) {
-  ++lost_chunks_;
+/// Whether what has the head of a record is one: only asked where the walk can go on without it.
+Result<bool> McapWalk::is_believable(McapOp op, std::uint64_t length) {
+  if (!hints_.search || op == McapOp::chunk) return true;
+  const std::uint64_t end = position_ + mcap_record_head + length;
+  constexpr std::uint64_t longest_data_end = 64;
+  if (op == McapOp::data_end) return length <= longest_data_end;
+  if (op == McapOp::footer) return end + mcap_magic.size() == window_.size();
+  return op < McapOp::data_end ? Result(true) : is_record_at(end);
+}
+
+/// Whether a record can begin there, or the file ends.
+Result<bool> McapWalk::is_record_at(std::uint64_t at) {
+  if (at == window_.size()) return true;
+  const auto next = window_.view(at, 1);
+  if (!next) return next.error();
+  const auto kind = static_cast<unsigned char>(next->empty() ? 0 : next->front());
+  constexpr unsigned char first_private = 0x80;
+  return (kind > 0 && kind <= static_cast<unsigned char>(McapOp::data_end)) ||
+         kind >= first_private;
+}
+
+/// The first byte from `from` on at which a whole chunk stands; the file's end where there is none.
+Result<std::uint64_t> McapWalk::next_chunk(std::uint64_t from) {
+  constexpr std::uint64_t piece = std::uint64_t{64} << 10;
+  // Each try costs a chunk's checksum: bytes made for it would keep the search busy for ever.
+  const std::uint64_t most_searched = 8 * window_.size() + (std::uint64_t{64} << 20);
+  for (std::uint64_t at = from; at < window_.size() && searched_ < most_searched;) {
+    const auto bytes = window_.view(at, piece);
+    if (!bytes) return bytes.error();
+    const std::size_t found = bytes->find(static_cast<char>(McapOp::chunk));
+    if (found == std::string_view::npos) {
+      at += bytes->size();
+      continue;
+    }
+    at += found;
+    const auto whole = is_chunk(at);
+    if (!whole) return whole.error();
+    if (*whole) return at;
+    ++at;
+  }
+  return window_.size();
+}
+
+Result<bool> McapWalk::is_chunk(std::uint64_t at) {
+  constexpr std::uint64_t most_head_bytes = 128;
+  const auto start = window_.view(at, mcap_record_head + most_head_bytes);
+  if (!start) return start.error();
+  McapFields fields(*start);
+  fields.u8();
+  const std::uint64_t length = fields.u64();
+  const auto head = mcap_chunk_head(start->substr(std::min(start->size(), mcap_record_head)));
+  const bool is_sound = fields.is_whole() && head && head->packed_bytes <= mcap_most_unpacked &&
+                        head->head_bytes + head->packed_bytes == length &&
+                        length <= window_.size() - at - mcap_record_head && head->packed_bytes > 0;
+  if (!is_sound) return false;
+  const std::uint64_t before = mcap_record_head + head->head_bytes;
+  const auto whole = window_.view(at, before + head->packed_bytes);
+  if (!whole) return whole.error();
+  searched_ += head->packed_bytes;
+  return unpacker_.unpack(*head, whole->substr(before)).has_value();
+}
+
+/// Says where to go on: behind it, or at the next chunk where its length cannot be right either.
+Result<std::uint64_t> McapWalk::lose_chunk(const McapChunkHead& head,
+                                           std::uint64_t end,
+                                           const std::string& why) {
+  ++counts_.damaged_chunks;
   constexpr std::uint64_t usual_ratio = 64;
   lost_bytes_ += std::min(head.unpacked_bytes, usual_ratio * head.packed_bytes);
   note(Severity::bad,
        fmt::format("the chunk at byte {} ({} … {} on the clock of the file) is passed over: {}",
                    chunk_at_, seconds(head.start_ns), seconds(head.end_ns), why));
+  if (hints_.search) {
+    const auto follows = is_record_at(end);
+    if (!follows) return follows.error();
+    const auto next = *follows && head.packed_bytes > 0 ? Result(end) : next_chunk(search_from_);
+    if (!next) return next.error();
+    end = *next;
+  }
+  counts_.passed_over += end - chunk_at_;
+  return end;
 }
 
 void McapWalk::note(Severity severity, std::string text) {
@@ -208,8 +292,9 @@ void McapWalk::note(Severity severity, std::string text) {
 
 std::vector<Note> McapWalk::notes() const {
   std::vector<Note> notes = notes_;
-  if (lost_chunks_ > 1)
-    notes.push_back({Severity::bad, fmt::format("{} chunks are passed over in all", lost_chunks_)});
+  if (counts_.damaged_chunks > 1)
+    notes.push_back(
+        {Severity::bad, fmt::format("{} chunks are passed over in all", counts_.damaged_chunks)});
   return notes;
 }
 

@@ -26,6 +26,16 @@ struct McapWalkHints {
   /// Where chunks begin, ascending: after damage the walk goes on at the next of them.
   std::vector<std::uint64_t> chunk_starts{};
   bool check_data = false;  ///< compare the checksum of the whole data section, if it has one
+  /// After damage the walk goes on at the next bytes that are a whole chunk, wherever they are.
+  bool search = false;
+};
+
+/// What a walk came across.
+struct McapWalkCounts {
+  std::uint64_t chunks = 0;  ///< that were whole
+  std::uint64_t damaged_chunks = 0;
+  std::uint64_t passed_over = 0;  ///< bytes of the file, with those at its end
+  bool is_closed = false;         ///< the end of the data section is there
 };
 
 /// Goes through the data section of an MCAP file from front to end, into its chunks too.
@@ -44,16 +54,24 @@ class McapWalk {
   /// How many bytes of messages can at most have been in the chunks that were passed over.
   [[nodiscard]] std::uint64_t lost_bytes() const { return lost_bytes_; }
   [[nodiscard]] double fraction_read() const;
+  /// Complete once next() has said false.
+  [[nodiscard]] const McapWalkCounts& counts() const { return counts_; }
 
  private:
   [[nodiscard]] bool next_in_chunk(McapRecord& record);
   [[nodiscard]] Result<bool> step(McapRecord& record);
   [[nodiscard]] Result<bool> enter(std::uint64_t length, McapRecord& record);
-  [[nodiscard]] Status enter_chunk(std::uint64_t length);
+  [[nodiscard]] Result<std::uint64_t> enter_chunk(std::uint64_t length);
   [[nodiscard]] Status pass(std::uint64_t end);
   [[nodiscard]] Status close(std::string_view data_end);
-  void break_off(const std::string& why);
-  void lose_chunk(const McapChunkHead& head, const std::string& why);
+  [[nodiscard]] Result<bool> broken_off(const std::string& why);
+  [[nodiscard]] Result<bool> is_believable(McapOp op, std::uint64_t length);
+  [[nodiscard]] Result<bool> is_record_at(std::uint64_t at);
+  [[nodiscard]] Result<std::uint64_t> next_chunk(std::uint64_t from);
+  [[nodiscard]] Result<bool> is_chunk(std::uint64_t at);
+  [[nodiscard]] Result<std::uint64_t> lose_chunk(const McapChunkHead& head,
+                                                 std::uint64_t end,
+                                                 const std::string& why);
   void note(Severity severity, std::string text);
 
   FileWindow window_;
@@ -66,7 +84,9 @@ class McapWalk {
   std::uint32_t data_crc_ = 0;
   bool ended_ = false;
   std::uint64_t lost_bytes_ = 0;
-  std::uint64_t lost_chunks_ = 0;
+  std::uint64_t search_from_ = 8;  ///< behind what is surely whole
+  std::uint64_t searched_ = 0;     ///< bytes that were looked at in vain
+  McapWalkCounts counts_;
   std::vector<Note> notes_;
 };
 

@@ -1,27 +1,14 @@
 #include <algorithm>
-#include <cmath>
-#include <fmt/format.h>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "proofmass/core/version.hpp"
-#include "proofmass/io/mcap_builder.hpp"
-#include "proofmass/io/mcap_labels.hpp"
-#include "proofmass/io/mcap_samples.hpp"
+#include "proofmass/io/mcap_recording.hpp"
 #include "proofmass/io/recording_writers.hpp"
 
 namespace proofmass::io {
 namespace {
-
-McapSamplesLayout layout_of(const WriterHead& head) {
-  const TimeBase& time = head.recording.time;
-  McapSamplesLayout out;
-  for (const Channel& channel : head.recording.channels)
-    out.columns.push_back({channel.name, channel.unit.symbol});
-  out.has_stamps = head.has_stamps;
-  if (!head.has_stamps && time.rate_hz > 0.0) out.rate_hz = time.rate_hz;
-  out.start_ns = time.start_ns;
-  return out;
-}
 
 /// Rows of a message: what 64 KiB hold, but a second's at most.
 std::size_t rows_a_message(const WriterHead& head) {
@@ -37,26 +24,26 @@ class McapWriter final : public RecordingWriter {
  public:
   McapWriter(std::unique_ptr<OutputFile> file, const WriterHead& head, const WriteOptions& options)
       : file_(std::move(file)),
-        builder_(fmt::format("proofmass {}", version())),
         start_ns_(head.recording.time.start_ns.value_or(0)),
         rate_hz_(head.recording.time.rate_hz),
         has_stamps_(head.has_stamps),
         rows_a_message_(rows_a_message(head)),
         columns_(head.recording.channels.size() + (head.has_stamps ? 1 : 0)) {
     for (std::vector<double>& column : columns_) column.reserve(rows_a_message_);
-    McapMap settings(options.metadata.begin(), options.metadata.end());
+    std::map<std::string, std::string> settings(options.metadata.begin(), options.metadata.end());
     settings["version"] = version();
     settings["source"] = head.recording.source;
     settings["source_format"] = head.recording.format;
-    builder_.add_metadata({"proofmass", std::move(settings)});
+    mcap_.add_metadata("proofmass", settings);
     if (!options.sensor_file.empty())
-      builder_.add_attachment("sensor.toml", "application/toml", log_ns(0, 0.0),
-                              options.sensor_file);
-    const McapSamplesLayout layout = layout_of(head);
-    const std::uint16_t schema =
-        builder_.add_schema({0, "proofmass.samples", "jsonschema", samples_schema(layout)});
-    channel_ = builder_.add_channel(
-        {0, schema, "recording", std::string(mcap_samples_encoding), samples_metadata(layout)});
+      mcap_.add_attachment("sensor.toml", "application/toml", log_ns(0, 0.0), options.sensor_file);
+    const TimeBase& time = head.recording.time;
+    McapSamplesTopic topic{.name = "recording",
+                           .columns = head.recording.channels,
+                           .has_stamps = head.has_stamps,
+                           .start_ns = time.start_ns};
+    if (!head.has_stamps && time.rate_hz > 0.0) topic.rate_hz = time.rate_hz;
+    topic_ = mcap_.add_samples_topic(topic);
   }
 
   [[nodiscard]] Status write(const Block& block) override {
@@ -80,25 +67,16 @@ class McapWriter final : public RecordingWriter {
 
   [[nodiscard]] Status finish(const Recording& recording) override {
     if (const Status flushed = flush(); !flushed) return flushed;
-    if (!recording.labels.empty())
-      builder_.add_attachment(std::string(mcap_labels_name), "text/csv", log_ns(0, 0.0),
-                              labels_table(recording));
-    builder_.finish();
+    if (!recording.labels.empty()) mcap_.add_labels(recording, log_ns(0, 0.0));
+    mcap_.finish();
     if (const Status put = put_bytes(); !put) return put;
     return file_->keep();
   }
 
  private:
-  /// Time of a sample on the file's clock, which cannot be below zero.
   [[nodiscard]] std::uint64_t log_ns(std::uint64_t sample, double stamp_s) const {
-    double since_s = stamp_s;
-    if (!has_stamps_) since_s = rate_hz_ > 0.0 ? static_cast<double>(sample) / rate_hz_ : 0.0;
-    constexpr double longest_s = 9e9;
-    const double ns =
-        std::isfinite(since_s) ? std::clamp(since_s, -longest_s, longest_s) * 1e9 : 0.0;
-    std::int64_t at = 0;
-    if (__builtin_add_overflow(start_ns_, static_cast<std::int64_t>(ns), &at)) return 0;
-    return static_cast<std::uint64_t>(std::max<std::int64_t>(at, 0));
+    if (has_stamps_) return mcap_log_ns(start_ns_, stamp_s);
+    return mcap_log_ns(start_ns_, rate_hz_ > 0.0 ? static_cast<double>(sample) / rate_hz_ : 0.0);
   }
 
   [[nodiscard]] Status flush() {
@@ -106,29 +84,23 @@ class McapWriter final : public RecordingWriter {
     if (rows == 0) return Done{};
     std::vector<View<double>> channels(columns_.begin() + (has_stamps_ ? 1 : 0), columns_.end());
     const View<double> stamps = has_stamps_ ? View<double>(columns_.front()) : View<double>();
-    write_samples(written_, stamps, channels, message_);
-    builder_.add_message(channel_, log_ns(written_, has_stamps_ ? stamps.front() : 0.0), message_);
+    mcap_.add_samples(topic_, written_, log_ns(written_, has_stamps_ ? stamps.front() : 0.0),
+                      stamps, channels);
     written_ += rows;
     for (std::vector<double>& column : columns_) column.clear();
     return put_bytes();
   }
 
-  [[nodiscard]] Status put_bytes() {
-    if (builder_.bytes().empty()) return Done{};
-    const Status appended = file_->append(builder_.bytes());
-    builder_.drop_bytes();
-    return appended;
-  }
+  [[nodiscard]] Status put_bytes() { return file_->append(mcap_.take_bytes()); }
 
   std::unique_ptr<OutputFile> file_;
-  McapBuilder builder_;
+  McapRecording mcap_;
   std::int64_t start_ns_;
   double rate_hz_;
   bool has_stamps_;
   std::size_t rows_a_message_;
-  std::uint16_t channel_ = 0;
+  McapRecording::Topic topic_ = 0;
   std::vector<std::vector<double>> columns_;  ///< of the next message; the stamps first
-  std::string message_;
   std::uint64_t written_ = 0;
 };
 

@@ -108,10 +108,12 @@ Result<std::vector<std::size_t>> tables_called(std::span<const TableSummary> tab
   return found;
 }
 
-/// The table of accelerations, of several the one with most rows, else the first with most rows.
+/// The table of accelerations that was measured, of several the one with most rows, else the first
+/// with most rows.
 std::size_t likeliest(std::span<const TableSummary> tables) {
   const auto rank = [&](std::size_t t) {
-    return std::tuple(likeness_to_accelerations(tables[t]), tables[t].rows.value_or(0));
+    return std::tuple(!tables[t].is_derived, likeness_to_accelerations(tables[t]),
+                      tables[t].rows.value_or(0));
   };
   std::size_t best = 0;
   for (std::size_t t = 1; t < tables.size(); ++t)

@@ -20,6 +20,7 @@ struct TableSummary {
   std::vector<std::string> headings;  ///< unit included
   std::optional<std::uint64_t> rows;  ///< if known
   std::optional<double> rate_hz;      ///< if known
+  bool is_derived = false;            ///< worked out of another table, which goes before it
 };
 
 /// An open file, or folder, of one table or several, each with a time base of its own.
