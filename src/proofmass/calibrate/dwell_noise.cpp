@@ -9,10 +9,8 @@
 namespace proofmass::calibrate {
 namespace {
 
-// Allan variance over m samples with its number of pairs.
-struct Level {
-  double m, variance, pairs;
-};
+using signal::AllanLevel;
+using Levels = std::vector<AllanLevel>;
 
 // One octave: differences of neighbours into the sums, their means into the front of `means`.
 void halve(std::vector<double>& means, double& squares, double& pairs) {
@@ -26,7 +24,7 @@ void halve(std::vector<double>& means, double& squares, double& pairs) {
   means.resize(half);
 }
 
-std::vector<Level> levels_of(const std::vector<std::span<const double>>& rests) {
+Levels levels_of(const std::vector<std::span<const double>>& rests) {
   std::vector<std::vector<double>> means;
   means.reserve(rests.size());
   for (const std::span<const double> rest : rests) {
@@ -35,7 +33,7 @@ std::vector<Level> levels_of(const std::vector<std::span<const double>>& rests) 
     const double first = own.empty() ? 0.0 : own.front();
     for (double& value : own) value -= first;
   }
-  std::vector<Level> levels;
+  Levels levels;
   for (double m = 1.0;; m *= 2.0) {
     double squares = 0.0, pairs = 0.0;
     for (std::vector<double>& own : means) halve(own, squares, pairs);
@@ -60,11 +58,11 @@ struct Strengths {
 constexpr double price = 3.84;
 
 // A variance from n pairs has the variance 2 σ⁴/n.
-Strengths fit_strengths(const std::vector<Level>& levels, const std::vector<Eigen::Index>& terms) {
+Strengths fit_strengths(const Levels& levels, const std::vector<Eigen::Index>& terms) {
   const auto count = static_cast<Eigen::Index>(terms.size());
   std::vector<double> fitted;
   fitted.reserve(levels.size());
-  for (const Level& level : levels) fitted.push_back(level.variance);
+  for (const AllanLevel& level : levels) fitted.push_back(level.variance);
   const double floor = 1e-12 * *std::ranges::max_element(fitted);
   Strengths out;
   out.score = price * static_cast<double>(count);
@@ -75,14 +73,14 @@ Strengths fit_strengths(const std::vector<Level>& levels, const std::vector<Eige
     for (std::size_t k = 0; k < levels.size(); ++k) {
       const double size = std::max(fitted[k], floor);
       const double weight = levels[k].pairs / (2.0 * size * size);
-      const Eigen::VectorXd row = shape(levels[k].m)(terms);
+      const Eigen::VectorXd row = shape(levels[k].samples)(terms);
       information += weight * row * row.transpose();
       right += weight * levels[k].variance * row;
     }
     out.x.setZero();
     out.x(terms) = non_negative_minimiser(information, right);
     for (std::size_t k = 0; k < levels.size(); ++k)
-      fitted[k] = std::max(shape(levels[k].m).dot(out.x), floor);
+      fitted[k] = std::max(shape(levels[k].samples).dot(out.x), floor);
   }
   for (std::size_t k = 0; k < levels.size(); ++k)
     out.score += levels[k].pairs * (std::log(fitted[k]) + levels[k].variance / fitted[k]);
@@ -105,7 +103,7 @@ struct Averaged {
   double dof = 0.0;  // 2/var(ln v) at the dwell asked for
 };
 
-Averaged averaged(const std::vector<Level>& levels, double dwell) {
+Averaged averaged(const Levels& levels, double dwell) {
   const std::vector<std::vector<Eigen::Index>> choices{{0}, {0, 1}, {0, 2}, {0, 1, 2}};
   std::vector<Strengths> fits;
   for (const auto& terms : choices)
@@ -138,27 +136,33 @@ double DwellNoise::variance_of_mean(std::size_t samples) const {
   return white / m + flicker + random_walk * m + rounding;
 }
 
-DwellNoise fit_dwell_noise(const std::vector<std::span<const double>>& rests, double lsb) {
+DwellNoise fit_dwell_noise(View<AllanLevel> levels, double dwell, double lsb) {
   DwellNoise out;
-  const std::vector<Level> levels = levels_of(rests);
   if (levels.empty()) return out;
   if (std::sqrt(levels.front().variance) < 0.5 * lsb) out.rounding = lsb * lsb / 12.0;
-  std::vector<std::size_t> dwell;
-  dwell.reserve(rests.size());
-  for (const std::span<const double> rest : rests) dwell.push_back(rest.size());
-  std::ranges::nth_element(dwell, dwell.begin() + static_cast<std::ptrdiff_t>(dwell.size() / 2));
-  const bool silent = std::ranges::all_of(levels, [](const Level& l) { return l.variance == 0.0; });
+  const bool silent =
+      std::ranges::all_of(levels, [](const AllanLevel& l) { return l.variance == 0.0; });
   if (silent) {
     // Only the steps are known, and they exactly.
     out.dof = out.rounding > 0.0 ? levels.front().pairs : 0.0;
     return out;
   }
-  const Averaged fit = averaged(levels, static_cast<double>(dwell[dwell.size() / 2]));
+  const Averaged fit = averaged(Levels(levels.begin(), levels.end()), dwell);
   out.white = fit.x(0);
   out.flicker = fit.x(1);
   out.random_walk = fit.x(2);
   out.dof = fit.dof;
   return out;
+}
+
+DwellNoise fit_dwell_noise(const std::vector<std::span<const double>>& rests, double lsb) {
+  const Levels levels = levels_of(rests);
+  if (levels.empty()) return {};
+  std::vector<std::size_t> dwell;
+  dwell.reserve(rests.size());
+  for (const std::span<const double> rest : rests) dwell.push_back(rest.size());
+  std::ranges::nth_element(dwell, dwell.begin() + static_cast<std::ptrdiff_t>(dwell.size() / 2));
+  return fit_dwell_noise(levels, static_cast<double>(dwell[dwell.size() / 2]), lsb);
 }
 
 }  // namespace proofmass::calibrate

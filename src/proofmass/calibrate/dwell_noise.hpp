@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "proofmass/core/view.hpp"
+#include "proofmass/signal/dyadic_ladder.hpp"
 
 namespace proofmass::calibrate {
 
@@ -35,5 +36,9 @@ struct DwellNoise {
 /// Buckland, K. P. Burnham, N. H. Augustin, Biometrics 53 (1997) 603, for the weights. Cost: O(N).
 [[nodiscard]] DwellNoise fit_dwell_noise(const std::vector<std::span<const double>>& rests,
                                          double lsb);
+
+/// The same from Allan variances that are there already, ascending, with the dwell in samples for
+/// which the degrees of freedom are told.
+[[nodiscard]] DwellNoise fit_dwell_noise(View<signal::AllanLevel> levels, double dwell, double lsb);
 
 }  // namespace proofmass::calibrate

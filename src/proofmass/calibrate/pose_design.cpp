@@ -1,11 +1,13 @@
 #include "proofmass/calibrate/pose_design.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <vector>
 
+#include "proofmass/calibrate/direction_words.hpp"
 #include "proofmass/core/linalg.hpp"
 
 namespace proofmass::calibrate {
@@ -30,19 +32,9 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-// "lay it with z up", "turn it until x and −z both point 45° upwards", …
-std::string in_words(const Eigen::Vector3i& side) {
-  constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
-  std::vector<std::string> up;
-  for (int k = 0; k < 3; ++k) {
-    if (side(k) == 0) continue;
-    const auto axis = axes[static_cast<std::size_t>(k)];
-    up.push_back(fmt::format("{}{}", side(k) < 0 ? "−" : "+", axis));
-  }
-  if (up.size() == 1) return fmt::format("lay it with {} straight up", up.front());
-  if (up.size() == 2)
-    return fmt::format("tilt it until {} both point 45° above the horizontal", joined(up));
-  return fmt::format("stand it on a corner, with {} all 35° above the horizontal", joined(up));
+bool is_near(const Eigen::Vector3d& up, View<Eigen::Vector3d> taken) {
+  return std::ranges::any_of(
+      taken, [&](const Eigen::Vector3d& other) { return up.dot(other) > std::cos(taken_rad); });
 }
 
 }  // namespace
@@ -71,17 +63,19 @@ Eigen::VectorXd errors_at_1g(const Eigen::MatrixXd& covariance, const Parameters
 
 NextPose next_pose(const Eigen::MatrixXd& information,
                    const Parameters& p,
-                   double residual_variance) {
+                   double residual_variance,
+                   View<Eigen::Vector3d> taken) {
   const Eigen::Index free = information.rows();
   const Eigen::MatrixXd covariance = positive_inverse(information);
   const Eigen::Matrix3d back = correction(p).inverse();
   NextPose best;
-  double widest = -1.0;
+  double widest = 0.0;
   Eigen::VectorXd column;
   for (int code = 0; code < 27; ++code) {
     const Eigen::Vector3i side(code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1);
     if (side.isZero()) continue;
     const Eigen::Vector3d up = side.cast<double>().normalized();
+    if (is_near(up, taken)) continue;
     const NormalisedPose pose{p.head<3>() + back * up, Eigen::Matrix3d::Zero()};
     const Eigen::VectorXd j = norm_term(p, pose).gradient.head(free);
     const double variance = j.dot(covariance * j);
@@ -89,9 +83,10 @@ NextPose next_pose(const Eigen::MatrixXd& information,
     if (!(variance > widest * (1.0 + 1e-9))) continue;
     widest = variance;
     best.up = up;
-    best.words = in_words(side);
+    best.words = laying_words(side);
     column = covariance * j;
   }
+  if (column.size() == 0) return best;
   const Eigen::MatrixXd after =
       covariance - column * column.transpose() / (residual_variance + widest);
   const Eigen::VectorXd before = errors_at_1g(covariance, p);

@@ -6,6 +6,8 @@
 
 #include "proofmass/calibrate/multi_position.hpp"
 #include "proofmass/calibrate/norm_model.hpp"
+#include "proofmass/core/units.hpp"
+#include "proofmass/core/view.hpp"
 
 // What the positions of a calibration can tell, and which one would tell more.
 namespace proofmass::calibrate {
@@ -18,11 +20,14 @@ namespace proofmass::calibrate {
 /// scale/scale, angle. `covariance` is that of the normalised parameters p.
 [[nodiscard]] Eigen::VectorXd errors_at_1g(const Eigen::MatrixXd& covariance, const Parameters& p);
 
+inline constexpr double taken_rad = 15.0 * rad_per_deg;
+
 /// Of the 26 positions on the faces, edges and corners of a cube about the sensor the one whose |f|
 /// the fit predicts least well, which adds most to ln |JᵀWJ| (D-optimal).
 /// Source: V. V. Fedorov, Theory of Optimal Experiments (1972), section 2.7.
 [[nodiscard]] NextPose next_pose(const Eigen::MatrixXd& information,
                                  const Parameters& p,
-                                 double residual_variance);
+                                 double residual_variance,
+                                 View<Eigen::Vector3d> taken = {});
 
 }  // namespace proofmass::calibrate

@@ -1,5 +1,6 @@
 #include "proofmass/report/calibrate_json_parts.hpp"
 
+#include "proofmass/calibrate/direction_words.hpp"
 #include "proofmass/report/calibrate_wording.hpp"
 
 namespace proofmass::report {
@@ -47,7 +48,7 @@ Object position_json(const CalibrateReport& report, std::size_t k) {
   const double std = residual.predicted_std_mps2;
   for (Member& member : Object{{"mean", array_of_vector(pose.mean)},
                                {"force", array_of_vector(residual.force_mps2)},
-                               {"direction", direction_words(residual.force_mps2)},
+                               {"direction", calibrate::direction_words(residual.force_mps2)},
                                {"residual", residual.residual_mps2},
                                {"predicted_std", std > 0.0 ? Value(std) : Value()},
                                {"leave_one_out", or_null(residual.leave_one_out_mps2)},

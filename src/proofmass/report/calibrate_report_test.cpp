@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "proofmass/calibrate/direction_words.hpp"
 #include "proofmass/report/calibrate_fake.hpp"
 #include "proofmass/report/calibrate_figures.hpp"
 #include "proofmass/report/calibrate_wording.hpp"
@@ -100,7 +101,7 @@ TEST(CalibrateReport, SaysWhatIsToBeGainedByAnotherPosition) {
 
 TEST(CalibrateReport, PutsADirectionIntoWords) {
   const auto words = [](double x, double y, double z) {
-    return direction_words(Eigen::Vector3d(x, y, z));
+    return calibrate::direction_words(Eigen::Vector3d(x, y, z));
   };
   EXPECT_EQ(words(0.0, 0.0, 9.8), "+z up");
   EXPECT_EQ(words(-9.8, 0.05, 0.05), "−x up");

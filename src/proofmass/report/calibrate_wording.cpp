@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "proofmass/calibrate/direction_words.hpp"
 #include "proofmass/calibrate/multi_position_budget.hpp"
 #include "proofmass/calibrate/rest_accuracy.hpp"
 #include "proofmass/report/wording.hpp"
@@ -18,7 +19,6 @@ using calibrate::PoseResidual;
 
 constexpr double g = standard_gravity_mps2;
 constexpr double mg = 1e-3 * g;
-constexpr std::array<char, 3> axis_names{'x', 'y', 'z'};
 
 const std::optional<Uncertain>& figure_of(const MultiPosition& fit, std::size_t k) {
   return k < 3 ? fit.bias[k] : k < 6 ? fit.scale[k - 3] : fit.misalignment_rad[k - 6];
@@ -180,7 +180,7 @@ std::string accuracy_words(const CalibrateReport& report) {
   }
   if (found->worst_mps2 > much * found->overall_mps2) {
     text += fmt::format(", but to {} with {}, where positions are missing",
-                        mg_words(found->worst_mps2), direction_words(found->worst_up));
+                        mg_words(found->worst_mps2), calibrate::direction_words(found->worst_up));
   }
   return text;
 }
@@ -192,27 +192,6 @@ std::string mg_words(double accel_mps2) {
   if (std::abs(value) < 1e-3) return significant(value * 1e3, 2) + " µg";
   if (std::abs(value) >= 1e3) return significant(value * 1e-3, 3) + " g";
   return significant(value, std::abs(value) >= 100.0 ? 3 : 2) + " mg";
-}
-
-std::string direction_words(const Eigen::Vector3d& force) {
-  const double length = force.norm();
-  if (!(length > 0.0)) return "";
-  const Eigen::Vector3d up = force / length;
-  Eigen::Index main = 0;
-  const double along = up.cwiseAbs().maxCoeff(&main);
-  const auto name = [&](Eigen::Index k) {
-    return std::string(up(k) < 0.0 ? "−" : "+") + axis_names[static_cast<std::size_t>(k)];
-  };
-  const double tilt_deg = std::acos(std::min(along, 1.0)) / rad_per_deg;
-  std::string text = name(main) + " up";
-  if (tilt_deg < 0.95) return text;
-  Eigen::Index more = (main + 1) % 3, less = (main + 2) % 3;
-  if (std::abs(up(less)) > std::abs(up(more))) std::swap(more, less);
-  text += fmt::format(", {}° to {}", fixed(tilt_deg, 0), name(more));
-  // Within 22.5° of an axis the axis alone is said.
-  constexpr double aside = 0.41421356;
-  if (std::abs(up(less)) > aside * std::abs(up(more))) text += " and " + name(less);
-  return text;
 }
 
 std::string time_words(const CalibrateReport& report, std::size_t k) {
@@ -249,7 +228,8 @@ std::vector<std::vector<std::string>> position_rows(const CalibrateReport& repor
       const std::string file = file_name(report.files[report.pose_file[k]].file);
       where = where.empty() ? file : file + ", " + where;
     }
-    rows.push_back({std::to_string(k + 1), std::move(where), direction_words(pose.force_mps2),
+    rows.push_back({std::to_string(k + 1), std::move(where),
+                    calibrate::direction_words(pose.force_mps2),
                     fixed(pose.residual_mps2 / mg, decimals),
                     pose.leave_one_out_mps2 ? fixed(*pose.leave_one_out_mps2 / mg, decimals) : "",
                     pose.studentised ? fixed(*pose.studentised, 1) : "", verdict_of(report, k)});

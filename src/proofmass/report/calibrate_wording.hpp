@@ -44,9 +44,6 @@ struct CalibrationFigure {
 /// "0.062 mg", "21 µg".
 [[nodiscard]] std::string mg_words(double accel_mps2);
 
-/// "+z up", "+z up, 12° to +x", "−x up, 40° to +y and +z": of a force in the sensor's axes.
-[[nodiscard]] std::string direction_words(const Eigen::Vector3d& force);
-
 /// "7 (x_up, 12.3–15.1 s)": number from 1, then whatever helps to find it.
 [[nodiscard]] std::string position_words(const CalibrateReport& report, std::size_t k);
 

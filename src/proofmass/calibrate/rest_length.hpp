@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "proofmass/calibrate/dwell_noise.hpp"
+#include "proofmass/signal/running_rests.hpp"
+
+// How long a rest must be.
+namespace proofmass::calibrate {
+
+struct RestVerdict {
+  bool enough = false;
+  double seconds_left = 0.0;
+  Eigen::Vector3d variance = Eigen::Vector3d::Zero();  ///< of the mean
+  double dof = 0.0;                                    ///< of these; 0: not known
+};
+
+/// Judges rests by the noise that they all have in common (fit_dwell_noise).
+class RestLength {
+ public:
+  RestLength(std::size_t axes, double shortest_s, double longest_s)
+      : axes_(axes), shortest_s_(shortest_s), longest_s_(longest_s) {}
+
+  /// Enough is when the mean's standard deviation is target_std on every axis, or would not fall by
+  /// a twentieth in twice the time, as far as the rests tell that with ten degrees of freedom;
+  /// where there is no target, the shortest rest.
+  [[nodiscard]] RestVerdict judge(const signal::RunningRests& rests,
+                                  std::optional<double> target_std) const;
+  /// Has the rest that is under way count for those to come.
+  void keep(const signal::RunningRests& rests);
+
+ private:
+  std::size_t axes_;
+  double shortest_s_, longest_s_;
+  std::array<std::vector<signal::AllanLevel>, 3> pooled_;
+};
+
+}  // namespace proofmass::calibrate
