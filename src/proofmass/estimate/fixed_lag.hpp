@@ -14,10 +14,10 @@ namespace proofmass::estimate {
 /// steps, any readings missing; memory is fixed when it is made, and a step asks for none.
 ///
 /// The optimal one: the state `lag` instants ago is the fixed-interval smoother's at the end of the
-/// readings so far. (Recursions that carry the filtered P and F − K H in the place of P⁻ and
-/// F (I − K H) are not.) Source: B. D. O. Anderson, J. B. Moore, Optimal Filtering (1979), section
-/// 7.3; J. B. Moore, Automatica 9 (1973) 163.
-template <int N>
+/// readings so far, or that state's first B entries. (Recursions that carry the filtered P and F −
+/// K H in the place of P⁻ and F (I − K H) are not.) Source: B. D. O. Anderson, J. B. Moore, Optimal
+/// Filtering (1979), section 7.3; J. B. Moore, Automatica 9 (1973) 163.
+template <int N, int B = N>
 class FixedLag {
  public:
   explicit FixedLag(std::size_t lag) : ring_(lag + 1) {}
@@ -26,24 +26,24 @@ class FixedLag {
   /// States held, lag() + 1 once that many instants have passed.
   [[nodiscard]] std::size_t size() const { return std::min(pushed_, ring_.size()); }
 
-  /// One more instant. Cost: O(lag · N² (D + M)).
+  /// One more instant. Cost: O(lag · B N (D + M)).
   template <int D, int M>
   void push(const Step<N, D, M>& step, int active = N) {
     const std::size_t newest = pushed_ % ring_.size();
     for (std::size_t i = 0; i < size(); ++i)
       if (i != newest) learn(ring_[i], step);
-    ring_[newest] = PastState<N>::from(step.filtered, active);
+    ring_[newest] = PastState<N, B>::from(step.filtered, active);
     ++pushed_;
   }
 
   /// The state `ago` < size() instants before the last, given all readings up to the last.
-  [[nodiscard]] const Gaussian<N>& state(std::size_t ago) const {
+  [[nodiscard]] const Gaussian<B>& state(std::size_t ago) const {
     PM_EXPECTS(ago < size());
     return ring_[(pushed_ - 1 - ago) % ring_.size()].x;
   }
 
  private:
-  std::vector<PastState<N>> ring_;
+  std::vector<PastState<N, B>> ring_;
   std::size_t pushed_ = 0;
 };
 

@@ -63,6 +63,21 @@ TEST(FixedLag, ARunGivesEachInstantOnceWithTheLastOnesGivenEverything) {
   }
 }
 
+TEST(FixedLag, ThatHoldsAStatesFirstEntriesHasThemOfTheWholeOne) {
+  FixedLag<3> whole(6);
+  FixedLag<3, 2> first(6);
+  FilterState<3> state{test::oscillator_prior()};
+  filter(test::uneven_series(50), 0, 50, Gate{}, state, [&](std::size_t k, const auto& step) {
+    whole.push(step);
+    first.push(step);
+    const std::size_t ago = std::min<std::size_t>(k, 6);
+    const Gaussian<3>& x = whole.state(ago);
+    EXPECT_LT((first.state(ago).mean - x.mean.head<2>()).norm(), 1e-12);
+    const Mat<2, 2> cov = x.cov.topLeftCorner<2, 2>();
+    EXPECT_LT((first.state(ago).cov - cov).norm(), 1e-12);
+  });
+}
+
 TEST(FixedLag, OfNothingIsNothing) {
   smooth_fixed_lag(test::uneven_series(0), FilterState<3>{test::oscillator_prior()}, {}, 5,
                    [](std::size_t, const auto&) { FAIL(); });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -11,17 +12,22 @@
 // Fixed-point smoother: the state at one instant of the past, better with every reading that comes.
 namespace proofmass::estimate {
 
-/// A state of the past that goes on learning. `cross` is the covariance of its error with the
-/// error of the present state, Σ = E[(x[j] − x̂[j]) (x[k] − x̂[k])ᵀ].
-template <int N>
+/// A state of the past that goes on learning, or its first B entries. `cross` is the covariance of
+/// its error with the error of the present state, Σ = E[(x[j] − x̂[j]) (x[k] − x̂[k])ᵀ].
+template <int N, int B = N>
 struct PastState {
-  Gaussian<N> x;                        ///< x[j] given z[0] … z[k]
-  Mat<N, N> cross = Mat<N, N>::Zero();  ///< Σ
-  int active = N;                       ///< of the states; those held learn nothing
+  Gaussian<B> x;                        ///< x[j] given z[0] … z[k]
+  Mat<B, N> cross = Mat<B, N>::Zero();  ///< Σ
+  int active = B;                       ///< of its entries; those held learn nothing
 
   /// The state at the present instant, after its readings: Σ = P.
   [[nodiscard]] static PastState from(const Gaussian<N>& filtered, int active = N) {
-    return {filtered, filtered.cov, active};
+    if constexpr (B == N)
+      return {filtered, filtered.cov, active};
+    else
+      return {{filtered.mean.template head<B>(), filtered.cov.template topLeftCorner<B, B>()},
+              filtered.cov.template topRows<B>(),
+              std::min(active, B)};
   }
 };
 
@@ -33,18 +39,18 @@ struct PastState {
 /// Equal to the fixed-interval smoother of z[0] … z[k] at j, without an inverse. Like that
 /// smoother's, its covariance is a difference: where what was known at j is wider than what is
 /// known of it at last by 1e8 in standard deviation, nothing is left of it. Source: B. D. O.
-/// Anderson, J. B. Moore, Optimal Filtering (1979), section 7.2. Cost: O(N² (D + M)).
-template <int N, int D, int M>
-void learn(PastState<N>& past, const Step<N, D, M>& step) {
+/// Anderson, J. B. Moore, Optimal Filtering (1979), section 7.2. Cost: O(B N (D + M)).
+template <int N, int B, int D, int M>
+void learn(PastState<N, B>& past, const Step<N, D, M>& step) {
   past.cross.template leftCols<D>() =
       (past.cross.template leftCols<D>() * step.F.transpose()).eval();
   for (int i = 0; i < step.count; ++i) {
     const Update<N>& u = step.updates[static_cast<std::size_t>(i)];
     if (!u.used) continue;
-    const Mat<N> across = past.cross.lazyProduct(u.h);
+    const Mat<B> across = past.cross.lazyProduct(u.h);
     past.x.mean += across * (u.innovation / u.variance);
-    const Mat<N> w = across / std::sqrt(u.variance);
-    subtract_square(past.x.cov.data(), w.data(), {past.active, N});
+    const Mat<B> w = across / std::sqrt(u.variance);
+    subtract_square(past.x.cov.data(), w.data(), {past.active, B});
     past.cross.noalias() -= across * u.gain.transpose();
   }
 }

@@ -15,8 +15,6 @@ namespace {
 constexpr double memory_times = 60.0, least_memory_s = 2.0, most_memory_s = 20.0;
 // Degrees of freedom of the scatter: the three axes share the error of the running mean and of τ.
 constexpr double effective_dof = 10.0;
-// Over how long a time a gyroscope of unknown bias may carry the mean that the force departs from.
-constexpr double mean_memory_s = 2.0;
 // What no base is quieter than while it moves, relative to gravity.
 constexpr double least_accel = 2e-3;
 constexpr double longest_s = 1.0;
@@ -24,21 +22,6 @@ constexpr double longest_s = 1.0;
 double square(double x) {
   return x * x;
 }
-
-// A mean of the past with weights that fall off as e^(−t / memory).
-class Fading {
- public:
-  explicit Fading(double memory_s) : memory_s_(memory_s) {}
-  void add(double value, double step_s) {
-    const double fade = std::exp(-step_s / memory_s_);
-    sum_ = fade * sum_ + value;
-    weight_ = fade * weight_ + 1.0;
-  }
-  [[nodiscard]] double mean() const { return weight_ > 0.0 ? sum_ / weight_ : 0.0; }
-
- private:
-  double memory_s_, sum_ = 0.0, weight_ = 0.0;
-};
 
 // Departures of the force, turned back into one frame that stands still: what autocorrelates.
 struct Departures {
@@ -73,43 +56,32 @@ BaseAccel base_accel_over(const TiltInstants& instants,
                           double memory_s) {
   BaseAccel out;
   const bool gyroscope = !instants.rate_radps.empty();
-  Fading scatter(memory_s), norm(memory_s);
+  BaseScatter scatter(memory_s, gyroscope);
   Departures departures;
-  Mat<3> mean = Mat<3>::Zero();
   Mat<3, 3> back = Mat<3, 3>::Identity();
-  bool begun = false;
   std::vector<double> steps, differences;
-  double since_s = 0.0;
   const Mat<3>* last = nullptr;
   for (std::size_t k = 0; k < instants.step_s.size(); ++k) {
     const double h = instants.step_s[k];
-    since_s += h;
-    if (gyroscope && instants.rate_radps[k].allFinite()) {
-      const Mat<3, 3> R = rotation_by(Mat<3>(-h * (instants.rate_radps[k] - rate_bias)));
-      mean = R * mean;
-      back = back * R.transpose();
-    } else if (gyroscope) {
-      begun = false;  // nothing carries the mean over
+    if (gyroscope) {
+      const Mat<3> rate = instants.rate_radps[k] - rate_bias;
+      if (rate.allFinite()) back = back * rotation_by(Mat<3>(-h * rate)).transpose();
+      scatter.turn(h, rate);
+    } else {
+      scatter.turn(h, Mat<3>::Zero());
     }
     const Mat<3>& f = instants.force_mps2[k];
     if (f.allFinite()) {
-      if (!begun) mean = f;
-      mean += (1.0 - std::exp(-since_s / mean_memory_s)) * (f - mean);
-      const Mat<3> off = f - mean;
-      if (begun) scatter.add(off.squaredNorm() / 3.0, since_s);
-      norm.add(square(f.norm() - gravity_mps2), since_s);
+      const auto departure = scatter.add(f, gravity_mps2);
       if (instants.resting[k] == 0) {
-        if (begun) steps.push_back(since_s);
+        if (departure.since_s) steps.push_back(*departure.since_s);
         if (last) differences.push_back((f - *last)(static_cast<Eigen::Index>(k % 3)));
-        departures.vectors.push_back(gyroscope ? Mat<3>(back * off)
+        departures.vectors.push_back(gyroscope ? Mat<3>(back * departure.mps2)
                                                : Mat<3>(f.norm() - gravity_mps2, 0.0, 0.0));
       }
       last = &f;
-      begun = true;
-      since_s = 0.0;
     }
-    const double variance = gyroscope ? std::max(scatter.mean(), norm.mean()) : norm.mean();
-    out.std_mps2.push_back(std::sqrt(variance));
+    out.std_mps2.push_back(std::sqrt(scatter.variance()));
   }
   for (double& std : out.std_mps2) std = std::max(std, least_accel * gravity_mps2);
   const double step_s = median(steps).value_or(0.01);
@@ -120,13 +92,46 @@ BaseAccel base_accel_over(const TiltInstants& instants,
 
 }  // namespace
 
+void BaseScatter::Fading::add(double value, double fade) {
+  sum_ = fade * sum_ + value;
+  weight_ = fade * weight_ + 1.0;
+}
+
+void BaseScatter::turn(double step_s, const Mat<3>& rate_radps) {
+  since_s_ += step_s;
+  if (!gyroscope_) return;
+  if (rate_radps.allFinite())
+    mean_ = rotation_by(Mat<3>(-step_s * rate_radps)) * mean_;
+  else
+    begun_ = false;  // nothing carries the mean over
+}
+
+BaseScatter::Departure BaseScatter::add(const Mat<3>& force, double gravity_mps2) {
+  if (!begun_) mean_ = force;
+  mean_ += (1.0 - std::exp(-since_s_ / mean_memory_s)) * (force - mean_);
+  Departure departure{force - mean_, std::nullopt};
+  const double fade = std::exp(-since_s_ / memory_s_);
+  if (begun_) {
+    scatter_.add(departure.mps2.squaredNorm() / 3.0, fade);
+    departure.since_s = since_s_;
+  }
+  norm_.add(square(force.norm() - gravity_mps2), fade);
+  begun_ = true;
+  since_s_ = 0.0;
+  return departure;
+}
+
+double BaseScatter::variance() const {
+  return gyroscope_ ? std::max(scatter_.mean(), norm_.mean()) : norm_.mean();
+}
+
 BaseAccel base_accel(const TiltInstants& instants, const Mat<3>& rate_bias, double gravity_mps2) {
   const BaseAccel first = base_accel_over(instants, rate_bias, gravity_mps2, least_memory_s);
   const double memory_s = std::clamp(memory_times * first.time_s, least_memory_s, most_memory_s);
   BaseAccel out = base_accel_over(instants, rate_bias, gravity_mps2, memory_s);
   if (instants.rate_radps.empty()) return out;
   // The running mean has taken its share of the slow part: M/(M + τ) is left.
-  const double taken = 1.0 + out.time_s / mean_memory_s;
+  const double taken = 1.0 + out.time_s / BaseScatter::mean_memory_s;
   // A scatter over so few correlation times is Student's, not Gauss's.
   const double wider = student_t_quantile(0.975, effective_dof) / 1.959964;
   out.time_s *= taken;

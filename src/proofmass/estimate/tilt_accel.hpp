@@ -1,9 +1,50 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "proofmass/estimate/tilt_model.hpp"
 
 // What the base does besides turning, by its scatter. Private to the module's tilt*.cpp.
 namespace proofmass::estimate {
+
+/// m and ⟨…⟩ below, instant by instant.
+class BaseScatter {
+ public:
+  /// Over how long a time a gyroscope of unknown bias may carry the mean that the force departs
+  /// from.
+  static constexpr double mean_memory_s = 2.0;
+
+  struct Departure {
+    Mat<3> mps2;                    ///< f − m
+    std::optional<double> since_s;  ///< the force before; absent where nothing leads on from it
+  };
+
+  BaseScatter(double memory_s, bool gyroscope) : memory_s_(memory_s), gyroscope_(gyroscope) {}
+  /// To the next instant; the rate is NaN where it is not known.
+  void turn(double step_s, const Mat<3>& rate_radps);
+  /// A force there, finite.
+  Departure add(const Mat<3>& force, double gravity_mps2);
+  /// σ² as it stands.
+  [[nodiscard]] double variance() const;
+
+ private:
+  /// A mean of the past with weights that fall off.
+  class Fading {
+   public:
+    void add(double value, double fade);
+    [[nodiscard]] double mean() const { return weight_ > 0.0 ? sum_ / weight_ : 0.0; }
+
+   private:
+    double sum_ = 0.0, weight_ = 0.0;
+  };
+
+  double memory_s_;
+  bool gyroscope_, begun_ = false;
+  Fading scatter_, norm_;
+  Mat<3> mean_ = Mat<3>::Zero();
+  double since_s_ = 0.0;
+};
 
 /// The base's acceleration as scatter of the force.
 struct BaseAccel {

@@ -12,8 +12,6 @@ namespace proofmass::estimate {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-// Over how long a gap the rates at its ends are believed.
-constexpr double bridged_s = 0.2;
 
 // Standard deviation of white noise as strong at low frequency as the longest rest shows.
 Mat<3> rest_std(const std::array<std::vector<double>, 3>& axes,
@@ -34,6 +32,18 @@ Mat<3> rest_std(const std::array<std::vector<double>, 3>& axes,
 
 }  // namespace
 
+double longest_bridge_s(double usual_step_s) {
+  constexpr double steps = 5.0, least_s = 0.2;
+  return std::max(steps * usual_step_s, least_s);
+}
+
+Mat<3> rate_over(const Mat<3>& before, const Mat<3>& now, double step_s, double longest_s) {
+  if (step_s > longest_s) return Mat<3>::Constant(none);
+  if (!now.allFinite()) return before;
+  if (!before.allFinite()) return now;
+  return 0.5 * (now + before);
+}
+
 TiltInstants instants_of(const TiltRecord& record, const TiltSolution& solution) {
   TiltInstants out;
   const bool rates = has_rates(record);
@@ -41,19 +51,15 @@ TiltInstants instants_of(const TiltRecord& record, const TiltSolution& solution)
   for (std::size_t k = 1; k < solution.samples; ++k)
     steps.push_back(record.time_s[k] - record.time_s[k - 1]);
   const double usual_s = median(View<double>(steps).subspan(1)).value_or(0.0);
-  const double longest = std::max(5.0 * usual_s, bridged_s);
+  const double longest = longest_bridge_s(usual_s);
   out.resting = solution.series.resting;
   for (std::size_t k = 0; k < solution.samples; ++k) {
     out.force_mps2.push_back(vector_at(record.accel_mps2, k));
     if (!rates) continue;
     const Mat<3> now = vector_at(record.rate_radps, k);
     const Mat<3> before = k == 0 ? now : out.rate_at_radps.back();
-    Mat<3> mean = 0.5 * (now + before);
-    if (!now.allFinite()) mean = before;
-    if (!before.allFinite()) mean = now;
-    if (steps[k] > longest) mean.setConstant(none);
     out.rate_at_radps.push_back(now);
-    out.rate_radps.push_back(mean);
+    out.rate_radps.push_back(rate_over(before, now, steps[k], longest));
   }
   out.step_s = std::move(steps);
   return out;

@@ -7,8 +7,16 @@
 // From a record to what the filter of a moving base takes. Private to the module's tilt*.cpp.
 namespace proofmass::estimate {
 
-/// Steps, forces and rates. A rate over a step is the mean of its ends, and unknown over a step
-/// five times as long as is usual, and longer than 0.2 s.
+/// A rate over a step: the mean of its ends, or the one that there is; NaN, unknown, over a longer
+/// one than that.
+[[nodiscard]] Mat<3> rate_over(const Mat<3>& before,
+                               const Mat<3>& now,
+                               double step_s,
+                               double longest_s);
+/// Five usual steps, at least 0.2 s.
+[[nodiscard]] double longest_bridge_s(double usual_step_s);
+
+/// Steps, forces and rates.
 [[nodiscard]] TiltInstants instants_of(const TiltRecord& record, const TiltSolution& solution);
 
 /// Takes readings that a logger wrote again and again until the next came for one, and says how

@@ -15,8 +15,6 @@ namespace {
 // Smoothers in a row, each made linear about the path of the one before.
 constexpr int gyroscope_passes = 3;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-// White noise of a common gyroscope, where no rest shows its own: rad/s/√Hz.
-constexpr double usual_rate_noise = 1e-3;
 
 void set(TiltSolution& solution, std::size_t k, const TiltAngles& angles, bool smoothed) {
   TiltSeries& s = solution.series;
@@ -36,6 +34,17 @@ void set(TiltSolution& solution, std::size_t k, const TiltAngles& angles, bool s
 
 }  // namespace
 
+double tilt_log_likelihood(const StepOf<TiltModel>& step, int readings) {
+  double sum = 0.0;
+  for (int i = 0; i < readings; ++i) {
+    const Update<9>& u = step.updates[static_cast<std::size_t>(i)];
+    const double off = std::sqrt(u.nis()), huber = tilt_gate.huber;
+    const double loss = off <= huber ? 0.5 * off * off : huber * (off - 0.5 * huber);
+    sum -= loss + 0.5 * std::log(2.0 * std::numbers::pi * u.expected);
+  }
+  return sum;
+}
+
 double tilt_log_likelihood(const TiltInstants& instants,
                            const TiltKnown& known,
                            const TiltMotion& motion) {
@@ -45,13 +54,7 @@ double tilt_log_likelihood(const TiltInstants& instants,
   filter(model, 0, model.size(), tilt_gate, state,
          [&](std::size_t k, const StepOf<TiltModel>& step) {
            if (instants.resting[k] != 0) return;
-           const int count = model.accel_readings(k);
-           for (int i = 0; i < count; ++i) {
-             const Update<9>& u = step.updates[static_cast<std::size_t>(i)];
-             const double off = std::sqrt(u.nis()), huber = tilt_gate.huber;
-             const double loss = off <= huber ? 0.5 * off * off : huber * (off - 0.5 * huber);
-             sum -= loss + 0.5 * std::log(2.0 * std::numbers::pi * u.expected);
-           }
+           sum += tilt_log_likelihood(step, model.accel_readings(k));
          });
   return sum;
 }
@@ -64,7 +67,7 @@ TiltMotion fit_tilt_motion(const TiltInstants& instants,
   for (std::size_t k = 0; k < accel.std_mps2.size(); ++k)
     if (instants.resting[k] == 0) moving.push_back(accel.std_mps2[k]);
   TiltMotion motion{.gyroscope = gyroscope,
-                    .drive = known.rate_noise_radps_rthz.value_or(usual_rate_noise),
+                    .drive = known.rate_noise_radps_rthz.value_or(usual_rate_noise_radps_rthz),
                     .accel_std_mps2 = median(moving).value_or(0.0),
                     .accel_time_s = accel.time_s,
                     .reading_std_mps2 = accel.reading_std_mps2,

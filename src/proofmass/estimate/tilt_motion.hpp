@@ -9,7 +9,13 @@ namespace proofmass::estimate {
 /// The gate of every pass: readings lose weight beyond three standard deviations.
 inline constexpr Gate tilt_gate{.huber = 3.0};
 
-/// ln L of the accelerometer's innovations in motion, those beyond the gate by Huber's loss.
+/// White noise of a common gyroscope, where no rest shows its own.
+inline constexpr double usual_rate_noise_radps_rthz = 1e-3;
+
+/// ln L of one instant's first `readings` innovations, those beyond the gate by Huber's loss.
+[[nodiscard]] double tilt_log_likelihood(const StepOf<TiltModel>& step, int readings);
+
+/// The same of the accelerometer's in motion, all instants together.
 [[nodiscard]] double tilt_log_likelihood(const TiltInstants& instants,
                                          const TiltKnown& known,
                                          const TiltMotion& motion);

@@ -34,25 +34,6 @@ Score score(View<InertialEpoch> knots, const InertialNoise& noise, const Inertia
   return score;
 }
 
-double outside(double x) {
-  return std::erfc(x / std::numbers::sqrt2);
-}
-
-// Half width of the central 95 % of a mixture of normals about 0, over the root of its variance.
-double mixture_factor(const std::vector<double>& weight, const std::vector<double>& variance) {
-  double mean = 0.0;
-  for (std::size_t i = 0; i < weight.size(); ++i) mean += weight[i] * variance[i];
-  double low = 0.5, high = 50.0;
-  for (int round = 0; round < 50; ++round) {
-    const double middle = 0.5 * (low + high);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < weight.size(); ++i)
-      sum += weight[i] * outside(middle * std::sqrt(mean / variance[i]));
-    (sum > 0.05 ? low : high) = middle;
-  }
-  return high;
-}
-
 // A variance and the logarithm of its prior weight.
 struct GridPoint {
   double variance = 0.0, log_weight = 0.0;
@@ -93,7 +74,25 @@ std::vector<InertialEpoch> without_middles(View<InertialEpoch> knots) {
   return join_epochs(out, read);
 }
 
+double outside(double x) {
+  return std::erfc(x / std::numbers::sqrt2);
+}
+
 }  // namespace
+
+double mixture_factor(View<double> weight, View<double> variance) {
+  double mean = 0.0;
+  for (std::size_t i = 0; i < weight.size(); ++i) mean += weight[i] * variance[i];
+  double low = 0.5, high = 50.0;
+  for (int round = 0; round < 50; ++round) {
+    const double middle = 0.5 * (low + high);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < weight.size(); ++i)
+      sum += weight[i] * outside(middle * std::sqrt(mean / variance[i]));
+    (sum > 0.05 ? low : high) = middle;
+  }
+  return high;
+}
 
 MotionError motion_error(View<InertialEpoch> all_knots,
                          InertialNoise noise,

@@ -28,6 +28,10 @@ struct MotionError {
                                        InertialNoise noise,
                                        const InertialStart& start);
 
+/// Half width of the central 95 % of a mixture of normals about 0, over the root of its variance.
+/// The weights sum to 1.
+[[nodiscard]] double mixture_factor(View<double> weight, View<double> variance);
+
 /// How little each rest was expected, in their order: yᵀ S⁻¹ y of the velocity on arrival and of
 /// the first level there, two degrees of freedom. NaN of a rest at the very start.
 [[nodiscard]] std::vector<double> surprise_of_rests(View<InertialEpoch> knots,

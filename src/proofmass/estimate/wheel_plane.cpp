@@ -43,18 +43,8 @@ std::vector<bool> rising(const std::vector<double>& time_s) {
   return keep;
 }
 
-/// nullptr if the row can be used.
-const char* why_unusable(const WheelSensor& sensor, std::size_t row, bool time_rises) {
-  if (!time_rises) return "time does not rise";
-  bool all_zero = true;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double x = component(sensor, axis, row);
-    if (!std::isfinite(x)) return "not a finite number";
-    if (std::abs(x) > beyond_belief_mps2) return "beyond 1000 g";
-    if (x != 0.0 && std::abs(x) < 1e-30) return "denormal number";
-    all_zero = all_zero && x == 0.0;
-  }
-  return all_zero ? "all axes exactly zero" : nullptr;
+Axis force_at(const WheelSensor& sensor, std::size_t row) {
+  return {component(sensor, 0, row), component(sensor, 1, row), component(sensor, 2, row)};
 }
 
 double dot(const Axis& a, const Axis& b) {
@@ -151,13 +141,25 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
 
 }  // namespace
 
+const char* why_unbelievable(const Axis& accel_mps2) {
+  bool all_zero = true;
+  for (const double x : accel_mps2) {
+    if (!std::isfinite(x)) return "not a finite number";
+    if (std::abs(x) > beyond_belief_mps2) return "beyond 1000 g";
+    if (x != 0.0 && std::abs(x) < 1e-30) return "denormal number";
+    all_zero = all_zero && x == 0.0;
+  }
+  return all_zero ? "all axes exactly zero" : nullptr;
+}
+
 Screened screen_rows(const WheelSensor& sensor) {
   Screened screened{std::vector<bool>(sensor.time_s.size(), false), {}, 0};
   const std::vector<bool> time_rises = rising(sensor.time_s);
   double last_time_s = sensor.time_s.empty() ? 0.0 : sensor.time_s.front();
   const char* open = nullptr;  // reason of the stretch that goes on
   for (std::size_t row = 0; row < sensor.time_s.size(); ++row) {
-    const char* why = why_unusable(sensor, row, time_rises[row]);
+    const char* why =
+        time_rises[row] ? why_unbelievable(force_at(sensor, row)) : "time does not rise";
     if (why == nullptr) {
       screened.usable[row] = true;
       last_time_s = sensor.time_s[row];
@@ -215,7 +217,7 @@ PlanarReadings project(const WheelSensor& sensor,
                           std::vector<double>(size, 1.0)};
   for (std::size_t row = 0; row < size; ++row) {
     if (!screened.usable[row]) continue;
-    const Axis f{component(sensor, 0, row), component(sensor, 1, row), component(sensor, 2, row)};
+    const Axis f = force_at(sensor, row);
     readings.u_mps2[row] = dot(f, plane.u);
     readings.v_mps2[row] = dot(f, plane.v);
   }

@@ -20,9 +20,11 @@ struct Screened {
   std::size_t unusable = 0;
 };
 
-/// Leaves out rows that no accelerometer on a wheel can have meant: not finite, beyond 1000 g,
-/// denormal (below 1e-30 and not 0: bits that were no number), all axes exactly 0, or with a time
-/// that does not rise.
+/// Why no accelerometer can have meant this: not finite, beyond 1000 g, denormal (below 1e-30 and
+/// not 0: bits that were no number), all axes exactly 0. nullptr if one can.
+[[nodiscard]] const char* why_unbelievable(const Axis& accel_mps2);
+
+/// Leaves out rows that are unbelievable, or whose time does not rise.
 [[nodiscard]] Screened screen_rows(const WheelSensor& sensor);
 
 /// The plane of the wheel in a sensor's axes: u, v span it, v a quarter turn ahead of u about

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "proofmass/estimate/fixed_lag.hpp"
+#include "proofmass/estimate/live_instants.hpp"
+#include "proofmass/estimate/live_tilt.hpp"
+#include "proofmass/estimate/tilt_accel.hpp"
+#include "proofmass/estimate/tilt_model.hpp"
+
+// tilt_model.hpp's filter, fed. Private to the module's live_tilt*.
+namespace proofmass::estimate {
+
+/// How long the base's acceleration hangs together: by the correlation of its departures with those
+/// a tenth of a second before.
+class RunningCorrelation {
+ public:
+  explicit RunningCorrelation(std::size_t instants_apart) : ring_(instants_apart) {}
+  void add(const Mat<3>& departure, double weight);
+  /// In units of the distance; what hangs together for less than half of it counts as half of it.
+  [[nodiscard]] double time() const;
+
+ private:
+  std::vector<Mat<3>> ring_;
+  std::size_t added_ = 0;
+  double product_ = 0.0, square_ = 0.0;
+};
+
+class LiveTiltFilter {
+ public:
+  /// By what the first instants show; at least two of them.
+  LiveTiltFilter(const std::vector<LiveInstant>& first, const LiveTiltOptions& options);
+
+  /// Takes one instant more. Allocates nothing.
+  void step(const LiveInstant& instant);
+
+  /// Direction of gravity's reaction at the last instant, m/s².
+  [[nodiscard]] const Gaussian<3>& now() const { return window_.state(0); }
+  /// The same `lag_s` before; null as long as that lies before the first.
+  [[nodiscard]] const Gaussian<3>* lagged() const {
+    return window_.size() > window_.lag() ? &window_.state(window_.lag()) : nullptr;
+  }
+  [[nodiscard]] double lagged_time_s() const { return times_s_[instants_ % times_s_.size()]; }
+  [[nodiscard]] double nis() const { return nis_; }
+
+  /// Takes the base's turning for so much stronger from here on.
+  void turn_more(double factor) { motion_.drive *= factor; }
+  [[nodiscard]] double drive() const { return motion_.drive; }
+  /// ln L of the innovations of the last seconds.
+  [[nodiscard]] double predicted() const { return predicted_; }
+
+ private:
+  void read(const LiveInstant& instant);
+  void follow_motion();
+
+  bool gyroscope_;
+  double usual_step_s_ = 0.01;
+  TiltInstants now_;  ///< two instants: 0 the first, 1 any later
+  TiltKnown known_;
+  TiltMotion motion_;
+  BaseScatter scatter_;
+  RunningCorrelation correlation_;
+  double apart_s_ = 0.1;
+  FilterState<9> state_;
+  StepOf<TiltModel> step_;
+  FixedLag<9, 3> window_;
+  std::vector<double> times_s_;
+  double time_s_ = 0.0, nis_ = std::numeric_limits<double>::quiet_NaN();
+  std::size_t instants_ = 0;
+  double predicted_ = 0.0;
+};
+
+/// The filter; and without gyroscope two more beside it, which take the base's turning for √10
+/// times stronger and weaker. Where one of them has predicted the last seconds better all move.
+class LiveTiltBank {
+ public:
+  LiveTiltBank(const std::vector<LiveInstant>& first, const LiveTiltOptions& options);
+  void step(const LiveInstant& instant);
+  [[nodiscard]] const LiveTiltFilter& best() const { return *filters_.front(); }
+
+ private:
+  static constexpr double apart = 3.1622776601683795;
+  void choose();
+
+  std::vector<std::unique_ptr<LiveTiltFilter>> filters_;  ///< the middle, the stronger, the weaker
+  double next_s_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,150 @@
+#include "proofmass/estimate/live_tilt.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "proofmass/estimate/counted_new.hpp"
+#include "proofmass/estimate/live_test_support.hpp"
+#include "proofmass/estimate/tilt_test_support.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+using test::Fed;
+using test::feed;
+using test::Stream;
+
+Stream stream_of(const TiltRecord& record) {
+  Stream stream{record.time_s, {}};
+  for (const auto& axis : record.accel_mps2) stream.channels.push_back(axis);
+  for (const auto& axis : record.rate_radps)
+    if (!axis.empty()) stream.channels.push_back(axis);
+  return stream;
+}
+
+LiveTiltOptions options_for(const TiltRecord& record) {
+  LiveTiltOptions options;
+  options.accelerometer = {"acc", 0, 1, 2};
+  if (!record.rate_radps[0].empty()) options.gyroscope = Triad{"gyr", 3, 4, 5};
+  return options;
+}
+
+struct Followed {
+  std::unique_ptr<LiveAnalysis> live;
+  Fed fed;
+  [[nodiscard]] const std::vector<double>& operator[](const std::string& name) const {
+    return test::column(*live, fed, name);
+  }
+};
+
+Followed follow(const TiltRecord& record, const LiveTiltOptions& options, std::size_t piece = 10) {
+  Followed followed{live_tilt(options).value(), {}};
+  followed.fed = feed(*followed.live, stream_of(record), piece);
+  return followed;
+}
+
+/// Share of the rows from two seconds on whose band of 95 % holds the pitch.
+double coverage(const Followed& followed, const MovingBase& base, const std::string& what = "") {
+  double held = 0.0, all = 0.0;
+  for (std::size_t k = 200; k < followed.fed.rows.rows(); ++k) {
+    const double time_s =
+        what.empty() ? followed.fed.rows.stamps_s[k] : followed["smoothed_time"][k];
+    const auto at = static_cast<std::size_t>(std::lround(100.0 * time_s));
+    const double off = followed[what + "pitch"][k] - base.pitch_rad[at];
+    held += std::abs(off) < 1.96 * followed[what + "pitch_std"][k] ? 1.0 : 0.0;
+    all += 1.0;
+  }
+  return held / all;
+}
+
+TEST(LiveTilt, GivesTheSameRowsHoweverTheSamplesAreCut) {
+  const MovingBase base = moving_base({.samples = 800}, 1);
+  const Followed whole = follow(base.record, options_for(base.record), 800);
+  ASSERT_EQ(whole.fed.rows.rows(), 800U);
+  for (const std::size_t piece : {1U, 7U, 300U})
+    EXPECT_TRUE(
+        test::same(follow(base.record, options_for(base.record), piece).fed.rows, whole.fed.rows))
+        << piece;
+}
+
+TEST(LiveTilt, ItsBandsHoldTheTruthInMotion) {
+  for (const bool gyroscope : {true, false}) {
+    const MovingBase base =
+        moving_base({.samples = 3000, .accel_std_mps2 = 0.3, .gyroscope = gyroscope}, 2);
+    const Followed followed = follow(base.record, options_for(base.record));
+    EXPECT_GT(coverage(followed, base), 0.92) << gyroscope;
+    EXPECT_GT(coverage(followed, base, "smoothed_"), 0.92) << gyroscope;
+  }
+}
+
+TEST(LiveTilt, BandsHoldHoweverStrongTheBaseTurnsWithoutGyroscope) {
+  for (const double turning_radps2_rthz : {0.1, 0.5, 1.0}) {
+    double held = 0.0;
+    constexpr int runs = 30;
+    for (int seed = 1; seed <= runs; ++seed) {
+      const MovingBase base =
+          moving_base({.angular_accel_radps2_rthz = turning_radps2_rthz, .gyroscope = false},
+                      static_cast<std::uint64_t>(seed));
+      held += coverage(follow(base.record, options_for(base.record)), base) / runs;
+    }
+    EXPECT_GE(held, 0.93) << turning_radps2_rthz;
+  }
+}
+
+TEST(LiveTilt, TheGyroscopeHelpsWhereTheBaseIsShaken) {
+  const auto std_of = [](bool gyroscope) {
+    const MovingBase base =
+        moving_base({.samples = 2000, .accel_std_mps2 = 1.0, .gyroscope = gyroscope}, 3);
+    return follow(base.record, options_for(base.record))["pitch_std"].back();
+  };
+  EXPECT_LT(std_of(true), 0.7 * std_of(false));
+}
+
+TEST(LiveTilt, AtRestItStandsWhereGravityIs) {
+  const TiltRecord record = still_record(force_at(0.3, -0.2), 0.02, 1000, 4);
+  const Followed followed = follow(record, options_for(record));
+  EXPECT_NEAR(followed["roll"].back(), 0.3, 3.0 * followed["roll_std"].back());
+  EXPECT_NEAR(followed["pitch"].back(), -0.2, 3.0 * followed["pitch_std"].back());
+  EXPECT_LT(followed["pitch_std"].back(), 0.2 * rad_per_deg);
+  EXPECT_LT(followed["smoothed_pitch_std"].back(), followed["pitch_std"].back());
+}
+
+TEST(LiveTilt, MissingReadingsWidenTheBandAndAreTold) {
+  MovingBase base = moving_base({.samples = 1000}, 5);
+  for (std::size_t k = 500; k < 550; ++k) base.record.accel_mps2[1][k] = std::nan("");
+  const Followed followed = follow(base.record, options_for(base.record));
+  EXPECT_GT(followed["pitch_std"][549], followed["pitch_std"][499]);
+  EXPECT_TRUE(std::isnan(followed["nis"][520]));
+  EXPECT_TRUE(followed.fed.says("50 readings left out") ||
+              followed.fed.says("10 readings left out"));
+  EXPECT_GT(coverage(followed, base), 0.92);
+}
+
+TEST(LiveTilt, WithoutGravityInTheReadingsItSaysSo) {
+  const TiltRecord record = still_record(force_at(0.3, -0.2, 1.0), 0.02, 300, 6);
+  EXPECT_TRUE(follow(record, options_for(record)).fed.says("gravity was taken out"));
+}
+
+TEST(LiveTilt, AStepAllocatesNothing) {
+  const MovingBase base = moving_base({.samples = 1000}, 7);
+  const Stream stream = stream_of(base.record);
+  auto live = live_tilt(options_for(base.record)).value();
+  Rows out;
+  (void)live->add(stream.block(0, 300), out).value();
+  out.stamps_s.reserve(2000);
+  for (auto& channel : out.channels) channel.reserve(2000);
+  const Block later = stream.block(300, 600);
+  const std::size_t before = test::allocations();
+  const bool done = live->add(later, out).has_value();
+  EXPECT_EQ(test::allocations(), before);
+  EXPECT_TRUE(done);
+}
+
+TEST(LiveTilt, RefusesTwoAxes) {
+  LiveTiltOptions options;
+  options.accelerometer = {"acc", 0, 1, std::nullopt};
+  EXPECT_FALSE(live_tilt(options));
+}
+
+}  // namespace
+}  // namespace proofmass::estimate

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/estimate/gaussian.hpp"
+#include "proofmass/estimate/live_instants.hpp"
+#include "proofmass/signal/running_rests.hpp"
+
+// Whether the sensor lay still at an instant, as soon as it is known. Private to the module's
+// live_track*.cpp.
+namespace proofmass::estimate {
+
+/// A reading of all axes, and whether the sensor lay still.
+struct LiveReading {
+  double time_s = 0.0;
+  Mat<3> accel_mps2 = Mat<3>::Zero();
+  bool resting = false;
+};
+
+/// The newest rest.
+struct LiveRest {
+  double since_s = 0.0, until_s = -1.0;
+  Mat<3> level_mps2 = Mat<3>::Zero();
+  Mat<3> white_m2ps3 = Mat<3>::Zero();  ///< N², of each axis
+  double behind_level_s = 0.0;          ///< time that the level is the mean of
+};
+
+/// Holds instants back until it is known.
+class LiveTrackRests {
+ public:
+  explicit LiveTrackRests(const Triad& sensor);
+
+  /// Calls visit(const LiveReading&) for those that are known by now, in their order.
+  template <class Visit>
+  void add(const LiveInstant& instant, Visit&& visit) {
+    if (!take(instant)) return;
+    release(known_until_s(), visit);
+  }
+  /// What is still held; behind the last rest that is known it moves.
+  template <class Visit>
+  void finish(Visit&& visit) {
+    release(last_s_, visit);
+  }
+
+  [[nodiscard]] const LiveRest& rest() const { return rest_; }
+  /// Of the readings, lately; 0 before the second.
+  [[nodiscard]] double step_s() const { return step_s_; }
+  [[nodiscard]] std::vector<Note> take_notes();
+
+ private:
+  [[nodiscard]] bool take(const LiveInstant& instant);
+  [[nodiscard]] double known_until_s();
+  void look_at_rest(const signal::RestState& state);
+
+  template <class Visit>
+  void release(double until_s, Visit& visit) {
+    std::size_t given = 0;
+    for (; given < held_.size() && held_[given].time_s <= until_s; ++given) {
+      LiveReading& reading = held_[given];
+      reading.resting = reading.time_s >= rest_.since_s && reading.time_s <= rest_.until_s;
+      visit(static_cast<const LiveReading&>(reading));
+    }
+    held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(given));
+  }
+
+  Triad sensor_;
+  signal::RunningRests rests_;
+  std::vector<LiveReading> held_;
+  LiveRest rest_;
+  double last_s_ = 0.0, step_s_ = 0.0, steps_ = 0.0;
+  bool any_ = false, stuck_ = false;
+  std::vector<Note> notes_;
+};
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "proofmass/estimate/inertial_axis.hpp"
+
+// How much errs in motion, learned stop by stop. Private to the module's live_track*.cpp.
+namespace proofmass::estimate {
+
+/// L, J and q of inertial_axis.hpp at scale 1. The middle of track_walk.hpp's prior is 1e-5 for
+/// each of them; here L has the most, for it leaves a position least sure.
+inline constexpr double usual_lean_m2ps3 = 1e-5;
+inline constexpr double usual_jump_m2ps4 = 3e-6;
+inline constexpr double usual_walk_m2ps5 = 1e-6;
+
+/// What they do to a velocity that is integrated for so long, at scale 1.
+[[nodiscard]] inline double usual_velocity_variance(double elapsed_s) {
+  return elapsed_s *
+         (usual_lean_m2ps3 + elapsed_s * (usual_jump_m2ps4 + elapsed_s * usual_walk_m2ps5 / 3.0));
+}
+
+/// The common scale of L, J and q. Its logarithm is normal about 0, with twice the standard
+/// deviation that track_walk.hpp has for a root; a closure weighs each value of a grid by its
+/// likelihood. track.hpp finds the three apart, which takes all closures again and again.
+class MotionScale {
+ public:
+  MotionScale();
+
+  /// A velocity was left over at a stop: its variance is `known` + scale · `usual`.
+  void learn(double velocity_mps, double known, double usual);
+  /// That gives such velocities an interval of 1.96 standard deviations that holds 95 % of the
+  /// mixture.
+  [[nodiscard]] double scale() const { return scale_; }
+  /// The posterior's middle, in the logarithm.
+  [[nodiscard]] double middle() const { return middle_; }
+
+ private:
+  static constexpr std::size_t points = 41;
+
+  void settle(double known, double usual);
+
+  std::array<double, points> value_{}, log_weight_{}, weight_{}, variance_{};
+  double scale_ = 1.0, middle_ = 1.0;
+};
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,348 @@
+#include "proofmass/estimate/live_wheel_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace proofmass::estimate {
+namespace {
+
+/// The gate of wheel_gate; what it does when it stays shut, notice_surprise() does here.
+constexpr Gate live_gate{wheel_gate.huber, wheel_gate.limit, std::numeric_limits<int>::max()};
+
+/// How long readings are gathered before the noise is judged by them.
+constexpr double stretch_s = 1.0;
+/// Factor between the noise of the rivals and the filter's own.
+constexpr double rival_factor = 3.1622776601683795;
+/// A smoothed mean NIS beyond this is no chance: the wheel does what the noise did not expect.
+constexpr double surprising = 4.0;
+constexpr double surprise_instants = 10.0;
+/// White jerk of a wheel that is handled, rad²/s⁵: what the noise rises to at once.
+constexpr double lively_jerk_psd = 100.0;
+/// Between these the noise is moved about.
+constexpr double least_jerk_psd = 1e-4, most_jerk_psd = 1e4, least_bias_walk_psd = 2e-5;
+/// The angle is anybody's guess beyond this.
+constexpr double lost_std_rad = 0.8;
+/// How far a place is moved to see what it does. What is read is linear in it.
+constexpr double place_step_m = 1e-3;
+
+void scale_motion(WheelNoise& noise, double factor) {
+  noise.jerk_psd = std::clamp(noise.jerk_psd * factor, least_jerk_psd, most_jerk_psd);
+  noise.snap_psd *= factor;
+}
+
+template <int N>
+void widen_motion(Gaussian<N>& x) {
+  // More of the same, independent of what was known: covariances with the past stay true.
+  for (int i = 0; i < wheel::moving; ++i) x.cov(i, i) *= 4.0;
+}
+
+template <class Step>
+double log_likelihood_of(const Step& step) {
+  double sum = 0.0;
+  for (int i = 0; i < step.count; ++i) {
+    const auto& u = step.updates[static_cast<std::size_t>(i)];
+    sum -= 0.5 * (std::log(2.0 * std::numbers::pi * u.expected) + surprise(std::sqrt(u.nis())));
+  }
+  return sum;
+}
+
+}  // namespace
+
+template <int S>
+LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelStart& start,
+                                    std::size_t lag_instants,
+                                    double alignment_std_rad)
+    : planes_(start.planes),
+      variance_m2ps4_(start.variance_m2ps4),
+      alignment_variance_rad2_(alignment_std_rad * alignment_std_rad),
+      window_(lag_instants),
+      window_time_s_(lag_instants + 1),
+      window_places_(lag_instants + 1) {
+  now_.gravity_mps2 = start.gravity_mps2;
+  now_.rolling_radius_m = start.rolling_radius_m;
+  now_.phase_rad = start.phase_rad;
+  now_.instants.assign(2, {0.0, {0, S == 2 ? 0 : WheelInstant::no_row}});
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s)
+    now_.sensors.push_back({{0.0}, {0.0}, {variance_m2ps4_[s]}});
+  model_ = wheel_model<S>(now_, start.noise);
+  model_.places_held = true;
+  scale_motion(model_.noise, 1.0);
+  model_.noise.bias_walk_psd = std::max(model_.noise.bias_walk_psd, least_bias_walk_psd);
+  main_ = prior_state<S>(start.prior);
+  main_.x.mean.template tail<wheel::standing(S)>() = start.constants;
+  places_cov_ = start.places_cov;
+  for (int i = 0; i < places; ++i) seat(i);
+  rivals_[0] = {rival_factor, main_};
+  rivals_[1] = {1.0 / rival_factor, main_};
+}
+
+template <int S>
+void LiveWheelFilter<S>::seat(int place) {
+  Moved& moved = moved_[static_cast<std::size_t>(place)];
+  moved.state = main_;
+  moved.state.x.mean(first_place + place) += place_step_m;
+}
+
+template <int S>
+void LiveWheelFilter<S>::read(const LiveInstant& instant) {
+  now_.instants[1].dt_s = instants_ == 0 ? 0.0 : instant.time_s - time_s_;
+  time_s_ = instant.time_s;
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
+    const Mat<3>& f = instant.vectors[s];
+    const Axis &u = planes_[s].u, &v = planes_[s].v;
+    now_.sensors[s].u_mps2[0] = f(0) * u[0] + f(1) * u[1] + f(2) * u[2];
+    now_.sensors[s].v_mps2[0] = f(0) * v[0] + f(1) * v[1] + f(2) * v[2];
+  }
+}
+
+/// Of the readings at this instant. What is not known of ω² and α, times what is not known of a
+/// place, is noise that no slope shows.
+template <int S>
+void LiveWheelFilter<S>::set_variance() {
+  const double w = main_.x.mean(wheel::speed);
+  const double accel =
+      main_.x.cov(wheel::accel, wheel::accel) + model_.noise.jerk_psd * now_.instants[1].dt_s;
+  const double both = accel + 4.0 * w * w * main_.x.cov(wheel::speed, wheel::speed);
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
+    const auto at = static_cast<Eigen::Index>(2 * s);
+    now_.sensors[s].variance_m2ps4[0] =
+        variance_m2ps4_[s] + both * 0.5 * places_cov_.template block<2, 2>(at, at).trace();
+  }
+}
+
+template <int S>
+void LiveWheelFilter<S>::advance_all() {
+  const std::size_t k = instants_ == 0 ? 0 : 1;
+  for (std::size_t m = 0; m < moved_.size(); ++m) {
+    Moved& moved = moved_[m];
+    if (std::abs(moved.state.x.mean(wheel::angle) - main_.x.mean(wheel::angle)) > 1.0)
+      seat(static_cast<int>(m));  // it has slipped, and tells nothing any more
+    advance(model_, k, live_gate, moved.state, other_step_);
+    for (int i = 0; i < other_step_.count; ++i)
+      moved.innovations[static_cast<std::size_t>(i)] =
+          other_step_.updates[static_cast<std::size_t>(i)].innovation;
+  }
+  Model other = model_;
+  for (Rival& rival : rivals_) {
+    other.noise = model_.noise;
+    scale_motion(other.noise, rival.factor);
+    advance(other, k, live_gate, rival.state, other_step_);
+    rival.log_likelihood += log_likelihood_of(other_step_);
+  }
+  advance(model_, k, live_gate, main_, step_);
+  main_log_likelihood_ += log_likelihood_of(step_);
+  const std::size_t at = instants_ % window_time_s_.size();
+  window_.push(step_, model_.active());
+  window_time_s_[at] = time_s_;
+  expect();
+  window_places_[at] = places_variance();
+  ++instants_;
+}
+
+template <int S>
+void LiveWheelFilter<S>::step(const LiveInstant& instant) {
+  read(instant);
+  if (instants_ == 0) first_time_s_ = stretch_start_s_ = time_s_;
+  if (time_s_ > first_time_s_ + 1.0 && predicted_std_rad() > lost_std_rad) lost_ = true;
+  set_variance();
+  advance_all();
+  judge();
+  if (time_s_ - stretch_start_s_ >= stretch_s) end_stretch();
+}
+
+/// Of the angle at this instant, before its readings.
+template <int S>
+double LiveWheelFilter<S>::predicted_std_rad() const {
+  const auto to = model_.transition(main_.x.mean, 1);
+  const Mat<wheel::moving> from = to.F.row(wheel::angle).transpose();
+  return std::sqrt(
+      from.dot(main_.x.cov.template topLeftCorner<wheel::moving, wheel::moving>() * from) +
+      to.Q(wheel::angle, wheel::angle));
+}
+
+/// What the innovations say of the readings' noise, and of the motion's.
+template <int S>
+void LiveWheelFilter<S>::judge() {
+  int channel = 0;
+  double clipped = 0.0;
+  nis_ = 0.0;
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
+    if (!model_.has_readings(s, 1)) continue;
+    for (int axis = 0; axis < 2; ++axis, ++channel) {
+      const auto& u = step_.updates[static_cast<std::size_t>(channel)];
+      const double expected = expected_[static_cast<std::size_t>(channel)];
+      const double nis = u.innovation * u.innovation / expected;
+      nis_ += nis;
+      clipped += std::min(nis, 4.0 * surprising);
+      if (!u.used) continue;
+      noise_[s].innovation2 += std::min(nis, 4.0 * wheel_gate.huber) * expected;
+      noise_[s].explained += expected - variance_m2ps4_[s];
+      noise_[s].readings += 1.0;
+    }
+  }
+  since_loosened_s_ += now_.instants[1].dt_s;
+  if (channel == 0) {
+    nis_ = std::numeric_limits<double>::quiet_NaN();
+    return;
+  }
+  nis_ /= channel;
+  notice_surprise(clipped / channel);
+}
+
+template <int S>
+void LiveWheelFilter<S>::notice_surprise(double mean_nis) {
+  surprise_ += (mean_nis - surprise_) / surprise_instants;
+  if (surprise_ < surprising) return;
+  surprise_ = 1.0;
+  loosened_ = since_loosened_s_ < 1.0 ? loosened_ + 1 : 1;
+  since_loosened_s_ = 0.0;
+  if (loosened_ > 8) lost_ = true;
+  loosen();
+}
+
+/// More noise at once; the stretch so far says nothing of the readings'.
+template <int S>
+void LiveWheelFilter<S>::loosen() {
+  model_.noise.jerk_psd =
+      std::min(std::max(lively_jerk_psd, 10.0 * model_.noise.jerk_psd), most_jerk_psd);
+  widen_motion(main_.x);
+  for (Moved& moved : moved_) widen_motion(moved.state.x);
+  for (Rival& rival : rivals_) {
+    rival.state = main_;
+    rival.log_likelihood = 0.0;
+  }
+  main_log_likelihood_ = 0.0;
+  noise_ = {};
+  stretch_start_s_ = time_s_;
+}
+
+/// The readings' variance goes half of the way (in logarithm) to what the stretch says.
+template <int S>
+void LiveWheelFilter<S>::adapt_variance(std::size_t sensor) {
+  const Noise said = noise_[sensor];
+  if (said.readings < 20.0) return;
+  const double found =
+      std::max(said.innovation2 - said.explained, 0.2 * said.innovation2) / said.readings;
+  double& variance = variance_m2ps4_[sensor];
+  if (found > 0.0) variance = std::sqrt(variance * found);
+}
+
+template <int S>
+void LiveWheelFilter<S>::end_stretch() {
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) adapt_variance(s);
+  const Rival& better =
+      rivals_[0].log_likelihood >= rivals_[1].log_likelihood ? rivals_[0] : rivals_[1];
+  if (better.log_likelihood > main_log_likelihood_) scale_motion(model_.noise, better.factor);
+  for (Rival& rival : rivals_) {
+    rival.state = main_;
+    rival.log_likelihood = 0.0;
+  }
+  main_log_likelihood_ = 0.0;
+  noise_ = {};
+  stretch_start_s_ = time_s_;
+}
+
+/// The radius in place of what was believed of a sensor that may be anywhere: the sensor is on its
+/// circle or, as long as the readings do not show on which side, within it.
+template <int S>
+void LiveWheelFilter<S>::use_radius(double radius_m) {
+  const double within_m = std::max(radius_m / std::numbers::sqrt2, 2e-4);
+  const double more = 1.0 / (within_m * within_m) - 1.0 / std::pow(ConstantsPrior{}.place_m, 2);
+  for (int i = 0; i < places && more > 0.0; ++i)
+    learn_place(Mat<places>::Unit(i), -main_.x.mean(first_place + i), 1.0 / more);
+  const double std_m = std::max(0.02 * radius_m, 2e-4);
+  for (int s = 0; s < S; ++s) {
+    if (!shows_place(s)) continue;
+    const Mat<2> place = main_.x.mean.template segment<2>(first_place + 2 * s);
+    Mat<places> outward = Mat<places>::Zero();
+    outward.template segment<2>(2 * s) = place.normalized();
+    learn_place(outward, radius_m - place.norm(), std_m * std_m);
+  }
+}
+
+/// Whether it is clear on which side of the axle a sensor is.
+template <int S>
+bool LiveWheelFilter<S>::shows_place(int sensor) const {
+  const double found2 = main_.x.mean.template segment<2>(first_place + 2 * sensor).squaredNorm();
+  return found2 > 25.0 * places_cov_.template block<2, 2>(2 * sensor, 2 * sensor).trace();
+}
+
+template <int S>
+bool LiveWheelFilter<S>::knows_places() const {
+  for (int s = 0; s < S; ++s) {
+    const double found_m = main_.x.mean.template segment<2>(first_place + 2 * s).norm();
+    const double std_m = std::sqrt(places_cov_.template block<2, 2>(2 * s, 2 * s).trace());
+    if (std_m > std::max(0.05 * found_m, 2e-3)) return false;
+  }
+  return true;
+}
+
+/// What each innovation could be, not knowing the places: y(p + δ) = y − slopeᵀ δ.
+template <int S>
+void LiveWheelFilter<S>::expect() {
+  for (std::size_t c = 0; c < static_cast<std::size_t>(step_.count); ++c) {
+    Mat<places> slope;
+    for (int i = 0; i < places; ++i)
+      slope(i) =
+          (step_.updates[c].innovation - moved_[static_cast<std::size_t>(i)].innovations[c]) /
+          place_step_m;
+    expected_[c] = step_.updates[c].expected + slope.dot(places_cov_ * slope);
+  }
+}
+
+/// A reading `residual` = slopeᵀ (p − p̂) + noise. What hangs on the places moves with them, as the
+/// filters beside this one tell.
+template <int S>
+void LiveWheelFilter<S>::learn_place(const Mat<places>& slope, double residual, double variance) {
+  const Mat<places> across = places_cov_ * slope;
+  const double weight = 1.0 / (variance + slope.dot(across));
+  places_cov_ -= weight * across * across.transpose();
+  const Mat<places> by = weight * residual * across;
+  Mat<states> change = Mat<states>::Zero();
+  for (int i = 0; i < places; ++i)
+    change +=
+        by(i) / place_step_m * (moved_[static_cast<std::size_t>(i)].state.x.mean - main_.x.mean);
+  main_.x.mean += change;
+  for (Moved& moved : moved_) moved.state.x.mean += change;
+  for (Rival& rival : rivals_) rival.state.x.mean += change;
+}
+
+/// Of angle and speed, for want of knowing the places.
+template <int S>
+Mat<2> LiveWheelFilter<S>::places_variance() const {
+  Mat<2, places> slope;
+  for (int i = 0; i < places; ++i)
+    slope.col(i) = (moved_[static_cast<std::size_t>(i)].state.x.mean.template head<2>() -
+                    main_.x.mean.template head<2>()) /
+                   place_step_m;
+  return (slope * places_cov_).cwiseProduct(slope).rowwise().sum();
+}
+
+template <int S>
+LiveWheelRow LiveWheelFilter<S>::row() const {
+  const auto of = [&](const Gaussian<2>& x, int i, double by_places) {
+    const double more = by_places + (i == wheel::angle ? alignment_variance_rad2_ : 0.0);
+    return Uncertain{x.mean(i), std::sqrt(std::max(x.cov(i, i), 0.0) + more)};
+  };
+  const Mat<2>& by_places = window_places_[(instants_ - 1) % window_places_.size()];
+  const Gaussian<2>& now = window_.state(0);
+  LiveWheelRow row{.angle_rad = of(now, wheel::angle, by_places(0)),
+                   .speed_radps = of(now, wheel::speed, by_places(1))};
+  row.nis = nis_;
+  if (window_.size() <= window_.lag()) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    row.smoothed_angle_rad = row.smoothed_speed_radps = {none, none};
+    return row;
+  }
+  const std::size_t oldest = instants_ % window_time_s_.size();
+  row.smoothed_time_s = window_time_s_[oldest];
+  const Gaussian<2>& then = window_.state(window_.lag());
+  row.smoothed_angle_rad = of(then, wheel::angle, window_places_[oldest](0));
+  row.smoothed_speed_radps = of(then, wheel::speed, window_places_[oldest](1));
+  return row;
+}
+
+template class LiveWheelFilter<1>;
+template class LiveWheelFilter<2>;
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,247 @@
+#include "proofmass/estimate/live_wheel.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "proofmass/estimate/counted_new.hpp"
+#include "proofmass/estimate/live_test_support.hpp"
+#include "proofmass/estimate/wheel_test_support.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+using test::Drive;
+using test::Fed;
+using test::feed;
+using test::Mount;
+using test::rpm;
+using test::Stream;
+
+const Drive even{{0.3, 20 * rpm}, {{20.0, 20 * rpm}}};
+
+Stream stream_of(const std::vector<WheelSensor>& sensors) {
+  Stream stream{sensors.front().time_s, {}};
+  for (const WheelSensor& sensor : sensors)
+    for (const auto& axis : sensor.accel_mps2) stream.channels.push_back(axis);
+  return stream;
+}
+
+Stream one_sensor(const Drive& drive = even, double rate_hz = 100.0, std::uint64_t seed = 1) {
+  Mount mount;
+  mount.place_m = 0.1;
+  mount.bias_mps2 = {0.1, -0.15};
+  mount.noise_mps2 = 0.02;
+  return stream_of({test::record(drive, mount, rate_hz, seed)});
+}
+
+LiveWheelOptions options_for(std::size_t sensors, std::optional<double> radius_m = 0.1) {
+  LiveWheelOptions options;
+  for (std::size_t s = 0; s < sensors; ++s)
+    options.sensors.push_back({"acc" + std::to_string(s + 1), 3 * s, 3 * s + 1, 3 * s + 2});
+  options.wheel.radius_m = radius_m;
+  return options;
+}
+
+struct Followed {
+  std::unique_ptr<LiveAnalysis> live;
+  Fed fed;
+  [[nodiscard]] const std::vector<double>& operator[](const std::string& name) const {
+    return test::column(*live, fed, name);
+  }
+};
+
+Followed follow(const Stream& stream, const LiveWheelOptions& options, std::size_t piece = 10) {
+  Followed run{live_wheel(options).value(), {}};
+  run.fed = feed(*run.live, stream, piece);
+  return run;
+}
+
+/// Share of the rows from `from_s` on whose band of 95 % holds the truth, whole turns apart.
+double coverage(const Followed& run,
+                const Drive& drive,
+                double from_s,
+                const std::string& what = "") {
+  const auto& angle = run[what + "angle"];
+  const auto& std = run[what + "angle_std"];
+  const auto& time_s = what.empty() ? run.fed.rows.stamps_s : run["smoothed_time"];
+  double held = 0.0, all = 0.0;
+  for (std::size_t k = 0; k < angle.size(); ++k) {
+    if (!(time_s[k] >= from_s)) continue;
+    const double off = std::remainder(angle[k] - drive.at(time_s[k]).angle_rad, rad_per_turn);
+    held += std::abs(off) < 1.96 * std[k] ? 1.0 : 0.0;
+    all += 1.0;
+  }
+  return held / all;
+}
+
+TEST(LiveWheel, GivesTheSameRowsHoweverTheSamplesAreCut) {
+  const Stream stream = one_sensor();
+  const Followed whole = follow(stream, options_for(1), stream.stamps_s.size());
+  ASSERT_GT(whole.fed.rows.rows(), 1900U);
+  for (const std::size_t piece : {1U, 7U, 400U})
+    EXPECT_TRUE(test::same(follow(stream, options_for(1), piece).fed.rows, whole.fed.rows))
+        << piece;
+}
+
+TEST(LiveWheel, GivesARowForEverySampleOnceStartedInTheCallThatBringsIt) {
+  const Stream stream = one_sensor();
+  auto live = live_wheel(options_for(1)).value();
+  Rows out;
+  for (std::size_t k = 0; k < stream.stamps_s.size(); ++k) {
+    (void)live->add(stream.block(k, 1), out).value();
+    if (stream.stamps_s[k] < 5.5) continue;
+    ASSERT_EQ(out.stamps_s.size(), k + 1);
+    ASSERT_DOUBLE_EQ(out.stamps_s.back(), stream.stamps_s[k]);
+  }
+}
+
+TEST(LiveWheel, ItsBandsHoldTheTruth) {
+  const Followed one = follow(one_sensor(), options_for(1));
+  EXPECT_GT(coverage(one, even, 4.0), 0.93);
+  EXPECT_GT(coverage(one, even, 4.0, "smoothed_"), 0.93);
+  double rms = 0.0;
+  for (std::size_t k = 500; k < 2000; ++k)
+    rms +=
+        std::pow(std::remainder(one["angle"][k] - even.at(0.01 * static_cast<double>(k)).angle_rad,
+                                rad_per_turn),
+                 2) /
+        1500.0;
+  EXPECT_LT(std::sqrt(rms), 0.1 * rad_per_deg);
+}
+
+TEST(LiveWheel, TheLaggedAngleIsTheBetterOne) {
+  const Followed one = follow(one_sensor(), options_for(1));
+  const auto& filtered = one["angle_std"];
+  const auto& lagged = one["smoothed_angle_std"];
+  EXPECT_LT(lagged[1500], filtered[1500]);
+  EXPECT_NEAR(one["smoothed_time"][1500], one.fed.rows.stamps_s[1500] - 0.25, 0.011);
+  EXPECT_TRUE(std::isnan(lagged[10]));
+}
+
+TEST(LiveWheel, AgreesWithTheEstimateOfTheWholeRecording) {
+  const Stream stream = one_sensor();
+  WheelOptions options;
+  options.radius_m = 0.1;
+  WheelSensor sensor{
+      "acc", stream.stamps_s, {stream.channels[0], stream.channels[1], stream.channels[2]}};
+  const auto batch = estimate_wheel({sensor}, options).value();
+  const Followed one = follow(stream, options_for(1));
+  for (std::size_t k = 600; k < 2000; k += 50) {
+    const double both = std::hypot(one["angle_std"][k], batch.series.filtered_angle_std_rad[k]);
+    EXPECT_LT(std::abs(std::remainder(one["angle"][k] - batch.series.filtered_angle_rad[k],
+                                      rad_per_turn)),
+              4.0 * both)
+        << "k = " << k;
+  }
+}
+
+TEST(LiveWheel, TwoOppositeSensorsAreTakenTogether) {
+  std::vector<WheelSensor> sensors;
+  for (const double place_m : {0.1, -0.1}) {
+    Mount mount;
+    mount.place_m = place_m;
+    mount.noise_mps2 = 0.02;
+    mount.bias_mps2 = {place_m, 0.1};
+    sensors.push_back(test::record(even, mount, 100.0, place_m > 0.0 ? 1 : 2));
+  }
+  const Followed both = follow(stream_of(sensors), options_for(2));
+  EXPECT_GT(coverage(both, even, 5.0), 0.93);
+  const Followed one = follow(one_sensor(), options_for(1));
+  EXPECT_LT(both["angle_std"].back(), one["angle_std"].back());
+}
+
+TEST(LiveWheel, FollowsAWheelThatStandsAndThenTurns) {
+  const Drive drive{{0.4, 0.0}, {{6.0, 0.0}, {2.0, 2.0}, {12.0, 2.0}}};
+  const Followed one = follow(one_sensor(drive), options_for(1));
+  EXPECT_TRUE(one.fed.says("hardly turns yet"));
+  EXPECT_GT(coverage(one, drive, 13.0), 0.9);
+  EXPECT_NEAR((one["angle"].back() - one["angle"].front()) / rad_per_turn, drive.turns(0.0, 20.0),
+              0.05);
+}
+
+TEST(LiveWheel, FastSamplesAreAveraged) {
+  const Drive drive{{0.3, 20 * rpm}, {{8.0, 20 * rpm}}};
+  const Followed one = follow(one_sensor(drive, 2000.0), options_for(1), 500);
+  EXPECT_NEAR(static_cast<double>(one.fed.rows.rows()), 4000.0, 64.0);
+  EXPECT_GT(coverage(one, drive, 4.0), 0.93);
+}
+
+TEST(LiveWheel, LeavesOutWhatNoAccelerometerCanHaveMeantAndSaysSo) {
+  Stream stream = one_sensor();
+  for (std::size_t k = 600; k < 2000; k += 37) stream.channels[k % 3][k] = std::nan("");
+  for (std::size_t k = 601; k < 2000; k += 41) stream.channels[k % 3][k] = 1e30;
+  stream.stamps_s[1000] = stream.stamps_s[998];
+  const Followed one = follow(stream, options_for(1));
+  EXPECT_GT(coverage(one, even, 4.0), 0.93);
+  EXPECT_TRUE(one.fed.says("beyond 1000 g"));
+  EXPECT_TRUE(one.fed.says("their time does not rise"));
+}
+
+TEST(LiveWheel, AfterALongHoleLooksForTheWheelAnew) {
+  Stream stream = one_sensor();
+  for (std::size_t k = 1000; k < stream.stamps_s.size(); ++k) stream.stamps_s[k] += 60.0;
+  const Followed one = follow(stream, options_for(1));
+  EXPECT_TRUE(one.fed.says("turns may be lost"));
+  const Drive later{{even.at(10.0).angle_rad - 60.0 * 20 * rpm - 10.0 * 20 * rpm, 20 * rpm},
+                    {{80.0, 20 * rpm}}};
+  EXPECT_GT(coverage(one, later, 75.0), 0.93);
+}
+
+TEST(LiveWheel, StartsAnewWhereTheClockIsSetBack) {
+  Stream stream = one_sensor();
+  for (std::size_t k = 1000; k < stream.stamps_s.size(); ++k) stream.stamps_s[k] -= 9.0;
+  const Followed one = follow(stream, options_for(1));
+  EXPECT_TRUE(one.fed.says("the clock went back"));
+  EXPECT_NEAR(one.fed.rows.stamps_s.back(), stream.stamps_s.back(), 1e-9);
+}
+
+TEST(LiveWheel, SaysThatThereIsNoWheel) {
+  Stream stream = one_sensor();
+  test::Normal noise(3);
+  for (auto& channel : stream.channels)
+    for (double& value : channel) value = 20.0 * noise();
+  const Followed one = follow(stream, options_for(1));
+  EXPECT_EQ(one.fed.rows.rows(), 0U);
+  EXPECT_TRUE(one.fed.says("no wheel found"));
+}
+
+TEST(LiveWheel, SaysThatTheRadiusIsNotKnown) {
+  const Drive slow{{0.3, 11 * rpm}, {{12.0, 11 * rpm}}};
+  EXPECT_TRUE(follow(one_sensor(slow), options_for(1, std::nullopt)).fed.says("give --radius"));
+}
+
+TEST(LiveWheel, AStepAllocatesNothingOnceTheWheelIsFound) {
+  // Two speeds at the start show the place, so that nothing is gathered any more.
+  const Drive drive{{0.3, 5.0}, {{1.0, 5.0}, {2.0, 10.0}, {9.0, 10.0}}};
+  const Stream stream = one_sensor(drive);
+  auto live = live_wheel(options_for(1)).value();
+  Rows out;
+  (void)live->add(stream.block(0, 600), out).value();
+  out.stamps_s.reserve(2000);
+  for (auto& channel : out.channels) channel.reserve(2000);
+  const Block later = stream.block(600, 600);
+  (void)live->take_notes();
+  const std::size_t before = test::allocations();
+  const bool done = live->add(later, out).has_value();
+  EXPECT_EQ(test::allocations(), before);
+  EXPECT_TRUE(done);
+}
+
+TEST(LiveWheel, RefusesWhatItCannotUse) {
+  EXPECT_FALSE(live_wheel({}));
+  LiveWheelOptions no_y = options_for(1);
+  no_y.sensors[0].y.reset();
+  EXPECT_FALSE(live_wheel(no_y));
+  LiveWheelOptions lag = options_for(1);
+  lag.lag_s = std::nan("");
+  EXPECT_FALSE(live_wheel(lag));
+  auto live = live_wheel(options_for(2)).value();
+  Rows out;
+  EXPECT_FALSE(live->add(one_sensor().block(0, 10), out)) << "three channels of six";
+  Block timeless = one_sensor().block(0, 10);
+  timeless.stamps_s = {};
+  EXPECT_FALSE(live_wheel(options_for(1)).value()->add(timeless, out));
+}
+
+}  // namespace
+}  // namespace proofmass::estimate

@@ -1,0 +1,195 @@
+#include "proofmass/estimate/wheel_joint.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace proofmass::estimate {
+namespace {
+
+/// Above this share of unexplained readings there is no wheel turning in gravity to be seen.
+constexpr double not_a_wheel = 0.5;
+/// Rows of two sensors this close share one instant: 50 rad/s move the phase by 0.25 mrad
+/// meanwhile.
+constexpr double same_instant_s = 5e-6;
+
+/// The time line of one or two sensors; the second's stamps are late by offset_s.
+WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
+                    const std::vector<const Prepared*>& prepared,
+                    double offset_s,
+                    const WheelOptions& options) {
+  WheelReadings readings;
+  double level2 = options.gravity_mps2 * options.gravity_mps2;
+  const double axial = prepared.front()->plane.axial_mps2;
+  readings.gravity_mps2 = std::sqrt(std::max(level2 - axial * axial, 0.01 * level2));
+  readings.rolling_radius_m = options.rolling_radius_m.value_or(0.0);
+  for (std::size_t s = 0; s < sensors.size(); ++s)
+    readings.sensors.push_back(project(*sensors[s], prepared[s]->screened, prepared[s]->plane));
+  std::array<std::size_t, 2> next{};
+  const auto skip_unusable = [&](std::size_t s) {
+    while (next[s] < sensors[s]->time_s.size() && !prepared[s]->screened.usable[next[s]]) ++next[s];
+    return next[s] < sensors[s]->time_s.size();
+  };
+  const auto time_of = [&](std::size_t s) {
+    return sensors[s]->time_s[next[s]] - (s == 0 ? 0.0 : offset_s);
+  };
+  for (;;) {
+    std::array<bool, 2> has{};
+    for (std::size_t s = 0; s < sensors.size(); ++s) has[s] = skip_unusable(s);
+    if (!has[0] && !has[1]) return readings;
+    const double t = has[0] && has[1] ? std::min(time_of(0), time_of(1)) : time_of(has[0] ? 0 : 1);
+    WheelInstant instant;
+    instant.dt_s = readings.time_s.empty() ? 0.0 : t - readings.time_s.back();
+    for (std::size_t s = 0; s < sensors.size(); ++s)
+      if (has[s] && time_of(s) - t < same_instant_s)
+        instant.row[s] = static_cast<std::int64_t>(next[s]++);
+    readings.time_s.push_back(t);
+    readings.instants.push_back(instant);
+  }
+}
+
+/// What is believed of the places: nothing but their size, or the radius that was given, outward
+/// along the direction that the recording shows, else along u.
+PlacesPrior places_prior(const WheelOptions& options, const Eigen::VectorXd& seen) {
+  PlacesPrior prior{Eigen::VectorXd::Zero(seen.size())};
+  if (!options.radius_m) return prior;
+  prior.std_m = std::max(0.02 * *options.radius_m, 2e-4);
+  for (Eigen::Index s = 0; s < seen.size(); s += 2) {
+    const Eigen::Vector2d direction = seen.segment<2>(s);
+    prior.mean.segment<2>(s) = direction.norm() > std::max(0.3 * *options.radius_m, 1e-6)
+                                   ? Eigen::Vector2d(direction.normalized() * *options.radius_m)
+                                   : Eigen::Vector2d(*options.radius_m, 0.0);
+  }
+  return prior;
+}
+
+Uncertain radius_in(const WheelFit& fit, std::size_t sensors, std::size_t sensor) {
+  const auto at = fit.constants.size() - static_cast<Eigen::Index>(2 * (sensors - sensor));
+  const Eigen::Vector2d place = fit.constants.segment<2>(at);
+  const Eigen::Vector2d outward = place / std::max(place.norm(), 1e-9);
+  return {place.norm(), std::sqrt(outward.dot(fit.constants_cov.block<2, 2>(at, at) * outward))};
+}
+
+/// Fits once without the radius and, where one is given, again with it.
+WheelFit fit_with_radius(WheelReadings& readings,
+                         const WheelTrack& track,
+                         const WheelOptions& options) {
+  const std::size_t sensors = readings.sensors.size();
+  const auto count = static_cast<Eigen::Index>(2 * sensors);
+  WheelFit free =
+      fit_wheel(readings, track, PlacesPrior{Eigen::VectorXd::Zero(count)}, options.progress);
+  if (!options.radius_m) return free;
+  WheelFit held = fit_wheel(readings, free.track, places_prior(options, places_in(free, sensors)),
+                            options.progress);
+  for (std::size_t s = 0; s < sensors; ++s)
+    held.free_radius_m.push_back(radius_in(free, sensors, s));
+  return held;
+}
+
+Result<Single> fit_single(const WheelSensor& sensor,
+                          Prepared prepared,
+                          const WheelOptions& options) {
+  Single single{std::move(prepared), {}, {}};
+  single.readings = merge({&sensor}, {&single.prepared}, 0.0, options);
+  if (single.readings.instants.size() < 10)
+    return Error{Errc::too_few_samples, sensor.name + ": fewer than 10 usable rows"};
+  if (options.progress) options.progress("looking for the wheel's phase", 0.0);
+  const WheelTrack track = find_track(single.readings);
+  if (track.lost > not_a_wheel)
+    return Error{Errc::not_observable,
+                 sensor.name +
+                     ": no gravity turning in the plane of the wheel (axle upright, "
+                     "readings not in m/s^2, or not a wheel); check --unit and --spin-axis"};
+  single.fit = fit_with_radius(single.readings, track, options);
+  return single;
+}
+
+Result<Single> fit_single(const WheelSensor& sensor, const WheelOptions& options) {
+  Prepared prepared{screen_rows(sensor), {}};
+  const auto plane = find_plane(sensor, prepared.screened, options.spin_axis);
+  if (!plane) return plane.error();
+  prepared.plane = *plane;
+  return fit_single(sensor, std::move(prepared), options);
+}
+
+WheelMotion motion_of(const WheelFit& fit) {
+  return {&fit.series.time_s, &fit.series.angle_rad, &fit.series.speed_radps};
+}
+
+}  // namespace
+
+Status check_wheel(std::size_t sensors, const WheelOptions& options) {
+  if (sensors == 0 || sensors > 2)
+    return Error{Errc::invalid_argument,
+                 "a wheel takes one or two sensors, not " + std::to_string(sensors)};
+  const bool positive = options.gravity_mps2 > 0.0 && options.radius_m.value_or(0.0) >= 0.0 &&
+                        options.rim_radius_m.value_or(1.0) > 0.0 &&
+                        options.rolling_radius_m.value_or(1.0) > 0.0 &&
+                        options.alignment_std_rad >= 0.0;
+  if (!positive)
+    return Error{Errc::invalid_argument,
+                 "gravity and radii must be positive (the sensor's may be 0)"};
+  return Done{};
+}
+
+Eigen::VectorXd places_in(const WheelFit& fit, std::size_t sensors) {
+  return fit.constants.tail(static_cast<Eigen::Index>(2 * sensors));
+}
+
+Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOptions& options) {
+  Pair pair;
+  for (const WheelSensor& sensor : sensors) {
+    auto single = fit_single(sensor, options);
+    if (!single) return single.error();
+    pair.singles.push_back(std::move(single).value());
+  }
+  if (pair.singles.size() == 1) return pair;
+  // Less than a hundredth of a turn shows no way.
+  const double way = pair.singles[0].fit.turns.value * pair.singles[1].fit.turns.value;
+  if (way < -1e-4 && !options.spin_axis) {
+    Prepared other = pair.singles[1].prepared;
+    other.plane = turned_over(other.plane);
+    auto again = fit_single(sensors[1], std::move(other), options);
+    if (!again) return again.error();
+    pair.singles[1] = std::move(again).value();
+  }
+  const auto clocks = fit_clocks(motion_of(pair.singles[0].fit), motion_of(pair.singles[1].fit),
+                                 options.clocks_shared);
+  if (!clocks) return clocks.error().at("two sensors");
+  pair.clocks = *clocks;
+  // On one clock an offset has to show clearly before the stamps are called wrong.
+  if (options.clocks_shared &&
+      std::abs(pair.clocks.offset_s.value) < std::max(5.0 * pair.clocks.offset_s.std, 2e-4))
+    pair.clocks.offset_s.value = 0.0;
+  return pair;
+}
+
+Joint fit_jointly(const std::vector<WheelSensor>& sensors,
+                  const Pair& pair,
+                  const WheelOptions& options) {
+  const Single &one = pair.singles[0], &two = pair.singles[1];
+  Joint joint;
+  joint.readings = merge({&sensors[0], &sensors[1]}, {&one.prepared, &two.prepared},
+                         pair.clocks.offset_s.value, options);
+  joint.readings.phase_rad = pair.clocks.phase_rad;
+  for (std::size_t s = 0; s < 2; ++s)
+    joint.readings.sensors[s].variance_m2ps4 = pair.singles[s].readings.sensors[0].variance_m2ps4;
+  WheelTrack track = one.fit.track;
+  track.path.moving.clear();
+  const auto& times = one.fit.series.time_s;
+  std::size_t at = 0;
+  for (const double t : joint.readings.time_s) {
+    while (at + 1 < times.size() && times[at + 1] <= t) ++at;
+    Mat<wheel::moving> moving = one.fit.track.path.moving[at];
+    const double dt = t - times[at];
+    moving(wheel::angle) += dt * moving(wheel::speed);
+    track.path.moving.push_back(moving);
+  }
+  const Eigen::VectorXd &first = one.fit.track.path.standing, &second = two.fit.track.path.standing;
+  track.path.standing.resize(wheel::standing(2));
+  track.path.standing << first.head<5>(), second.head<5>(), 0.0, first.tail<2>(), second.tail<2>();
+  track.beginning.angle_rad = track.path.moving.front()(wheel::angle);
+  joint.fit = fit_with_radius(joint.readings, track, options);
+  return joint;
+}
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/estimate/wheel_clock.hpp"
+#include "proofmass/estimate/wheel_fit.hpp"
+#include "proofmass/estimate/wheel_plane.hpp"
+
+// From what the sensors wrote down to their fits: each alone, then both in one filter. Private to
+// the module's wheel*.cpp and live_wheel*.cpp.
+namespace proofmass::estimate {
+
+/// A sensor made ready for the filter.
+struct Prepared {
+  Screened screened;
+  WheelPlane plane;
+};
+
+struct Single {
+  Prepared prepared;
+  WheelReadings readings;
+  WheelFit fit;
+};
+
+/// The single fits of a pair, the second seen from the side from which both turn the same way.
+struct Pair {
+  std::vector<Single> singles;
+  ClockFit clocks;
+};
+
+/// Each sensor alone, and how the second lies to the first. Errors: as of estimate_wheel().
+[[nodiscard]] Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors,
+                                       const WheelOptions& options);
+
+/// Both sensors in one filter, started from what each alone found.
+struct Joint {
+  WheelReadings readings;
+  WheelFit fit;
+};
+
+[[nodiscard]] Joint fit_jointly(const std::vector<WheelSensor>& sensors,
+                                const Pair& pair,
+                                const WheelOptions& options);
+
+/// (u, v) of each sensor.
+[[nodiscard]] Eigen::VectorXd places_in(const WheelFit& fit, std::size_t sensors);
+
+/// Whether the options can be followed, for so many sensors.
+[[nodiscard]] Status check_wheel(std::size_t sensors, const WheelOptions& options);
+
+}  // namespace proofmass::estimate
