@@ -1,0 +1,116 @@
+#pragma once
+
+#include <csignal>
+#include <cstdio>
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <string>
+#include <string_view>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <vector>
+
+#include "proofmass/acquire/source.hpp"
+
+namespace proofmass::acquire {
+
+/// A program that runs as long as this lives, and tells a port on its first line.
+class PeerProcess {
+ public:
+  explicit PeerProcess(std::vector<std::string> words) {
+    int in[2], out[2];
+    if (pipe2(in, O_CLOEXEC) != 0 || pipe2(out, O_CLOEXEC) != 0) return;
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, in[0], STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    if (posix_spawnp(&pid_, argv.front(), &actions, nullptr, argv.data(), environ) != 0) pid_ = -1;
+    posix_spawn_file_actions_destroy(&actions);
+    close(in[0]);
+    close(out[1]);
+    stdin_ = in[1];
+    if (std::FILE* const told = fdopen(out[0], "r")) {
+      if (pid_ > 0 && std::fscanf(told, "%*s %hu", &port_) != 1) port_ = 0;
+      std::fclose(told);
+    }
+  }
+  PeerProcess(const PeerProcess&) = delete;
+  PeerProcess& operator=(const PeerProcess&) = delete;
+  ~PeerProcess() { end(); }
+
+  void end() {
+    if (stdin_ >= 0) close(stdin_);
+    stdin_ = -1;
+    if (pid_ <= 0) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+    pid_ = -1;
+  }
+  /// 0 if it could not be started.
+  [[nodiscard]] unsigned short port() const { return port_; }
+
+ private:
+  pid_t pid_ = -1;
+  int stdin_ = -1;
+  unsigned short port_ = 0;
+};
+
+/// rig/phones/peer.py
+inline std::vector<std::string> phone_peer(const std::string& kind,
+                                           std::vector<std::string> faults) {
+  std::vector<std::string> words{"python3", PROOFMASS_SOURCE_DIR "/rig/phones/peer.py",
+                                 "--until-stdin-ends", "--" + kind, "0"};
+  words.insert(words.end(), faults.begin(), faults.end());
+  return words;
+}
+
+/// All that a source gave until it had so many rows, failed, or a minute was over.
+struct Taken {
+  std::vector<std::vector<double>> channels;
+  std::vector<std::int64_t> device_ns{};
+  std::uint64_t lost = 0;
+  std::string notes{};  ///< one a line
+  std::string error{};
+};
+
+inline Taken take_rows(Source& source, std::size_t rows) {
+  Taken taken{.channels =
+                  std::vector<std::vector<double>>(source.head().recording.channels.size())};
+  Arrival arrival;
+  const std::int64_t until_ns = host_now_ns() + 60'000'000'000;
+  while (taken.device_ns.size() < rows && host_now_ns() < until_ns) {
+    const auto arrived = source.read(arrival, std::chrono::milliseconds(100));
+    for (const Note& note : arrival.notes) taken.notes += note.text + "\n";
+    if (!arrived) {
+      taken.error = arrived.error().message;
+      break;
+    }
+    for (std::size_t c = 0; c < taken.channels.size(); ++c)
+      taken.channels[c].insert(taken.channels[c].end(), arrival.channels[c].begin(),
+                               arrival.channels[c].end());
+    taken.device_ns.insert(taken.device_ns.end(), arrival.device_ns.begin(),
+                           arrival.device_ns.end());
+    taken.lost += arrival.lost_before;
+  }
+  return taken;
+}
+
+inline ::testing::AssertionResult says(std::string_view text, std::string_view part) {
+  if (text.find(part) != std::string_view::npos) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "expected \"" << part << "\" in: " << text;
+}
+
+/// Steps of the rows' numbers, which channel 0 carries, that are not 1; an empty text if all are.
+inline std::string broken_steps(const std::vector<double>& counter) {
+  std::string told;
+  for (std::size_t k = 1; k < counter.size(); ++k)
+    if (counter[k] != counter[k - 1] + 1.0)
+      told += std::to_string(counter[k - 1]) + " to " + std::to_string(counter[k]) + "\n";
+  return told;
+}
+
+}  // namespace proofmass::acquire

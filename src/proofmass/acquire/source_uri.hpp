@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "proofmass/core/result.hpp"
+
+namespace proofmass::acquire {
+
+/// "scheme:place?key=value&key=value": the place may begin with "//"; %41 is a byte in hexadecimal
+/// in a value, and '+' a plus. "-" is "stdin:".
+/// Source: RFC 3986, less what has no use here.
+class SourceUri {
+ public:
+  /// Errors: invalid_argument (no scheme, a key twice or without '=', a bad %).
+  [[nodiscard]] static Result<SourceUri> parse(std::string_view text);
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] const std::string& scheme() const { return scheme_; }
+  [[nodiscard]] const std::string& place() const { return place_; }  ///< without "//", decoded
+
+  /// What a key says; each that is asked for is known from then on.
+  [[nodiscard]] std::optional<std::string> value(std::string_view key);
+  /// The same as a number. Errors: invalid_argument ("rate=fast: expected a number above 0").
+  [[nodiscard]] Result<std::optional<double>> number(std::string_view key, double above);
+  /// The same as a whole number. Errors: invalid_argument ("axes=4: expected a whole number from 2
+  /// to 3").
+  [[nodiscard]] Result<std::optional<std::uint64_t>> whole(std::string_view key,
+                                                           std::uint64_t least,
+                                                           std::uint64_t most);
+  /// The same, one of several words; the first where nothing is said. Errors: invalid_argument.
+  [[nodiscard]] Result<std::string> choice(std::string_view key,
+                                           const std::vector<std::string_view>& words);
+  /// Once all keys of the scheme were asked for. Errors: invalid_argument (a key that nobody knows;
+  /// the message lists those there are).
+  [[nodiscard]] Status nothing_unknown() const;
+
+ private:
+  std::string text_, scheme_, place_;
+  std::vector<std::pair<std::string, std::string>> pairs_;
+  std::vector<std::string> asked_;
+};
+
+/// "host", "host:port", "[::1]:port".
+struct HostPort {
+  std::string host;
+  std::optional<unsigned short> port;
+};
+
+/// Errors: invalid_argument.
+[[nodiscard]] Result<HostPort> parse_host_port(std::string_view text);
+
+}  // namespace proofmass::acquire
