@@ -1,0 +1,99 @@
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "proofmass/acquire/peer_test_support.hpp"
+#include "proofmass/acquire/sensor_server_messages.hpp"
+
+namespace proofmass::acquire {
+namespace {
+
+TEST(SensorMessage, HasATimeAndValues) {
+  SensorMessage message;
+  ASSERT_TRUE(parse_sensor_message(
+      R"({"accuracy":2,"timestamp":3925657519043709,"values":[0.25,-1,10.5]})", message));
+  EXPECT_EQ(message.timestamp_ns, 3925657519043709);
+  EXPECT_EQ(message.accuracy, 2);
+  EXPECT_EQ(message.values, (std::vector<double>{0.25, -1.0, 10.5}));
+  EXPECT_EQ(message.type, "");
+}
+
+TEST(SensorMessage, RefusesWhatIsNone) {
+  SensorMessage message;
+  for (const char* text : {"", "{}", "[1]", R"({"timestamp":1})", R"({"timestamp":1,"values":[]})",
+                           R"({"values":[1]})", R"({"timestamp":1.5,"values":[1]})",
+                           R"({"timestamp":9223372036854775807,"values":[1]})"})
+    EXPECT_FALSE(parse_sensor_message(text, message)) << text;
+}
+
+class SensorServerSource : public ::testing::Test {
+ protected:
+  Result<std::unique_ptr<Source>> open(std::vector<std::string> faults,
+                                       const std::string& query = "") {
+    peer_.emplace(phone_peer("sensorserver", std::move(faults)));
+    if (peer_->port() == 0) return Error{Errc::unsupported, "python3 is not there: install it"};
+    return open_source("sensorserver://127.0.0.1:" + std::to_string(peer_->port()) + query,
+                       {.patience = std::chrono::seconds(60)});
+  }
+  std::optional<PeerProcess> peer_;
+};
+
+#define OPEN_OR_SKIP(name, ...)                                                              \
+  const auto name = open(__VA_ARGS__);                                                       \
+  if (!name && name.error().code == Errc::unsupported) GTEST_SKIP() << name.error().message; \
+  ASSERT_TRUE(name) << name.error().message
+
+TEST_F(SensorServerSource, HandsOutEachMessage) {
+  OPEN_OR_SKIP(source, {"--rate", "500"});
+  const Recording& head = (*source)->head().recording;
+  ASSERT_EQ(head.channels.size(), 3U);
+  EXPECT_EQ(head.channels[2].name, "acc_z");
+  EXPECT_EQ(head.channels[2].unit.symbol, "m/s^2");
+  const Taken taken = take_rows(**source, 500);
+  ASSERT_GE(taken.device_ns.size(), 500U);
+  EXPECT_EQ(broken_steps(taken.channels[0]), "");
+  EXPECT_EQ(taken.device_ns[1] - taken.device_ns[0], 2'000'000);
+}
+
+TEST_F(SensorServerSource, LaysSeveralSensorsBesideEachOther) {
+  OPEN_OR_SKIP(source, {"--rate", "500"}, "?type=accelerometer,android.sensor.gyroscope");
+  const Recording& head = (*source)->head().recording;
+  ASSERT_EQ(head.channels.size(), 6U);
+  EXPECT_EQ(head.channels[3].name, "gyr_x");
+  EXPECT_EQ(head.channels[3].unit.symbol, "rad/s");
+  const Taken taken = take_rows(**source, 500);
+  ASSERT_GE(taken.device_ns.size(), 500U);
+  EXPECT_EQ(broken_steps(taken.channels[0]), "");
+  for (std::size_t k = 0; k < taken.device_ns.size(); ++k)
+    EXPECT_DOUBLE_EQ(taken.channels[5][k], taken.channels[0][k] + 0.5);
+}
+
+TEST_F(SensorServerSource, PassesOverWhatIsNoMessageAndSaysSo) {
+  OPEN_OR_SKIP(source, {"--rate", "500", "--garbage-every", "50"});
+  const Taken taken = take_rows(**source, 300);
+  ASSERT_GE(taken.device_ns.size(), 300U);
+  EXPECT_TRUE(says(taken.notes, "passed over"));
+}
+
+TEST_F(SensorServerSource, EndsWithTheReasonOfTheOtherSide) {
+  OPEN_OR_SKIP(source, {"--rate", "500", "--drop-at", "200"});
+  const Taken taken = take_rows(**source, 100'000);
+  EXPECT_TRUE(says(taken.error, "4004: Server stopped"));
+  EXPECT_EQ(taken.channels[0].back(), 199.0) << "what came before the end is handed out";
+}
+
+TEST_F(SensorServerSource, IsToldWhichSensorThePhoneLacks) {
+  const auto none = open({}, "?type=thermometer");
+  ASSERT_FALSE(none);
+  if (none.error().code == Errc::unsupported) GTEST_SKIP() << none.error().message;
+  EXPECT_TRUE(says(none.error().message, "thermometer not found"));
+}
+
+TEST_F(SensorServerSource, EndsWhenThePhoneIsGone) {
+  OPEN_OR_SKIP(source, {"--rate", "500"});
+  (void)take_rows(**source, 10);
+  peer_->end();
+  EXPECT_TRUE(says(take_rows(**source, 100'000).error, "no SensorServer"));
+}
+
+}  // namespace
+}  // namespace proofmass::acquire
