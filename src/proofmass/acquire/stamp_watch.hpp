@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+
+namespace proofmass::acquire {
+
+/// True if a device's stamps tell no time: all 0, or of several all the same. Drivers that leave
+/// the stamping to a trigger of their own do so under another's.
+[[nodiscard]] bool is_dead(const std::vector<std::int64_t>& stamps_ns);
+
+/// Looks at a device's stamps as they come and says what is wrong with them: at the first time,
+/// then at the tenth, the hundredth, so that a bad clock does not flood the recording.
+class StampWatch {
+ public:
+  void look(const std::vector<std::int64_t>& stamps_ns, std::vector<Note>& notes);
+
+ private:
+  struct Count {
+    std::size_t seen = 0, told = 0;
+    [[nodiscard]] bool is_due() const { return seen > 0 && seen >= 10 * told; }
+  };
+  std::optional<std::int64_t> last_ns_;
+  Count repeated_, backwards_;
+};
+
+}  // namespace proofmass::acquire
