@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "proofmass/core/recording_log.hpp"
+
+namespace proofmass::acquire {
+
+/// The host's two clocks at one moment.
+struct HostTimes {
+  std::int64_t steady_ns = 0;    ///< host_now_ns()
+  std::int64_t realtime_ns = 0;  ///< of the day, since 1970, UTC
+};
+[[nodiscard]] HostTimes host_times_now();
+
+/// An event as the topic "events" has it, its time counted from `origin_s`.
+[[nodiscard]] std::string json_of(const RecordEvent& event, double origin_s, const HostTimes& now);
+/// One message of the topic "clock": a row of the recording and when it arrived.
+[[nodiscard]] std::string clock_json(double time_s, const HostTimes& arrived);
+
+}  // namespace proofmass::acquire

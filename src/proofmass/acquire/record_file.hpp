@@ -1,0 +1,113 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proofmass/acquire/disk_writer.hpp"
+#include "proofmass/acquire/record_event.hpp"
+#include "proofmass/acquire/source.hpp"
+#include "proofmass/core/block.hpp"
+#include "proofmass/core/rows.hpp"
+#include "proofmass/io/mcap_recording.hpp"
+#include "proofmass/signal/audit.hpp"
+#include "proofmass/signal/running_audit.hpp"
+
+namespace proofmass::acquire {
+
+using RecordWords = std::map<std::string, std::string>;
+
+/// What a file of a recording has at its front.
+struct RecordFileHead {
+  const SourceHead& source;
+  const std::vector<Channel>& estimates;  ///< columns; none without an analysis
+  RecordWords metadata{};
+  std::string sensor_file{};
+};
+
+/// One file of a recording: what goes into it, and when that is brought to the disk. Its times are
+/// the recording's, counted from its own first row.
+class RecordFile {
+ public:
+  /// Its front is written when this returns. Errors: those of the creation; unreadable.
+  [[nodiscard]] static Result<std::unique_ptr<RecordFile>> create(DiskWriter& disk,
+                                                                  std::unique_ptr<PartFile> part,
+                                                                  const RecordFileHead& head);
+
+  /// Told before the first row: its time on the recording's clock, and of the day.
+  void begin(double origin_s, std::int64_t start_ns);
+  [[nodiscard]] bool has_begun() const { return has_begun_; }
+  [[nodiscard]] double origin_s() const { return origin_s_; }
+  /// Rows with their stamps on the recording's clock; Block::first is not looked at.
+  void add_rows(const Block& block);
+  void add_estimates(const Block& rows);
+  void add_event(const RecordEvent& event, const HostTimes& now);
+  void add_clock(double time_s, const HostTimes& arrived);
+  /// The rows that follow are apart from those before: a stretch of its own, with this name.
+  void begin_stretch(const std::string& name);
+
+  /// Hands on to the disk what has waited for long enough.
+  void tick(std::int64_t now_ns);
+  /// What the samples were like, in words, and the end of the file.
+  void close(RecordWords summary);
+  /// The same where the disk has failed: what it took is kept, as far as it can be with its end.
+  [[nodiscard]] Status close_after(const DiskWriter::Failure& failure,
+                                   const RecordEvent& event,
+                                   RecordWords summary);
+
+  [[nodiscard]] std::uint64_t rows() const { return rows_; }
+  [[nodiscard]] double last_s() const { return last_s_; }  ///< of the last row
+  [[nodiscard]] std::uint64_t bytes() const { return mcap_.bytes(); }
+  /// What the audit found; once it is closed.
+  [[nodiscard]] const std::vector<Note>& notes() const { return found_->notes; }
+  [[nodiscard]] const std::shared_ptr<PartFile>& part() const { return part_; }
+  /// Called now and then while the disk has no room.
+  std::function<void()> while_waiting{};
+
+ private:
+  /// Rows of a topic that are not in a message yet.
+  struct Waiting {
+    io::McapRecording::Topic topic = 0;
+    Rows rows{};
+    std::uint64_t written = 0;  ///< rows in messages
+    std::int64_t since_ns = 0;
+  };
+  RecordFile(DiskWriter& disk, std::shared_ptr<PartFile> part, const RecordFileHead& head);
+  [[nodiscard]] std::string front(const RecordFileHead& head);
+  void append(Waiting& waiting, const Block& block);
+  void flush(Waiting& waiting);
+  void flush_chunk();
+  void pump();
+  void note_chunk();
+  void audit(const Block& block);
+  void add_audit(RecordWords& summary);
+  void add_ends(const RecordWords& summary);
+  [[nodiscard]] std::uint64_t log_ns(double time_s) const;
+
+  DiskWriter& disk_;
+  std::shared_ptr<PartFile> part_;
+  io::McapRecording mcap_;
+  Recording head_;
+  std::vector<Channel> estimate_columns_;
+  signal::RunningAudit audit_;
+  std::optional<signal::RecordingAudit> found_;
+  DiskPiece front_;
+
+  bool has_begun_ = false;
+  double origin_s_ = 0.0;
+  std::int64_t start_ns_ = 0;
+  double last_s_ = 0.0;
+  std::uint64_t rows_ = 0;
+  double between_stretches_s_ = 0.0;
+  bool begins_stretch_ = false;
+  Waiting samples_, estimates_;
+  std::vector<double> shifted_s_;  ///< stamps for the audit
+  io::McapRecording::Topic events_ = 0, clock_ = 0;
+  std::optional<std::int64_t> chunk_since_ns_;
+};
+
+}  // namespace proofmass::acquire

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proofmass/acquire/arrival_queue.hpp"
+#include "proofmass/acquire/latency_histogram.hpp"
+#include "proofmass/acquire/level_gate.hpp"
+#include "proofmass/acquire/part_file.hpp"
+#include "proofmass/acquire/record_file.hpp"
+#include "proofmass/acquire/record_tally.hpp"
+#include "proofmass/acquire/recorder.hpp"
+#include "proofmass/acquire/silence_hold.hpp"
+#include "proofmass/acquire/source_reader.hpp"
+#include "proofmass/acquire/time_line.hpp"
+
+namespace proofmass::acquire {
+
+/// One call of record(): what its own thread does between the one that reads and the one that
+/// writes.
+class RecordSession {
+ public:
+  RecordSession(const OpenSource& open,
+                const RecordOptions& options,
+                const RecordWatch& watch,
+                const MakeAnalysis& make_analysis,
+                CreatePartFile create);
+
+  /// Once. As record().
+  [[nodiscard]] Result<RecordSummary> run();
+
+ private:
+  // record_session.cpp: the course of it; record_end.cpp: its end.
+  [[nodiscard]] Status begin();
+  [[nodiscard]] Status use(const SourceHead& head);
+  void loop();
+  void take_what_is_left(Incoming& item);
+  void ask_stopped();
+  void look_at_clocks();
+  void work(Incoming& item);
+  void work_on_rows(Incoming& item);
+  void pair_clocks(std::int64_t host_ns);
+  void reopened(const SourceHead& head);
+  void end(RecordEnd how, std::string reason = {});
+  void finish_analysis();
+  void close();
+  void close_file();
+  void close_failed(const DiskWriter::Failure& failure);
+  void forget_unwritten(const DiskWriter::Failure& failure);
+
+  // record_rows.cpp: where rows and events go.
+  void keep(const Block& block, std::int64_t host_ns);
+  void keep_samples(const Block& block);
+  void analyse(const Block& block, std::int64_t host_ns);
+  void keep_estimates();
+  void write_estimates(const Block& rows);
+  [[nodiscard]] LevelGate::Keep keepers();
+  void begin_file(double origin_s);
+  void rotate();
+  void add_closed();
+  [[nodiscard]] Status new_file(bool is_numbered);
+  void tell(EventKind kind, Severity severity, std::string text);
+  void tell(const RecordEvent& event);
+  void tell_notes(const std::vector<Note>& notes);
+
+  const OpenSource& open_;
+  const RecordOptions& options_;
+  const RecordWatch& watch_;
+  const MakeAnalysis& make_analysis_;
+  CreatePartFile create_;
+
+  SourceHead head_;
+  std::unique_ptr<LiveAnalysis> analysis_;
+  std::vector<Channel> no_columns_;
+  RecordTally tally_;
+  LatencyHistogram latency_;
+  ArrivalQueue queue_;
+  DiskWriter disk_;
+  std::unique_ptr<SourceReader> reader_;
+  std::optional<TimeLine> line_;
+  std::optional<SilenceHold> hold_;
+  std::optional<LevelGate> gate_;
+  std::size_t trigger_channel_ = 0;
+  std::unique_ptr<RecordFile> file_;
+  /// A file that was handed on, all of it.
+  struct Closed {
+    std::string path;
+    std::shared_ptr<PartFile> part;
+    std::uint64_t rows;
+  };
+  std::string file_path_;
+  std::vector<Closed> closed_;
+
+  std::optional<RecordEnd> end_;
+  std::string gone_;        ///< why the source is
+  std::uint64_t rows_ = 0;  ///< that arrived
+  std::uint64_t estimate_rows_ = 0;
+  std::int64_t start_ns_ = 0;  ///< of the first row, by the time of day
+  std::int64_t next_clock_ns_ = 0, next_pair_ns_ = 0;
+  std::int64_t realtime_ahead_ns_ = 0;  ///< of the steady clock
+  std::size_t stretches_ = 0;
+
+  std::vector<double> stamps_s_;
+  std::vector<RecordEvent> events_;
+  Rows estimates_;
+};
+
+}  // namespace proofmass::acquire

@@ -1,0 +1,38 @@
+#include "proofmass/acquire/recorder.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "proofmass/acquire/record_session.hpp"
+
+namespace proofmass::acquire {
+namespace {
+
+Status check(const RecordOptions& options) {
+  const auto bad = [](std::string message) {
+    return Error{Errc::invalid_argument, std::move(message)};
+  };
+  if (options.path.empty() || options.path == "-")
+    return bad("a recording is written to a file: expected a name such as run.mcap");
+  for (const auto& [name, value] :
+       {std::pair{"duration", options.duration_s}, std::pair{"time of a file", options.rotate_s}})
+    if (value && !(*value > 0.0 && std::isfinite(*value)))
+      return bad(fmt::format("the {} is {} s: expected more than 0", name, *value));
+  if (options.trigger && !(options.trigger->before_s >= 0.0 && options.trigger->after_s >= 0.0 &&
+                           std::isfinite(options.trigger->level)))
+    return bad("the trigger: expected a level, and times of 0 s or more before and after it");
+  return Done{};
+}
+
+}  // namespace
+
+Result<RecordSummary> record(const OpenSource& open,
+                             const RecordOptions& options,
+                             const RecordWatch& watch,
+                             const MakeAnalysis& analysis) {
+  if (const Status checked = check(options); !checked) return checked.error();
+  RecordSession session(open, options, watch, analysis, create_part_file);
+  return session.run();
+}
+
+}  // namespace proofmass::acquire

@@ -1,0 +1,56 @@
+#include "proofmass/acquire/source_list.hpp"
+
+namespace proofmass::acquire {
+
+std::vector<SourceEntry> source_entries() {
+  return {
+      {{"daqmx", "daqmx:Dev1/ai0:5?rate=1000&range=-5..5&terminal=rse|nrse|diff|default",
+        "Voltages from a card of National Instruments, by NI-DAQmx.",
+        [](const OpenOptions& options) { return find_daqmx(options.nidaqmx_library); }},
+       open_daqmx},
+      {{"replay",
+        "replay:FILE?speed=1|10|max&rate=HZ",
+        "A recording of any format, as it was taken.",
+        {}},
+       open_replay},
+      {{"iio", "iio:URI?device=NAME&trigger=NAME&rate=HZ&channels=accel_x,accel_y&buffer=ROWS",
+        "A sensor of Linux, here or on a board; URI is libiio's: local:, ip:HOST, usb:1.2.3.",
+        [](const OpenOptions&) { return find_iio(); }},
+       open_iio},
+      {{"comedi",
+        "comedi:/dev/comedi0?channels=0,1,2&rate=HZ&range=N&aref=ground|common|diff|other",
+        "Voltages from a data acquisition card with a comedi driver.",
+        [](const OpenOptions&) { return find_comedi(); }},
+       open_comedi},
+      {{"sim",
+        "sim:wheel|static|tumble|multi-position|slide?rate=200&rpm=11&sensors=2&seed=1&speed=1",
+        "The digital twin as a device: a wheel, a rest, a calibration.",
+        [](const OpenOptions&) { return find_sim(); }},
+       open_sim},
+      {{"serial", "serial:DEVICE?baud=115200&framing=lines",
+        "A serial line, by USB or not: text or frames.",
+        [](const OpenOptions&) { return find_serial(); }},
+       open_serial},
+      {{"stdin", "stdin:?framing=lines", "Standard input, also \"-\": what a pipe brings.", {}},
+       open_stdin},
+      {{"udp", "udp:[HOST:]PORT?framing=lines", "Datagrams of text, JSON, OSC or frames.", {}},
+       open_udp},
+      {{"mqtt",
+        "mqtt://HOST[:PORT]/TOPIC?user=NAME&password=WORD&framing=lines",
+        "The same as messages of an MQTT broker.",
+        {}},
+       open_mqtt},
+      {{"phyphox",
+        "phyphox://HOST[:8080]?sensors=accelerometer,gyroscope | ?buffers=accX,accY&time=acc_time",
+        "a phone with phyphox, whose experiment allows remote access",
+        {}},
+       open_phyphox},
+      {{"sensorserver",
+        "sensorserver://HOST[:8080]?type=accelerometer,gyroscope",
+        "an Android phone with SensorServer",
+        {}},
+       open_sensor_server},
+  };
+}
+
+}  // namespace proofmass::acquire
