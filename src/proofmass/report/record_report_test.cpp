@@ -1,0 +1,122 @@
+#include "proofmass/report/record_report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace proofmass::report {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+RecordReport whole_recording() {
+  RecordReport report;
+  report.source = "sim:";
+  report.settings = {{"rate", "200 Hz"}};
+  report.summary.files = {"run.mcap"};
+  report.summary.end = RecordEnd::duration;
+  report.summary.samples = 12000;
+  report.summary.duration_s = 60.0;
+  report.summary.clock.start_realtime_ns = 1'795'350'605'250'000'000;
+  report.summary.head = Recording{};
+  report.summary.head->channels = {{"acc_x", *parse_unit("m/s^2"), {}}, {"c2", {}, {}}};
+  return report;
+}
+
+RecordEvent gap_event() {
+  return {EventKind::gap, Severity::bad, 12.4, 0.5, 100, "0.5 s without a sample"};
+}
+
+TEST(RecordReport, OfAWholeRecordingSaysSo) {
+  const RecordReport report = whole_recording();
+  EXPECT_THAT(record_text(report),
+              HasSubstr("12\u202f000 samples of 2 channels over 60 s from sim: to run.mcap"));
+  EXPECT_THAT(record_text(report), HasSubstr("Nothing was lost, and there is no gap."));
+  EXPECT_FALSE(is_bad(report));
+}
+
+TEST(RecordReport, NamesGapsWithTheirTime) {
+  RecordReport report = whole_recording();
+  report.summary.gaps = {gap_event()};
+  report.summary.gap_count = 1;
+  report.summary.lost = 100;
+  const std::string text = record_text(report);
+  EXPECT_THAT(text, HasSubstr("100 samples lost in 1 gap."));
+  EXPECT_THAT(text, HasSubstr("12.40 s: 0.5 s without a sample"));
+  EXPECT_TRUE(is_bad(report));
+}
+
+TEST(RecordReport, OfManyGapsListsTheFirstAndCountsTheRest) {
+  RecordReport report = whole_recording();
+  report.summary.gaps.assign(10, gap_event());
+  report.summary.gap_count = 5000;
+  EXPECT_THAT(record_text(report), HasSubstr("… and 4\u202f992 more"));
+}
+
+TEST(RecordReport, DocumentHasWhatTheContractNames) {
+  RecordReport report = whole_recording();
+  report.summary.gaps = {gap_event()};
+  report.summary.gap_count = 1;
+  report.summary.lost = 100;
+  const auto document = nlohmann::json::parse(record_json(report));
+  EXPECT_EQ(document["samples"], 12000);
+  EXPECT_EQ(document["lost"], 100);
+  EXPECT_EQ(document["gaps"], 1);
+  EXPECT_EQ(document["file"], "run.mcap");
+  EXPECT_EQ(document["gap_list"][0]["start_s"], 12.4);
+  EXPECT_EQ(document["end"], "duration");
+  EXPECT_EQ(document["clock"]["start"], "2026-11-22T12:30:05.250Z");
+}
+
+TEST(RecordReport, EveryNullHasItsReason) {
+  const auto document = nlohmann::json::parse(record_json(whole_recording()));
+  std::string warnings;
+  for (const auto& warning : document["warnings"]) warnings += warning.get<std::string>() + "\n";
+  EXPECT_TRUE(document["latency"].is_null());
+  EXPECT_THAT(warnings, HasSubstr("latency: null"));
+  EXPECT_THAT(warnings, HasSubstr("rate_error_ppm"));
+  EXPECT_THAT(warnings, HasSubstr("c2: unit: null"));
+}
+
+TEST(RecordReport, ASourceThatWentIsToldInItsWords) {
+  RecordReport report = whole_recording();
+  report.summary.end = RecordEnd::source_gone;
+  report.summary.end_reason = "serial:/dev/ttyACM0: was unplugged";
+  EXPECT_THAT(record_text(report), HasSubstr("/dev/ttyACM0: was unplugged"));
+  EXPECT_THAT(record_json(report), HasSubstr("source_gone"));
+}
+
+TEST(RecordReport, OfClockAndLatencyGivesPlainFigures) {
+  RecordReport report = whole_recording();
+  EXPECT_THAT(record_text(report), Not(HasSubstr("clock")));
+  report.summary.clock.rate_error = Uncertain{12e-6, 1e-6};
+  report.summary.clock.rate_hz = Uncertain{199.9976, 0.0002};
+  report.summary.latency = Latency{6000, 0.0004, 0.0021, 0.01};
+  const std::string text = record_text(report);
+  EXPECT_THAT(text, HasSubstr("199.99760 ± 0.00020 Hz"));
+  EXPECT_THAT(text, HasSubstr("12.0 ± 1.0 ppm"));
+  EXPECT_THAT(text, HasSubstr("0.4 ms after their samples (2.1 ms at most for 99 % of them)"));
+}
+
+TEST(SourceList, ShowsWhatIsThereAndAllKinds) {
+  const SourceList list{{{"sim:wheel?rate=200", "the twin"}}, {{"iio:local:", "LIS3DH"}}, {}};
+  EXPECT_THAT(source_list_text(list), HasSubstr("iio:local:  LIS3DH"));
+  EXPECT_THAT(source_list_text(list), HasSubstr("sim:wheel?rate=200\n      the twin"));
+  EXPECT_EQ(nlohmann::json::parse(source_list_json(list))["found"][0]["uri"], "iio:local:");
+}
+
+TEST(RecoverReport, SaysWhatWasSavedAndWhatIsMissing) {
+  RecoverReport report{"run.mcap.part", {}};
+  report.recovery.file = "run.mcap";
+  report.recovery.samples = 59500;
+  report.recovery.last_s = 59.499;
+  report.recovery.notes = {{Severity::warning, "the end is missing: 812 bytes of a chunk"}};
+  const std::string text = recover_text(report);
+  EXPECT_THAT(text, HasSubstr("59\u202f500 samples, from 0.00 s to 59.50 s, saved in run.mcap"));
+  EXPECT_THAT(text, HasSubstr("the end is missing"));
+  EXPECT_EQ(nlohmann::json::parse(recover_json(report))["samples"], 59500);
+}
+
+}  // namespace
+}  // namespace proofmass::report
