@@ -62,6 +62,8 @@ void add_position_flags(CLI::App& verb, TumbleCommand& command) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(finite());
+  add("--rests", command.rests, "FILE",
+      "start and end of each rest, perhaps with the table's angle (default: found)");
   add("--angle", command.angle_channel, "NAME",
       "the column with the angle (default: found by name and unit)");
   add("--rest", command.shortest_rest_s, "S", "the shortest rest to look for (default: found)")

@@ -8,9 +8,9 @@
 #include "console.hpp"
 #include "exit_status.hpp"
 #include "input.hpp"
+#include "listed_rests.hpp"
 #include "proofmass/calibrate/pose_means.hpp"
 #include "proofmass/io/direction_label.hpp"
-#include "proofmass/io/interval_list.hpp"
 #include "proofmass/io/pose_table.hpp"
 #include "proofmass/sensor/calibration.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
@@ -111,41 +111,11 @@ Triad triad_of(const Recording& recording) {
                            "z, or choose them with --channel");
 }
 
-std::size_t sample_at(const Recording& recording, double time_s) {
-  std::size_t low = 0, high = recording.samples();
-  while (low < high) {
-    const std::size_t middle = low + (high - low) / 2;
-    if (recording.time.at(middle) < time_s)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
-}
-
 std::vector<Dwell> listed(const Recording& recording, const std::string& list) {
-  const auto intervals = need(io::read_intervals(list), Stage::reading);
-  const Status inside = io::check_inside(intervals, recording.duration_s(), recording.samples());
-  if (!inside) throw Failure(bad_input, inside.error().at(list).message);
   std::vector<Dwell> rests;
-  for (const io::Interval& interval : intervals) {
-    Dwell& rest = rests.emplace_back();
-    rest.label = interval.label;
-    rest.up = vector_of(interval.up);
-    if (!rest.up) rest.up = vector_of(io::direction_of_label(interval.label));
-    if (interval.in_samples) {
-      rest.first = static_cast<std::size_t>(interval.start);
-      rest.last = static_cast<std::size_t>(interval.end);
-      continue;
-    }
-    rest.first = sample_at(recording, interval.start);
-    const std::size_t end = sample_at(recording, interval.end);
-    if (end <= rest.first) {
-      throw Failure(bad_input,
-                    fmt::format("{}: line {}: no sample of {} lies between {} and {} s", list,
-                                interval.line, recording.source, interval.start, interval.end));
-    }
-    rest.last = end - 1;
+  for (ListedRest& rest : listed_rests(recording, list)) {
+    if (!rest.dwell.up) rest.dwell.up = vector_of(io::direction_of_label(rest.dwell.label));
+    rests.push_back(std::move(rest.dwell));
   }
   return rests;
 }

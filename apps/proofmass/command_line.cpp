@@ -39,6 +39,8 @@ struct Commands {
   TuneCommand tune;
   SimulateCommand simulate;
   BudgetCommand budget;
+  RecordCommand record;
+  RecoverCommand recover;
   SensorCommand sensor;
 };
 
@@ -151,6 +153,8 @@ Command chosen(CLI::App& app, Commands& commands) {
   if (app.got_subcommand("track")) return std::move(commands.track);
   if (app.got_subcommand("tune")) return std::move(commands.tune);
   if (app.got_subcommand("simulate")) return std::move(commands.simulate);
+  if (app.got_subcommand("record")) return std::move(commands.record);
+  if (app.got_subcommand("recover")) return std::move(commands.recover);
   if (app.got_subcommand("sensor")) return std::move(commands.sensor);
   return std::move(commands.budget);
 }
@@ -185,6 +189,8 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
   add_flags(app, commands.tune);
   add_flags(app, commands.simulate);
   add_flags(app, commands.budget);
+  add_flags(app, commands.record);
+  add_flags(app, commands.recover);
   add_flags(app, commands.sensor);
   std::vector<std::string> arguments = with_config(app, argc, argv);
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them

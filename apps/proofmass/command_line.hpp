@@ -94,6 +94,7 @@ struct CalibrateCommand {
 
 struct TumbleCommand {
   std::vector<std::string> files;
+  std::string rests;               ///< --rests: list of intervals
   std::vector<double> angles_deg;  ///< --angles: of each rest of a recording, in its order
   std::optional<double> shortest_rest_s;
   std::string angle_channel;        ///< --angle: the column with the angle; empty: by its name
@@ -174,6 +175,37 @@ struct BudgetCommand {
   OutputFlags output;
 };
 
+/// Of `record`: a procedure that a person is led through, and what is made of it.
+struct GuideFlags {
+  std::string procedure;                 ///< tumble, multi-position or static; empty: none
+  std::optional<std::size_t> positions;  ///< --positions
+  std::optional<double> target_std_mg;   ///< --target-std
+  std::optional<double> minutes;         ///< --minutes, of static
+  std::string update_sensor;             ///< of the verb that follows
+};
+
+/// Live samples to disk; or, with `list`, what is there to record from.
+struct RecordCommand {
+  std::string source;
+  bool list = false;
+  std::optional<double> duration_s, rotate_s, rotate_mb;
+  std::string trigger;  ///< "acc_x > 2"
+  double trigger_before_s = 1.0, trigger_after_s = 1.0;
+  bool reconnect = false;
+  double stall_s = 2.0, stall_end_s = 30.0;
+  std::string estimate;  ///< wheel, track or tilt; empty: none
+  GuideFlags guide;
+  std::optional<double> lag_s, radius_m;
+  std::string axis;  ///< of the wheel's axle, or of the motion
+  InputFlags input;  ///< rate, unit, channels, sensors, supply and gravity
+  OutputFlags output;
+};
+
+struct RecoverCommand {
+  std::string file;
+  OutputFlags output;
+};
+
 struct SensorCommand {
   std::string action, format, rostopic;
   std::vector<std::string> files;
@@ -193,6 +225,8 @@ using Command = std::variant<InspectCommand,
                              TuneCommand,
                              SimulateCommand,
                              BudgetCommand,
+                             RecordCommand,
+                             RecoverCommand,
                              SensorCommand>;
 
 /// Reads the command line and the configuration file that it may name. --help and --version are

@@ -8,13 +8,14 @@
 #include <fmt/format.h>
 #include <memory>
 #include <string_view>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace proofmass::app {
 namespace {
 
 // What a signal handler may look at and set.
-volatile std::sig_atomic_t held_back = 0;    // while a file is being written
+volatile std::sig_atomic_t held_back = 0;    // how deep in work that is not to be broken off
 volatile std::sig_atomic_t signal_seen = 0;  // the one that came meanwhile
 volatile std::sig_atomic_t bar_shown = 0;
 
@@ -56,6 +57,28 @@ void print(const std::string& text) {
   std::fflush(stderr);
 }
 
+std::size_t terminal_width() {
+  constexpr std::size_t usual = 80;
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return usual;
+  return size.ws_col;
+}
+
+// The line's first letters, so many columns wide at most; code points count as one.
+std::string cut(const std::string& line, std::size_t width) {
+  std::size_t letters = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const bool begins_letter = (static_cast<unsigned char>(line[i]) & 0xC0U) != 0x80U;
+    if (begins_letter && letters++ == width) return line.substr(0, i);
+  }
+  return line;
+}
+
+// To the beginning of the line so many lines above.
+std::string above(std::size_t lines) {
+  return lines == 0 ? "\r" : fmt::format("\r\033[{}A", lines);
+}
+
 // Draws itself anew in place, and wipes itself away when it goes.
 class Bar {
  public:
@@ -95,14 +118,22 @@ void watch_for_interrupts() {
 
 void without_interruption(const std::function<void()>& work) {
   struct Hold {
-    Hold() { held_back = 1; }
-    ~Hold() { held_back = 0; }
+    Hold() { held_back = held_back + 1; }
+    ~Hold() { held_back = held_back - 1; }
   };
   {
     const Hold hold;
     work();
   }
-  if (signal_seen != 0) end_by(signal_seen);
+  if (held_back == 0 && signal_seen != 0) end_by(signal_seen);
+}
+
+void ignore_broken_pipes() {
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+bool interruption_waits() {
+  return signal_seen != 0;
 }
 
 void show_notes(const std::vector<Note>& notes,
@@ -125,6 +156,30 @@ Progress progress_bar(const OutputFlags& flags) {
   return [bar](std::string_view stage, double fraction) {
     if (bar) bar->show(stage, fraction);
   };
+}
+
+Panel::Panel(const OutputFlags& flags) : shown_(!flags.quiet && on_terminal()) {}
+
+Panel::~Panel() {
+  wipe();
+}
+
+void Panel::show(const std::vector<std::string>& lines) {
+  if (!shown_) return;
+  const std::size_t width = terminal_width();
+  std::string text = above(lines_);
+  for (const std::string& line : lines) text += fmt::format("\033[K{}\n", cut(line, width));
+  print(text + "\033[J");
+  lines_ = lines.size();
+}
+
+void Panel::wipe() {
+  if (lines_ > 0) print(above(lines_) + "\033[J");
+  lines_ = 0;
+}
+
+void show_line(const std::string& line, const OutputFlags& flags) {
+  if (!flags.quiet) print(line + "\n");
 }
 
 void show_error(const std::string& message) {

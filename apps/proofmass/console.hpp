@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -16,8 +17,14 @@ namespace proofmass::app {
 void watch_for_interrupts();
 
 /// Does what must not be broken off half way, such as writing a file. A signal that comes meanwhile
-/// ends the process behind it; a second one at once.
+/// ends the process behind it, behind the outermost where they are nested; a second one at once.
 void without_interruption(const std::function<void()>& work);
+
+/// A peer that goes away ends a connection, not the process.
+void ignore_broken_pipes();
+
+/// Whether a signal has come that without_interruption() holds back: the work is asked to end.
+[[nodiscard]] bool interruption_waits();
 
 /// Prints warnings and faults; with --verbose all notes; with --quiet none. `where` goes before
 /// each, and may be empty.
@@ -25,6 +32,28 @@ void show_notes(const std::vector<Note>& notes, const std::string& where, const 
 
 /// A bar on a terminal, nothing elsewhere or with --quiet. It is wiped away with the last copy.
 [[nodiscard]] Progress progress_bar(const OutputFlags& flags);
+
+/// Some lines on a terminal that are drawn anew in place; nothing elsewhere or with --quiet. Wiped
+/// away when it goes.
+class Panel {
+ public:
+  explicit Panel(const OutputFlags& flags);
+  Panel(const Panel&) = delete;
+  Panel& operator=(const Panel&) = delete;
+  ~Panel();
+
+  [[nodiscard]] bool is_shown() const { return shown_; }
+  /// Cut to the width of the terminal.
+  void show(const std::vector<std::string>& lines);
+  void wipe();
+
+ private:
+  bool shown_;
+  std::size_t lines_ = 0;  ///< that stand there now
+};
+
+/// A line by itself; nothing with --quiet.
+void show_line(const std::string& line, const OutputFlags& flags);
 
 /// "proofmass: MESSAGE".
 void show_error(const std::string& message);

@@ -56,6 +56,13 @@ void add_input_flags(CLI::App& verb, InputFlags& flags) {
   add("--skew", flags.skew_s, "S",
       "the channels were sampled one after another, so far apart: brings them to one instant")
       ->check(finite());
+  add_place_flags(verb, flags);
+}
+
+void add_place_flags(CLI::App& verb, InputFlags& flags) {
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type)->group("Input");
+  };
   CLI::Option* sensor =
       add("--sensor", flags.sensors, "FILE.toml",
           "apply this sensor file's calibration first; once for all sensors or once for each");

@@ -16,6 +16,8 @@ namespace proofmass::app {
 [[nodiscard]] CLI::Validator latitude();
 
 void add_input_flags(CLI::App& verb, InputFlags& flags);
+/// Of these the sensor file, its supply and gravity, of verbs that read no file.
+void add_place_flags(CLI::App& verb, InputFlags& flags);
 /// --memory, of verbs that can do with a piece of a recording at a time.
 void add_memory_flag(CLI::App& verb, InputFlags& flags);
 

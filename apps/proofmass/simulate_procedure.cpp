@@ -39,14 +39,10 @@ void set_positions(int positions, ProcedureOptions& options) {
   }
 }
 
-// Counts need a converter: where the description has none, 16 bits over the supply.
 void set_signal(const std::string& signal, ProcedureOptions& options) {
-  if (signal == "acceleration") options.output = simulate::RigOutput::acceleration;
-  if (signal == "voltage") options.output = simulate::RigOutput::voltage;
-  if (signal != "counts") return;
-  options.output = simulate::RigOutput::counts;
-  if (options.daq.bits == 0)
-    options.daq = {.bits = 16, .min_v = 0.0, .max_v = options.supply.reference_v};
+  if (const auto output = simulate::output_named(signal)) options.output = *output;
+  if (options.output == simulate::RigOutput::counts)
+    options.daq = simulate::with_steps(options.daq, options.supply.reference_v);
 }
 
 void set_slide(const SimulateCommand& command, ProcedureOptions& options) {

@@ -129,6 +129,8 @@ void check(const TumbleCommand& command) {
     throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
   if (!command.angles_deg.empty() && !command.angle_channel.empty())
     throw Failure(usage, "--angles and --angle: give one of them");
+  if (!command.rests.empty() && command.files.size() > 1)
+    throw Failure(usage, "--rests: one list goes with one file");
   if (!command.update_sensor.empty() && !command.input.sensors.empty())
     throw Failure(usage,
                   "--update-sensor with --sensor: the readings are calibrated already; leave "

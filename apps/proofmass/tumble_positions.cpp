@@ -8,6 +8,7 @@
 #include "console.hpp"
 #include "exit_status.hpp"
 #include "input.hpp"
+#include "listed_rests.hpp"
 #include "proofmass/calibrate/tumble_dwells.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/signal/audit.hpp"
@@ -105,21 +106,53 @@ std::vector<double> given_angles(const Recording& recording,
   return out;
 }
 
+// Where the sensor lay still, and at which angles of the table.
+struct Settings {
+  std::vector<Dwell> dwells;
+  std::vector<double> angles_rad;
+};
+
+// --rests: with their angles, if the list has one for each.
+Settings listed_settings(const Recording& recording, const TumbleCommand& command) {
+  Settings out;
+  for (ListedRest& rest : listed_rests(recording, command.rests)) {
+    if (rest.angle_rad) out.angles_rad.push_back(*rest.angle_rad);
+    out.dwells.push_back(std::move(rest.dwell));
+  }
+  if (out.angles_rad.size() == out.dwells.size() || out.angles_rad.empty()) return out;
+  throw Failure(bad_input, fmt::format("{}: {} rests and {} angles: expected one for each or none",
+                                       command.rests, out.dwells.size(), out.angles_rad.size()));
+}
+
+Settings settings_of(const Recording& recording,
+                     const TumbleColumns& columns,
+                     const TumbleCommand& command,
+                     std::size_t before) {
+  Settings out;
+  if (!command.rests.empty()) out = listed_settings(recording, command);
+  if (!command.angles_deg.empty()) {
+    if (out.dwells.empty()) out.dwells = rests_of(recording, columns, command);
+    out.angles_rad = given_angles(recording, out.dwells, command, before);
+  }
+  if (!out.angles_rad.empty()) return out;
+  if (!columns.angle)
+    throw Failure(usage, command.rests + ": no column angle, and " + recording.source +
+                             " has none: give one angle for each rest with --angles");
+  const std::vector<double> angle = angles_rad(recording.channels[*columns.angle]);
+  if (out.dwells.empty()) out.dwells = steady_rests(recording, columns, command, angle);
+  out.angles_rad = calibrate::dwell_angles(angle, out.dwells);
+  return out;
+}
+
 TumblePart read_rests(const Recording& recording,
                       const TumbleColumns& columns,
                       const TumbleCommand& command,
                       std::size_t before) {
-  const bool given = !command.angles_deg.empty();
-  std::vector<double> angle;
-  if (!given) angle = angles_rad(recording.channels[*columns.angle]);
-  const std::vector<Dwell> dwells = given ? rests_of(recording, columns, command)
-                                          : steady_rests(recording, columns, command, angle);
+  const auto [dwells, angles] = settings_of(recording, columns, command, before);
   if (dwells.size() < 2)
     throw Failure(bad_input,
                   fmt::format("{}: the table's angle stands still in {}: expected two or more",
                               recording.source, report::count_words(dwells.size(), "place")));
-  const std::vector<double> angles = given ? given_angles(recording, dwells, command, before)
-                                           : calibrate::dwell_angles(angle, dwells);
   TumblePart part;
   part.rests = dwells.size();
   const bool timed = recording.time.source != TimeSource::none;
@@ -198,7 +231,8 @@ TumblePart read_part(const TumbleCommand& command,
     if (note.severity != Severity::info && note.text.find("no time column") == std::string::npos)
       notes.push_back(note);
   }
-  if (!command.angles_deg.empty()) return read_rests(recording, columns, command, before);
+  if (!command.angles_deg.empty() || !command.rests.empty())
+    return read_rests(recording, columns, command, before);
   if (!columns.angle)
     throw Failure(usage, recording.source +
                              ": no column with the table's angle: name it with --angle, or give "
@@ -241,7 +275,8 @@ TumbleReadings tumble_readings(const TumbleCommand& command, std::vector<Note>& 
       append(std::move(part.readings), command.files[file], all);
   }
   const std::string count = std::to_string(all.positions.size());
-  all.source = rests == 0 ? "a table of " + count + " positions"
+  all.source = rests == 0               ? "a table of " + count + " positions"
+               : !command.rests.empty() ? count + " listed rests of a recording"
                : command.angles_deg.empty()
                    ? count + " places in which the recorded angle stands still"
                    : count + " rests of a recording, their angles given";

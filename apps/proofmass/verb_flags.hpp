@@ -20,5 +20,7 @@ void add_flags(CLI::App& app, TuneCommand& command);
 void add_flags(CLI::App& app, SensorCommand& command);
 void add_flags(CLI::App& app, SimulateCommand& command);
 void add_flags(CLI::App& app, BudgetCommand& command);
+void add_flags(CLI::App& app, RecordCommand& command);
+void add_flags(CLI::App& app, RecoverCommand& command);
 
 }  // namespace proofmass::app

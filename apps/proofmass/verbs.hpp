@@ -17,6 +17,8 @@ void run(const TrackCommand& command);
 void run(const TuneCommand& command);
 void run(const SimulateCommand& command);
 void run(const BudgetCommand& command);
+void run(const RecordCommand& command);
+void run(const RecoverCommand& command);
 void run(const SensorCommand& command);
 
 }  // namespace proofmass::app

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "command_line.hpp"
+#include "live_view.hpp"
+#include "proofmass/acquire/recorder.hpp"
+
+namespace proofmass::app {
+
+/// What --estimate asks for, on samples as they come, calibrated; the view is told its columns.
+/// Empty if it asks for nothing. Throws Failure.
+[[nodiscard]] acquire::MakeAnalysis make_estimate(const RecordCommand& command,
+                                                  LiveView& view,
+                                                  std::vector<Note>& notes);
+
+}  // namespace proofmass::app

@@ -1,0 +1,195 @@
+#include <charconv>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fstream>
+#include <sstream>
+
+#include "console.hpp"
+#include "exit_status.hpp"
+#include "live_estimate.hpp"
+#include "live_source.hpp"
+#include "live_view.hpp"
+#include "output.hpp"
+#include "proofmass/acquire/recorder.hpp"
+#include "proofmass/report/record_report.hpp"
+#include "record_guide.hpp"
+#include "verbs.hpp"
+
+namespace proofmass::app {
+namespace {
+
+void list_sources(const RecordCommand& command) {
+  report::SourceList list;
+  const acquire::OpenOptions options = open_options();
+  for (const acquire::SourceKind& kind : acquire::source_kinds()) {
+    list.kinds.emplace_back(kind.grammar, kind.what);
+    if (!kind.find) continue;
+    const auto found = kind.find(options);
+    if (!found) {
+      list.notes.push_back({Severity::info, kind.scheme + ": " + found.error().message});
+      continue;
+    }
+    for (const acquire::FoundSource& one : *found) list.found.emplace_back(one.uri, one.what);
+  }
+  publish({.text = [&] { return report::source_list_text(list); },
+           .json = [&] { return report::source_list_json(list); },
+           .html = {}},
+          command.output);
+}
+
+// "sim-20261122-123005.mcap"
+std::string default_name(const std::string& source) {
+  const std::string scheme = source == "-" ? "stdin" : source.substr(0, source.find(':'));
+  return fmt::format("{}-{:%Y%m%d-%H%M%S}.mcap", scheme, fmt::localtime(std::time(nullptr)));
+}
+
+void expect_sense(const RecordCommand& command) {
+  if (command.source.empty())
+    throw Failure(usage, "record: no SOURCE: proofmass record --list shows what is there");
+  const std::string& file = command.output.output;
+  if (!file.empty() && !file.ends_with(".mcap"))
+    throw Failure(usage, file +
+                             ": a recording is an MCAP file while it is made: name it .mcap; "
+                             "proofmass convert makes others of it");
+}
+
+// "acc_x>2", "acc_x < -0.5"
+acquire::LevelTrigger parse_trigger(const RecordCommand& command) {
+  const std::string& text = command.trigger;
+  const Failure bad(
+      usage, fmt::format("--trigger: expected CHANNEL>LEVEL or CHANNEL<LEVEL, not '{}'", text));
+  const std::size_t sign = text.find_first_of("<>");
+  if (sign == std::string::npos) throw bad;
+  acquire::LevelTrigger out;
+  out.channel = text.substr(0, text.find_last_not_of(' ', sign == 0 ? 0 : sign - 1) + 1);
+  const std::size_t number = std::min(text.find_first_not_of(' ', sign + 1), text.size());
+  const char* const end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data() + number, end, out.level);
+  if (out.channel.empty() || sign == 0 || problem != std::errc{} || stop != end ||
+      !std::isfinite(out.level))
+    throw bad;
+  using Edge = acquire::LevelTrigger::Edge;
+  out.edge = text[sign] == '>' ? Edge::rising : Edge::falling;
+  out.before_s = command.trigger_before_s;
+  out.after_s = command.trigger_after_s;
+  return out;
+}
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) throw Failure(bad_input, file + ": cannot be read");
+  return text.str();
+}
+
+acquire::RecordOptions options_of(const RecordCommand& command) {
+  constexpr double bytes_per_mb = 1e6;
+  acquire::RecordOptions options;
+  options.path = command.output.output;
+  options.duration_s = command.duration_s;
+  options.rotate_s = command.rotate_s;
+  if (command.rotate_mb)
+    options.rotate_bytes = static_cast<std::uint64_t>(*command.rotate_mb * bytes_per_mb);
+  if (!command.trigger.empty()) options.trigger = parse_trigger(command);
+  options.reconnect = command.reconnect;
+  options.stall_s = command.stall_s;
+  options.stall_end_s = std::max(command.stall_end_s, command.stall_s);
+  options.metadata["command"] = "proofmass record " + acquire::shown_uri(command.source);
+  // Of several the recording keeps none: which is whose is said by their order here alone.
+  if (command.input.sensors.size() == 1)
+    options.sensor_file = text_of(command.input.sensors.front());
+  return options;
+}
+
+// `guide` may be null.
+acquire::RecordWatch watch_by(LiveView& view, RecordGuide* guide, report::RecordReport& report) {
+  acquire::RecordWatch watch;
+  watch.stopped = [&view, guide] {
+    view.refresh();
+    return interruption_waits() || (guide != nullptr && guide->done());
+  };
+  watch.opened = [&, guide](const acquire::SourceHead& head) {
+    report.settings = head.settings;
+    view.opened(head.recording.channels);
+    if (guide != nullptr) guide->opened(head.recording);
+  };
+  watch.samples = [&view, guide](const Block& block) {
+    view.samples(block);
+    if (guide == nullptr) return;
+    for (const std::string& line : guide->samples(block)) view.say(line);
+    view.guide(guide->live());
+  };
+  watch.estimates = [&view](const Block& rows) { view.estimates(rows); };
+  watch.event = [&view](const RecordEvent& event) { view.event(event); };
+  return watch;
+}
+
+// Before the source was open it is the source's fault, afterwards the file's.
+ExitStatus status_of(const Error& error, bool was_open) {
+  // A card or a board whose driver is not there.
+  if (!was_open && error.code == Errc::unsupported) return bad_device;
+  return app::status_of(error, was_open ? Stage::writing : Stage::reading);
+}
+
+report::RecordReport record(const RecordCommand& command, RecordGuide* guide) {
+  report::RecordReport report;
+  report.source = acquire::shown_uri(command.source);
+  const acquire::RecordOptions options = options_of(command);
+  LiveView view(report.source, options.path, command.output);
+  const acquire::RecordWatch watch = watch_by(view, guide, report);
+  bool was_open = false;
+  const acquire::OpenSource open = [&was_open, opener = source_opener(command)] {
+    auto source = opener();
+    was_open = was_open || source.has_value();
+    return source;
+  };
+  auto summary = acquire::record(open, options, watch, make_estimate(command, view, report.notes));
+  if (!summary) throw Failure(status_of(summary.error(), was_open), summary.error().message);
+  report.summary = std::move(summary).value();
+  return report;
+}
+
+// The rests that were taken are listed beside the recording, and the procedure's verb is run on it.
+void finish(const RecordGuide& guide, const std::string& file, const OutputFlags& flags) {
+  const std::string again = guide.write_rests(file);
+  show_line("  To do this again: " + again, flags);
+  if (!interruption_waits()) guide.run_verb(file);
+}
+
+bool is_broken_off(const RecordSummary& summary) {
+  return summary.end == RecordEnd::source_gone || summary.end == RecordEnd::disk_failed;
+}
+
+}  // namespace
+
+void run(const RecordCommand& given) {
+  if (given.list) return list_sources(given);
+  expect_sense(given);
+  ignore_broken_pipes();
+  RecordCommand command = given;
+  if (command.output.output.empty()) command.output.output = default_name(command.source);
+  std::optional<RecordGuide> guide;
+  if (!command.guide.procedure.empty()) guide.emplace(command);
+  without_interruption([&] {
+    const report::RecordReport report = record(command, guide ? &*guide : nullptr);
+    show_notes(report.notes, "", command.output);
+    // What the procedure leads to is the document, where there is one.
+    OutputFlags own = command.output;
+    if (guide) own.json.clear();
+    if (!guide || command.output.json != "-")
+      publish({.text = [&] { return report::record_text(report); },
+               .json = [&] { return report::record_json(report); },
+               .html = {}},
+              own);
+    if (guide && !report.summary.files.empty())
+      finish(*guide, report.summary.files.front(), command.output);
+    if (is_broken_off(report.summary)) throw Failure(bad_device, report.summary.end_reason);
+    hold_to_strict(command.output, report::is_bad(report));
+  });
+}
+
+}  // namespace proofmass::app
