@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Writes the specimens that fuzz_mcap starts from: corpus/mcap, less the magic that it puts before
-them. Chunks have no checksum (0), so that changing their bytes is not in vain; one has.
+"""Writes the specimens that fuzz_mcap and fuzz_recover start from: corpus/mcap and, of files that are
+broken, corpus/recover, less the magic that they put before them. Chunks have no checksum (0), so that
+changing their bytes is not in vain; one has.
 
     fuzz/make_mcap_corpus.py
 """
@@ -9,7 +10,7 @@ import struct
 import zlib
 from pathlib import Path
 
-FOLDER = Path(__file__).parent / "corpus" / "mcap"
+FOLDER = Path(__file__).parent / "corpus"
 MAGIC = b"\x89MCAP0\r\n"
 
 
@@ -155,6 +156,24 @@ def specimens():
     yield "samples_stamps", header() + samples_channel(True) + message(1, 0, block(0, 4, True)) + end()
 
 
-FOLDER.mkdir(parents=True, exist_ok=True)
-for name, content in specimens():
-    (FOLDER / name).write_bytes(content)
+def broken():
+    recording = samples_channel(True)
+    chunks = [chunk(recording + message(1, k, block(4 * k, 4, True))) for k in range(3)]
+    checked = [chunk(recording + message(1, k, block(4 * k, 4, True)),
+                     crc=zlib.crc32(recording + message(1, k, block(4 * k, 4, True)))) for k in range(3)]
+    yield "cut", header() + b"".join(chunks)[:-40]
+    yield "never_closed", header() + b"".join(chunks)
+    yield "garbage", header() + chunks[0] + b"\0garbage\x06" + chunks[2] + end()
+    yield "damaged_chunk", header() + checked[0] + checked[1][:-9] + bytes(9) + checked[2] + end()
+    yield "damaged_length", header() + checked[0] + b"\x06\x01" + checked[1][2:] + checked[2] + end()
+    yield "no_channel", header() + chunk(message(1, 0, block(0, 4, True))) + chunks[1] + end()
+    yield "two_meanings", (header() + chunks[0] + chunk(channel(1, 0, "/acc", "json") + message(1, 3, "{}"))
+                           + chunks[2] + end())
+    yield "attached", header() + record(9, bytes(16) + text("sensor.toml") + text("application/toml")
+                                        + struct.pack("<Q", 9) + b"[sensor]\n" + bytes(4)) + chunks[0]
+
+
+for folder, files in {"mcap": specimens(), "recover": broken()}.items():
+    (FOLDER / folder).mkdir(parents=True, exist_ok=True)
+    for name, content in files:
+        (FOLDER / folder / name).write_bytes(content)

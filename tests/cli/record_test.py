@@ -1,0 +1,293 @@
+"""proofmass record and recover."""
+import json
+import os
+import pty
+import signal
+import subprocess
+import time
+import tty
+import unittest
+
+from command import DONE, INTERRUPTED, PROGRAM, USAGE, CommandTest, parse_json
+
+BAD_DEVICE = 4
+ROW = b"%d,%.3f,%.3f,%.3f\n"
+HEADER = b"t (ms),x (m/s^2),y (m/s^2),z (m/s^2)\n"
+
+
+def rows(first, count):
+    """Lines as a microcontroller would send them: milliseconds and three figures."""
+    return b"".join(ROW % (10 * k, k % 7, k % 11, 9.81) for k in range(first, first + count))
+
+
+class Record(CommandTest):
+    def start(self, *arguments, **how):
+        """The command in the background; killed with the test."""
+        process = subprocess.Popen(
+            [PROGRAM, "record", *map(str, arguments)],
+            cwd=self.folder,
+            stdin=how.get("stdin", subprocess.DEVNULL),
+            stdout=subprocess.PIPE,
+            stderr=how.get("stderr", subprocess.PIPE),
+            env={**os.environ, **how.get("environment", {})},
+        )
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def wait_for(self, condition, what, seconds=120):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if condition():
+                return
+            time.sleep(0.02)
+        self.fail(f"waited {seconds} s for {what}")
+
+    def wait_for_part(self, name, size=1):
+        part = self.folder / f"{name}.part"
+        self.wait_for(lambda: part.exists() and part.stat().st_size >= size, part.name)
+
+    def end(self, process, status):
+        """Its document, once it has ended with this status."""
+        out, err = process.communicate(timeout=200)
+        self.assertEqual(process.returncode, status, (err or b"").decode())
+        document = parse_json(out.decode())
+        self.check_document("record", document)
+        return document
+
+    def test_the_twin_arrives_whole(self):
+        document = self.document(
+            "record", "sim:wheel?rate=1000&speed=max&seconds=20", "-o", "run.mcap"
+        )
+        self.assertEqual(document["file"], "run.mcap")
+        self.assertEqual(document["samples"], 20000)
+        self.assertEqual((document["lost"], document["gaps"]), (0, 0))
+        self.assertEqual(document["end"], "source_end")
+        audit = self.document("inspect", "run.mcap")
+        self.assertEqual(audit["samples"], 20000)
+        self.assertEqual(audit["timing"]["gaps"], [])
+        self.assertAlmostEqual(audit["rate_hz"], 1000.0, places=6)
+        self.assertEqual(self.leftovers(), [])
+
+    def test_what_is_recorded_can_be_analysed(self):
+        self.succeed("record", "sim:wheel?rpm=30&speed=max&seconds=40", "-o", "run.mcap")
+        turns = self.document("wheel", "run.mcap", "--radius", "0.1")["turns"]
+        self.assertAlmostEqual(turns["value"], 20.0, delta=0.2)
+
+    def test_duration_ends_a_source_that_would_go_on(self):
+        document = self.document(
+            "record", "sim:?rate=500&speed=max", "--duration", "4", "-o", "run.mcap"
+        )
+        self.assertEqual(document["samples"], 2000)
+        self.assertEqual(document["end"], "duration")
+
+    def test_ctrl_c_closes_the_file(self):
+        process = self.start("sim:?rate=200", "-o", "run.mcap", "--json", "-")
+        self.wait_for_part("run.mcap", 20000)
+        process.send_signal(signal.SIGINT)
+        document = self.end(process, INTERRUPTED)
+        self.assertEqual(document["end"], "stopped")
+        self.assertGreater(document["samples"], 0)
+        self.assertEqual(self.document("inspect", "run.mcap")["samples"], document["samples"])
+        self.assertEqual(self.leftovers(), [])
+
+    def test_killed_it_is_recovered(self):
+        process = self.start("sim:?rate=1000", "-o", "run.mcap")
+        self.wait_for_part("run.mcap", 150000)
+        process.kill()
+        process.wait()
+        self.assertGreater(self.document("inspect", "run.mcap.part")["samples"], 1000)
+        document = self.document("recover", "run.mcap.part")
+        self.assertEqual(document["file"], "run.mcap")
+        self.assertFalse(document["was_whole"])
+        self.assertEqual(document["missing_samples"], 0)
+        audit = self.document("inspect", "run.mcap")
+        self.assertEqual(audit["samples"], document["samples"])
+        self.assertEqual(audit["timing"]["gaps"], [])
+        self.expect_failure(USAGE, "recover", "run.mcap.part")
+
+    def test_a_leftover_is_never_written_over(self):
+        self.write("run.mcap.part", "what a crash has left")
+        error = self.expect_failure(USAGE, "record", "sim:?speed=max&seconds=1", "-o", "run.mcap")
+        self.assertIn("proofmass recover", error)
+        self.write("old.mcap", "somebody's")
+        self.expect_failure(USAGE, "record", "sim:?speed=max&seconds=1", "-o", "old.mcap")
+        self.assertEqual((self.folder / "old.mcap").read_text(), "somebody's")
+
+    def test_rotation_makes_files_that_are_whole(self):
+        document = self.document(
+            "record", "sim:?rate=100&speed=max&seconds=10", "--rotate", "4", "-o", "run.mcap"
+        )
+        self.assertEqual(
+            document["files"], ["run.0001.mcap", "run.0002.mcap", "run.0003.mcap"]
+        )
+        counts = [self.document("inspect", name)["samples"] for name in document["files"]]
+        self.assertEqual(counts, [400, 400, 200])
+
+    def test_a_trigger_keeps_what_is_around_it(self):
+        # A turn of 2 s: the level is passed once a turn.
+        document = self.document(
+            "record", "sim:wheel?rpm=30&rate=200&speed=max&seconds=20", "-o", "run.mcap",
+            "--trigger", "acc1_x > 5.0", "--trigger-before", "0.1", "--trigger-after", "0.2",
+        )
+        kept = document["samples"] / 200
+        self.assertGreater(kept, 8 * 0.3)
+        self.assertLess(kept, 11 * 1.0)
+        self.assertEqual(document["samples"] + document["not_kept"], 4000)
+        self.assertEqual(document["gaps"], 0)
+
+    def test_the_wheel_is_followed_live(self):
+        document = self.document(
+            "record", "sim:wheel?rpm=20&rate=200&seconds=15", "-o", "run.mcap",
+            "--estimate", "wheel", "--radius", "0.1",
+        )
+        self.assertGreater(document["latency"]["blocks"], 100)
+        self.succeed("convert", "run.mcap", "--variable", "estimates", "-o", "angle.csv")
+        head, *lines = (self.folder / "angle.csv").read_text().splitlines()
+        names = [cell.split(" ")[0] for cell in head.split(",")]
+        first, last = ([float(x or "nan") for x in line.split(",")] for line in (lines[0], lines[-1]))
+        angle, at = names.index("angle"), names.index("time")
+        speed = (last[angle] - first[angle]) / (last[at] - first[at])
+        self.assertAlmostEqual(abs(speed) * 60 / 6.283185307, 20.0, delta=0.2)
+
+    def test_an_estimate_needs_an_accelerometer(self):
+        error = self.expect_failure(
+            USAGE, "record", "-", "-o", "run.mcap", "--estimate", "tilt",
+            stdin=b"pressure (Pa)\n" + b"1\n2\n" * 50,
+        )
+        self.assertIn("no accelerometer", error)
+
+    def test_a_pipe_is_read_to_its_end(self):
+        document = self.document(
+            "record", "-", "-o", "run.mcap", stdin=HEADER + rows(0, 500)
+        )
+        self.assertEqual((document["samples"], document["lost"]), (500, 0))
+        audit = self.document("inspect", "run.mcap")
+        self.assertAlmostEqual(audit["rate_hz"], 100.0, places=6)
+        self.assertEqual([c["name"] for c in audit["channels"]], ["x", "y", "z"])
+
+    def test_a_unit_that_the_source_does_not_know_can_be_said(self):
+        document = self.document(
+            "record", "stdin:?rate=100", "--unit", "g", "-o", "run.mcap", stdin=b"0.1,0.2,0.9\n" * 100
+        )
+        self.assertEqual([c["unit"] for c in document["channels"]], ["g"] * 3)
+
+    def open_pty(self, link):
+        """A serial line that the program opens by the link's name."""
+        ours, theirs = pty.openpty()
+        tty.setraw(theirs)
+        os.set_blocking(ours, False)
+        path = self.folder / link
+        path.unlink(missing_ok=True)
+        path.symlink_to(os.ttyname(theirs))
+        return ours, theirs
+
+    def feed(self, ours, first, process, until):
+        """Sends rows every now and then until the condition holds; the next row's number."""
+        end = time.monotonic() + 120
+        while not until():
+            self.assertLess(time.monotonic(), end, "waited 120 s")
+            self.assertIsNone(process.poll(), "it ended early")
+            try:
+                os.write(ours, rows(first, 10))
+                first += 10
+            except BlockingIOError:
+                pass
+            time.sleep(0.05)
+        return first
+
+    def test_a_cable_that_is_pulled_ends_it_with_the_file_closed(self):
+        ours, theirs = self.open_pty("tty")
+        process = self.start("serial:tty?baud=115200", "-o", "run.mcap", "--json", "-")
+        part = self.folder / "run.mcap.part"
+        self.feed(ours, 0, process, lambda: part.exists() and part.stat().st_size > 8000)
+        os.close(ours)
+        os.close(theirs)
+        document = self.end(process, BAD_DEVICE)
+        self.assertEqual(document["end"], "source_gone")
+        self.assertGreater(document["samples"], 0)
+        self.assertEqual(self.document("inspect", "run.mcap")["samples"], document["samples"])
+        self.assertEqual(self.leftovers(), [])
+
+    def test_a_cable_that_comes_back_leaves_a_marked_gap(self):
+        ours, theirs = self.open_pty("tty")
+        process = self.start("serial:tty", "-o", "run.mcap", "--json", "-", "--reconnect")
+        part = self.folder / "run.mcap.part"
+        self.feed(ours, 0, process, lambda: part.exists() and part.stat().st_size > 8000)
+        os.close(ours)
+        os.close(theirs)
+        ours, theirs = self.open_pty("tty")
+        size = part.stat().st_size
+        self.feed(ours, 0, process, lambda: part.stat().st_size > size + 20000)
+        process.send_signal(signal.SIGINT)
+        document = self.end(process, INTERRUPTED)
+        os.close(ours)
+        os.close(theirs)
+        kinds = [event["kind"] for event in document["events"]]
+        self.assertIn("disconnected", kinds)
+        self.assertIn("reconnected", kinds)
+        self.assertGreaterEqual(document["gaps"], 1)
+
+    def test_a_source_that_is_not_there_is_status_4(self):
+        error = self.expect_failure(BAD_DEVICE, "record", "serial:no-such-tty", "-o", "run.mcap")
+        self.assertIn("no-such-tty", error)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_what_makes_no_sense_is_told_before_anything_is_opened(self):
+        for arguments in (
+            [],
+            ["sim:", "-o", "run.csv"],
+            ["nosuch:"],
+            ["sim:?rete=10"],
+            ["sim:", "--trigger", "acc1_x"],
+            ["sim:", "--trigger", ">3"],
+            ["sim:", "--estimate", "nothing"],
+            ["sim:", "--duration", "-1"],
+            ["sim:?speed=max&seconds=1", "--trigger", "nosuch>3"],
+        ):
+            with self.subTest(arguments=arguments):
+                self.expect_failure(USAGE, "record", *arguments)
+        self.assertEqual(self.leftovers(), [])
+
+    def test_the_list_shows_every_kind(self):
+        document = self.document("record", "--list")
+        grammar = " ".join(kind["grammar"] for kind in document["kinds"])
+        for scheme in (
+            "sim:", "replay:", "iio:", "serial:", "udp:", "mqtt:", "phyphox:", "sensorserver:",
+            "daqmx:", "comedi:", "stdin:",
+        ):
+            self.assertIn(scheme, grammar)
+
+    def test_the_view_draws_in_place_on_a_terminal_only(self):
+        ours, theirs = pty.openpty()
+        process = self.start(
+            "sim:?rate=200", "--duration", "2", "-o", "run.mcap",
+            stderr=theirs, environment={"TERM": "xterm"},
+        )
+        os.close(theirs)
+        drawn = b""
+        try:
+            while chunk := os.read(ours, 65536):
+                drawn += chunk
+        except OSError:  # the terminal is closed with the process
+            pass
+        os.close(ours)
+        self.assertEqual(process.wait(timeout=60), DONE)
+        self.assertIn(b"acc1_x", drawn)
+        self.assertIn(b"\x1b[", drawn)
+        plain = self.run_command("record", "sim:?rate=200&speed=max&seconds=1", "-o", "b.mcap")
+        self.assertNotIn(b"\x1b", plain.stderr)
+
+    def test_strict_speaks_of_what_is_missing(self):
+        ran = self.run_command(
+            "record", "sim:?rate=100&speed=max&seconds=20&drop=0.1", "-o", "run.mcap", "--strict",
+            "--json", "run.json",
+        )
+        self.assertEqual(ran.returncode, 5, ran.stderr)
+        document = json.loads((self.folder / "run.json").read_text())
+        self.assertGreater(document["lost"], 0)
+        self.assertEqual(document["samples"] + document["lost"], 2000)
+
+
+if __name__ == "__main__":
+    unittest.main()
