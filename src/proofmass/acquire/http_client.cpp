@@ -1,6 +1,5 @@
 #include "proofmass/acquire/http_client.hpp"
 
-// Boost 1.74 leaves this to others, and C++20's other headers no longer bring it.
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>

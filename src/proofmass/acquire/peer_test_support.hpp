@@ -1,14 +1,18 @@
 #pragma once
 
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <memory>
+#include <optional>
 #include <spawn.h>
 #include <string>
 #include <string_view>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include "proofmass/acquire/source.hpp"
@@ -67,6 +71,30 @@ inline std::vector<std::string> phone_peer(const std::string& kind,
   words.insert(words.end(), faults.begin(), faults.end());
   return words;
 }
+
+/// A phone's app, stood in for, and the source that reads it.
+class PhoneSource : public ::testing::Test {
+ protected:
+  explicit PhoneSource(std::string kind) : kind_(std::move(kind)) {}
+
+  /// Errors: unsupported (the peer could not be started), else those of open_source().
+  Result<std::unique_ptr<Source>> open(std::vector<std::string> faults,
+                                       const std::string& query = "") {
+    peer_.emplace(phone_peer(kind_, std::move(faults)));
+    if (peer_->port() == 0) return Error{Errc::unsupported, "python3 is not there: install it"};
+    return open_source(kind_ + "://127.0.0.1:" + std::to_string(peer_->port()) + query,
+                       {.patience = std::chrono::seconds(60)});
+  }
+  std::optional<PeerProcess> peer_;
+
+ private:
+  std::string kind_;
+};
+
+#define OPEN_OR_SKIP(name, ...)                                                              \
+  const auto name = open(__VA_ARGS__);                                                       \
+  if (!name && name.error().code == Errc::unsupported) GTEST_SKIP() << name.error().message; \
+  ASSERT_TRUE(name) << name.error().message
 
 /// All that a source gave until it had so many rows, failed, or a minute was over.
 struct Taken {

@@ -7,22 +7,10 @@
 namespace proofmass::acquire {
 namespace {
 
-class PhyphoxSource : public ::testing::Test {
+class PhyphoxSource : public PhoneSource {
  protected:
-  Result<std::unique_ptr<Source>> open(std::vector<std::string> faults,
-                                       const std::string& query = "") {
-    peer_.emplace(phone_peer("phyphox", std::move(faults)));
-    if (peer_->port() == 0) return Error{Errc::unsupported, "python3 is not there: install it"};
-    return open_source("phyphox://127.0.0.1:" + std::to_string(peer_->port()) + query,
-                       {.patience = std::chrono::seconds(60)});
-  }
-  std::optional<PeerProcess> peer_;
+  PhyphoxSource() : PhoneSource("phyphox") {}
 };
-
-#define OPEN_OR_SKIP(name, ...)                                                              \
-  const auto name = open(__VA_ARGS__);                                                       \
-  if (!name && name.error().code == Errc::unsupported) GTEST_SKIP() << name.error().message; \
-  ASSERT_TRUE(name) << name.error().message
 
 TEST_F(PhyphoxSource, FindsBothSensorsAndLosesNoRow) {
   OPEN_OR_SKIP(source, {"--rate", "500"});

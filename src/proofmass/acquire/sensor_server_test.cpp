@@ -25,22 +25,10 @@ TEST(SensorMessage, RefusesWhatIsNone) {
     EXPECT_FALSE(parse_sensor_message(text, message)) << text;
 }
 
-class SensorServerSource : public ::testing::Test {
+class SensorServerSource : public PhoneSource {
  protected:
-  Result<std::unique_ptr<Source>> open(std::vector<std::string> faults,
-                                       const std::string& query = "") {
-    peer_.emplace(phone_peer("sensorserver", std::move(faults)));
-    if (peer_->port() == 0) return Error{Errc::unsupported, "python3 is not there: install it"};
-    return open_source("sensorserver://127.0.0.1:" + std::to_string(peer_->port()) + query,
-                       {.patience = std::chrono::seconds(60)});
-  }
-  std::optional<PeerProcess> peer_;
+  SensorServerSource() : PhoneSource("sensorserver") {}
 };
-
-#define OPEN_OR_SKIP(name, ...)                                                              \
-  const auto name = open(__VA_ARGS__);                                                       \
-  if (!name && name.error().code == Errc::unsupported) GTEST_SKIP() << name.error().message; \
-  ASSERT_TRUE(name) << name.error().message
 
 TEST_F(SensorServerSource, HandsOutEachMessage) {
   OPEN_OR_SKIP(source, {"--rate", "500"});

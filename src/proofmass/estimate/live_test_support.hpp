@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,23 @@ inline const std::vector<double>& column(const LiveAnalysis& analysis,
   const auto& columns = analysis.columns();
   const auto at = std::ranges::find(columns, name, &Channel::name);
   return fed.rows.channels.at(static_cast<std::size_t>(at - columns.begin()));
+}
+
+/// An analysis and what it gave of a stream.
+struct Followed {
+  std::unique_ptr<LiveAnalysis> live;
+  Fed fed{};
+  [[nodiscard]] const std::vector<double>& operator[](const std::string& name) const {
+    return column(*live, fed, name);
+  }
+};
+
+inline Followed followed(std::unique_ptr<LiveAnalysis> live,
+                         const Stream& stream,
+                         std::size_t piece) {
+  Followed run{std::move(live)};
+  run.fed = feed(*run.live, stream, piece);
+  return run;
 }
 
 }  // namespace proofmass::estimate::test

@@ -12,6 +12,7 @@ namespace {
 
 using test::Fed;
 using test::feed;
+using test::Followed;
 using test::Stream;
 
 Stream stream_of(const TiltRecord& record) {
@@ -29,18 +30,8 @@ LiveTiltOptions options_for(const TiltRecord& record) {
   return options;
 }
 
-struct Followed {
-  std::unique_ptr<LiveAnalysis> live;
-  Fed fed;
-  [[nodiscard]] const std::vector<double>& operator[](const std::string& name) const {
-    return test::column(*live, fed, name);
-  }
-};
-
 Followed follow(const TiltRecord& record, const LiveTiltOptions& options, std::size_t piece = 10) {
-  Followed followed{live_tilt(options).value(), {}};
-  followed.fed = feed(*followed.live, stream_of(record), piece);
-  return followed;
+  return test::followed(live_tilt(options).value(), stream_of(record), piece);
 }
 
 /// Share of the rows from two seconds on whose band of 95 % holds the pitch.

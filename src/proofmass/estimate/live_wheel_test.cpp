@@ -13,6 +13,7 @@ namespace {
 using test::Drive;
 using test::Fed;
 using test::feed;
+using test::Followed;
 using test::Mount;
 using test::rpm;
 using test::Stream;
@@ -42,18 +43,8 @@ LiveWheelOptions options_for(std::size_t sensors, std::optional<double> radius_m
   return options;
 }
 
-struct Followed {
-  std::unique_ptr<LiveAnalysis> live;
-  Fed fed;
-  [[nodiscard]] const std::vector<double>& operator[](const std::string& name) const {
-    return test::column(*live, fed, name);
-  }
-};
-
 Followed follow(const Stream& stream, const LiveWheelOptions& options, std::size_t piece = 10) {
-  Followed run{live_wheel(options).value(), {}};
-  run.fed = feed(*run.live, stream, piece);
-  return run;
+  return test::followed(live_wheel(options).value(), stream, piece);
 }
 
 /// Share of the rows from `from_s` on whose band of 95 % holds the truth, whole turns apart.
