@@ -150,6 +150,25 @@ class Record(CommandTest):
         speed = (last[angle] - first[angle]) / (last[at] - first[at])
         self.assertAlmostEqual(abs(speed) * 60 / 6.283185307, 20.0, delta=0.2)
 
+    def estimates(self, source, what):
+        """The columns that are recorded beside the samples."""
+        self.succeed("record", source, "-o", f"{what}.mcap", "--estimate", what)
+        self.succeed("convert", f"{what}.mcap", "--variable", "estimates", "-o", f"{what}.csv")
+        head, *lines = (self.folder / f"{what}.csv").read_text().splitlines()
+        columns = zip(*([float(cell or "nan") for cell in line.split(",")] for line in lines))
+        return dict(zip((cell.split(" ")[0] for cell in head.split(",")), columns))
+
+    def test_a_carriage_is_followed_live(self):
+        # Six strokes of 0.4 m, there and back in turn.
+        columns = self.estimates("sim:slide?speed=max", "track")
+        self.assertAlmostEqual(max(columns["position"]), 0.4, delta=0.05)
+        self.assertLess(abs(columns["position"][-1]), 4 * columns["position_std"][-1])
+
+    def test_inclination_is_followed_live(self):
+        columns = self.estimates("sim:static?seconds=20&speed=max", "tilt")
+        self.assertEqual(len(columns["roll"]), 4000)
+        self.assertLess(columns["roll_std"][-1], 0.05)
+
     def test_an_estimate_needs_an_accelerometer(self):
         error = self.expect_failure(
             USAGE, "record", "-", "-o", "run.mcap", "--estimate", "tilt",
