@@ -12,7 +12,7 @@ namespace {
 /// Asked for again, so that a clock's step back shows.
 constexpr double overlap_s = 0.05;
 /// Asked for again behind a clock's step back: more than goes by until that is seen.
-constexpr double search_s = 60.0;
+constexpr double search_s = 10.0;
 constexpr std::size_t most_had = 16;
 
 double eighth_place(double time_s) {

@@ -36,6 +36,8 @@ class PhyphoxCursor {
   void start_anew() { *this = {}; }
   /// The time buffer ends with this now: further back than what was had is a clock set back.
   void see_end(double end_s);
+  /// What is asked for goes far back, to find where a clock was set back.
+  [[nodiscard]] bool is_searching() const { return set_back_to_s_.has_value(); }
 
  private:
   /// A row that was had: no time alone tells it from another, where a clock ran twice over it.

@@ -57,7 +57,7 @@ Result<Arrived> PhyphoxSource::read(Arrival& arrival, milliseconds patience) {
     if (!answer) return phyphox_gone(answer.error());
     if (!*answer) break;
     if (const Status taken = take(**answer); !taken) return taken.error();
-    merge_.take(arrival);
+    if (!is_behind_) merge_.take(arrival);
   } while (arrival.rows() == 0 && Clock::now() < until);
   for (Note& note : merge_.take_notes()) notes_.push_back(std::move(note));
   arrival.host_ns = host_now_ns();
@@ -70,6 +70,7 @@ void PhyphoxSource::ask() {
   next_question_ = now + between_questions;
   asks_ends_ = was_measuring_ && now - last_rows_ > suspicious_silence && !asks_ends_;
   if (asks_ends_) return client_->ask(ends_target_);
+  is_searching_ = std::ranges::any_of(start_.cursors, &PhyphoxCursor::is_searching);
   std::string target = "/get";
   for (std::size_t k = 0; k < start_.groups.size(); ++k) {
     const PhyphoxGroup& group = start_.groups[k];
@@ -91,6 +92,9 @@ Status PhyphoxSource::take(const HttpAnswer& answer) {
   bad_answers_ = 0;
   if (const Status same = take_session(reply_); !same) return same;
   asks_ends_ ? take_ends(reply_) : take_rows(reply_);
+  // A long answer was long under way: the next one tells when the last row was there.
+  is_behind_ = is_searching_ && !asks_ends_ && !is_behind_;
+  if (is_behind_) next_question_ = Clock::now();
   return Done{};
 }
 

@@ -50,7 +50,9 @@ class PhyphoxSource : public Source {
   std::vector<double> row_{};
   std::vector<Note> notes_{};
   Clock::time_point next_question_{}, last_rows_{};
-  bool asks_ends_ = false;  ///< the question under way
+  bool asks_ends_ = false;     ///< the question under way
+  bool is_searching_ = false;  ///< so does one for what a clock that was set back hides
+  bool is_behind_ = false;     ///< rows wait for the next answer
   bool was_measuring_ = true;
   int bad_answers_ = 0;  ///< in a row
   bool told_timeless_ = false;

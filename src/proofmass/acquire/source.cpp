@@ -24,13 +24,21 @@ void Arrival::clear(std::size_t channel_count) {
 }
 
 std::string shown_uri(const std::string& uri) {
-  constexpr std::string_view key = "password=";
-  for (std::size_t at = uri.find(key); at != std::string::npos; at = uri.find(key, at + 1)) {
-    if (at == 0 || (uri[at - 1] != '?' && uri[at - 1] != '&')) continue;
-    const std::size_t from = at + key.size();
-    return uri.substr(0, from) + "…" + uri.substr(std::min(uri.find('&', from), uri.size()));
+  std::string out = uri;
+  // What stands before an @ in the place is a user's name and word, wherever they belong.
+  const std::size_t at = out.find('@');
+  const std::size_t place = out.find(':') + 1;
+  if (at < out.find('?') && place > 0) {
+    const std::size_t from = out.compare(place, 2, "//") == 0 ? place + 2 : place;
+    if (at > from) out.replace(from, at - from, "…");
   }
-  return uri;
+  constexpr std::string_view key = "password=";
+  for (std::size_t k = out.find(key); k != std::string::npos; k = out.find(key, k + 1)) {
+    if (k == 0 || (out[k - 1] != '?' && out[k - 1] != '&')) continue;
+    const std::size_t from = k + key.size();
+    return out.substr(0, from) + "…" + out.substr(std::min(out.find('&', from), out.size()));
+  }
+  return out;
 }
 
 Result<std::unique_ptr<Source>> open_source(const std::string& text, const OpenOptions& options) {

@@ -74,7 +74,7 @@ class Source {
                                              std::chrono::milliseconds patience) = 0;
 };
 
-/// A source's URI as it may be shown and kept: without what password= says.
+/// A source's URI as it may be shown and kept: without what password= says, or stands before an @.
 [[nodiscard]] std::string shown_uri(const std::string& uri);
 
 struct OpenOptions {

@@ -154,6 +154,8 @@ TEST(ShownUri, HasNoPassword) {
   EXPECT_EQ(shown_uri("mqtt://h/t?user=me&password=secret&rate=5"),
             "mqtt://h/t?user=me&password=…&rate=5");
   EXPECT_EQ(shown_uri("mqtt://h/t?password=secret"), "mqtt://h/t?password=…");
+  EXPECT_EQ(shown_uri("mqtt://me:secret@h/t?rate=5"), "mqtt://…@h/t?rate=5");
+  EXPECT_EQ(shown_uri("serial:/dev/tty?unit=@"), "serial:/dev/tty?unit=@");
   EXPECT_EQ(shown_uri("mqtt://h/no-password=x?rate=5"), "mqtt://h/no-password=x?rate=5");
 }
 
