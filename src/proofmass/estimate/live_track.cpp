@@ -10,6 +10,7 @@
 
 #include "proofmass/core/units.hpp"
 #include "proofmass/estimate/live_instants.hpp"
+#include "proofmass/estimate/live_track_axis.hpp"
 #include "proofmass/estimate/live_track_filter.hpp"
 #include "proofmass/estimate/live_track_rests.hpp"
 #include "proofmass/estimate/track_motion.hpp"
@@ -40,25 +41,6 @@ std::vector<Channel> track_columns() {
           column("resting", Quantity::unknown, "")};
 }
 
-std::array<bool, 3> axes_there(const Triad& sensor) {
-  return {sensor.x.has_value(), sensor.y.has_value(), sensor.z.has_value()};
-}
-
-Status check_axis(const LiveTrackOptions& options) {
-  double length = 0.0;
-  const std::array there = axes_there(options.sensor);
-  for (std::size_t i = 0; i < there.size(); ++i) {
-    const double part = (*options.axis)[i];
-    if (!there[i] && part != 0.0)
-      return Error{Errc::invalid_argument, options.sensor.name +
-                                               ": the given axis has a part along an axis that the "
-                                               "sensor lacks; give 0 there"};
-    length = std::hypot(length, part);
-  }
-  if (length > 0.0 && std::isfinite(length)) return Done{};
-  return Error{Errc::invalid_argument, "live track: the axis must have a direction, such as 1,0,0"};
-}
-
 Status check(const LiveTrackOptions& options) {
   if (options.sensor.axes() == 0)
     return Error{Errc::invalid_argument,
@@ -72,44 +54,12 @@ Status check(const LiveTrackOptions& options) {
     return Error{Errc::invalid_argument,
                  "live track: a speed at rest of up to 1 m/s, a relative scale error of 0 to 1, a "
                  "lag of 0 s to 10 s and 20 Hz to 10 kHz of instants are expected"};
-  return options.axis ? check_axis(options) : Status(Done{});
+  return options.axis ? check_live_axis(options.sensor, *options.axis) : Status(Done{});
 }
 
 /// That moves the level by so much.
 double turned_rad(double moved_m2ps4) {
   return std::sqrt(moved_m2ps4) / standard_gravity_mps2;
-}
-
-Mat<3> direction(const std::array<double, 3>& axis) {
-  return Mat<3>(axis[0], axis[1], axis[2]).normalized();
-}
-
-/// Of a motion that was gathered, from the rest before it to the one after it or to now.
-FoundAxis axis_of_motion(const std::vector<LiveReading>& motion,
-                         const LiveReading& level,
-                         const Triad& sensor,
-                         bool stopped) {
-  const std::array there = axes_there(sensor);
-  std::vector<std::size_t> axes;
-  std::vector<std::vector<double>> velocity;
-  std::vector<double> time_s;
-  for (const LiveReading& reading : motion) time_s.push_back(reading.time_s);
-  for (std::size_t axis = 0; axis < there.size(); ++axis) {
-    if (!there[axis]) continue;
-    const auto i = static_cast<Eigen::Index>(axis);
-    axes.push_back(axis);
-    std::vector<double>& v = velocity.emplace_back();
-    double sum = 0.0, last_s = level.time_s;
-    for (const LiveReading& reading : motion) {
-      sum += (reading.accel_mps2(i) - level.accel_mps2(i)) *
-             (reading.time_s - std::exchange(last_s, reading.time_s));
-      v.push_back(sum);
-    }
-    if (!stopped) continue;
-    const double slope = sum / (last_s - level.time_s);
-    for (std::size_t k = 0; k < v.size(); ++k) v[k] -= slope * (time_s[k] - level.time_s);
-  }
-  return farthest_axis(velocity, time_s, axes);
 }
 
 class LiveTrack final : public LiveAnalysis {
@@ -118,7 +68,7 @@ class LiveTrack final : public LiveAnalysis {
       : options_(options),
         instants_({{options.sensor}}, {options.rate_hz, options.most_rate_hz}),
         rests_(options.sensor) {
-    if (options.axis) axis_ = direction(*options.axis);
+    if (options.axis) axis_ = unit_vector(*options.axis);
   }
 
   [[nodiscard]] const std::vector<Channel>& columns() const override { return columns_; }
@@ -225,7 +175,7 @@ class LiveTrack final : public LiveAnalysis {
 
   void run_gathered(bool stopped, Rows& out) {
     const FoundAxis found = axis_of_motion(gathered_, *level_, options_.sensor, stopped);
-    axis_ = direction(found.direction);
+    axis_ = unit_vector(found.direction);
     constexpr double clear_share = 0.8;
     if (found.share < clear_share)
       say("only " + std::to_string(std::lround(100.0 * found.share)) +

@@ -44,6 +44,11 @@ struct LiveTrackOptions {
 /// 1.2 s after the motion, for slow noise takes that long to be told from motion; the estimate is
 /// pulled in there, and the smoothed one before it.
 ///
+/// Bands are rather too wide than too narrow: with few stops, and by jumps and walks that leave
+/// less open than white noise. Motion so slow that its accelerations lie within the noise is no
+/// motion to the search for rests, and not seen here either. Constant speed is told from a stop by
+/// what speed is left over, for ten seconds.
+///
 /// It begins with a rest: three seconds without motion before the first, by which the noise is
 /// known. The sensor must not turn: where the level of two rests differs, a note says by how much
 /// and all positions from there on are as much less sure as that may have done.

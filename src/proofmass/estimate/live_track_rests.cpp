@@ -1,6 +1,7 @@
 #include "proofmass/estimate/live_track_rests.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -25,16 +26,19 @@ double white_of(const std::vector<signal::AllanLevel>& levels, double step_s) {
 
 }  // namespace
 
-LiveTrackRests::LiveTrackRests(const Triad& sensor) : sensor_(sensor), rests_(sensor.axes(), {}) {}
+LiveTrackRests::LiveTrackRests(const Triad& sensor)
+    : name_(sensor.name), rests_(sensor.axes(), {}) {
+  if (sensor.x) axes_.push_back(0);
+  if (sensor.y) axes_.push_back(1);
+  if (sensor.z) axes_.push_back(2);
+}
 
 /// True: a block is full.
 bool LiveTrackRests::take(const LiveInstant& instant) {
   const Mat<3>& accel = instant.vectors[0];
   std::array<double, 3> values{};
   std::size_t axes = 0;
-  if (sensor_.x) values[axes++] = accel(0);
-  if (sensor_.y) values[axes++] = accel(1);
-  if (sensor_.z) values[axes++] = accel(2);
+  for (const Eigen::Index i : axes_) values[axes++] = accel(i);
   if (any_) {
     constexpr double remembered = 200.0, longest = 4.0;
     const double step_s = instant.time_s - last_s_;
@@ -53,31 +57,46 @@ double LiveTrackRests::known_until_s() {
   if (stuck_) {
     held_.clear();
     if (!was_stuck)
-      notes_.push_back({Severity::warning, sensor_.name + ": one reading is repeated at " +
+      notes_.push_back({Severity::warning, name_ + ": one reading is repeated at " +
                                                at_second(state.newest_s) +
                                                " s: such readings are left out of the estimate"});
   }
   if (state.phase != signal::RestPhase::resting) return last_s_;
-  look_at_rest(state);
+  if (!look_at_rest(state)) return last_s_;
   return state.newest_s - state.until_s < longest_doubt_s ? state.until_s : state.newest_s;
 }
 
-void LiveTrackRests::look_at_rest(const signal::RestState& state) {
+/// False: its means scatter as no rest's did, so that it is a motion that was taken for noise.
+bool LiveTrackRests::look_at_rest(const signal::RestState& state) {
+  const Mat<3> white_m2ps3 = white_of_rest(state);
+  constexpr double louder = 25.0;            // as a density: five times as a standard deviation
+  constexpr std::size_t most_refused = 512;  // blocks: what the search for rests remembers
+  if (quietest_m2ps3_ > 0.0 && white_m2ps3.sum() > louder * quietest_m2ps3_ &&
+      ++refused_ < most_refused)
+    return false;
+  const bool first = quietest_m2ps3_ == 0.0 || refused_ >= most_refused;
+  quietest_m2ps3_ = first ? white_m2ps3.sum() : std::min(quietest_m2ps3_, white_m2ps3.sum());
+  refused_ = 0;
   rest_.since_s = state.since_s;
   rest_.until_s = state.until_s;
   rest_.behind_level_s = static_cast<double>(state.samples) * step_s_;
-  const std::array there{sensor_.x.has_value(), sensor_.y.has_value(), sensor_.z.has_value()};
+  rest_.white_m2ps3 = white_m2ps3;
   std::size_t axis = 0;
-  for (std::size_t i = 0; i < there.size(); ++i) {
-    if (!there[i]) continue;
+  for (const Eigen::Index i : axes_) rest_.level_mps2(i) = state.mean[axis++];
+  return true;
+}
+
+Mat<3> LiveTrackRests::white_of_rest(const signal::RestState& state) const {
+  constexpr double least_m2ps3 = 1e-16;
+  Mat<3> white_m2ps3 = Mat<3>::Zero();
+  std::size_t axis = 0;
+  for (const Eigen::Index i : axes_) {
     const double rounding = state.step[axis] * state.step[axis] / 12.0 * step_s_;
-    constexpr double least_m2ps3 = 1e-16;
-    const auto to = static_cast<Eigen::Index>(i);
-    rest_.level_mps2(to) = state.mean[axis];
-    rest_.white_m2ps3(to) =
-        std::max({white_of(rests_.levels(axis), step_s_), rounding, least_m2ps3});
+    const double scatter = white_of(rests_.levels(axis), step_s_);
+    white_m2ps3(i) = std::max({scatter, rounding, least_m2ps3});
     ++axis;
   }
+  return white_m2ps3;
 }
 
 std::vector<Note> LiveTrackRests::take_notes() {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "proofmass/core/recording.hpp"
@@ -53,7 +53,8 @@ class LiveTrackRests {
  private:
   [[nodiscard]] bool take(const LiveInstant& instant);
   [[nodiscard]] double known_until_s();
-  void look_at_rest(const signal::RestState& state);
+  [[nodiscard]] bool look_at_rest(const signal::RestState& state);
+  [[nodiscard]] Mat<3> white_of_rest(const signal::RestState& state) const;
 
   template <class Visit>
   void release(double until_s, Visit& visit) {
@@ -66,10 +67,13 @@ class LiveTrackRests {
     held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(given));
   }
 
-  Triad sensor_;
+  std::string name_;
+  std::vector<Eigen::Index> axes_;  ///< that there are
   signal::RunningRests rests_;
   std::vector<LiveReading> held_;
   LiveRest rest_;
+  double quietest_m2ps3_ = 0.0;  ///< N² of the quietest rest, over its axes
+  std::size_t refused_ = 0;      ///< blocks of what was too loud for a rest
   double last_s_ = 0.0, step_s_ = 0.0, steps_ = 0.0;
   bool any_ = false, stuck_ = false;
   std::vector<Note> notes_;

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <gtest/gtest.h>
+#include <random>
 
 #include "proofmass/estimate/live_track_test_support.hpp"
 

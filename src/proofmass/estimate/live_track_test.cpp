@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
-#include <numbers>
+#include <random>
 
 #include "proofmass/estimate/counted_new.hpp"
 #include "proofmass/estimate/live_track_scale.hpp"
@@ -179,6 +179,23 @@ TEST(LiveTrack, ConstantSpeedIsNoStop) {
   EXPECT_LT(run.last(live_position_std), 0.2);
 }
 
+// Noise that grows with the motion is no reason to take the motion for noise.
+TEST(LiveTrack, ASwingThatRocksIsNoRest) {
+  CarriageRecord made =
+      record({.strokes_m = {0.5, -0.5, 0.5, -0.5, 0.5, -0.5}, .dwell_s = 4.0, .harmonic = true});
+  std::mt19937_64 engine(201);
+  std::normal_distribution<double> rocking(0.0, 0.1);
+  for (std::size_t k = 0; k < made.velocity_mps.size(); ++k)
+    if (made.velocity_mps[k] != 0.0) made.sensor.accel_mps2[0][k] += rocking(engine);
+  const LiveTrackRun run = run_live(made.sensor, along_x());
+  ASSERT_GT(run.rows.rows(), 1000u);
+  for (std::size_t k = 0; k < run.rows.rows(); ++k) {
+    const bool moves = run.rows.stamps_s[k] > 4.0 && run.rows.stamps_s[k] < 13.0;
+    EXPECT_FALSE(moves && run.rows.channels[live_resting][k] == 1.0);
+  }
+  EXPECT_LT(std::abs(run.last(live_position)), 2.0 * run.last(live_position_std));
+}
+
 TEST(LiveTrack, WithoutReadingsOrWithAClockSetBackItGoesOn) {
   CarriageRecord made = record(carriage());
   for (std::size_t k = sample_at(made.sensor, 9.0); k < sample_at(made.sensor, 9.1); ++k)
@@ -188,7 +205,6 @@ TEST(LiveTrack, WithoutReadingsOrWithAClockSetBackItGoesOn) {
   const LiveTrackRun run = run_live(made.sensor, along_x());
   EXPECT_TRUE(run.says("readings left out"));
   EXPECT_TRUE(run.says("the clock went back"));
-  // Two strokes are left, there and back, of which the first is before the next known rest.
   EXPECT_EQ(run.last(live_resting), 0.0);
   EXPECT_LT(run.last(live_velocity_std), 0.05);
   for (const double value : run.rows.channels[live_position]) EXPECT_TRUE(std::isfinite(value));

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/result.hpp"
+#include "proofmass/estimate/gaussian.hpp"
+#include "proofmass/estimate/live_track_rests.hpp"
+#include "proofmass/estimate/track_motion.hpp"
+
+// The direction of a live displacement. Private to the module's live_track*.cpp.
+namespace proofmass::estimate {
+
+/// Errors: invalid_argument (no direction, or one along an axis that the sensor lacks).
+[[nodiscard]] Status check_live_axis(const Triad& sensor, const std::array<double, 3>& axis);
+
+[[nodiscard]] Mat<3> unit_vector(const std::array<double, 3>& axis);
+
+/// In which a motion was fastest that was gathered from the rest before it, with its last instant
+/// and its level, to the one after it, or to now. Expects a reading at least.
+[[nodiscard]] FoundAxis axis_of_motion(const std::vector<LiveReading>& motion,
+                                       const LiveReading& level,
+                                       const Triad& sensor,
+                                       bool stopped);
+
+}  // namespace proofmass::estimate
