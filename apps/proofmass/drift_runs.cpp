@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "parallel.hpp"
 #include "proofmass/characterise/run_set.hpp"
+#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::app {

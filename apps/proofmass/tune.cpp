@@ -11,7 +11,7 @@
 #include "exit_status.hpp"
 #include "input.hpp"
 #include "output.hpp"
-#include "parallel.hpp"
+#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/report/document.hpp"
 #include "proofmass/report/tune_report.hpp"
 #include "proofmass/report/wording.hpp"

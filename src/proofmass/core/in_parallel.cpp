@@ -1,4 +1,4 @@
-#include "parallel.hpp"
+#include "proofmass/core/in_parallel.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace proofmass::app {
+namespace proofmass {
 namespace {
 
 // Tells one bar of the mean progress of several analyses at once.
@@ -61,4 +61,4 @@ void in_parallel(std::size_t parts,
   }
 }
 
-}  // namespace proofmass::app
+}  // namespace proofmass
