@@ -80,7 +80,8 @@ Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
       continue;
     }
     if (is_new) {
-      out.read.push_back({std::move(topic), {}, std::nullopt, {}});
+      out.read.push_back(
+          {.topic = std::move(topic), .channels = {}, .rows = std::nullopt, .notes = {}});
       messages.push_back(0);
     }
     out.read[place->second].channels.insert(id);
@@ -100,6 +101,7 @@ Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
       continue;
     }
     spec.rows = rows_of(spec.topic, messages[i], file_bytes);
+    spec.rows_are_guessed = messages[i] > 1 && spec.topic.channel.encoding == mcap_samples_encoding;
     kept.push_back(std::move(spec));
   }
   out.read = std::move(kept);
@@ -116,6 +118,7 @@ TableSummary summary_of(const McapTableSpec& spec) {
                    .headings = {},
                    .rows = spec.rows,
                    .rate_hz = std::nullopt,
+                   .rows_are_guessed = spec.rows_are_guessed,
                    .is_derived = metadata.contains("derived_from")};
   if (const auto decoder = mcap_decoder(spec.topic)) {
     out.headings = (*decoder)->head().headings;

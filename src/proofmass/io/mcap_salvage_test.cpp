@@ -161,6 +161,29 @@ TEST(McapRecording, TakenBackToAMarkIsAsIfNothingHadFollowed) {
   for (const Note& note : b->notes) EXPECT_NE(note.severity, Severity::bad) << note.text;
 }
 
+// The first message of a topic says nothing of how long the others are.
+TEST(McapRecording, RowsOfAnotherTopicAreToldWhereTheyAreKnownAndElseNotGuessed) {
+  const std::vector<Channel> columns{{"acc_x", *parse_unit("m/s^2"), {}}};
+  const std::vector<double> stamps{0.0, 0.5, 1.0}, values{1.0, 2.0, 3.0};
+  for (const bool in_one_message : {true, false}) {
+    McapRecording file;
+    const auto topic = file.add_samples_topic({.name = "recording", .columns = columns});
+    const auto other = file.add_samples_topic(
+        {.name = "estimates", .columns = columns, .derived_from = "recording"});
+    file.add_samples(topic, 0, 0, stamps, std::vector<View<double>>{values});
+    file.add_samples(other, 0, 0, stamps, std::vector<View<double>>{values});
+    const View<double> last_stamp(&stamps[2], 1), last_value(&values[2], 1);
+    if (!in_one_message)
+      file.add_samples(other, 3, 0, last_stamp, std::vector<View<double>>{last_value});
+    file.finish();
+    const auto read = read_text(file.take_bytes());
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_TRUE(is_noted(*read, in_one_message ? "also holds estimates (2 columns, 3 rows)"
+                                               : "also holds estimates (2 columns):"))
+        << notes_of(*read);
+  }
+}
+
 TEST(McapRecording, EventsAreToldInANoteAndAreNoTable) {
   McapRecording file;
   const std::vector<Channel> columns{{"u", *parse_unit("V"), {}}};

@@ -17,7 +17,8 @@ struct McapTableSpec {
   McapTopic topic;
   std::set<std::uint16_t> channels;  ///< all that have this topic, encoding and schema
   std::optional<std::uint64_t> rows;
-  std::vector<Note> notes;  ///< what is told of the file
+  bool rows_are_guessed = false;  ///< by the first of its messages, which need not be of one length
+  std::vector<Note> notes;        ///< what is told of the file
   /// All channels of the file that are known beforehand, read or not.
   std::shared_ptr<const std::set<std::uint16_t>> known{};
   std::set<std::uint16_t> events{};  ///< channels of events, which are summed up in a note

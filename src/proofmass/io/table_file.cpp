@@ -65,7 +65,7 @@ int likeness_to_accelerations(const TableSummary& table) {
 std::string described(const TableSummary& table) {
   const std::size_t columns = table.headings.size();
   std::string text = fmt::format("{} ({} column{}", table.name, columns, columns == 1 ? "" : "s");
-  if (table.rows) text += fmt::format(", {} rows", *table.rows);
+  if (table.rows && !table.rows_are_guessed) text += fmt::format(", {} rows", *table.rows);
   return text + ")";
 }
 

@@ -20,6 +20,7 @@ struct TableSummary {
   std::vector<std::string> headings;  ///< unit included
   std::optional<std::uint64_t> rows;  ///< if known
   std::optional<double> rate_hz;      ///< if known
+  bool rows_are_guessed = false;      ///< good to choose a table by, not to be told
   bool is_derived = false;            ///< worked out of another table, which goes before it
 };
 
