@@ -99,9 +99,8 @@ acquire::RecordOptions options_of(const RecordCommand& command) {
   options.stall_s = command.stall_s;
   options.stall_end_s = std::max(command.stall_end_s, command.stall_s);
   options.metadata["command"] = "proofmass record " + acquire::shown_uri(command.source);
-  // Of several the recording keeps none: which is whose is said by their order here alone.
-  if (command.input.sensors.size() == 1)
-    options.sensor_file = text_of(command.input.sensors.front());
+  for (const std::string& file : command.input.sensors)
+    options.sensor_files.push_back(text_of(file));
   return options;
 }
 

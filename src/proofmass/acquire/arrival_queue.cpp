@@ -40,13 +40,21 @@ bool ArrivalQueue::put(Incoming& item, std::chrono::milliseconds patience) {
 
 bool ArrivalQueue::take(Incoming& item, std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
-  if (!changed_.wait_for(lock, patience, [&] { return !items_.empty(); })) return false;
+  changed_.wait_for(lock, patience, [&] { return !items_.empty() || is_woken_; });
+  is_woken_ = false;
+  if (items_.empty()) return false;
   if (spare_.size() < most_spare) spare_.push_back(std::move(item.arrival));
   item = std::move(items_.front());
   items_.pop_front();
   bytes_ -= bytes_of(item);
   changed_.notify_all();
   return true;
+}
+
+void ArrivalQueue::wake() {
+  const std::scoped_lock lock(mutex_);
+  is_woken_ = true;
+  changed_.notify_all();
 }
 
 }  // namespace proofmass::acquire

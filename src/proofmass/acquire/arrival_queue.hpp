@@ -23,6 +23,8 @@ class ArrivalQueue {
   [[nodiscard]] bool put(Incoming& item, std::chrono::milliseconds patience);
   /// The next item in place of an old one, which is kept to be filled again.
   [[nodiscard]] bool take(Incoming& item, std::chrono::milliseconds patience);
+  /// Whoever waits to take something waits no longer.
+  void wake();
 
  private:
   [[nodiscard]] bool has_room(std::size_t bytes) const {
@@ -34,6 +36,7 @@ class ArrivalQueue {
   std::condition_variable changed_;
   std::deque<Incoming> items_;
   std::size_t bytes_ = 0;
+  bool is_woken_ = false;
   std::vector<Arrival> spare_;
 };
 

@@ -71,8 +71,10 @@ Result<std::unique_ptr<RecordFile>> RecordFile::create(DiskWriter& disk,
 
 std::string RecordFile::front(const RecordFileHead& head) {
   mcap_.add_metadata("proofmass", words_of(head));
-  if (!head.sensor_file.empty())
-    mcap_.add_attachment("sensor.toml", "application/toml", 0, head.sensor_file);
+  const bool is_only = head.sensor_files.size() == 1;
+  for (std::size_t k = 0; k < head.sensor_files.size(); ++k)
+    mcap_.add_attachment(is_only ? "sensor.toml" : fmt::format("sensor.{}.toml", k + 1),
+                         "application/toml", 0, head.sensor_files[k]);
   events_ = mcap_.add_json_topic("events", std::string(io::mcap_event_schema));
   clock_ = mcap_.add_json_topic("clock", std::string(io::mcap_clock_schema));
   return mcap_.take_bytes();

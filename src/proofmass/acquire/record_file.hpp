@@ -26,7 +26,7 @@ struct RecordFileHead {
   const SourceHead& source;
   const std::vector<Channel>& estimates;  ///< columns; none without an analysis
   RecordWords metadata{};
-  std::string sensor_file{};
+  const std::vector<std::string>& sensor_files;
 };
 
 /// One file of a recording: what goes into it, and when that is brought to the disk. Its times are

@@ -72,42 +72,8 @@ void RecordSession::begin_file(double origin_s) {
   file_->begin(origin_s, start_ns_ + static_cast<std::int64_t>(origin_s * 1e9));
 }
 
-void RecordSession::analyse(const Block& block, std::int64_t host_ns) {
-  estimates_.clear();
-  const Status added = analysis_->add(block, estimates_);
-  // Where samples wait for whoever reads, a queue that is full says nothing of the estimates.
-  if (estimates_.rows() > 0 && head_.is_paced)
-    latency_.add(static_cast<double>(host_now_ns() - host_ns) * 1e-9);
-  keep_estimates();
-  tell_notes(analysis_->take_notes());
-  if (added) return;
-  tell(EventKind::note, Severity::bad, "the estimates end here: " + added.error().message);
-  analysis_.reset();
-}
-
-void RecordSession::keep_estimates() {
-  if (estimates_.rows() == 0) return;
-  const Block rows = view_of(estimates_, static_cast<std::size_t>(estimate_rows_));
-  estimate_rows_ += estimates_.rows();
-  if (gate_)
-    gate_->add_estimates(rows, keepers());
-  else
-    write_estimates(rows);
-  if (watch_.estimates) watch_.estimates(rows);
-}
-
 void RecordSession::write_estimates(const Block& rows) {
   if (file_ && file_->has_begun()) file_->add_estimates(rows);
-}
-
-void RecordSession::finish_analysis() {
-  if (!analysis_) return;
-  estimates_.clear();
-  const Status finished = analysis_->finish(estimates_);
-  keep_estimates();
-  tell_notes(analysis_->take_notes());
-  if (!finished) tell(EventKind::note, Severity::bad, finished.error().message);
-  analysis_.reset();
 }
 
 Status RecordSession::new_file(bool is_numbered) {
@@ -120,8 +86,7 @@ Status RecordSession::new_file(bool is_numbered) {
     metadata["part"] = std::to_string(closed_.size() + 1);
   }
   auto file = RecordFile::create(disk_, std::move(part).value(),
-                                 {head_, analysis_ ? analysis_->columns() : no_columns_,
-                                  std::move(metadata), options_.sensor_file});
+                                 {head_, columns_, std::move(metadata), options_.sensor_files});
   if (!file) return file.error();
   file_ = std::move(file).value();
   file_path_ = names.path;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fmt/format.h>
 #include <utility>
+
+#include "proofmass/core/number_words.hpp"
 
 namespace proofmass::acquire {
 namespace {
@@ -78,19 +81,24 @@ Status RecordSession::use(const SourceHead& head) {
   if (make_analysis_) {
     auto made = make_analysis_(head_);
     if (!made) return made.error();
-    analysis_ = std::move(made).value();
+    begin_analysis(std::move(made).value());
   }
-  estimates_.channels.assign(analysis_ ? analysis_->columns().size() : 0, {});
-  hold_.emplace(head_.has_device_clock, head_.is_paced, head_.recording.time.rate_hz,
-                options_.stall_s);
+  begin_watching();
   if (line_)
     line_->reopen(head_);
   else
     line_.emplace(head_);
   if (options_.trigger)
-    gate_.emplace(*options_.trigger, trigger_channel_, channels, estimates_.channels.size(),
+    gate_.emplace(*options_.trigger, trigger_channel_, channels, columns_.size(),
                   options_.queue_bytes);
   return Done{};
+}
+
+/// For silences and another rate, of a source that was opened.
+void RecordSession::begin_watching() {
+  const double rate_hz = head_.recording.time.rate_hz;
+  hold_.emplace(head_.has_device_clock, head_.is_paced, rate_hz, options_.stall_s);
+  rate_watch_ = RateWatch(rate_hz);
 }
 
 void RecordSession::loop() {
@@ -102,6 +110,7 @@ void RecordSession::loop() {
     const bool came = queue_.take(item, patience);
     if (came) hold_->put(std::move(item));
     while (!end_ && hold_->take(item, false)) work(item);
+    take_estimates(std::chrono::milliseconds(0));
     look_at_clocks();
     if (file_) file_->tick(host_now_ns());
   }
@@ -142,8 +151,9 @@ void RecordSession::look_at_clocks() {
   const std::int64_t jump_ns = ahead_ns - std::exchange(realtime_ahead_ns_, ahead_ns);
   if (std::abs(jump_ns) > step_ns)
     tell(EventKind::host_jump, Severity::warning,
-         fmt::format("the host's time of day was set {:+.3f} s; the recording's time goes on",
-                     static_cast<double>(jump_ns) * 1e-9));
+         fmt::format("the host's time of day was set {} s {}; the recording's time goes on",
+                     fixed(std::abs(static_cast<double>(jump_ns)) * 1e-9, 3),
+                     jump_ns > 0 ? "on" : "back"));
 }
 
 void RecordSession::work(Incoming& item) {
@@ -186,6 +196,7 @@ void RecordSession::work_on_rows(Incoming& item) {
   }
   for (const RecordEvent& event : events_) tell(event);
   tally_.add_arrival(*line_, head_, item.arrival.host_ns);
+  watch_rate(item.arrival.host_ns);
   std::size_t rows = item.arrival.rows();
   if (options_.duration_s && stamps_s_.back() >= *options_.duration_s) {
     const auto over = std::ranges::lower_bound(stamps_s_, *options_.duration_s);
@@ -202,6 +213,16 @@ void RecordSession::work_on_rows(Incoming& item) {
   pair_clocks(item.arrival.host_ns);
 }
 
+void RecordSession::watch_rate(std::int64_t host_ns) {
+  if (!head_.is_paced) return;
+  const auto other = rate_watch_.add(line_->rows(), line_->host_s(host_ns));
+  if (!other) return;
+  tell(EventKind::note, Severity::warning,
+       fmt::format("rows have come at {:.4g} Hz for {:.0f} s, not at the granted {:.4g} Hz{}",
+                   other->rate_hz, other->for_s, head_.recording.time.rate_hz,
+                   head_.has_device_clock ? "" : ", by which their times are counted"));
+}
+
 /// Once a second, what the time of day was when the last row arrived.
 void RecordSession::pair_clocks(std::int64_t host_ns) {
   if (host_ns < next_pair_ns_ || !file_ || !file_->has_begun()) return;
@@ -215,8 +236,7 @@ void RecordSession::reopened(const SourceHead& head) {
   if (is_same) {
     head_ = head;
     line_->reopen(head_);
-    hold_.emplace(head_.has_device_clock, head_.is_paced, head_.recording.time.rate_hz,
-                  options_.stall_s);
+    begin_watching();
     tell(EventKind::reconnected, Severity::info, "the source is there again");
     return;
   }

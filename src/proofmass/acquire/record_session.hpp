@@ -1,15 +1,18 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "proofmass/acquire/analysis_thread.hpp"
 #include "proofmass/acquire/arrival_queue.hpp"
 #include "proofmass/acquire/latency_histogram.hpp"
 #include "proofmass/acquire/level_gate.hpp"
 #include "proofmass/acquire/part_file.hpp"
+#include "proofmass/acquire/rate_watch.hpp"
 #include "proofmass/acquire/record_file.hpp"
 #include "proofmass/acquire/record_tally.hpp"
 #include "proofmass/acquire/recorder.hpp"
@@ -36,16 +39,17 @@ class RecordSession {
   // record_session.cpp: the course of it; record_end.cpp: its end.
   [[nodiscard]] Status begin();
   [[nodiscard]] Status use(const SourceHead& head);
+  void begin_watching();
   void loop();
   void take_what_is_left(Incoming& item);
   void ask_stopped();
   void look_at_clocks();
   void work(Incoming& item);
   void work_on_rows(Incoming& item);
+  void watch_rate(std::int64_t host_ns);
   void pair_clocks(std::int64_t host_ns);
   void reopened(const SourceHead& head);
   void end(RecordEnd how, std::string reason = {});
-  void finish_analysis();
   void close();
   void close_file();
   void close_failed(const DiskWriter::Failure& failure);
@@ -54,8 +58,6 @@ class RecordSession {
   // record_rows.cpp: where rows and events go.
   void keep(const Block& block, std::int64_t host_ns);
   void keep_samples(const Block& block);
-  void analyse(const Block& block, std::int64_t host_ns);
-  void keep_estimates();
   void write_estimates(const Block& rows);
   [[nodiscard]] LevelGate::Keep keepers();
   void begin_file(double origin_s);
@@ -66,6 +68,16 @@ class RecordSession {
   void tell(const RecordEvent& event);
   void tell_notes(const std::vector<Note>& notes);
 
+  // record_analysis.cpp: what goes to the analysis and comes back.
+  void begin_analysis(std::unique_ptr<LiveAnalysis> analysis);
+  void analyse(const Block& block, std::int64_t host_ns);
+  void take_estimates(std::chrono::milliseconds patience);
+  void keep_estimates();
+  void leave_out(const Block& block);
+  void tell_left_out();
+  void finish_analysis();
+  [[nodiscard]] bool is_told_to_stop() const;
+
   const OpenSource& open_;
   const RecordOptions& options_;
   const RecordWatch& watch_;
@@ -73,15 +85,18 @@ class RecordSession {
   CreatePartFile create_;
 
   SourceHead head_;
-  std::unique_ptr<LiveAnalysis> analysis_;
-  std::vector<Channel> no_columns_;
   RecordTally tally_;
   LatencyHistogram latency_;
   ArrivalQueue queue_;
+  std::unique_ptr<AnalysisThread> analysis_;
+  std::vector<Channel> columns_;  ///< the analysis's
+  Analysed analysed_;
+  std::uint64_t left_out_ = 0;  ///< rows in front of the next, of the analysis alone
   DiskWriter disk_;
   std::unique_ptr<SourceReader> reader_;
   std::optional<TimeLine> line_;
   std::optional<SilenceHold> hold_;
+  RateWatch rate_watch_;
   std::optional<LevelGate> gate_;
   std::size_t trigger_channel_ = 0;
   std::unique_ptr<RecordFile> file_;
@@ -105,7 +120,6 @@ class RecordSession {
 
   std::vector<double> stamps_s_;
   std::vector<RecordEvent> events_;
-  Rows estimates_;
 };
 
 }  // namespace proofmass::acquire

@@ -39,13 +39,15 @@ struct RecordOptions {
   double stall_s = 2.0;             ///< silence that is an event
   double stall_end_s = 30.0;        ///< silence that ends the recording (or has it reconnect)
   double sync_s = 0.5;              ///< data are on the disk after so long at most
-  std::size_t queue_bytes = std::size_t{64} << 20;  ///< between source and disk
-  std::map<std::string, std::string> metadata{};    ///< "command": "proofmass record …"
-  std::string sensor_file{};                        ///< its text; empty: none
+  /// Between source and disk, and once more between source and analysis.
+  std::size_t queue_bytes = std::size_t{64} << 20;
+  double catch_up_s = 10.0;  ///< that an analysis which is behind has when it is told to stop
+  std::map<std::string, std::string> metadata{};  ///< "command": "proofmass record …"
+  std::vector<std::string> sensor_files{};        ///< their texts
 };
 
-/// Called on the recording's own thread, between blocks; what takes long holds the estimates up,
-/// and the samples wait in the queue.
+/// Called on the recording's own thread, between blocks; what takes long holds the writing up, and
+/// the samples wait in the queue.
 struct RecordWatch {
   std::function<bool()> stopped{};  ///< asked ten times a second at least; true: close and return
   std::function<void(const SourceHead& head)> opened{};
@@ -56,7 +58,9 @@ struct RecordWatch {
 
 /// Opens a source, once more for each reconnection.
 using OpenSource = std::function<Result<std::unique_ptr<Source>>()>;
-/// Makes the analysis that goes along, once the source's channels are known; may be empty.
+/// Makes the analysis that goes along, once the source's channels are known; may be empty. It runs
+/// on a thread of its own: where it is slow, samples of a source that comes at its own pace wait
+/// for it, and some are left out of it (an event tells) where too many wait.
 using MakeAnalysis = std::function<Result<std::unique_ptr<LiveAnalysis>>(const SourceHead& head)>;
 
 /// Records until the source ends, the watcher says so, or the duration is over. The file is

@@ -311,7 +311,7 @@ TEST(Recorder, PutsEstimatesBesideTheSamples) {
   }};
   const auto summary =
       record(open_scripts({{.acts = arrivals(30)}}),
-             {.path = folder.file("run.mcap"), .sensor_file = "[sensor]\n"}, watch, doubled);
+             {.path = folder.file("run.mcap"), .sensor_files = {"[sensor]\n"}}, watch, doubled);
   ASSERT_TRUE(summary);
   EXPECT_EQ(seen, 300u);
   EXPECT_FALSE(summary->latency) << "the source waits: a full queue is no latency";
@@ -321,6 +321,17 @@ TEST(Recorder, PutsEstimatesBesideTheSamples) {
   const Recording estimates = read_back(folder.file("run.mcap"), "estimates");
   ASSERT_EQ(estimates.samples(), 300u);
   EXPECT_EQ(estimates.channels[0].values[7], 14.0);
+}
+
+TEST(Recorder, KeepsEachOfSeveralSensorFiles) {
+  const TestFolder folder;
+  const auto summary =
+      record(open_scripts({{.acts = arrivals(3)}}),
+             {.path = folder.file("run.mcap"), .sensor_files = {"[sensor]\n", "[bias]\n"}});
+  ASSERT_TRUE(summary);
+  const std::string notes = all_notes(read_back(folder.file("run.mcap")));
+  EXPECT_NE(notes.find("\"sensor.1.toml\", 9 bytes"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("\"sensor.2.toml\", 7 bytes"), std::string::npos) << notes;
 }
 
 TEST(Recorder, GoesOnWithoutAnAnalysisThatFails) {

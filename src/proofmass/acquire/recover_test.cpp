@@ -39,7 +39,7 @@ std::string words_of(const Recovery& recovery) {
 std::string recorded(const TestFolder& folder, std::size_t count) {
   const std::string path = folder.file("run.mcap");
   const auto summary = record(open_scripts({{.acts = arrivals(count)}}),
-                              {.path = path, .sensor_file = "[sensor]\n"}, {}, doubled);
+                              {.path = path, .sensor_files = {"[sensor]\n"}}, {}, doubled);
   EXPECT_TRUE(summary);
   return bytes_of(path);
 }

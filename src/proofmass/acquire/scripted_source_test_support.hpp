@@ -35,6 +35,8 @@ struct Script {
   std::function<double(std::uint64_t row, std::size_t channel)> value{};
   /// Of the device's clock; the host's time of a row is the same unless it is a real-time script.
   std::function<std::int64_t(std::uint64_t row)> device_ns{};
+  /// When a row arrives, where that is not really now.
+  std::function<std::int64_t(std::uint64_t row)> host_ns{};
 };
 
 inline SourceHead head_of(const Script& script) {
@@ -79,7 +81,7 @@ class ScriptedSource final : public Source {
     arrival.lost_before = act.lost_before;
     *row_ += act.lost_before;
     for (std::size_t i = 0; i < act.rows; ++i) add_row(arrival);
-    arrival.host_ns = script_.is_paced ? host_now_ns() : device_ns(*row_ - 1);
+    arrival.host_ns = host_ns(*row_ - 1);
     return Arrived::rows;
   }
 
@@ -87,6 +89,10 @@ class ScriptedSource final : public Source {
   [[nodiscard]] std::int64_t device_ns(std::uint64_t row) const {
     if (script_.device_ns) return script_.device_ns(row);
     return 5'000'000'000 + static_cast<std::int64_t>(row) * 10'000'000;
+  }
+  [[nodiscard]] std::int64_t host_ns(std::uint64_t row) const {
+    if (script_.host_ns) return script_.host_ns(row);
+    return script_.is_paced ? host_now_ns() : device_ns(row);
   }
   void add_row(Arrival& arrival) {
     const std::uint64_t row = (*row_)++;

@@ -21,26 +21,6 @@ double DelayFloor::value() const {
   return before_ ? std::min(*before_, *now_) : *now_;
 }
 
-void UsualStep::add(double step_s) {
-  constexpr unsigned longest_memory = 64;
-  constexpr double longest = 3.0;  // a hole is no step
-  if (step_s_ > 0.0) step_s = std::min(step_s, longest * step_s_);
-  if (!(step_s > 0.0)) return;
-  if (step_s_ == 0.0) step_s_ = step_s;
-  count_ = std::min(count_ + 1, longest_memory);
-  const double gain = 1.0 / (count_ + 1.0);
-  deviation_s_ += gain * (std::abs(step_s - step_s_) - deviation_s_);
-  step_s_ += gain * (step_s - step_s_);
-}
-
-bool UsualStep::is_hole(double step_s) const {
-  constexpr unsigned warm = 16;
-  constexpr double irregular = 0.3;  // a mean deviation of so many steps
-  if (count_ < warm) return false;
-  if (deviation_s_ > irregular * step_s_) return step_s > std::max(50.0 * step_s_, 1.0);
-  return step_s > 1.5 * step_s_ + 8.0 * deviation_s_;
-}
-
 void TimeLine::reopen(const SourceHead& head) {
   is_paced_ = head.is_paced;
   rate_hz_ = head.recording.time.rate_hz;
@@ -127,10 +107,9 @@ void TimeLine::tell_missing(const Incoming& item, View<double> stamps_s) {
     if (i == 0) tell_known(item, hole_s);
     const double open_s = hole_s - static_cast<double>(missing) * step_.step_s();
     const bool is_hole = clock_ == Clock::device && step_.is_hole(open_s);
-    if (is_hole || (i == 0 && is_gap_))
-      missing += tell_gap(hole_s, open_s);
-    else if (missing == 0 && !is_first)
-      step_.add(hole_s);
+    const bool breaks_off = i == 0 && is_gap_;
+    if (missing == 0 && !is_first && !breaks_off) step_.add(hole_s);
+    if (is_hole || breaks_off) missing += tell_gap(hole_s, open_s);
     rows_ += std::exchange(missing, 0);
     last_s_ = stamps_s[i];
   }

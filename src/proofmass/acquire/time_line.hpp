@@ -8,6 +8,7 @@
 #include "proofmass/acquire/incoming.hpp"
 #include "proofmass/acquire/running_line.hpp"
 #include "proofmass/acquire/source.hpp"
+#include "proofmass/acquire/usual_step.hpp"
 #include "proofmass/core/recording_log.hpp"
 
 namespace proofmass::acquire {
@@ -21,22 +22,6 @@ class DelayFloor {
  private:
   std::optional<double> before_, now_;
   double since_s_ = 0.0;
-};
-
-/// The step between rows as it usually is, and how much it varies.
-class UsualStep {
- public:
-  explicit UsualStep(double nominal_s) : step_s_(nominal_s) {}
-
-  void add(double step_s);
-  [[nodiscard]] double step_s() const { return step_s_; }  ///< 0: not known yet
-  /// Whether a step is so long that rows must be missing.
-  [[nodiscard]] bool is_hole(double step_s) const;
-
- private:
-  double step_s_;
-  double deviation_s_ = 0.0;  ///< mean of its size
-  unsigned count_ = 0;
 };
 
 /// Gives rows their time on the recording's clock: seconds since its first row, never less than the
