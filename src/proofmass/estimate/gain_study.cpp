@@ -39,18 +39,6 @@ LinearModel<3, 1> model_of(const GainStudyOptions& options) {
                     .accel_variance_m2ps4 = options.accel_variance_m2ps4});
 }
 
-// From when on every gain stays near its limit.
-std::optional<double> settling_s(const GainStudy& study, std::size_t state) {
-  const double limit = study.limit[state];
-  std::optional<double> since;
-  for (const GainInstant& instant : study.instants) {
-    const bool near = std::abs(instant.gain[state] - limit) <= settled_within * std::abs(limit);
-    if (near && !since) since = instant.t_s;
-    if (!near) since.reset();
-  }
-  return since;
-}
-
 }  // namespace
 
 GainStudy gain_study(const GainStudyOptions& options) {
@@ -75,8 +63,19 @@ GainStudy gain_study(const GainStudyOptions& options) {
       instant.variance[static_cast<std::size_t>(i)] = P(i, i);
     }
   }
-  for (std::size_t i = 0; i < 3; ++i) study.settling_s[i] = settling_s(study, i);
+  for (std::size_t i = 0; i < 3; ++i) study.settling_s[i] = settling_s(study, i, settled_within);
   return study;
+}
+
+std::optional<double> settling_s(const GainStudy& study, std::size_t state, double within) {
+  const double limit = study.limit[state];
+  std::optional<double> since;
+  for (const GainInstant& instant : study.instants) {
+    const bool near = std::abs(instant.gain[state] - limit) <= within * std::abs(limit);
+    if (near && !since) since = instant.t_s;
+    if (!near) since.reset();
+  }
+  return since;
 }
 
 std::vector<StepSizeEffect> step_size_study(const GainStudyOptions& options, View<double> steps_s) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -41,6 +42,12 @@ struct GainStudy {
 /// Source: M. A. Lele (2010), sections 4.1.4 and 5.3, for the study; the definition of settling is
 /// ours. Expects positive step and R. Cost: O(duration / step).
 [[nodiscard]] GainStudy gain_study(const GainStudyOptions& options);
+
+/// From when on the gain of a state (0: position) stays within this fraction of its limit; absent
+/// where it does not get there within the duration.
+[[nodiscard]] std::optional<double> settling_s(const GainStudy& study,
+                                               std::size_t state,
+                                               double within);
 
 /// What a step length comes to once the gain has settled.
 struct StepSizeEffect {

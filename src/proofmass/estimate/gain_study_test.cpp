@@ -40,6 +40,15 @@ TEST(GainStudy, LargerRThanQTakesSeveralTimesAsLong) {
   }
 }
 
+TEST(GainStudy, SettlesTheLaterTheLessIsForgiven) {
+  const GainStudy study = thesis(1.0, 4.0);
+  EXPECT_EQ(settling_s(study, 0, 0.02), study.settling_s[0]);
+  EXPECT_GT(settling_s(study, 0, 1e-3).value(), study.settling_s[0].value());
+  // Each step brings the gain nearer by (1 − k)², k = 0.2.
+  const double tenth_s = settling_s(study, 2, 1e-4).value() - settling_s(study, 2, 1e-3).value();
+  EXPECT_NEAR(tenth_s, 0.2 * std::log(0.1) / (2.0 * std::log(0.8)), 0.2);
+}
+
 TEST(GainStudy, AGainThatDoesNotGetThereHasNoSettlingTime) {
   const GainStudy study = gain_study({.jerk_psd_m2ps5 = 1e-6, .duration_s = 2.0});
   EXPECT_FALSE(study.settling_s[2].has_value());

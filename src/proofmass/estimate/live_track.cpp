@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "proofmass/core/units.hpp"
+#include "proofmass/estimate/live_columns.hpp"
 #include "proofmass/estimate/live_instants.hpp"
 #include "proofmass/estimate/live_track_axis.hpp"
 #include "proofmass/estimate/live_track_filter.hpp"
@@ -28,17 +29,14 @@ constexpr double telling_turn_rad = 0.5 * rad_per_deg;
 constexpr double usual_rest_walk = 3e-4;
 
 std::vector<Channel> track_columns() {
-  const auto column = [](const char* name, Quantity quantity, const char* symbol) {
-    return Channel{name, {quantity, 1.0, 0.0, symbol}, {}};
-  };
-  return {column("position", Quantity::length, "m"),
-          column("position_std", Quantity::length, "m"),
-          column("velocity", Quantity::speed, "m/s"),
-          column("velocity_std", Quantity::speed, "m/s"),
-          column("smoothed_time", Quantity::time, "s"),
-          column("smoothed_position", Quantity::length, "m"),
-          column("smoothed_position_std", Quantity::length, "m"),
-          column("resting", Quantity::unknown, "")};
+  return {live_column("position", Quantity::length, "m"),
+          live_column("position_std", Quantity::length, "m"),
+          live_column("velocity", Quantity::speed, "m/s"),
+          live_column("velocity_std", Quantity::speed, "m/s"),
+          time_column("smoothed_time"),
+          live_column("smoothed_position", Quantity::length, "m"),
+          live_column("smoothed_position_std", Quantity::length, "m"),
+          number_column("resting")};
 }
 
 Status check(const LiveTrackOptions& options) {

@@ -48,6 +48,8 @@ class LiveWheelFilter {
  private:
   using Model = WheelModel<S>;
   static constexpr int places = 2 * S;
+  /// How far a place is moved to see what it does. What is read is linear in it.
+  static constexpr double place_step_m = 1e-3;
   /// The same with one coordinate of the places moved, and what it says of the readings.
   struct Moved {
     FilterState<states> state;
@@ -73,11 +75,12 @@ class LiveWheelFilter {
   void loosen();
   void end_stretch();
   void adapt_variance(std::size_t sensor);
+  [[nodiscard]] double predicted_std_rad() const;
+  // live_wheel_places.cpp, with what is public of the places:
   void expect();
   [[nodiscard]] bool shows_place(int sensor) const;
   void learn_place(const Mat<places>& slope, double residual, double variance);
   [[nodiscard]] Mat<2> places_variance() const;
-  [[nodiscard]] double predicted_std_rad() const;
 
   std::vector<WheelPlane> planes_;
   WheelReadings now_;  ///< two instants: 0 the first, 1 any later; each sensor has one row

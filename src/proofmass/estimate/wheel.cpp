@@ -90,12 +90,10 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
   if (first != series.atan2_angle_rad.end())
     solution.atan2.turns = Uncertain{(series.atan2_angle_rad.back() - *first) / rad_per_turn, 0.0};
   solution.atan2.note = "readings as they are: bias and centripetal force stay in";
-  const bool radii_known = std::ranges::all_of(
-      solution.sensors, [](const WheelSensorFit& s) { return s.radius_m.has_value(); });
-  if (radii_known)
-    series.double_integral_angle_rad =
-        double_integral_angle(readings, places_in(fit, readings.sensors.size()),
-                              series.angle_rad.front(), series.speed_radps.front());
+  const auto plain = plain_places(solution.sensors, readings.phase_rad);
+  if (plain)
+    series.double_integral_angle_rad = double_integral_angle(
+        readings, plain->places_m, series.angle_rad.front(), series.speed_radps.front());
   if (series.double_integral_angle_rad.empty()) {
     solution.double_integration.note =
         "needs the radius of every sensor, which this recording does not show: give --radius";
@@ -108,6 +106,8 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
   solution.double_integration.note =
       "starts from the smoother's first angle and speed; an error of b m/s^2 grows as b t^2 / (2 "
       "r)";
+  if (plain->taken)
+    solution.double_integration.note += "; took the sensors' first axes for the spoke";
 }
 
 void add_sensor(const WheelSensor& sensor,

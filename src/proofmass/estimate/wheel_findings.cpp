@@ -19,20 +19,23 @@ std::optional<Uncertain> told(const WheelFit& fit, int at, double offset = 0.0) 
 }
 
 void describe_place(const WheelFit& fit, int at, WheelSensorFit& sensor) {
+  sensor.radius_m = fit.given_radius_m;
   const Eigen::Vector2d r = fit.constants.segment<2>(at);
   const Eigen::Matrix2d cov = fit.constants_cov.block<2, 2>(at, at);
   const double radius = r.norm();
   if (!(radius > 0.0)) return;
   const Eigen::Vector2d outward = r / radius, forward(-outward(1), outward(0));
   const double std = std::sqrt(outward.dot(cov * outward));
-  const double before = std::sqrt(fit.constants_prior_cov(at, at));
-  const bool given = before < 0.2 * radius;
-  // Stricter than for the rest: the size of a vector is never below zero, so a poor one looks
-  // large.
-  if (!given && !(std < 0.5 * untold * before)) return;
-  sensor.radius_m = Uncertain{radius, std};
   const double across = std::sqrt(forward.dot(cov * forward)) / radius;
-  if (across < 0.5) sensor.mounting_rad = Uncertain{-std::atan2(r(1), r(0)), across};
+  // Five standard deviations: of a sensor at the axle, nothing but error is hardly ever that far
+  // out.
+  if (across < 0.2) sensor.mounting_rad = Uncertain{-std::atan2(r(1), r(0)), across};
+  // Without a radius given, stricter than for the rest: the size of a vector is never below zero,
+  // so a poor one looks large.
+  const double most = fit.given_radius_m
+                          ? fit.given_radius_m->std
+                          : 0.5 * untold * std::sqrt(fit.constants_prior_cov(at, at));
+  if (std < most) sensor.radius_m = Uncertain{radius, std};
 }
 
 enum class Kind { bias, scale, skew, phase, place };
@@ -86,7 +89,8 @@ std::string joined(const std::vector<std::string>& names) {
 
 std::string sentence(const Eigen::VectorXd& direction,
                      const std::vector<Constant>& constants,
-                     const std::vector<WheelSensorFit>& sensors) {
+                     const std::vector<WheelSensorFit>& sensors,
+                     bool radius_given) {
   std::vector<std::string> names;
   bool place = false, bias = false;
   std::size_t sensor = sensors.size();
@@ -108,6 +112,10 @@ std::string sentence(const Eigen::VectorXd& direction,
     sensor = constants[i].sensor;
   }
   const std::string whose = one_sensor ? sensors[sensor].name : "the two sensors";
+  if (place && radius_given)
+    return "in which direction from the axle " + whose + (one_sensor ? " sits" : " sit") +
+           " does not show at one speed, and leaves the biases open by omega^2 R: record a second "
+           "speed";
   const std::string what = joined(names) + " of " + whose;
   if (place && bias) return what + " cannot be told apart at one speed: record a second speed";
   if (place)
@@ -146,7 +154,8 @@ std::vector<std::string> say_not_observable(const WheelFit& fit,
   const std::vector<Constant> constants = constants_of(sensors.size());
   std::vector<std::string> sentences;
   for (Eigen::Index i = axes.values.size(); i-- > 0 && axes.values(i) > untold * untold;) {
-    const std::string text = sentence(axes.vectors.col(i), constants, sensors);
+    const std::string text =
+        sentence(axes.vectors.col(i), constants, sensors, fit.given_radius_m.has_value());
     if (std::ranges::find(sentences, text) == sentences.end()) sentences.push_back(text);
   }
   return sentences;

@@ -227,6 +227,24 @@ void add_places_uncertainty(const WheelReadings& readings,
   }
 }
 
+/// Gravity is what scales and places are measured with: were it larger by a part, the scales would
+/// be smaller and the places larger by that part, the angle the same. `believed` is the share of
+/// the places' information that came from their prior, which no gravity moves.
+template <int S>
+void add_gravity_uncertainty(const WheelReadings& readings,
+                             const Eigen::MatrixXd& believed,
+                             WheelFit& fit) {
+  const double part = readings.gravity_std_mps2 / readings.gravity_mps2;
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(fit.constants.size());
+  for (int s = 0; s < S; ++s) {
+    const int at = wheel::first_of(s) - wheel::first_of(0) + wheel::scale;
+    change.segment<2>(at) = -part * (fit.constants.segment<2>(at).array() + 1.0);
+  }
+  const Places places = fit.constants.tail<2 * S>();
+  change.tail<2 * S>() = part * (places - believed * places);
+  fit.constants_cov += change * change.transpose();
+}
+
 /// Rounds until the likelihood has settled, at most `most`.
 template <int S>
 Settled<S> settle_rounds(WheelReadings& readings,
@@ -309,8 +327,10 @@ WheelFit fit_sensors(WheelReadings& readings,
   constexpr int count = wheel::standing(S);
   fit.constants_prior_cov =
       prior_state<S>(settled.prior).x.cov.template bottomRightCorner<count, count>();
-  fit.constants_prior_cov.diagonal().tail<2 * S>().setConstant(belief.std_m * belief.std_m);
+  fit.constants_prior_cov.template bottomRightCorner<2 * S, 2 * S>() =
+      positive_inverse(belief.information);
   add_places_uncertainty(readings, settled, track.path, fit);
+  add_gravity_uncertainty<S>(readings, settled.places_cov * belief.information, fit);
   return fit;
 }
 

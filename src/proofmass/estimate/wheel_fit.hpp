@@ -16,6 +16,7 @@ namespace proofmass::estimate {
 /// The readings of one or two sensors on one time line.
 struct WheelReadings {
   double gravity_mps2 = standard_gravity_mps2;  ///< its component in the plane of the wheel
+  double gravity_std_mps2 = 0.0;                ///< of that, for want of knowing the axle's tilt
   double rolling_radius_m = 0.0;
   double phase_rad = 0.0;  ///< of the second sensor against the first, as known so far
   std::vector<double> time_s;
@@ -75,13 +76,15 @@ struct WheelFit {
   double widest_prediction_rad = 0.0;  ///< std of the predicted angle, once past the first second
   /// Of each sensor, where a radius was given: what the recording alone says of it.
   std::vector<Uncertain> free_radius_m;
-  WheelSeries series;  ///< what filter and smoother give; time_s too
+  std::optional<Uncertain> given_radius_m;  ///< the radius that was given, as far as it is trusted
+  WheelSeries series;                       ///< what filter and smoother give; time_s too
 };
 
-/// What is known of the sensors' places beforehand: their mean, and how far they may be from it.
+/// What is known of the sensors' places beforehand.
 struct PlacesPrior {
-  Eigen::VectorXd mean;  ///< (u, v) of each sensor, m
-  double std_m = ConstantsPrior{}.place_m;
+  Eigen::VectorXd mean;         ///< (u, v) of each sensor, m
+  Eigen::MatrixXd information;  ///< inverse of its covariance, 1/m²
+  bool final = false;           ///< the recording is not asked for more
 };
 
 /// Settles noise, places and constants about the track, then smooths.

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "proofmass/core/linalg.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -18,9 +21,10 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
                     double offset_s,
                     const WheelOptions& options) {
   WheelReadings readings;
-  double level2 = options.gravity_mps2 * options.gravity_mps2;
-  const double axial = prepared.front()->plane.axial_mps2;
-  readings.gravity_mps2 = std::sqrt(std::max(level2 - axial * axial, 0.01 * level2));
+  const Uncertain gravity = gravity_in_plane(
+      prepared.front()->plane, !sensors.front()->accel_mps2[2].empty(), options.gravity_mps2);
+  readings.gravity_mps2 = gravity.value;
+  readings.gravity_std_mps2 = gravity.std;
   readings.rolling_radius_m = options.rolling_radius_m.value_or(0.0);
   for (std::size_t s = 0; s < sensors.size(); ++s)
     readings.sensors.push_back(project(*sensors[s], prepared[s]->screened, prepared[s]->plane));
@@ -47,17 +51,35 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
   }
 }
 
-/// What is believed of the places: nothing but their size, or the radius that was given, outward
-/// along the direction that the recording shows, else along u.
-PlacesPrior places_prior(const WheelOptions& options, const Eigen::VectorXd& seen) {
-  PlacesPrior prior{Eigen::VectorXd::Zero(seen.size())};
-  if (!options.radius_m) return prior;
-  prior.std_m = std::max(0.02 * *options.radius_m, 2e-4);
-  for (Eigen::Index s = 0; s < seen.size(); s += 2) {
-    const Eigen::Vector2d direction = seen.segment<2>(s);
-    prior.mean.segment<2>(s) = direction.norm() > std::max(0.3 * *options.radius_m, 1e-6)
-                                   ? Eigen::Vector2d(direction.normalized() * *options.radius_m)
-                                   : Eigen::Vector2d(*options.radius_m, 0.0);
+/// Nothing is believed of the places but their size.
+PlacesPrior anywhere(std::size_t sensors, double std_m) {
+  const auto count = static_cast<Eigen::Index>(2 * sensors);
+  return {Eigen::VectorXd::Zero(count), Eigen::MatrixXd::Identity(count, count) / (std_m * std_m)};
+}
+
+/// Whether the recording shows in which of its own directions the sensor sits.
+bool shows_direction(const WheelFit& fit, Eigen::Index at) {
+  const double trace = fit.constants_cov.block<2, 2>(at, at).trace();
+  return fit.constants.segment<2>(at).squaredNorm() > 25.0 * trace;
+}
+
+/// With the radius given, each sensor is on its circle; where on it is left to the recording, since
+/// at one speed a turn of that direction is a bias. Where the recording does not show the
+/// direction, the sensor may be anywhere within, as far from the middle along each axis as a
+/// circle's points are. The recording is then not asked either: what it says of places that hardly
+/// show rests on the motion being driven by white noise, and a ripple that comes round with the
+/// wheel is not; it drew them to the axle, with half the error that they had.
+PlacesPrior on_circles(const WheelFit& free, std::size_t sensors, const Uncertain& radius_m) {
+  PlacesPrior prior =
+      anywhere(sensors, std::max(radius_m.value / std::numbers::sqrt2, radius_m.std));
+  const Eigen::Index count = prior.mean.size(), first = free.constants.size() - count;
+  for (Eigen::Index at = 0; at < count; at += 2)
+    prior.final = prior.final || !shows_direction(free, first + at);
+  for (Eigen::Index at = 0; at < count && !prior.final; at += 2) {
+    const Eigen::Vector2d outward = free.constants.segment<2>(first + at).normalized();
+    prior.mean.segment<2>(at) = radius_m.value * outward;
+    prior.information.block<2, 2>(at, at) +=
+        outward * outward.transpose() / (radius_m.std * radius_m.std);
   }
   return prior;
 }
@@ -65,8 +87,12 @@ PlacesPrior places_prior(const WheelOptions& options, const Eigen::VectorXd& see
 Uncertain radius_in(const WheelFit& fit, std::size_t sensors, std::size_t sensor) {
   const auto at = fit.constants.size() - static_cast<Eigen::Index>(2 * (sensors - sensor));
   const Eigen::Vector2d place = fit.constants.segment<2>(at);
-  const Eigen::Vector2d outward = place / std::max(place.norm(), 1e-9);
-  return {place.norm(), std::sqrt(outward.dot(fit.constants_cov.block<2, 2>(at, at) * outward))};
+  const Eigen::Matrix2d cov = fit.constants_cov.block<2, 2>(at, at);
+  // A sensor found at the axle is out in no direction, and as uncertain as in its worst.
+  const double widest = std::sqrt(symmetric_eigen(cov).values.maxCoeff());
+  if (place.norm() < widest) return {place.norm(), widest};
+  const Eigen::Vector2d outward = place.normalized();
+  return {place.norm(), std::sqrt(outward.dot(cov * outward))};
 }
 
 /// Fits once without the radius and, where one is given, again with it.
@@ -74,12 +100,13 @@ WheelFit fit_with_radius(WheelReadings& readings,
                          const WheelTrack& track,
                          const WheelOptions& options) {
   const std::size_t sensors = readings.sensors.size();
-  const auto count = static_cast<Eigen::Index>(2 * sensors);
   WheelFit free =
-      fit_wheel(readings, track, PlacesPrior{Eigen::VectorXd::Zero(count)}, options.progress);
+      fit_wheel(readings, track, anywhere(sensors, ConstantsPrior{}.place_m), options.progress);
   if (!options.radius_m) return free;
-  WheelFit held = fit_wheel(readings, free.track, places_prior(options, places_in(free, sensors)),
-                            options.progress);
+  const Uncertain radius_m{*options.radius_m, std::max(0.02 * *options.radius_m, 2e-4)};
+  WheelFit held =
+      fit_wheel(readings, free.track, on_circles(free, sensors, radius_m), options.progress);
+  held.given_radius_m = radius_m;
   for (std::size_t s = 0; s < sensors; ++s)
     held.free_radius_m.push_back(radius_in(free, sensors, s));
   return held;

@@ -44,13 +44,13 @@ Eigen::MatrixXd hessian_of(const Function& f, const Places& x, const Places& ste
   return hessian;
 }
 
-/// Inverse of −hessian, no direction known worse than beforehand; that also keeps the steps going
-/// up.
+/// Inverse of −hessian, no direction known worse than the worst beforehand; that also keeps the
+/// steps going up.
 std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& hessian,
-                                                   double prior_information) {
+                                                   double least_information) {
   if (!hessian.allFinite()) return std::nullopt;
   const SymmetricEigen axes = symmetric_eigen(-hessian);
-  const Eigen::VectorXd information = axes.values.cwiseMax(prior_information);
+  const Eigen::VectorXd information = axes.values.cwiseMax(least_information);
   return axes.vectors * information.cwiseInverse().asDiagonal() * axes.vectors.transpose();
 }
 
@@ -63,15 +63,18 @@ FoundPlaces find_places(const WheelModel<S>& model,
                         const Excerpt<S>& excerpt,
                         WheelPrior prior,
                         const PlacesPrior& belief) {
-  const double prior_information = 1.0 / (belief.std_m * belief.std_m);
+  const double least_information = symmetric_eigen(belief.information).values.minCoeff();
   const auto likelihood = [&](const Places& places) {
     prior.places = places;
     auto state = excerpt.state;
     reset_constants<S>(prior, state.x);
+    const Places off = places - belief.mean;
     return score_run(model, state, excerpt.first, excerpt.last).log_likelihood -
-           0.5 * prior_information * (places - belief.mean).squaredNorm();
+           0.5 * off.dot(belief.information * off);
   };
-  FoundPlaces found{*prior.places, Eigen::MatrixXd::Identity(2 * S, 2 * S) / prior_information};
+  FoundPlaces found{*prior.places, Eigen::MatrixXd::Identity(2 * S, 2 * S) / least_information};
+  if (belief.final)
+    return {belief.mean, positive_inverse(belief.information), likelihood(belief.mean)};
   double best = likelihood(found.mean);
   // Far from the truth the surface is ragged; where the recording says little, the truth is near
   // what was believed.
@@ -84,7 +87,7 @@ FoundPlaces find_places(const WheelModel<S>& model,
   for (int round = 0; round < 8; ++round) {
     if (!curved) {
       const auto cov =
-          inverse_information(hessian_of(likelihood, found.mean, step), prior_information);
+          inverse_information(hessian_of(likelihood, found.mean, step), least_information);
       if (!cov) break;
       found.cov = *cov;
     }

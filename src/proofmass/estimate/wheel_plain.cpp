@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace proofmass::estimate {
 namespace {
@@ -55,6 +56,24 @@ std::vector<double> atan2_angle(const WheelReadings& readings) {
         angle[k] = last;
       });
   return angle;
+}
+
+std::optional<PlainPlaces> plain_places(const std::vector<WheelSensorFit>& sensors,
+                                        double phase_rad) {
+  PlainPlaces plain{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(2 * sensors.size()))};
+  double first_rad = 0.0;  // of the first sensor's spoke, ahead of its first axis
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    if (!sensors[s].radius_m) return std::nullopt;
+    double spoke_rad = s == 0 ? 0.0 : first_rad + std::numbers::pi - phase_rad;
+    if (sensors[s].mounting_rad)
+      spoke_rad = -sensors[s].mounting_rad->value;
+    else
+      plain.taken = true;
+    if (s == 0) first_rad = spoke_rad;
+    plain.places_m.segment<2>(static_cast<Eigen::Index>(2 * s)) =
+        sensors[s].radius_m->value * Eigen::Vector2d(std::cos(spoke_rad), std::sin(spoke_rad));
+  }
+  return plain;
 }
 
 std::vector<double> double_integral_angle(const WheelReadings& readings,

@@ -11,6 +11,17 @@ namespace proofmass::estimate {
 /// reading.
 [[nodiscard]] std::vector<double> atan2_angle(const WheelReadings& readings);
 
+/// Where the plain methods take the sensors to be: where they were found or, where their direction
+/// does not show, the first along its first axis and the second opposite. (u, v) of each; nothing
+/// where a radius is missing.
+struct PlainPlaces {
+  Eigen::VectorXd places_m;
+  bool taken = false;  ///< not all were found
+};
+
+[[nodiscard]] std::optional<PlainPlaces> plain_places(const std::vector<WheelSensorFit>& sensors,
+                                                      double phase_rad);
+
 /// The tangential acceleration over the radius, integrated twice from the smoother's first angle
 /// and speed; of two sensors the mean, in which gravity cancels if they stand opposite and their
 /// axes are parallel. Places as (u, v) of each sensor. Empty if a sensor sits on the axle.

@@ -104,5 +104,24 @@ TEST(DoubleIntegral, OfASensorOnTheAxleIsNone) {
                   .empty());
 }
 
+TEST(PlainPlaces, AreTheOnesFoundAndOppositeOnesWhereNoDirectionShows) {
+  WheelSensorFit first, second;
+  EXPECT_FALSE(plain_places({first}, 0.0).has_value());
+  first.radius_m = second.radius_m = Uncertain{0.1, 0.002};
+  const auto taken = plain_places({first, second}, 0.3);
+  ASSERT_TRUE(taken.has_value());
+  EXPECT_TRUE(taken->taken);
+  EXPECT_NEAR((taken->places_m.head<2>() - Eigen::Vector2d(0.1, 0.0)).norm(), 0.0, 1e-12);
+  // On the other side of the axle, in axes that are 0.3 ahead.
+  const Eigen::Vector2d other(-0.1 * std::cos(0.3), 0.1 * std::sin(0.3));
+  EXPECT_NEAR((taken->places_m.tail<2>() - other).norm(), 0.0, 1e-12);
+  first.mounting_rad = Uncertain{-0.5, 0.01};
+  const auto found = plain_places({first}, 0.0);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_FALSE(found->taken);
+  const Eigen::Vector2d ahead(0.1 * std::cos(0.5), 0.1 * std::sin(0.5));
+  EXPECT_NEAR((found->places_m - ahead).norm(), 0.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace proofmass::estimate

@@ -6,6 +6,7 @@
 
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel_fit.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -139,6 +140,16 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
   return plane_about(axis);
 }
 
+/// Mean and variance of x² for a normal x.
+struct Square {
+  double mean = 0.0, variance = 0.0;
+};
+
+Square square_of(double mean, double variance) {
+  const double mean2 = mean * mean;
+  return {mean2 + variance, 2.0 * variance * (variance + 2.0 * mean2)};
+}
+
 }  // namespace
 
 const char* why_unbelievable(const Axis& accel_mps2) {
@@ -206,6 +217,27 @@ WheelPlane turned_over(const WheelPlane& plane) {
   other.v = scaled(plane.v, -1.0);
   other.axial_mps2 = -plane.axial_mps2;
   return other;
+}
+
+Uncertain gravity_in_plane(const WheelPlane& plane, bool axial_read, double gravity_mps2) {
+  constexpr double level_rad = 0.02;   // of an axle that was meant to be level
+  constexpr double tilted_part = 0.1;  // of all axles; these lie anyhow
+  const double read = axial_read ? plane.axial_mps2 : 0.0;
+  const double level2 = std::pow(level_rad * gravity_mps2, 2);
+  const double bias2 = std::pow(ConstantsPrior{}.bias_mps2, 2), read2 = level2 + bias2;
+  const double learned = axial_read ? level2 / read2 : 0.0;
+  const Square level = square_of(learned * read, (1.0 - learned) * level2);
+  const Square tilted = square_of(read, bias2);
+  const double as_level =
+      (1.0 - tilted_part) * std::exp(-0.5 * read * read / read2) / std::sqrt(rad_per_turn * read2);
+  const double as_tilted = tilted_part / (2.0 * gravity_mps2);
+  const double w = axial_read ? as_tilted / (as_level + as_tilted) : 0.0;
+  const double mean = std::lerp(level.mean, tilted.mean, w);
+  const double variance = std::lerp(level.variance, tilted.variance, w) +
+                          w * (1.0 - w) * std::pow(tilted.mean - level.mean, 2);
+  const double all2 = gravity_mps2 * gravity_mps2;
+  const double in_plane = std::sqrt(std::max(all2 - mean, 0.01 * all2));
+  return {in_plane, std::sqrt(variance) / (2.0 * in_plane)};
 }
 
 PlanarReadings project(const WheelSensor& sensor,

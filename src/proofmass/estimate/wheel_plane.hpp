@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "proofmass/core/quantity.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/estimate/wheel_model.hpp"
@@ -44,6 +45,13 @@ struct WheelPlane {
 [[nodiscard]] Result<WheelPlane> find_plane(const WheelSensor& sensor,
                                             const Screened& screened,
                                             const std::optional<Axis>& given);
+
+/// Gravity's part in the plane of the wheel, m/s². A mean force along the axis is the axle's tilt
+/// or the sensor's bias: within a bias's size the axle is most likely level, beyond it it is
+/// tilted. `axial_read` is false for a sensor of two axes, whose axle is taken for level.
+[[nodiscard]] Uncertain gravity_in_plane(const WheelPlane& plane,
+                                         bool axial_read,
+                                         double gravity_mps2);
 
 /// The same plane seen from its other side: the wheel turns the other way.
 [[nodiscard]] WheelPlane turned_over(const WheelPlane& plane);

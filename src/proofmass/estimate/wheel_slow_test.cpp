@@ -132,5 +132,80 @@ TEST(ThesisRig, AngleIsAsGoodAsPromisedAndAsGoodAsItSays) {
   EXPECT_LT(mean.turns_nees, bounds.upper);
 }
 
+/// Squared errors over variances.
+struct Nees {
+  double sum = 0.0, largest = 0.0;
+  std::size_t count = 0;
+
+  void add(const std::optional<Uncertain>& told, double truth) {
+    if (!told) return;
+    const double nees = std::pow((told->value - truth) / told->std, 2);
+    sum += nees;
+    largest = std::max(largest, nees);
+    ++count;
+  }
+};
+
+// A radius says how far from the axle the sensor is, not in which of its own directions, and at one
+// speed that direction is a bias.
+TEST(WheelAtOneSpeed, WithItsRadiusGivenErrsInBiasAndScaleAsFarAsItSays) {
+  Nees bias, scale, mounting;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    test::Normal draw(seed);
+    Drive drive{{2.0 * test::pi * draw.uniform(), 15 * rpm}, {{40.0, 15 * rpm}}};
+    drive.ripple = 0.02;
+    drive.ripple_phase_rad = 2.0 * test::pi * draw.uniform();
+    Mount mount;
+    const double spoke_rad = 2.0 * test::pi * draw.uniform();
+    mount.place_m = std::polar(0.1, spoke_rad);
+    mount.bias_mps2 = {0.6 * (draw.uniform() - 0.5), 0.6 * (draw.uniform() - 0.5)};
+    WheelOptions options;
+    options.radius_m = 0.1;
+    const auto fit =
+        estimate_wheel({test::record(drive, mount, 60.0, 100 + seed)}, options).value().sensors[0];
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      bias.add(fit.bias_mps2[axis], mount.bias_mps2[axis]);
+      scale.add(fit.scale[axis], 1.0);
+    }
+    if (fit.mounting_rad)
+      mounting.add(Uncertain{std::remainder(fit.mounting_rad->value + spoke_rad, rad_per_turn),
+                             fit.mounting_rad->std},
+                   0.0);
+    ASSERT_TRUE(fit.radius_m);
+    EXPECT_NEAR(fit.radius_m->value, 0.1, 0.002);
+  }
+  EXPECT_EQ(bias.count, 24U);
+  EXPECT_EQ(scale.count, 24U);
+  for (const Nees& nees : {bias, scale}) {
+    EXPECT_LT(nees.sum, mean_chi_square_95(24).upper * 24.0);
+    EXPECT_GT(nees.sum, 0.25 * 24.0);
+    EXPECT_LT(nees.largest, 12.0);
+  }
+  EXPECT_LT(mounting.largest, 12.0);
+}
+
+// The scale is measured in the gravity that the axle's tilt leaves; a bias along the axle looks
+// like a tilt.
+TEST(WheelAtTwoSpeeds, WithABiasAlongTheAxleErrsInRadiusAndScaleAsFarAsItSays) {
+  Nees radius, scale;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    test::Normal draw(seed);
+    const Drive drive{{2.0 * test::pi * draw.uniform(), 30 * rpm},
+                      {{8.0, 30 * rpm}, {4.0, 90 * rpm}, {8.0, 90 * rpm}}};
+    WheelSensor sensor = test::record(drive, {}, 60.0, 200 + seed);
+    const double along_axle_mps2 = 0.6 * (draw.uniform() - 0.5);
+    for (double& z : sensor.accel_mps2[2]) z += along_axle_mps2;
+    const auto fit = estimate_wheel({sensor}, {}).value().sensors[0];
+    radius.add(fit.radius_m, 0.1);
+    for (const auto& along : fit.scale) scale.add(along, 1.0);
+  }
+  EXPECT_EQ(radius.count, 12U);
+  EXPECT_EQ(scale.count, 24U);
+  for (const Nees& nees : {radius, scale}) {
+    EXPECT_LT(nees.sum, mean_chi_square_95(nees.count).upper * static_cast<double>(nees.count));
+    EXPECT_LT(nees.largest, 12.0);
+  }
+}
+
 }  // namespace
 }  // namespace proofmass::estimate

@@ -138,13 +138,16 @@ TEST(EstimateWheel, ARadiusThatDoesNotShowIsNotMadeUp) {
   EXPECT_NE(solution.double_integration.note, "");
 }
 
-TEST(EstimateWheel, ARadiusThatIsGivenIsTakenAndMakesTheBiasKnown) {
+TEST(EstimateWheel, ARadiusThatIsGivenIsTakenAndADirectionThatDoesNotShowIsNot) {
   const Drive steady{{0.3, 40 * rpm}, {{8.0, 40 * rpm}}};
   Mount mount;
   mount.bias_mps2 = {0.2, 0.0};
   const auto solution = solve({record(steady, mount, 60.0, 5)}, with(&WheelOptions::radius_m, 0.1));
   ASSERT_TRUE(solution.sensors[0].radius_m.has_value());
   EXPECT_NEAR(solution.sensors[0].radius_m->value, 0.1, 0.005);
+  EXPECT_FALSE(solution.sensors[0].mounting_rad.has_value());
+  EXPECT_FALSE(solution.sensors[0].bias_mps2[0].has_value());
+  EXPECT_TRUE(any_says(solution.not_observable, "record a second speed"));
   ASSERT_TRUE(solution.distance_m.has_value());
   EXPECT_NEAR(solution.distance_m->value, 0.1 * 40 * rpm * 8.0, 4.0 * solution.distance_m->std);
 }

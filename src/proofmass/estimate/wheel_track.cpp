@@ -90,8 +90,13 @@ double WheelReadings::rate_hz() const {
 
 WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
   PM_EXPECTS(each >= 1);
-  WheelReadings out{
-      readings.gravity_mps2, readings.rolling_radius_m, readings.phase_rad, {}, {}, {}};
+  WheelReadings out{readings.gravity_mps2,
+                    readings.gravity_std_mps2,
+                    readings.rolling_radius_m,
+                    readings.phase_rad,
+                    {},
+                    {},
+                    {}};
   out.sensors.resize(readings.sensors.size());
   for (std::size_t first = 0; first < readings.instants.size(); first += each) {
     const std::size_t last = std::min(first + each, readings.instants.size());
