@@ -32,6 +32,7 @@ Result<NoiseModelFit> fit_noise_model(const NoiseEvidence& evidence) {
   const auto time_constant = find_markov(search, evidence.duration_s);
   const Misfit misfit = weigh_misfit(search);
   reconsider_bandwidth(search, model.bandwidth_hz);
+  reconsider_quantisation(search, model.bandwidth_hz);
   model.misfit = misfit.relative;
   model.misfit_p = misfit.p;
   eliminate(search);

@@ -26,7 +26,8 @@ struct NoiseEvidence {
 /// gain in log-likelihood is below 6 (98.6 % of χ² with one degree of freedom), for a ramp 9 over
 /// all that the terms left out could explain of it; a Markov term or a bandwidth, each with a free
 /// time constant, has to gain 16 (false less than once in a thousand over the dozen time constants
-/// that a record can tell apart).
+/// that a record can tell apart). Beside a bandwidth quantisation noise is judged with the
+/// bandwidth free: near half the rate either passes for a part of the other.
 ///
 /// Intervals are those of the likelihood ratio with all other coefficients free, those left out
 /// too, counted from the model that was kept: S. S. Wilks, Ann. Math. Statist. 9 (1938) 60; at the

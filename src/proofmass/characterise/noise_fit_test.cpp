@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include "proofmass/characterise/noise_test_support.hpp"
 
@@ -139,6 +140,26 @@ TEST(FitNoiseModel, FindsTheFilterOfWhiteNoise) {
   expect_absent(model.flicker, "flicker");
   expect_absent(model.random_walk, "random walk");
   EXPECT_FALSE(model.markov.has_value());
+}
+
+// A roll-off near half the rate that is taken for a little too low leaves a rise behind, which is
+// quantisation's.
+TEST(FitNoiseModel, TakesNoRollOffNearHalfTheRateForQuantisation) {
+  constexpr double T = 1.0 / (2.0 * std::numbers::pi * 40.0);
+  constexpr std::size_t ten_minutes = 60'000;
+  int records = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const NoiseModelFit model = model_of(test::relaxation(T, rate_hz, ten_minutes, seed));
+    EXPECT_TRUE(model.bandwidth_hz.has_value());
+    records += model.quantisation.verdict == Verdict::identified ? 1 : 0;
+  }
+  EXPECT_LE(records, 1);
+  // Nor is quantisation that is there taken for another bandwidth.
+  const NoiseModelFit model =
+      model_of(sum_of({test::relaxation(T, rate_hz, ten_minutes, 21),
+                       test::quantisation(0.03, rate_hz, ten_minutes, 22)}));
+  EXPECT_EQ(model.quantisation.verdict, Verdict::identified);
+  EXPECT_LT(model.quantisation.std, 0.3 * model.quantisation.value);
 }
 
 TEST(FitNoiseModel, FindsARampWithItsSign) {

@@ -50,9 +50,11 @@ struct Shape {
   double time_constant_s = 0.0, log_likelihood = 0.0;
 };
 
-// The time constant in [low, high] of greatest likelihood, `set` putting a shape in place.
+// The time constant in [low, high] of greatest likelihood, `set` putting a shape in place; a rough
+// one where it cannot come to gain what is needed.
 template <class Set>
-Shape best_time_constant(Search& search, double low_s, double high_s, const Set& set) {
+Shape best_time_constant(
+    Search& search, double low_s, double high_s, double needed, const Set& set) {
   const auto likelihood_at = [&](double log_s) {
     set(std::exp(log_s));
     return search.likelihood.maximise(search.active, {}, search.fit.strength).log_likelihood;
@@ -66,7 +68,7 @@ Shape best_time_constant(Search& search, double low_s, double high_s, const Set&
       best = log_s;
     }
   }
-  if (top - search.fit.log_likelihood < 0.25 * shape_gain) return {std::exp(best), top};
+  if (top - search.fit.log_likelihood < 0.25 * needed) return {std::exp(best), top};
   for (double width = 0.5 * step; width > 1e-3; width *= 0.5) {
     for (const double log_s : {best - width, best + width}) {
       if (log_s < std::log(low_s) || log_s > std::log(high_s)) continue;
@@ -91,6 +93,26 @@ double std_of_log(Search& search, double time_constant_s, const Set& set) {
   const double bend = (2.0 * at(0.0) - at(step) - at(-step)) / (step * step);
   set(time_constant_s);
   return bend > 0.0 ? 1.0 / std::sqrt(bend) : 1.0;
+}
+
+std::optional<Uncertain> bandwidth_that_gains(Search& search, double needed) {
+  const double rate_hz = search.evidence.fast_sampling.rate_hz;
+  const auto set = [&](double time_constant_s) {
+    search.likelihood.set_column(column_of_white, search.relaxation(time_constant_s, 1.0));
+  };
+  const auto corner = [](double hz) { return 1.0 / (2.0 * std::numbers::pi * hz); };
+  const Shape best =
+      best_time_constant(search, corner(0.45 * rate_hz), corner(0.004 * rate_hz), needed, set);
+  if (2.0 * (best.log_likelihood - search.fit.log_likelihood) < needed) {
+    search.likelihood.set_column(column_of_white,
+                                 VectorXd::Ones(static_cast<Index>(search.evidence.groups.size())));
+    return std::nullopt;
+  }
+  set(best.time_constant_s);
+  search.pole_s = best.time_constant_s;
+  search.fit = search.likelihood.maximise(search.active, {}, search.fit.strength);
+  const double bandwidth_hz = corner(best.time_constant_s);
+  return Uncertain{bandwidth_hz, bandwidth_hz * std_of_log(search, best.time_constant_s, set)};
 }
 
 }  // namespace
@@ -126,23 +148,21 @@ Misfit weigh_misfit(Search& search) {
 }
 
 std::optional<Uncertain> find_bandwidth(Search& search) {
-  const double rate_hz = search.evidence.fast_sampling.rate_hz;
-  const auto set = [&](double time_constant_s) {
-    search.likelihood.set_column(column_of_white, search.relaxation(time_constant_s, 1.0));
-  };
-  const auto corner = [](double hz) { return 1.0 / (2.0 * std::numbers::pi * hz); };
-  const Shape best =
-      best_time_constant(search, corner(0.45 * rate_hz), corner(0.004 * rate_hz), set);
-  if (2.0 * (best.log_likelihood - search.fit.log_likelihood) < shape_gain) {
-    search.likelihood.set_column(column_of_white,
-                                 VectorXd::Ones(static_cast<Index>(search.evidence.groups.size())));
-    return std::nullopt;
-  }
-  set(best.time_constant_s);
-  search.pole_s = best.time_constant_s;
-  search.fit = search.likelihood.maximise(search.active, {}, search.fit.strength);
-  const double bandwidth_hz = corner(best.time_constant_s);
-  return Uncertain{bandwidth_hz, bandwidth_hz * std_of_log(search, best.time_constant_s, set)};
+  return bandwidth_that_gains(search, shape_gain);
+}
+
+void reconsider_quantisation(Search& search, std::optional<Uncertain>& bandwidth_hz) {
+  if (!bandwidth_hz) return;
+  Search rest = search;
+  rest.active = without(search.active, column_of_quantisation);
+  rest.pole_s.reset();
+  rest.likelihood.set_column(column_of_white,
+                             VectorXd::Ones(static_cast<Index>(rest.evidence.groups.size())));
+  rest.fit = rest.likelihood.maximise(rest.active, {}, search.fit.strength);
+  const auto found = bandwidth_that_gains(rest, needed_gain);
+  if (2.0 * (search.fit.log_likelihood - rest.fit.log_likelihood) >= needed_gain) return;
+  search = std::move(rest);
+  bandwidth_hz = found;
 }
 
 void reconsider_bandwidth(Search& search, std::optional<Uncertain>& bandwidth_hz) {
@@ -170,7 +190,7 @@ std::optional<Uncertain> find_markov(Search& search, double duration_s) {
   };
   const double without = search.fit.log_likelihood;
   search.active.push_back(column_of_markov);
-  const Shape best = best_time_constant(search, shortest_s, 0.1 * duration_s, set);
+  const Shape best = best_time_constant(search, shortest_s, 0.1 * duration_s, shape_gain, set);
   if (2.0 * (best.log_likelihood - without) < shape_gain) {
     search.active.pop_back();
     return std::nullopt;

@@ -12,6 +12,7 @@
 namespace proofmass::characterise {
 
 /// Columns of the likelihood: those of Term, the white one possibly filtered.
+inline constexpr int column_of_quantisation = static_cast<int>(Term::quantisation);
 inline constexpr int column_of_white = static_cast<int>(Term::white);
 inline constexpr int column_of_markov = static_cast<int>(Term::markov);
 
@@ -58,6 +59,10 @@ Misfit weigh_misfit(Search& search);
 
 /// A filter that the weights no longer ask for goes again.
 void reconsider_bandwidth(Search& search, std::optional<Uncertain>& bandwidth_hz);
+
+/// Leaves quantisation noise out where a filter of another bandwidth does without it: next to a
+/// roll-off near half the rate either passes for a part of the other.
+void reconsider_quantisation(Search& search, std::optional<Uncertain>& bandwidth_hz);
 
 /// Leaves out the term that is missed least, until each that is left is needed.
 void eliminate(Search& search);

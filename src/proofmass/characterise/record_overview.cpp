@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <iterator>
 
+#include "proofmass/core/number_words.hpp"
 #include "proofmass/signal/chunk_figures.hpp"
 
 namespace proofmass::characterise {
@@ -122,11 +123,11 @@ Status RecordOverview::check_rails(std::optional<double> lsb) const {
   for (const bool lowest : {true, false}) {
     const Extreme& extreme = lowest ? low_ : high_;
     if (!is_rail(extreme, lowest ? lowest_ : highest_)) continue;
-    return Error{
-        Errc::not_observable,
-        fmt::format("clipped: {} of {} samples read exactly {:.6g}, the {} value there is: "
-                    "what is cut off there is not in the figures",
-                    extreme.count, samples_, extreme.value, lowest ? "lowest" : "highest")};
+    return Error{Errc::not_observable,
+                 fmt::format("clipped: {} of {} samples read exactly {}, the {} value there is: "
+                             "what is cut off there is not in the figures",
+                             extreme.count, samples_, compact(extreme.value, 6),
+                             lowest ? "lowest" : "highest")};
   }
   return Done{};
 }
