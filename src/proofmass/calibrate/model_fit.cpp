@@ -8,6 +8,7 @@
 #include "proofmass/calibrate/confounded_words.hpp"
 #include "proofmass/calibrate/identifiability.hpp"
 #include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/number_words.hpp"
 #include "proofmass/fit/variable_projection.hpp"
 
 namespace proofmass::calibrate {
@@ -223,9 +224,9 @@ Status k1_is_told(const Linear& problem,
     return Done{};
   }
   return Error{Errc::not_observable,
-               fmt::format("K1 = {:.3g} with standard deviation {:.3g} cannot be told from zero, "
-                           "and all other coefficients are relative to it",
-                           k1, std)};
+               fmt::format("K1 = {} with standard deviation {} cannot be told from zero, and all "
+                           "other coefficients are relative to it",
+                           compact(k1, 3), compact(std, 3))};
 }
 
 void fill_coefficients(const Linear& problem,

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <string>
 
+#include "proofmass/core/number_words.hpp"
+
 namespace proofmass::calibrate {
 
 double relative_residual(const RotationState& state, std::size_t axis) {
@@ -25,10 +27,10 @@ void note_doubts(const RotationState& state, const RotationOptions& options, Rot
     const auto& k1 = fit.axes[axis][RotationQuantity::K1].value;
     if (options.readings_are_accelerations && k1 && std::abs(k1->value - 1.0) > off) {
       fit.doubts.push_back(
-          fmt::format("axis {}: K1 = {:.3g} of readings that are accelerations, where about 1 is "
+          fmt::format("axis {}: K1 = {} of readings that are accelerations, where about 1 is "
                       "expected: the unit or gravity is wrong, the axle is not horizontal, or the "
                       "axis does not lie in the plane of the wheel",
-                      axis + 1, k1->value));
+                      axis + 1, compact(k1->value, 3)));
     }
   }
   if (fit.steady_fraction < half) {

@@ -6,6 +6,7 @@
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/number_words.hpp"
 
 namespace proofmass::calibrate {
 namespace {
@@ -87,20 +88,20 @@ std::optional<double> p_of(double departure, double std, const SupplyLine& line)
 std::string figure(double value, double std, bool known, double factor) {
   value *= factor;
   std *= factor;
-  if (!known || !(std > 0.0)) return fmt::format("{:.4g}", value);
+  if (!known || !(std > 0.0)) return compact(value, 4);
   const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(std))), 0, 6);
-  return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, std, decimals);
+  return fmt::format("{} ± {}", fixed(value, decimals), fixed(std, decimals));
 }
 
 std::string words_of(const SupplyAxis& axis, char name, const std::string& reading_unit) {
   const bool volts = reading_unit == "V";
   const std::string unit = volts ? "mV/V" : reading_unit + "/V";
   const double factor = volts ? 1e3 : 1.0;
-  const std::string facts = fmt::format(
-      "scale as V^{}, zero moves {} {} where {} {} {} expected",
-      figure(axis.exponent.value, axis.exponent.std, axis.log_scale.std_known, 1.0),
-      figure(axis.fraction.value, axis.fraction.std, axis.zero.std_known, factor), unit,
-      fmt::format("{:.4g}", factor * axis.expected_fraction), unit, volts ? "was" : "were");
+  const std::string facts =
+      fmt::format("scale as V^{}, zero moves {} {} where {} {} {} expected",
+                  figure(axis.exponent.value, axis.exponent.std, axis.log_scale.std_known, 1.0),
+                  figure(axis.fraction.value, axis.fraction.std, axis.zero.std_known, factor), unit,
+                  compact(factor * axis.expected_fraction, 4), unit, volts ? "was" : "were");
   if (!axis.ratiometric)
     return fmt::format("{}: {}; whether it follows its supply cannot be told", name, facts);
   if (*axis.ratiometric) return fmt::format("{} follows its supply: {}", name, facts);
@@ -248,8 +249,8 @@ AtSupply at_supply(const SupplyDependence& found, std::size_t axis, double suppl
   const double slack = rounding * found.highest_v;
   if (!(supply_v >= found.lowest_v - slack && supply_v <= found.highest_v + slack)) {
     out.reason =
-        fmt::format("{:.4g} V lies outside the supplies of the calibrations, {:.4g} V to {:.4g} V",
-                    supply_v, found.lowest_v, found.highest_v);
+        fmt::format("{} V lies outside the supplies of the calibrations, {:.4g} V to {:.4g} V",
+                    compact(supply_v, 4), found.lowest_v, found.highest_v);
     return out;
   }
   const SupplyAxis& it = *found.axes[axis];

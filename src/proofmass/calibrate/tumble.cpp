@@ -10,6 +10,7 @@
 #include "proofmass/calibrate/tumble_regression.hpp"
 #include "proofmass/calibrate/tumble_words.hpp"
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/number_words.hpp"
 #include "proofmass/core/units.hpp"
 
 namespace proofmass::calibrate {
@@ -98,10 +99,10 @@ Status check_swing(const TumbleSolution& solution, double largest_output) {
   if (std::abs(swing) <= std::max({rounding * largest_output, least_stds * std, across}))
     return Error{
         Errc::not_observable,
-        fmt::format("the output does not follow sin(angle): its part with the sine is {:.3g} ± "
-                    "{:.2g}, with the cosine {:.3g}; is this the input axis, and are the "
-                    "angles those of the positions?",
-                    swing, std, across)};
+        fmt::format("the output does not follow sin(angle): its part with the sine is {} ± {}, "
+                    "with the cosine {}; is this the input axis, and are the angles those of the "
+                    "positions?",
+                    compact(swing, 3), compact(std, 2), compact(across, 3))};
   return Done{};
 }
 
@@ -129,10 +130,11 @@ void add_notes(View<TumblePosition> positions, bool some_noise, TumbleFit& fit) 
   for (std::size_t k = 0; k < fit.positions.size(); ++k) {
     const TumbleResidual& r = fit.positions[k];
     if (r.suspect)
-      add(fmt::format(
-          "{} at {:.4g}° contradicts the others by {:.3g} standard deviations: look at "
-          "its angle and reading; it stays in the fit",
-          named(positions, k), positions[k].angle_rad / rad_per_deg, std::abs(*r.studentised)));
+      add(
+          fmt::format("{} at {}° contradicts the others by {:.3g} standard deviations: look at "
+                      "its angle and reading; it stays in the fit",
+                      named(positions, k), compact(positions[k].angle_rad / rad_per_deg, 4),
+                      std::abs(*r.studentised)));
   }
   if (fit.lack_of_fit && fit.lack_of_fit->p < 0.01 && fit.scatter == 1.0)
     add(
@@ -143,9 +145,9 @@ void add_notes(View<TumblePosition> positions, bool some_noise, TumbleFit& fit) 
     if (c.quantity != TumbleQuantity::third_cosine || !c.value || !c.half_width_95) continue;
     if (std::abs(*c.value) > 1.7 * *c.half_width_95)
       add(
-          fmt::format("cos 3φ, which the model does not have, is {:.3g} ± {:.2g} m/s²: a cubic "
+          fmt::format("cos 3φ, which the model does not have, is {} ± {} m/s²: a cubic "
                       "cross-axis term or an indexing error of twice a turn",
-                      *c.value, *c.std));
+                      compact(*c.value, 3), compact(*c.std, 2)));
   }
 }
 

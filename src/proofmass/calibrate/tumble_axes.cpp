@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/number_words.hpp"
 
 namespace proofmass::calibrate {
 namespace {
@@ -97,7 +98,7 @@ std::string phase_words(const TumbleAxis& axis, const std::array<FirstHarmonic, 
     const double off = std::remainder(std::atan2(found[p].C, found[p].S) - phase, 4.0 * quarter);
     constexpr double much = 10.0 / 90.0 * quarter;
     if (found[p].sees_sine && found[p].sees_cosine && std::abs(off) > much)
-      text += fmt::format(", from which it stands {:.0f}° off", off / quarter * 90.0);
+      text += fmt::format(", from which it stands {}° off", fixed(off / quarter * 90.0, 0));
   }
   return text.empty() ? "does not follow the angle: its axis lies along the table's" : text;
 }

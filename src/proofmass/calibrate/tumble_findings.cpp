@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/number_words.hpp"
 
 namespace proofmass::calibrate {
 namespace {
@@ -187,14 +188,14 @@ TumbleDrift find_drift(const TumbleSolution& solution,
   if (!out.removed) {
     out.rate_mps2 = closure_rate(solution, positions);
     out.words = fmt::format(
-        "the repeated position shows a drift of {:.3g} m/s² {}, which was left in: {} positions "
+        "the repeated position shows a drift of {} m/s² {}, which was left in: {} positions "
         "leave none over to judge by if it is taken out",
-        out.rate_mps2.value_or(0.0), rate_unit(out.in_time), positions.size());
+        compact(out.rate_mps2.value_or(0.0), 3), rate_unit(out.in_time), positions.size());
     return out;
   }
   out.rate_mps2 = found->value;
-  out.words =
-      fmt::format("drift of {:.3g} m/s² {} was taken out", *found->value, rate_unit(out.in_time));
+  out.words = fmt::format("drift of {} m/s² {} was taken out", compact(*found->value, 3),
+                          rate_unit(out.in_time));
   if (found->std && *found->std > 0.0) {
     out.p = residual_p(*found->value / *found->std, found->dof);
     out.words += *out.p < 0.05 ? fmt::format(": it is more than chance (p = {:.2g})", *out.p)

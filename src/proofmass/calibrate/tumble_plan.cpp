@@ -5,6 +5,7 @@
 
 #include "proofmass/calibrate/guide_plan.hpp"
 #include "proofmass/calibrate/turned_axes.hpp"
+#include "proofmass/core/number_words.hpp"
 #include "proofmass/core/units.hpp"
 
 namespace proofmass::calibrate {
@@ -52,7 +53,8 @@ class TumblePlan final : public GuidePlan {
   }
   std::string off_words(const Eigen::Vector3d& mean) const override {
     const std::optional<double> off = off_deg(mean);
-    return off ? fmt::format("{:.1f}° to go to {:g}°", *off, std::fmod(next_deg(), 360.0)) : "";
+    return off ? fmt::format("{}° to go to {:g}°", fixed(*off, 1), std::fmod(next_deg(), 360.0))
+               : "";
   }
   std::vector<double> angles_deg() const override { return angles_deg_; }
 

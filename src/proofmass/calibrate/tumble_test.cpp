@@ -240,6 +240,16 @@ TEST(TumbleDrift, IsNotTakenOutOfFourPositionsThatHaveNoneToSpare) {
   EXPECT_TRUE(fitted(positions).drift.removed);
 }
 
+TEST(TumbleDrift, IsToldWithATrueMinusSign) {
+  TableTruth truth;
+  truth.drift_mps2 = -1e-3;
+  std::mt19937_64 random(4);
+  const std::string taken_out = fitted(read_table(table_turn(10, true), truth, random)).drift.words;
+  EXPECT_TRUE(taken_out.starts_with("drift of −")) << taken_out;
+  const std::string left_in = fitted(read_table(table_turn(4, true), truth, random)).drift.words;
+  EXPECT_NE(left_in.find("a drift of −"), std::string::npos) << left_in;
+}
+
 TEST(TumbleDrift, SaysHowProbableItIsByChance) {
   TableTruth truth;
   truth.noise = 3e-6;

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "proofmass/core/number_words.hpp"
+
 namespace proofmass::signal {
 namespace {
 
@@ -48,10 +50,11 @@ void tell_channel(const ChannelAudit& channel, double rate_hz, std::vector<Note>
     notes.push_back({Severity::info, fmt::format("{}: mean, std, min and max leave {} out",
                                                  channel.name, counted(set_aside, "such value"))});
   if (channel.clipped > 0)
-    notes.push_back({Severity::bad,
-                     fmt::format("{}: {} at the rails ({:.6g} or {:.6g} {}): it may be clipped",
-                                 channel.name, counted(channel.clipped, "sample"),
-                                 channel.moments.min, channel.moments.max, channel.unit.symbol)});
+    notes.push_back(
+        {Severity::bad,
+         fmt::format("{}: {} at the rails ({} or {} {}): it may be clipped", channel.name,
+                     counted(channel.clipped, "sample"), compact(channel.moments.min, 6),
+                     compact(channel.moments.max, 6), channel.unit.symbol)});
   const double taken_hz = rate_hz > 0.0 ? rate_hz : 100.0;
   const bool moves = channel.moments.max > channel.moments.min;
   const bool measures = channel.unit.quantity == Quantity::acceleration ||
