@@ -24,7 +24,7 @@ std::string error_words(const BudgetError& error) {
 
 std::string bias_words(const BudgetRow& row) {
   const Uncertain mg{row.bias_mps2.value / mps2_per_mg, row.bias_mps2.std / mps2_per_mg};
-  return mg.std > 0.0 ? with_std(mg, "mg") : fmt::format("{:.6g} mg", mg.value);
+  return mg.std > 0.0 ? with_std(mg, "mg") : compact(mg.value, 6) + " mg";
 }
 
 std::vector<std::string> heading(const BudgetReport& report) {

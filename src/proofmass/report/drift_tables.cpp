@@ -45,6 +45,8 @@ std::string position_words(const Interval95& bias_mps2, double t_s) {
                      symbol);
 }
 
+}  // namespace
+
 std::vector<std::string> whiteness_row(const std::string& name, const WhitenessTest& test) {
   return {name,
           grouped(test.values),
@@ -54,8 +56,6 @@ std::vector<std::string> whiteness_row(const std::string& name, const WhitenessT
           p_words(test.runs_p),
           test.white ? "white" : "not white"};
 }
-
-}  // namespace
 
 Table parameters_table(const ChannelDrift& channel) {
   const DriftFit& fit = channel.analysis->fit;

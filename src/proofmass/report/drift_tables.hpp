@@ -1,7 +1,11 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "proofmass/report/drift_report.hpp"
 #include "proofmass/report/page.hpp"
+#include "proofmass/signal/whiteness.hpp"
 
 // The tables of a page of `drift`. The channels must have an analysis, the runs a set.
 namespace proofmass::report {
@@ -9,6 +13,9 @@ namespace proofmass::report {
 [[nodiscard]] Table parameters_table(const ChannelDrift& channel);
 [[nodiscard]] Table steps_table(const ChannelDrift& channel);
 [[nodiscard]] Table whiteness_table(const characterise::DriftAnalysis& analysis);
+/// A row of that table.
+[[nodiscard]] std::vector<std::string> whiteness_row(const std::string& name,
+                                                     const signal::WhitenessTest& test);
 [[nodiscard]] Table candidates_table(const characterise::DriftFit& fit);
 
 /// What the bias costs in position, of a series in m/s².

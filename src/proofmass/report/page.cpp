@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "proofmass/core/version.hpp"
+#include "proofmass/report/page_style.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {
@@ -13,40 +14,7 @@ namespace {
 
 using Out = std::back_insert_iterator<std::string>;
 
-constexpr std::string_view page_css = R"(*{box-sizing:border-box}
-body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,sans-serif}
-main{max-width:60rem;margin:0 auto;padding:2.5rem 1.5rem 4rem}
-.from{margin:0;color:var(--soft);font-size:.85rem;letter-spacing:.04em}
-h1{font-size:1.05rem;font-weight:600;margin:.2rem 0 1.6rem;overflow-wrap:anywhere}
-.conclusion{font-size:1.55rem;line-height:1.35;font-weight:500;margin:0 0 1.6rem;max-width:46rem}
-dl.key{display:flex;flex-wrap:wrap;gap:1px;margin:0 0 2rem;
-background:var(--rule);border:1px solid var(--rule);border-radius:6px;overflow:hidden}
-dl.key div{flex:1 1 15rem;background:var(--panel);padding:.7rem .9rem}dl.key dt{color:var(--soft);font-size:.82rem}
-dl.key dd{margin:0;font-size:1.08rem;font-variant-numeric:tabular-nums}
-h2{font-size:1.15rem;margin:2.6rem 0 .6rem;padding-bottom:.3rem;border-bottom:1px solid var(--rule)}
-p{margin:.5rem 0;max-width:46rem}ul{margin:.5rem 0;padding-left:1.2rem;max-width:46rem}li{margin:.2rem 0}
-.notes{list-style:none;padding:0}.notes li{padding:.35rem .8rem;border-left:3px solid var(--rule);
-margin:.4rem 0;overflow-wrap:anywhere}.notes .warning{border-color:var(--orange)}
-.notes .bad{border-color:var(--red)}.notes b{font-weight:600}
-summary{cursor:pointer;margin:.4rem 0}.warning b{color:var(--orange)}.bad b{color:var(--red)}.info b{color:var(--soft)}
-figure{margin:1.4rem 0 2.2rem;break-inside:avoid}
-figcaption{margin:0 0 .7rem}figcaption b{display:block;font-weight:600}
-figcaption span{color:var(--soft);font-size:.9rem}
-.wide{overflow-x:auto;margin:1rem 0 1.6rem;break-inside:avoid}
-table{border-collapse:collapse;width:100%;font-size:.92rem;font-variant-numeric:tabular-nums}
-caption{text-align:left;color:var(--soft);font-size:.9rem;padding-bottom:.4rem}
-th,td{padding:.35rem .9rem .35rem 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--rule)}
-th{font-weight:600}thead th{color:var(--soft);font-weight:500}tbody th{font-weight:500}
-.conclusion:empty{display:none}
-.sign{display:flex;gap:2.5rem;margin:4.5rem 0 0;break-inside:avoid}
-.sign div{flex:1;border-top:1px solid var(--ink);padding-top:.3rem;color:var(--soft);font-size:.85rem}
-footer{margin-top:3rem;color:var(--soft);font-size:.85rem}
-@page{size:A4;margin:15mm 17mm}
-@media print{body{font-size:10pt;line-height:1.4}main{max-width:none;padding:0}.conclusion{font-size:15pt}
-h2{font-size:12.5pt;margin:1.2rem 0 .4rem;break-after:avoid}p,ul{max-width:none}.sheet{break-before:page}
-.wide{overflow:visible;margin:.7rem 0 1.1rem}table{font-size:9pt}th,td{padding:.22rem .7rem .22rem 0}
-tr,li,.signed{break-inside:avoid}.sign{margin-top:2.9rem}footer{margin-top:1.6rem;break-inside:avoid}}
-)";
+constexpr int top_level = 2;  // of a section's heading
 
 std::string_view word(Severity severity) {
   switch (severity) {
@@ -81,7 +49,8 @@ void write_cells(std::string& text, const std::vector<std::string>& cells, bool 
 }
 
 void write(std::string& text, const Table& table) {
-  text += "<div class=\"wide\"><table>\n";
+  fmt::format_to(Out(text), "<div class=\"wide\"><table{}>\n",
+                 table.stacks ? " class=\"stacks\"" : "");
   if (!table.caption.empty()) {
     fmt::format_to(Out(text), "<caption>{}</caption>\n", escaped(table.caption));
   }
@@ -104,33 +73,76 @@ void write_signatures(std::string& text, const std::vector<std::string>& signatu
   text += "</div>\n";
 }
 
-std::string_view class_of(const Section& section) {
+std::string_view class_of(const Section& section, int level) {
   if (!section.signatures.empty()) return " class=\"signed\"";
-  return section.new_sheet ? " class=\"sheet\"" : "";
+  if (section.new_sheet) return " class=\"sheet\"";
+  return level > top_level ? " class=\"part\"" : "";
 }
 
-void write(std::string& text, const Section& section, int& figures) {
-  fmt::format_to(Out(text), "<section{}>\n<h2>{}</h2>\n", class_of(section),
-                 escaped(section.heading));
+void write(std::string& text, const std::vector<Side>& sides) {
+  if (sides.empty()) return;
+  text += "<div class=\"sides\">\n";
+  for (const Side& side : sides) {
+    fmt::format_to(Out(text), "<div><b>{}</b><p>{}</p></div>\n", escaped(side.label),
+                   unbroken(side.text));
+  }
+  text += "</div>\n";
+}
+
+void write_points(std::string& text, const std::vector<std::string>& points) {
+  if (points.empty()) return;
+  text += "<ul>\n";
+  for (const std::string& point : points)
+    fmt::format_to(Out(text), "<li>{}</li>\n", escaped(point));
+  text += "</ul>\n";
+}
+
+// Figures are counted through the page, whether or not that is shown.
+struct FigureCount {
+  bool shown = true;
+  int figures = 0;
+};
+
+void write(std::string& text, const Figure& figure, FigureCount& count) {
+  ++count.figures;
+  const std::string number = count.shown ? fmt::format("Figure {}. ", count.figures) : "";
+  fmt::format_to(Out(text),
+                 "<figure>\n<figcaption><b>{}{}</b><span>{}</span></figcaption>\n{}</figure>\n",
+                 number, escaped(figure.title), escaped(figure.description),
+                 svg(figure, fmt::format("figure-{}", count.figures)));
+}
+
+void write(std::string& text, const Section& section, int level, FigureCount& count) {
+  const std::string id = section.id.empty() ? "" : fmt::format(" id=\"{}\"", escaped(section.id));
+  fmt::format_to(Out(text), "<section{0}{1}>\n<h{2}>{3}</h{2}>\n", class_of(section, level), id,
+                 level, escaped(section.heading));
+  write(text, section.sides);
   for (const std::string& paragraph : section.paragraphs) {
     fmt::format_to(Out(text), "<p>{}</p>\n", escaped(paragraph));
   }
-  if (!section.points.empty()) text += "<ul>\n";
-  for (const std::string& point : section.points) {
-    fmt::format_to(Out(text), "<li>{}</li>\n", escaped(point));
-  }
-  if (!section.points.empty()) text += "</ul>\n";
+  write_points(text, section.points);
   for (const Table& table : section.tables) write(text, table);
-  for (const Figure& figure : section.figures) {
-    ++figures;
-    fmt::format_to(Out(text),
-                   "<figure>\n<figcaption><b>Figure {0}. {1}</b><span>{2}</span></figcaption>\n"
-                   "{3}</figure>\n",
-                   figures, escaped(figure.title), escaped(figure.description),
-                   svg(figure, fmt::format("figure-{}", figures)));
-  }
+  for (const Figure& figure : section.figures) write(text, figure, count);
   write_signatures(text, section.signatures);
+  for (const Section& part : section.parts) write(text, part, level + 1, count);
   text += "</section>\n";
+}
+
+void write_contents(std::string& text, const std::vector<Section>& sections) {
+  const auto link = [](const Section& section) {
+    return fmt::format("<a href=\"#{}\">{}</a>", escaped(section.id), escaped(section.heading));
+  };
+  text += "<nav class=\"contents\">\n<h2>Contents</h2>\n";
+  for (const Section& section : sections) {
+    if (section.id.empty()) continue;
+    fmt::format_to(Out(text), "<p>{}</p>\n<ul>\n", link(section));
+    for (const Section& part : section.parts) {
+      if (part.id.empty()) continue;
+      fmt::format_to(Out(text), "<li>{} <span>{}</span></li>\n", link(part), escaped(part.gist));
+    }
+    text += "</ul>\n";
+  }
+  text += "</nav>\n";
 }
 
 void write(std::string& text, const std::vector<KeyFigure>& figures) {
@@ -189,12 +201,13 @@ std::string html(const Page& page) {
       "<meta name=\"generator\" content=\"Proofmass {0}\">\n"
       "<title>{1} – proofmass {2}</title>\n<style>\n{3}{4}</style>\n</head>\n<body>\n<main>\n"
       "<p class=\"from\">Proofmass {0} · {2}</p>\n<h1>{1}</h1>\n<p class=\"conclusion\">{5}</p>\n",
-      version(), escaped(page.title), escaped(page.verb), figure_css(), page_css,
+      version(), escaped(page.title), escaped(page.verb), figure_css(), page_css(),
       escaped(page.conclusion));
   write(text, page.key_figures);
   write_grave_notes(text, page.notes);
-  int figures = 0;
-  for (const Section& section : page.sections) write(text, section, figures);
+  if (page.contents) write_contents(text, page.sections);
+  FigureCount count{.shown = page.numbered};
+  for (const Section& section : page.sections) write(text, section, top_level, count);
   write_plain_notes(text, page.notes);
   text += "<footer>\n";
   for (const std::string& input : page.inputs) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "proofmass/core/number_words.hpp"
 #include "proofmass/core/quantity.hpp"
 
 // Figures as people read them. Never the process locale: the decimal mark is a point.
@@ -22,15 +23,9 @@ namespace proofmass::report {
                                    std::string_view unit,
                                    std::string_view absent);
 
-/// A number with so many significant digits, "−0.00123", "1.23e+08": scientific where plain digits
-/// would take more than a glance (below 1e-4, from 1e6). "none" if it is not finite.
-[[nodiscard]] std::string significant(double value, int digits);
-
-/// A number with at most so many significant digits and no zeros behind: "60", "91.6", "120.0048".
-[[nodiscard]] std::string compact(double value, int digits);
-
-/// A number with so many decimals and "−" for a minus sign; never "−0.00".
-[[nodiscard]] std::string fixed(double value, int decimals);
+using proofmass::compact;
+using proofmass::fixed;
+using proofmass::significant;
 
 /// A length in the unit that suits it: "0.12 mm", "15 mm", "1.6 m", "7900 km".
 [[nodiscard]] std::string length_words(double length_m);
