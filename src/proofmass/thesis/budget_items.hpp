@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "proofmass/thesis/item.hpp"
+
+// Section 2.4.1: what a bias costs.
+namespace proofmass::thesis {
+
+/// Table 2.1.
+[[nodiscard]] std::vector<Item> budget_items();
+
+}  // namespace proofmass::thesis

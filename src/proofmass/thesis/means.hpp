@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "proofmass/core/view.hpp"
+
+namespace proofmass::thesis {
+
+/// Means of `by` samples each: NaN where half of them or more are not finite, else that of the
+/// others. Samples at the end that do not fill one are left out.
+[[nodiscard]] std::vector<double> means_over(View<double> samples, std::size_t by);
+
+}  // namespace proofmass::thesis

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/thesis/first_turn.hpp"
+#include "proofmass/thesis/item.hpp"
+#include "proofmass/thesis/run_errors.hpp"
+#include "proofmass/thesis/thesis_paths.hpp"
+#include "proofmass/thesis/wheel_study.hpp"
+
+// What the items of section 5.4 on one pair of axes have in common.
+namespace proofmass::thesis {
+
+/// What the thesis says of one pair of axes.
+struct Pair {
+  WheelAxis axis;
+  const char *accel_id, *path_id;
+  const char* axes;
+  std::optional<ThesisErrors> RunErrors::*cancelled, RunErrors::*gravity;
+};
+
+/// One revolution by the thesis's estimators, both ways of fusing.
+struct PairPaths {
+  std::optional<FusedReading> cancelled, gravity;
+  std::optional<ThesisPaths> cancelled_paths, gravity_paths;
+};
+
+/// Figures 5.12 and 5.14: pair_accel_item.cpp.
+[[nodiscard]] Item pair_accel_item(const WheelStudy& study,
+                                   const Pair& pair,
+                                   const PairPaths& paths);
+
+/// Figures 5.13 and 5.15: pair_path_item.cpp.
+[[nodiscard]] Item pair_path_item(const WheelStudy& study,
+                                  const Pair& pair,
+                                  const PairPaths& paths);
+
+}  // namespace proofmass::thesis

@@ -1,0 +1,76 @@
+#include "proofmass/thesis/programme.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <set>
+
+namespace proofmass::thesis {
+namespace {
+
+// Two hours at rest would take most of the time.
+const Programme& simulated() {
+  static const Programme programme =
+      run_programme({}, {.seeds = 2, .static_duration_s = 600.0}).value();
+  return programme;
+}
+
+TEST(Programme, HasEveryTableAndFigureOnceInTheOrderOfTheThesis) {
+  const std::vector<std::string> order{
+      "table 2.1",   "figure 4.3",  "figure 4.5",  "table 4.1",   "figure 4.6",  "figure 5.2",
+      "figure 5.3",  "figure 5.4",  "figure 5.5",  "figure 5.6",  "table 5.1",   "figure 5.7",
+      "figure 5.8",  "figure 5.9",  "figure 5.10", "figure 5.12", "figure 5.13", "figure 5.14",
+      "figure 5.15", "figure 5.16", "figure 5.17", "figure 5.18", "figure 5.19", "section 6.1",
+      "table A.1",   "section A.2"};
+  std::vector<std::string> found;
+  for (const Item& item : simulated().items) found.push_back(item.id);
+  EXPECT_EQ(found, order);
+}
+
+TEST(Programme, SaysOfEachItemWhatTheThesisSaysWhatWeFindAndWhy) {
+  for (const Item& item : simulated().items) {
+    EXPECT_FALSE(item.title.empty()) << item.id;
+    EXPECT_FALSE(item.thesis.empty()) << item.id;
+    EXPECT_FALSE(item.ours.empty()) << item.id;
+    EXPECT_FALSE(item.note.empty()) << item.id;
+  }
+}
+
+TEST(Programme, NamesEachNumberOnceWithinItsItem) {
+  for (const Item& item : simulated().items) {
+    std::set<std::string> keys;
+    for (const Finding& finding : item.findings) {
+      EXPECT_TRUE(keys.insert(finding.key).second) << item.id << ' ' << finding.key;
+      EXPECT_FALSE(finding.label.empty()) << item.id << ' ' << finding.key;
+    }
+  }
+}
+
+TEST(Programme, GivesEachNumberOrAReason) {
+  for (const Item& item : simulated().items) {
+    for (const Finding& finding : item.findings) {
+      const std::string which = item.id + ' ' + finding.key;
+      EXPECT_NE(finding.ours.has_value(), !finding.reason.empty()) << which;
+      EXPECT_TRUE(!finding.thesis || std::isfinite(*finding.thesis)) << which;
+      if (!finding.ours) continue;
+      EXPECT_TRUE(std::isfinite(finding.ours->value)) << which;
+      EXPECT_TRUE(finding.ours->std >= 0.0 && std::isfinite(finding.ours->std)) << which;
+    }
+  }
+}
+
+TEST(Programme, ShowsNumbersInAUnitOfTheSameKind) {
+  for (const Item& item : simulated().items) {
+    for (const Finding& finding : item.findings) {
+      EXPECT_GT(finding.shown.to_si, 0.0) << item.id << ' ' << finding.key;
+      if (finding.si_unit != finding.shown.symbol) continue;
+      EXPECT_EQ(finding.shown.to_si, 1.0) << item.id << ' ' << finding.key;
+    }
+  }
+}
+
+TEST(Programme, SimulatesWhatNobodyRecorded) {
+  EXPECT_EQ(simulated().simulated, (std::vector<std::string>{"static", "tumble", "wheel"}));
+}
+
+}  // namespace
+}  // namespace proofmass::thesis
