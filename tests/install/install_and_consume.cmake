@@ -13,5 +13,6 @@ run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${build} -G ${GENERATOR}
   -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_FIND_PACKAGE_NO_PACKAGE_REGISTRY=ON
   -D CMAKE_CXX_COMPILER=${COMPILER})
 run(${CMAKE_COMMAND} --build ${build})
-run(${build}/consumer)
+run(${build}/consumer_static)
+run(${build}/consumer_shared)
 run(${prefix}/bin/proofmass --version)
