@@ -8,8 +8,10 @@
 #include <iostream>
 #include <memory>
 
+#include "completion.hpp"
 #include "config_file.hpp"
 #include "exit_status.hpp"
+#include "output.hpp"
 #include "proofmass/core/version.hpp"
 #include "verb_flags.hpp"
 
@@ -42,6 +44,7 @@ struct Commands {
   RecordCommand record;
   RecoverCommand recover;
   SensorCommand sensor;
+  ThesisCommand thesis;
 };
 
 // The value of --config, if it is given.
@@ -156,6 +159,7 @@ Command chosen(CLI::App& app, Commands& commands) {
   if (app.got_subcommand("record")) return std::move(commands.record);
   if (app.got_subcommand("recover")) return std::move(commands.recover);
   if (app.got_subcommand("sensor")) return std::move(commands.sensor);
+  if (app.got_subcommand("thesis")) return std::move(commands.thesis);
   return std::move(commands.budget);
 }
 
@@ -192,6 +196,11 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
   add_flags(app, commands.record);
   add_flags(app, commands.recover);
   add_flags(app, commands.sensor);
+  add_flags(app, commands.thesis);
+  if (argc > 1 && argv[1] == completion_verb) {
+    print_out(completions(app, {argv + 2, argv + argc}));
+    return std::nullopt;
+  }
   std::vector<std::string> arguments = with_config(app, argc, argv);
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
   try {

@@ -175,6 +175,19 @@ struct BudgetCommand {
   OutputFlags output;
 };
 
+/// The thesis's programme, on the recordings that are named; the rest of it is simulated.
+struct ThesisCommand {
+  std::string still, tumble;        ///< --static, --tumble: files; empty: simulated
+  std::vector<std::string> wheels;  ///< --wheel: one run at one speed each; empty: simulated
+  std::vector<double> angles_deg;   ///< --angles: of the rests in `tumble`
+  std::optional<double> radius_m;
+  std::size_t runs = 50;      ///< simulated at each speed
+  double static_hours = 2.0;  ///< of the simulated test at rest
+  std::uint64_t seed = 1;
+  InputFlags input;
+  OutputFlags output;
+};
+
 /// Of `record`: a procedure that a person is led through, and what is made of it.
 struct GuideFlags {
   std::string procedure;                 ///< tumble, multi-position or static; empty: none
@@ -227,10 +240,11 @@ using Command = std::variant<InspectCommand,
                              BudgetCommand,
                              RecordCommand,
                              RecoverCommand,
-                             SensorCommand>;
+                             SensorCommand,
+                             ThesisCommand>;
 
 /// Reads the command line and the configuration file that it may name. --help and --version are
-/// printed here, and have no command. Throws Failure.
+/// printed here, and have no command; nor has what a shell asks for at Tab. Throws Failure.
 [[nodiscard]] std::optional<Command> parse_command_line(int argc, char** argv);
 
 /// "x", "-z", "0,0.1,1" as a vector. Throws Failure (usage).

@@ -22,5 +22,6 @@ void add_flags(CLI::App& app, SimulateCommand& command);
 void add_flags(CLI::App& app, BudgetCommand& command);
 void add_flags(CLI::App& app, RecordCommand& command);
 void add_flags(CLI::App& app, RecoverCommand& command);
+void add_flags(CLI::App& app, ThesisCommand& command);
 
 }  // namespace proofmass::app

@@ -20,5 +20,6 @@ void run(const BudgetCommand& command);
 void run(const RecordCommand& command);
 void run(const RecoverCommand& command);
 void run(const SensorCommand& command);
+void run(const ThesisCommand& command);
 
 }  // namespace proofmass::app

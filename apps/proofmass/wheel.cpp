@@ -1,9 +1,6 @@
 #include "proofmass/estimate/wheel.hpp"
 
 #include <algorithm>
-#include <cstdint>
-#include <fmt/format.h>
-#include <optional>
 
 #include "console.hpp"
 #include "exit_status.hpp"
@@ -11,103 +8,11 @@
 #include "output.hpp"
 #include "proofmass/report/document.hpp"
 #include "proofmass/report/wheel_report.hpp"
-#include "proofmass/sensor/calibration.hpp"
 #include "verbs.hpp"
+#include "wheel_input.hpp"
 
 namespace proofmass::app {
 namespace {
-
-constexpr double s_per_ns = 1e-9;
-
-std::optional<std::int64_t> end_ns(const Recording& recording) {
-  if (!recording.time.start_ns) return std::nullopt;
-  return *recording.time.start_ns + static_cast<std::int64_t>(recording.duration_s() / s_per_ns);
-}
-
-// Two recordings are of one clock if their clock's readings overlap.
-bool share_a_clock(const Recording& a, const Recording& b) {
-  const auto &a_start = a.time.start_ns, &b_start = b.time.start_ns;
-  return a_start && b_start && *a_start <= *end_ns(b) && *b_start <= *end_ns(a);
-}
-
-estimate::WheelSensor wheel_sensor(const Recording& recording,
-                                   const Accelerometer& from,
-                                   double begin_s) {
-  estimate::WheelSensor sensor;
-  sensor.name = from.name;
-  sensor.time_s.resize(recording.samples());
-  for (std::size_t k = 0; k < sensor.time_s.size(); ++k) {
-    sensor.time_s[k] = begin_s + recording.time.at(k);
-  }
-  const Triad& triad = from.triad;
-  if (triad.axes() < 2) {
-    throw Failure(usage, from.name +
-                             ": one axis only: an accelerometer needs two in the plane of the "
-                             "wheel");
-  }
-  // Of two axes the pair is turned on until the missing one is z, which keeps it right-handed.
-  std::array order{triad.x, triad.y, triad.z};
-  while (order[2] && triad.axes() == 2) std::rotate(order.begin(), order.begin() + 1, order.end());
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (order[axis]) sensor.accel_mps2[axis] = recording.channels[*order[axis]].values;
-  }
-  return sensor;
-}
-
-struct WheelInput {
-  std::vector<estimate::WheelSensor> sensors;
-  bool clocks_shared = true;
-  double alignment_std_rad = 0.0;
-  std::vector<Note> notes;
-};
-
-void keep_notes(const std::vector<Recording>& recordings, std::vector<Note>& notes) {
-  for (const Recording& recording : recordings) {
-    for (const Note& note : recording.notes) {
-      const bool several = recordings.size() > 1;
-      notes.push_back({note.severity, several ? recording.source + ": " + note.text : note.text});
-    }
-  }
-}
-
-WheelInput prepare(const WheelCommand& command) {
-  WheelInput input;
-  std::vector<Recording> recordings;
-  for (const std::string& file : command.files) {
-    recordings.push_back(load(file, command.input, progress_bar(command.output)));
-    if (recordings.back().time.source == TimeSource::none) {
-      throw Failure(usage, file + ": no time column and no --rate: give --rate HZ or --time NAME");
-    }
-  }
-  const auto models = load_sensors(command.input, input.notes);
-  const std::vector<Accelerometer> found = accelerometers(recordings);
-  if (found.size() > 2) {
-    std::string names;
-    for (const Accelerometer& one : found) names += (names.empty() ? "" : ", ") + one.name;
-    throw Failure(usage,
-                  fmt::format("{} accelerometers ({}), expected one or two: choose with --channel",
-                              found.size(), names));
-  }
-  calibrate(models, found, recordings);
-  remove_warm_up(command.input, models, found, recordings, input.notes);
-  keep_notes(recordings, input.notes);
-  input.clocks_shared =
-      recordings.size() == 1 || share_a_clock(recordings.front(), recordings.back());
-  for (const Accelerometer& one : found) {
-    const Recording& recording = recordings[one.recording];
-    double begin_s = 0.0;
-    if (recordings.size() == 2 && input.clocks_shared) {
-      const std::int64_t first =
-          std::min(*recordings[0].time.start_ns, *recordings[1].time.start_ns);
-      begin_s = static_cast<double>(*recording.time.start_ns - first) * s_per_ns;
-    }
-    input.sensors.push_back(wheel_sensor(recording, one, begin_s));
-  }
-  if (!models.empty()) {
-    input.alignment_std_rad = sensor::alignment_std_rad(models.front()).value_or(0.0);
-  }
-  return input;
-}
 
 bool is_bad(const report::WheelReport& report) {
   const auto& sensors = report.solution.sensors;
@@ -130,7 +35,7 @@ void run(const WheelCommand& command) {
   report.options.rim_radius_m = command.rim_radius_m;
   report.options.rolling_radius_m = command.rolling_radius_m;
   report.options.gravity_mps2 = gravity_mps2(command.input);
-  WheelInput input = prepare(command);
+  WheelInput input = wheel_input(command.files, command.input, command.output);
   report.notes = std::move(input.notes);
   report.options.clocks_shared = input.clocks_shared;
   report.options.alignment_std_rad = input.alignment_std_rad;
