@@ -1,0 +1,99 @@
+"""The examples in the pages: blocks marked console, with commands behind "$ " and what they print.
+
+A line that is only "…" stands for any lines; "…" within a line for any text. A command may go on in the next line
+behind a backslash. "$ cat FILE" shows a file that the reader writes: it is written here. The blocks of one page
+run one after the other in one folder, so that one may use the other's files. A command on an .xz file uses a recording
+of others, which lies beside the project and not in it.
+"""
+import os
+import re
+import shlex
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+BLOCK = re.compile(r"^```console\n(.*?)^```$", re.S | re.M)
+
+
+@dataclass
+class Command:
+    text: str # as it stands, without "$ "
+    output: list = field(default_factory=list)
+
+    @property
+    def words(self) -> list:
+        return shlex.split(self.text.replace("\\\n", " "))
+
+
+@dataclass
+class Block:
+    page: Path
+    line: int # of the page, of the first command
+    commands: list
+
+    @property
+    def recordings(self) -> list:
+        """The recordings of others that it reads."""
+        return [word for command in self.commands for word in command.words if word.endswith(".xz")]
+
+
+def commands_of(text: str) -> list:
+    commands, unfinished = [], False
+    for line in text.splitlines():
+        if unfinished:
+            commands[-1].text += "\n" + line
+        elif line.startswith("$ "):
+            commands.append(Command(line[2:]))
+        else:
+            commands[-1].output.append(line)
+            continue
+        unfinished = line.endswith("\\")
+    return commands
+
+
+def blocks_of(page: Path) -> list:
+    text = page.read_text()
+    return [Block(page, text.count("\n", 0, found.start(1)) + 1, commands_of(found[1])) for found in BLOCK.finditer(text)]
+
+
+def pattern_of(lines: list) -> re.Pattern:
+    """What the printed lines have to match as a whole."""
+    parts = []
+    for line in lines:
+        if line.strip() == "…":
+            parts.append(r"(?:.*\n)*?")
+        else:
+            parts.append(".*?".join(re.escape(piece) for piece in line.rstrip().split("…")) + r"\n")
+    return re.compile("".join(parts))
+
+
+def agrees(written: list, printed: list) -> bool:
+    """Whether a command printed what the page says; a narrow space in a number may be any space."""
+    plain = [[line.replace("\u202f", " ") for line in lines] for lines in (written, printed)]
+    return bool(pattern_of(plain[0]).fullmatch("".join(line + "\n" for line in plain[1])))
+
+
+def published(name: str):
+    """The path of a recording of others, or None."""
+    for place in (os.environ.get("PROOFMASS_DATA"), ROOT / "../shared/data"):
+        found = sorted(Path(place).rglob(name)) if place else []
+        if found:
+            return found[0].resolve()
+    return None
+
+
+def run(command: Command, folder: Path, program: str) -> list:
+    """What it prints, line by line without trailing blanks; a failure of the command is an error."""
+    words = command.words
+    if words[0] == "cat":
+        (folder / words[1]).write_text("\n".join(command.output) + "\n")
+        return command.output
+    if words[0] != "proofmass":
+        raise ValueError(f"only proofmass is run here: {command.text}")
+    ran = subprocess.run([program, *words[1:]], cwd=folder, capture_output=True, text=True, timeout=120,
+                         stdin=subprocess.DEVNULL, env={**os.environ, "NO_COLOR": "1"})
+    if ran.returncode != 0:
+        raise RuntimeError(f"{command.text}\nended with {ran.returncode}: {ran.stderr}")
+    return [line.rstrip() for line in (ran.stdout + ran.stderr).splitlines()]
