@@ -72,6 +72,11 @@ class Wheel(CommandTest):
         self.assertAlmostEqual(document["distance_m"]["value"],
                                abs(truth["turns"]) * 2 * 3.14159265 * 0.3, delta=0.02)
 
+    def test_a_radius_is_not_called_wrong_by_a_recording_that_shows_none(self):
+        """At one speed; of this pair the fit without the radius ends right at the axle."""
+        self.succeed("simulate", "--rpm", "20", "--seed", "3", "-o", "even.csv")
+        self.succeed("wheel", "even.csv", "--radius", "0.1", "--strict")
+
     def test_standard_input_will_do(self):
         csv_text = self.succeed("simulate", "-o", "-", "--duration", "8", "--rate", "50", "--rpm", "40")
         document = self.document("wheel", "-", stdin=csv_text.encode())
