@@ -11,7 +11,7 @@ void add_recording_flags(CLI::App& verb, ThesisCommand& command) {
     return verb.add_option(name, into, help)->type_name(type);
   };
   add("--static", command.still, "FILE",
-      "your own recording at rest from switching on (default: two hours, simulated)");
+      "your own recording at rest from switching on (default: simulated)");
   CLI::Option* tumble =
       add("--tumble", command.tumble, "FILE",
           "your own positions, or a recording that rests in them (default: simulated)");
