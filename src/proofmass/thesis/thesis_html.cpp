@@ -91,7 +91,8 @@ Section reading_section() {
           "for the same question on the right, and why the two differ, or that they agree, "
           "below. The table sets the numbers beside each other: a number of the thesis stands "
           "as it is printed, ours with its standard deviation where it has one. They agree where "
-          "they differ by no more than 10 % or two of these standard deviations.",
+          "they differ by no more than 10 % or two of these standard deviations; those of a rig of "
+          "one's own need not.",
           "Of the wheel there are two estimators throughout: the thesis's own filter with its "
           "slips mended, and a model of the wheel, which knows that gravity turns past the "
           "sensor and so gives the angle absolutely."}};

@@ -53,6 +53,7 @@ std::string thesis_text(const ThesisReport& report) {
   std::string text = thesis_conclusion(report.programme.items) + '\n';
   const std::string simulated = simulated_words(report);
   if (!simulated.empty()) text += simulated + '\n';
+  if (!report.inputs.empty()) text += "A rig of one's own need not agree with the thesis's.\n";
   std::vector<std::vector<std::string>> rows;
   for (const Headline& one : headlines(report.programme.items))
     rows.push_back({one.label, one.value});
