@@ -14,7 +14,7 @@ from pathlib import Path
 
 from command import DONE, PROGRAM, CommandTest, parse_json
 
-SECONDS, RATE = 60, 1000
+SECONDS, RATE = int(os.environ.get("PROOFMASS_SOURCE_SECONDS", "60")), 1000
 ROWS = SECONDS * RATE
 RIG = Path(__file__).resolve().parents[2] / "rig"
 HEADER = "n,t (us)," + ",".join(f"c{i} (g)" for i in range(6)) + "\n"

@@ -9,7 +9,7 @@
 #include "proofmass/signal/rests.hpp"
 #include "proofmass/simulate/procedure.hpp"
 
-namespace proofmass {
+namespace proofmass::guided_test {
 namespace {
 
 using calibrate::GuideKind;
@@ -150,4 +150,4 @@ TEST(Guided, StopsAtTwelvePositionsOfTwentyFive) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::guided_test

@@ -19,7 +19,7 @@
 #include "proofmass/signal/rests.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::calibrate_real_test {
 namespace {
 
 using calibrate::calibrate_positions;
@@ -336,4 +336,4 @@ TEST(CalibrationOfATable, IsItsAuthors) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::calibrate_real_test

@@ -15,7 +15,7 @@
 #include "proofmass/signal/even_grid.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::drift_real_test {
 namespace {
 
 using characterise::analyse_drift;
@@ -281,4 +281,4 @@ TEST(SinglePowerUps, OfNinetySingleRunsFewAreTakenForAWarmUp) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::drift_real_test

@@ -7,7 +7,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::folders_real_test {
 namespace {
 
 bool is_noted(const Recording& recording, const std::string& part) {
@@ -96,4 +96,4 @@ TEST_F(RealFolders, LoggerBeginsAtItsStartTime) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::folders_real_test

@@ -6,7 +6,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::hdf5_real_test {
 namespace {
 
 const Channel& channel(const Recording& recording, const char* name) {
@@ -69,4 +69,4 @@ TEST(Hdf5Files, OfTheMathWorksAreReadAsTheOlderVersionsOfTheSame) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::hdf5_real_test

@@ -4,7 +4,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::lvm_real_test {
 namespace {
 
 std::filesystem::path lvm(const std::string& name) {
@@ -55,4 +55,4 @@ TEST(LvmFiles, HaveMoreRowsThanTheOnlyHeaderSays) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::lvm_real_test

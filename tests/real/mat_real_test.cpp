@@ -5,7 +5,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::mat_real_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -94,4 +94,4 @@ TEST(MatFiles, OfMotionCaptureHaveTheirRateAndTheirVariablesByName) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::mat_real_test

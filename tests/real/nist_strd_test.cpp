@@ -13,7 +13,7 @@
 #include "proofmass/fit/nonlinear_least_squares.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::nist_strd_test {
 namespace {
 
 using fit::LeastSquaresFit;
@@ -197,4 +197,4 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"Roszman1", roszman}));
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::nist_strd_test

@@ -11,7 +11,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::noise_real_test {
 namespace {
 
 using characterise::DeviationPoint;
@@ -188,4 +188,4 @@ TEST(Stable32Phase, ReadAsAFileHasItsDeviationAndLimits) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::noise_real_test

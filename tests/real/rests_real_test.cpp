@@ -11,7 +11,7 @@
 #include "proofmass/signal/rests.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::rests_real_test {
 namespace {
 
 using signal::find_rests;
@@ -161,4 +161,4 @@ TEST(RestsOfAWalk, AreNone) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::rests_real_test

@@ -5,7 +5,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::tdms_real_test {
 namespace {
 
 std::filesystem::path specimen(const char* name) {
@@ -45,4 +45,4 @@ TEST(PublishedTdms, AWaveformWithItsStartIsReadAsItStands) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::tdms_real_test

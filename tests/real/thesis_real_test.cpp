@@ -12,7 +12,7 @@
 #include "proofmass/thesis/static_bias.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::thesis_real_test {
 namespace {
 
 using thesis::Finding;
@@ -89,4 +89,4 @@ TEST(StaticItemsOfPublishedData, TellNoWarmUpOfAMinuteAfterAPowerUp) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::thesis_real_test

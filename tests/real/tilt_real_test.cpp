@@ -12,7 +12,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::tilt_real_test {
 namespace {
 
 constexpr double deg = 180.0 / std::numbers::pi;
@@ -98,4 +98,4 @@ TEST(RealTilt, OfAPhoneOfTheOtherSignStandsOnItsHeadUnlessItIsTurnedRound) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::tilt_real_test

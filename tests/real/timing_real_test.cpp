@@ -4,7 +4,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::timing_real_test {
 namespace {
 
 TEST(PublishedClock, OfRowsInBurstsGivesTheRateOfTheLongRun) {
@@ -23,4 +23,4 @@ TEST(PublishedClock, OfRowsInBurstsGivesTheRateOfTheLongRun) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::timing_real_test

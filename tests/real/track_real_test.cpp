@@ -12,7 +12,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::track_real_test {
 namespace {
 
 using estimate::TrackOptions;
@@ -248,4 +248,4 @@ TEST(XsensAtRest, GoesNowhere) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::track_real_test

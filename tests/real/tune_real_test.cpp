@@ -12,7 +12,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::tune_real_test {
 namespace {
 
 using estimate::TuneModel;
@@ -99,4 +99,4 @@ TEST(TunedBarbell, MovesUpAndDownMoreThanSideways) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::tune_real_test

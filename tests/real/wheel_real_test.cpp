@@ -11,7 +11,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 
-namespace proofmass {
+namespace proofmass::wheel_real_test {
 namespace {
 
 using estimate::WheelSensor;
@@ -133,4 +133,4 @@ INSTANTIATE_TEST_SUITE_P(Trials,
                                          Wheel{"trial10", "1", -105.411, -105.411, 0.143}));
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::wheel_real_test

@@ -3,7 +3,7 @@
 #include "proofmass/acquire/source.hpp"
 
 // A card itself is read in the virtual machine of rig/iio-vm.
-namespace proofmass::acquire {
+namespace proofmass::acquire::comedi_source_test {
 namespace {
 
 std::string opening_error(const std::string& uri, Errc code) {
@@ -34,4 +34,4 @@ TEST(ComediSource, RefusesSettingsThatMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::comedi_source_test

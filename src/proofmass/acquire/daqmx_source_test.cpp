@@ -9,7 +9,7 @@
 #include "proofmass/acquire/daqmx_channels.hpp"
 #include "proofmass/acquire/source_list.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::daqmx_source_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -277,4 +277,4 @@ TEST(DaqmxSource, RefusesSettingsThatMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::daqmx_source_test

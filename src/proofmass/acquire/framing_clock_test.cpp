@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::framing_clock_test {
 namespace {
 
 constexpr std::int64_t us = 1'000;
@@ -90,4 +90,4 @@ TEST(RowCounter, DoesNotCallAJumpALoss) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::framing_clock_test

@@ -6,7 +6,7 @@
 #include "proofmass/acquire/framing_fields.hpp"
 #include "proofmass/acquire/framing_test_support.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::framing_frames_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -243,4 +243,4 @@ TEST(FramingPackets, HoldWholeFrames) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::framing_frames_test

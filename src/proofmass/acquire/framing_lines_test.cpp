@@ -4,7 +4,7 @@
 
 #include "proofmass/acquire/framing_test_support.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::framing_lines_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -247,4 +247,4 @@ TEST(FramingLines, SayWhatCameInsteadOfRows) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::framing_lines_test

@@ -3,7 +3,7 @@
 
 #include "proofmass/acquire/framing_test_support.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::framing_packets_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -76,4 +76,4 @@ TEST(FramingOptions, RefuseWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::framing_packets_test

@@ -5,7 +5,7 @@
 #include "proofmass/acquire/iio_handle.hpp"
 #include "proofmass/acquire/iio_timing.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::iio_columns_test {
 namespace {
 
 constexpr const char* head = R"(<?xml version="1.0" encoding="utf-8"?><!DOCTYPE context [
@@ -119,4 +119,4 @@ TEST(IioTiming, ListsTheTriggersThatThereAre) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::iio_columns_test

@@ -5,7 +5,7 @@
 #include "proofmass/acquire/source.hpp"
 
 // libiio itself against a board that is none.
-namespace proofmass::acquire {
+namespace proofmass::acquire::iio_source_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -263,4 +263,4 @@ TEST(IioSource, RefusesAnAddressThatIsNone) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::iio_source_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::mount_matrix_test {
 namespace {
 
 TEST(MountMatrix, TurnsTheChipsAxesIntoTheBoards) {
@@ -33,4 +33,4 @@ TEST(MountMatrix, RefusesWhatIsNoRotation) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::mount_matrix_test

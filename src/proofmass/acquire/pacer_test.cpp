@@ -4,7 +4,7 @@
 
 #include "proofmass/acquire/source.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::pacer_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -51,4 +51,4 @@ TEST(Pacer, KeepsItsRangeAtAnySpeed) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::pacer_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::phyphox_cursor_test {
 namespace {
 
 using Columns = std::vector<std::vector<double>>;
@@ -86,4 +86,4 @@ TEST(PhyphoxCursor, LeavesWhatWasMeasuredBeforeAlone) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::phyphox_cursor_test

@@ -6,7 +6,7 @@
 #include "proofmass/acquire/peer_test_support.hpp"
 #include "proofmass/acquire/phyphox_plan.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::phyphox_messages_test {
 namespace {
 
 PhyphoxConfig config(const std::string& inputs, const std::string& exports = "[]") {
@@ -101,4 +101,4 @@ TEST(PhyphoxTime, IsThatOfTheLastStart) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::phyphox_messages_test

@@ -4,7 +4,7 @@
 
 #include "proofmass/acquire/peer_test_support.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::phyphox_source_test {
 namespace {
 
 class PhyphoxSource : public PhoneSource {
@@ -115,4 +115,4 @@ TEST(PhyphoxAddress, ThatNobodyListensAtIsToldAtOnce) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::phyphox_source_test

@@ -8,7 +8,7 @@
 #include "proofmass/acquire/record_test_support.hpp"
 #include "proofmass/acquire/scripted_source_test_support.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::rate_watch_test {
 namespace {
 
 /// What a watch tells of rows that come at `rate_hz` in tenths of a second, each `late_s` late.
@@ -80,4 +80,4 @@ TEST(Recorder, TellsThatRowsComeAtAnotherRateThanTheGranted) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::rate_watch_test

@@ -8,7 +8,7 @@
 #include "proofmass/acquire/scripted_source_test_support.hpp"
 
 // The analysis on its own thread, beside the recording.
-namespace proofmass::acquire {
+namespace proofmass::acquire::record_analysis_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -187,4 +187,4 @@ TEST(RecordAnalysis, EndsWithARecordingThatCannotBegin) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::record_analysis_test

@@ -15,7 +15,7 @@
 #include "proofmass/acquire/record_test_support.hpp"
 #include "proofmass/acquire/scripted_source_test_support.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::record_disk_test {
 namespace {
 
 /// What a disk in memory is to do.
@@ -215,4 +215,4 @@ TEST(RecordDisk, IsClosedOnAFileSystemThatIsFull) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::record_disk_test

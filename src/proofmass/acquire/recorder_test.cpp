@@ -11,7 +11,7 @@
 #include "proofmass/acquire/record_test_support.hpp"
 #include "proofmass/acquire/scripted_source_test_support.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::recorder_test {
 namespace {
 
 TEST(Recorder, WritesEveryRowOfASourceAndItReadsBack) {
@@ -389,4 +389,4 @@ TEST(Recorder, ReadsBackBitForBitWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::recorder_test

@@ -17,7 +17,7 @@
 #include "proofmass/acquire/scripted_source_test_support.hpp"
 #include "proofmass/io/mcap_salvage.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::recover_test {
 namespace {
 
 std::string bytes_of(const std::string& path) {
@@ -260,4 +260,4 @@ TEST(Recover, HasAllButTheLastSecondOfARecorderThatWasKilled) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::recover_test

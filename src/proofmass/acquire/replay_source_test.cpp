@@ -11,7 +11,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/io/write_recording.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::replay_source_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -232,4 +232,4 @@ TEST(ReplaySource, SaysWhatItReplays) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::replay_source_test

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::sensor_merge_test {
 namespace {
 
 constexpr std::int64_t ms = 1'000'000;
@@ -127,4 +127,4 @@ TEST_F(SensorMergeOfTwo, DoesNotWaitForEverWhereTheLeadersClockStands) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::sensor_merge_test

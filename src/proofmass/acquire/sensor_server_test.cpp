@@ -4,7 +4,7 @@
 #include "proofmass/acquire/peer_test_support.hpp"
 #include "proofmass/acquire/sensor_server_messages.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::sensor_server_test {
 namespace {
 
 TEST(SensorMessage, HasATimeAndValues) {
@@ -83,4 +83,4 @@ TEST_F(SensorServerSource, EndsWhenThePhoneIsGone) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::sensor_server_test

@@ -13,7 +13,7 @@
 #include "proofmass/acquire/serial_port.hpp"
 #include "proofmass/acquire/source.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::serial_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -211,4 +211,4 @@ TEST(SerialDevices, AreFoundByTheirLastingNames) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::serial_test

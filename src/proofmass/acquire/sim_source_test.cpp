@@ -13,7 +13,7 @@
 #include "proofmass/simulate/rig.hpp"
 #include "proofmass/simulate/rig_file.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::sim_source_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -308,4 +308,4 @@ TEST(SimSource, IsFound) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::sim_source_test

@@ -4,7 +4,7 @@
 
 #include "proofmass/acquire/source.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::source_uri_test {
 namespace {
 
 TEST(SourceUri, HasSchemePlaceAndSettings) {
@@ -71,4 +71,4 @@ TEST(OpenSource, NamesTheKindsThereAre) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::source_uri_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::stamp_watch_test {
 namespace {
 
 TEST(StampWatch, KnowsAClockThatIsDead) {
@@ -51,4 +51,4 @@ TEST(StampWatch, SurvivesStampsAtTheEdgesOfWhatAnIntegerHolds) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::stamp_watch_test

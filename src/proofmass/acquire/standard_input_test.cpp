@@ -9,7 +9,7 @@
 #include "proofmass/acquire/source.hpp"
 #include "proofmass/io/write_recording.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::standard_input_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -89,4 +89,4 @@ TEST(StandardInput, ThatIsEmptyIsNoRecording) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::standard_input_test

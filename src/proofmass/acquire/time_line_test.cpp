@@ -10,7 +10,7 @@
 #include "proofmass/acquire/latency_histogram.hpp"
 #include "proofmass/acquire/silence_hold.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::time_line_test {
 namespace {
 
 constexpr std::int64_t ms = 1'000'000;
@@ -288,4 +288,4 @@ TEST(LatencyHistogram, FindsQuantiles) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::time_line_test

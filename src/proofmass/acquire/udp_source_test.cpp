@@ -8,7 +8,7 @@
 
 #include "proofmass/acquire/source.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::udp_source_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -160,4 +160,4 @@ TEST(ShownUri, HasNoPassword) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::udp_source_test

@@ -8,7 +8,7 @@
 #include "proofmass/acquire/time_line.hpp"
 #include "proofmass/signal/audit.hpp"
 
-namespace proofmass::acquire {
+namespace proofmass::acquire::usual_step_test {
 namespace {
 
 constexpr double tick_s = 0.01;
@@ -182,4 +182,4 @@ TEST(UsualStep, IsNotMovedByALongHole) {
 }
 
 }  // namespace
-}  // namespace proofmass::acquire
+}  // namespace proofmass::acquire::usual_step_test

@@ -4,7 +4,7 @@
 #include "proofmass/calibrate/budget_test_support.hpp"
 #include "proofmass/calibrate/multi_position_budget.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::budget_coverage_slow_test {
 namespace {
 
 // In how many of so many calibrations value ± U holds the truth, of each parameter. Gravity is
@@ -44,4 +44,4 @@ TEST(ExpandedUncertainty, HoldsTheTruthInNinetyFivePercentOfCalibrations) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::budget_coverage_slow_test

@@ -7,7 +7,7 @@
 
 #include "proofmass/core/statistics.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::cross_axis_test {
 namespace {
 
 Eigen::Matrix2d diagonal(double a, double b) {
@@ -128,4 +128,4 @@ TEST(CrossAxis, RefusesFiguresThatMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::cross_axis_test

@@ -4,7 +4,7 @@
 #include "proofmass/calibrate/multi_position.hpp"
 #include "proofmass/calibrate/multi_position_test_support.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::given_directions_test {
 namespace {
 
 using test::drawn_poses;
@@ -102,4 +102,4 @@ TEST(GivenDirections, SayWhyTheyCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::given_directions_test

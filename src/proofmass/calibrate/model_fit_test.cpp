@@ -9,7 +9,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::model_fit_test {
 namespace {
 
 using sensor::Coefficient;
@@ -375,4 +375,4 @@ TEST(ModelFit, RefusesToDivideByAScaleFactorThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::model_fit_test

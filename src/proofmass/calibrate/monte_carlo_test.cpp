@@ -8,7 +8,7 @@
 #include "proofmass/calibrate/draw.hpp"
 #include "proofmass/core/statistics.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::monte_carlo_test {
 namespace {
 
 using D = Distribution;
@@ -196,4 +196,4 @@ TEST(Draw, HasTheMomentsOfEachDistribution) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::monte_carlo_test

@@ -6,7 +6,7 @@
 #include "proofmass/calibrate/budget_test_support.hpp"
 #include "proofmass/calibrate/multi_position_check.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::multi_position_budget_test {
 namespace {
 
 struct Calibrated {
@@ -184,4 +184,4 @@ TEST(CheckByMonteCarlo, ConfirmsTheBudgetsOfTheOtherModels) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::multi_position_budget_test

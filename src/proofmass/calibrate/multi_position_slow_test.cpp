@@ -7,7 +7,7 @@
 #include "proofmass/core/chi_square.hpp"
 
 // How often the intervals hold the truth, over a thousand sensors.
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::multi_position_slow_test {
 namespace {
 
 using test::drawn_poses;
@@ -138,4 +138,4 @@ TEST(MultiPositionCoverage, OfSixExactPositionsHoldsWhatPlacingDoes) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::multi_position_slow_test

@@ -5,7 +5,7 @@
 #include "proofmass/calibrate/multi_position_test_support.hpp"
 #include "proofmass/calibrate/validation.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::multi_position_test {
 namespace {
 
 using test::drawn_poses;
@@ -252,4 +252,4 @@ TEST(MultiPosition, SixExactPositionsAreFerrarisFormulas) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::multi_position_test

@@ -12,7 +12,7 @@
 #include "proofmass/core/random.hpp"
 #include "proofmass/core/units.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::pose_guide_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -362,4 +362,4 @@ TEST(TurnedAxes, TellTheAngleOfAnySensorOnceAQuarterOfATurnIsKnown) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::pose_guide_test

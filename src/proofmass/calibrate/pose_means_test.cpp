@@ -8,7 +8,7 @@
 
 #include "proofmass/calibrate/dwell_noise.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::pose_means_test {
 namespace {
 
 constexpr std::size_t dwell = 400;
@@ -153,4 +153,4 @@ TEST(DwellNoise, CountsStepsThatTheNoiseDoesNotAverageOut) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::pose_means_test

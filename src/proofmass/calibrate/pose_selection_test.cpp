@@ -9,7 +9,7 @@
 #include "proofmass/calibrate/ellipsoid_start.hpp"
 #include "proofmass/calibrate/multi_position_test_support.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::pose_selection_test {
 namespace {
 
 using test::drawn_poses;
@@ -223,4 +223,4 @@ TEST(PoseSelection, LeavesNoneOutOfNine) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::pose_selection_test

@@ -4,7 +4,7 @@
 
 #include "proofmass/calibrate/multi_position_test_support.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::rest_accuracy_test {
 namespace {
 
 using test::g;
@@ -73,4 +73,4 @@ TEST(RestAccuracy, NamesTheDirectionThatWasLeftOut) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::rest_accuracy_test

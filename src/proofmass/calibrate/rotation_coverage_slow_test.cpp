@@ -5,7 +5,7 @@
 #include "proofmass/calibrate/rotation_test_support.hpp"
 
 // How often the 95 % intervals hold the truth, by repetition with noise of several colours.
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::rotation_coverage_slow_test {
 namespace {
 
 using Q = RotationQuantity;
@@ -129,4 +129,4 @@ TEST(RotationCoverageOfRadius, AndBiasAtTwoSpeedsIsNinetyFivePerCent) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::rotation_coverage_slow_test

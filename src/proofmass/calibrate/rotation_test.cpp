@@ -6,7 +6,7 @@
 
 #include "proofmass/calibrate/rotation_test_support.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::rotation_test {
 namespace {
 
 using Q = RotationQuantity;
@@ -286,4 +286,4 @@ TEST(Rotation, RefusesWhatIsNoTest) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::rotation_test

@@ -6,7 +6,7 @@
 
 #include "proofmass/calibrate/draw.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::supply_test {
 namespace {
 
 // ADXL335: half the supply at 0 g, 300 mV/g at 3 V.
@@ -195,4 +195,4 @@ TEST(FitSupply, LeavesOutAnAxisThatIsNotThereAndSaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::supply_test

@@ -7,7 +7,7 @@
 #include "proofmass/calibrate/tumble_test_support.hpp"
 #include "proofmass/core/linalg.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::tumble_axes_test {
 namespace {
 
 constexpr double quarter = 0.5 * std::numbers::pi;
@@ -136,4 +136,4 @@ TEST(RestrictedScatter, IsTheMaximumOfTheDenseLikelihood) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::tumble_axes_test

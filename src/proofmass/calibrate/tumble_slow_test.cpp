@@ -4,7 +4,7 @@
 #include "proofmass/calibrate/tumble_test_support.hpp"
 
 // How often the 95 % intervals hold the truth, on a simulated table.
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::tumble_slow_test {
 namespace {
 
 struct Mode {
@@ -101,4 +101,4 @@ TEST(Tumble, HoldsTheTruthInside95PercentOfItsIntervals) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::tumble_slow_test

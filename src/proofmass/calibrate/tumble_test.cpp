@@ -6,7 +6,7 @@
 
 #include "proofmass/calibrate/tumble_test_support.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::tumble_test {
 namespace {
 
 using Q = TumbleQuantity;
@@ -420,4 +420,4 @@ TEST(Tumble, CountsGravityAndIndexingAsSharesOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::tumble_test

@@ -5,7 +5,7 @@
 
 #include "proofmass/core/units.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::type_b_test {
 namespace {
 
 constexpr double g = standard_gravity_mps2;
@@ -106,4 +106,4 @@ TEST(LineOf, RefusesAUnitOfAnotherReading) {
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::type_b_test

@@ -7,7 +7,7 @@
 
 #include "proofmass/core/chi_square.hpp"
 
-namespace proofmass::calibrate {
+namespace proofmass::calibrate::uncertainty_budget_test {
 namespace {
 
 using D = Distribution;
@@ -127,4 +127,4 @@ TEST(StdOfHalfWidth, IsThatOfEachShape) {  // GUM, 4.3.7, 4.3.9, 4.4.5
 }
 
 }  // namespace
-}  // namespace proofmass::calibrate
+}  // namespace proofmass::calibrate::uncertainty_budget_test

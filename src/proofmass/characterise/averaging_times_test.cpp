@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::averaging_times_test {
 namespace {
 
 using Factors = std::vector<std::size_t>;
@@ -125,4 +125,4 @@ TEST(AveragingFactors, OfARecordTooShortAreNone) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::averaging_times_test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::deviation_bias_test {
 namespace {
 
 TEST(VarianceBias, TurnsNistsUncorrectedNumbersIntoItsCorrectedOnes) {
@@ -51,4 +51,4 @@ TEST(VarianceBias, IsNoneWhereNoneIsPublishedAndThenNothingIsSaid) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::deviation_bias_test

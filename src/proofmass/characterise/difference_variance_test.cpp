@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::difference_variance_test {
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
@@ -207,4 +207,4 @@ TEST(DifferenceVariances, IgnoreWhatIsMissingAtTheEnds) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::difference_variance_test

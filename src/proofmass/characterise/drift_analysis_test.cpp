@@ -11,7 +11,7 @@
 
 #include "proofmass/characterise/drift_test_support.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::drift_analysis_test {
 namespace {
 
 using test::Series;
@@ -307,4 +307,4 @@ TEST(DriftAnalysis, TakesASampleThatCannotBeForAKnock) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::drift_analysis_test

@@ -12,7 +12,7 @@
 
 // How often intervals of the warm-up hold the truth, and how often a warm-up is seen where there is
 // none: hundreds of recordings of 2 h at 1 Hz, in mg, as means over 4 s.
-namespace proofmass::characterise {
+namespace proofmass::characterise::drift_coverage_slow_test {
 namespace {
 
 using test::Series;
@@ -141,4 +141,4 @@ TEST(DriftCoverage, SeldomSeesAWarmUpInAStraightLine) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::drift_coverage_slow_test

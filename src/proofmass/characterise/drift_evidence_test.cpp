@@ -7,7 +7,7 @@
 #include "proofmass/characterise/drift_test_support.hpp"
 #include "proofmass/signal/fourier.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::drift_evidence_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -160,4 +160,4 @@ TEST(DriftEvidence, NeedsSixtyFourBlocksAndHalfOfThem) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::drift_evidence_test

@@ -7,7 +7,7 @@
 
 #include "proofmass/characterise/drift_test_support.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::drift_fit_test {
 namespace {
 
 using test::Series;
@@ -295,4 +295,4 @@ TEST(DriftFit, HasAProfileThatCrossesItsBoundAtTheEndsOfTheInterval) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::drift_fit_test

@@ -11,7 +11,7 @@
 #include "proofmass/characterise/drift_state.hpp"
 #include "proofmass/characterise/drift_test_support.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::drift_model_test {
 namespace {
 
 using Eigen::Index;
@@ -295,4 +295,4 @@ TEST(PositionError, IsHalfTheBiasTimesTheTimeSquared) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::drift_model_test

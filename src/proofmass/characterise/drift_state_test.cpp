@@ -7,7 +7,7 @@
 
 #include "proofmass/characterise/drift_test_support.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::drift_state_test {
 namespace {
 
 using Eigen::Index;
@@ -279,4 +279,4 @@ TEST(DriftState, OfMarkovNoiseErrsOnTheWideSideAndNotByMuch) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::drift_state_test

@@ -8,7 +8,7 @@
 #include "proofmass/characterise/test_support.hpp"
 #include "proofmass/core/chi_square.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::edf_test {
 namespace {
 
 struct Published {
@@ -452,4 +452,4 @@ TEST(Edf, GivesStable32sLimitsInEveryRowOfItsTables) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::edf_test

@@ -10,7 +10,7 @@
 #include "proofmass/characterise/noise_test_support.hpp"
 #include "proofmass/characterise/term_spectra.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::low_band_test {
 namespace {
 
 using Eigen::Index;
@@ -270,4 +270,4 @@ TEST(BlockMeans, TheDensityOfWhiteNoiseIsKeptWhereOneInTenIsMissing) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::low_band_test

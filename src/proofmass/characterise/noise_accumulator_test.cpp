@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::noise_accumulator_test {
 namespace {
 
 std::vector<double> white_and_random_walk(std::size_t n) {
@@ -65,4 +65,4 @@ TEST(NoiseAccumulator, HasNothingToSayOfNothing) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::noise_accumulator_test

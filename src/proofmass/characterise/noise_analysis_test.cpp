@@ -8,7 +8,7 @@
 #include "proofmass/characterise/noise_test_support.hpp"
 #include "proofmass/characterise/test_support.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::noise_analysis_test {
 namespace {
 
 using test::Series;
@@ -500,4 +500,4 @@ TEST(AnalyseNoise, SaysTheSameInAnyUnit) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::noise_analysis_test

@@ -14,7 +14,7 @@
 
 // How often limits and intervals hold the truth: thousands of recordings of processes whose Allan
 // variance is known exactly. Rates are at 100 Hz.
-namespace proofmass::characterise {
+namespace proofmass::characterise::noise_coverage_slow_test {
 namespace {
 
 constexpr double rate_hz = 100.0;
@@ -268,4 +268,4 @@ TEST(NoiseCoverage, OfWhiteNoiseAloneNothingElseIsSeen) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::noise_coverage_slow_test

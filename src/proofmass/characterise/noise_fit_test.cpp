@@ -6,7 +6,7 @@
 
 #include "proofmass/characterise/noise_test_support.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::noise_fit_test {
 namespace {
 
 using test::Series;
@@ -361,4 +361,4 @@ TEST(FitNoiseModel, SaysThatARecordIsTooShort) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::noise_fit_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::noise_stream_test {
 namespace {
 
 std::vector<double> white_and_random_walk(std::size_t n) {
@@ -156,4 +156,4 @@ TEST(RecordOverview, TakesTheEndsOfALongQuantisedNoiseForNoRails) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::noise_stream_test

@@ -8,7 +8,7 @@
 #include "proofmass/characterise/edf.hpp"
 #include "proofmass/characterise/test_support.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::noise_type_test {
 namespace {
 
 /// Phase whose rate has the spectrum f^α: white noise filtered by (1 − B)^(α/2 − 1).
@@ -127,4 +127,4 @@ TEST(IdentifyNoiseTypes, AgreesWithEveryLag1RowOfStable32AndAllButAFewByRatio) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::noise_type_test

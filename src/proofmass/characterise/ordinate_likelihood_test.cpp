@@ -9,7 +9,7 @@
 #include "proofmass/characterise/drift_test_support.hpp"
 #include "proofmass/characterise/drift_trial.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::ordinate_likelihood_test {
 namespace {
 
 using Eigen::Index;
@@ -207,4 +207,4 @@ TEST(OrdinateLikelihood, ScalesWithTheData) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::ordinate_likelihood_test

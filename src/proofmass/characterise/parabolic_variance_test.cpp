@@ -5,7 +5,7 @@
 
 #include "proofmass/characterise/test_support.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::parabolic_variance_test {
 namespace {
 
 using test::phase_of_white_rates;
@@ -84,4 +84,4 @@ TEST(ParabolicVariance, KeepsItsDigitsOnALongDriftingRecord) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::parabolic_variance_test

@@ -12,7 +12,7 @@
 
 // Why a warm-up is not fitted by plain least squares and judged by the autocorrelation of its
 // residuals: 2 h at 1 Hz, in mg, as a reference for what fit_drift does instead.
-namespace proofmass::characterise {
+namespace proofmass::characterise::plain_fit_slow_test {
 namespace {
 
 using test::Series;
@@ -97,4 +97,4 @@ TEST(PlainFit, UnderstatesItsErrorsByTimesInMarkovNoise) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::plain_fit_slow_test

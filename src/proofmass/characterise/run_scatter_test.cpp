@@ -8,7 +8,7 @@
 #include "proofmass/characterise/run_blocks.hpp"
 #include "proofmass/characterise/run_test_support.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::run_scatter_test {
 namespace {
 
 using Eigen::Index;
@@ -187,4 +187,4 @@ TEST(RunBlocks, TakesMissingSamplesForNothing) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::run_scatter_test

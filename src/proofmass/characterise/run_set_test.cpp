@@ -6,7 +6,7 @@
 
 #include "proofmass/characterise/run_test_support.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::run_set_test {
 namespace {
 
 bool says(const RunSet& set, const std::string& text) {
@@ -120,4 +120,4 @@ TEST(RunSet, ComparesOverTheShortestRunAndSaysWhich) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::run_set_test

@@ -8,7 +8,7 @@
 #include "proofmass/characterise/drift_test_support.hpp"
 #include "proofmass/characterise/drift_trial.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::step_search_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -79,4 +79,4 @@ TEST(StepSearch, FindsTheSecondOfTwoBesideTheFirst) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::step_search_test

@@ -7,7 +7,7 @@
 
 #include "proofmass/characterise/noise_test_support.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::temperature_model_test {
 namespace {
 
 using test::Series;
@@ -294,4 +294,4 @@ TEST(TemperatureModel, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::temperature_model_test

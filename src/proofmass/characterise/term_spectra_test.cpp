@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::term_spectra_test {
 namespace {
 
 using std::numbers::pi;
@@ -253,4 +253,4 @@ TEST(RelaxationAllanVariance, OfManySamplesIsThatOfWhiteNoiseOrOfARandomWalk) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::term_spectra_test

@@ -6,7 +6,7 @@
 #include "proofmass/characterise/test_support.hpp"
 #include "proofmass/characterise/whole_record.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::theo1_test {
 namespace {
 
 using test::phase_of_white_rates;
@@ -95,4 +95,4 @@ INSTANTIATE_TEST_SUITE_P(All,
                          });
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::theo1_test

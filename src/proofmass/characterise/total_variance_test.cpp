@@ -8,7 +8,7 @@
 #include "proofmass/characterise/test_support.hpp"
 #include "proofmass/characterise/whole_record.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::total_variance_test {
 namespace {
 
 using test::nbs14_phase;
@@ -289,4 +289,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::total_variance_test

@@ -6,7 +6,7 @@
 
 #include "proofmass/core/linalg.hpp"
 
-namespace proofmass::characterise {
+namespace proofmass::characterise::whittle_test {
 namespace {
 
 using Eigen::Index;
@@ -301,4 +301,4 @@ TEST(WhittleLikelihood, TakesAShapeInTheOthersPlace) {
 }
 
 }  // namespace
-}  // namespace proofmass::characterise
+}  // namespace proofmass::characterise::whittle_test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace proofmass {
+namespace proofmass::chi_square_test {
 namespace {
 
 // Tables of the chi-square distribution, and its closed form for two degrees of freedom.
@@ -40,4 +40,4 @@ TEST(FisherF, HasTheTabulatedTail) {
   EXPECT_EQ(fisher_f_p(0.0, 3.0, 4.0), 1.0);
 }
 
-}  // namespace proofmass
+}  // namespace proofmass::chi_square_test

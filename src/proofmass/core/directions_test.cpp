@@ -4,7 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace proofmass {
+namespace proofmass::directions_test {
 namespace {
 
 TEST(SpreadDirections, AreUnitVectorsAsManyAsAskedFor) {
@@ -45,4 +45,4 @@ TEST(SpreadDirections, KeepTheirDistance) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::directions_test

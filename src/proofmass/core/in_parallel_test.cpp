@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace proofmass {
+namespace proofmass::in_parallel_test {
 namespace {
 
 TEST(InParallel, DoesEachPartOnceWhateverTheirNumber) {
@@ -39,4 +39,4 @@ TEST(InParallel, DoesTheOthersAndThrowsWhatTheFirstOfTheFailedThrew) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::in_parallel_test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-namespace proofmass {
+namespace proofmass::linalg_test {
 namespace {
 
 TEST(SymmetricEigen, RebuildsTheMatrixWithValuesAscending) {
@@ -68,4 +68,4 @@ TEST(PositiveInverse, KnowsADeterminantThatNoDoubleHolds) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::linalg_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass {
+namespace proofmass::number_words_test {
 namespace {
 
 TEST(Fixed, HasATrueMinusSignButNoneBeforeZero) {
@@ -26,4 +26,4 @@ TEST(Compact, LeavesNoZerosBehind) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::number_words_test

@@ -7,7 +7,7 @@
 
 #include "proofmass/core/statistics.hpp"
 
-namespace proofmass {
+namespace proofmass::random_test {
 namespace {
 
 TEST(Random, GivesTheSameNumbersForTheSameStreamOnly) {
@@ -59,4 +59,4 @@ TEST(Random, UniformNumbersFillTheirRange) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::random_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass {
+namespace proofmass::recording_test {
 namespace {
 
 Recording with_channels(const std::vector<std::string>& names, std::string_view unit) {
@@ -76,4 +76,4 @@ TEST(Cut, KeepsTheWindowAndItsTime) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::recording_test

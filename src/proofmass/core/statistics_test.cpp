@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace proofmass {
+namespace proofmass::statistics_test {
 namespace {
 
 const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -49,4 +49,4 @@ TEST(RobustStd, SeesThroughOutliers) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::statistics_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass {
+namespace proofmass::units_test {
 namespace {
 
 TEST(ParseUnit, KnowsTheSpellingsOfHeaders) {
@@ -33,4 +33,4 @@ TEST(ParseUnit, RefusesWhatItDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace proofmass
+}  // namespace proofmass::units_test

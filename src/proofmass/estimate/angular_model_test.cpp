@@ -5,7 +5,7 @@
 
 #include "proofmass/core/random.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::angular_model_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -75,4 +75,4 @@ TEST(TiltRate, FindsTheBiasOfTheGyroscope) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::angular_model_test

@@ -4,7 +4,7 @@
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/estimate/attitude_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::attitude_slow_test {
 namespace {
 
 using namespace attitude_test;
@@ -70,4 +70,4 @@ TEST(AttitudeMonteCarlo, NinetyFivePercentBandsHoldTheTruthInNinetyThreeToNinety
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::attitude_slow_test

@@ -7,7 +7,7 @@
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/estimate/attitude_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::attitude_test {
 namespace {
 
 using attitude_test::attitude_error;
@@ -249,4 +249,4 @@ TEST(Attitude, ErrorsAreAsLargeAsTheirCovariance) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::attitude_test

@@ -10,7 +10,7 @@
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/estimate/motion_models.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::bias_models_test {
 namespace {
 
 /// Table 4.1 of the thesis.
@@ -240,4 +240,4 @@ TEST(WarmUpAsInput, WithoutItTheMotionIsWrongByMoreThanItsBand) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::bias_models_test

@@ -10,7 +10,7 @@
 #include "proofmass/estimate/counted_new.hpp"
 #include "proofmass/estimate/smoother_consistency.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::consistency_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -276,4 +276,4 @@ TEST(Consistency, StaysFiniteWithInnovationsBeyondAllMeasure) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::consistency_test

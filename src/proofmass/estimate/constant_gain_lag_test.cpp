@@ -8,7 +8,7 @@
 #include "proofmass/estimate/lag_advice.hpp"
 #include "proofmass/estimate/lag_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::constant_gain_lag_test {
 namespace {
 
 const LinearModel<3, 2, 1> oscillator = test::driven_oscillator(0.1);
@@ -177,4 +177,4 @@ TEST(ConstantGainLag, AStepAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::constant_gain_lag_test

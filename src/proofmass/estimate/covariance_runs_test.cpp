@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::covariance_runs_test {
 namespace {
 
 Symmetric<2> cov(double scale) {
@@ -58,4 +58,4 @@ TEST(CovarianceRuns, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::covariance_runs_test

@@ -8,7 +8,7 @@
 #include "proofmass/estimate/linear_gaussian.hpp"
 #include "proofmass/estimate/reference_smoother_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::diffuse_test {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -313,4 +313,4 @@ TEST(DiffuseStart, AGaussianIsAStartWithNothingDiffuse) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::diffuse_test

@@ -7,7 +7,7 @@
 #include "proofmass/estimate/fusion_model.hpp"
 
 // Every model against the integral of its continuous form, and against two half steps.
-namespace proofmass::estimate {
+namespace proofmass::estimate::discretisation_test {
 namespace {
 
 using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
@@ -205,4 +205,4 @@ TEST(RandomWalkBias, IsTheLimitOfALongTimeConstant) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::discretisation_test

@@ -6,7 +6,7 @@
 #include "proofmass/estimate/lag_test_support.hpp"
 #include "proofmass/estimate/linear_gaussian.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::fixed_lag_test {
 namespace {
 
 using test::distance;
@@ -144,4 +144,4 @@ TEST(FixedPoint, IsTheExtendedSmootherOfAModelThatIsNotLinear) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::fixed_lag_test

@@ -8,7 +8,7 @@
 #include "proofmass/core/random.hpp"
 #include "proofmass/estimate/fusion_model.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::fusion_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -299,4 +299,4 @@ TEST(FusionModel, OneAxisOfItIsTheModelOfOneAxis) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::fusion_test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::gain_study_test {
 namespace {
 
 // The thesis' simulation: 100 s in steps of 0.2 s from P₀ = 100.
@@ -74,4 +74,4 @@ TEST(GainStudy, ALongerStepMakesTheGainLargerAndTheEstimateWorse) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::gain_study_test

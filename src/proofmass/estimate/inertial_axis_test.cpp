@@ -6,7 +6,7 @@
 
 #include "proofmass/estimate/track_turns.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::inertial_axis_test {
 namespace {
 
 const InertialNoise noise{.white_m2ps3 = 4e-4,
@@ -149,4 +149,4 @@ TEST(Turns, AnOddSwingOutIsTheOneThatFitsNoOther) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::inertial_axis_test

@@ -8,7 +8,7 @@
 #include "proofmass/estimate/iterated_smoother.hpp"
 #include "proofmass/estimate/lag_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::iterated_test {
 namespace {
 
 constexpr double gravity_mps2 = 9.80665;
@@ -371,4 +371,4 @@ TEST(IteratedFilter, AStepAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::iterated_test

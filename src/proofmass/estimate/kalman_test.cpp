@@ -5,7 +5,7 @@
 #include "proofmass/estimate/counted_new.hpp"
 #include "proofmass/estimate/linear_gaussian.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::kalman_test {
 namespace {
 
 // Position and speed that move, a gain and an offset that stand, the offset walking: readings of
@@ -292,4 +292,4 @@ TEST(Filter, APriorTenToTheSixteenTimesTheReadingsLosesNoDefiniteness) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::kalman_test

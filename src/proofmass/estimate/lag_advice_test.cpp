@@ -5,7 +5,7 @@
 #include "proofmass/estimate/fixed_lag.hpp"
 #include "proofmass/estimate/lag_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::lag_advice_test {
 namespace {
 
 const LinearModel<3, 2, 1> oscillator = test::driven_oscillator(0.1);
@@ -155,4 +155,4 @@ TEST(LagAdvice, HasNoneWhereLaterReadingsSayNothing) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::lag_advice_test

@@ -9,7 +9,7 @@
 #include "proofmass/estimate/square_root.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::linear_gaussian_test {
 namespace {
 
 using Model = LinearModel<3, 2, 1>;
@@ -294,4 +294,4 @@ TEST(LinearGaussian, ErrorsAndInnovationsAreAsLargeAsTheCovariancesSay) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::linear_gaussian_test

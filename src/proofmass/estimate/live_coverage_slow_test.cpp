@@ -8,7 +8,7 @@
 #include "proofmass/estimate/wheel_test_support.hpp"
 
 // How often the bands of 95 % of the live angle and inclination hold what is true.
-namespace proofmass::estimate {
+namespace proofmass::estimate::live_coverage_slow_test {
 namespace {
 
 struct Coverage {
@@ -108,4 +108,4 @@ TEST(LiveTiltCoverage, InMotionIsNinetyFivePercentOrMore) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::live_coverage_slow_test

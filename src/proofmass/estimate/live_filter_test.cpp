@@ -6,7 +6,7 @@
 #include "proofmass/estimate/lag_test_support.hpp"
 #include "proofmass/estimate/linear_gaussian.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::live_filter_test {
 namespace {
 
 using Live = LiveFilter<3, 2, 1>;
@@ -119,4 +119,4 @@ TEST(LiveFilter, AnInstantWithoutReadingsIsAPrediction) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::live_filter_test

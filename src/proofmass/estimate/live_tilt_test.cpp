@@ -7,7 +7,7 @@
 #include "proofmass/estimate/live_test_support.hpp"
 #include "proofmass/estimate/tilt_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::live_tilt_test {
 namespace {
 
 using test::Fed;
@@ -138,4 +138,4 @@ TEST(LiveTilt, RefusesTwoAxes) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::live_tilt_test

@@ -4,7 +4,7 @@
 
 #include "proofmass/estimate/live_track_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::live_track_slow_test {
 namespace {
 
 struct Share {
@@ -83,4 +83,4 @@ TEST(LiveTrackCoverage, OneMotionAloneIsNeverTooSure) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::live_track_slow_test

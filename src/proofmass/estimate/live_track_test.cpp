@@ -8,7 +8,7 @@
 #include "proofmass/estimate/live_track_scale.hpp"
 #include "proofmass/estimate/live_track_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::live_track_test {
 namespace {
 
 Carriage carriage() {
@@ -281,4 +281,4 @@ TEST(MotionScale, FollowsTheClosures) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::live_track_test

@@ -7,7 +7,7 @@
 #include "proofmass/estimate/live_test_support.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::live_wheel_test {
 namespace {
 
 using test::Drive;
@@ -235,4 +235,4 @@ TEST(LiveWheel, RefusesWhatItCannotUse) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::live_wheel_test

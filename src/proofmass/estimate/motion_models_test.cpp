@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::motion_models_test {
 namespace {
 
 const PvaOptions options{.dt_s = 0.1, .jerk_psd_m2ps5 = 0.3, .accel_variance_m2ps4 = 0.04};
@@ -103,4 +103,4 @@ TEST(PvaBias, KnowingTheWarmUpKeepsItOutOfTheAcceleration) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::motion_models_test

@@ -6,7 +6,7 @@
 #include "proofmass/core/random.hpp"
 #include "proofmass/estimate/smoother_consistency.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::nees_test {
 namespace {
 
 TEST(Nees, BoundsOfFiftyRunsOfFourStatesAreThePublishedOnes) {
@@ -76,4 +76,4 @@ TEST(AuxiliaryTally, CountsOnlyWhatTheRecordingTells) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::nees_test

@@ -8,7 +8,7 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/sensor/grades.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::position_budget_test {
 namespace {
 
 double rounded(double value, int digits) {
@@ -96,4 +96,4 @@ TEST(PositionBudget, AddsNoiseAndBiasInQuadrature) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::position_budget_test

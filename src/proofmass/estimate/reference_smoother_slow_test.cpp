@@ -2,7 +2,7 @@
 
 #include "proofmass/estimate/reference_cases_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::reference_smoother_slow_test {
 namespace {
 
 using test::Measured;
@@ -23,4 +23,4 @@ TEST(AgainstOneHundredAndTwentyEightBits, AHundredThousandPositionsLoseNoDigits)
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::reference_smoother_slow_test

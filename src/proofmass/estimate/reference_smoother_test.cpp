@@ -3,7 +3,7 @@
 #include "proofmass/estimate/motion_models.hpp"
 #include "proofmass/estimate/reference_cases_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::reference_smoother_test {
 namespace {
 
 using test::Measured;
@@ -43,4 +43,4 @@ TEST(AgainstOneHundredAndTwentyEightBits, TheSmootherWithTheInverseIsRightToElev
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::reference_smoother_test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::rotation_test {
 namespace {
 
 const Mat<3> some(0.3, -1.1, 0.7);
@@ -62,4 +62,4 @@ TEST(Rotation, OrthonormalMendsWhatRoundingHasSpoilt) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::rotation_test

@@ -9,7 +9,7 @@
 #include "proofmass/estimate/linear_gaussian.hpp"
 #include "proofmass/estimate/reference_smoother_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::square_root_test {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -132,4 +132,4 @@ TEST(SquareRoot, GateLeavesOutAndWeighsDownAsTheCovarianceFormDoes) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::square_root_test

@@ -6,7 +6,7 @@
 #include "proofmass/estimate/linear_gaussian.hpp"
 #include "proofmass/estimate/motion_models.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::steady_state_test {
 namespace {
 
 LinearModel<4, 1> with_bias_model(double time_constant_s = 100.0, double dt_s = 0.005) {
@@ -198,4 +198,4 @@ TEST(SteadyState, RefusesWhatIsNoModel) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::steady_state_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::symmetric_test {
 namespace {
 
 TEST(Symmetric, KeepsItsLowerTriangleRowByRow) {
@@ -31,4 +31,4 @@ TEST(PackedGaussian, IsNotDeterminedWhereItsVarianceIsInfinite) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::symmetric_test

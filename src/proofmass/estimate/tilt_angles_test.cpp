@@ -10,7 +10,7 @@
 #include "proofmass/estimate/tilt_calibration.hpp"
 #include "proofmass/estimate/tilt_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::tilt_angles_test {
 namespace {
 
 constexpr double g = 9.80665, none = std::numeric_limits<double>::quiet_NaN();
@@ -131,4 +131,4 @@ TEST(CalibrationSpread, IsAbsentWhereNoFigureHasAStandardDeviation) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::tilt_angles_test

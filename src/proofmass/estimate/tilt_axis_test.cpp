@@ -9,7 +9,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/tilt_axis_model.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::tilt_axis_test {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -103,4 +103,4 @@ TEST(AxisTiltModel, HasTheSameNoiseOverTwoStepsAsOverOneOfTheirLength) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::tilt_axis_test

@@ -5,7 +5,7 @@
 #include "proofmass/estimate/tilt_test_support.hpp"
 
 // How often bands of 95 % hold what is true.
-namespace proofmass::estimate {
+namespace proofmass::estimate::tilt_slow_test {
 namespace {
 
 struct Coverage {
@@ -83,4 +83,4 @@ TEST(TiltCoverage, OnAMovingBaseWithoutGyroscopeIsNinetyFivePercent) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::tilt_slow_test

@@ -8,7 +8,7 @@
 #include "proofmass/estimate/tilt_rest.hpp"
 #include "proofmass/estimate/tilt_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::tilt_test {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -198,4 +198,4 @@ TEST(TiltModel, HasTheJacobianOfItsMotion) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::tilt_test

@@ -6,7 +6,7 @@
 #include "proofmass/estimate/track.hpp"
 #include "proofmass/estimate/track_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::track_pva_slow_test {
 namespace {
 
 // Ten strokes; in each the sensors lean by an angle of their common body, and each has its own
@@ -111,4 +111,4 @@ TEST(TrackFusedCoverage, WhatLeansBothSensorsIsInTheBand) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::track_pva_slow_test

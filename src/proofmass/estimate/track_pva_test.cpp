@@ -7,7 +7,7 @@
 #include "proofmass/estimate/track_jerk.hpp"
 #include "proofmass/estimate/track_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::track_pva_test {
 namespace {
 
 TrackSolution solved(const TrackSensor& sensor, const TrackOptions& options) {
@@ -171,4 +171,4 @@ TEST(TrackFused, RefusesWhatIsNoParallelSensor) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::track_pva_test

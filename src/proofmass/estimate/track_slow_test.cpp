@@ -4,7 +4,7 @@
 #include "proofmass/estimate/track.hpp"
 #include "proofmass/estimate/track_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::track_slow_test {
 namespace {
 
 struct Coverage {
@@ -74,4 +74,4 @@ TEST(TrackCoverage, OneMotionAloneIsNeverTooSure) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::track_slow_test

@@ -7,7 +7,7 @@
 
 #include "proofmass/estimate/track_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::track_test {
 namespace {
 
 constexpr double g = standard_gravity_mps2;
@@ -281,4 +281,4 @@ TEST(Track, AGyroscopeTellsGravityFromMotion) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::track_test

@@ -6,7 +6,7 @@
 
 #include "proofmass/core/random.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::tune_score_test {
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
@@ -107,4 +107,4 @@ TEST(LikelihoodScore, IsMinusInfinityWithoutAnyNoise) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::tune_score_test

@@ -5,7 +5,7 @@
 #include "proofmass/core/random.hpp"
 #include "proofmass/estimate/tune.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::tune_slow_test {
 namespace {
 
 struct Truth {
@@ -54,4 +54,4 @@ TEST(TuneCoverage, ALimitOfANoiseThatIsNotThereIsSeldomBroken) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::tune_slow_test

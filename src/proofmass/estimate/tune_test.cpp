@@ -7,7 +7,7 @@
 #include "proofmass/core/random.hpp"
 #include "proofmass/estimate/tune_problem.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::tune_test {
 namespace {
 
 struct Level {
@@ -201,4 +201,4 @@ TEST(Tune, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::tune_test

@@ -8,7 +8,7 @@
 #include "proofmass/estimate/reference_smoother_test_support.hpp"
 #include "proofmass/estimate/steady_state.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::uniform_smoother_test {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -321,4 +321,4 @@ TEST(UniformSmoother, SaysWhatItCannotUse) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::uniform_smoother_test

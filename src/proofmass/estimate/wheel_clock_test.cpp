@@ -4,7 +4,7 @@
 
 #include "proofmass/estimate/wheel_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::wheel_clock_test {
 namespace {
 
 using test::Drive;
@@ -102,4 +102,4 @@ TEST(FitClocks, SaysThatTooLittleTimeIsShared) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::wheel_clock_test

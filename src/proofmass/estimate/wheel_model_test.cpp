@@ -4,7 +4,7 @@
 
 #include "proofmass/estimate/wheel_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::wheel_model_test {
 namespace {
 
 using test::Mount;
@@ -251,4 +251,4 @@ TEST(WheelModel, ReopeningForgetsTheMotionAndKeepsTheConstants) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::wheel_model_test

@@ -4,7 +4,7 @@
 
 #include "proofmass/estimate/wheel_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::wheel_plain_test {
 namespace {
 
 using test::Drive;
@@ -124,4 +124,4 @@ TEST(PlainPlaces, AreTheOnesFoundAndOppositeOnesWhereNoDirectionShows) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::wheel_plain_test

@@ -4,7 +4,7 @@
 
 #include "proofmass/estimate/wheel_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::wheel_plane_test {
 namespace {
 
 using test::Drive;
@@ -225,4 +225,4 @@ TEST(GravityInPlane, OfASensorOfTwoAxesIsALevelAxles) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::wheel_plane_test

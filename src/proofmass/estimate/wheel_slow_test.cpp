@@ -7,7 +7,7 @@
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 
-namespace proofmass::estimate {
+namespace proofmass::estimate::wheel_slow_test {
 namespace {
 
 using test::Drive;
@@ -208,4 +208,4 @@ TEST(WheelAtTwoSpeeds, WithABiasAlongTheAxleErrsInRadiusAndScaleAsFarAsItSays) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::wheel_slow_test

@@ -6,7 +6,7 @@
 #include "proofmass/estimate/wheel_test_support.hpp"
 
 // Whole recordings, short ones: what goes in is made by the kinematics of wheel_test_support.hpp.
-namespace proofmass::estimate {
+namespace proofmass::estimate::wheel_test {
 namespace {
 
 using test::Drive;
@@ -321,4 +321,4 @@ TEST(EstimateWheel, SaysWhatIsWrongWithWhatItWasGiven) {
 }
 
 }  // namespace
-}  // namespace proofmass::estimate
+}  // namespace proofmass::estimate::wheel_test

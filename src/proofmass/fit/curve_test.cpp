@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-namespace proofmass::fit {
+namespace proofmass::fit::curve_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -113,4 +113,4 @@ TEST(FitCurve, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::fit
+}  // namespace proofmass::fit::curve_test

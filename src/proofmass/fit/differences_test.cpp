@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace proofmass::fit {
+namespace proofmass::fit::differences_test {
 namespace {
 
 // A scalar function as a vector of one.
@@ -51,4 +51,4 @@ TEST(Derivative, OfNothingFiniteIsZero) {
 }
 
 }  // namespace
-}  // namespace proofmass::fit
+}  // namespace proofmass::fit::differences_test

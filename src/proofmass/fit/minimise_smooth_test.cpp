@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace proofmass::fit {
+namespace proofmass::fit::minimise_smooth_test {
 namespace {
 
 // H. H. Rosenbrock, Comput. J. 3 (1960) 175: a curved valley, its floor at (1, 1).
@@ -44,4 +44,4 @@ TEST(MinimiseSmooth, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::fit
+}  // namespace proofmass::fit::minimise_smooth_test

@@ -8,7 +8,7 @@
 
 #include "proofmass/fit/curve.hpp"
 
-namespace proofmass::fit {
+namespace proofmass::fit::nonlinear_least_squares_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -302,4 +302,4 @@ TEST(LeastSquares, SayWhyTheyCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::fit
+}  // namespace proofmass::fit::nonlinear_least_squares_test

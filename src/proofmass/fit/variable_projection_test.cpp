@@ -7,7 +7,7 @@
 
 #include "proofmass/fit/curve.hpp"
 
-namespace proofmass::fit {
+namespace proofmass::fit::variable_projection_test {
 namespace {
 
 using Index = Eigen::Index;
@@ -202,4 +202,4 @@ TEST(VariableProjection, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::fit
+}  // namespace proofmass::fit::variable_projection_test

@@ -8,7 +8,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/zip_specimens.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::archive_tables_test {
 namespace {
 
 using specimen::table_of;
@@ -266,4 +266,4 @@ TEST(Folder, IsTwoLevelsDeep) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::archive_tables_test

@@ -4,7 +4,7 @@
 #include "proofmass/io/cdr_schema.hpp"
 #include "proofmass/io/cdr_specimens.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::cdr_test {
 namespace {
 
 using specimen::CdrWriter;
@@ -148,4 +148,4 @@ TEST(Cdr, RefusesSchemasThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::cdr_test

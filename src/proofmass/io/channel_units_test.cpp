@@ -5,7 +5,7 @@
 
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::channel_units_test {
 namespace {
 
 /// Three axes of an accelerometer at rest, tilted, whose readings have the norm `gravity`.
@@ -89,4 +89,4 @@ TEST(ChannelUnits, ReadsGaussOnAnAccelerometerAsG) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::channel_units_test

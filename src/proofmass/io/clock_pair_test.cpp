@@ -7,7 +7,7 @@
 
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::clock_pair_test {
 namespace {
 
 /// A device's clock, and a computer's that is fast by `drift_ppm`, late by some milliseconds with
@@ -110,4 +110,4 @@ TEST(ClockPair, IsNotLookedForAmongReadings) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::clock_pair_test

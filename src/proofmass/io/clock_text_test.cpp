@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass::io {
+namespace proofmass::io::clock_text_test {
 namespace {
 
 constexpr std::int64_t ns_per_s = 1'000'000'000;
@@ -51,4 +51,4 @@ TEST(ClockText, RefusesWhatIsNoTime) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::clock_text_test

@@ -8,7 +8,7 @@
 #include "proofmass/io/deflate_test_support.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::compressed_test {
 namespace {
 
 std::string gzip(const std::string& text) {
@@ -110,4 +110,4 @@ TEST(Compressed, FailsWhereNothingCanBeRead) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::compressed_test

@@ -5,7 +5,7 @@
 #include <string>
 #include <zlib.h>
 
-namespace proofmass::io {
+namespace proofmass::io::crc32_test {
 namespace {
 
 TEST(Crc32, OfTheNineDigitsIsThePublishedCheck) {
@@ -35,4 +35,4 @@ TEST(Crc32, IsCarriedOnOverPieces) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::crc32_test

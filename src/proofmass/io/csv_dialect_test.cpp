@@ -3,7 +3,7 @@
 
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::csv_dialect_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -184,4 +184,4 @@ TEST(CsvDialect, AColumnWithAnotherUnitIsNoTimeWhateverItsName) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::csv_dialect_test

@@ -5,7 +5,7 @@
 
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::csv_dirt_test {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -177,4 +177,4 @@ TEST(CsvReader, ReadsRowsAcrossTheEdgesOfItsPieces) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::csv_dirt_test

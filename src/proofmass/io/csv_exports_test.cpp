@@ -3,7 +3,7 @@
 
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::csv_exports_test {
 namespace {
 
 // --- Gulf Coast Data Concepts --------------------------------------------------------------------
@@ -180,4 +180,4 @@ TEST(XsensDot, PreambleIsPassedOver) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::csv_exports_test

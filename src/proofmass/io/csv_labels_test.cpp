@@ -5,7 +5,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/word_runs.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::csv_labels_test {
 namespace {
 
 using Labels = std::vector<Label>;
@@ -165,4 +165,4 @@ TEST(WordRuns, EndWhereARowIsMissing) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::csv_labels_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-namespace proofmass::io {
+namespace proofmass::io::decimal_test {
 namespace {
 
 /// The value as the row loop takes it, or nullopt where that leaves the text to the slow path.
@@ -121,4 +121,4 @@ TEST(Decimal, CountsDigitsWithoutLeadingZeros) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::decimal_test

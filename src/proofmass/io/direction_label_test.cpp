@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass::io {
+namespace proofmass::io::direction_label_test {
 namespace {
 
 using Direction = std::array<double, 3>;
@@ -26,4 +26,4 @@ TEST(DirectionOfLabel, SaysNothingWhereTheNameSaysNothing) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::direction_label_test

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <gtest/gtest.h>
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5_catalogue_test {
 namespace {
 
 Hdf5Catalogue example() {
@@ -68,4 +68,4 @@ TEST(Hdf5Catalogue, HasTextsOfOneLine) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5_catalogue_test

@@ -7,7 +7,7 @@
 
 #include "proofmass/io/watched_frames.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5_stream_test {
 namespace {
 
 std::string frame(FrameKind kind, std::string_view bytes = {}) {
@@ -73,4 +73,4 @@ TEST(FigureStream, RefusesWhatBreaksOffOrHasAnotherSize) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5_stream_test

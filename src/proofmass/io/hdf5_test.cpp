@@ -12,7 +12,7 @@
 #include "proofmass/io/hdf5_reader.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -306,4 +306,4 @@ TEST(Hdf5Signature, IsKnownWithAndWithoutABlockOfTheUser) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5_test

@@ -11,7 +11,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/written_test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5_writer_test {
 namespace {
 
 class Hdf5Written : public testing::Test {
@@ -161,4 +161,4 @@ TEST_F(Hdf5Written, SaysWhenThereIsNoRoom) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5_writer_test

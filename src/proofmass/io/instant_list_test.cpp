@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <string_view>
 
-namespace proofmass::io {
+namespace proofmass::io::instant_list_test {
 namespace {
 
 Result<std::vector<Instant>> instants(std::string_view text) {
@@ -90,4 +90,4 @@ TEST(ReadInstants, AnInstantOutsideTheRecordingIsNamed) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::instant_list_test

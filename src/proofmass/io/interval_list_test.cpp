@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <string_view>
 
-namespace proofmass::io {
+namespace proofmass::io::interval_list_test {
 namespace {
 
 Result<std::vector<Interval>> intervals(std::string_view text) {
@@ -140,4 +140,4 @@ TEST(CheckInside, NamesTheIntervalThatTheRecordingDoesNotHave) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::interval_list_test

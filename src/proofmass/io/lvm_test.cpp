@@ -4,7 +4,7 @@
 #include "proofmass/io/lvm_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::lvm_test {
 namespace {
 
 using namespace specimen;
@@ -269,4 +269,4 @@ TEST(Lvm, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::lvm_test

@@ -3,7 +3,7 @@
 #include "proofmass/io/mat_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mat_choice_test {
 namespace {
 
 using namespace specimen;
@@ -155,4 +155,4 @@ TEST(MatChoice, OtherFormatsHaveNoVariables) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mat_choice_test

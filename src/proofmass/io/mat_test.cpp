@@ -5,7 +5,7 @@
 #include "proofmass/io/mat_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mat_test {
 namespace {
 
 using namespace specimen;
@@ -271,4 +271,4 @@ TEST(Mat4, IsNotTakenForTextOrTheOtherWayRound) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mat_test

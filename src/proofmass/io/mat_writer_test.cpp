@@ -17,7 +17,7 @@
 #include "proofmass/io/write_recording.hpp"
 #include "proofmass/io/written_test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mat_writer_test {
 namespace {
 
 /// A folder of its own that goes with the test.
@@ -177,4 +177,4 @@ TEST(PlainTextMatrix, CalledMatIsReadAsATable) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mat_writer_test

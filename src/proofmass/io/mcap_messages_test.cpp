@@ -8,7 +8,7 @@
 #include "proofmass/io/mcap_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap_messages_test {
 namespace {
 
 using namespace specimen;
@@ -180,4 +180,4 @@ TEST(McapJson, RefusesWhatIsNoJson) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap_messages_test

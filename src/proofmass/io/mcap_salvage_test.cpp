@@ -7,7 +7,7 @@
 #include "proofmass/io/mcap_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap_salvage_test {
 namespace {
 
 using namespace specimen;
@@ -210,4 +210,4 @@ TEST(McapRecording, EventsAreToldInANoteAndAreNoTable) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap_salvage_test

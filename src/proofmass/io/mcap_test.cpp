@@ -3,7 +3,7 @@
 #include "proofmass/io/mcap_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap_test {
 namespace {
 
 using namespace specimen;
@@ -235,4 +235,4 @@ TEST(Mcap, IsReadOrRefusedWhereverItIsBrokenOff) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap_test

@@ -12,7 +12,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/written_test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap_writer_test {
 namespace {
 
 /// A file in memory.
@@ -207,4 +207,4 @@ TEST(McapSamples, FillsNoGapThatNothingStandsFor) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap_writer_test

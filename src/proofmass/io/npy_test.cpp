@@ -7,7 +7,7 @@
 #include "proofmass/io/npy_reader.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::npy_test {
 namespace {
 
 std::string npy(std::string dictionary, const std::string& figures, char major = 1) {
@@ -152,4 +152,4 @@ TEST(Npy, RefusesWhatItDoesNotRead) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::npy_test

@@ -7,7 +7,7 @@
 #include "proofmass/io/npz_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::npz_test {
 namespace {
 
 using namespace specimen;
@@ -158,4 +158,4 @@ TEST(Npz, IsKnownByItsFirstFileOrItsName) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::npz_test

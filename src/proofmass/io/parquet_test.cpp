@@ -15,7 +15,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/written_test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::parquet_test {
 namespace {
 
 /// DuckDB's library where somebody has put it; empty where nobody has.
@@ -248,4 +248,4 @@ TEST(ParquetHead, ComesBackAsItWasAndBelievesNoLength) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet_test

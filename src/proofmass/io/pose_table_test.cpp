@@ -5,7 +5,7 @@
 
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::pose_table_test {
 namespace {
 
 using Axes = std::array<double, 3>;
@@ -158,4 +158,4 @@ TEST(PoseTable, ReadsThePublishedSixPositions) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::pose_table_test

@@ -7,7 +7,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::published_recordings_test {
 namespace {
 
 struct Published {
@@ -133,4 +133,4 @@ TEST(PublishedWheel, WithCorruptRowsLosesNothingElseAndNamesThem) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::published_recordings_test

@@ -12,7 +12,7 @@
 #include "proofmass/io/pyramid_file.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::pyramid_test {
 namespace {
 
 Recording noise(std::size_t samples, std::size_t channels = 2) {
@@ -188,4 +188,4 @@ TEST_F(PyramidFile, WithAnyByteChangedIsReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::pyramid_test

@@ -10,7 +10,7 @@
 
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::recording_stream_test {
 namespace {
 
 std::filesystem::path scratch_file(const std::string& name) {
@@ -133,4 +133,4 @@ TEST(RecordingStream, NamesTheFileInWhatItSays) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::recording_stream_test

@@ -10,7 +10,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/write_recording.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::round_trip_test {
 namespace {
 
 /// A folder of its own that goes with the test.
@@ -167,4 +167,4 @@ TEST_F(RoundTrip, CsvNeedsNoTimeColumn) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::round_trip_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass::io {
+namespace proofmass::io::table_file_test {
 namespace {
 
 using Indices = std::vector<std::size_t>;
@@ -79,4 +79,4 @@ TEST(ChooseTable, RefusesAFileWithoutATable) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::table_file_test

@@ -4,7 +4,7 @@
 #include "proofmass/io/tdms_reader.hpp"
 #include "proofmass/io/tdms_test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms_broken_test {
 namespace {
 
 using namespace specimen;
@@ -151,4 +151,4 @@ TEST(BrokenTdms, BrokenOffAtEveryByteNothingIsInvented) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms_broken_test

@@ -5,7 +5,7 @@
 #include "proofmass/io/tdms_test_support.hpp"
 #include "proofmass/io/tdms_thermocouple.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms_scaling_test {
 namespace {
 
 using namespace specimen;
@@ -318,4 +318,4 @@ TEST(TdmsScaling, AThermocouplesChainAddsTheColdJunction) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms_scaling_test

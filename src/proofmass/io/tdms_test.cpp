@@ -4,7 +4,7 @@
 
 #include "proofmass/io/tdms_test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms_test {
 namespace {
 
 using namespace specimen;
@@ -340,4 +340,4 @@ TEST(Tdms, SaysWhatTheFileSaysOfItself) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms_test

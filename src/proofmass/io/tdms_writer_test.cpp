@@ -12,7 +12,7 @@
 #include "proofmass/io/write_recording.hpp"
 #include "proofmass/io/written_test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms_writer_test {
 namespace {
 
 class TdmsWriting : public testing::Test {
@@ -141,4 +141,4 @@ TEST_F(TdmsWriting, SegmentsAfterTheFirstHaveNoMetadata) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms_writer_test

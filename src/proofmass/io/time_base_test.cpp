@@ -5,7 +5,7 @@
 
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::time_base_test {
 namespace {
 
 /// A table of a time column of `stamps` and one of ones.
@@ -223,4 +223,4 @@ TEST(TimeBase, NoticesARateInThePreambleThatTheStampsBelie) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::time_base_test

@@ -7,7 +7,7 @@
 #include "proofmass/io/running_time.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::time_trouble_test {
 namespace {
 
 /// Stamps first + k·step, as an instrument of 2^bits ticks writes them; 0: it never runs over.
@@ -350,4 +350,4 @@ TEST(RunningTimeBase, PlacesRowsByACounterThatRunsOver) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::time_trouble_test

@@ -8,7 +8,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/ximu_specimens.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::truncation_test {
 namespace {
 
 void break_off_everywhere(const std::string& folder, const std::vector<std::string>& magics) {
@@ -78,4 +78,4 @@ TEST(BrokenOff, XimuIsReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::truncation_test

@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace proofmass::io {
+namespace proofmass::io::watched_child_test {
 namespace {
 
 struct Heard {
@@ -193,4 +193,4 @@ TEST(Message, BelievesNoLengthAndNoKind) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::watched_child_test

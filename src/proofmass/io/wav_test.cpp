@@ -4,7 +4,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/wav_specimens.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::wav_test {
 namespace {
 
 using namespace specimen;
@@ -156,4 +156,4 @@ TEST(Wav, RefusesWhatItDoesNotRead) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::wav_test

@@ -5,7 +5,7 @@
 #include "proofmass/io/ximu_rates.hpp"
 #include "proofmass/io/ximu_specimens.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::ximu_test {
 namespace {
 
 using specimen::ximu_date_time;
@@ -127,4 +127,4 @@ TEST(XimuRate, IsAPowerOfTwoThatFits) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::ximu_test

@@ -3,7 +3,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/zip_specimens.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::zip_test {
 namespace {
 
 using specimen::table_of;
@@ -118,4 +118,4 @@ TEST(Zip, ControlCharactersOfNamesStayOutOfMessages) {
 }
 
 }  // namespace
-}  // namespace proofmass::io
+}  // namespace proofmass::io::zip_test

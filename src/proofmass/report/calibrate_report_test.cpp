@@ -10,7 +10,7 @@
 #include "proofmass/report/calibrate_wording.hpp"
 #include "proofmass/report/document.hpp"
 
-namespace proofmass::report {
+namespace proofmass::report::calibrate_report_test {
 namespace {
 
 using nlohmann::json;
@@ -231,4 +231,4 @@ TEST(CalibrateReport, WritesTheTableThatOutputAsksFor) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::calibrate_report_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass::report {
+namespace proofmass::report::certificate_test {
 namespace {
 
 using calibrate::BudgetLine;
@@ -124,4 +124,4 @@ TEST(Certificate, IsOnePageThatPrintsOnPaper) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::certificate_test

@@ -5,7 +5,7 @@
 
 #include "proofmass/core/random.hpp"
 
-namespace proofmass::report {
+namespace proofmass::report::consistency_report_test {
 namespace {
 
 using estimate::ConsistencyCheck;
@@ -89,4 +89,4 @@ TEST(ConsistencyReport, PageHasTheVerdictAndTheChannels) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::consistency_report_test

@@ -9,7 +9,7 @@
 #include "proofmass/report/drift_figures.hpp"
 #include "proofmass/report/drift_wording.hpp"
 
-namespace proofmass::report {
+namespace proofmass::report::drift_report_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -336,4 +336,4 @@ TEST(DriftHtml, EscapesWhatTheUserNamed) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::drift_report_test

@@ -7,7 +7,7 @@
 
 #include "proofmass/report/page.hpp"
 
-namespace proofmass::report {
+namespace proofmass::report::figure_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -130,4 +130,4 @@ TEST(Html, PutsTheConclusionBeforeEverythingElseAndFaultsBeforeSections) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::figure_test

@@ -9,7 +9,7 @@
 #include "proofmass/report/noise_figures.hpp"
 #include "proofmass/report/noise_wording.hpp"
 
-namespace proofmass::report {
+namespace proofmass::report::noise_report_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -273,4 +273,4 @@ TEST(NoiseHtml, HasTwoFiguresForEachChannelAndNoneForARefusedOne) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::noise_report_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass::report {
+namespace proofmass::report::page_test {
 namespace {
 
 bool has(const std::string& text, const std::string& part) {
@@ -62,4 +62,4 @@ TEST(Page, StacksTheTablesThatAskForIt) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::page_test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace proofmass::report {
+namespace proofmass::report::record_report_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -119,4 +119,4 @@ TEST(RecoverReport, SaysWhatWasSavedAndWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::record_report_test

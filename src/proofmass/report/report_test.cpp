@@ -9,7 +9,7 @@
 #include "proofmass/report/wheel_fake.hpp"
 #include "proofmass/report/wheel_figures.hpp"
 
-namespace proofmass::report {
+namespace proofmass::report::report_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -185,4 +185,4 @@ TEST(InspectHtml, DrawsThreeChannelsOfOneUnitTogether) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::report_test

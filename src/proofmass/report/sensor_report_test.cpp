@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace proofmass::report {
+namespace proofmass::report::sensor_report_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -156,4 +156,4 @@ TEST(SensorDiff, ItsPageHasTheFigureWhereThereIsSomethingToDraw) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::sensor_report_test

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <numeric>
 
-namespace proofmass::report {
+namespace proofmass::report::thinning_test {
 namespace {
 
 std::vector<double> counting(std::size_t n) {
@@ -70,4 +70,4 @@ TEST(ThinnedBand, HoldsEveryBound) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::thinning_test

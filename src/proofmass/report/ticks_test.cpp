@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace proofmass::report {
+namespace proofmass::report::ticks_test {
 namespace {
 
 std::vector<std::string> labels(const std::vector<Tick>& ticks) {
@@ -80,4 +80,4 @@ TEST(LogTicks, AreLinearWithinADecade) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::ticks_test

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace proofmass::report {
+namespace proofmass::report::tilt_report_test {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -92,4 +92,4 @@ TEST(TiltReport, OfOneAxisHasItsAngleAndNoRollOrPitch) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::tilt_report_test

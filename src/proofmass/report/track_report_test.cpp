@@ -6,7 +6,7 @@
 #include "proofmass/report/track_fake.hpp"
 #include "proofmass/report/track_wording.hpp"
 
-namespace proofmass::report {
+namespace proofmass::report::track_report_test {
 namespace {
 
 using nlohmann::json;
@@ -157,4 +157,4 @@ TEST(LengthWithStd, IsInMillimetresWhereBothAreSmall) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::track_report_test

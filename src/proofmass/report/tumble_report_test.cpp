@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-namespace proofmass::report {
+namespace proofmass::report::tumble_report_test {
 namespace {
 
 using nlohmann::json;
@@ -130,4 +130,4 @@ TEST(TumbleReport, WritesTheTableThatOutputAsksFor) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::tumble_report_test

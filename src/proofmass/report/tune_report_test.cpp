@@ -7,7 +7,7 @@
 #include "proofmass/core/random.hpp"
 #include "proofmass/report/tune_wording.hpp"
 
-namespace proofmass::report {
+namespace proofmass::report::tune_report_test {
 namespace {
 
 using estimate::TuneModel;
@@ -88,4 +88,4 @@ TEST(TuneSeries, HasARowForEachSample) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::tune_report_test

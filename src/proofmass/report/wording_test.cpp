@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace proofmass::report {
+namespace proofmass::report::wording_test {
 namespace {
 
 // The three examples of the Review of Particle Physics, Introduction, section 5.3.
@@ -74,4 +74,4 @@ TEST(PrintUnit, RaisesPowersAndDrawsRoots) {
 }
 
 }  // namespace
-}  // namespace proofmass::report
+}  // namespace proofmass::report::wording_test

@@ -5,7 +5,7 @@
 
 #include "proofmass/core/units.hpp"
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::calibration_effect_test {
 namespace {
 
 constexpr double g = standard_gravity_mps2;
@@ -184,4 +184,4 @@ TEST(CalibrationEffect, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::calibration_effect_test

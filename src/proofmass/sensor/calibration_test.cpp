@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::calibration_test {
 namespace {
 
 const Unit mps2 = parse_unit("m/s^2").value();
@@ -221,4 +221,4 @@ TEST(BringToReferenceSupply, ScalesVoltagesAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::calibration_test

@@ -8,7 +8,7 @@
 #include "proofmass/sensor/folder_test_support.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::calibration_update_test {
 namespace {
 
 using Covariance = std::array<std::array<double, 9>, 9>;
@@ -394,4 +394,4 @@ TEST_F(CalibrationFileUpdate, LeavesAFileThatItCannotReadOrImproveAsItIs) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::calibration_update_test

@@ -4,7 +4,7 @@
 
 #include "proofmass/sensor/grades.hpp"
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::datasheet_test {
 namespace {
 
 constexpr double g = standard_gravity_mps2;
@@ -43,4 +43,4 @@ TEST(Grades, AreThoseOfTheThesis) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::datasheet_test

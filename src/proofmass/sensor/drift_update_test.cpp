@@ -9,7 +9,7 @@
 #include "proofmass/sensor/sensor_file.hpp"
 #include "proofmass/sensor/warm_up.hpp"
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::drift_update_test {
 namespace {
 
 MeasuredDrift measured_y() {
@@ -123,4 +123,4 @@ TEST_F(DriftFileUpdate, LeavesAFileThatItCannotReadOrImproveAsItIs) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::drift_update_test

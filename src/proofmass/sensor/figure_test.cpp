@@ -6,7 +6,7 @@
 
 #include "proofmass/core/units.hpp"
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::figure_test {
 namespace {
 
 constexpr double g = standard_gravity_mps2;
@@ -59,4 +59,4 @@ TEST(Figure, OfTheThesisIsTheSensitivityInSi) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::figure_test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::gravity_test {
 namespace {
 
 TEST(Gravity, EqualsThePublishedFiguresOfTheEllipsoid) {
@@ -43,4 +43,4 @@ TEST(Gravity, FallsWithHeightAsTheZonalHarmonicsSay) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::gravity_test

@@ -7,7 +7,7 @@
 
 #include "proofmass/core/units.hpp"
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::model_equation_test {
 namespace {
 
 constexpr double g = standard_gravity_mps2;
@@ -123,4 +123,4 @@ TEST(Coefficients, SayTheSameInTheUnitsOfTheStandard) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::model_equation_test

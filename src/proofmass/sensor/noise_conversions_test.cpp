@@ -8,7 +8,7 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/sensor/datasheet.hpp"
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::noise_conversions_test {
 namespace {
 
 constexpr double ug = 1e-6 * standard_gravity_mps2;
@@ -154,4 +154,4 @@ TEST(FoldedDensity, IsTheFiltersVarianceSpreadOverTheBandWhereTheFilterIsWide) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::noise_conversions_test

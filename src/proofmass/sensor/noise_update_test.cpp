@@ -9,7 +9,7 @@
 #include "proofmass/sensor/folder_test_support.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::noise_update_test {
 namespace {
 
 MeasuredNoise measured_x() {
@@ -156,4 +156,4 @@ TEST_F(SensorFileUpdate, LeavesAFileThatItCannotReadOrImproveAsItIs) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::noise_update_test

@@ -8,7 +8,7 @@
 
 #include "proofmass/sensor/sensor_fields.hpp"
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::sensor_comparison_test {
 namespace {
 
 using Covariance = std::array<std::array<double, 9>, 9>;
@@ -275,4 +275,4 @@ TEST(FigureSlot, NamesItsPlace) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::sensor_comparison_test

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::sensor_export_test {
 namespace {
 
 SensorModel measured() {
@@ -177,4 +177,4 @@ TEST(CHeader, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::sensor_export_test

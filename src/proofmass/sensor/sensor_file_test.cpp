@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::sensor_file_test {
 namespace {
 
 constexpr std::string_view written_by_hand = R"toml(# a bench's notes
@@ -167,4 +167,4 @@ TEST(SensorFile, IsWrittenToDiskAndReadBack) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::sensor_file_test

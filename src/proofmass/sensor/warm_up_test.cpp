@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-namespace proofmass::sensor {
+namespace proofmass::sensor::warm_up_test {
 namespace {
 
 /// Table 4.1 of the thesis, with standard deviations of our own.
@@ -234,4 +234,4 @@ TEST(RemoveWarmUp, KnowsWhetherThereIsOne) {
 }
 
 }  // namespace
-}  // namespace proofmass::sensor
+}  // namespace proofmass::sensor::warm_up_test

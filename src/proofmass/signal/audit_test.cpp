@@ -7,7 +7,7 @@
 
 #include "proofmass/signal/channel_audit.hpp"
 
-namespace proofmass::signal {
+namespace proofmass::signal::audit_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -198,4 +198,4 @@ TEST(Timing, CountsLostRowsByThePacketCounter) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::audit_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace proofmass::signal {
+namespace proofmass::signal::counter_test {
 namespace {
 
 Recording counting(std::vector<double> values) {
@@ -37,4 +37,4 @@ TEST(Counter, MissesTheRowsItSkips) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::counter_test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace proofmass::signal {
+namespace proofmass::signal::even_grid_test {
 namespace {
 
 TimeBase stamped(std::vector<double> stamps_s, double rate_hz) {
@@ -116,4 +116,4 @@ TEST(EvenGrid, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::even_grid_test

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-namespace proofmass::signal {
+namespace proofmass::signal::events_test {
 namespace {
 
 using Series = std::vector<double>;
@@ -418,4 +418,4 @@ TEST(Events, AKnockThatDiesAwaySlowlyIsNoStep) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::events_test

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-namespace proofmass::signal {
+namespace proofmass::signal::fourier_test {
 namespace {
 
 std::vector<double> random_series(std::size_t n) {
@@ -52,4 +52,4 @@ TEST(CosineTransform, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::fourier_test

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-namespace proofmass::signal {
+namespace proofmass::signal::regress_out_test {
 namespace {
 
 std::vector<double> slow_cause(std::size_t n) {
@@ -83,4 +83,4 @@ TEST(RegressOut, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::regress_out_test

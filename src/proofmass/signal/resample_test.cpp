@@ -8,7 +8,7 @@
 
 #include "proofmass/signal/resampler.hpp"
 
-namespace proofmass::signal {
+namespace proofmass::signal::resample_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -243,4 +243,4 @@ TEST(Join, RefusesWhatDoesNotOverlapAndTellsAnUnknownBeginning) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::resample_test

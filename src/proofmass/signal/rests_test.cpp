@@ -7,7 +7,7 @@
 
 #include "proofmass/signal/rests_test_support.hpp"
 
-namespace proofmass::signal {
+namespace proofmass::signal::rests_test {
 namespace {
 
 using namespace rests_test;
@@ -367,4 +367,4 @@ TEST(Rests, AreFoundWithoutARate) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::rests_test

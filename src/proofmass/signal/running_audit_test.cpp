@@ -8,7 +8,7 @@
 
 #include "proofmass/signal/channel_audit.hpp"
 
-namespace proofmass::signal {
+namespace proofmass::signal::running_audit_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -263,4 +263,4 @@ TEST(RunningAudit, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::running_audit_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace proofmass::signal {
+namespace proofmass::signal::running_grid_test {
 namespace {
 
 struct Laid {
@@ -151,4 +151,4 @@ TEST(RunningEvenGrid, RefusesStampsThatLeaveMoreOutThanThereIs) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::running_grid_test

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace proofmass::signal {
+namespace proofmass::signal::running_overview_test {
 namespace {
 
 Recording head_of(double rate_hz) {
@@ -65,4 +65,4 @@ TEST(RunningOverview, IsTheSameHoweverTheRecordingIsCut) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::running_overview_test

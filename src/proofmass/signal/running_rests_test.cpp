@@ -6,7 +6,7 @@
 
 #include "proofmass/signal/rests_test_support.hpp"
 
-namespace proofmass::signal {
+namespace proofmass::signal::running_rests_test {
 namespace {
 
 using namespace rests_test;
@@ -302,4 +302,4 @@ TEST(DyadicLadder, ComparesNothingAcrossABreak) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::running_rests_test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace proofmass::signal {
+namespace proofmass::signal::skew_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -62,4 +62,4 @@ TEST(Skew, OfMoreThanAStepIsRefused) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::skew_test

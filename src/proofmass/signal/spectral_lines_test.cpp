@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-namespace proofmass::signal {
+namespace proofmass::signal::spectral_lines_test {
 namespace {
 
 /// Independent values of variance 1, evenly distributed: quick, and normal in the spectrum.
@@ -214,4 +214,4 @@ TEST(SpectralLines, OfTheShortestSpectrumThatIsJudgedAreFinite) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::spectral_lines_test

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-namespace proofmass::signal {
+namespace proofmass::signal::spectrum_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -175,4 +175,4 @@ TEST(SpectrumAccumulator, OfNothingHasNoBins) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::spectrum_test

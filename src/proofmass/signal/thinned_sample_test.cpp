@@ -9,7 +9,7 @@
 
 #include "proofmass/signal/value_tail.hpp"
 
-namespace proofmass::signal {
+namespace proofmass::signal::thinned_sample_test {
 namespace {
 
 std::vector<double> ramp(std::size_t n) {
@@ -109,4 +109,4 @@ TEST(ValueTail, OfNothingHasNothingBeside) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::thinned_sample_test

@@ -9,7 +9,7 @@
 
 #include "proofmass/signal/cumulative_periodogram.hpp"
 
-namespace proofmass::signal {
+namespace proofmass::signal::whiteness_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -359,4 +359,4 @@ TEST(Whiteness, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::signal
+}  // namespace proofmass::signal::whiteness_test

@@ -7,7 +7,7 @@
 
 #include "proofmass/core/statistics.hpp"
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::band_limited_noise_test {
 namespace {
 
 TEST(BandLimitedNoise, HasItsRmsAndNothingAboveItsBand) {
@@ -30,4 +30,4 @@ TEST(BandLimitedNoise, HasItsRmsAndNothingAboveItsBand) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::band_limited_noise_test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::bias_noise_test {
 namespace {
 
 /// Allan variance of n adjacent means over tau.
@@ -67,4 +67,4 @@ TEST(BiasNoise, WhereThereIsNoneItIsZero) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::bias_noise_test

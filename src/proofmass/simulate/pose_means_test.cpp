@@ -4,7 +4,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/simulate/bench_test_support.hpp"
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::pose_means_test {
 namespace {
 
 /// Means of the recording's own samples at rest.
@@ -105,4 +105,4 @@ TEST(PoseMeans, RefuseWhatTheProcedureRefuses) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::pose_means_test

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::procedure_file_test {
 namespace {
 
 std::string error_of(std::string_view text) {
@@ -100,4 +100,4 @@ TEST(ProcedureFile, IsReadFromDisk) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::procedure_file_test

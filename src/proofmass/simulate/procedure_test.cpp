@@ -8,7 +8,7 @@
 #include "proofmass/sensor/calibration.hpp"
 #include "proofmass/simulate/bench_test_support.hpp"
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::procedure_test {
 namespace {
 
 constexpr double g = standard_gravity_mps2;
@@ -221,4 +221,4 @@ TEST(Procedure, SaysWhichOptionMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::procedure_test

@@ -7,7 +7,7 @@
 #include "proofmass/simulate/perfect_rig.hpp"
 #include "proofmass/simulate/rig.hpp"
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::rig_electronics_test {
 namespace {
 
 // 1 g at 3.3 V is 1.98 V, −1 g 1.32 V; the thesis prints 1.98 V for −1 g.
@@ -141,4 +141,4 @@ TEST(RigElectronics, ItsSensorModelsTakeCountsBackToForces) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::rig_electronics_test

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::rig_file_test {
 namespace {
 
 std::string error_of(std::string_view text) {
@@ -123,4 +123,4 @@ TEST(RigFile, IsReadFromDisk) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::rig_file_test

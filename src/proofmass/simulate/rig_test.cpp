@@ -8,7 +8,7 @@
 #include "proofmass/simulate/perfect_rig.hpp"
 #include "proofmass/simulate/wheel_motion.hpp"
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::rig_test {
 namespace {
 
 TEST(Rig, DefaultIsTheThesissWheel) {
@@ -279,4 +279,4 @@ TEST(Rig, SaysWhichOptionMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::rig_test

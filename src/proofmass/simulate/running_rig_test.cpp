@@ -5,7 +5,7 @@
 
 #include "proofmass/simulate/perfect_rig.hpp"
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::running_rig_test {
 namespace {
 
 /// Whatever a rig can have, at once.
@@ -111,4 +111,4 @@ TEST(RunningRig, SaysWhichOptionIsWrong) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::running_rig_test

@@ -8,7 +8,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/sensor/calibration.hpp"
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::sensor_twin_test {
 namespace {
 
 /// A rig with one sensor and nothing wrong with it.
@@ -220,4 +220,4 @@ TEST(SensorTwin, ItsNoiseFigureIsTheTwoSidedDensityThatTheRecordingShows) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::sensor_twin_test

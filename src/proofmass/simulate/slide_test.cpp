@@ -11,7 +11,7 @@
 #include "proofmass/simulate/bench_test_support.hpp"
 #include "proofmass/simulate/procedure_file.hpp"
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::slide_test {
 namespace {
 
 constexpr double g = standard_gravity_mps2;
@@ -252,4 +252,4 @@ TEST(Slide, MeansOfItsRestsCanBeDrawn) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::slide_test

@@ -5,7 +5,7 @@
 
 #include "proofmass/simulate/bench_test_support.hpp"
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::tumble_table_test {
 namespace {
 
 constexpr double g = standard_gravity_mps2;
@@ -174,4 +174,4 @@ TEST(TumbleTable, TheCommandedAngleIsRecordedInDegrees) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::tumble_table_test

@@ -6,7 +6,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"
 
-namespace proofmass::simulate {
+namespace proofmass::simulate::wheel_motion_test {
 namespace {
 
 const SpeedRipple no_ripple{};
@@ -104,4 +104,4 @@ TEST(WheelMotion, AtRestDoesNotRipple) {
 }
 
 }  // namespace
-}  // namespace proofmass::simulate
+}  // namespace proofmass::simulate::wheel_motion_test

@@ -15,7 +15,7 @@
 #include "proofmass/thesis/bias_scale_limits.hpp"
 #include "proofmass/thesis/tumble_parts.hpp"
 
-namespace proofmass::thesis {
+namespace proofmass::thesis::angular_bias_test {
 namespace {
 
 constexpr double g = standard_gravity_mps2;
@@ -237,4 +237,4 @@ TEST(TumbleItems, WhatIsAbsentHasAReason) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::angular_bias_test

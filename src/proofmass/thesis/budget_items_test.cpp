@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-namespace proofmass::thesis {
+namespace proofmass::thesis::budget_items_test {
 namespace {
 
 struct Cell {
@@ -66,4 +66,4 @@ TEST(BudgetItems, LeaveAnEighthOfItAfterAnHourOnARoundEarth) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::budget_items_test

@@ -5,7 +5,7 @@
 #include "proofmass/thesis/chapters.hpp"
 #include "proofmass/thesis/thesis_fake.hpp"
 
-namespace proofmass::thesis {
+namespace proofmass::thesis::comparison_test {
 namespace {
 
 std::string against(double thesis, double ours) {
@@ -68,4 +68,4 @@ TEST(Chapters, GroupTheItemsByTheirNumber) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::comparison_test

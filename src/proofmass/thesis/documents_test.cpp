@@ -7,7 +7,7 @@
 
 #include "proofmass/thesis/thesis_fake.hpp"
 
-namespace proofmass::thesis {
+namespace proofmass::thesis::documents_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -106,4 +106,4 @@ TEST(ThesisText, CountsWhatAgrees) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::documents_test

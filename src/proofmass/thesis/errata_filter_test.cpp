@@ -7,7 +7,7 @@
 #include "proofmass/estimate/motion_models.hpp"
 
 // docs/errata.md, sections 4.1.1 to 4.1.4: the filter, its gain and its tuning.
-namespace proofmass::thesis {
+namespace proofmass::thesis::errata_filter_test {
 namespace {
 
 using estimate::Mat;
@@ -159,4 +159,4 @@ TEST(ErrataChapter4, FromAccelerationsThePositionsVarianceGrowsWithTheCubeOfTime
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::errata_filter_test

@@ -12,7 +12,7 @@
 #include "proofmass/sensor/warm_up.hpp"
 
 // docs/errata.md, sections 4.2, 4.3, A.1 and the matrices of 4.4: the models.
-namespace proofmass::thesis {
+namespace proofmass::thesis::errata_model_test {
 namespace {
 
 using estimate::Mat;
@@ -199,4 +199,4 @@ TEST(ErrataAppendixA, FourReadingsAreFourRowsAndTheBiasesStandOnce) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::errata_model_test

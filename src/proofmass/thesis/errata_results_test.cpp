@@ -11,7 +11,7 @@
 #include "proofmass/thesis/errata_test_support.hpp"
 
 // docs/errata.md, chapters 5 and 6: the figures.
-namespace proofmass::thesis {
+namespace proofmass::thesis::errata_results_test {
 namespace {
 
 using errata::g, errata::mg;
@@ -143,4 +143,4 @@ TEST(ErrataChapter6, NoTwoOfThePrintedErrorsAreSeventyTwoPercentApart) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::errata_results_test

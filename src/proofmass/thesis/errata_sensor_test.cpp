@@ -14,7 +14,7 @@
 #include "proofmass/thesis/errata_test_support.hpp"
 
 // docs/errata.md, chapters 1 to 3: the sensor, its errors and the card.
-namespace proofmass::thesis {
+namespace proofmass::thesis::errata_sensor_test {
 namespace {
 
 using errata::g, errata::mg;
@@ -148,4 +148,4 @@ TEST(ErrataChapter3, TheFilterLetsGravityThrough) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::errata_sensor_test

@@ -10,7 +10,7 @@
 //   x[k] = F x[k−1] + w,   z[k] = x[k] + v,   x[0] ~ N(0, P0),
 //
 // where least squares is a tridiagonal system.
-namespace proofmass::thesis {
+namespace proofmass::thesis::errata_smoother_test {
 namespace {
 
 using estimate::Mat;
@@ -172,4 +172,4 @@ TEST(ErrataChapter6, AtTheLastInstantTheSmootherIsTheFilter) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::errata_smoother_test

@@ -10,7 +10,7 @@
 #include "proofmass/thesis/errata_test_support.hpp"
 
 // docs/errata.md, sections 4.4, 5.4 to 5.6 and A.2: the turning wheel.
-namespace proofmass::thesis {
+namespace proofmass::thesis::errata_wheel_test {
 namespace {
 
 using errata::g, errata::mg, errata::radius_m, errata::rpm_11;
@@ -164,4 +164,4 @@ TEST(ErrataAppendixA, TheSettingsOfTheControllerAreNoAmperes) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::errata_wheel_test

@@ -11,7 +11,7 @@
 #include "proofmass/thesis/gain_figures.hpp"
 #include "proofmass/thesis/gain_readings.hpp"
 
-namespace proofmass::thesis {
+namespace proofmass::thesis::gain_items_test {
 namespace {
 
 const std::vector<Item>& items() {
@@ -152,4 +152,4 @@ TEST(GainItems, WhatIsAbsentHasAReason) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::gain_items_test

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string_view>
 
-namespace proofmass::thesis {
+namespace proofmass::thesis::motor_items_test {
 namespace {
 
 const Finding& finding(const Item& item, std::string_view key) {
@@ -55,4 +55,4 @@ TEST(MotorItems, WhatIsNotStatedIsAbsentWithItsReason) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::motor_items_test

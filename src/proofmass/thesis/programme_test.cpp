@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
-namespace proofmass::thesis {
+namespace proofmass::thesis::programme_test {
 namespace {
 
 // Two hours at rest would take most of the time.
@@ -59,4 +59,4 @@ TEST(Programme, GivesAllTextsAndEachNumberOnceOrAReason) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::programme_test

@@ -7,7 +7,7 @@
 
 #include "proofmass/core/random.hpp"
 
-namespace proofmass::thesis {
+namespace proofmass::thesis::static_bias_test {
 namespace {
 
 using characterise::Interval95;
@@ -200,4 +200,4 @@ TEST(StaticTest, RefusesARecordInWhichNoAxisCanBeAnalysed) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::static_bias_test

@@ -5,7 +5,7 @@
 
 #include "proofmass/thesis/static_bias.hpp"
 
-namespace proofmass::thesis {
+namespace proofmass::thesis::static_record_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -61,4 +61,4 @@ TEST(StaticRecord, TakesTheMeanOfWhatIsThereAndNoneWhereHalfIsMissing) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::static_record_test

@@ -12,7 +12,7 @@
 #include "proofmass/estimate/gain_study.hpp"
 #include "proofmass/thesis/wheel_rig.hpp"
 
-namespace proofmass::thesis {
+namespace proofmass::thesis::thesis_paths_test {
 namespace {
 
 std::vector<double> even_times(std::size_t count, double step_s) {
@@ -158,4 +158,4 @@ TEST(FourteenStates, HoldTheFusedPairOfOneAxis) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::thesis_paths_test

@@ -12,7 +12,7 @@
 #include "proofmass/thesis/run_errors.hpp"
 #include "proofmass/thesis/wheel_rig.hpp"
 
-namespace proofmass::thesis {
+namespace proofmass::thesis::wheel_runs_test {
 namespace {
 
 constexpr double g = standard_gravity_mps2;
@@ -180,4 +180,4 @@ TEST(RmsOver, HasTheScatterOfTheSquaresBehindIt) {
 }
 
 }  // namespace
-}  // namespace proofmass::thesis
+}  // namespace proofmass::thesis::wheel_runs_test
