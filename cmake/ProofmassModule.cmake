@@ -1,22 +1,40 @@
 include(GNUInstallDirs)
-include(GoogleTest)
+include(ProofmassUnits)
+include(ProofmassTests)
 
-# proofmass_module(NAME [USES modules...] HEADERS ... SOURCES ... [TESTS ...] [SLOW_TESTS ...]
-#                  [LINKS targets...] [USES_PRIVATELY targets...])
+# proofmass_module(NAME [TEXT] [USES modules...]
+#                  HEADERS ... [UNITS "name: sources" ...] [SOURCES ...] [KERNELS ...]
+#                  [TESTS ...] [SLOW_TESTS ...] [LINKS targets...] [USES_PRIVATELY targets...])
 #
-# One folder, one library, one test program; SLOW_TESTS are a second one, labelled slow. USES is the only place that says which modules this
-# one may include; tools/check_layers.py holds the #include lines to it. LINKS are libraries that
-# the headers show (Eigen); USES_PRIVATELY those that only .cpp files name.
+# One folder, one library, one test program; SLOW_TESTS are a second one, labelled slow. USES is the
+# only place that says which modules this one may include; tools/check_layers.py holds the #include
+# lines to it. LINKS are libraries that the headers show (Eigen); USES_PRIVATELY those that only .cpp
+# files name.
+#
+# The sources of a unit are compiled together (ProofmassUnits.cmake); SOURCES are compiled one by one,
+# being large enough; KERNELS too, at -O3 and without fused multiply-adds: a fused one rounds once
+# where two operations round twice, and without it every processor gets the same digits. TEXT modules
+# write words and pages, which -O1 does as well as -O2 in half of the compiler's time.
 function(proofmass_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;HEADERS;SOURCES;TESTS;SLOW_TESTS;LINKS;USES_PRIVATELY")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "TEXT" ""
+    "USES;HEADERS;UNITS;SOURCES;KERNELS;TESTS;SLOW_TESTS;LINKS;USES_PRIVATELY")
   set(target proofmass_${name})
-  add_library(${target} STATIC ${arg_SOURCES})
+  add_library(${target} STATIC ${arg_SOURCES} ${arg_KERNELS})
   add_library(proofmass::${name} ALIAS ${target})
   target_sources(${target} PUBLIC FILE_SET HEADERS
     BASE_DIRS ${PROJECT_SOURCE_DIR}/src FILES ${arg_HEADERS})
   target_compile_features(${target} PUBLIC cxx_std_20)
   list(TRANSFORM arg_USES PREPEND proofmass::)
   target_link_libraries(${target} PUBLIC ${arg_USES} ${arg_LINKS} PRIVATE ${arg_USES_PRIVATELY})
+  if(arg_TEXT)
+    proofmass_compile_as(${target} text)
+  else()
+    proofmass_compile_as(${target} numbers)
+  endif()
+  proofmass_units(${target} ${arg_UNITS})
+  # With a precompiled header GCC takes the header's optimisation flags, not the source's.
+  set_source_files_properties(${arg_KERNELS} PROPERTIES
+    COMPILE_OPTIONS "-ffp-contract=off;$<$<CONFIG:Release>:-O3>" SKIP_PRECOMPILE_HEADERS ON)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
   install(TARGETS ${target} EXPORT proofmass-static COMPONENT development
     FILE_SET HEADERS COMPONENT development)
@@ -25,15 +43,12 @@ function(proofmass_module name)
     string(TOUPPER ${kind}s tests)
     if(PROOFMASS_TESTS AND arg_${tests})
       add_executable(${name}_${kind} ${arg_${tests}})
-      target_link_libraries(${name}_${kind}
-        PRIVATE ${target} ${arg_USES_PRIVATELY} GTest::gtest_main)
-      target_compile_definitions(${name}_${kind}
-        PRIVATE PROOFMASS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+      target_link_libraries(${name}_${kind} PRIVATE ${target} ${arg_USES_PRIVATELY})
       set(labels)
       if(kind STREQUAL slow_test)
-        set(labels PROPERTIES LABELS slow)
+        set(labels LABELS slow)
       endif()
-      gtest_discover_tests(${name}_${kind} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 ${labels})
+      proofmass_tests(${name}_${kind} PREFIX ${name} ${labels})
     endif()
   endforeach()
 endfunction()

@@ -24,8 +24,8 @@ foreach(part IN ITEMS library program development)
 endforeach()
 
 # What the static libraries are linked with, of the packages that this build needed.
-file(STRINGS ${PROJECT_SOURCE_DIR}/tools/packages.txt needed REGEX "^run .*-dev$")
-list(TRANSFORM needed REPLACE "^run +" "")
+file(STRINGS ${PROJECT_SOURCE_DIR}/tools/packages.txt needed REGEX "^(run|more) .*-dev$")
+list(TRANSFORM needed REPLACE "^[a-z]+ +" "")
 list(REMOVE_ITEM needed libeigen3-dev libcli11-dev libfast-float-dev)
 list(JOIN needed ", " needed)
 

@@ -20,7 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 LIBRARY = ROOT / "src" / "proofmass"
-PARSED = re.search(r'PARSE_ARGV 1 arg "" "" "([A-Z_;]+)"', (ROOT / "cmake/ProofmassModule.cmake").read_text())
+PARSED = re.search(r'PARSE_ARGV 1 arg "TEXT" ""\s+"([A-Z_;]+)"', (ROOT / "cmake/ProofmassModule.cmake").read_text())
 KEYWORDS = set(PARSED[1].split(";"))
 TEST_LISTS = {"TESTS", "SLOW_TESTS"}
 INCLUDE = re.compile(r'\s*#\s*include\s*(["<])([^">]+)[">]')
@@ -47,12 +47,13 @@ def read_module(cmake: Path) -> tuple[str, Module]:
     lists = {keyword: set() for keyword in KEYWORDS}
     current = None
     for word in words:
+        word = word.strip('"')
         if word in KEYWORDS:
             current = lists[word]
-        else:
+        elif word != "TEXT" and not word.endswith(":"):  # which names a unit
             current.add(word)
     tests = set().union(*(lists[keyword] for keyword in TEST_LISTS))
-    listed = lists["HEADERS"] | lists["SOURCES"] | tests
+    listed = set().union(*(lists[keyword] for keyword in ("HEADERS", "UNITS", "SOURCES", "KERNELS"))) | tests
     return name, Module(lists["USES"], lists["HEADERS"], tests, listed)
 
 

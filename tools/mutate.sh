@@ -42,7 +42,8 @@ trap 'exit 130' INT TERM
 
 mkdir -p "$copy"
 restore
-cp -a "$root"/{CMakeLists.txt,CMakePresets.json,LICENSE,README.md,cmake,src,apps,tests,examples} "$copy"
+cp -a "$root"/{CMakeLists.txt,CMakePresets.json,CHANGELOG.md,LICENSE,README.md} "$copy"
+cp -a "$root"/{apps,cmake,completions,docs,examples,packaging,rig,src,tests,tools} "$copy"
 [[ -d $root/../shared/data ]] && export PROOFMASS_DATA=${PROOFMASS_DATA:-$root/../shared/data}
 
 make_tests() {

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs what `./run`, `./test` or `./test --long` needs and this machine lacks.
+# Installs what `./run`, `./test` or `./test --long` needs and this machine lacks; `more` is `run` with
+# the libraries of all live sources.
 #
-#   tools/setup.sh run|test|long
+#   tools/setup.sh run|more|test|long
 #
 # Where everything is there it needs neither network nor root. Speaks on stderr only.
 set -euo pipefail
@@ -11,10 +12,11 @@ say() { printf 'setup: %s\n' "$*" >&2; }
 
 case ${1:-} in
   run) groups='run' ;;
-  test) groups='run|test' ;;
-  long) groups='run|test|long' ;;
+  more) groups='run|more' ;;
+  test) groups='run|more|test' ;;
+  long) groups='run|more|test|long' ;;
   *)
-    say "expected run, test or long, got '${1:-}'"
+    say "expected run, more, test or long, got '${1:-}'"
     exit 2
     ;;
 esac

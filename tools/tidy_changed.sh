@@ -1,19 +1,16 @@
 #!/usr/bin/env bash
-# Runs clang-tidy over the sources that differ from a commit, with the flags of the release build.
+# Runs clang-tidy over the sources that differ from a commit, with the flags of the preset dev,
+# which compiles each source by itself.
 #
 #   tools/tidy_changed.sh [COMMIT]   default: the last commit, so what is not committed yet
 #   tools/tidy_changed.sh --all      every source
 #
 # A header is read with the sources that include it, so a change to a header alone needs --all.
-# Needs the compile commands of build/release: run ./test once first.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-commands=build/release/compile_commands.json
-if [[ ! -f $commands ]]; then
-  echo "tidy: no $commands; run ./test first, which writes it" >&2
-  exit 2
-fi
+commands=build/dev/compile_commands.json
+cmake --preset dev >/dev/null
 
 compiled() { sed -n "s|^ *\"file\": \"$PWD/\\(.*\\)\",\\?\$|\\1|p" "$commands" | grep -v ^build/ | sort -u; }
 
@@ -34,5 +31,5 @@ fi
 echo "tidy: ${#files[@]} sources"
 # The commands are g++'s; what clang does not know of them is none of its business.
 printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$(nproc)" \
-  clang-tidy-19 -p build/release --quiet --extra-arg=-Wno-unknown-warning-option 2>&1 |
+  clang-tidy-19 -p build/dev --quiet --extra-arg=-Wno-unknown-warning-option 2>&1 |
   sed -E '/^[0-9]+ warnings? generated\.$/d' # its count of what .clang-tidy leaves out

@@ -140,9 +140,9 @@ sensor::MeasuredDrift measured(const DriftChannel& channel) {
 }
 
 // Writes the axes whose warm-up is identified, and notes what the file does not get.
-void update_sensor(const std::string& path,
-                   const std::vector<DriftChannel>& channels,
-                   std::vector<Note>& notes) {
+void update_drift(const std::string& path,
+                  const std::vector<DriftChannel>& channels,
+                  std::vector<Note>& notes) {
   std::vector<sensor::MeasuredDrift> drift;
   for (const DriftChannel& channel : channels) {
     const auto& analysis = channel.shown.analysis;
@@ -189,7 +189,7 @@ void run(const DriftCommand& command) {
   report.runs = compare_recordings(recordings, report.since_switch_on_s,
                                    progress_bar(command.output), report.notes);
   if (!command.update_sensor.empty()) {
-    without_interruption([&] { update_sensor(command.update_sensor, channels, report.notes); });
+    without_interruption([&] { update_drift(command.update_sensor, channels, report.notes); });
   }
   for (DriftChannel& channel : channels) report.channels.push_back(std::move(channel.shown));
   const std::vector<Note> notes = report::drift_notes(report);

@@ -9,6 +9,7 @@
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/calibrate/cross_axis.hpp"
+#include "proofmass/io/names.hpp"
 #include "proofmass/report/document.hpp"
 #include "proofmass/report/model_equation_report.hpp"
 #include "tumble_modes.hpp"
@@ -18,18 +19,6 @@ namespace {
 
 using calibrate::ModelRow;
 using sensor::Coefficient;
-
-// Letters and digits in lower case: "a_i", "ai" and "A i" are one.
-std::string bare(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    if (c >= 'A' && c <= 'Z')
-      text += static_cast<char>(c - 'A' + 'a');
-    else if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'))
-      text += c;
-  }
-  return text;
-}
 
 struct MotionColumn {
   std::string_view name;  ///< bare
@@ -66,12 +55,12 @@ std::vector<Coefficient> asked_for(const TumbleCommand& command) {
 
 const Channel* column(const Recording& table, std::string_view name) {
   const auto found = std::ranges::find_if(
-      table.channels, [&](const Channel& channel) { return bare(channel.name) == name; });
+      table.channels, [&](const Channel& channel) { return io::bare_name(channel.name) == name; });
   return found == table.channels.end() ? nullptr : &*found;
 }
 
 // The unit that a motion column is in: its header's, or --unit for accelerations.
-Unit unit_of(const Channel& channel, const MotionColumn& column, const InputFlags& flags) {
+Unit column_unit(const Channel& channel, const MotionColumn& column, const InputFlags& flags) {
   if (column.quantity == Quantity::unknown) return {};  // rad/s², which units do not have
   if (channel.unit.quantity == column.quantity) return channel.unit;
   if (column.quantity == Quantity::acceleration && !flags.unit.empty()) {
@@ -113,7 +102,7 @@ std::vector<sensor::Motion> read_motions(const Recording& table, const TumbleCom
     const Channel* found = column(table, one.name);
     if (found == nullptr) continue;
     any = true;
-    const Unit unit = unit_of(*found, one, command.input);
+    const Unit unit = column_unit(*found, one, command.input);
     for (std::size_t k = 0; k < motions.size(); ++k) {
       motions[k].*one.member = unit.si(found->values[k]);
     }
@@ -138,7 +127,7 @@ bool is_output(const Channel& channel, const TumbleCommand& command) {
   if (!command.input.channels.empty()) {
     return std::ranges::find(command.input.channels, channel.name) != command.input.channels.end();
   }
-  const std::string name = bare(channel.name);
+  const std::string name = io::bare_name(channel.name);
   constexpr std::array others{"angle", "plane",  "mount", "position", "row", "n",
                               "index", "number", "time",  "t",        "std"};
   const bool motion =
@@ -148,8 +137,8 @@ bool is_output(const Channel& channel, const TumbleCommand& command) {
 }
 
 // The column NAME_std, or std, which states the readings' standard deviations; or none.
-const Channel* stated_std(const Recording& table, const Channel& output) {
-  const Channel* own = column(table, bare(output.name) + "std");
+const Channel* std_column(const Recording& table, const Channel& output) {
+  const Channel* own = column(table, io::bare_name(output.name) + "std");
   return own != nullptr ? own : column(table, "std");
 }
 
@@ -183,7 +172,7 @@ report::ModelOutput fit_output(const Recording& table,
     unit = {};
     output.unit = channel.unit.symbol;
   }
-  const Channel* std = stated_std(table, channel);
+  const Channel* std = std_column(table, channel);
   for (std::size_t k = 0; k < motions.size(); ++k) {
     output.rows.push_back(
         {motions[k], unit.si(channel.values[k]), std ? std->values[k] * unit.to_si : 0.0});

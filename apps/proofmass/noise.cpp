@@ -204,7 +204,7 @@ sensor::MeasuredNoise measured(const NoiseChannel& channel) {
   return noise;
 }
 
-void update_sensor(const std::string& path, const std::vector<NoiseChannel>& channels) {
+void update_noise(const std::string& path, const std::vector<NoiseChannel>& channels) {
   std::vector<sensor::MeasuredNoise> noise;
   for (const NoiseChannel& channel : channels) {
     const auto& analysis = channel.shown.analysis;
@@ -232,7 +232,7 @@ void run(const NoiseCommand& command) {
     analyse(channels[k], std::move(own));
   });
   if (!command.update_sensor.empty()) {
-    without_interruption([&] { update_sensor(command.update_sensor, channels); });
+    without_interruption([&] { update_noise(command.update_sensor, channels); });
   }
   for (NoiseChannel& channel : channels) report.channels.push_back(std::move(channel.shown));
   const std::vector<Note> notes = report::noise_notes(report);

@@ -43,7 +43,7 @@ std::vector<std::size_t> axes_of(const Recording& head, const std::vector<std::s
   return out;
 }
 
-GuideOptions options_of(const RecordCommand& command, const Recording& head) {
+GuideOptions guide_options(const RecordCommand& command, const Recording& head) {
   const GuideFlags& flags = command.guide;
   GuideOptions options;
   options.procedure = procedure_of(flags);
@@ -106,7 +106,7 @@ RecordGuide::RecordGuide(const RecordCommand& command) : command_(command) {
 void RecordGuide::opened(const Recording& head) {
   if (guide_ || !why_not_.empty()) return;
   try {
-    guide_.emplace(options_of(command_, head));
+    guide_.emplace(guide_options(command_, head));
   } catch (const Failure& failure) {
     // Told once the recorder is out of the way.
     why_not_ = failure.what();

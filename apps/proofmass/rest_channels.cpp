@@ -100,7 +100,7 @@ void lay_out(Source& source, const std::string& prefix, std::vector<Note>& notes
   tell_grid(source.grid, source.grid.holes.size(), prefix, notes);
 }
 
-void bring_to_si(Channel& channel) {
+void to_si(Channel& channel) {
   const Unit si = si_unit(channel.unit);
   if (channel.unit == si) return;
   for (double& value : channel.values) value = channel.unit.si(value);
@@ -116,7 +116,7 @@ RestChannel prepared(Source& source, std::size_t k, bool is_phase) {
   out.axis = source.axes[k];
   out.refused = clipping(audit, channel.values.size());
   const bool calibrated = channel.unit != audit.unit;
-  bring_to_si(channel);
+  to_si(channel);
   out.unit = series_unit(channel.unit, is_phase);
   if (!out.refused.empty()) return out;
   if (audit.lsb && !is_phase) {
@@ -132,7 +132,7 @@ RestChannel prepared(Source& source, std::size_t k, bool is_phase) {
 
 RestTemperature prepared_temperature(Source& source) {
   Channel& channel = source.recording.channels[*source.temperature];
-  bring_to_si(channel);
+  to_si(channel);
   return {channel.name, channel.unit, signal::on_even_grid(channel.values, source.grid)};
 }
 

@@ -15,7 +15,7 @@
 namespace proofmass::app {
 namespace {
 
-std::vector<Recording> load_all(const TumbleCommand& command) {
+std::vector<Recording> load_recordings(const TumbleCommand& command) {
   InputFlags input = command.input;
   if (!input.channels.empty() && !command.angle_channel.empty()) {
     input.channels.push_back(command.angle_channel);
@@ -144,7 +144,7 @@ void run_rotation(const TumbleCommand& command) {
   }
   report::RotationReport report;
   report.inputs = command.files;
-  std::vector<Recording> recordings = load_all(command);
+  std::vector<Recording> recordings = load_recordings(command);
   const auto models = load_sensors(command.input, report.notes);
   if (!models.empty()) {
     const std::vector<Accelerometer> found = accelerometers(recordings);

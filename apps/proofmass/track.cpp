@@ -194,9 +194,9 @@ TrackOptions options_of(TrackCommand& command) {
 }
 
 // Errors of the estimate name the file.
-estimate::TrackSolution solve(const std::string& file,
-                              const TrackSensor& sensor,
-                              const TrackOptions& options) {
+estimate::TrackSolution solve_track(const std::string& file,
+                                    const TrackSensor& sensor,
+                                    const TrackOptions& options) {
   auto solution = estimate::estimate_track(sensor, options);
   if (!solution)
     throw Failure(status_of(solution.error(), Stage::computing), solution.error().at(file).message);
@@ -212,7 +212,7 @@ void run(const TrackCommand& given) {
   report.inputs = {command.file};
   report.options = options_of(command);
   const TrackSensor sensor = prepare(command, report.options, report.notes);
-  report.solution = solve(command.file, sensor, report.options);
+  report.solution = solve_track(command.file, sensor, report.options);
   report.options.progress = {};  // which wipes the bar away
   show_notes(report.notes, "", command.output);
   show_notes(report.solution.notes, "", command.output);

@@ -5,20 +5,11 @@
 #include <fmt/format.h>
 
 #include "exit_status.hpp"
+#include "proofmass/io/names.hpp"
 #include "proofmass/signal/counter.hpp"
 
 namespace proofmass::app {
 namespace {
-
-// Letters and digits in lower case.
-std::string bare(std::string_view name) {
-  std::string out;
-  for (char c : name) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) out.push_back(c);
-  }
-  return out;
-}
 
 template <std::size_t N>
 bool is_any(const std::string& name, const std::array<std::string_view, N>& names) {
@@ -51,7 +42,7 @@ template <std::size_t N>
 std::optional<std::size_t> by_name(const Recording& recording,
                                    const std::array<std::string_view, N>& names) {
   for (std::size_t k = 0; k < recording.channels.size(); ++k)
-    if (is_any(bare(recording.channels[k].name), names)) return k;
+    if (is_any(io::bare_name(recording.channels[k].name), names)) return k;
   return std::nullopt;
 }
 
@@ -64,7 +55,7 @@ std::optional<std::size_t> find_angle(const Recording& recording) {
     const bool fits = channel.unit.quantity == Quantity::angle ||
                       channel.unit.quantity == Quantity::unknown ||
                       channel.unit.quantity == Quantity::counts;
-    if (!found && fits && is_any(bare(channel.name), angle_names)) found = k;
+    if (!found && fits && is_any(io::bare_name(channel.name), angle_names)) found = k;
     if (channel.unit.quantity == Quantity::angle) {
       only = k;
       ++count;
@@ -99,11 +90,11 @@ std::vector<std::size_t> find_outputs(const Recording& recording, const TumbleCo
     all.push_back(k);
   }
   std::erase_if(all, [&](std::size_t k) {
-    const std::string name = bare(recording.channels[k].name);
+    const std::string name = io::bare_name(recording.channels[k].name);
     return is_any(name, std::array<std::string_view, 6>{"n", "samples", "row", "index", "number",
                                                         "run"}) ||
            std::any_of(all.begin(), all.end(), [&](std::size_t j) {
-             return is_std_of(name, bare(recording.channels[j].name));
+             return is_std_of(name, io::bare_name(recording.channels[j].name));
            });
   });
   for (const Quantity best : {Quantity::acceleration, Quantity::voltage, Quantity::counts}) {
@@ -136,7 +127,9 @@ TumbleColumns tumble_columns(const Recording& recording,
   for (const std::size_t k : out.outputs) {
     std::optional<std::size_t> own = out.std;
     for (std::size_t j = 0; j < recording.channels.size(); ++j)
-      if (is_std_of(bare(recording.channels[j].name), bare(recording.channels[k].name))) own = j;
+      if (is_std_of(io::bare_name(recording.channels[j].name),
+                    io::bare_name(recording.channels[k].name)))
+        own = j;
     out.output_std.push_back(own);
   }
   return out;

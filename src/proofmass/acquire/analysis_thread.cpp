@@ -5,14 +5,14 @@
 namespace proofmass::acquire {
 namespace {
 
-constexpr std::size_t most_spare = 8;
+constexpr std::size_t most_spare_blocks = 8;
 
-std::size_t bytes_of(std::size_t rows, std::size_t columns) {
+std::size_t bytes_for(std::size_t rows, std::size_t columns) {
   return sizeof(Rows) + sizeof(double) * rows * (columns + 1);
 }
 
 std::size_t bytes_of(const Rows& rows) {
-  return bytes_of(rows.rows(), rows.channels.size());
+  return bytes_for(rows.rows(), rows.channels.size());
 }
 
 /// A copy that keeps the memory it has.
@@ -50,7 +50,7 @@ AnalysisThread::Task AnalysisThread::spare_task() {
 
 bool AnalysisThread::put(const Block& samples, std::int64_t host_ns) {
   const std::scoped_lock lock(mutex_);
-  const std::size_t bytes = bytes_of(samples.rows(), samples.channels.size());
+  const std::size_t bytes = bytes_for(samples.rows(), samples.channels.size());
   if (is_full_ && task_bytes_ > most_bytes_ / 2) return false;
   is_full_ = !tasks_.empty() && task_bytes_ + bytes > most_bytes_;
   if (is_full_) return false;
@@ -71,7 +71,7 @@ bool AnalysisThread::take(Analysed& out, std::chrono::milliseconds patience) {
     return !made_.empty() || !will_come;
   });
   if (made_.empty()) return false;
-  if (spare_made_.size() < most_spare) spare_made_.push_back(std::move(out));
+  if (spare_made_.size() < most_spare_blocks) spare_made_.push_back(std::move(out));
   out = std::move(made_.front());
   made_.pop_front();
   made_bytes_ -= bytes_of(out.estimates);
@@ -130,7 +130,7 @@ void AnalysisThread::run() {
     lock.unlock();
     goes_on = work(task ? &*task : nullptr, out);
     lock.lock();
-    if (task && spare_tasks_.size() < most_spare) spare_tasks_.push_back(std::move(*task));
+    if (task && spare_tasks_.size() < most_spare_blocks) spare_tasks_.push_back(std::move(*task));
     is_over_ = !goes_on;
     hand_back(out, lock);
   }
@@ -157,7 +157,7 @@ void AnalysisThread::hand_back(Analysed& out, std::unique_lock<std::mutex>& lock
   if (says_something) {
     made_bytes_ += bytes_of(out.estimates);
     made_.push_back(std::move(out));
-  } else if (spare_made_.size() < most_spare) {
+  } else if (spare_made_.size() < most_spare_blocks) {
     spare_made_.push_back(std::move(out));
   }
   if (is_over_) {

@@ -18,7 +18,7 @@ bool is_bounded(const Incoming& item) {
   return item.kind == Incoming::Kind::rows || item.kind == Incoming::Kind::notes;
 }
 
-constexpr std::size_t most_spare = 8;
+constexpr std::size_t most_spare_arrivals = 8;
 
 }  // namespace
 
@@ -43,7 +43,7 @@ bool ArrivalQueue::take(Incoming& item, std::chrono::milliseconds patience) {
   changed_.wait_for(lock, patience, [&] { return !items_.empty() || is_woken_; });
   is_woken_ = false;
   if (items_.empty()) return false;
-  if (spare_.size() < most_spare) spare_.push_back(std::move(item.arrival));
+  if (spare_.size() < most_spare_arrivals) spare_.push_back(std::move(item.arrival));
   item = std::move(items_.front());
   items_.pop_front();
   bytes_ -= bytes_of(item);

@@ -15,7 +15,7 @@ struct FreeCalibration {
 };
 using CalibrationFile = std::unique_ptr<comedi_calibration_t, FreeCalibration>;
 
-Error refused(std::string message) {
+Error command_refused(std::string message) {
   return {Errc::device, std::move(message)};
 }
 
@@ -23,19 +23,19 @@ Status open_inputs(const ComediRequest& request, ComediCommand& out) {
   comedi_loglevel(0);
   out.device.reset(comedi_open(request.path.c_str()));
   if (!out.device)
-    return refused(
+    return command_refused(
         fmt::format("{} cannot be opened ({}); expected a card such as /dev/comedi0, "
                     "with its driver attached",
                     request.path, comedi_reason()));
   const int found = comedi_find_subdevice_by_type(out.device.get(), COMEDI_SUBD_AI, 0);
   if (found < 0)
-    return refused(fmt::format("{} ({}) has no analogue inputs", request.path,
-                               comedi_get_board_name(out.device.get())));
+    return command_refused(fmt::format("{} ({}) has no analogue inputs", request.path,
+                                       comedi_get_board_name(out.device.get())));
   out.subdevice = static_cast<unsigned>(found);
   const auto flags =
       static_cast<unsigned>(comedi_get_subdevice_flags(out.device.get(), out.subdevice));
   if ((flags & SDF_CMD_READ) == 0)
-    return refused(
+    return command_refused(
         fmt::format("{} ({}) gives single readings only, which cannot be recorded at a "
                     "rate",
                     request.path, comedi_get_board_name(out.device.get())));
@@ -94,8 +94,8 @@ Status add_channel(unsigned channel,
                         comedi_get_hardcal_converter(device, out.subdevice, channel, request.range,
                                                      COMEDI_TO_PHYSICAL, &polynomial) >= 0;
   if (!is_known)
-    return refused(fmt::format("channel {}: the card does not say what its figures mean ({})",
-                               channel, comedi_reason()));
+    return command_refused(fmt::format(
+        "channel {}: the card does not say what its figures mean ({})", channel, comedi_reason()));
   const comedi_range* const bounds =
       comedi_get_range(device, out.subdevice, channel, request.range);
   const bool is_volts = bounds != nullptr && bounds->unit == UNIT_volt;
@@ -136,8 +136,8 @@ Status set_rate(const ComediRequest& request, ComediCommand& out) {
   if (comedi_get_cmd_generic_timed(device, out.subdevice, &out.command,
                                    static_cast<unsigned>(out.list.size()),
                                    static_cast<unsigned>(std::lround(period_ns))) < 0)
-    return refused(fmt::format("rate={}: the card has no timed reading of {} channels ({})",
-                               request.rate_hz, out.list.size(), comedi_reason()));
+    return command_refused(fmt::format("rate={}: the card has no timed reading of {} channels ({})",
+                                       request.rate_hz, out.list.size(), comedi_reason()));
   out.command.chanlist = out.list.data();
   out.command.chanlist_len = static_cast<unsigned>(out.list.size());
   out.command.stop_src = TRIG_NONE;
@@ -146,14 +146,14 @@ Status set_rate(const ComediRequest& request, ComediCommand& out) {
   for (int attempt = 0; attempt < 3; ++attempt)
     complaint = comedi_command_test(device, &out.command);
   if (complaint != 0)
-    return refused(
+    return command_refused(
         fmt::format("rate={}: the card refuses {} channels at this rate, range and "
                     "reference (stage {} of its test)",
                     request.rate_hz, out.list.size(), complaint));
   const unsigned scan_ns = out.command.scan_begin_src == TRIG_TIMER
                                ? out.command.scan_begin_arg
                                : out.command.convert_arg * out.command.chanlist_len;
-  if (scan_ns == 0) return refused("the card does not say at which rate it reads");
+  if (scan_ns == 0) return command_refused("the card does not say at which rate it reads");
   out.rate_hz = 1e9 / scan_ns;
   out.settings.emplace_back("rate asked", fmt::format("{} Hz", request.rate_hz));
   out.settings.emplace_back("rate granted", fmt::format("{:.9g} Hz", out.rate_hz));
@@ -184,7 +184,7 @@ Result<ComediCommand> prepare_command(const ComediRequest& request) {
 
 Status start(ComediCommand& command) {
   if (comedi_command(command.device.get(), &command.command) >= 0) return Done{};
-  return refused(
+  return command_refused(
       fmt::format("the card does not start ({}); if it is busy, another program reads "
                   "it: stop that",
                   comedi_reason()));

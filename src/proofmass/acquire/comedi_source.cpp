@@ -144,7 +144,7 @@ Result<std::vector<unsigned>> channels_in(std::string_view list) {
   return channels;
 }
 
-Result<ComediRequest> request_of(SourceUri& uri) {
+Result<ComediRequest> comedi_request(SourceUri& uri) {
   ComediRequest request{uri.place()};
   const auto channels = channels_in(uri.value("channels").value_or(""));
   if (!channels) return channels.error();
@@ -170,7 +170,7 @@ Result<ComediRequest> request_of(SourceUri& uri) {
 }  // namespace
 
 Result<std::unique_ptr<Source>> open_comedi(SourceUri& uri, const OpenOptions&) {
-  const auto request = request_of(uri);
+  const auto request = comedi_request(uri);
   if (!request) return request.error();
   auto command = prepare_command(*request);
   if (!command) return command.error();

@@ -155,7 +155,7 @@ Status read_range(const std::string& text, DaqmxRequest& request) {
   return Done{};
 }
 
-Result<DaqmxRequest> request_of(SourceUri& uri) {
+Result<DaqmxRequest> daqmx_request(SourceUri& uri) {
   DaqmxRequest request;
   auto channels = daqmx_channels(uri.place());
   if (!channels) return channels.error();
@@ -186,7 +186,7 @@ SourceHead head_of(const SourceUri& uri, const DaqmxRequest& request, const Daqm
 }  // namespace
 
 Result<std::unique_ptr<Source>> open_daqmx(SourceUri& uri, const OpenOptions& options) {
-  const auto request = request_of(uri);
+  const auto request = daqmx_request(uri);
   if (!request) return request.error();
   const std::string library = uri.value("library").value_or(options.nidaqmx_library);
   if (const Status known = uri.nothing_unknown(); !known) return known.error();

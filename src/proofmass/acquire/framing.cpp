@@ -11,10 +11,6 @@
 namespace proofmass::acquire {
 namespace {
 
-Error bad(std::string message) {
-  return {Errc::invalid_argument, std::move(message)};
-}
-
 /// "AA55" is two bytes.
 Result<std::string> sync_word(std::string_view hex) {
   std::string word;
@@ -28,8 +24,8 @@ Result<std::string> sync_word(std::string_view hex) {
     word += static_cast<char>(byte);
   }
   if (word.empty() || word.size() != hex.size() / 2)
-    return bad(fmt::format("framing=sync:{}: expected 1 to {} bytes in hexadecimal, as sync:AA55",
-                           hex, longest));
+    return invalid(fmt::format(
+        "framing=sync:{}: expected 1 to {} bytes in hexadecimal, as sync:AA55", hex, longest));
   return word;
 }
 
@@ -53,13 +49,15 @@ Status choose_framing(SourceUri& uri, FramingOptions& options) {
     options.framing = Framing::sync;
     options.sync = std::move(sync).value();
   } else {
-    return bad(fmt::format("framing={}: expected {}", word,
-                           in_datagrams ? "lines or packet" : "lines, cobs, slip or sync:AA55"));
+    return invalid(
+        fmt::format("framing={}: expected {}", word,
+                    in_datagrams ? "lines or packet" : "lines, cobs, slip or sync:AA55"));
   }
   if (options.fields.empty() == (options.framing == Framing::lines)) return Done{};
   return options.fields.empty()
-             ? bad(fmt::format("framing={}: expected fields=, as fields=u32 t_us, i16 x y z", word))
-             : bad("fields=: lines have no fields; expected framing=cobs, slip or sync:AA55");
+             ? invalid(
+                   fmt::format("framing={}: expected fields=, as fields=u32 t_us, i16 x y z", word))
+             : invalid("fields=: lines have no fields; expected framing=cobs, slip or sync:AA55");
 }
 
 }  // namespace

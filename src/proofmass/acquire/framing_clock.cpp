@@ -9,8 +9,6 @@
 namespace proofmass::acquire {
 namespace {
 
-constexpr std::int64_t ns_per_s = 1'000'000'000;
-
 /// In nanoseconds; nullopt beyond ±292 years.
 std::optional<std::int64_t> ns_of(const Tick& tick, std::int64_t unit_ns) {
   std::int64_t whole = 0;

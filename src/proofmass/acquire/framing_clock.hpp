@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "proofmass/acquire/source.hpp"
 #include "proofmass/io/wrap.hpp"
 
 namespace proofmass::acquire {

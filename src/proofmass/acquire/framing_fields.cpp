@@ -8,16 +8,13 @@
 #include <fmt/format.h>
 
 #include "proofmass/acquire/framing_words.hpp"
+#include "proofmass/acquire/source_uri.hpp"
 #include "proofmass/core/contract.hpp"
 
 namespace proofmass::acquire {
 namespace {
 
 constexpr std::size_t longest_frame = 4096;
-
-Error bad(std::string message) {
-  return {Errc::invalid_argument, std::move(message)};
-}
 
 struct FieldType {
   std::string_view name;
@@ -55,7 +52,8 @@ class LayoutReader {
       big_endian = words.front() == "be";
       words.erase(words.begin());
     }
-    if (words.empty()) return bad("fields=: a group is empty; expected as in u32 t_us, i16 x y z");
+    if (words.empty())
+      return invalid("fields=: a group is empty; expected as in u32 t_us, i16 x y z");
     const std::string_view type = words.front();
     words.erase(words.begin());
     if (type == "pad") return add_pad(words);
@@ -63,9 +61,10 @@ class LayoutReader {
     return add_fields(type, words, big_endian);
   }
   Result<FrameLayout> finish() {
-    if (layout_.fields.empty()) return bad("fields=: expected fields, as in u32 t_us, i16 x y z");
+    if (layout_.fields.empty())
+      return invalid("fields=: expected fields, as in u32 t_us, i16 x y z");
     if (layout_.bytes > longest_frame)
-      return bad(
+      return invalid(
           fmt::format("fields=: {} bytes a frame; {} are the most", layout_.bytes, longest_frame));
     return std::move(layout_);
   }
@@ -77,13 +76,14 @@ class LayoutReader {
     const auto [end, problem] = std::from_chars(count.data(), count.data() + count.size(), bytes);
     if (problem != std::errc{} || end != count.data() + count.size() || bytes == 0 ||
         bytes > longest_frame)
-      return bad(fmt::format("fields=: pad {}: expected a number of bytes", count));
+      return invalid(fmt::format("fields=: pad {}: expected a number of bytes", count));
     layout_.bytes += bytes;
     return Done{};
   }
   Status add_check(Check check, const std::vector<std::string_view>& words, bool big_endian) {
-    if (layout_.check) return bad("fields=: one checksum is the most");
-    if (!words.empty()) return bad(fmt::format("fields=: {}: a checksum has no name", words[0]));
+    if (layout_.check) return invalid("fields=: one checksum is the most");
+    if (!words.empty())
+      return invalid(fmt::format("fields=: {}: a checksum has no name", words[0]));
     layout_.check = check;
     layout_.check_offset = layout_.bytes;
     layout_.check_big_endian = big_endian;
@@ -95,11 +95,11 @@ class LayoutReader {
                     bool big_endian) {
     const FieldType* const found = type_called(type);
     if (found == nullptr)
-      return bad(
+      return invalid(
           fmt::format("fields=: {}: expected a type: u8 i8 u16 i16 u24 i24 u32 i32 u64 i64 "
                       "f32 f64 pad crc8 crc16 crc16-modbus crc32",
                       type));
-    if (names.empty()) return bad(fmt::format("fields=: {}: expected names behind it", type));
+    if (names.empty()) return invalid(fmt::format("fields=: {}: expected names behind it", type));
     for (const std::string_view name : names) {
       layout_.fields.push_back(
           {std::string(name), found->kind, layout_.bytes, found->bytes, big_endian});

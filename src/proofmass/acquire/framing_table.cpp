@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "proofmass/acquire/framing_clock.hpp"
 #include "proofmass/acquire/framing_dialect.hpp"
 #include "proofmass/io/cell.hpp"
 #include "proofmass/io/clock_text.hpp"
@@ -14,8 +15,6 @@ namespace {
 
 using io::CellKind;
 using io::ColumnKind;
-
-constexpr std::int64_t ns_per_s = 1'000'000'000;
 
 /// A date with a time of day, or a time of day, in seconds.
 std::optional<Tick> tick_of_calendar(std::string_view text) {

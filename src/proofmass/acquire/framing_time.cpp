@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
+#include "proofmass/acquire/framing_clock.hpp"
 #include "proofmass/acquire/framing_settings.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/io/names.hpp"
@@ -81,7 +82,6 @@ std::optional<std::int64_t> unit_by_size(const RowEvidence& rows,
                                .values = {}};
   const io::StampUnit found = io::unit_of(stamps, *step);
   const auto unit_ns = std::llround(found.unit_s * 1e9);
-  constexpr std::int64_t ns_per_s = 1'000'000'000;
   if (unit_ns > ns_per_s) return std::nullopt;
   if (found.note) notes.push_back(*found.note);
   return unit_ns;

@@ -11,7 +11,6 @@ namespace proofmass::acquire {
 namespace {
 
 constexpr std::int64_t ns_per_ms = 1'000'000;
-constexpr std::int64_t ns_per_s = 1'000'000'000;
 
 }  // namespace
 

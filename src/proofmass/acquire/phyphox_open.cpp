@@ -14,7 +14,7 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr unsigned short usual_port = 8080;
+constexpr unsigned short phyphox_port = 8080;
 
 /// One question and its answer while the source is opened.
 class Opening {
@@ -120,7 +120,7 @@ Result<std::unique_ptr<Source>> open_phyphox(SourceUri& uri, const OpenOptions& 
   auto place = parse_host_port(uri.place());
   if (!place) return place.error();
   HostPort server = std::move(place).value();
-  if (!server.port) server.port = usual_port;
+  if (!server.port) server.port = phyphox_port;
   auto client = std::make_unique<HttpClient>(std::move(server));
   Opening phone(*client, options);
 

@@ -17,7 +17,6 @@ constexpr milliseconds between_questions{50};
 /// So long without rows while it measures, and the ends of the time buffers are asked for.
 constexpr milliseconds suspicious_silence{500};
 constexpr int most_bad_answers = 5;
-constexpr double ns_per_s = 1e9;
 
 std::vector<std::size_t> widths_of(const std::vector<PhyphoxGroup>& groups) {
   std::vector<std::size_t> widths;

@@ -7,7 +7,7 @@
 namespace proofmass::acquire {
 namespace {
 
-constexpr std::chrono::milliseconds patience{50};
+constexpr std::chrono::milliseconds analysis_patience{50};
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void RecordSession::analyse(const Block& block, std::int64_t host_ns) {
   else
     leave_out(block);
   while (!head_.is_paced && analysis_ && !analysis_->is_idle()) {
-    take_estimates(patience);
+    take_estimates(analysis_patience);
     ask_stopped();
     if (file_) file_->tick(host_now_ns());
   }
@@ -86,7 +86,7 @@ void RecordSession::finish_analysis() {
   analysis_->finish();
   std::optional<std::int64_t> told_ns;
   while (analysis_ && !analysis_->is_done()) {
-    take_estimates(patience);
+    take_estimates(analysis_patience);
     if (file_) file_->tick(host_now_ns());
     const std::int64_t now_ns = host_now_ns();
     if (!told_ns && is_told_to_stop()) told_ns = now_ns;

@@ -6,12 +6,13 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "proofmass/acquire/source_uri.hpp"
 #include "proofmass/core/number_words.hpp"
 
 namespace proofmass::acquire {
 namespace {
 
-constexpr std::chrono::milliseconds patience{50};
+constexpr std::chrono::milliseconds arrival_patience{50};
 
 bool has_same_channels(const SourceHead& a, const SourceHead& b) {
   return std::ranges::equal(a.recording.channels, b.recording.channels,
@@ -67,15 +68,12 @@ Status RecordSession::begin() {
 Status RecordSession::use(const SourceHead& head) {
   head_ = head;
   const std::size_t channels = head_.recording.channels.size();
-  const auto bad = [](std::string message) {
-    return Error{Errc::invalid_argument, std::move(message)};
-  };
-  if (channels == 0) return bad(head_.recording.source + ": has no channel to record");
+  if (channels == 0) return invalid(head_.recording.source + ": has no channel to record");
   if (options_.trigger) {
     const Channel* found = head_.recording.find(options_.trigger->channel);
     if (found == nullptr)
-      return bad(fmt::format("the trigger is on {}, and {} has {}", options_.trigger->channel,
-                             head_.recording.source, names_of(head_.recording.channels)));
+      return invalid(fmt::format("the trigger is on {}, and {} has {}", options_.trigger->channel,
+                                 head_.recording.source, names_of(head_.recording.channels)));
     trigger_channel_ = static_cast<std::size_t>(found - head_.recording.channels.data());
   }
   if (make_analysis_) {
@@ -107,7 +105,7 @@ void RecordSession::loop() {
     ask_stopped();
     if (disk_.failure()) end(RecordEnd::disk_failed);
     if (end_) break;
-    const bool came = queue_.take(item, patience);
+    const bool came = queue_.take(item, arrival_patience);
     if (came) hold_->put(std::move(item));
     while (!end_ && hold_->take(item, false)) work(item);
     take_estimates(std::chrono::milliseconds(0));

@@ -4,23 +4,21 @@
 #include <fmt/format.h>
 
 #include "proofmass/acquire/record_session.hpp"
+#include "proofmass/acquire/source_uri.hpp"
 
 namespace proofmass::acquire {
 namespace {
 
 Status check(const RecordOptions& options) {
-  const auto bad = [](std::string message) {
-    return Error{Errc::invalid_argument, std::move(message)};
-  };
   if (options.path.empty() || options.path == "-")
-    return bad("a recording is written to a file: expected a name such as run.mcap");
+    return invalid("a recording is written to a file: expected a name such as run.mcap");
   for (const auto& [name, value] :
        {std::pair{"duration", options.duration_s}, std::pair{"time of a file", options.rotate_s}})
     if (value && !(*value > 0.0 && std::isfinite(*value)))
-      return bad(fmt::format("the {} is {} s: expected more than 0", name, *value));
+      return invalid(fmt::format("the {} is {} s: expected more than 0", name, *value));
   if (options.trigger && !(options.trigger->before_s >= 0.0 && options.trigger->after_s >= 0.0 &&
                            std::isfinite(options.trigger->level)))
-    return bad("the trigger: expected a level, and times of 0 s or more before and after it");
+    return invalid("the trigger: expected a level, and times of 0 s or more before and after it");
   return Done{};
 }
 

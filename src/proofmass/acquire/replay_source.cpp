@@ -9,6 +9,7 @@
 
 #include "proofmass/acquire/pacer.hpp"
 #include "proofmass/acquire/source_list.hpp"
+#include "proofmass/acquire/source_uri.hpp"
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/io/recording_stream.hpp"
 #include "proofmass/io/write_recording.hpp"
@@ -23,10 +24,6 @@ constexpr std::uint64_t most_bytes_in_memory = std::uint64_t{64} << 20;
 /// Of a reading that nobody waits for.
 constexpr double most_rows_at_once = 4096.0;
 constexpr double most_s_at_once = 0.1;
-
-Error bad(std::string message) {
-  return {Errc::invalid_argument, std::move(message)};
-}
 
 const Recording& recording_of(const OpenedFile& file) {
   if (const auto* whole = std::get_if<Recording>(&file)) return *whole;
@@ -130,19 +127,19 @@ class ReplaySource final : public Source {
 Result<std::optional<double>> speed_of(SourceUri& uri) {
   if (uri.value("speed") == "max") return std::optional<double>();
   const auto speed = uri.number("speed", 0.0);
-  if (!speed) return bad(speed.error().message + ", or max");
+  if (!speed) return invalid(speed.error().message + ", or max");
   return std::optional(speed->value_or(1.0));
 }
 
 Status check_file(const std::string& path) {
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
-  if (path.empty()) return bad("expected a file, as in replay:run.csv");
+  if (path.empty()) return invalid("expected a file, as in replay:run.csv");
   // Where there is none, reading says so.
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status) ||
       std::filesystem::is_directory(status))
     return Done{};
-  return bad("is no file: what comes through a pipe or a device is read by stdin: or serial:");
+  return invalid("is no file: what comes through a pipe or a device is read by stdin: or serial:");
 }
 
 SourceHead head_of(const SourceUri& uri, const Recording& file, std::optional<double> speed) {
@@ -181,7 +178,8 @@ Result<std::unique_ptr<Source>> open_replay(SourceUri& uri, const OpenOptions& o
                                    most_bytes_in_memory);
   if (!opened) return opened.error();
   OpenedFile file = std::move(opened).value();
-  if (!has_time(file)) return bad("the file does not say when its samples were taken: add rate=HZ");
+  if (!has_time(file))
+    return invalid("the file does not say when its samples were taken: add rate=HZ");
   SourceHead head = head_of(uri, recording_of(file), *speed);
   return std::unique_ptr<Source>(
       std::make_unique<ReplaySource>(std::move(file), std::move(head), *speed));

@@ -18,7 +18,7 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr unsigned short usual_port = 8080;
+constexpr unsigned short sensor_server_port = 8080;
 constexpr std::string_view android = "android.sensor.";
 /// Of one reading: a tenth of a second at any phone's rate.
 constexpr std::size_t most_messages = 500;
@@ -186,7 +186,7 @@ Result<std::unique_ptr<Source>> open_sensor_server(SourceUri& uri, const OpenOpt
   auto place = parse_host_port(uri.place());
   if (!place) return place.error();
   HostPort server = std::move(place).value();
-  if (!server.port) server.port = usual_port;
+  if (!server.port) server.port = sensor_server_port;
   auto source = std::make_unique<SensorServerSource>(std::move(server), std::move(sensors));
   if (const Status opened = source->open(uri.text(), options); !opened) return opened.error();
   return std::unique_ptr<Source>(std::move(source));

@@ -17,7 +17,6 @@ namespace proofmass::acquire {
 namespace {
 
 constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
-constexpr double ns_per_s = 1e9;
 
 /// Number of the first row that is not before a time; where there is none, never.
 std::uint64_t row_at(std::optional<double> time_s, double rate_hz) {

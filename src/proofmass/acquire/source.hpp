@@ -15,6 +15,8 @@
 // Where samples come from while they are taken: a device, a network, a pipe, the twin.
 namespace proofmass::acquire {
 
+inline constexpr std::int64_t ns_per_s = 1'000'000'000;
+
 /// What a source says of itself once it is open.
 struct SourceHead {
   /// source: its URI; format: "IIO", "serial", …; channels without values, in the units they come

@@ -10,10 +10,6 @@
 namespace proofmass::acquire {
 namespace {
 
-Error bad(std::string message) {
-  return {Errc::invalid_argument, std::move(message)};
-}
-
 bool is_scheme(std::string_view text) {
   return !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0 &&
          std::ranges::all_of(text, [](unsigned char c) { return std::isalnum(c) != 0; });
@@ -32,7 +28,7 @@ Result<std::string> decoded(std::string_view text) {
                                     ? std::from_chars(from, from + 2, byte, 16)
                                     : std::from_chars_result{from, std::errc::invalid_argument};
     if (problem != std::errc{} || end != from + 2)
-      return bad(fmt::format("{}: expected two hexadecimal figures behind %", text));
+      return invalid(fmt::format("{}: expected two hexadecimal figures behind %", text));
     out += static_cast<char>(byte);
     i += 2;
   }
@@ -41,13 +37,17 @@ Result<std::string> decoded(std::string_view text) {
 
 }  // namespace
 
+Error invalid(std::string message) {
+  return {Errc::invalid_argument, std::move(message)};
+}
+
 Result<SourceUri> SourceUri::parse(std::string_view text) {
   SourceUri uri;
   uri.text_ = text == "-" ? "stdin:" : text;
   const std::string_view whole = uri.text_;
   const std::size_t colon = whole.find(':');
   if (colon == std::string_view::npos || !is_scheme(whole.substr(0, colon)))
-    return bad(
+    return invalid(
         fmt::format("{}: expected a source such as sim:, serial:/dev/ttyACM0 or "
                     "iio:ip:HOST; record --list shows what is there",
                     text));
@@ -65,12 +65,12 @@ Result<SourceUri> SourceUri::parse(std::string_view text) {
     query.remove_prefix(std::min(pair.size() + 1, query.size()));
     const std::size_t equals = pair.find('=');
     if (equals == std::string_view::npos || equals == 0)
-      return bad(fmt::format("{}: expected key=value in place of \"{}\"", text, pair));
+      return invalid(fmt::format("{}: expected key=value in place of \"{}\"", text, pair));
     const auto value = decoded(pair.substr(equals + 1));
     if (!value) return value.error();
     const std::string key(pair.substr(0, equals));
     if (std::ranges::any_of(uri.pairs_, [&](const auto& other) { return other.first == key; }))
-      return bad(fmt::format("{}: {} is there twice", text, key));
+      return invalid(fmt::format("{}: {} is there twice", text, key));
     uri.pairs_.emplace_back(key, *value);
   }
   return uri;
@@ -90,7 +90,7 @@ Result<std::optional<double>> SourceUri::number(std::string_view key, double abo
   const char* const end = text->data() + text->size();
   const auto [stop, problem] = std::from_chars(text->data(), end, number);
   if (problem != std::errc{} || stop != end || !std::isfinite(number) || !(number > above))
-    return bad(fmt::format("{}={}: expected a number above {}", key, *text, above));
+    return invalid(fmt::format("{}={}: expected a number above {}", key, *text, above));
   return std::optional(number);
 }
 
@@ -103,7 +103,7 @@ Result<std::optional<std::uint64_t>> SourceUri::whole(std::string_view key,
   const char* const end = text->data() + text->size();
   const auto [stop, problem] = std::from_chars(text->data(), end, number);
   if (problem != std::errc{} || stop != end || number < least || number > most)
-    return bad(
+    return invalid(
         fmt::format("{}={}: expected a whole number from {} to {}", key, *text, least, most));
   return std::optional(number);
 }
@@ -113,16 +113,16 @@ Result<std::string> SourceUri::choice(std::string_view key,
   const auto text = value(key);
   if (!text) return std::string(words.front());
   if (std::ranges::find(words, std::string_view(*text)) == words.end())
-    return bad(fmt::format("{}={}: expected {}", key, *text, fmt::join(words, ", ")));
+    return invalid(fmt::format("{}={}: expected {}", key, *text, fmt::join(words, ", ")));
   return *text;
 }
 
 Status SourceUri::nothing_unknown() const {
   for (const auto& [key, value] : pairs_)
     if (std::ranges::find(asked_, key) == asked_.end()) {
-      if (asked_.empty()) return bad(fmt::format("{}: {}: takes no settings", key, scheme_));
-      return bad(fmt::format("{}: no such setting of {}:, which has {}", key, scheme_,
-                             fmt::join(asked_, ", ")));
+      if (asked_.empty()) return invalid(fmt::format("{}: {}: takes no settings", key, scheme_));
+      return invalid(fmt::format("{}: no such setting of {}:, which has {}", key, scheme_,
+                                 fmt::join(asked_, ", ")));
     }
   return Done{};
 }
@@ -132,7 +132,7 @@ Result<HostPort> parse_host_port(std::string_view text) {
   std::string_view port;
   if (text.starts_with('[')) {
     const std::size_t close = text.find(']');
-    if (close == std::string_view::npos) return bad(fmt::format("{}: expected a ]", text));
+    if (close == std::string_view::npos) return invalid(fmt::format("{}: expected a ]", text));
     out.host = text.substr(1, close - 1);
     port = text.substr(close + 1);
   } else {
@@ -140,13 +140,13 @@ Result<HostPort> parse_host_port(std::string_view text) {
     out.host = text.substr(0, colon);
     if (colon != std::string_view::npos) port = text.substr(colon);
   }
-  if (out.host.empty()) return bad(fmt::format("\"{}\": expected HOST or HOST:PORT", text));
+  if (out.host.empty()) return invalid(fmt::format("\"{}\": expected HOST or HOST:PORT", text));
   if (port.empty()) return out;
   unsigned short number = 0;
   const char* const end = port.data() + port.size();
   const auto [stop, problem] = std::from_chars(port.data() + 1, end, number);
   if (port.front() != ':' || problem != std::errc{} || stop != end || number == 0)
-    return bad(fmt::format("{}: expected a port from 1 to 65535 behind the host", text));
+    return invalid(fmt::format("{}: expected a port from 1 to 65535 behind the host", text));
   out.port = number;
   return out;
 }

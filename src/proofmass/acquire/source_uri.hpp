@@ -52,6 +52,9 @@ struct HostPort {
 };
 
 /// Errors: invalid_argument.
+/// An error of what was asked for.
+[[nodiscard]] Error invalid(std::string message);
+
 [[nodiscard]] Result<HostPort> parse_host_port(std::string_view text);
 
 }  // namespace proofmass::acquire

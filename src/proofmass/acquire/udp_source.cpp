@@ -92,7 +92,7 @@ Result<int> bound_socket(const HostPort& at) {
 }
 
 /// "9870" is that port of this computer, which nobody else reaches.
-Result<HostPort> place_of(const std::string& place) {
+Result<HostPort> host_port_of(const std::string& place) {
   const bool is_port = !place.empty() && place.find_first_not_of("0123456789") == std::string::npos;
   auto at = parse_host_port(is_port ? "127.0.0.1:" + place : place);
   if (at && !at->port)
@@ -103,7 +103,7 @@ Result<HostPort> place_of(const std::string& place) {
 }  // namespace
 
 Result<std::unique_ptr<Source>> open_udp(SourceUri& uri, const OpenOptions& options) {
-  const auto at = place_of(uri.place());
+  const auto at = host_port_of(uri.place());
   if (!at) return at.error();
   const auto framing = framing_options(uri, Carrier::datagrams);
   if (!framing) return framing.error();

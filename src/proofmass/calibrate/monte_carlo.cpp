@@ -38,7 +38,7 @@ Interval quantile_limits(const std::vector<double>& ascending, double p) {
   return {at(n * p - reach - 0.5), at(n * p + reach - 0.5)};
 }
 
-Status check(View<Input> inputs, const Eigen::MatrixXd& correlation) {
+Status check_inputs(View<Input> inputs, const Eigen::MatrixXd& correlation) {
   for (const Input& input : inputs) {
     if (!std::isfinite(input.value) || !std::isfinite(input.std) || !std::isfinite(input.dof))
       return Error{Errc::not_finite, "an input is not a finite number"};
@@ -119,7 +119,7 @@ Result<Propagation> summary_of(std::vector<double> draws) {
 Result<Propagation> propagate(const Measurement& f,
                               View<Input> inputs,
                               const PropagateOptions& options) {
-  if (const Status good = check(inputs, options.correlation); !good) return good.error();
+  if (const Status good = check_inputs(inputs, options.correlation); !good) return good.error();
   const Eigen::MatrixXd root =
       options.correlation.size() > 0 ? root_of(options.correlation) : Eigen::MatrixXd();
   Draw draw(options.seed);

@@ -56,11 +56,11 @@ Result<std::array<Side, 6>> sides_of(View<Pose> poses) {
 
 // What the noise of the means does, and what placing does that is taken for exact; `across` is each
 // row's part across its axis, squared, over the whole.
-std::vector<UncertaintyShare> shares_of(const std::array<Side, 6>& sides,
-                                        const Parameters& estimate,
-                                        const Eigen::Vector3d& across,
-                                        double noise_dof,
-                                        const MultiPositionOptions& options) {
+std::vector<UncertaintyShare> shares_of_sides(const std::array<Side, 6>& sides,
+                                              const Parameters& estimate,
+                                              const Eigen::Vector3d& across,
+                                              double noise_dof,
+                                              const MultiPositionOptions& options) {
   UncertaintyShare noise{"noise of the means", true, ParameterMatrix::Zero(), noise_dof};
   UncertaintyShare placement{"placement", false, ParameterMatrix::Zero(), 0.0};
   const double tilt = options.placement_std_rad * options.placement_std_rad;
@@ -118,7 +118,7 @@ Result<MultiPosition> calibrate_six_position(View<Pose> poses,
   out.gravity_mps2 = options.gravity_mps2;
   const Eigen::Vector3d along = U.diagonal().cwiseQuotient(U.rowwise().norm());
   const Eigen::Vector3d across = Eigen::Vector3d::Ones() - along.cwiseAbs2();
-  out.shares = shares_of(*sides, estimate, across, noise_dof, options);
+  out.shares = shares_of_sides(*sides, estimate, across, noise_dof, options);
   set_estimate(estimate, false, out);
   out.dof = noise_dof;
   out.axes_in_fixture = U.rowwise().normalized();

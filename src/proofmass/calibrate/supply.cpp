@@ -147,7 +147,7 @@ bool finite(const Uncertain& figure) {
   return std::isfinite(figure.value) && std::isfinite(figure.std) && figure.std >= 0.0;
 }
 
-Status check(View<SupplyPoint> points, const SupplyOptions& options) {
+Status check_points(View<SupplyPoint> points, const SupplyOptions& options) {
   if (points.size() < 2)
     return Error{Errc::too_few_samples,
                  "what the supply does takes calibrations at two supplies or more"};
@@ -219,7 +219,7 @@ void add_notes(View<SupplyPoint> points, SupplyDependence& found) {
 }  // namespace
 
 Result<SupplyDependence> fit_supply(View<SupplyPoint> points, const SupplyOptions& options) {
-  if (const Status good = check(points, options); !good) return good.error();
+  if (const Status good = check_points(points, options); !good) return good.error();
   SupplyDependence found;
   found.lowest_v = found.highest_v = points[0].supply_v.value;
   double sum = 0.0;

@@ -18,10 +18,6 @@ bool is_exponential(DriftShape shape) {
          shape == DriftShape::two_exponentials;
 }
 
-bool has_line(DriftShape shape) {
-  return shape == DriftShape::line || shape == DriftShape::exponential_and_line;
-}
-
 double rise(double t_s, double time_constant_s) {
   return -std::expm1(-t_s / time_constant_s);
 }

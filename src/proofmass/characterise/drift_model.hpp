@@ -27,6 +27,10 @@ enum class DriftShape {
 /// "constant", "line", "steps", "exponential", "exponential_and_line", "two_exponentials".
 [[nodiscard]] std::string_view name_of(DriftShape shape);
 
+[[nodiscard]] constexpr bool has_line(DriftShape shape) {
+  return shape == DriftShape::line || shape == DriftShape::exponential_and_line;
+}
+
 /// A value, its standard deviation and its central 95 % interval; an end that the data do not
 /// bound is missing.
 struct Interval95 {

@@ -23,10 +23,6 @@ std::size_t exponentials_of(DriftShape shape) {
   return shape == DriftShape::exponential || shape == DriftShape::exponential_and_line ? 1 : 0;
 }
 
-bool has_line(DriftShape shape) {
-  return shape == DriftShape::line || shape == DriftShape::exponential_and_line;
-}
-
 // Linear columns that no time constant moves.
 MatrixXd fixed_columns(const DriftEvidence& evidence, const ShapeAt& at) {
   const Index line = has_line(at.shape) ? 1 : 0, steps = static_cast<Index>(at.step_blocks.size());

@@ -10,7 +10,6 @@ namespace {
 
 // Up to here every term is taken; beyond, sixteen or more to a τ.
 constexpr std::size_t decimate_above = std::size_t{1} << 20;
-constexpr std::size_t least_overlap = 16;
 // Of a recording of unknown length: three thousand years at a kilohertz.
 constexpr std::size_t any_length = std::size_t{1} << 46;
 // A spectrum is averaged over at least so many segments, as long as these keep 64 samples.
@@ -25,7 +24,7 @@ std::size_t segment_for(std::size_t samples, std::size_t longest) {
 }
 
 std::size_t overlap_for(std::size_t samples) {
-  return samples <= decimate_above ? DifferenceVariances::full_overlap : least_overlap;
+  return samples <= decimate_above ? DifferenceVariances::full_overlap : least_decimated_overlap;
 }
 
 std::vector<std::size_t> factors_for(const NoiseOptions& options, std::size_t samples) {

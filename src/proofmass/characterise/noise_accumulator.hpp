@@ -10,6 +10,9 @@
 
 namespace proofmass::characterise {
 
+/// Terms to a τ that decimation leaves in long recordings.
+inline constexpr std::size_t least_decimated_overlap = 16;
+
 /// A noise analysis of samples as they come, for recordings longer than memory: deviation,
 /// spectrum, lines and coefficients in one pass. analyse_noise is a fold over it, with the events
 /// found before. Of the statistics those that are differences of the phase (adev … ohdev); the

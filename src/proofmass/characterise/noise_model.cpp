@@ -6,15 +6,12 @@
 
 #include "proofmass/characterise/term_spectra.hpp"
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/statistics.hpp"
 
 namespace proofmass::characterise {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-double square(double x) {
-  return x * x;
-}
 
 // σ²(τ) τ / S(0) of an exponentially correlated process of time constant T.
 // Source: IEEE Std 952-1997, annex C; by its series where τ ≪ T would cancel.

@@ -16,7 +16,6 @@ namespace {
 
 // Points of the integral that a term may span at its level, in memory up to six times over.
 constexpr std::size_t most_spacing = std::size_t{1} << 22;
-constexpr std::size_t least_overlap = 16;
 
 bool overlaps(Statistic statistic) {
   return is_difference(statistic) && statistic != Statistic::adev && statistic != Statistic::hdev;
@@ -37,7 +36,8 @@ Status check_times(const NoiseOptions& options, std::size_t expected_samples) {
     if (!(factor >= 1.0) || !(factor < 1e15)) continue;
     const auto m = static_cast<std::size_t>(factor + 0.5);
     if (expected_samples > 0 && m > expected_samples) continue;
-    if (m / DifferenceVariances::stride(options.statistic, m, least_overlap) > most_spacing)
+    if (m / DifferenceVariances::stride(options.statistic, m, least_decimated_overlap) >
+        most_spacing)
       return whole_only(
           fmt::format("the deviation at just {:.6g} s, {} samples, is taken", tau_s, m),
           "choose octave or so many times per decade");

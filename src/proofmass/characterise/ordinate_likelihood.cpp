@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double converged = 1e-6;  // in log-likelihood, where 1.92 bounds an interval
+constexpr double ordinates_converged = 1e-6;  // in log-likelihood, where 1.92 bounds an interval
 
 // All that follows from a density.
 struct State {
@@ -121,7 +121,7 @@ OrdinateFit fit_ordinates(const VectorXd& z,
   VectorXd theta =
       start.size() > 0 ? start : ordinates.scored(ordinates.at_density(ordinates.rough()));
   State state = ordinates.at(theta);
-  climb(ordinates, {.least_gain = converged}, theta, state);
+  climb(ordinates, {.least_gain = ordinates_converged}, theta, state);
   return result_of(std::move(state), std::move(theta));
 }
 

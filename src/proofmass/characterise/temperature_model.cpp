@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 constexpr std::size_t fewest_blocks = 32;
 constexpr int most_degree_allowed = 8;
-constexpr double normal_975 = 1.959964, normal_95 = 1.644854;
+constexpr double normal_95 = 1.644854;
 
 void set_coefficients(TemperatureModel& model, const TemperatureCurve& curve, Index level) {
   const Index count = model.degree + 1;

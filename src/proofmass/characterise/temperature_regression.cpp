@@ -13,7 +13,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index folds = 8, segments = 32;
-constexpr double normal_975 = 1.959964;
 
 double sign_of(Sweep sweep) {
   return sweep == Sweep::dwell ? 0.0 : sweep == Sweep::heating ? 1.0 : -1.0;

@@ -9,6 +9,8 @@
 
 namespace proofmass::characterise {
 
+inline constexpr double normal_975 = 1.959964;  ///< quantile of the normal distribution
+
 /// What the regressions have in common. The columns are hysteresis (or not), p0 … of the highest
 /// degree, y: so the first ones serve a lower degree, too.
 struct TemperatureProblem {

@@ -5,15 +5,12 @@
 #include <numbers>
 
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/statistics.hpp"
 
 namespace proofmass::characterise {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-double square(double x) {
-  return x * x;
-}
 
 // |sin(π f τ0 D) / (D sin(π f τ0))|², the means' transfer function.
 double mean_transfer(double frequency_hz, const Sampling& sampling) {

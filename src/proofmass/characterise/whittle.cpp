@@ -15,7 +15,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double converged = 1e-8;  // in log-likelihood: far below what an interval could show
+// In log-likelihood: far below what an interval could show.
+constexpr double whittle_converged = 1e-8;
 
 MatrixXd chosen(const MatrixXd& columns, const std::vector<int>& active) {
   MatrixXd X(columns.rows(), static_cast<Index>(active.size()));
@@ -144,7 +145,7 @@ WhittleFit WhittleLikelihood::maximise(const std::vector<int>& active,
   else if (!active.empty())
     theta = ascent.scored(ascent.at_density(rough_));
   Ascent::State state = ascent.at(theta);
-  if (!active.empty()) climb(ascent, {.least_gain = converged}, theta, state);
+  if (!active.empty()) climb(ascent, {.least_gain = whittle_converged}, theta, state);
   WhittleFit fit;
   fit.strength = VectorXd::Zero(columns_.cols());
   for (std::size_t k = 0; k < active.size(); ++k)

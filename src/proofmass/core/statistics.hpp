@@ -1,11 +1,19 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "proofmass/core/view.hpp"
 
 namespace proofmass {
+
+/// Value of a missing sample.
+inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+[[nodiscard]] constexpr double square(double x) {
+  return x * x;
+}
 
 /// Mean, spread and range of the finite values of a series, in one pass.
 /// Source: B. P. Welford, Technometrics 4 (1962) 419, for the sum of squares without cancellation.

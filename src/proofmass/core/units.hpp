@@ -38,7 +38,7 @@ struct Unit {
 /// another thing: sensor/gravity.hpp. Source: 3rd CGPM (1901), resolution 2.
 inline constexpr double standard_gravity_mps2 = 9.80665;
 
-inline constexpr double rad_per_deg = std::numbers::pi / 180.0;
+inline constexpr double rad_per_deg = std::numbers::pi / 180.0, deg_per_rad = 1.0 / rad_per_deg;
 inline constexpr double rad_per_turn = 2.0 * std::numbers::pi;
 inline constexpr double radps_per_rpm = rad_per_turn / 60.0;
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proofmass/core/statistics.hpp"
+
 namespace proofmass::estimate {
 namespace {
 
@@ -10,10 +12,6 @@ namespace {
 constexpr double level_std_rad = 0.3;
 /// How long a turn or a push lasts of which scale_std is a fraction.
 constexpr double turn_s = 1.0, push_s = 0.3;
-
-double square(double x) {
-  return x * x;
-}
 
 /// One more reading, of an error's departure from the nominal motion; returns its h, which is zero.
 InertialError& add_row(Readings<inertial::states, AttitudeModel::channels>& out,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "proofmass/core/statistics.hpp"
+
 namespace proofmass::estimate {
 namespace {
 
@@ -14,10 +16,6 @@ using inertial_axis::velocity_mps;
 constexpr double resting_huber = 3.0;
 /// What an acceleration that nobody read may have been, at least, and for how long it stays.
 constexpr double unread_accel_mps2 = 1.0, unread_time_s = 1.0;
-
-double square(double x) {
-  return x * x;
-}
 
 }  // namespace
 

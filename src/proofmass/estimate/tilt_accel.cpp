@@ -19,10 +19,6 @@ constexpr double effective_dof = 10.0;
 constexpr double least_accel = 2e-3;
 constexpr double longest_s = 1.0;
 
-double square(double x) {
-  return x * x;
-}
-
 // Departures of the force, turned back into one frame that stands still: what autocorrelates.
 struct Departures {
   std::vector<Mat<3>> vectors;

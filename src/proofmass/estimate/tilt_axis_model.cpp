@@ -19,10 +19,6 @@ constexpr std::size_t most_instants = 20000;
 
 using Logs = std::array<double, 5>;
 
-double square(double x) {
-  return x * x;
-}
-
 AxisTiltNoise noise_of(const Logs& logs) {
   return {.rate_noise_radps_rthz = std::exp(logs[0]),
           .rate_bias_walk_radps_rts = std::exp(logs[1]),

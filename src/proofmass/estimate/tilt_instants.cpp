@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/tilt_record.hpp"
@@ -10,8 +9,6 @@
 
 namespace proofmass::estimate {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 // Standard deviation of white noise as strong at low frequency as the longest rest shows.
 Mat<3> rest_std(const std::array<std::vector<double>, 3>& axes,
@@ -38,7 +35,7 @@ double longest_bridge_s(double usual_step_s) {
 }
 
 Mat<3> rate_over(const Mat<3>& before, const Mat<3>& now, double step_s, double longest_s) {
-  if (step_s > longest_s) return Mat<3>::Constant(none);
+  if (step_s > longest_s) return Mat<3>::Constant(no_value);
   if (!now.allFinite()) return before;
   if (!before.allFinite()) return now;
   return 0.5 * (now + before);
@@ -77,7 +74,7 @@ std::size_t drop_held(TiltInstants& instants) {
     if (same_rate && instants.force_mps2[k] == instants.force_mps2[k - 1]) repeats.push_back(k);
   }
   if (2 * repeats.size() < moving) return 0;
-  for (const std::size_t k : repeats) instants.force_mps2[k].setConstant(none);
+  for (const std::size_t k : repeats) instants.force_mps2[k].setConstant(no_value);
   return repeats.size();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/rotation.hpp"
 #include "proofmass/estimate/tilt_gyroscope.hpp"
 
@@ -13,10 +14,6 @@ namespace {
 constexpr double norm_std = 2e-3;
 // What a rest may creep: rad in the root of a second.
 constexpr double creep_rad_rts = 1e-5;
-
-double square(double x) {
-  return x * x;
-}
 
 // |g|² 1 − g gᵀ: the variance across g of a turn with unit variance about every axis.
 Mat<3, 3> across(const Mat<3>& g) {

@@ -14,14 +14,13 @@ namespace {
 
 // Smoothers in a row, each made linear about the path of the one before.
 constexpr int gyroscope_passes = 3;
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 void set(TiltSolution& solution, std::size_t k, const TiltAngles& angles, bool smoothed) {
   TiltSeries& s = solution.series;
   const auto put = [k](std::vector<double>& value, std::vector<double>& std,
                        const std::optional<Uncertain>& angle) {
-    value[k] = angle ? angle->value : none;
-    std[k] = angle ? angle->std : none;
+    value[k] = angle ? angle->value : no_value;
+    std[k] = angle ? angle->std : no_value;
   };
   if (smoothed) {
     put(s.roll_rad, s.roll_std_rad, angles.roll_rad);

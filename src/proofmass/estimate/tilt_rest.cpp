@@ -13,10 +13,6 @@ namespace {
 
 constexpr std::size_t batches = 40;
 
-double square(double x) {
-  return x * x;
-}
-
 double span_s(const TiltRecord& record, const signal::Rest& samples) {
   if (record.time_s.empty()) return 0.0;
   return record.time_s[samples.last] - record.time_s[samples.first];

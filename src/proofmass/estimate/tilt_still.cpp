@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/tilt_record.hpp"
 
 namespace proofmass::estimate {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
 void put(const std::optional<Uncertain>& angle, double& value, double& std) {
-  value = angle ? angle->value : none;
-  std = angle ? angle->std : none;
+  value = angle ? angle->value : no_value;
+  std = angle ? angle->std : no_value;
 }
 
 // Variance of white readings whose mean over the rest is as good as that of the readings.
@@ -81,7 +79,7 @@ void make_series(const TiltRecord& record, TiltSolution& solution) {
   for (auto* values :
        {&s.roll_rad, &s.pitch_rad, &s.roll_std_rad, &s.pitch_std_rad, &s.filtered_roll_rad,
         &s.filtered_pitch_rad, &s.filtered_roll_std_rad, &s.filtered_pitch_std_rad})
-    values->assign(solution.samples, none);
+    values->assign(solution.samples, no_value);
   s.weight.assign(solution.samples, 0.0F);
   s.resting.assign(solution.samples, 0);
   for (const TiltRest& rest : solution.rests)

@@ -76,7 +76,7 @@ Result<SensorAlong> beside_along(const PvaTask& task,
   return one;
 }
 
-std::string text(const char* format, double value) {
+std::string formatted(const char* format, double value) {
   char buffer[160];
   std::snprintf(buffer, sizeof buffer, format, value);
   return buffer;
@@ -98,9 +98,9 @@ Status check_parallel(const SensorAlong& first,
   const bool tells = xx > 30.0 * noise;
   if (!tells || (xy > 0.7 * xx && xy < 1.4 * xx)) return Done{};
   return Error{Errc::invalid_argument,
-               text("along the axis of the motion it reads %.2f times what the first does: "
-                    "sensors to be fused have parallel axes and the same scale",
-                    xy / xx)}
+               formatted("along the axis of the motion it reads %.2f times what the first does: "
+                         "sensors to be fused have parallel axes and the same scale",
+                         xy / xx)}
       .at(other.name);
 }
 

@@ -31,13 +31,13 @@ void add_differences(const std::vector<double>& values, Differences& into) {
 }
 
 // What the grid has beside R and Q, each relative to them.
-struct Candidate {
+struct StartCandidate {
   double Q_over_R;      // of the first state, a sample
   double second = 0.0;  // as the model takes it
   double third = 0.0;   // time constant as a share of the record
 };
 
-std::vector<Candidate> grid(TuneModel model, const LevelNoise& noise) {
+std::vector<StartCandidate> grid(TuneModel model, const LevelNoise& noise) {
   const double found = noise.R > 0.0 ? noise.Q / noise.R : 1.0;
   switch (model) {
     case TuneModel::rest:
@@ -49,14 +49,14 @@ std::vector<Candidate> grid(TuneModel model, const LevelNoise& noise) {
       return {{0.01 * found, 0.0, 1e-3}, {0.01 * found, 0.0, 0.01}, {0.01 * found, 0.0, 0.1},
               {found, 0.0, 1e-3},        {found, 0.0, 0.01},        {found, 0.0, 0.1}};
     case TuneModel::local_trend: {
-      std::vector<Candidate> all;
+      std::vector<StartCandidate> all;
       for (const double level : {1e-5, 1e-3, 0.1, 10.0}) {
         for (const double slope : {1e-10, 1e-7, 1e-4, 0.1}) all.push_back({level, slope});
       }
       return all;
     }
     case TuneModel::position: {
-      std::vector<Candidate> all;
+      std::vector<StartCandidate> all;
       for (const double q : {1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3}) all.push_back({q});
       return all;
     }
@@ -70,7 +70,7 @@ double value_of(const TuneParameter& parameter, double variance) {
 }
 
 std::vector<double> values_of(TuneModel model,
-                              const Candidate& candidate,
+                              const StartCandidate& candidate,
                               const LevelNoise& noise,
                               const TuneSeries& series) {
   const View<TuneParameter> parameters = parameters_of(model);

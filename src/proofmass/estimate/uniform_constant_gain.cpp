@@ -37,7 +37,7 @@ void filter_means(Work<N>& work, const Chunk<N>& chunk, bool laid_out, LaneNumbe
 }
 
 template <int N>
-void write_chunk(Work<N>& work, const Chunk<N>& chunk) {
+void write_constant_gain(Work<N>& work, const Chunk<N>& chunk) {
   const UniformOutput<N>& out = work.output;
   const Steady<N>& steady = *work.steady;
   write_lanes<N>(chunk.first, out.means, [&](std::size_t t) { return work.lane_means[t].x; });
@@ -75,7 +75,7 @@ bool filter_constant_gain(Work<N>& work, const Chunk<N>& chunk, State<N>& state)
   for (int i = 0; i < N; ++i) state.x[i] = x(i);
   if (work.options.smooth) return true;
   filter_means(work, chunk, true, begin);
-  write_chunk(work, chunk);
+  write_constant_gain(work, chunk);
   return true;
 }
 
@@ -98,7 +98,7 @@ void smooth_constant_gain(Work<N>& work, const Chunk<N>& chunk, Later<N>& later)
   for (int i = 0; i < N; ++i) later.l[i] = l[i][0];
   for (std::size_t e = 0; e < Symmetric<N>::entries; ++e)
     later.next[e] = steady.limit.smoothed.lower[e];
-  write_chunk(work, chunk);
+  write_constant_gain(work, chunk);
 }
 
 template bool filter_constant_gain(Work<1>&, const Chunk<1>&, State<1>&);

@@ -42,7 +42,7 @@ Symmetric<N> covariance(const Row<N>& row) {
 }
 
 template <int N>
-void write_chunk(Work<N>& work, const Chunk<N>& chunk) {
+void write_one_by_one(Work<N>& work, const Chunk<N>& chunk) {
   const UniformOutput<N>& out = work.output;
   for (std::size_t t = 0; t < chunk.count; ++t) {
     const std::size_t k = chunk.first + t;
@@ -66,7 +66,7 @@ void filter_one_by_one(Work<N>& work, const Chunk<N>& chunk, State<N>& state) {
     return;
   }
   filter_rows(work, chunk, state);
-  write_chunk(work, chunk);
+  write_one_by_one(work, chunk);
 }
 
 template <int N>
@@ -76,7 +76,7 @@ void smooth_one_by_one(Work<N>& work, const Chunk<N>& chunk, Later<N>& later) {
   const bool means_only = work.options.covariances == Covariances::none;
   (means_only ? work.plain->smooth_means : work.plain->smooth)(work.model, work.rows.data(),
                                                                chunk.count, later);
-  write_chunk(work, chunk);
+  write_one_by_one(work, chunk);
 }
 
 template void filter_one_by_one(Work<1>&, const Chunk<1>&, State<1>&);

@@ -107,7 +107,7 @@ bool filter_lanes(Work<N>& work, const Chunk<N>& chunk, LaneState<N>& state, boo
 }
 
 template <int N>
-void write_chunk(Work<N>& work, const Chunk<N>& chunk) {
+void write_side_by_side(Work<N>& work, const Chunk<N>& chunk) {
   const UniformOutput<N>& out = work.output;
   write_lanes<N>(chunk.first, out.means, [&](std::size_t t) { return work.lane_rows[t].x; });
   if (!out.covariances.empty())
@@ -143,7 +143,7 @@ bool filter_side_by_side(Work<N>& work, const Chunk<N>& chunk, State<N>& state) 
   work.side_by_side->filter_means(work.model, work.lane_z.data(), lane_length, begin,
                                   work.lane_rows.data());
   add_score(work);
-  write_chunk(work, chunk);
+  write_side_by_side(work, chunk);
   return true;
 }
 
@@ -180,7 +180,7 @@ void smooth_side_by_side(Work<N>& work, const Chunk<N>& chunk, Later<N>& later) 
     later.next[e] = work.lane_rows[0].P[e][0];
   }
   for (int i = 0; i < N; ++i) later.l[i] = lane_later.l[i][0];
-  write_chunk(work, chunk);
+  write_side_by_side(work, chunk);
 }
 
 template bool filter_side_by_side(Work<1>&, const Chunk<1>&, State<1>&);

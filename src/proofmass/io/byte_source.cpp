@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+
+#include "proofmass/io/nameless_file.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -25,8 +26,7 @@ class FileSource final : public ByteSource {
   Result<std::size_t> read(std::span<char> into) override {
     const std::size_t count = std::fread(into.data(), 1, into.size(), file_);
     if (count == 0 && std::ferror(file_) != 0)
-      return Error{Errc::unreadable, "reading failed at byte " + std::to_string(position_) + ": " +
-                                         std::generic_category().message(errno)};
+      return system_failure("reading failed at byte " + std::to_string(position_));
     position_ += count;
     return count;
   }
@@ -114,8 +114,7 @@ Result<std::unique_ptr<ByteSource>> open_file(const std::string& path) {
   if (std::filesystem::is_directory(status))
     return Error{Errc::unreadable, "is a directory: name a file in it"};
   std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr)
-    return Error{Errc::unreadable, "cannot be opened: " + std::generic_category().message(errno)};
+  if (file == nullptr) return system_failure("cannot be opened");
   std::optional<std::uint64_t> size;
   if (std::filesystem::is_regular_file(status)) size = std::filesystem::file_size(path, problem);
   if (problem) size.reset();

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <system_error>
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/io/nameless_file.hpp"
@@ -27,8 +25,7 @@ ColumnSpool::ColumnSpool(std::size_t columns, std::string beside)
 }
 
 Error ColumnSpool::failed() const {
-  return {Errc::unreadable, beside_ + ": cannot be written: no room for its columns: " +
-                                std::generic_category().message(errno)};
+  return system_failure(beside_ + ": cannot be written: no room for its columns");
 }
 
 Status ColumnSpool::add(std::span<const double> row) {

@@ -9,26 +9,18 @@
 namespace proofmass::io {
 namespace {
 
-bool is_letter(char c) {
-  return c >= 'a' && c <= 'z';
-}
-
 bool is_alphanumeric(char c) {
-  return is_letter(c) || (c >= '0' && c <= '9');
-}
-
-bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
-  return std::ranges::find(words, word) != words.end();
+  return is_lower_letter(c) || (c >= '0' && c <= '9');
 }
 
 /// +1, -1, or 0 where the word is none; the single letters only where they stand behind the axis:
 /// "xa" is a position, "ax" an acceleration.
 int sign_of(std::string_view word, bool is_behind_axis) {
-  if (is_one_of(word, {"pos", "positive", "plus", "up", "upward", "upwards"})) return 1;
-  if (is_one_of(word, {"neg", "negative", "minus", "down", "downward", "downwards"})) return -1;
+  if (is_any_of(word, {"pos", "positive", "plus", "up", "upward", "upwards"})) return 1;
+  if (is_any_of(word, {"neg", "negative", "minus", "down", "downward", "downwards"})) return -1;
   if (!is_behind_axis) return 0;
   if (word == "p") return 1;
-  return is_one_of(word, {"a", "n"}) ? -1 : 0;
+  return is_any_of(word, {"a", "n"}) ? -1 : 0;
 }
 
 /// What the parts of a label have said so far.
@@ -41,7 +33,7 @@ class Reading {
 
   /// A run of letters: an axis, a sign, both in one, or a word that says nothing here.
   void take_word(std::string_view word) {
-    if (is_one_of(word, {"axis", "g"})) return;
+    if (is_any_of(word, {"axis", "g"})) return;
     if (const int sign = sign_of(word, axes_ > 0); sign != 0) return take_sign(sign);
     if (is_axis(word.front())) {
       const int sign = sign_of(word.substr(1), true);
@@ -92,9 +84,9 @@ std::optional<std::array<double, 3>> direction_of_label(std::string_view label) 
   const std::string text = plain(label);
   Reading reading;
   for (std::size_t i = 0; i < text.size();) {
-    if (is_letter(text[i])) {
+    if (is_lower_letter(text[i])) {
       const std::size_t begin = i;
-      while (i < text.size() && is_letter(text[i])) ++i;
+      while (i < text.size() && is_lower_letter(text[i])) ++i;
       reading.take_word(std::string_view(text).substr(begin, i - begin));
       continue;
     }

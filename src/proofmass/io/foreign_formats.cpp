@@ -6,19 +6,17 @@
 namespace proofmass::io {
 namespace {
 
-using namespace std::literals;
-
 struct Foreign {
   std::string_view magic;
   std::string_view refusal;
 };
 constexpr std::array foreign = std::to_array<Foreign>({
-    {"#ROSBAG"sv, "is a ROS 1 bag, which is not read: make an MCAP file of it (mcap convert)"sv},
-    {"BZh"sv, "is compressed by bzip2, which is not read: unpack it, or use gzip or xz"sv},
-    {"SQLite format 3"sv, "is an SQLite data base, which is not read: export the table as CSV"sv},
-    {"%PDF"sv, "is a PDF: expected a recording"sv},
-    {"{"sv, "is a JSON document: expected a table, such as CSV"sv},
-    {"<"sv, "is an XML or HTML document: expected a table, such as CSV"sv},
+    {"#ROSBAG", "is a ROS 1 bag, which is not read: make an MCAP file of it (mcap convert)"},
+    {"BZh", "is compressed by bzip2, which is not read: unpack it, or use gzip or xz"},
+    {"SQLite format 3", "is an SQLite data base, which is not read: export the table as CSV"},
+    {"%PDF", "is a PDF: expected a recording"},
+    {"{", "is a JSON document: expected a table, such as CSV"},
+    {"<", "is an XML or HTML document: expected a table, such as CSV"},
 });
 
 const Foreign* find_foreign(std::string_view head) {
@@ -39,7 +37,8 @@ Result<std::unique_ptr<TableFile>> refuse_foreign(std::unique_ptr<PeekSource> so
   if (!head) return head.error();
   const Foreign* found = find_foreign(*head);
   return Error{Errc::unsupported,
-               std::string(found != nullptr ? found->refusal : "is of no format that is read"sv)};
+               std::string(found != nullptr ? found->refusal
+                                            : std::string_view("is of no format that is read"))};
 }
 
 }  // namespace proofmass::io

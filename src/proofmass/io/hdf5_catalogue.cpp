@@ -32,7 +32,7 @@ Hdf5Dataset read_dataset(WordReader& from) {
   return dataset;
 }
 
-Hdf5Attribute read_attribute(WordReader& from) {
+Hdf5Attribute decode_attribute(WordReader& from) {
   constexpr std::size_t most_texts = 64;
   Hdf5Attribute attribute;
   attribute.owner = from.text();
@@ -79,7 +79,7 @@ Result<Hdf5Catalogue> decode(std::string_view bytes) {
   WordReader from(bytes);
   Hdf5Catalogue catalogue;
   catalogue.datasets = from.list(most_hdf5_objects, [&] { return read_dataset(from); });
-  catalogue.attributes = from.list(most_hdf5_objects, [&] { return read_attribute(from); });
+  catalogue.attributes = from.list(most_hdf5_objects, [&] { return decode_attribute(from); });
   catalogue.skipped = from.list(most_hdf5_objects, [&] { return from.text(); });
   catalogue.runs = from.list(most_hdf5_runs, [&] {
     Label run;

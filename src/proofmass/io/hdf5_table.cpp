@@ -18,14 +18,14 @@ namespace proofmass::io {
 namespace {
 
 /// Where a column of the table comes from.
-struct Place {
+struct Destination {
   std::size_t request = 0;
   std::size_t column = 0;
 };
 
 class Hdf5TableReader final : public TableReader {
  public:
-  Hdf5TableReader(FigureStream stream, TableHead head, std::vector<Place> places)
+  Hdf5TableReader(FigureStream stream, TableHead head, std::vector<Destination> places)
       : stream_(std::move(stream)), head_(std::move(head)), places_(std::move(places)) {}
 
   [[nodiscard]] const TableHead& head() const override { return head_; }
@@ -53,7 +53,7 @@ class Hdf5TableReader final : public TableReader {
  private:
   FigureStream stream_;
   TableHead head_;
-  std::vector<Place> places_;
+  std::vector<Destination> places_;
   std::size_t row_ = 0;  ///< of the stream's block
 };
 
@@ -158,7 +158,7 @@ void put_headings(const OpenHdf5& file,
 /// Stamps that are integers keep every digit, and those that an attribute says are less a start
 /// get that as theirs.
 void declare_stamps(const OpenHdf5& file,
-                    std::span<const Place> places,
+                    std::span<const Destination> places,
                     const ReadOptions& options,
                     FigureStream& stream,
                     Plan& plan) {
@@ -189,7 +189,7 @@ Result<std::unique_ptr<TableReader>> open_hdf5_table(const OpenHdf5& file,
   FigureStream stream = std::move(started).value();
   if (const auto rows = stream.next(); !rows) return rows.error();
   put_headings(file, stream, options, plan);
-  std::vector<Place> places;
+  std::vector<Destination> places;
   for (std::size_t i = 0; i < plan.tables.size(); ++i)
     for (std::size_t c = 0; c < plan.tables[i].width; ++c) places.push_back({i, c});
   declare_stamps(file, places, options, stream, plan);

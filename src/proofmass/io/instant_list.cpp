@@ -37,11 +37,6 @@ struct InstantColumns {
   std::optional<Figures> time, position, std;
 };
 
-bool is_figure(const std::string& field) {
-  return read_cell(field, '.').kind == CellKind::number ||
-         read_cell(field, ',').kind == CellKind::number;
-}
-
 InstantColumns bare_columns(char separator, std::size_t fields) {
   InstantColumns columns{.separator = separator, .time = {}, .position = {}, .std = {}};
   columns.time = Figures{};
@@ -77,7 +72,7 @@ std::optional<InstantColumns> named_columns(char separator,
 }
 
 /// A comma within a figure is the decimal mark where it does not separate.
-char point_of(const std::vector<TextLine>& lines, char separator) {
+char decimal_mark_of(const std::vector<TextLine>& lines, char separator) {
   if (separator == ',') return '.';
   for (const TextLine& line : lines)
     for (const std::string& field : fields_of(line, separator))
@@ -100,7 +95,7 @@ Result<InstantColumns> find_columns(const std::vector<TextLine>& lines) {
     if (!columns && std::ranges::all_of(fields, is_figure))
       columns = bare_columns(separator, fields.size());
     if (!columns) continue;
-    columns->point = point_of(lines, separator);
+    columns->point = decimal_mark_of(lines, separator);
     return *columns;
   }
   return Error{Errc::corrupt, fmt::format("line {}: expected a header with time (and position, "
@@ -149,8 +144,8 @@ Result<std::vector<Instant>> instants_in(const std::vector<TextLine>& lines) {
   return instants;
 }
 
-Result<std::vector<Instant>> named(const Result<std::vector<TextLine>>& lines,
-                                   const std::string& name) {
+Result<std::vector<Instant>> instants_of(const Result<std::vector<TextLine>>& lines,
+                                         const std::string& name) {
   const std::string where = name == "-" ? "standard input" : name;
   if (!lines) return lines.error().at(where);
   auto instants = instants_in(*lines);
@@ -161,12 +156,12 @@ Result<std::vector<Instant>> named(const Result<std::vector<TextLine>>& lines,
 }  // namespace
 
 Result<std::vector<Instant>> read_instants(const std::string& path) {
-  return named(read_lines(path), path);
+  return instants_of(read_lines(path), path);
 }
 
 Result<std::vector<Instant>> read_instants(std::span<const std::byte> bytes,
                                            const std::string& name) {
-  return named(read_lines(bytes), name);
+  return instants_of(read_lines(bytes), name);
 }
 
 Status check_inside(const std::vector<Instant>& instants, double duration_s) {

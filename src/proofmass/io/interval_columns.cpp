@@ -11,10 +11,6 @@
 namespace proofmass::io {
 namespace {
 
-bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
-  return std::ranges::find(names, name) != names.end();
-}
-
 std::string without(std::string text, std::string_view word) {
   if (const auto at = text.find(word); at != std::string::npos) text.erase(at, word.size());
   return text;
@@ -35,15 +31,15 @@ void enter_edge(Headings& headings, std::size_t c, const ColumnLabel& label) {
   std::string name = bare;
   for (const std::string_view word : {"samples", "sample", "index", "time"})
     name = without(name, word);
-  const bool begins = is_one_of(name, {"start", "begin", "from", "tstart", "first"});
-  if (!begins && !is_one_of(name, {"end", "stop", "to", "tend", "last"})) return;
+  const bool begins = is_any_of(name, {"start", "begin", "from", "tstart", "first"});
+  if (!begins && !is_any_of(name, {"end", "stop", "to", "tend", "last"})) return;
   auto& edge = begins ? headings.start : headings.end;
   if (edge) return;
   edge = IntervalEdge{.column = c};
   if (label.unit.quantity == Quantity::time) {
     edge->counts = Counts::seconds;
     edge->unit_s = label.unit.to_si;
-  } else if (is_one_of(name, {"first", "last"}) || bare.find("sample") != std::string::npos ||
+  } else if (is_any_of(name, {"first", "last"}) || bare.find("sample") != std::string::npos ||
              bare.find("index") != std::string::npos) {
     edge->counts = Counts::samples;
   }
@@ -61,7 +57,7 @@ std::optional<std::size_t> axis_of_direction(const std::string& bare) {
 }
 
 bool is_label(const std::string& bare) {
-  return is_one_of(bare, {"label", "labels", "name", "text", "part", "position", "pose",
+  return is_any_of(bare, {"label", "labels", "name", "text", "part", "position", "pose",
                           "orientation", "annotation", "description", "activity"});
 }
 
@@ -100,13 +96,8 @@ Result<IntervalColumns> columns_under(const Headings& headings, char separator) 
   return columns;
 }
 
-bool is_figure(const std::string& field) {
-  return read_cell(field, '.').kind == CellKind::number ||
-         read_cell(field, ',').kind == CellKind::number;
-}
-
 /// A comma within a figure is the decimal mark where it does not separate.
-char point_of(const std::vector<TextLine>& lines, const IntervalColumns& columns) {
+char decimal_mark(const std::vector<TextLine>& lines, const IntervalColumns& columns) {
   if (columns.separator == ',') return '.';
   for (const TextLine& line : lines) {
     const auto fields = fields_of(line, columns.separator);
@@ -118,6 +109,11 @@ char point_of(const std::vector<TextLine>& lines, const IntervalColumns& columns
 }
 
 }  // namespace
+
+bool is_figure(const std::string& field) {
+  return read_cell(field, '.').kind == CellKind::number ||
+         read_cell(field, ',').kind == CellKind::number;
+}
 
 std::vector<std::string> fields_of(const TextLine& line, char separator) {
   std::vector<std::string_view> views;
@@ -145,7 +141,7 @@ Result<IntervalColumns> find_interval_columns(const std::vector<TextLine>& lines
     } else {
       continue;
     }
-    columns.point = point_of(lines, columns);
+    columns.point = decimal_mark(lines, columns);
     return columns;
   }
   return Error{Errc::corrupt,

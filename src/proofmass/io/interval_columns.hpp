@@ -43,6 +43,9 @@ struct IntervalColumns {
 /// components).
 [[nodiscard]] Result<IntervalColumns> find_interval_columns(const std::vector<TextLine>& lines);
 
+/// Whether a field is a figure, with either decimal mark.
+[[nodiscard]] bool is_figure(const std::string& field);
+
 /// A line's fields without blanks and quotes.
 [[nodiscard]] std::vector<std::string> fields_of(const TextLine& line, char separator);
 

@@ -133,8 +133,8 @@ Result<std::vector<Interval>> intervals_in(const std::vector<TextLine>& lines) {
   return intervals;
 }
 
-Result<std::vector<Interval>> named(const Result<std::vector<TextLine>>& lines,
-                                    const std::string& name) {
+Result<std::vector<Interval>> intervals_of(const Result<std::vector<TextLine>>& lines,
+                                           const std::string& name) {
   const std::string where = name == "-" ? "standard input" : name;
   if (!lines) return lines.error().at(where);
   auto intervals = intervals_in(*lines);
@@ -145,12 +145,12 @@ Result<std::vector<Interval>> named(const Result<std::vector<TextLine>>& lines,
 }  // namespace
 
 Result<std::vector<Interval>> read_intervals(const std::string& path) {
-  return named(read_lines(path), path);
+  return intervals_of(read_lines(path), path);
 }
 
 Result<std::vector<Interval>> read_intervals(std::span<const std::byte> bytes,
                                              const std::string& name) {
-  return named(read_lines(bytes), name);
+  return intervals_of(read_lines(bytes), name);
 }
 
 Status check_inside(const std::vector<Interval>& intervals,

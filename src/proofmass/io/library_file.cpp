@@ -1,31 +1,17 @@
 #include "proofmass/io/library_file.hpp"
 
-#include <cerrno>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <span>
 #include <sys/mman.h>
 #include <sys/stat.h>
-#include <system_error>
 #include <unistd.h>
 #include <vector>
 
+#include "proofmass/io/nameless_file.hpp"
+
 namespace proofmass::io {
 namespace {
-
-Error failed(const char* what) {
-  return {Errc::unreadable, fmt::format("{}: {}", what, std::generic_category().message(errno))};
-}
-
-Status write_all(int descriptor, std::span<const char> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return failed("does not fit into memory");
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-  return Done{};
-}
 
 /// The bytes of a stream as a file in memory.
 Status spool(PeekSource& source, int into, const Progress& progress) {
@@ -38,8 +24,8 @@ Status spool(PeekSource& source, int into, const Progress& progress) {
     total += *count;
     if (total > most_unpacked)
       return Error{Errc::unsupported, "is larger than 4 GiB: unpack it into a file first"};
-    if (const Status written = write_all(into, std::span(piece).first(*count)); !written)
-      return written;
+    if (!write_all(into, std::span(piece).first(*count)))
+      return system_failure("does not fit into memory");
     if (progress) progress("reading", source.fraction_read());
   }
 }
@@ -63,12 +49,12 @@ Result<LibraryFile> library_file_of(PeekSource& source, const Progress& progress
   // Above the standard streams, which a child process does without.
   if (const auto there = source.descriptor()) {
     LibraryFile file(::fcntl(*there, F_DUPFD_CLOEXEC, 3), false);
-    if (file.descriptor() < 0) return failed("cannot be opened again");
+    if (file.descriptor() < 0) return system_failure("cannot be opened again");
     return file;
   }
   const LibraryFile first(::memfd_create("proofmass", MFD_CLOEXEC), true);
   LibraryFile file(::fcntl(first.descriptor(), F_DUPFD_CLOEXEC, 3), true);
-  if (file.descriptor() < 0) return failed("no memory for what is unpacked");
+  if (file.descriptor() < 0) return system_failure("no memory for what is unpacked");
   if (const Status spooled = spool(source, file.descriptor(), progress); !spooled)
     return spooled.error();
   return file;

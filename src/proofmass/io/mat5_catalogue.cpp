@@ -10,8 +10,6 @@
 namespace proofmass::io {
 namespace {
 
-using namespace std::literals;
-
 constexpr std::size_t header_bytes = 128;
 constexpr std::size_t deepest = 16;
 
@@ -87,7 +85,8 @@ class Walker {
     MatArray array;
     array.path = place.path;
     array.group_length = place.group_length;
-    array.class_name = preface.is_logical ? "logical"sv : name_of(preface.array_class);
+    array.class_name =
+        preface.is_logical ? std::string_view("logical") : name_of(preface.array_class);
     array.shape = preface.shape;
     array.is_complex = preface.is_complex;
     array.region = region_;
@@ -188,8 +187,8 @@ class Walker {
 std::optional<bool> is_big_endian(std::string_view file) {
   if (file.size() < header_bytes) return std::nullopt;
   const std::string_view mark = file.substr(124, 4);
-  if (mark == "\0\1IM"sv) return false;
-  if (mark == "\1\0MI"sv) return true;
+  if (mark == std::string_view("\0\1IM", 4)) return false;
+  if (mark == std::string_view("\1\0MI", 4)) return true;
   return std::nullopt;
 }
 

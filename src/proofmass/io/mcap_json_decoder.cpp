@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
-#include <limits>
 #include <unordered_map>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/io/cdr_schema.hpp"
 #include "proofmass/io/json_leaves.hpp"
 #include "proofmass/io/mcap_decoder.hpp"
@@ -14,7 +14,6 @@
 namespace proofmass::io {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t longest_path = 256;
 constexpr std::size_t most_figures = 4096;
 
@@ -93,9 +92,9 @@ bool is_in_triple(const std::vector<std::string>& paths, std::string_view list) 
   return has("0") && has("1") && has("2") && !has("3");
 }
 
-std::string heading_of(const std::vector<std::string>& paths,
-                       const std::string& path,
-                       std::string_view schema) {
+std::string common_heading(const std::vector<std::string>& paths,
+                           const std::string& path,
+                           std::string_view schema) {
   std::string name = path;
   const std::size_t dot = path.rfind('.');
   if (dot != std::string::npos && dot + 2 == path.size() && path[dot + 1] >= '0' &&
@@ -121,9 +120,10 @@ class JsonDecoder final : public McapDecoder {
       places_.emplace(layout.paths[c], c);
       // Looking for neighbours takes its time, which long lists are not worth.
       constexpr std::size_t few = 256;
-      head_.headings.push_back(layout.paths.size() <= few
-                                   ? heading_of(layout.paths, layout.paths[c], topic.schema.name)
-                                   : shown(layout.paths[c]));
+      head_.headings.push_back(
+          layout.paths.size() <= few
+              ? common_heading(layout.paths, layout.paths[c], topic.schema.name)
+              : shown(layout.paths[c]));
     }
     head_.columns = head_.headings.size();
     head_.stamps = clock_.declared();
@@ -136,7 +136,7 @@ class JsonDecoder final : public McapDecoder {
   [[nodiscard]] const TableHead& head() const override { return head_; }
 
   [[nodiscard]] Result<std::size_t> take(const McapMessage& message, std::uint64_t) override {
-    std::ranges::fill(row_, nan);
+    std::ranges::fill(row_, no_value);
     StampParts stamp;
     const Status visited = visit_json(message.data, [&](const JsonLeaf& leaf) {
       if (leaf.path.size() > longest_path || leaf.text) return;

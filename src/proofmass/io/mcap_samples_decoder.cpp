@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <fmt/format.h>
-#include <limits>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/io/little_endian.hpp"
 #include "proofmass/io/mcap_decoder.hpp"
 #include "proofmass/io/mcap_samples.hpp"
@@ -9,8 +9,6 @@
 
 namespace proofmass::io {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string heading_of(const McapSamplesLayout::Column& column) {
   const bool is_plain = std::ranges::none_of(
@@ -64,7 +62,8 @@ class SamplesDecoder final : public McapDecoder {
             std::size_t at) const override {
     if (first < missing_) {
       const std::size_t empty = std::min(count, missing_ - first);
-      for (const std::span<double> column : into) std::ranges::fill(column.subspan(at, empty), nan);
+      for (const std::span<double> column : into)
+        std::ranges::fill(column.subspan(at, empty), no_value);
       first += empty;
       at += empty;
       count -= empty;

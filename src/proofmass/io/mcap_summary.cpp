@@ -24,7 +24,7 @@ Result<std::optional<McapFooter>> read_footer(FileWindow& window) {
 }
 
 /// Nullopt where a record breaks off or the messages are not counted.
-std::optional<McapSummary> summary_of(std::string_view records) {
+std::optional<McapSummary> parsed_summary(std::string_view records) {
   McapSummary out;
   bool is_counted = false;
   for (McapFields fields(records); fields.left() > 0;) {
@@ -84,7 +84,7 @@ Result<std::optional<McapSummary>> read_mcap_summary(FileWindow& window, std::ve
   if (!bytes) return bytes.error();
   if ((*footer)->summary_crc != 0 && crc32(0, *bytes) != (*footer)->summary_crc)
     return refused("is damaged (its checksum is wrong)");
-  Found summary = summary_of(bytes->substr(0, end - start));
+  Found summary = parsed_summary(bytes->substr(0, end - start));
   if (!summary) return Found();
   const auto has_checksum = has_data_checksum(window, start - data_end_bytes);
   if (!has_checksum) return has_checksum.error();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,17 @@ namespace proofmass::io {
   for (char& c : out)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
   return out;
+}
+
+/// Whether a character is an ASCII letter in lower case.
+[[nodiscard]] inline bool is_lower_letter(char c) {
+  return c >= 'a' && c <= 'z';
+}
+
+/// Whether a word is one of several, to the letter.
+[[nodiscard]] inline bool is_any_of(std::string_view word,
+                                    std::initializer_list<std::string_view> words) {
+  return std::ranges::find(words, word) != words.end();
 }
 
 /// The letters and digits of a name in lower case: "Sample-Time fine" is "sampletimefine".

@@ -14,8 +14,6 @@
 namespace proofmass::io {
 namespace {
 
-constexpr std::size_t most_columns = 4096;
-
 bool is_integer(std::string_view type) {
   return type == "BIGINT" || type == "UBIGINT";
 }
@@ -85,7 +83,8 @@ class ParquetReading {
     const auto columns = pairs(database_, "DESCRIBE SELECT * FROM " + from_);
     if (!columns) return columns.error();
     for (const auto& [name, type] : *columns) {
-      const bool is_read = (is_number(type) || is_instant(type)) && names_.size() < most_columns;
+      const bool is_read =
+          (is_number(type) || is_instant(type)) && names_.size() < most_parquet_columns;
       if (!is_read) {
         constexpr std::size_t most_told = 300;
         if (head_.skipped.size() < most_told)

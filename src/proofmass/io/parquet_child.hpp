@@ -15,6 +15,9 @@
 
 namespace proofmass::io {
 
+/// Columns of one table that are read.
+inline constexpr std::size_t most_parquet_columns = 4096;
+
 /// A column that is read, as doubles.
 struct ParquetColumn {
   std::string name;

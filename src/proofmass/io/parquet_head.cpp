@@ -8,7 +8,6 @@
 namespace proofmass::io {
 namespace {
 
-constexpr std::size_t most_columns = 4096;
 constexpr std::size_t most_facts = 8192;
 constexpr std::size_t longest_fact = std::size_t{16} << 20;
 
@@ -77,7 +76,7 @@ Result<ParquetHead> decode_parquet(std::string_view bytes) {
   const std::string words = whole.bytes_text(bytes.size());
   WordReader from(words);
   ParquetHead head;
-  head.columns = from.list(most_columns, [&] {
+  head.columns = from.list(most_parquet_columns, [&] {
     ParquetColumn column;
     column.name = from.text();
     column.unit = from.text();

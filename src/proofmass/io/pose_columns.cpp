@@ -8,23 +8,16 @@
 namespace proofmass::io {
 namespace {
 
-bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
-  return std::ranges::find(words, word) != words.end();
-}
-
-bool is_letter(char c) {
-  return c >= 'a' && c <= 'z';
-}
-
 /// The runs of letters and those of digits in a name, in lower case.
 std::vector<std::string> words_of(std::string_view name) {
   std::vector<std::string> words;
   char before = ' ';
   for (const char c : lower(name)) {
     const bool is_digit = c >= '0' && c <= '9';
-    const bool goes_on = is_letter(c) ? is_letter(before) : before >= '0' && before <= '9';
-    if ((is_letter(c) || is_digit) && !goes_on) words.emplace_back();
-    if (is_letter(c) || is_digit) words.back() += c;
+    const bool goes_on =
+        is_lower_letter(c) ? is_lower_letter(before) : before >= '0' && before <= '9';
+    if ((is_lower_letter(c) || is_digit) && !goes_on) words.emplace_back();
+    if (is_lower_letter(c) || is_digit) words.back() += c;
     before = c;
   }
   return words;
@@ -54,15 +47,15 @@ struct Said {
 
  private:
   bool& flag_of(std::string_view word) {
-    if (is_one_of(word, {"mean", "means", "avg", "average"})) return mean;
-    if (is_one_of(word, {"std", "sd", "stdev", "stddev", "sigma", "standard", "deviation"}))
+    if (is_any_of(word, {"mean", "means", "avg", "average"})) return mean;
+    if (is_any_of(word, {"std", "sd", "stdev", "stddev", "sigma", "standard", "deviation"}))
       return std;
     // An error alone is a residual; a standard error is a mean's.
-    if (is_one_of(word, {"sem", "se", "stderr"}) || (std && is_one_of(word, {"err", "error"})))
+    if (is_any_of(word, {"sem", "se", "stderr"}) || (std && is_any_of(word, {"err", "error"})))
       return error;
-    if (is_one_of(word, {"true", "up", "ref", "reference", "dir", "direction", "nominal"}))
+    if (is_any_of(word, {"true", "up", "ref", "reference", "dir", "direction", "nominal"}))
       return direction;
-    if (is_one_of(word, {"gyr", "gyro", "gyroscope", "omega", "w", "rate", "mag", "magn",
+    if (is_any_of(word, {"gyr", "gyro", "gyroscope", "omega", "w", "rate", "mag", "magn",
                          "magnetometer", "residual", "err", "error"}))
       return other_sensor;
     return nothing_;
@@ -75,7 +68,7 @@ struct Said {
 std::optional<std::string_view> stem_of_axis(std::string_view word) {
   if (word.back() < 'x' || word.back() > 'z') return std::nullopt;
   const std::string_view stem = word.substr(0, word.size() - 1);
-  if (!is_one_of(stem, {"", "a", "acc", "accel", "f", "gf"})) return std::nullopt;
+  if (!is_any_of(stem, {"", "a", "acc", "accel", "f", "gf"})) return std::nullopt;
   return stem;
 }
 

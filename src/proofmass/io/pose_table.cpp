@@ -14,7 +14,7 @@ namespace {
 
 using Names = View<std::string_view>;
 
-bool is_one_of(const std::string& name, Names names) {
+bool is_called(const std::string& name, Names names) {
   return std::ranges::find(names, std::string_view(name)) != names.end();
 }
 
@@ -30,7 +30,7 @@ constexpr auto positions = std::to_array<std::string_view>(
 /// A column of numbers in SI; nullopt if there is none of these names.
 std::optional<std::vector<double>> column_called(const Recording& recording, Names names) {
   for (const Channel& channel : recording.channels) {
-    if (!is_one_of(bare_name(channel.name), names)) continue;
+    if (!is_called(bare_name(channel.name), names)) continue;
     std::vector<double> values = channel.values;
     for (double& value : values) value = channel.unit.si(value);
     return values;
@@ -41,7 +41,7 @@ std::optional<std::vector<double>> column_called(const Recording& recording, Nam
 /// A column of times, which the reader may have taken for the stamps.
 std::optional<std::vector<double>> times_called(const Recording& recording, Names names) {
   const TimeBase& time = recording.time;
-  if (!is_one_of(bare_name(time.channel), names) || time.source != TimeSource::stamps ||
+  if (!is_called(bare_name(time.channel), names) || time.source != TimeSource::stamps ||
       time.mended > 0)
     return column_called(recording, names);
   std::vector<double> times_s(recording.samples());

@@ -7,7 +7,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <string>
-#include <system_error>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -16,10 +15,6 @@
 
 namespace proofmass::io {
 namespace {
-
-Error failed(const std::string& what) {
-  return {Errc::unreadable, what + ": " + std::generic_category().message(errno)};
-}
 
 class FileBytes final : public RandomBytes {
  public:
@@ -36,7 +31,8 @@ class FileBytes final : public RandomBytes {
       const ssize_t count = ::pread(descriptor_, into.data() + filled, into.size() - filled,
                                     static_cast<off_t>(offset + filled));
       if (count < 0 && errno == EINTR) continue;
-      if (count < 0) return failed(fmt::format("reading failed at byte {}", offset + filled));
+      if (count < 0)
+        return system_failure(fmt::format("reading failed at byte {}", offset + filled));
       if (count == 0) break;
       filled += static_cast<std::size_t>(count);
     }
@@ -66,24 +62,14 @@ class MemoryBytes final : public RandomBytes {
   std::span<const std::byte> bytes_;
 };
 
-Status write_all(int descriptor, std::span<const char> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return failed("no room to unpack it to");
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-  return Done{};
-}
-
 Result<std::uint64_t> unpack(PeekSource& source, int into, const Progress& progress) {
   std::vector<char> piece(std::size_t{1} << 20);
   for (std::uint64_t total = 0;;) {
     const auto count = source.read(piece);
     if (!count) return count.error();
     if (*count == 0) return total;
-    if (const Status done = write_all(into, std::span(piece).first(*count)); !done)
-      return done.error();
+    if (!write_all(into, std::span(piece).first(*count)))
+      return system_failure("no room to unpack it to");
     total += *count;
     if (progress) progress("unpacking", source.fraction_read());
   }
@@ -97,12 +83,12 @@ Result<std::unique_ptr<RandomBytes>> random_bytes_of(std::unique_ptr<PeekSource>
   if (const auto memory = source->memory()) return Opened(std::make_unique<MemoryBytes>(*memory));
   if (const auto there = source->descriptor()) {
     const int own = ::fcntl(*there, F_DUPFD_CLOEXEC, 3);
-    if (own < 0) return failed("cannot be opened again");
+    if (own < 0) return system_failure("cannot be opened again");
     return Opened(
         std::make_unique<FileBytes>(own, source->size().value_or(0), std::vector<Note>{}));
   }
   const int file = nameless_file(P_tmpdir);
-  if (file < 0) return failed("no room to unpack it to");
+  if (file < 0) return system_failure("no room to unpack it to");
   const auto size = unpack(*source, file, progress);
   auto bytes = std::make_unique<FileBytes>(file, size ? *size : 0, source->notes());
   if (!size) return size.error();

@@ -1,6 +1,7 @@
 #include "proofmass/io/tdms_cursor.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "proofmass/core/contract.hpp"
 
@@ -12,6 +13,10 @@ constexpr std::uint64_t window_bytes = 16 << 10;
 constexpr std::uint64_t longest_text = 64 << 10;
 
 }  // namespace
+
+Error at_byte(std::uint64_t position, std::string_view what) {
+  return {Errc::corrupt, fmt::format("byte {}: {}", position, what)};
+}
 
 void TdmsCursor::enter(std::uint64_t from, std::uint64_t to, bool big_endian) {
   PM_EXPECTS(from <= to && to <= size_);

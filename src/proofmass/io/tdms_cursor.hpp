@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,9 @@ template <class T>
     for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
   return std::bit_cast<T>(bytes);
 }
+
+/// "byte 28: what".
+[[nodiscard]] Error at_byte(std::uint64_t position, std::string_view what);
 
 /// Reads the lead-ins and metadata of a TDMS file, small figures one behind the other. Beyond the
 /// end of the region it reads zeros and is broken from then on.

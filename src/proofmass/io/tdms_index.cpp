@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <string_view>
 
+#include "proofmass/io/tdms_cursor.hpp"
+
 namespace proofmass::io {
 namespace {
 
@@ -11,10 +13,6 @@ constexpr std::uint32_t digital_line_scaler = 0x126A;
 /// The digital line scaler as NI's description of the format has it, with four bytes for the sample
 /// format instead of the one that is found in files.
 constexpr std::uint32_t digital_line_scaler_as_told = 0x1369;
-
-Error at_byte(std::uint64_t position, std::string_view what) {
-  return {Errc::corrupt, fmt::format("byte {}: {}", position, what)};
-}
 
 bool is_small_integer(TdmsKind kind) {
   return kind != TdmsKind::i64 && kind != TdmsKind::u64 && kind <= TdmsKind::u32;

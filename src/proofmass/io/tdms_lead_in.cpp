@@ -2,18 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 #include <string_view>
 
+#include "proofmass/io/tdms_cursor.hpp"
+
 namespace proofmass::io {
-namespace {
-
-Error at_byte(std::uint64_t at, std::string_view what) {
-  return {Errc::corrupt, fmt::format("byte {}: {}", at, what)};
-}
-
-}  // namespace
-
 Result<TdmsLeadIn> take_tdms_lead_in(TdmsCursor& cursor, std::uint64_t at, std::uint64_t size) {
   cursor.enter(at, size, false);
   std::array<char, 4> tag{};

@@ -1,9 +1,9 @@
 #include "proofmass/io/tdms_metadata.hpp"
 
 #include <array>
-#include <fmt/format.h>
 #include <string_view>
 
+#include "proofmass/io/tdms_cursor.hpp"
 #include "proofmass/io/tdms_index.hpp"
 #include "proofmass/io/tdms_properties.hpp"
 
@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::uint32_t no_values = 0xFFFFFFFF;
 constexpr std::uint32_t as_before = 0;
-
-Error at_byte(std::uint64_t position, std::string_view what) {
-  return {Errc::corrupt, fmt::format("byte {}: {}", position, what)};
-}
 
 /// The names in a path: "/'Dr. T''s Events'/'Time'".
 std::vector<std::string> names_in(std::string_view path) {

@@ -15,9 +15,9 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <system_error>
 #include <unistd.h>
 
+#include "proofmass/io/nameless_file.hpp"
 #include "proofmass/io/watched_frames.hpp"
 
 namespace proofmass::io {
@@ -25,22 +25,10 @@ namespace {
 
 // ---- the child's side ----
 
-bool write_all(int descriptor, const void* bytes, std::size_t count) {
-  const char* from = static_cast<const char*>(bytes);
-  while (count > 0) {
-    const ssize_t written = ::write(descriptor, from, count);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    from += written;
-    count -= static_cast<std::size_t>(written);
-  }
-  return true;
-}
-
 bool write_frame(int descriptor, FrameKind kind, std::span<const char> bytes) {
   const FrameHeader header{kind, static_cast<std::uint32_t>(bytes.size())};
-  return write_all(descriptor, &header, sizeof header) &&
-         write_all(descriptor, bytes.data(), bytes.size());
+  const auto head = std::bit_cast<std::array<char, sizeof header>>(header);
+  return write_all(descriptor, head) && write_all(descriptor, bytes);
 }
 
 void write_error(int descriptor, Errc code, std::string_view message) {
@@ -192,8 +180,7 @@ Result<std::span<const char>> WatchedChild::next() {
 
 Result<WatchedChild> WatchedChild::start(const ChildWork& work, const ChildLimits& limits) {
   const auto failed = [](const char* what) {
-    return Error{Errc::unreadable, fmt::format("cannot be unpacked: {}: {}", what,
-                                               std::generic_category().message(errno))};
+    return system_failure(fmt::format("cannot be unpacked: {}", what));
   };
   std::array<int, 2> ends{-1, -1};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return failed("no pipe");

@@ -12,8 +12,6 @@ namespace {
 
 using calibrate::PoseResidual;
 
-constexpr double mg = 1e-3 * standard_gravity_mps2;
-
 double place(std::size_t k) {
   return static_cast<double>(k + 1);
 }

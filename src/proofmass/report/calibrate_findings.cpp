@@ -12,8 +12,6 @@ using calibrate::LackOfFit;
 using calibrate::PoseModel;
 using calibrate::PoseResidual;
 
-constexpr double some_p = 0.05;
-
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (std::size_t k = 0; k < words.size(); ++k)

@@ -9,11 +9,6 @@ namespace {
 using calibrate::MultiPosition;
 using calibrate::PoseModel;
 
-template <class T>
-Value or_null(const std::optional<T>& value) {
-  return value ? Value(*value) : Value();
-}
-
 std::string_view model_code(PoseModel model) {
   switch (model) {
     case PoseModel::norm_9:

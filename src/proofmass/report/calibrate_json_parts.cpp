@@ -13,11 +13,6 @@ using calibrate::PoseResidual;
 using calibrate::SupplyAxis;
 using calibrate::UncertaintyBudget;
 
-template <class T>
-Value or_null(const std::optional<T>& value) {
-  return value ? Value(*value) : Value();
-}
-
 Array array_of_vector(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }

@@ -15,7 +15,6 @@ using calibrate::Pose;
 using calibrate::PoseResidual;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr double some_p = 0.05;
 
 const Unit& plain() {
   static const Unit unit{Quantity::unknown, 1.0, 0.0, "1"};

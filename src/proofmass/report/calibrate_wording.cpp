@@ -18,7 +18,6 @@ using calibrate::PoseModel;
 using calibrate::PoseResidual;
 
 constexpr double g = standard_gravity_mps2;
-constexpr double mg = 1e-3 * g;
 
 const std::optional<Uncertain>& figure_of(const MultiPosition& fit, std::size_t k) {
   return k < 3 ? fit.bias[k] : k < 6 ? fit.scale[k - 3] : fit.misalignment_rad[k - 6];

@@ -5,10 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "proofmass/core/units.hpp"
 #include "proofmass/report/calibrate_report.hpp"
 
 // How the results of `calibrate` read: figures, positions, sentences.
 namespace proofmass::report {
+
+inline constexpr double mg = 1e-3 * standard_gravity_mps2;
+/// p-values below it are reported as a finding.
+inline constexpr double some_p = 0.05;
 
 /// One of the nine figures as people read it: bias in mg, mV or counts, scale per g, angles in
 /// mrad.

@@ -27,7 +27,7 @@ PrintedUnit printed(std::string_view si) {
   return {si, si, 1.0};
 }
 
-std::string with_unit(std::string number, std::string_view unit) {
+std::string with_printed_unit(std::string number, std::string_view unit) {
   if (unit != "1") number += " " + print_unit(unit);
   return number;
 }
@@ -50,7 +50,7 @@ std::string stated(const std::string& text) {
   return text.empty() ? "not stated" : text;
 }
 
-std::string joined(const std::vector<std::string>& items) {
+std::string file_names(const std::vector<std::string>& items) {
   std::string text;
   for (const std::string& item : items) text += (text.empty() ? "" : ", ") + file_name(item);
   return text;
@@ -75,7 +75,7 @@ Table object_table(const CertificateData& data) {
            {"Serial number", stated(data.serial)},
            {"Date of measurement", stated(data.date)},
            {"Method", stated(data.method)},
-           {"Recordings", stated(joined(data.files))}}};
+           {"Recordings", stated(file_names(data.files))}}};
 }
 
 Table conditions_table(const CertificateData& data) {
@@ -119,7 +119,7 @@ std::vector<std::string> line_row(const BudgetLine& line, double share, const Pr
   return {line.source,
           line.type_a ? "A" : "B",
           std::string(name_of(line.distribution)),
-          with_unit(significant(input.factor * line.std, 2), input.printed),
+          with_printed_unit(significant(input.factor * line.std, 2), input.printed),
           dof_words(line.dof),
           std::move(sensitivity),
           significant(result.factor * std::abs(line.contribution()), 2),
@@ -130,7 +130,7 @@ Table budget_table(const UncertaintyBudget& budget) {
   const PrintedUnit unit = printed(budget.measurand.unit);
   const std::string symbol = unit.si == "1" ? "" : ", " + print_unit(unit.printed);
   const auto figure = [&](double value) {
-    return with_unit(significant(unit.factor * value, 2), unit.printed);
+    return with_printed_unit(significant(unit.factor * value, 2), unit.printed);
   };
   Table table{fmt::format("{}: u_c = {}, ν eff = {}, k = {}, U = {}", budget.measurand.quantity,
                           figure(budget.combined_std), dof_words(budget.effective_dof),

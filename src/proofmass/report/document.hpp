@@ -75,6 +75,12 @@ struct DocumentHead {
 [[nodiscard]] std::string to_json(const DocumentHead& head, const Object& body);
 
 /// {"value", "std", "unit"}, or null where there is no figure or it is not finite.
+/// The value, or null.
+template <class T>
+[[nodiscard]] Value or_null(const std::optional<T>& value) {
+  return value ? Value(*value) : Value();
+}
+
 [[nodiscard]] Value quantity(const std::optional<Uncertain>& figure, std::string_view unit);
 
 /// A quantity whose value and standard deviation are both multiplied by `factor`, for units that

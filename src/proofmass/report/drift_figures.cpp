@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 
 #include "proofmass/report/drift_wording.hpp"
 #include "proofmass/report/noise_wording.hpp"
@@ -17,9 +16,6 @@ using characterise::DriftCurve;
 using characterise::DriftFit;
 using characterise::DriftShape;
 using signal::WhitenessTest;
-
-constexpr double gap = std::numeric_limits<double>::quiet_NaN();
-constexpr double normal_95 = 1.96;
 
 std::string axis_label(const std::string& what, const ShownUnit& shown) {
   return shown.symbol.empty() ? what : what + " (" + shown.symbol + ")";

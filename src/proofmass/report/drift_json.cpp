@@ -124,7 +124,7 @@ Object intervals(const DriftFit& fit) {
   return item;
 }
 
-void add_fit(const DriftAnalysis& analysis, const Unit& unit, Object& item) {
+void add_fit_keys(const DriftAnalysis& analysis, const Unit& unit, Object& item) {
   const DriftFit& fit = analysis.fit;
   const std::string level = noise_unit(unit, NoiseScale::level);
   const auto add = [&](const char* key, Value value) { item.push_back({key, std::move(value)}); };
@@ -180,7 +180,7 @@ Object drift_object(const ChannelDrift& channel) {
     const DriftFit& fit = channel.analysis->fit;
     add("reason", !fit.reason.empty() || identified ? fit.reason : drift_verdict(channel));
     add("reason_code", reason_code(fit.why));
-    add_fit(*channel.analysis, channel.unit, item);
+    add_fit_keys(*channel.analysis, channel.unit, item);
     add("steps", steps(fit, unit));
     add("whiteness", whiteness_items(*channel.analysis));
     add("candidates", candidates(fit));

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 
 #include "proofmass/report/drift_figures.hpp"
 #include "proofmass/report/drift_wording.hpp"
@@ -15,8 +14,6 @@ namespace {
 using characterise::Sweep;
 using characterise::TemperatureModel;
 
-constexpr double gap = std::numeric_limits<double>::quiet_NaN();
-constexpr double normal_95 = 1.96;
 constexpr double zero_celsius_k = 273.15;
 
 // Values with bars: the dots, and their bars as one broken line.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,11 @@
 // Plots as SVG text, drawn in the colours of the page around them (CSS variables), so that one file
 // reads well on a dark screen, on a light one and on paper.
 namespace proofmass::report {
+
+/// In the place of a point: breaks a curve.
+inline constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+/// Half of a 95 % band, in standard deviations of a normal distribution.
+inline constexpr double normal_95 = 1.96;
 
 enum class AxisScale {
   linear,

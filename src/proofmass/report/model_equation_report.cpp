@@ -15,8 +15,6 @@ using calibrate::Confounded;
 using calibrate::FittedCoefficient;
 using calibrate::ModelFit;
 
-constexpr std::string_view absent = "not determined";
-
 std::string unit_words(const FittedCoefficient& one, const std::string& output_unit) {
   std::string unit(sensor::info(one.coefficient).standard_unit);
   const auto place = unit.find("{}");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "proofmass/report/noise_nulls.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {
@@ -13,10 +14,6 @@ using characterise::Coefficient;
 using characterise::NoiseAnalysis;
 using characterise::NoiseModelFit;
 using characterise::Verdict;
-
-bool is_identified(const Coefficient& coefficient) {
-  return coefficient.verdict == Verdict::identified;
-}
 
 bool is_acceleration(const Unit& unit) {
   return unit.quantity == Quantity::acceleration && unit.to_si == 1.0;

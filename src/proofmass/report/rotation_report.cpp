@@ -17,9 +17,7 @@ using calibrate::RotationCoefficient;
 using calibrate::RotationFit;
 using Q = calibrate::RotationQuantity;
 
-constexpr std::string_view absent = "not determined";
 constexpr double g = standard_gravity_mps2;
-constexpr double deg_per_rad = 1.0 / rad_per_deg;
 
 std::string label(Q quantity) {
   switch (quantity) {

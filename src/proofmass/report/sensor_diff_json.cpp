@@ -45,7 +45,7 @@ Value with_unit(const std::optional<double>& value,
   return Object{{"value", *value}, {"std", number(std)}, {"unit", unit}};
 }
 
-Value json_of(const std::optional<sensor::Figure>& figure) {
+Value figure_or_null(const std::optional<sensor::Figure>& figure) {
   if (!figure) return {};
   return with_unit(figure->si(), figure->std_si(), figure->unit.si_symbol);
 }
@@ -53,8 +53,8 @@ Value json_of(const std::optional<sensor::Figure>& figure) {
 Value json_of(const FigureComparison& figure) {
   Object out{{"section", figure.before.section}, {"key", figure.before.key}};
   if (figure.before.axis) out.push_back({"axis", figure.before.axis_name()});
-  out.push_back({"old", json_of(figure.before.figure)});
-  out.push_back({"new", json_of(figure.after.figure)});
+  out.push_back({"old", figure_or_null(figure.before.figure)});
+  out.push_back({"new", figure_or_null(figure.after.figure)});
   out.push_back({"change", with_unit(figure.change, figure.change_std, figure.unit)});
   out.push_back({"in_std", number(figure.in_stds())});
   out.push_back({"p", number(figure.p)});

@@ -17,7 +17,6 @@ using sensor::SensorComparison;
 using sensor::Verdict;
 
 constexpr double mps2_per_mg = 1e-3 * standard_gravity_mps2;
-constexpr double deg_per_rad = 1.0 / rad_per_deg;
 
 /// The error in a unit of which `si` is one.
 std::string words(const LargestError& error, double si, std::string_view unit) {

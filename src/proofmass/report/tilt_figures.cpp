@@ -9,9 +9,8 @@ namespace proofmass::report {
 namespace {
 
 constexpr double two_sided_95 = 1.959964;  // of the normal distribution
-constexpr double deg_per_rad = 1.0 / rad_per_deg;
 
-std::vector<double> degrees(const std::vector<double>& angle_rad) {
+std::vector<double> in_degrees(const std::vector<double>& angle_rad) {
   std::vector<double> out(angle_rad);
   for (double& value : out) value *= deg_per_rad;
   return out;
@@ -82,8 +81,8 @@ Figure angle_figure(const Angle& angle,
                 .y = {.label = angle.label}};
   figure.bands = {band("filter, 95 %", time_s, angle.filtered, angle.filtered_std, Ink::green),
                   band("smoother, 95 %", time_s, angle.smoothed, angle.std, Ink::blue)};
-  figure.curves = {{"filter", time_s, degrees(angle.filtered), Ink::green, Mark::thin},
-                   {"smoother", time_s, degrees(angle.smoothed), Ink::blue}};
+  figure.curves = {{"filter", time_s, in_degrees(angle.filtered), Ink::green, Mark::thin},
+                   {"smoother", time_s, in_degrees(angle.smoothed), Ink::blue}};
   fit_axis(figure);
   if (Curve ticks = told_less(time_s, weight); !ticks.x.empty())
     figure.curves.push_back(std::move(ticks));
@@ -107,15 +106,16 @@ std::vector<Figure> tilt_figures(const estimate::TiltSolution& solution) {
 Figure tilt_std_figure(const estimate::TiltSolution& solution) {
   const estimate::TiltSeries& s = solution.series;
   const std::vector<double> time_s = times_of(s.time_s, solution.samples);
-  return {.title = "Standard deviation",
-          .description = "How sure filter and smoother are of roll and pitch, instant by instant.",
-          .x = {.label = s.time_s.empty() ? "Sample" : "Time (s)"},
-          .y = {.label = "Standard deviation (°)", .scale = AxisScale::log},
-          .curves = {
-              {"roll, filter", time_s, degrees(s.filtered_roll_std_rad), Ink::green, Mark::thin},
-              {"roll, smoother", time_s, degrees(s.roll_std_rad), Ink::green},
-              {"pitch, filter", time_s, degrees(s.filtered_pitch_std_rad), Ink::blue, Mark::thin},
-              {"pitch, smoother", time_s, degrees(s.pitch_std_rad), Ink::blue}}};
+  return {
+      .title = "Standard deviation",
+      .description = "How sure filter and smoother are of roll and pitch, instant by instant.",
+      .x = {.label = s.time_s.empty() ? "Sample" : "Time (s)"},
+      .y = {.label = "Standard deviation (°)", .scale = AxisScale::log},
+      .curves = {
+          {"roll, filter", time_s, in_degrees(s.filtered_roll_std_rad), Ink::green, Mark::thin},
+          {"roll, smoother", time_s, in_degrees(s.roll_std_rad), Ink::green},
+          {"pitch, filter", time_s, in_degrees(s.filtered_pitch_std_rad), Ink::blue, Mark::thin},
+          {"pitch, smoother", time_s, in_degrees(s.pitch_std_rad), Ink::blue}}};
 }
 
 std::vector<Figure> axis_tilt_figures(const estimate::AxisTiltSolution& solution) {
@@ -126,7 +126,7 @@ std::vector<Figure> axis_tilt_figures(const estimate::AxisTiltSolution& solution
       .x = {.label = "Time (s)"},
       .y = {.label = "Bias (°/s)"},
       .bands = {band("95 %", s.time_s, s.rate_bias_radps, s.rate_bias_std_radps, Ink::blue)},
-      .curves = {{"bias", s.time_s, degrees(s.rate_bias_radps), Ink::blue}}};
+      .curves = {{"bias", s.time_s, in_degrees(s.rate_bias_radps), Ink::blue}}};
   return {angle_figure({"Angle", "Angle (°)", s.angle_rad, s.angle_std_rad, s.filtered_angle_rad,
                         s.filtered_angle_std_rad},
                        s.time_s, s.weight, true),

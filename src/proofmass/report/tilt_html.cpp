@@ -13,13 +13,7 @@ namespace {
 
 using estimate::TiltSolution;
 
-constexpr std::string_view absent = "not determined";
-constexpr double deg_per_rad = 1.0 / rad_per_deg;
-constexpr std::size_t most_rests = 40;
-
-std::string in_degrees(const std::optional<Uncertain>& angle) {
-  return with_std(scaled(angle, deg_per_rad), "°", absent);
-}
+constexpr std::size_t most_rests_shown = 40;
 
 std::string degrees(double angle_rad) {
   return significant(angle_rad * deg_per_rad, 2) + "°";
@@ -29,17 +23,17 @@ Table rests_table(const TiltSolution& solution) {
   Table table{"Rests", {"From", "To", "Roll", "Pitch", "Norm of the force"}, {}};
   const std::vector<double>& time_s = solution.series.time_s;
   for (const estimate::TiltRest& rest : solution.rests) {
-    if (table.rows.size() == most_rests) break;
+    if (table.rows.size() == most_rests_shown) break;
     const auto at = [&](std::size_t k) {
       return time_s.empty() ? "sample " + std::to_string(k) : fixed(time_s[k], 2) + " s";
     };
-    table.rows.push_back({at(rest.first), at(rest.last), in_degrees(rest.angles.roll_rad),
-                          in_degrees(rest.angles.pitch_rad),
+    table.rows.push_back({at(rest.first), at(rest.last), degree_words(rest.angles.roll_rad),
+                          degree_words(rest.angles.pitch_rad),
                           with_std(rest.norm_mps2, "m/s²", absent)});
   }
-  if (solution.rests.size() > most_rests)
-    table.caption += fmt::format(": the first {} of {}; the JSON document has all", most_rests,
-                                 solution.rests.size());
+  if (solution.rests.size() > most_rests_shown)
+    table.caption += fmt::format(": the first {} of {}; the JSON document has all",
+                                 most_rests_shown, solution.rests.size());
   return table;
 }
 
@@ -103,7 +97,7 @@ Page axis_page(const TiltReport& report, Page page) {
   const estimate::AxisTiltSolution& axis = *report.axis;
   const estimate::AxisTiltNoise& noise = axis.noise;
   page.key_figures = {
-      {"Angle at the end", in_degrees(axis.angle_rad)},
+      {"Angle at the end", degree_words(axis.angle_rad)},
       {"Bias of the gyroscope", with_std(scaled(axis.rate_bias_radps, deg_per_rad), "°/s", absent)},
       {"Motion adds to the angle", degrees(noise.motion_std_rad)},
       {"Mean NIS (1 expected)", fixed(axis.consistency.nis, 3)}};
@@ -137,8 +131,8 @@ std::string tilt_html(const TiltReport& report) {
             .notes = tilt_notes(report)};
   if (report.axis) return html(axis_page(report, std::move(page)));
   const TiltSolution& solution = *report.solution;
-  page.key_figures = {{"Roll", in_degrees(solution.final.roll_rad)},
-                      {"Pitch", in_degrees(solution.final.pitch_rad)},
+  page.key_figures = {{"Roll", degree_words(solution.final.roll_rad)},
+                      {"Pitch", degree_words(solution.final.pitch_rad)},
                       {"Rests", std::to_string(solution.rests.size())}};
   if (solution.consistency)
     page.key_figures.push_back({"Mean NIS (1 expected)", fixed(solution.consistency->nis, 3)});

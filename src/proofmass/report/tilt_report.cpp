@@ -13,17 +13,11 @@ namespace {
 using estimate::TiltAngles;
 using estimate::TiltSolution;
 
-constexpr std::string_view absent = "not determined";
-constexpr double deg_per_rad = 1.0 / rad_per_deg;
 constexpr std::size_t most_rests = 20;
 
-std::string in_degrees(const std::optional<Uncertain>& angle) {
-  return with_std(scaled(angle, deg_per_rad), "°", absent);
-}
-
 std::string angles_words(const TiltAngles& angles) {
-  return fmt::format("roll {}, pitch {}", in_degrees(angles.roll_rad),
-                     in_degrees(angles.pitch_rad));
+  return fmt::format("roll {}, pitch {}", degree_words(angles.roll_rad),
+                     degree_words(angles.pitch_rad));
 }
 
 Channel channel(const char* name, const char* unit, const std::vector<double>& values) {
@@ -38,7 +32,7 @@ std::string rests_text(const TiltSolution& solution) {
     rows.push_back({timed ? fmt::format("{} … {} s", fixed(solution.series.time_s[rest.first], 2),
                                         fixed(solution.series.time_s[rest.last], 2))
                           : fmt::format("samples {} … {}", rest.first, rest.last),
-                    in_degrees(rest.angles.roll_rad), in_degrees(rest.angles.pitch_rad),
+                    degree_words(rest.angles.roll_rad), degree_words(rest.angles.pitch_rad),
                     with_std(rest.norm_mps2, "m/s²", "")});
   }
   std::string text = aligned(rows);
@@ -63,7 +57,7 @@ std::string axis_text(const TiltReport& report) {
   const estimate::AxisTiltSolution& axis = *report.axis;
   const estimate::AxisTiltNoise& noise = axis.noise;
   std::string text = aligned(
-      {{"angle at the end", in_degrees(axis.angle_rad)},
+      {{"angle at the end", degree_words(axis.angle_rad)},
        {"gyroscope's bias", with_std(scaled(axis.rate_bias_radps, deg_per_rad), "°/s", absent)},
        {"gyroscope's noise",
         significant(noise.rate_noise_radps_rthz * deg_per_rad, 2) + " °/s/√Hz"},
@@ -87,7 +81,7 @@ std::vector<Note> tilt_notes(const TiltReport& report) {
 
 std::string tilt_conclusion(const TiltReport& report) {
   if (report.axis)
-    return fmt::format("The angle is {} at the end.", in_degrees(report.axis->angle_rad));
+    return fmt::format("The angle is {} at the end.", degree_words(report.axis->angle_rad));
   const TiltSolution& solution = *report.solution;
   std::string text = angles_words(solution.final);
   text.front() = 'R';

@@ -16,8 +16,6 @@ using estimate::Stroke;
 using estimate::TrackMethod;
 using estimate::TrackSolution;
 
-constexpr std::string_view absent = "not determined";
-
 std::string seconds(double t) {
   return fixed(t, 2) + " s";
 }

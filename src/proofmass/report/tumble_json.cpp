@@ -14,11 +14,6 @@ using calibrate::TumbleCoefficient;
 using calibrate::TumbleFit;
 using Q = calibrate::TumbleQuantity;
 
-template <class T>
-Value or_null(const std::optional<T>& value) {
-  return value ? Value(*value) : Value();
-}
-
 // A std that nobody can tell is null.
 Value figure(const TumbleCoefficient& c, const InG& unit) {
   if (!c.value) return nullptr;

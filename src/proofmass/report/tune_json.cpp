@@ -11,11 +11,6 @@ using estimate::TunedParameter;
 using estimate::TunedSeries;
 using estimate::TuneVerdict;
 
-template <class T>
-Value or_null(const std::optional<T>& figure) {
-  return figure ? Value(*figure) : Value();
-}
-
 const char* verdict_of(const TunedParameter& parameter) {
   switch (parameter.verdict) {
     case TuneVerdict::identified:

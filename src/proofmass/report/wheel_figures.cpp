@@ -20,7 +20,6 @@ using estimate::WheelSolution;
 
 constexpr double two_sided_95 = 1.959964;  // of the normal distribution
 constexpr double turns_per_rad = 1.0 / rad_per_turn;
-constexpr double deg_per_rad = 1.0 / rad_per_deg;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> times(const std::vector<double>& values, double factor) {

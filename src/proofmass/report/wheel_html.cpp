@@ -15,9 +15,6 @@ using estimate::WheelMethod;
 using estimate::WheelSensorFit;
 using estimate::WheelSolution;
 
-constexpr std::string_view absent = "not determined";
-constexpr double deg_per_rad = 1.0 / rad_per_deg;
-
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : " and ") + file_name(name);

@@ -16,8 +16,6 @@ using estimate::WheelMethod;
 using estimate::WheelSolution;
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr std::string_view absent = "not determined";
-
 // Less than a turn reads better in degrees.
 std::string how_far(const Uncertain& turns) {
   const Uncertain size{std::abs(turns.value), turns.std};

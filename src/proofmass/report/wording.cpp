@@ -4,6 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "proofmass/core/units.hpp"
+
 namespace proofmass::report {
 namespace {
 
@@ -38,6 +40,10 @@ std::string with_std(const std::optional<Uncertain>& figure,
                      std::string_view unit,
                      std::string_view absent) {
   return figure ? with_std(*figure, unit) : std::string(absent);
+}
+
+std::string degree_words(const std::optional<Uncertain>& angle_rad) {
+  return with_std(scaled(angle_rad, deg_per_rad), "°", absent);
 }
 
 std::string length_words(double length_m) {

@@ -23,9 +23,15 @@ namespace proofmass::report {
                                    std::string_view unit,
                                    std::string_view absent);
 
+/// Shown for a value that could not be determined.
+inline constexpr std::string_view absent = "not determined";
+
 using proofmass::compact;
 using proofmass::fixed;
 using proofmass::significant;
+
+/// An angle in degrees, or `absent`.
+[[nodiscard]] std::string degree_words(const std::optional<Uncertain>& angle_rad);
 
 /// A length in the unit that suits it: "0.12 mm", "15 mm", "1.6 m", "7900 km".
 [[nodiscard]] std::string length_words(double length_m);

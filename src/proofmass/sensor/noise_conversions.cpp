@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/sensor/datasheet.hpp"
 
 namespace proofmass::sensor {
@@ -12,10 +13,6 @@ namespace {
 
 /// Largest Allan deviation of a first-order Markov process over √(psd T), as published.
 constexpr double markov_peak = 0.4365;
-
-double square(double x) {
-  return x * x;
-}
 
 }  // namespace
 

@@ -9,13 +9,13 @@
 namespace proofmass::signal {
 namespace {
 
-constexpr std::size_t most_blocks = 256, fewest_blocks = 8, shortest_block = 16;
+constexpr std::size_t most_blocks = 256, fewest_paired_blocks = 8, shortest_block = 16;
 
 struct Block {
   double middle, y, u;
 };
 
-std::vector<Block> block_means(View<double> series, View<double> cause, std::size_t count) {
+std::vector<Block> paired_means(View<double> series, View<double> cause, std::size_t count) {
   std::vector<Block> blocks;
   for (std::size_t b = 0; b < count; ++b) {
     const std::size_t begin = b * series.size() / count, end = (b + 1) * series.size() / count;
@@ -85,8 +85,8 @@ void subtract(std::span<double> series, const std::vector<Block>& blocks, const 
 Result<Uncertain> regress_out(std::span<double> series, View<double> cause) {
   PM_EXPECTS(series.size() == cause.size());
   const std::size_t count = std::min(most_blocks, series.size() / shortest_block);
-  const std::vector<Block> blocks = block_means(series, cause, count);
-  if (blocks.size() < fewest_blocks) {
+  const std::vector<Block> blocks = paired_means(series, cause, count);
+  if (blocks.size() < fewest_paired_blocks) {
     return Error{Errc::too_few_samples,
                  "fewer than 8 stretches of 16 samples have both the series and its cause"};
   }

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "proofmass/simulate/bench_test_support.hpp"
 #include "proofmass/simulate/rig.hpp"
 
 // What the tests of the rig share.
@@ -27,12 +28,6 @@ inline RigOptions perfect() {
 
 inline RigResult simulated(const RigOptions& options) {
   return simulate_rig(options).value();
-}
-
-inline const std::vector<double>& column(const Recording& recording, std::string_view name) {
-  const Channel* channel = recording.find(name);
-  EXPECT_NE(channel, nullptr) << name;
-  return channel->values;
 }
 
 }  // namespace proofmass::simulate

@@ -102,7 +102,7 @@ std::string few_words(const AxisTest& axis) {
                      few.white ? "find nothing wrong" : "say that they are not white");
 }
 
-std::string found_words(const StaticTest& test, const AxisTest& axis) {
+std::string found_residuals(const StaticTest& test, const AxisTest& axis) {
   std::string text;
   if (axis.plain && axis.plain->residuals) {
     const WhitenessTest& all = *axis.plain->residuals;
@@ -129,7 +129,7 @@ Item residuals_item(const StaticTest& test) {
             .thesis =
                 "97 % of the autocorrelation lies within its bounds, with an average variance "
                 "near one: the fit passes a whiteness test.",
-            .ours = found_words(test, axis),
+            .ours = found_residuals(test, axis),
             .note = ""};
   item.note =
       "The bounds are ±1.96/√n, so what they see depends on n, which the thesis does not give: the "

@@ -15,12 +15,6 @@ using estimate::GainStudy;
 using estimate::GainStudyOptions;
 using report::fixed;
 
-const ShownUnit variance{"m²/s⁴"}, plain{};
-
-Uncertain exact(double value) {
-  return {.value = value};
-}
-
 std::size_t readings_to(const GainStudyOptions& options, double variance_m2ps4) {
   const GainStudy study = gain_study(options);
   std::size_t count = 0;

@@ -18,11 +18,7 @@ using report::fixed;
 
 constexpr std::size_t sets_of_readings = 40;
 
-const ShownUnit seconds{"s"}, accel{"m/s²"}, variance{"m²/s⁴"};
-
-Uncertain exact(double value) {
-  return {.value = value};
-}
+const ShownUnit accel{"m/s²"};
 
 struct TunedReadings {
   std::optional<Uncertain> jerk_psd_m2ps5, accel_variance_m2ps4;
@@ -131,7 +127,7 @@ Item readings_item(const Half& half, std::uint64_t seed) {
                    {.key = "delay",
                     .label = "Delay of sin t behind the filter",
                     .si_unit = "s",
-                    .shown = seconds,
+                    .shown = shown_seconds,
                     .ours = exact(response.delay_s)}},
       .figures = {readings_figure(x, SimulatedAxis::x), readings_figure(y, SimulatedAxis::y)}};
   add_errors(x_errors, "x", item.findings);

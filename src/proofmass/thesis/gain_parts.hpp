@@ -20,6 +20,12 @@ struct Half {
 /// Of the simulated acceleration sin ωt.
 inline constexpr double simulated_radps = 1.0;
 
+inline const ShownUnit shown_seconds{"s"}, variance{"m²/s⁴"}, plain{};
+
+[[nodiscard]] inline Uncertain exact(double value) {
+  return {.value = value};
+}
+
 /// Figure 4.3.
 [[nodiscard]] Item covariance_item();
 

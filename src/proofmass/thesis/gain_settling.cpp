@@ -18,12 +18,6 @@ using estimate::GainStudy;
 using estimate::GainStudyOptions;
 using report::fixed;
 
-const ShownUnit seconds{"s"}, variance{"m²/s⁴"}, plain{};
-
-Uncertain exact(double value) {
-  return {.value = value};
-}
-
 std::optional<Uncertain> exact(const std::optional<double>& value) {
   return value ? std::optional(Uncertain{*value}) : std::nullopt;
 }
@@ -48,29 +42,29 @@ std::vector<Finding> settling_findings(const Half& half, const GainStudy& study)
   std::vector<Finding> findings{{.key = "settling",
                                  .label = "All gains within 2 % of their limits",
                                  .si_unit = "s",
-                                 .shown = seconds,
+                                 .shown = shown_seconds,
                                  .thesis = half.printed_settling_s,
                                  .ours = exact(all_settled_s(study, 0.02))},
                                 {.key = "settling_fine",
                                  .label = "All gains within 0.1 % of their limits",
                                  .si_unit = "s",
-                                 .shown = seconds,
+                                 .shown = shown_seconds,
                                  .thesis = half.printed_settling_s,
                                  .ours = exact(all_settled_s(study, 1e-3))},
                                 {.key = "settling_acceleration",
                                  .label = "Gain of the acceleration within 2 %",
                                  .si_unit = "s",
-                                 .shown = seconds,
+                                 .shown = shown_seconds,
                                  .ours = exact(study.settling_s[2])},
                                 {.key = "time_constant",
                                  .label = "Time in which an error of the acceleration falls to 1/e",
                                  .si_unit = "s",
-                                 .shown = seconds,
+                                 .shown = shown_seconds,
                                  .ours = exact(response.time_constant_s)},
                                 {.key = "error_to_2_percent",
                                  .label = "Time in which it falls to 2 %",
                                  .si_unit = "s",
-                                 .shown = seconds,
+                                 .shown = shown_seconds,
                                  .ours = exact(-std::log(0.02) * response.time_constant_s)},
                                 {.key = "gain",
                                  .label = "Gain of the acceleration in the end",

@@ -5,11 +5,14 @@
 #include <vector>
 
 #include "proofmass/core/quantity.hpp"
+#include "proofmass/core/units.hpp"
 #include "proofmass/report/figure.hpp"
 #include "proofmass/report/page.hpp"
 
 // One table or figure of the thesis beside ours.
 namespace proofmass::thesis {
+
+inline constexpr double mg_mps2 = 1e-3 * standard_gravity_mps2;
 
 /// In which a figure is shown to people: shown = SI / to_si.
 struct ShownUnit {

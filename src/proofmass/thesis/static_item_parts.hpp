@@ -11,8 +11,6 @@
 // What the items of the static test have in common.
 namespace proofmass::thesis {
 
-inline constexpr double mg_mps2 = 1e-3 * standard_gravity_mps2;
-
 /// An acceleration that people read in mg.
 [[nodiscard]] Finding milli_g(std::string key, std::string label);
 /// A time in s.

@@ -174,7 +174,7 @@ std::vector<Finding> findings_of(const StaticTest& test, std::size_t at) {
           settling_of(test, at)};
 }
 
-std::string found_words(const StaticTest& test, const std::vector<Finding>& findings) {
+std::string found_noise(const StaticTest& test, const std::vector<Finding>& findings) {
   const auto& picked = findings[2].ours;
   std::string text =
       fmt::format("{} ({}): means over {} scatter by {} mg about the curve",
@@ -214,7 +214,7 @@ Item static_noise_item(const StaticTest& test) {
         " Noise, filter and warm-up of the simulated sensors are the datasheet's and the "
         "thesis's; the random walk of 5 µg/√s is assumed, as cheap sensors have it.";
   item.findings = findings_of(test, at);
-  item.ours = found_words(test, item.findings);
+  item.ours = found_noise(test, item.findings);
   item.figures.push_back(readings_of(test, at));
   if (test.noise.means)
     item.figures.push_back(deviations_of(test.noise, test.record.axes[at].name));

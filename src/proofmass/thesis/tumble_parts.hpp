@@ -25,8 +25,6 @@ struct PrintedAxis {
   std::optional<TumbledAxis> TumbledAxes::* place;
 };
 
-inline constexpr double mg_mps2 = 1e-3 * standard_gravity_mps2;
-
 [[nodiscard]] const PrintedAxis& printed_x();
 [[nodiscard]] const PrintedAxis& printed_y();
 
