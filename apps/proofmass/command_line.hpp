@@ -50,7 +50,10 @@ struct ConvertCommand {
 struct WheelCommand {
   std::vector<std::string> files;
   std::string spin_axis;
-  std::optional<double> radius_m, rim_radius_m, rolling_radius_m;
+  std::optional<double> radius_m, radius_std_m, rim_radius_m, rolling_radius_m, bandwidth_hz,
+      axle_tilt_std_deg;
+  bool no_gyro = false;
+  std::string rate_unit = "rad/s";
   InputFlags input;
   OutputFlags output;
 };

@@ -43,9 +43,29 @@ void add_flags(CLI::App& app, WheelCommand& command) {
   verb.add_option("--spin-axis", command.spin_axis,
                   "x, y, z, -x, -y, -z or \"X,Y,Z\" in the sensor's axes (default: found)")
       ->type_name("AXIS");
-  verb.add_option("--radius", command.radius_m, "of the sensor from the axle, where known")
+  CLI::Option* radius =
+      verb.add_option("--radius", command.radius_m, "of the sensor from the axle, where known")
+          ->type_name("M")
+          ->check(not_negative());
+  verb.add_option("--radius-std", command.radius_std_m,
+                  "standard deviation of --radius (default: 2 %, at least 0.0002)")
       ->type_name("M")
+      ->check(not_negative())
+      ->needs(radius);
+  verb.add_option("--bandwidth", command.bandwidth_hz,
+                  "-3 dB of the sensor's filter, which delays the angle (default: of the --sensor "
+                  "file, or anywhere from 10 Hz to 2.5 times the rate)")
+      ->type_name("HZ")
+      ->check(positive());
+  verb.add_option("--axle-tilt-std", command.axle_tilt_std_deg,
+                  "standard deviation of the axle from level (default 5)")
+      ->type_name("DEG")
       ->check(not_negative());
+  verb.add_flag("--no-gyro", command.no_gyro, "leave the gyroscope's channels alone");
+  verb.add_option("--rate-unit", command.rate_unit,
+                  "of the gyroscope, where its heading has none: rad/s (default) or deg/s")
+      ->type_name("UNIT")
+      ->check(CLI::IsMember({"rad/s", "deg/s"}));
   verb.add_option(
           "--rolling-radius", command.rolling_radius_m,
           "on which the wheel rolls under a vehicle: takes its speeding up out of the angle")

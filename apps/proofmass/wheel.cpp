@@ -34,8 +34,13 @@ void run(const WheelCommand& command) {
   report.options.radius_m = command.radius_m;
   report.options.rim_radius_m = command.rim_radius_m;
   report.options.rolling_radius_m = command.rolling_radius_m;
+  report.options.radius_std_m = command.radius_std_m;
+  if (command.axle_tilt_std_deg)
+    report.options.axle_tilt_std_rad = *command.axle_tilt_std_deg * rad_per_deg;
   report.options.gravity_mps2 = gravity_mps2(command.input);
-  WheelInput input = wheel_input(command.files, command.input, command.output);
+  WheelInput input = wheel_input(command.files, command.input,
+                                 {!command.no_gyro, command.rate_unit}, command.output);
+  report.options.bandwidth_hz = command.bandwidth_hz ? command.bandwidth_hz : input.bandwidth_hz;
   report.notes = std::move(input.notes);
   report.options.clocks_shared = input.clocks_shared;
   report.options.alignment_std_rad = input.alignment_std_rad;

@@ -8,6 +8,7 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "gyroscope.hpp"
 #include "input.hpp"
 #include "proofmass/sensor/calibration.hpp"
 
@@ -29,7 +30,9 @@ bool share_a_clock(const Recording& a, const Recording& b) {
 
 estimate::WheelSensor wheel_sensor(const Recording& recording,
                                    const Accelerometer& from,
-                                   double begin_s) {
+                                   double begin_s,
+                                   const GyroscopeUse& gyroscope,
+                                   std::vector<Note>& notes) {
   estimate::WheelSensor sensor;
   sensor.name = from.name;
   sensor.time_s.resize(recording.samples());
@@ -48,6 +51,9 @@ estimate::WheelSensor wheel_sensor(const Recording& recording,
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (order[axis]) sensor.accel_mps2[axis] = recording.channels[*order[axis]].values;
   }
+  if (!gyroscope.wanted || triad.axes() < 3) return sensor;
+  if (const auto channels = find_gyroscope(recording, triad))
+    sensor.rate_radps = rates_radps(recording, *channels, gyroscope.unit_if_unknown, notes);
   return sensor;
 }
 
@@ -64,6 +70,7 @@ void keep_notes(const std::vector<Recording>& recordings, std::vector<Note>& not
 
 WheelInput wheel_input(const std::vector<std::string>& files,
                        const InputFlags& flags,
+                       const GyroscopeUse& gyroscope,
                        const OutputFlags& output) {
   WheelInput input;
   std::vector<Recording> recordings;
@@ -95,10 +102,12 @@ WheelInput wheel_input(const std::vector<std::string>& files,
           std::min(*recordings[0].time.start_ns, *recordings[1].time.start_ns);
       begin_s = static_cast<double>(*recording.time.start_ns - first) * s_per_ns;
     }
-    input.sensors.push_back(wheel_sensor(recording, one, begin_s));
+    input.sensors.push_back(wheel_sensor(recording, one, begin_s, gyroscope, input.notes));
   }
   if (!models.empty()) {
     input.alignment_std_rad = sensor::alignment_std_rad(models.front()).value_or(0.0);
+    if (const auto& bandwidth = models.front().electrical.bandwidth[0])
+      input.bandwidth_hz = bandwidth->value;
   }
   return input;
 }

@@ -118,7 +118,7 @@ T = { value = 3.0, unit = "s" }
         error, blind = (abs(abs(turns["value"]) - truth) for turns in (with_it, without))
         self.assertLess(error, 3.0 * with_it["std"])
         self.assertLess(error, 0.0015)
-        self.assertGreater(blind, 5.0 * error)
+        self.assertGreater(blind, 1.5 * error)
         self.assertLess(with_it["std"], without["std"])
 
     def test_the_warm_up_counts_from_the_first_sample_of_the_file(self):

@@ -20,6 +20,13 @@ struct Hindsight {
   [[nodiscard]] Mat<N> mean(const Gaussian<N>& filtered) const {
     return filtered.mean - filtered.cov * lambda;
   }
+  /// Variance of gᵀ x given every reading.
+  [[nodiscard]] double variance(const Gaussian<N>& filtered, const Mat<N>& g) const {
+    Mat<N> Pg = Mat<N>::Zero(), LPg = Mat<N>::Zero();
+    symmetric_times(filtered.cov.data(), g.data(), Pg.data(), {active, N});
+    symmetric_times(Lambda.data(), Pg.data(), LPg.data(), {active, N});
+    return g.dot(Pg) - Pg.dot(LPg);
+  }
   /// Covariance of the first B states given every reading.
   template <int B>
   [[nodiscard]] Mat<B, B> cov(const Gaussian<N>& filtered) const {

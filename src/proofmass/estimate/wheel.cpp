@@ -19,6 +19,12 @@ Status check(const std::vector<WheelSensor>& sensors, const WheelOptions& option
       if (sensor.accel_mps2[axis].size() != sensor.time_s.size() &&
           !(axis == 2 && sensor.accel_mps2[axis].empty()))
         return Error{Errc::invalid_argument, sensor.name + ": channels of different lengths"};
+  for (const WheelSensor& sensor : sensors)
+    for (const auto& axis : sensor.rate_radps)
+      if (axis.size() != sensor.rate_radps[0].size() ||
+          (!axis.empty() && axis.size() != sensor.time_s.size()))
+        return Error{Errc::invalid_argument,
+                     sensor.name + ": the gyroscope's channels are of other lengths"};
   return check_wheel(sensors.size(), options);
 }
 
@@ -119,6 +125,7 @@ void add_sensor(const WheelSensor& sensor,
   fit.spin_axis = single.prepared.plane.axis;
   fit.spin_axis_given = axis_given;
   fit.samples = sensor.time_s.size();
+  fit.has_gyro = !sensor.rate_radps[0].empty();
   fit.unusable = single.prepared.screened.unusable;
   std::vector<double> variance;
   for (std::size_t row = 0; row < sensor.time_s.size(); ++row)
@@ -171,13 +178,11 @@ void judge_turns(const WheelFit& fit, WheelSolution& solution) {
 void note_travel(const WheelReadings& readings,
                  const WheelOptions& options,
                  WheelSolution& solution) {
-  const auto& variance = readings.sensors.front().variance_m2ps4;
-  const auto loud = quantile(variance, 0.9), quiet = quantile(variance, 0.05);
-  if (options.rolling_radius_m || !loud || *loud < 9.0 * *quiet) return;
+  if (options.rolling_radius_m || !carries_a_vehicle(readings)) return;
   double strongest = 0.0;
   for (const double accel : solution.series.accel_radps2)
     strongest = std::max(strongest, std::abs(accel));
-  const double lean_deg = 0.3 * strongest / options.gravity_mps2 / rad_per_deg;
+  const double lean_deg = vehicle_rolling_radius_m * strongest / options.gravity_mps2 / rad_per_deg;
   solution.notes.push_back({Severity::info,
                             "the wheel shakes as if it carried a vehicle: while that speeds up or "
                             "brakes, the angle leans by "
@@ -192,13 +197,17 @@ void check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolutio
   for (std::size_t s = 0; s < fit.free_radius_m.size(); ++s) {
     const Uncertain& found = fit.free_radius_m[s];
     const double off = std::abs(found.value - *options.radius_m);
-    if (off < 5.0 * std::hypot(found.std, 0.02 * *options.radius_m)) continue;
+    const double given_std = radius_std_m(options);
+    if (off < 4.0 * std::hypot(found.std, given_std)) continue;
+    const auto in_mm = [](double value_m) {
+      return std::to_string(std::lround(std::ceil(value_m * 1e3)));
+    };
     solution.notes.push_back(
-        {Severity::bad, solution.sensors[s].name +
-                            ": --radius contradicts the recording, which says " +
+        {Severity::bad, solution.sensors[s].name + ": --radius " +
+                            std::to_string(std::lround(*options.radius_m * 1e3)) + " mm +- " +
+                            in_mm(given_std) + " mm contradicts the recording, which says " +
                             std::to_string(std::lround(found.value * 1e3)) + " mm +- " +
-                            std::to_string(std::lround(std::ceil(found.std * 1e3))) +
-                            " mm: leave it out or mend it"});
+                            in_mm(found.std) + " mm: leave it out or mend it"});
   }
 }
 
@@ -209,6 +218,7 @@ WheelSolution conclude(const WheelReadings& readings,
   describe_sensors(fit, readings.phase_rad, solution.sensors);
   solution.series = std::move(fit.series);
   solution.turns = fit.turns;
+  solution.delay_s = readings.delay_s;
   for (std::vector<double>* std :
        {&solution.series.angle_std_rad, &solution.series.filtered_angle_std_rad})
     for (double& value : *std) value = std::hypot(value, options.alignment_std_rad);
@@ -218,9 +228,10 @@ WheelSolution conclude(const WheelReadings& readings,
   add_distance(options, solution);
   add_peak_speed(solution);
   solution.consistency = std::move(fit.consistency);
+  constexpr std::array names{" along u", " along v", " gyroscope"};
+  const std::size_t each = solution.consistency.channels.size() / solution.sensors.size();
   for (std::size_t i = 0; i < solution.consistency.channels.size(); ++i)
-    solution.consistency.channels[i].name =
-        solution.sensors[i / 2].name + (i % 2 == 0 ? " along u" : " along v");
+    solution.consistency.channels[i].name = solution.sensors[i / each].name + names[i % each];
   solution.not_observable = say_not_observable(fit, solution.sensors);
   add_gated(solution);
   note_travel(readings, options, solution);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct WheelSensor {
   /// Specific force along x, y, z, as long as time_s; NaN where there is no reading. z is empty for
   /// a two-axis sensor, whose x and y then lie in the plane of the wheel.
   std::array<std::vector<double>, 3> accel_mps2;
+  /// Of a gyroscope in the same axes, as long as time_s; empty where there is none. NaN where it
+  /// has no reading.
+  std::array<std::vector<double>, 3> rate_radps{};
 };
 
 struct WheelOptions {
@@ -30,10 +34,16 @@ struct WheelOptions {
   /// Spin axis in the axes of each sensor, any length; found from the data where not given.
   std::optional<std::array<double, 3>> spin_axis;
   std::optional<double> radius_m;      ///< distance of each sensor from the axle, where known
+  std::optional<double> radius_std_m;  ///< of that; not given: 2 %, at least 0.2 mm
   std::optional<double> rim_radius_m;  ///< of the circle whose path is the distance travelled
   /// Radius on which the wheel rolls, where it carries a vehicle and this is known: its speeding up
   /// and braking then no longer lean on the angle.
   std::optional<double> rolling_radius_m;
+  /// Of the sensors' filter, −3 dB of one pole: what turns about the sensor is read later by it.
+  /// Not given, it may be anywhere from 10 Hz, or a tenth of the rate where that is lower, to 2.5
+  /// times the rate.
+  std::optional<double> bandwidth_hz;
+  double axle_tilt_std_rad = 5.0 * std::numbers::pi / 180.0;  ///< of the axle from level
   /// One standard deviation of the angle between a sensor's axes and the marks of the wheel, which
   /// no accelerometer can see: part of the band of every angle, none of the number of turns.
   double alignment_std_rad = 0.0;
@@ -59,7 +69,10 @@ struct WheelSensorFit {
   std::optional<Uncertain> skew_rad;        ///< by which the in-plane axes miss being square
   std::optional<Uncertain> phase_rad;       ///< second sensor against the first, about the axle
   std::optional<Uncertain> clock_offset_s;  ///< second sensor's clock against the first's
-  double noise_mps2 = 0.0;                  ///< per sample and axis, at rest or at the quietest
+  bool has_gyro = false;                    ///< and the turns were counted with it
+  /// Of the gyroscope about the axle, reading = scale · speed + bias.
+  std::optional<Uncertain> gyro_scale, gyro_bias_radps;
+  double noise_mps2 = 0.0;  ///< per sample and axis, at rest or at the quietest
   std::size_t samples = 0;
   std::size_t unusable = 0;  ///< rows dropped before the filter: not finite, or beyond belief
   std::size_t gated = 0;     ///< rows whose innovation passed the gate
@@ -94,6 +107,7 @@ struct WheelSolution {
   std::string distance_of;              ///< "rim" or the sensor's name
   std::optional<Uncertain> angle_final_rad;
   std::optional<Uncertain> peak_speed_radps;
+  Uncertain delay_s{};  ///< of the sensors' filters, as given or as believed
   std::vector<WheelSensorFit> sensors;
   WheelMethod double_integration, atan2, ekf, smoother;
   Consistency consistency;

@@ -138,6 +138,11 @@ void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSe
     sensor.skew_rad = told(fit, first + wheel::skew);
     if (s > 0) sensor.phase_rad = told(fit, wheel::phase - wheel::first_of(0), phase_rad);
     const auto count = static_cast<int>(sensors.size());
+    if (sensor.has_gyro) {
+      const int gyro = wheel::gyro(count) - wheel::first_of(0) + 2 * static_cast<int>(s);
+      sensor.gyro_bias_radps = told(fit, gyro);
+      sensor.gyro_scale = told(fit, gyro + 1, 1.0);
+    }
     describe_place(fit, wheel::places(count) - wheel::first_of(0) + 2 * static_cast<int>(s),
                    sensor);
   }
@@ -145,12 +150,19 @@ void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSe
 
 std::vector<std::string> say_not_observable(const WheelFit& fit,
                                             const std::vector<WheelSensorFit>& sensors) {
-  Eigen::VectorXd scale = fit.constants_prior_cov.diagonal().cwiseSqrt().cwiseInverse();
+  // Ripple and gyroscope are nuisances here.
+  const int count = static_cast<int>(sensors.size());
+  const Eigen::Index own = wheel::ripple(count) - wheel::first_of(0),
+                     places_at = wheel::places(count) - wheel::first_of(0);
+  std::vector<Eigen::Index> shown;
+  for (Eigen::Index i = 0; i < fit.constants.size(); ++i)
+    if (i < own || i >= places_at) shown.push_back(i);
+  const Eigen::MatrixXd cov = fit.constants_cov(shown, shown);
+  Eigen::VectorXd scale = fit.constants_prior_cov.diagonal()(shown).cwiseSqrt().cwiseInverse();
   // A radius that was given is known, however little the recording adds to it.
   const auto places = static_cast<Eigen::Index>(2 * sensors.size());
   scale.tail(places) = scale.tail(places).cwiseMin(1.0 / short_way_prior.place_m);
-  const SymmetricEigen axes =
-      symmetric_eigen(scale.asDiagonal() * fit.constants_cov * scale.asDiagonal());
+  const SymmetricEigen axes = symmetric_eigen(scale.asDiagonal() * cov * scale.asDiagonal());
   const std::vector<Constant> constants = constants_of(sensors.size());
   std::vector<std::string> sentences;
   for (Eigen::Index i = axes.values.size(); i-- > 0 && axes.values(i) > untold * untold;) {

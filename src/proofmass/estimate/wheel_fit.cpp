@@ -1,7 +1,11 @@
 #include "proofmass/estimate/wheel_fit.hpp"
 
+#include <complex>
+
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel_colour.hpp"
 #include "proofmass/estimate/wheel_passes.hpp"
 
 namespace proofmass::estimate {
@@ -12,8 +16,12 @@ struct Settled {
   WheelNoise noise;
   WheelPrior prior;
   Eigen::MatrixXd places_cov;
+  Eigen::VectorXd widened;  ///< FoundPlaces::widened
   double log_likelihood = 0.0;
 };
+
+/// One standard deviation of each part of the ripple, about zero: a wheel by hand or by a motor.
+constexpr double ripple_share = 0.02;
 
 /// The model of the settled passes: linear about a path, the places held.
 template <int S>
@@ -23,6 +31,7 @@ WheelModel<S> held_model(const WheelReadings& readings,
   auto model = wheel_model<S>(readings, noise);
   model.about = &about;
   model.places_held = true;
+  model.with_ripple = true;
   return model;
 }
 
@@ -30,7 +39,42 @@ WheelModel<S> held_model(const WheelReadings& readings,
 ConstantsPrior prior_for(const WheelPath& path) {
   const auto angle = [](const Mat<wheel::moving>& at) { return at(wheel::angle); };
   const auto [lowest, highest] = std::ranges::minmax_element(path.moving, {}, angle);
-  return angle(*highest) - angle(*lowest) < rad_per_turn ? short_way_prior : ConstantsPrior{};
+  if (angle(*highest) - angle(*lowest) < rad_per_turn) return short_way_prior;
+  ConstantsPrior prior;
+  prior.ripple = ripple_share;
+  return prior;
+}
+
+/// 1, 2 and the two strongest others in the path's acceleration, which is what they shake the wheel
+/// with. For a path that was found without them.
+RippleOrders orders_in(const WheelPath& path) {
+  std::array<std::complex<double>, highest_order + 1> sums{};
+  for (const Mat<wheel::moving>& at : path.moving) {
+    const std::complex<double> turn = std::polar(1.0, -at(wheel::angle));
+    std::complex<double> power = turn * turn;
+    for (std::size_t n = 3; n < sums.size(); ++n) sums[n] += at(wheel::accel) * (power *= turn);
+  }
+  RippleOrders orders = first_orders;
+  const auto strongest = [&] {
+    const auto at =
+        std::ranges::max_element(sums, {}, [](const auto& sum) { return std::norm(sum); });
+    *at = 0.0;
+    return static_cast<int>(at - sums.begin());
+  };
+  orders[2] = strongest();
+  orders[3] = strongest();
+  return orders;
+}
+
+/// The belief with its mean moved to where a place may be, along the directions in which little was
+/// believed.
+PlacesPrior moved_where_open(const PlacesPrior& belief, const Places& to) {
+  PlacesPrior moved = belief;
+  const SymmetricEigen axes = symmetric_eigen(belief.cov);
+  for (Eigen::Index i = 0; i < axes.values.size(); ++i)
+    if (axes.values(i) > 0.25 * axes.values.maxCoeff())
+      moved.mean += axes.vectors.col(i).dot(to - belief.mean) * axes.vectors.col(i);
+  return moved;
 }
 
 /// One round: the readings' variance, the motion's noise and the sensors' places, all about the
@@ -46,9 +90,15 @@ Settled<S> settle(WheelReadings& readings,
   settle_variance(model, prior, readings);
   const Excerpt<S> excerpt = liveliest(model, prior);
   model.noise = tune_noise(model, excerpt, tuning_factor).noise;
-  const FoundPlaces found = find_places(model, excerpt, prior, belief);
+  const FoundPlaces likeliest = likeliest_places(model, excerpt, prior, belief);
+  WheelPath about = track.path;
+  about.standing.tail<2 * S>() = likeliest.mean;
+  model.about = &about;
+  const FoundPlaces found =
+      places_by_levers(model, levers_of(track.path, readings.time_s), readings.time_s, prior,
+                       moved_where_open(belief, likeliest.mean));
   prior.places = found.mean;
-  return {model.noise, prior, found.cov, found.log_likelihood};
+  return {model.noise, prior, found.cov, found.widened, likeliest.log_likelihood};
 }
 
 /// Moves the track to the smoother's under the settled figures.
@@ -74,6 +124,12 @@ void resize(WheelSeries& series, std::size_t size) {
   series.channels_gated.resize(size);
 }
 
+/// Of each sensor: along u, along v and, of a gyroscope, about the axle.
+template <int S>
+std::size_t channels_each(const WheelModel<S>& model) {
+  return model.with_gyro ? 3 : 2;
+}
+
 template <int S>
 void note_forward(const WheelModel<S>& model,
                   std::size_t k,
@@ -82,10 +138,12 @@ void note_forward(const WheelModel<S>& model,
                   WheelFit& fit) {
   double nis = 0.0;
   unsigned char used = 0, gated = 0;
+  const std::size_t each = channels_each(model);
   std::size_t next = 0;
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
     if (!model.has_readings(s, k)) continue;
-    for (std::size_t channel = 2 * s; channel < 2 * s + 2; ++channel) {
+    const std::size_t read = model.has_speed(s, k) ? 3 : 2;
+    for (std::size_t channel = each * s; channel < each * s + read; ++channel) {
       const auto& u = step.updates[next++];
       check.add(channel, u.innovation, u.expected, u.used);
       nis += u.used ? u.nis() : 0.0;
@@ -98,21 +156,37 @@ void note_forward(const WheelModel<S>& model,
 }
 
 template <int S>
-void note_backward(std::size_t k,
+void note_backward(const WheelModel<S>& model,
+                   std::size_t k,
                    const StepOf<WheelModel<S>>& step,
                    const Hindsight<wheel::states(S)>& later,
                    WheelFit& fit) {
   WheelSeries& series = fit.series;
-  const Mat<wheel::moving> mean = later.mean(step.filtered).template head<wheel::moving>();
-  const auto cov = later.template cov<wheel::jerk>(step.filtered);
-  const auto std_of = [&](int i) { return std::sqrt(std::max(cov(i, i), 0.0)); };
-  series.angle_rad[k] = mean(wheel::angle);
-  series.angle_std_rad[k] = std_of(wheel::angle);
-  series.speed_radps[k] = mean(wheel::speed);
-  series.speed_std_radps[k] = std_of(wheel::speed);
-  series.accel_radps2[k] = mean(wheel::accel);
-  series.accel_std_radps2[k] = std_of(wheel::accel);
-  fit.track.path.moving[k] = mean;
+  const Mat<wheel::states(S)> mean = later.mean(step.filtered);
+  const auto now = model.motion(mean);
+  const auto std_of = [&](const Mat<wheel::states(S)>& slope) {
+    return std::sqrt(std::max(later.variance(step.filtered, slope), 0.0));
+  };
+  series.angle_rad[k] = now.angle;
+  series.angle_std_rad[k] = std_of(now.by_angle);
+  series.speed_radps[k] = now.speed;
+  series.speed_std_radps[k] = std_of(now.by_speed);
+  series.accel_radps2[k] = now.accel;
+  series.accel_std_radps2[k] = std_of(now.by_accel);
+  fit.track.path.moving[k] = mean.template head<wheel::moving>();
+}
+
+/// Between the first instant and the last, from the state after the last.
+template <int S>
+Uncertain turns_in(const WheelModel<S>& model, const Gaussian<wheel::states(S)>& end) {
+  Mat<wheel::states(S)> first = end.mean;
+  first(wheel::angle) = end.mean(wheel::start);
+  const auto from = model.motion(first), to = model.motion(end.mean);
+  Mat<wheel::states(S)> slope = to.by_angle - from.by_angle;
+  slope(wheel::angle) = to.by_angle(wheel::angle);
+  slope(wheel::start) = -from.by_angle(wheel::angle);
+  return {(to.angle - from.angle) / rad_per_turn,
+          std::sqrt(std::max(slope.dot(end.cov * slope), 0.0)) / rad_per_turn};
 }
 
 /// The extended filter as it would run on calibrated sensors: the motion unknown at the start, the
@@ -129,8 +203,10 @@ void filter_calibrated(const WheelModel<S>& model,
   state.x.cov.template bottomRightCorner<count, count>() =
       known.cov.template bottomRightCorner<count, count>();
   filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t k, const auto& step) {
-    series.filtered_angle_rad[k] = step.filtered.mean(wheel::angle);
-    series.filtered_angle_std_rad[k] = std::sqrt(step.filtered.cov(wheel::angle, wheel::angle));
+    const auto now = model.motion(step.filtered.mean);
+    series.filtered_angle_rad[k] = now.angle;
+    series.filtered_angle_std_rad[k] =
+        std::sqrt(std::max(now.by_angle.dot(step.filtered.cov * now.by_angle), 0.0));
   });
 }
 
@@ -149,9 +225,10 @@ WheelFit smooth_at_places(const WheelReadings& readings,
   const auto prior = prior_state<S>(settled.prior);
   Gaussian<wheel::states(S)> end = prior.x;
   Mat<wheel::states(S)> first_mean = end.mean;
-  ConsistencyCheck check({.channels = std::vector<std::string>(static_cast<std::size_t>(2 * S)),
+  ConsistencyCheck check({.channels = std::vector<std::string>(S * channels_each(model)),
                           .rate_hz = readings.rate_hz(),
                           .gate = wheel_gate.limit});
+  AngleColour<S> colour;
   const auto tell = [&](std::string_view stage, std::size_t done) {
     if (progress && done % 65536 == 0)
       progress(stage, static_cast<double>(done) / static_cast<double>(size));
@@ -167,11 +244,12 @@ WheelFit smooth_at_places(const WheelReadings& readings,
           fit.widest_prediction_rad = std::max(fit.widest_prediction_rad, std::sqrt(variance));
         }
         end = step.filtered;
+        colour.add(step);
         note_forward(model, k, step, check, fit);
         tell("filter", k);
       },
       [&](std::size_t k, const auto& step, const auto& later) {
-        note_backward<S>(k, step, later, fit);
+        note_backward(model, k, step, later, fit);
         if (k == 0) first_mean = later.mean(step.filtered);
         tell("smoother", size - k);
       });
@@ -179,12 +257,16 @@ WheelFit smooth_at_places(const WheelReadings& readings,
   fit.consistency = check.judge();
   constexpr int count = wheel::standing(S);
   fit.constants = end.mean.template tail<count>();
-  fit.constants_cov = end.cov.template bottomRightCorner<count, count>();
-  const double variance = end.cov(wheel::angle, wheel::angle) +
-                          end.cov(wheel::start, wheel::start) -
-                          2.0 * end.cov(wheel::angle, wheel::start);
-  fit.turns = {(end.mean(wheel::angle) - end.mean(wheel::start)) / rad_per_turn,
-               std::sqrt(std::max(variance, 0.0)) / rad_per_turn};
+  const auto by = settled.widened.asDiagonal();
+  fit.constants_cov = by * end.cov.template bottomRightCorner<count, count>() * by;
+  fit.turns = turns_in(model, end);
+  const std::size_t half = size / 2;
+  const double wider =
+      colour.factor(fit.series.angle_std_rad[half] * fit.series.angle_std_rad[half]);
+  fit.turns.std *= wider;
+  for (std::vector<double>* std : {&fit.series.angle_std_rad, &fit.series.filtered_angle_std_rad,
+                                   &fit.series.speed_std_radps, &fit.series.accel_std_radps2})
+    for (double& value : *std) value *= wider;
   fit.ekf_turns =
       (fit.series.filtered_angle_rad.back() - fit.series.filtered_angle_rad.front()) / rad_per_turn;
   return fit;
@@ -194,10 +276,60 @@ void add_in_square(double& std, double more) {
   std = std::hypot(std, more);
 }
 
-/// Adds what the places' uncertainty makes of everything else: the whole smoothed again a little
-/// way along each principal direction of their covariance, and the differences drawn out to one
-/// standard deviation. Not that far at once: where the recording hardly tells the places, that is
-/// no small step.
+/// What a run with an outer figure a little way off makes of the results.
+struct MovedRun {
+  std::vector<double> angle_rad, speed_radps, accel_radps2;
+  Eigen::VectorXd constants{};
+  double turns = 0.0;
+  bool slipped = false;  ///< its angle went another way than the fit's
+};
+
+template <int S>
+MovedRun run_moved(const WheelModel<S>& model, const WheelPrior& prior, const WheelFit& fit) {
+  constexpr double slip_rad = 0.5;
+  const std::size_t size = model.size();
+  MovedRun run{std::vector<double>(size), std::vector<double>(size), std::vector<double>(size)};
+  Gaussian<wheel::states(S)> end = prior_state<S>(prior).x;
+  smooth(
+      model, prior_state<S>(prior), wheel_gate,
+      [&](std::size_t, const auto& step) { end = step.filtered; },
+      [&](std::size_t k, const auto& step, const auto& later) {
+        const auto now = model.motion(later.mean(step.filtered));
+        run.angle_rad[k] = now.angle;
+        run.speed_radps[k] = now.speed;
+        run.accel_radps2[k] = now.accel;
+        run.slipped = run.slipped || !(std::abs(now.angle - fit.series.angle_rad[k]) < slip_rad);
+      });
+  run.constants = end.mean.tail(fit.constants.size());
+  run.turns = turns_in(model, end).value;
+  return run;
+}
+
+/// Adds what one outer figure's uncertainty makes of everything else: the whole smoothed again with
+/// the figure a share of its standard deviation off, and the differences drawn out to one. A run
+/// that slips is tried again with a smaller share.
+template <class Run>
+void add_moved(const Run& run_at, double share, WheelFit& fit) {
+  MovedRun run = run_at(share);
+  for (int again = 0; run.slipped && again < 3; ++again) run = run_at(share *= 0.1);
+  if (run.slipped) return;
+  const double reach = 1.0 / share;
+  WheelSeries& series = fit.series;
+  for (std::size_t k = 0; k < run.angle_rad.size(); ++k) {
+    const double angle = reach * (run.angle_rad[k] - series.angle_rad[k]);
+    add_in_square(series.angle_std_rad[k], angle);
+    add_in_square(series.filtered_angle_std_rad[k], angle);
+    add_in_square(series.speed_std_radps[k], reach * (run.speed_radps[k] - series.speed_radps[k]));
+    add_in_square(series.accel_std_radps2[k],
+                  reach * (run.accel_radps2[k] - series.accel_radps2[k]));
+  }
+  const Eigen::VectorXd change = reach * (run.constants - fit.constants);
+  fit.constants_cov += change * change.transpose();
+  add_in_square(fit.turns.std, reach * (run.turns - fit.turns.value));
+}
+
+/// Along each principal direction of the places' covariance, not a standard deviation at once:
+/// where the recording hardly tells the places, that is no small step.
 template <int S>
 void add_places_uncertainty(const WheelReadings& readings,
                             const Settled<S>& settled,
@@ -207,24 +339,43 @@ void add_places_uncertainty(const WheelReadings& readings,
   const SymmetricEigen axes = symmetric_eigen(settled.places_cov);
   for (Eigen::Index i = 0; i < axes.values.size(); ++i) {
     const double std_m = std::sqrt(std::max(axes.values(i), 1e-16));
-    const double step_m = std::min(std_m, longest_step_m), reach = std_m / step_m;
-    Settled<S> moved = settled;
-    *moved.prior.places += step_m * axes.vectors.col(i);
-    const auto model = held_model<S>(readings, moved.noise, about);
-    WheelPath path = about;
-    const auto end = trace_path(model, prior_state<S>(moved.prior), path);
-    const Eigen::VectorXd change = reach * (end.mean.tail(fit.constants.size()) - fit.constants);
-    fit.constants_cov += change * change.transpose();
-    const double turns = (end.mean(wheel::angle) - end.mean(wheel::start)) / rad_per_turn;
-    add_in_square(fit.turns.std, reach * (turns - fit.turns.value));
-    for (std::size_t k = 0; k < path.moving.size(); ++k) {
-      const Mat<wheel::moving> difference = reach * (path.moving[k] - fit.track.path.moving[k]);
-      add_in_square(fit.series.angle_std_rad[k], difference(wheel::angle));
-      add_in_square(fit.series.filtered_angle_std_rad[k], difference(wheel::angle));
-      add_in_square(fit.series.speed_std_radps[k], difference(wheel::speed));
-      add_in_square(fit.series.accel_std_radps2[k], difference(wheel::accel));
-    }
+    const auto run_at = [&](double share) {
+      WheelPrior moved = settled.prior;
+      *moved.places += share * std_m * axes.vectors.col(i);
+      return run_moved(held_model<S>(readings, settled.noise, about), moved, fit);
+    };
+    add_moved(run_at, std::min(1.0, longest_step_m / std_m), fit);
   }
+}
+
+/// The delay of the sensors' filters shows in nothing but this.
+template <int S>
+void add_delay_uncertainty(const WheelReadings& readings,
+                           const Settled<S>& settled,
+                           const WheelPath& about,
+                           WheelFit& fit) {
+  if (!(readings.delay_s.std > 0.0)) return;
+  const auto run_at = [&](double share) {
+    auto model = held_model<S>(readings, settled.noise, about);
+    model.delay_s += share * readings.delay_s.std;
+    return run_moved(model, settled.prior, fit);
+  };
+  add_moved(run_at, 1.0, fit);
+}
+
+/// A wheel that rolls and speeds up leans the apparent gravity, and makes it stronger.
+template <int S>
+void add_rolling_uncertainty(const WheelReadings& readings,
+                             const Settled<S>& settled,
+                             const WheelPath& about,
+                             WheelFit& fit) {
+  if (readings.rolling_radius_m > 0.0 || !carries_a_vehicle(readings)) return;
+  const auto run_at = [&](double share) {
+    auto model = held_model<S>(readings, settled.noise, about);
+    model.rolling_radius_m = share * vehicle_rolling_radius_m;
+    return run_moved(model, settled.prior, fit);
+  };
+  add_moved(run_at, 1.0, fit);
 }
 
 /// Gravity is what scales and places are measured with: were it larger by a part, the scales would
@@ -292,7 +443,9 @@ WheelTrack spread_track(const WheelTrack& track,
 /// Gives each reading the variance that its average was found to have, times what averaging took
 /// off.
 void spread_variance(const WheelReadings& averaged, std::size_t each, WheelReadings& readings) {
-  for (std::size_t s = 0; s < readings.sensors.size(); ++s)
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
+    readings.sensors[s].speed_variance =
+        static_cast<double>(each) * averaged.sensors[s].speed_variance;
     for (std::size_t k = 0; k < readings.instants.size(); ++k) {
       const std::int64_t row = readings.instants[k].row[s];
       const std::int64_t block = averaged.instants[k / each].row[s];
@@ -301,6 +454,7 @@ void spread_variance(const WheelReadings& averaged, std::size_t each, WheelReadi
           static_cast<double>(each) *
           averaged.sensors[s].variance_m2ps4[static_cast<std::size_t>(block)];
     }
+  }
 }
 
 template <int S>
@@ -308,6 +462,9 @@ WheelFit fit_sensors(WheelReadings& readings,
                      WheelTrack track,
                      const PlacesPrior& belief,
                      const Progress& progress) {
+  constexpr int ripple_at = wheel::ripple(S) - wheel::first_of(0);
+  if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
+    readings.orders = orders_in(track.path);
   const std::size_t each = readings_to_average(readings, track);
   WheelReadings coarse = averaged(readings, each);
   WheelTrack coarse_track = spread_track(track, readings, coarse);
@@ -327,14 +484,21 @@ WheelFit fit_sensors(WheelReadings& readings,
   constexpr int count = wheel::standing(S);
   fit.constants_prior_cov =
       prior_state<S>(settled.prior).x.cov.template bottomRightCorner<count, count>();
-  fit.constants_prior_cov.template bottomRightCorner<2 * S, 2 * S>() =
-      positive_inverse(belief.information);
+  fit.constants_prior_cov.template bottomRightCorner<2 * S, 2 * S>() = belief.cov;
   add_places_uncertainty(readings, settled, track.path, fit);
-  add_gravity_uncertainty<S>(readings, settled.places_cov * belief.information, fit);
+  add_delay_uncertainty(readings, settled, track.path, fit);
+  add_rolling_uncertainty(readings, settled, track.path, fit);
+  add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
   return fit;
 }
 
 }  // namespace
+
+bool carries_a_vehicle(const WheelReadings& readings) {
+  const auto& variance = readings.sensors.front().variance_m2ps4;
+  const auto loud = quantile(variance, 0.9), quiet = quantile(variance, 0.05);
+  return loud && *loud >= 4.0 * *quiet;
+}
 
 WheelFit fit_wheel(WheelReadings& readings,
                    WheelTrack track,

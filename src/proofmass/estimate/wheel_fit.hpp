@@ -18,7 +18,9 @@ struct WheelReadings {
   double gravity_mps2 = standard_gravity_mps2;  ///< its component in the plane of the wheel
   double gravity_std_mps2 = 0.0;                ///< of that, for want of knowing the axle's tilt
   double rolling_radius_m = 0.0;
+  Uncertain delay_s{};     ///< of the sensors' filters
   double phase_rad = 0.0;  ///< of the second sensor against the first, as known so far
+  RippleOrders orders = first_orders;
   std::vector<double> time_s;
   std::vector<WheelInstant> instants;
   std::vector<PlanarReadings> sensors;
@@ -34,11 +36,18 @@ struct WheelReadings {
 /// One standard deviation, about zero, of what is believed of a sensor before the recording speaks.
 struct ConstantsPrior {
   double bias_mps2 = 0.5, scale = 0.1, skew_rad = 0.03, phase_rad = 0.5, place_m = 0.3;
+  double ripple = 0.0;  ///< of each part, share of the speed
+  double gyro_bias_radps = 0.1, gyro_scale = 0.03;
 };
 
 /// The same for a wheel that turns less than once: gravity shows no more than a piece of its
 /// circle, on which bias, scale and angle stand for each other, so more has to be believed.
 inline constexpr ConstantsPrior short_way_prior{0.2, 0.01, 0.01, 0.5, 0.1};
+
+/// Whether the wheel shakes more when it turns, as one does that carries a vehicle.
+[[nodiscard]] bool carries_a_vehicle(const WheelReadings& readings);
+/// What such a wheel may roll on, one standard deviation about a bench's 0.
+inline constexpr double vehicle_rolling_radius_m = 0.3;
 
 /// How the motion begins, for a filter that has seen nothing yet.
 struct Beginning {
@@ -61,8 +70,10 @@ struct WheelTrack {
 
 /// Follows a single sensor's phase through the recording with whatever noise figures keep it: from
 /// a grid of starting speeds and angles, since at speed and off the axle the first readings do not
-/// show where gravity is. Sets the readings' variance on the way.
-[[nodiscard]] WheelTrack find_track(WheelReadings& readings);
+/// show where gravity is. Sets the readings' variance on the way. `first` of wheel_seeks sets of
+/// noise figures are passed over, where they have led astray.
+[[nodiscard]] WheelTrack find_track(WheelReadings& readings, std::size_t first = 0);
+inline constexpr std::size_t wheel_seeks = 4;
 
 struct WheelFit {
   /// All that stands, in the state's order from wheel::first_of(0) on, with its covariance (the
@@ -82,9 +93,8 @@ struct WheelFit {
 
 /// What is known of the sensors' places beforehand.
 struct PlacesPrior {
-  Eigen::VectorXd mean;         ///< (u, v) of each sensor, m
-  Eigen::MatrixXd information;  ///< inverse of its covariance, 1/m²
-  bool final = false;           ///< the recording is not asked for more
+  Eigen::VectorXd mean;  ///< (u, v) of each sensor, m
+  Eigen::MatrixXd cov;   ///< m²
 };
 
 /// Settles noise, places and constants about the track, then smooths.

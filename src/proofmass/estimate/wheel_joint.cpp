@@ -15,14 +15,30 @@ constexpr double not_a_wheel = 0.5;
 /// meanwhile.
 constexpr double same_instant_s = 5e-6;
 
+/// A pole that is given is good to a tenth, as resistors and capacitors are. One that is not may be
+/// anywhere between two corners, each octave as likely.
+Uncertain delay_of(const WheelOptions& options, double rate_hz) {
+  const auto delay_s = [](double corner_hz) { return 1.0 / (rad_per_turn * corner_hz); };
+  if (options.bandwidth_hz) {
+    const double delay = delay_s(*options.bandwidth_hz);
+    return {delay, 0.1 * delay};
+  }
+  const double longest = delay_s(std::min(10.0, 0.1 * rate_hz)), shortest = delay_s(2.5 * rate_hz);
+  const double octaves = std::log(longest / shortest);
+  const double mean = (longest - shortest) / octaves;
+  const double square = 0.5 * (longest * longest - shortest * shortest) / octaves;
+  return {mean, std::sqrt(square - mean * mean)};
+}
+
 /// The time line of one or two sensors; the second's stamps are late by offset_s.
 WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
                     const std::vector<const Prepared*>& prepared,
                     double offset_s,
                     const WheelOptions& options) {
   WheelReadings readings;
-  const Uncertain gravity = gravity_in_plane(
-      prepared.front()->plane, !sensors.front()->accel_mps2[2].empty(), options.gravity_mps2);
+  const Uncertain gravity =
+      gravity_in_plane(prepared.front()->plane, !sensors.front()->accel_mps2[2].empty(),
+                       options.gravity_mps2, options.axle_tilt_std_rad);
   readings.gravity_mps2 = gravity.value;
   readings.gravity_std_mps2 = gravity.std;
   readings.rolling_radius_m = options.rolling_radius_m.value_or(0.0);
@@ -54,7 +70,7 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
 /// Nothing is believed of the places but their size.
 PlacesPrior anywhere(std::size_t sensors, double std_m) {
   const auto count = static_cast<Eigen::Index>(2 * sensors);
-  return {Eigen::VectorXd::Zero(count), Eigen::MatrixXd::Identity(count, count) / (std_m * std_m)};
+  return {Eigen::VectorXd::Zero(count), Eigen::MatrixXd::Identity(count, count) * (std_m * std_m)};
 }
 
 /// Whether the recording shows in which of its own directions the sensor sits.
@@ -66,20 +82,18 @@ bool shows_direction(const WheelFit& fit, Eigen::Index at) {
 /// With the radius given, each sensor is on its circle; where on it is left to the recording, since
 /// at one speed a turn of that direction is a bias. Where the recording does not show the
 /// direction, the sensor may be anywhere within, as far from the middle along each axis as a
-/// circle's points are. The recording is then not asked either: what it says of places that hardly
-/// show rests on the motion being driven by white noise, and a ripple that comes round with the
-/// wheel is not; it drew them to the axle, with half the error that they had.
+/// circle's points are.
 PlacesPrior on_circles(const WheelFit& free, std::size_t sensors, const Uncertain& radius_m) {
   PlacesPrior prior =
       anywhere(sensors, std::max(radius_m.value / std::numbers::sqrt2, radius_m.std));
   const Eigen::Index count = prior.mean.size(), first = free.constants.size() - count;
-  for (Eigen::Index at = 0; at < count; at += 2)
-    prior.final = prior.final || !shows_direction(free, first + at);
-  for (Eigen::Index at = 0; at < count && !prior.final; at += 2) {
+  for (Eigen::Index at = 0; at < count; at += 2) {
+    if (!shows_direction(free, first + at)) continue;
     const Eigen::Vector2d outward = free.constants.segment<2>(first + at).normalized();
+    const double across2 = prior.cov(at, at);
     prior.mean.segment<2>(at) = radius_m.value * outward;
-    prior.information.block<2, 2>(at, at) +=
-        outward * outward.transpose() / (radius_m.std * radius_m.std);
+    prior.cov.block<2, 2>(at, at) +=
+        (radius_m.std * radius_m.std - across2) * outward * outward.transpose();
   }
   return prior;
 }
@@ -103,13 +117,19 @@ WheelFit fit_with_radius(WheelReadings& readings,
   WheelFit free =
       fit_wheel(readings, track, anywhere(sensors, ConstantsPrior{}.place_m), options.progress);
   if (!options.radius_m) return free;
-  const Uncertain radius_m{*options.radius_m, std::max(0.02 * *options.radius_m, 2e-4)};
+  const Uncertain radius_m{*options.radius_m, radius_std_m(options)};
   WheelFit held =
       fit_wheel(readings, free.track, on_circles(free, sensors, radius_m), options.progress);
   held.given_radius_m = radius_m;
   for (std::size_t s = 0; s < sensors; ++s)
     held.free_radius_m.push_back(radius_in(free, sensors, s));
   return held;
+}
+
+double top_speed_radps(const WheelFit& fit) {
+  double top = 0.0;
+  for (const double speed : fit.series.speed_radps) top = std::max(top, std::abs(speed));
+  return top;
 }
 
 Result<Single> fit_single(const WheelSensor& sensor,
@@ -119,15 +139,27 @@ Result<Single> fit_single(const WheelSensor& sensor,
   single.readings = merge({&sensor}, {&single.prepared}, 0.0, options);
   if (single.readings.instants.size() < 10)
     return Error{Errc::too_few_samples, sensor.name + ": fewer than 10 usable rows"};
+  single.readings.delay_s = delay_of(options, single.readings.rate_hz());
   if (options.progress) options.progress("looking for the wheel's phase", 0.0);
-  const WheelTrack track = find_track(single.readings);
-  if (track.lost > not_a_wheel)
+  const double fastest = fastest_radps(single.readings.rate_hz());
+  bool followed = false;
+  for (std::size_t seek = 0; seek < wheel_seeks; ++seek) {
+    const WheelTrack track = find_track(single.readings, seek);
+    if (track.lost > not_a_wheel) break;
+    followed = true;
+    single.fit = fit_with_radius(single.readings, track, options);
+    if (top_speed_radps(single.fit) <= fastest) return single;
+  }
+  if (followed)
     return Error{Errc::not_observable,
                  sensor.name +
-                     ": no gravity turning in the plane of the wheel (axle upright, "
-                     "readings not in m/s^2, or not a wheel); check --unit and --spin-axis"};
-  single.fit = fit_with_radius(single.readings, track, options);
-  return single;
+                     ": the angle was lost: it can be followed only by more than an "
+                     "eighth of a turn from reading to reading; record at a higher "
+                     "rate, or cut the recording by --from and --to"};
+  return Error{Errc::not_observable,
+               sensor.name +
+                   ": no gravity turning in the plane of the wheel (axle upright, "
+                   "readings not in m/s^2, or not a wheel); check --unit and --spin-axis"};
 }
 
 Result<Single> fit_single(const WheelSensor& sensor, const WheelOptions& options) {
@@ -148,14 +180,20 @@ Status check_wheel(std::size_t sensors, const WheelOptions& options) {
   if (sensors == 0 || sensors > 2)
     return Error{Errc::invalid_argument,
                  "a wheel takes one or two sensors, not " + std::to_string(sensors)};
-  const bool positive = options.gravity_mps2 > 0.0 && options.radius_m.value_or(0.0) >= 0.0 &&
-                        options.rim_radius_m.value_or(1.0) > 0.0 &&
-                        options.rolling_radius_m.value_or(1.0) > 0.0 &&
-                        options.alignment_std_rad >= 0.0;
+  const bool positive =
+      options.gravity_mps2 > 0.0 && options.radius_m.value_or(0.0) >= 0.0 &&
+      options.rim_radius_m.value_or(1.0) > 0.0 && options.rolling_radius_m.value_or(1.0) > 0.0 &&
+      options.alignment_std_rad >= 0.0 && options.radius_std_m.value_or(0.0) >= 0.0 &&
+      options.bandwidth_hz.value_or(1.0) > 0.0 && options.axle_tilt_std_rad >= 0.0;
   if (!positive)
     return Error{Errc::invalid_argument,
-                 "gravity and radii must be positive (the sensor's may be 0)"};
+                 "gravity, radii and bandwidth must be positive (the sensor's radius may be 0), "
+                 "standard deviations not negative"};
   return Done{};
+}
+
+double radius_std_m(const WheelOptions& options) {
+  return options.radius_std_m.value_or(std::max(0.02 * options.radius_m.value_or(0.0), 2e-4));
 }
 
 Eigen::VectorXd places_in(const WheelFit& fit, std::size_t sensors) {
@@ -198,6 +236,8 @@ Joint fit_jointly(const std::vector<WheelSensor>& sensors,
   joint.readings = merge({&sensors[0], &sensors[1]}, {&one.prepared, &two.prepared},
                          pair.clocks.offset_s.value, options);
   joint.readings.phase_rad = pair.clocks.phase_rad;
+  joint.readings.orders = one.readings.orders;
+  joint.readings.delay_s = one.readings.delay_s;
   for (std::size_t s = 0; s < 2; ++s)
     joint.readings.sensors[s].variance_m2ps4 = pair.singles[s].readings.sensors[0].variance_m2ps4;
   WheelTrack track = one.fit.track;
@@ -213,7 +253,10 @@ Joint fit_jointly(const std::vector<WheelSensor>& sensors,
   }
   const Eigen::VectorXd &first = one.fit.track.path.standing, &second = two.fit.track.path.standing;
   track.path.standing.resize(wheel::standing(2));
-  track.path.standing << first.head<5>(), second.head<5>(), 0.0, first.tail<2>(), second.tail<2>();
+  constexpr int between = wheel::gyro(1) - wheel::ripple(1);
+  constexpr int ripple = wheel::ripple(1) - wheel::first_of(0), gyro = ripple + between;
+  track.path.standing << first.head<5>(), second.head<5>(), 0.0, first.segment<between>(ripple),
+      first.segment<2>(gyro), second.segment<2>(gyro), first.tail<2>(), second.tail<2>();
   track.beginning.angle_rad = track.path.moving.front()(wheel::angle);
   joint.fit = fit_with_radius(joint.readings, track, options);
   return joint;

@@ -46,6 +46,9 @@ struct Joint {
 /// (u, v) of each sensor.
 [[nodiscard]] Eigen::VectorXd places_in(const WheelFit& fit, std::size_t sensors);
 
+/// Of the radius that was given.
+[[nodiscard]] double radius_std_m(const WheelOptions& options);
+
 /// Whether the options can be followed, for so many sensors.
 [[nodiscard]] Status check_wheel(std::size_t sensors, const WheelOptions& options);
 

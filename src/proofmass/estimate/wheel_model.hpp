@@ -22,6 +22,17 @@
 // is in no reading, and so in no state. Nor is ρ: a_h shifts the apparent gravity by −ρ α / g,
 // which is what a shift of φ does. Source: kinematics of a rigid body in a plane; for two opposite
 // sensors with parallel axes, M. A. Lele (2010), section 4.4, with α = a_t / R.
+//
+// What drives a wheel ripples with its angle (unbalance, bearing, gear). The state's angle Θ and
+// speed Ω are those without the ripple; the wheel's own are
+//
+//   θ = Θ + Σ (c_n sin nΘ − s_n cos nΘ) / n,   ω = dθ/dt = Ω (1 + Σ c_n cos nΘ + s_n sin nΘ).
+//
+// A ripple once a turn looks like a scale error or a skew, by ω² r: without it as a nuisance the
+// readings would seem to tell those, and the place, at one speed.
+//
+// A sensor's filter delays what turns about it, gravity and hub, by δ = atan(ω τ), and weakens it
+// by cos δ (one pole). Its gyroscope, where it has one, reads (1 + s_g) ω + b_g about the axle.
 namespace proofmass::estimate {
 
 /// Where each quantity sits in the state; what belongs to a sensor counts from first_of(sensor).
@@ -37,9 +48,17 @@ inline constexpr int bias = 0, scale = 2, skew = 4;  ///< of a sensor, from firs
 }
 /// Of the second sensor against the first.
 inline constexpr int phase = first_of(2);
+inline constexpr int ripple_orders = 4;  ///< (c, s) of each
+[[nodiscard]] constexpr int ripple(int sensors) {
+  return first_of(sensors) + (sensors - 1);
+}
+/// Bias, rad/s, and scale error of each sensor's gyroscope.
+[[nodiscard]] constexpr int gyro(int sensors) {
+  return ripple(sensors) + 2 * ripple_orders;
+}
 /// The places come last: once found they are held, and the filter runs on the states before them.
 [[nodiscard]] constexpr int places(int sensors) {
-  return first_of(sensors) + (sensors - 1);
+  return gyro(sensors) + 2 * sensors;
 }
 [[nodiscard]] constexpr int states(int sensors) {
   return places(sensors) + 2 * sensors;
@@ -58,10 +77,25 @@ struct WheelNoise {
   double bias_walk_psd = 0.0;  ///< of each bias, (m/s²)²/s
 };
 
+/// Orders 1 and 2 are always there, being those that look like scale, skew and bias.
+using RippleOrders = std::array<int, wheel::ripple_orders>;
+inline constexpr RippleOrders first_orders{1, 2, 3, 4};
+inline constexpr int highest_order = 12;
+
+/// Of each part of the ripple, 1/s: a tenth of a per cent within ten seconds.
+inline constexpr double ripple_walk_psd = 1e-7;
+/// Of a gyroscope's bias, (rad/s)²/s, and scale, 1/s: 0.06 deg/s and 0.3 % within ten seconds, for
+/// axes that lean, a frame that turns, and what gravity and shaking do to it. A gyroscope tells the
+/// count and bridges what is spoilt; it is no better than this against gravity.
+inline constexpr double gyro_bias_walk_psd = 1e-7, gyro_scale_walk_psd = 1e-6;
+
 /// The readings of one sensor in the plane of the wheel, SI.
 struct PlanarReadings {
   std::vector<double> u_mps2, v_mps2;  ///< NaN where there is no reading
   std::vector<double> variance_m2ps4;  ///< of each reading, both axes alike
+  /// Of a gyroscope about the axle, NaN where there is none; empty without one.
+  std::vector<double> speed_radps{};
+  double speed_variance = 0.0;  ///< of each, rad²/s²
 
   [[nodiscard]] bool has(std::size_t row) const {
     return !std::isnan(u_mps2[row]) && !std::isnan(v_mps2[row]);
@@ -77,6 +111,13 @@ struct WheelPath {
   Eigen::VectorXd standing;  ///< in the state's order from wheel::first_of(0) on
 };
 
+/// What a place meets at an instant: the squares of the speed and the accelerations of a path, each
+/// averaged over a turn. The place's columns in the Jacobian are ω² and α, known only through the
+/// readings themselves; a filter that took such noisy columns for exact would find information
+/// where there is none, and what ripples within a turn tells a place by what the motion's model
+/// makes of the ripple. What the averages tell is how the mean force changes with the speed.
+using WheelLevers = std::vector<Mat<2>>;
+
 /// One instant of the merged time line and the row of each sensor that was read then.
 struct WheelInstant {
   static constexpr std::int64_t no_row = -1;
@@ -89,21 +130,68 @@ struct WheelModel {
   static constexpr int sensors_used = Sensors;
   static constexpr int states = wheel::states(Sensors);
   static constexpr int moving = wheel::moving;
-  static constexpr int channels = 2 * Sensors;
+  static constexpr int channels = 3 * Sensors;
   using State = Mat<states>;
 
   double gravity_mps2 = 0.0;      ///< its component in the plane of the wheel
   double rolling_radius_m = 0.0;  ///< ρ; 0 for an axle that stands
   double phase_rad = 0.0;         ///< of sensor 2; its state is the departure from this
+  double delay_s = 0.0;           ///< τ, of both sensors' filters
   WheelNoise noise;
   const std::vector<WheelInstant>* instants = nullptr;
   std::array<const PlanarReadings*, 2> readings{};
   const WheelPath* about = nullptr;  ///< nullptr: the plain extended filter
 
-  bool places_held = false;  ///< they have no variance and learn nothing
+  const WheelLevers* levers = nullptr;  ///< for places that are not held, with `about`
+
+  bool places_held = false;            ///< they have no variance and learn nothing
+  bool with_ripple = false;            ///< otherwise there is none
+  RippleOrders orders = first_orders;  ///< of the ripple, cycles a turn
+  bool with_gyro = false;
 
   [[nodiscard]] std::size_t size() const { return instants->size(); }
-  [[nodiscard]] int active() const { return places_held ? wheel::places(Sensors) : states; }
+  [[nodiscard]] int active() const {
+    if (!places_held) return states;
+    if (with_gyro) return wheel::places(Sensors);
+    return with_ripple ? wheel::gyro(Sensors) : wheel::ripple(Sensors);
+  }
+
+  /// The wheel's own motion, with the slopes of angle, speed and acceleration by the state.
+  struct Motion {
+    double angle, speed, accel;
+    State by_angle, by_speed, by_accel;
+  };
+  [[nodiscard]] Motion motion(const State& x) const {
+    const double Theta = x(wheel::angle), Omega = x(wheel::speed), A = x(wheel::accel);
+    Motion now{Theta, Omega, A, State::Zero(), State::Zero(), State::Zero()};
+    now.by_angle(wheel::angle) = now.by_speed(wheel::speed) = now.by_accel(wheel::accel) = 1.0;
+    if (!with_ripple) return now;
+    double share = 0.0, slope = 0.0, curve = 0.0;  // Σ, and its first two derivatives by Θ
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+      const double n = orders[i];
+      const double cos_n = std::cos(n * Theta), sin_n = std::sin(n * Theta);
+      const int at = wheel::ripple(Sensors) + 2 * static_cast<int>(i);
+      const double c = x(at), s = x(at + 1);
+      now.angle += (c * sin_n - s * cos_n) / n;
+      share += c * cos_n + s * sin_n;
+      slope += n * (s * cos_n - c * sin_n);
+      curve -= n * n * (c * cos_n + s * sin_n);
+      now.by_angle(at) = sin_n / n;
+      now.by_angle(at + 1) = -cos_n / n;
+      now.by_speed(at) = Omega * cos_n;
+      now.by_speed(at + 1) = Omega * sin_n;
+      now.by_accel(at) = A * cos_n - Omega * Omega * n * sin_n;
+      now.by_accel(at + 1) = A * sin_n + Omega * Omega * n * cos_n;
+    }
+    now.speed = Omega * (1.0 + share);
+    now.accel = A * (1.0 + share) + Omega * Omega * slope;
+    now.by_angle(wheel::angle) = now.by_speed(wheel::speed) = now.by_accel(wheel::accel) =
+        1.0 + share;
+    now.by_speed(wheel::angle) = Omega * slope;
+    now.by_accel(wheel::angle) = A * slope + Omega * Omega * curve;
+    now.by_accel(wheel::speed) = 2.0 * Omega * slope;
+    return now;
+  }
 
   [[nodiscard]] Transition<states, moving> transition(const State& x, std::size_t k) const {
     const double t = (*instants)[k].dt_s, t2 = t * t, t3 = t2 * t, t4 = t2 * t2, t5 = t4 * t;
@@ -129,6 +217,13 @@ struct WheelModel {
     step.walk.setZero();
     for (int s = 0; s < Sensors; ++s)
       step.walk.template segment<2>(wheel::first_of(s)).setConstant(noise.bias_walk_psd * t);
+    if (with_ripple)
+      step.walk.template segment<2 * wheel::ripple_orders>(wheel::ripple(Sensors))
+          .setConstant(ripple_walk_psd * t);
+    if (with_gyro)
+      for (int s = 0; s < Sensors; ++s)
+        step.walk.template segment<2>(wheel::gyro(Sensors) + 2 * s) << gyro_bias_walk_psd * t,
+            gyro_scale_walk_psd * t;
     return step;
   }
 
@@ -138,23 +233,41 @@ struct WheelModel {
     return row != WheelInstant::no_row && readings[sensor]->has(static_cast<std::size_t>(row));
   }
 
+  /// Whether instant k has the gyroscope's reading of a sensor that was read.
+  [[nodiscard]] bool has_speed(std::size_t sensor, std::size_t k) const {
+    if (!with_gyro || readings[sensor]->speed_radps.empty()) return false;
+    return !std::isnan(
+        readings[sensor]->speed_radps[static_cast<std::size_t>((*instants)[k].row[sensor])]);
+  }
+
   void measure(const State& x, std::size_t k, Readings<states, channels>& out) const {
     out.count = 0;
     const State at_state = about == nullptr ? x : state_about(x, k);
+    const Motion now = motion(at_state);
     for (int s = 0; s < Sensors; ++s) {
       const auto index = static_cast<std::size_t>(s);
       if (!has_readings(index, k)) continue;
       const PlanarReadings& sensor = *readings[index];
       const auto at = static_cast<std::size_t>((*instants)[k].row[index]);
-      read_sensor(at_state, s, out);
-      auto& u = out.rows[static_cast<std::size_t>(out.count - 2)];
-      auto& v = out.rows[static_cast<std::size_t>(out.count - 1)];
+      const int first = out.count;
+      const Mat<2> lever =
+          levers == nullptr ? Mat<2>(now.speed * now.speed, now.accel) : (*levers)[k];
+      read_sensor(at_state, now, lever, s, out);
+      auto& u = out.rows[static_cast<std::size_t>(first)];
+      auto& v = out.rows[static_cast<std::size_t>(first + 1)];
       u.value = sensor.u_mps2[at];
       v.value = sensor.v_mps2[at];
       u.variance = v.variance = sensor.variance_m2ps4[at];
-      if (about != nullptr) {
-        u.predicted += u.h.dot(x - at_state);
-        v.predicted += v.h.dot(x - at_state);
+      if (has_speed(index, k)) {
+        read_gyro(at_state, now, s, out);
+        auto& speed = out.rows[static_cast<std::size_t>(first + 2)];
+        speed.value = sensor.speed_radps[at];
+        speed.variance = sensor.speed_variance;
+      }
+      if (about == nullptr) continue;
+      for (int i = first; i < out.count; ++i) {
+        auto& row = out.rows[static_cast<std::size_t>(i)];
+        row.predicted += row.h.dot(x - at_state);
       }
     }
   }
@@ -173,40 +286,56 @@ struct WheelModel {
  private:
   [[nodiscard]] State state_about(const State& x, std::size_t k) const {
     State at = x;
-    if (std::abs(x(wheel::angle) - about->moving[k](wheel::angle)) > 0.5)
-      at.template head<moving>() = about->moving[k];
-    constexpr int first = wheel::first_of(0), count = wheel::places(Sensors) - first;
-    at.template segment<count>(first) = about->standing.head<count>();
+    const bool slips = std::abs(x(wheel::angle) - about->moving[k](wheel::angle)) > 0.5;
+    // Places that are not held would at first outweigh gravity, and turn the angle.
+    if (slips || levers != nullptr) at.template head<moving>() = about->moving[k];
+    at.template tail<wheel::standing(Sensors)>() = about->standing;
+    if (places_held) at.template tail<2 * Sensors>() = x.template tail<2 * Sensors>();
     return at;
   }
 
-  void read_sensor(const State& x, int s, Readings<states, channels>& out) const {
+  void read_gyro(const State& x, const Motion& now, int s, Readings<states, channels>& out) const {
+    const int at = wheel::gyro(Sensors) + 2 * s;
+    auto& row = out.rows[static_cast<std::size_t>(out.count++)];
+    row.h = (1.0 + x(at + 1)) * now.by_speed;
+    row.h(at) = 1.0;
+    row.h(at + 1) = now.speed;
+    row.predicted = (1.0 + x(at + 1)) * now.speed + x(at);
+  }
+
+  void read_sensor(const State& x,
+                   const Motion& now,
+                   const Mat<2>& lever,
+                   int s,
+                   Readings<states, channels>& out) const {
     const int at = wheel::first_of(s);
-    const double phi = x(wheel::angle) + (s > 0 ? phase_rad + x(wheel::phase) : 0.0);
+    const double w = now.speed, al = now.accel, late = w * delay_s;
+    const double weaker2 = 1.0 / (1.0 + late * late), weaker = std::sqrt(weaker2);
+    const double phi = now.angle + (s > 0 ? phase_rad + x(wheel::phase) : 0.0) - std::atan(late);
     const double sin_phi = std::sin(phi), cos_phi = std::cos(phi);
-    const double w = x(wheel::speed), al = x(wheel::accel);
     const int place = wheel::places(Sensors) + 2 * s;
     const double ru = x(place), rv = x(place + 1);
-    const double g = gravity_mps2, hub = -rolling_radius_m * al;
+    const double g = weaker * gravity_mps2, hub = -weaker * rolling_radius_m * al;
     // Forces and their derivatives in the sensor's true axes.
     const double turn_u = g * cos_phi - hub * sin_phi;   // ∂f_u/∂φ
     const double turn_v = -g * sin_phi - hub * cos_phi;  // ∂f_v/∂φ
     const double fu = -turn_v - w * w * ru - al * rv;
     const double fv = turn_u - w * w * rv + al * ru;
-    Mat<states> du = Mat<states>::Zero(), dv = Mat<states>::Zero();
-    du(wheel::angle) = turn_u;
-    dv(wheel::angle) = turn_v;
-    du(wheel::speed) = -2.0 * w * ru;
-    dv(wheel::speed) = -2.0 * w * rv;
-    du(wheel::accel) = -rv - rolling_radius_m * cos_phi;
-    dv(wheel::accel) = ru + rolling_radius_m * sin_phi;
+    // By the speed: through the centripetal force, and through what turns, later and weaker.
+    const double later = delay_s * weaker2, fade = late * later;
+    const double by_w_u = -2.0 * w * ru - later * turn_u + fade * turn_v;
+    const double by_w_v = -2.0 * w * rv - later * turn_v - fade * turn_u;
+    const double by_al_u = -rv - weaker * rolling_radius_m * cos_phi;
+    const double by_al_v = ru + weaker * rolling_radius_m * sin_phi;
+    Mat<states> du = turn_u * now.by_angle + by_w_u * now.by_speed + by_al_u * now.by_accel;
+    Mat<states> dv = turn_v * now.by_angle + by_w_v * now.by_speed + by_al_v * now.by_accel;
     if (s > 0) {
       du(wheel::phase) = turn_u;
       dv(wheel::phase) = turn_v;
     }
-    du(place) = dv(place + 1) = -w * w;
-    du(place + 1) = -al;
-    dv(place) = al;
+    du(place) = dv(place + 1) = -lever(0);
+    du(place + 1) = -lever(1);
+    dv(place) = lever(1);
     // Through scale, skew and bias to what is read.
     const double su = 1.0 + x(at + wheel::scale), sv = 1.0 + x(at + wheel::scale + 1);
     const double skew = x(at + wheel::skew);

@@ -1,5 +1,6 @@
 #include "proofmass/estimate/wheel_model.hpp"
 
+#include <complex>
 #include <gtest/gtest.h>
 
 #include "proofmass/estimate/wheel_test_support.hpp"
@@ -37,8 +38,9 @@ struct OneInstant {
     model.instants = &instants;
   }
 
-  [[nodiscard]] Readings<WheelModel<S>::states, 2 * S> at(const State<S>& x) const {
-    Readings<WheelModel<S>::states, 2 * S> out;
+  [[nodiscard]] Readings<WheelModel<S>::states, WheelModel<S>::channels> at(
+      const State<S>& x) const {
+    Readings<WheelModel<S>::states, WheelModel<S>::channels> out;
     model.measure(x, 0, out);
     return out;
   }
@@ -67,20 +69,21 @@ State<S> any_state(Normal& normal) {
 }
 
 template <int S>
-void expect_jacobian_of_differences(double rolling_radius_m) {
+void expect_jacobian_of_differences(const OneInstant<S>& instant, int readings) {
   Normal normal(17);
-  const OneInstant<S> instant(rolling_radius_m, 0.7);
   for (int trial = 0; trial < 50; ++trial) {
-    const auto x = any_state<S>(normal);
+    auto x = any_state<S>(normal);
+    if (instant.model.with_ripple)
+      for (int i = wheel::ripple(S); i < wheel::places(S); ++i) x(i) = 0.02 * normal();
     const auto here = instant.at(x);
-    ASSERT_EQ(here.count, 2 * S);
+    ASSERT_EQ(here.count, readings);
     for (int j = 0; j < WheelModel<S>::states; ++j) {
       const double h = 1e-5;
       auto up = x, down = x;
       up(j) += h;
       down(j) -= h;
       const auto above = instant.at(up), below = instant.at(down);
-      for (std::size_t i = 0; i < 2 * S; ++i) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(readings); ++i) {
         const double slope = (above.rows[i].predicted - below.rows[i].predicted) / (2.0 * h);
         EXPECT_NEAR(here.rows[i].h(j), slope, 1e-5 * (1.0 + std::abs(slope)))
             << "reading " << i << ", state " << j;
@@ -90,13 +93,57 @@ void expect_jacobian_of_differences(double rolling_radius_m) {
 }
 
 TEST(WheelModel, JacobianOfOneSensorEqualsDifferences) {
-  expect_jacobian_of_differences<1>(0.0);
+  expect_jacobian_of_differences(OneInstant<1>(0.0, 0.7), 2);
 }
 TEST(WheelModel, JacobianOfTwoSensorsEqualsDifferences) {
-  expect_jacobian_of_differences<2>(0.0);
+  expect_jacobian_of_differences(OneInstant<2>(0.0, 0.7), 4);
 }
 TEST(WheelModel, JacobianOnARollingWheelEqualsDifferences) {
-  expect_jacobian_of_differences<2>(0.3);
+  expect_jacobian_of_differences(OneInstant<2>(0.3, 0.7), 4);
+}
+TEST(WheelModel, JacobianWithRippleDelayAndGyroscopesEqualsDifferences) {
+  OneInstant<2> instant(0.3, 0.7);
+  instant.model.with_ripple = instant.model.with_gyro = true;
+  instant.model.orders = {1, 2, 5, 7};
+  instant.model.delay_s = 0.01;
+  for (PlanarReadings& sensor : instant.readings) sensor.speed_radps = {1.0};
+  expect_jacobian_of_differences(instant, 6);
+}
+
+// The rippling speed integrated by steps, from where its angle starts.
+TEST(WheelModel, SpeedAndAccelerationAreTheDerivativesOfTheRipplingAngle) {
+  WheelModel<1> model;
+  model.with_ripple = true;
+  model.orders = {1, 2, 3, 7};
+  State<1> x = State<1>::Zero();
+  for (int i = 0; i < 2 * wheel::ripple_orders; ++i) x(wheel::ripple(1) + i) = 0.01 * (i - 3);
+  x(wheel::angle) = 0.8;
+  x(wheel::speed) = 6.0;
+  x(wheel::accel) = 2.0;
+  const auto after = [&](double t) {
+    State<1> then = x;
+    then(wheel::angle) += 6.0 * t + t * t;
+    then(wheel::speed) += 2.0 * t;
+    return model.motion(then);
+  };
+  const double h = 1e-5;
+  const auto before = after(-h), now = after(0.0), then = after(h);
+  EXPECT_NEAR((then.angle - before.angle) / (2.0 * h), now.speed, 1e-6);
+  EXPECT_NEAR((then.speed - before.speed) / (2.0 * h), now.accel, 1e-5);
+}
+
+// One pole's answer to a turning vector: late by atan(ω τ), weaker by its cosine.
+TEST(WheelModel, AFilterReadsGravityLaterAndWeaker) {
+  OneInstant<1> instant(0.0, 0.0);
+  instant.model.delay_s = 0.02;
+  State<1> x = State<1>::Zero();
+  x(wheel::angle) = 1.1;
+  x(wheel::speed) = 30.0;
+  const std::complex<double> pole(1.0, 30.0 * 0.02);
+  const std::complex<double> read = std::polar(9.8, 1.1) / pole;
+  const auto& rows = instant.at(x).rows;
+  EXPECT_NEAR(rows[0].predicted, read.imag(), 1e-12);
+  EXPECT_NEAR(rows[1].predicted, read.real(), 1e-12);
 }
 
 // The same force by differentiating a point on the complex plane twice (wheel_test_support.hpp).

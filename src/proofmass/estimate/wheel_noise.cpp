@@ -68,7 +68,8 @@ template <int S>
 void gather(const WheelReadings& readings,
             std::size_t k,
             const StepOf<WheelModel<S>>& step,
-            std::array<NoiseStretch*, 2> stretches) {
+            std::array<NoiseStretch*, 2> stretches,
+            std::array<NoiseStretch, 2>& gyros) {
   int channel = 0;
   for (std::size_t s = 0; s < readings.sensors.size() && channel < step.count; ++s) {
     const std::int64_t row = readings.instants[k].row[s];
@@ -83,12 +84,19 @@ void gather(const WheelReadings& readings,
       stretches[s]->explained += u.expected - readings.sensors[s].variance_m2ps4[at];
       stretches[s]->readings += 1.0;
     }
+    const auto& speeds = readings.sensors[s].speed_radps;
+    if (speeds.empty() || std::isnan(speeds[at])) continue;
+    const auto& u = step.updates[static_cast<std::size_t>(channel++)];
+    if (!u.used) continue;
+    gyros[s].innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
+    gyros[s].explained += u.expected - readings.sensors[s].speed_variance;
+    gyros[s].readings += 1.0;
   }
 }
 
 /// Between these the motion's noise is looked for. A bias that walked faster could stand for
 /// gravity.
-constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e4, 1e6, 1e-4};
+constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e5, 1e8, 1e-4};
 
 }  // namespace
 
@@ -99,12 +107,14 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
   const auto count = static_cast<std::size_t>((readings.time_s.back() - start_s) / length_s) + 1;
   std::array<std::vector<NoiseStretch>, 2> stretches;
   for (auto& of_sensor : stretches) of_sensor.resize(count);
+  std::array<NoiseStretch, 2> gyros;
   auto state = prior_state<S>(prior);
   filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t k, const auto& step) {
     const auto i = static_cast<std::size_t>((readings.time_s[k] - start_s) / length_s);
-    gather<S>(readings, k, step, {&stretches[0][i], &stretches[1][i]});
+    gather<S>(readings, k, step, {&stretches[0][i], &stretches[1][i]}, gyros);
   });
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
+    if (gyros[s].readings > 20.0) readings.sensors[s].speed_variance = gyros[s].variance();
     const VarianceProfile profile(stretches[s], length_s);
     if (profile.empty()) continue;
     for (std::size_t k = 0; k < readings.instants.size(); ++k) {

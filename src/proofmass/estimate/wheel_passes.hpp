@@ -17,11 +17,12 @@ inline constexpr Gate wheel_gate{.huber = 3.0, .limit = 12.0, .patience = 40};
 /// Places of the sensors, (u, v) of each, m.
 using Places = Eigen::VectorXd;
 
-/// What is believed before the recording speaks. Places that are given are held fixed.
+/// What is believed before the recording speaks.
 struct WheelPrior {
   Beginning beginning;
   ConstantsPrior spread;
-  std::optional<Places> places;
+  std::optional<Places> places{};       ///< held there
+  std::optional<PlacesPrior> belief{};  ///< of places that are not held; else spread.place_m
 };
 
 template <int S>
@@ -30,10 +31,14 @@ WheelModel<S> wheel_model(const WheelReadings& readings, const WheelNoise& noise
   model.gravity_mps2 = readings.gravity_mps2;
   model.rolling_radius_m = readings.rolling_radius_m;
   model.phase_rad = readings.phase_rad;
+  model.delay_s = readings.delay_s.value;
+  model.orders = readings.orders;
   model.noise = noise;
   model.instants = &readings.instants;
-  for (std::size_t s = 0; s < readings.sensors.size(); ++s)
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
     model.readings[s] = &readings.sensors[s];
+    model.with_gyro = model.with_gyro || !readings.sensors[s].speed_radps.empty();
+  }
   return model;
 }
 
@@ -53,9 +58,19 @@ void reset_constants(const WheelPrior& prior, Gaussian<wheel::states(S)>& x) {
     variance(at + wheel::skew) = spread.skew_rad * spread.skew_rad;
   }
   if (S == 2) variance(wheel::phase) = spread.phase_rad * spread.phase_rad;
+  variance.template segment<2 * wheel::ripple_orders>(wheel::ripple(S))
+      .setConstant(spread.ripple * spread.ripple);
+  for (int s = 0; s < S; ++s) {
+    const int at = wheel::gyro(S) + 2 * s;
+    variance(at) = spread.gyro_bias_radps * spread.gyro_bias_radps;
+    variance(at + 1) = spread.gyro_scale * spread.gyro_scale;
+  }
   if (prior.places)
     x.mean.template segment<2 * S>(places) = *prior.places;
-  else
+  else if (prior.belief) {
+    x.mean.template segment<2 * S>(places) = prior.belief->mean;
+    x.cov.template bottomRightCorner<2 * S, 2 * S>() = prior.belief->cov;
+  } else
     variance.template segment<2 * S>(places).setConstant(spread.place_m * spread.place_m);
 }
 
@@ -159,20 +174,32 @@ template <int S>
                                     const Excerpt<S>& excerpt,
                                     double first_factor);
 
+/// The levers of a path, on the time line of its instants.
+[[nodiscard]] WheelLevers levers_of(const WheelPath& path, const std::vector<double>& time_s);
+
 struct FoundPlaces {
   Places mean;
   Eigen::MatrixXd cov;
+  Eigen::VectorXd widened{};  ///< of all that stands: what colour does to its standard deviation
   double log_likelihood = 0.0;
 };
 
-/// The sensors' places of maximum likelihood, all else integrated out by the filter, with the
-/// inverse of the likelihood's curvature. The places are no states of the settled filter: their
-/// columns in the Jacobian are ω² and α, known only through the same readings, and a filter that
-/// takes such noisy columns for exact finds information where there is none.
+/// The sensors' places of maximum likelihood, all else integrated out by the filter. What ripples
+/// within a turn speaks for a place only as far as white jerk and snap are true of it, so this is
+/// where to begin, and no measure of what is known.
 template <int S>
-[[nodiscard]] FoundPlaces find_places(const WheelModel<S>& model,
-                                      const Excerpt<S>& excerpt,
-                                      WheelPrior prior,
-                                      const PlacesPrior& belief);
+[[nodiscard]] FoundPlaces likeliest_places(const WheelModel<S>& model,
+                                           const Excerpt<S>& excerpt,
+                                           WheelPrior prior,
+                                           const PlacesPrior& belief);
+
+/// The sensors' places as states beside everything else, about a path: as far as they show in how
+/// the mean force changes with the speed.
+template <int S>
+[[nodiscard]] FoundPlaces places_by_levers(WheelModel<S> model,
+                                           const WheelLevers& levers,
+                                           const std::vector<double>& time_s,
+                                           WheelPrior prior,
+                                           const PlacesPrior& belief);
 
 }  // namespace proofmass::estimate

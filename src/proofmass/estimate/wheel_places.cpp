@@ -1,6 +1,7 @@
 #include <optional>
 
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/estimate/wheel_colour.hpp"
 #include "proofmass/estimate/wheel_passes.hpp"
 
 namespace proofmass::estimate {
@@ -59,22 +60,21 @@ std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& hessia
 /// Newton's steps up the likelihood, halved where they overshoot; the curvature is taken anew only
 /// where a step has been long.
 template <int S>
-FoundPlaces find_places(const WheelModel<S>& model,
-                        const Excerpt<S>& excerpt,
-                        WheelPrior prior,
-                        const PlacesPrior& belief) {
-  const double least_information = symmetric_eigen(belief.information).values.minCoeff();
+FoundPlaces likeliest_places(const WheelModel<S>& model,
+                             const Excerpt<S>& excerpt,
+                             WheelPrior prior,
+                             const PlacesPrior& belief) {
+  const Eigen::MatrixXd information = positive_inverse(belief.cov);
+  const double least_information = symmetric_eigen(information).values.minCoeff();
   const auto likelihood = [&](const Places& places) {
     prior.places = places;
     auto state = excerpt.state;
     reset_constants<S>(prior, state.x);
     const Places off = places - belief.mean;
     return score_run(model, state, excerpt.first, excerpt.last).log_likelihood -
-           0.5 * off.dot(belief.information * off);
+           0.5 * off.dot(information * off);
   };
   FoundPlaces found{*prior.places, Eigen::MatrixXd::Identity(2 * S, 2 * S) / least_information};
-  if (belief.final)
-    return {belief.mean, positive_inverse(belief.information), likelihood(belief.mean)};
   double best = likelihood(found.mean);
   // Far from the truth the surface is ragged; where the recording says little, the truth is near
   // what was believed.
@@ -114,13 +114,62 @@ FoundPlaces find_places(const WheelModel<S>& model,
   return found;
 }
 
-template FoundPlaces find_places(const WheelModel<1>&,
-                                 const Excerpt<1>&,
-                                 WheelPrior,
-                                 const PlacesPrior&);
-template FoundPlaces find_places(const WheelModel<2>&,
-                                 const Excerpt<2>&,
-                                 WheelPrior,
-                                 const PlacesPrior&);
+WheelLevers levers_of(const WheelPath& path, const std::vector<double>& time_s) {
+  constexpr double longest_s = 1.0;  // of a slow wheel, whose speed may change within a turn
+  const std::size_t size = path.moving.size();
+  WheelLevers sums(size + 1, Mat<2>::Zero());
+  for (std::size_t k = 0; k < size; ++k) {
+    const double w = path.moving[k](wheel::speed);
+    sums[k + 1] = sums[k] + Mat<2>(w * w, path.moving[k](wheel::accel));
+  }
+  WheelLevers levers(size);
+  for (std::size_t k = 0; k < size; ++k) {
+    const double turn_s = rad_per_turn / std::abs(path.moving[k](wheel::speed));
+    // As much before as behind, also near the ends.
+    const double half_s = std::min(
+        {0.5 * turn_s, 0.5 * longest_s, time_s[k] - time_s.front(), time_s.back() - time_s[k]});
+    const auto from = static_cast<std::size_t>(
+        std::ranges::lower_bound(time_s, time_s[k] - half_s) - time_s.begin());
+    const auto to = static_cast<std::size_t>(std::ranges::upper_bound(time_s, time_s[k] + half_s) -
+                                             time_s.begin());
+    levers[k] = (sums[to] - sums[from]) / static_cast<double>(to - from);
+  }
+  return levers;
+}
+
+template <int S>
+FoundPlaces places_by_levers(WheelModel<S> model,
+                             const WheelLevers& levers,
+                             const std::vector<double>& time_s,
+                             WheelPrior prior,
+                             const PlacesPrior& belief) {
+  model.places_held = false;
+  model.levers = &levers;
+  prior.places.reset();
+  prior.belief = belief;
+  auto state = prior_state<S>(prior);
+  FoundPlaces found;
+  StandingColour<S> colour(time_s);
+  filter(model, 0, model.size(), wheel_gate, state,
+         [&](std::size_t k, const auto& step) { colour.add(k, step); });
+  found.widened = colour.factors();
+  const auto by = found.widened.template tail<2 * S>().asDiagonal();
+  found.mean = state.x.mean.template tail<2 * S>();
+  found.cov = by * state.x.cov.template bottomRightCorner<2 * S, 2 * S>() * by;
+  return found;
+}
+
+template FoundPlaces likeliest_places(const WheelModel<1>&,
+                                      const Excerpt<1>&,
+                                      WheelPrior,
+                                      const PlacesPrior&);
+template FoundPlaces likeliest_places(const WheelModel<2>&,
+                                      const Excerpt<2>&,
+                                      WheelPrior,
+                                      const PlacesPrior&);
+template FoundPlaces places_by_levers(
+    WheelModel<1>, const WheelLevers&, const std::vector<double>&, WheelPrior, const PlacesPrior&);
+template FoundPlaces places_by_levers(
+    WheelModel<2>, const WheelLevers&, const std::vector<double>&, WheelPrior, const PlacesPrior&);
 
 }  // namespace proofmass::estimate

@@ -140,6 +140,49 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
   return plane_about(axis);
 }
 
+/// Readings that stay at a channel's largest value for three rows or more: the gyroscope's end.
+std::vector<bool> saturated(const std::vector<double>& rate_radps) {
+  double most = 0.0;
+  for (const double rate : rate_radps)
+    if (std::isfinite(rate)) most = std::max(most, std::abs(rate));
+  std::vector<bool> out(rate_radps.size(), false);
+  for (std::size_t row = 2; row < rate_radps.size(); ++row)
+    if (std::abs(rate_radps[row]) == most && rate_radps[row - 1] == rate_radps[row] &&
+        rate_radps[row - 2] == rate_radps[row])
+      out[row] = out[row - 1] = out[row - 2] = true;
+  return out;
+}
+
+/// The gyroscope's readings about the axle, with a first variance from how they scatter.
+void add_speeds(const WheelSensor& sensor,
+                const Screened& screened,
+                const WheelPlane& plane,
+                PlanarReadings& readings) {
+  constexpr double beyond_belief_radps = 1e4, least_variance = 1e-6;
+  const std::size_t size = sensor.time_s.size();
+  readings.speed_radps.assign(size, std::numeric_limits<double>::quiet_NaN());
+  std::array<std::vector<bool>, 3> at_its_end;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (std::abs(plane.axis[axis]) > 0.05) at_its_end[axis] = saturated(sensor.rate_radps[axis]);
+  std::vector<double> seconds;  // differences
+  for (std::size_t row = 0; row < size; ++row) {
+    const Axis rate{sensor.rate_radps[0][row], sensor.rate_radps[1][row],
+                    sensor.rate_radps[2][row]};
+    const double speed = dot(rate, plane.axis);
+    bool good = screened.usable[row] && std::abs(speed) < beyond_belief_radps;
+    for (const auto& end : at_its_end) good = good && (end.empty() || !end[row]);
+    if (!good) continue;
+    readings.speed_radps[row] = speed;
+    if (row >= 2)
+      seconds.push_back(speed - 2.0 * readings.speed_radps[row - 1] +
+                        readings.speed_radps[row - 2]);
+  }
+  std::erase_if(seconds, [](double second) { return std::isnan(second); });
+  // A second difference of white noise has six times its variance.
+  readings.speed_variance =
+      std::max(least_variance, std::pow(robust_std(seconds).value_or(0.0), 2) / 6.0);
+}
+
 /// Mean and variance of x² for a normal x.
 struct Square {
   double mean = 0.0, variance = 0.0;
@@ -219,11 +262,13 @@ WheelPlane turned_over(const WheelPlane& plane) {
   return other;
 }
 
-Uncertain gravity_in_plane(const WheelPlane& plane, bool axial_read, double gravity_mps2) {
-  constexpr double level_rad = 0.02;   // of an axle that was meant to be level
+Uncertain gravity_in_plane(const WheelPlane& plane,
+                           bool axial_read,
+                           double gravity_mps2,
+                           double tilt_std_rad) {
   constexpr double tilted_part = 0.1;  // of all axles; these lie anyhow
   const double read = axial_read ? plane.axial_mps2 : 0.0;
-  const double level2 = std::pow(level_rad * gravity_mps2, 2);
+  const double level2 = std::pow(tilt_std_rad * gravity_mps2, 2);
   const double bias2 = std::pow(ConstantsPrior{}.bias_mps2, 2), read2 = level2 + bias2;
   const double learned = axial_read ? level2 / read2 : 0.0;
   const Square level = square_of(learned * read, (1.0 - learned) * level2);
@@ -253,6 +298,7 @@ PlanarReadings project(const WheelSensor& sensor,
     readings.u_mps2[row] = dot(f, plane.u);
     readings.v_mps2[row] = dot(f, plane.v);
   }
+  if (!sensor.rate_radps[0].empty()) add_speeds(sensor, screened, plane, readings);
   return readings;
 }
 

@@ -47,11 +47,12 @@ struct WheelPlane {
                                             const std::optional<Axis>& given);
 
 /// Gravity's part in the plane of the wheel, m/s². A mean force along the axis is the axle's tilt
-/// or the sensor's bias: within a bias's size the axle is most likely level, beyond it it is
-/// tilted. `axial_read` is false for a sensor of two axes, whose axle is taken for level.
+/// or the sensor's bias: nine axles in ten are level but for `tilt_std_rad`, the tenth lies anyhow.
+/// `axial_read` is false for a sensor of two axes, which shows nothing of the tilt.
 [[nodiscard]] Uncertain gravity_in_plane(const WheelPlane& plane,
                                          bool axial_read,
-                                         double gravity_mps2);
+                                         double gravity_mps2,
+                                         double tilt_std_rad);
 
 /// The same plane seen from its other side: the wheel turns the other way.
 [[nodiscard]] WheelPlane turned_over(const WheelPlane& plane);

@@ -202,7 +202,7 @@ TEST(GravityInPlane, OfALevelAxleIsAllOfItWhateverTheBiasAlongIt) {
   for (const double bias_mps2 : {-0.3, 0.0, 0.3}) {
     WheelPlane plane;
     plane.axial_mps2 = bias_mps2;
-    const Uncertain in_plane = gravity_in_plane(plane, true, g);
+    const Uncertain in_plane = gravity_in_plane(plane, true, g, 0.02);
     EXPECT_NEAR(in_plane.value, g, 3.0 * in_plane.std) << bias_mps2;
     EXPECT_LT(in_plane.std, 1e-3 * g);
   }
@@ -212,7 +212,7 @@ TEST(GravityInPlane, OfATiltedAxleIsWhatTheTiltLeavesAsFarAsABiasLetsItBeSeen) {
   constexpr double g = standard_gravity_mps2, tilt_rad = 0.4, bias_mps2 = 0.3;
   WheelPlane plane;
   plane.axial_mps2 = g * std::sin(tilt_rad) + bias_mps2;
-  const Uncertain in_plane = gravity_in_plane(plane, true, g);
+  const Uncertain in_plane = gravity_in_plane(plane, true, g, 0.02);
   EXPECT_NEAR(in_plane.value, g * std::cos(tilt_rad), 2.0 * in_plane.std);
   EXPECT_NEAR(in_plane.std, 0.5 * std::tan(tilt_rad), 0.03);  // ∂(g cos τ) of a bias of 0.5 m/s²
 }
@@ -220,7 +220,7 @@ TEST(GravityInPlane, OfATiltedAxleIsWhatTheTiltLeavesAsFarAsABiasLetsItBeSeen) {
 TEST(GravityInPlane, OfASensorOfTwoAxesIsALevelAxles) {
   WheelPlane plane;
   plane.axial_mps2 = 3.0;  // of a channel that is not there
-  const Uncertain in_plane = gravity_in_plane(plane, false, standard_gravity_mps2);
+  const Uncertain in_plane = gravity_in_plane(plane, false, standard_gravity_mps2, 0.02);
   EXPECT_NEAR(in_plane.value, standard_gravity_mps2, 3.0 * in_plane.std);
 }
 

@@ -16,8 +16,9 @@ struct Seek {
 
 /// Noise figures to follow a wheel with when nothing is known yet, from a car's wheel on the road
 /// to a bench that hardly shakes. The first that keeps the phase is taken.
-constexpr std::array seeks{Seek{1.5, {20.0, 0.0, 1e-7}}, Seek{3.0, {100.0, 0.0, 1e-7}},
-                           Seek{1.5, {500.0, 0.0, 1e-7}}, Seek{0.5, {200.0, 0.0, 1e-7}}};
+constexpr std::array<Seek, wheel_seeks> seeks{
+    Seek{1.5, {20.0, 0.0, 1e-7}}, Seek{3.0, {100.0, 0.0, 1e-7}}, Seek{1.5, {500.0, 0.0, 1e-7}},
+    Seek{0.5, {200.0, 0.0, 1e-7}}};
 
 void set_variance(WheelReadings& readings, double accel_std_mps2) {
   // The same density whatever the rate.
@@ -93,7 +94,9 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
   WheelReadings out{readings.gravity_mps2,
                     readings.gravity_std_mps2,
                     readings.rolling_radius_m,
+                    readings.delay_s,
                     readings.phase_rad,
+                    readings.orders,
                     {},
                     {},
                     {}};
@@ -106,7 +109,7 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
       time_s += readings.time_s[k] / static_cast<double>(last - first);
     for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
       const PlanarReadings& sensor = readings.sensors[s];
-      double u = 0.0, v = 0.0, variance = 0.0, count = 0.0;
+      double u = 0.0, v = 0.0, variance = 0.0, count = 0.0, speed = 0.0, speeds = 0.0;
       for (std::size_t k = first; k < last; ++k) {
         const std::int64_t row = readings.instants[k].row[s];
         const auto at = static_cast<std::size_t>(row);
@@ -115,12 +118,19 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
         v += sensor.v_mps2[at];
         variance += sensor.variance_m2ps4[at];
         count += 1.0;
+        if (sensor.speed_radps.empty() || std::isnan(sensor.speed_radps[at])) continue;
+        speed += sensor.speed_radps[at];
+        speeds += 1.0;
       }
       if (count == 0.0) continue;
       instant.row[s] = static_cast<std::int64_t>(out.sensors[s].u_mps2.size());
       out.sensors[s].u_mps2.push_back(u / count);
       out.sensors[s].v_mps2.push_back(v / count);
       out.sensors[s].variance_m2ps4.push_back(variance / (count * count));
+      if (sensor.speed_radps.empty()) continue;
+      out.sensors[s].speed_radps.push_back(speeds > 0.0 ? speed / speeds
+                                                        : std::numeric_limits<double>::quiet_NaN());
+      out.sensors[s].speed_variance = sensor.speed_variance / static_cast<double>(each);
     }
     instant.dt_s = out.time_s.empty() ? 0.0 : time_s - out.time_s.back();
     out.time_s.push_back(time_s);
@@ -129,11 +139,12 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
   return out;
 }
 
-WheelTrack find_track(WheelReadings& readings) {
+WheelTrack find_track(WheelReadings& readings, std::size_t first) {
   PM_EXPECTS(readings.sensors.size() == 1 && readings.instants.size() >= 2);
   WheelTrack best;
   double best_lost = std::numeric_limits<double>::infinity();
-  for (const Seek& seek : seeks) {
+  for (std::size_t i = first; i < seeks.size(); ++i) {
+    const Seek& seek = seeks[i];
     set_variance(readings, seek.accel_std_mps2);
     const auto model = wheel_model<1>(readings, seek.noise);
     const Beginning beginning = seek_beginning(readings, seek.noise);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "proofmass/core/units.hpp"
@@ -50,6 +51,14 @@ Value sensor(const WheelSensorFit& fit, bool first, bool clocks_shared) {
                 {"gated", fit.gated}};
 }
 
+/// Of the first sensor that has one.
+Value gyroscope(const WheelSolution& solution) {
+  const auto fit = std::ranges::find_if(solution.sensors, &WheelSensorFit::has_gyro);
+  if (fit == solution.sensors.end()) return Value();
+  return Object{{"bias", quantity(fit->gyro_bias_radps, "rad/s")},
+                {"scale", quantity(fit->gyro_scale, "1")}};
+}
+
 Array stretches(const std::vector<estimate::Stretch>& rejected) {
   Array items;
   for (const estimate::Stretch& stretch : rejected) {
@@ -74,6 +83,8 @@ std::string lacking(const WheelSensorFit& fit, bool first, bool clocks_shared) {
   look(fit.scale[1], "scale[1]");
   look(fit.mounting_rad, "mounting_rad");
   look(fit.skew_rad, "skew_rad");
+  if (fit.has_gyro) look(fit.gyro_bias_radps, "gyroscope.bias");
+  if (fit.has_gyro) look(fit.gyro_scale, "gyroscope.scale");
   if (!first) look(fit.phase_rad, "phase_rad");
   if (!first && !clocks_shared) look(fit.clock_offset_s, "clock_offset_s");
   if (names.empty()) return names;
@@ -109,6 +120,8 @@ std::vector<std::string> warnings(const WheelReport& report) {
   missing_of(solution.atan2, "atan2");
   missing_of(solution.ekf, "ekf");
   missing_of(solution.smoother, "smoother");
+  if (std::ranges::none_of(solution.sensors, &WheelSensorFit::has_gyro))
+    all.push_back("gyroscope: null: no gyroscope was used");
   for (const WheelSensorFit& fit : solution.sensors) {
     const std::string sentence =
         lacking(fit, &fit == &solution.sensors.front(), report.options.clocks_shared);
@@ -138,7 +151,9 @@ std::string wheel_json(const WheelReport& report) {
        {"duration_s", time_s.empty() ? 0.0 : time_s.back() - time_s.front()},
        {"gravity_mps2", report.options.gravity_mps2},
        {"clocks_shared", report.options.clocks_shared},
+       {"delay_s", quantity(solution.delay_s, "s")},
        {"sensors", std::move(sensors)},
+       {"gyroscope", gyroscope(solution)},
        {"rejected_samples", solution.rejected_samples},
        {"rejected", stretches(solution.rejected)},
        {"methods", Object{{"double_integration", method(solution.double_integration)},

@@ -30,6 +30,8 @@ std::vector<std::string> method_row(const char* name, const WheelMethod& method)
 
 Rows sensor_rows(const WheelSolution& solution) {
   Rows rows{{"sensor"}, {"radius"}, {"bias"}, {""}, {"scale"}, {""}, {"noise"}, {"rows used"}};
+  Rows gyro{{"gyroscope scale"}, {"gyroscope bias"}};
+  bool any_gyro = false;
   for (const auto& sensor : solution.sensors) {
     rows[0].push_back(file_name(sensor.name));
     rows[1].push_back(with_std(scaled(sensor.radius_m, 1e3), "mm", absent));
@@ -37,11 +39,28 @@ Rows sensor_rows(const WheelSolution& solution) {
     rows[3].push_back(with_std(sensor.bias_mps2[1], "m/s²", absent));
     rows[4].push_back(with_std(sensor.scale[0], "", absent));
     rows[5].push_back(with_std(sensor.scale[1], "", absent));
+    any_gyro = any_gyro || sensor.has_gyro;
+    gyro[0].push_back(with_std(sensor.gyro_scale, "", absent));
+    gyro[1].push_back(with_std(sensor.gyro_bias_radps, "rad/s", absent));
     rows[6].push_back(significant(sensor.noise_mps2, 2) + " m/s²");
     const std::size_t left_out = std::min(sensor.samples, sensor.unusable + sensor.gated);
     rows[7].push_back(grouped(sensor.samples - left_out) + " of " + grouped(sensor.samples));
   }
+  if (any_gyro) rows.insert(rows.end(), gyro.begin(), gyro.end());
   return rows;
+}
+
+/// What the band of the angle holds for the sensors' filters, and what would narrow it.
+std::string delay_words(const WheelReport& report) {
+  const Uncertain& delay = report.solution.delay_s;
+  const std::string late = with_std(*scaled(delay, 1e3), "ms");
+  if (report.options.bandwidth_hz)
+    return fmt::format("The sensor's filter ({} Hz) delays the angle by {}: taken out.",
+                       significant(*report.options.bandwidth_hz, 3), late);
+  return fmt::format(
+      "The sensor's filter was taken to delay the angle by {}: give --bandwidth to "
+      "know it.",
+      late);
 }
 
 Channel channel(const char* name, const char* unit, const std::vector<double>& values) {
@@ -82,6 +101,7 @@ std::string wheel_text(const WheelReport& report) {
                           method_row("atan2", solution.atan2),
                           method_row("double integration", solution.double_integration)});
   text += '\n' + aligned(sensor_rows(solution));
+  text += "\n  " + delay_words(report) + '\n';
   text += "\n  Consistency: " + nis_words(solution.consistency) + ".\n";
   text += "  " + consistency_conclusion(solution.consistency) + '\n';
   text += fmt::format("  Rejected: {}.\n", count_words(solution.rejected_samples, "row"));
