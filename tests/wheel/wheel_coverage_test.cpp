@@ -1,0 +1,45 @@
+// A part of the table that wheel_coverage prints: every band holds the truth as often as it says,
+// or more often, and none is off by more than chance and a rare coarse draw allow.
+#include "wheel_coverage.hpp"
+
+#include <gtest/gtest.h>
+#include <string>
+
+namespace proofmass::wheel_coverage_test {
+namespace {
+
+using wheel_world::Coverage;
+using wheel_world::Scenario;
+using wheel_world::Tally;
+
+/// Least share of 95 % intervals that may hold the truth: two in a hundred thousand true 95 %
+/// figures fall below.
+double least_coverage(std::size_t given) {
+  return 0.95 - 4.1 * std::sqrt(0.95 * 0.05 / static_cast<double>(given));
+}
+
+class WheelCoverage : public testing::TestWithParam<Scenario> {};
+
+TEST_P(WheelCoverage, OfTurnsAndFinalAngleIsAsStated) {
+  constexpr int recordings = 24;
+  const Coverage found = wheel_world::coverage_of(GetParam(), 1000, recordings);
+  EXPECT_LE(found.refused, 4U);
+  for (const Tally* tally : {&found.turns, &found.angle}) {
+    ASSERT_GT(tally->given(), 18U);
+    EXPECT_GE(tally->coverage_95(), least_coverage(tally->given()));
+    EXPECT_LT(tally->largest(), 5.0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios,
+                         WheelCoverage,
+                         testing::ValuesIn(wheel_world::scenarios().begin(),
+                                           wheel_world::scenarios().end()),
+                         [](const auto& scenario) {
+                           std::string name = scenario.param.name;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace proofmass::wheel_coverage_test
