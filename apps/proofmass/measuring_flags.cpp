@@ -54,7 +54,7 @@ void add_flags(CLI::App& app, WheelCommand& command) {
       ->needs(radius);
   verb.add_option("--bandwidth", command.bandwidth_hz,
                   "-3 dB of the sensor's filter, which delays the angle (default: of the --sensor "
-                  "file, or anywhere from 10 Hz to 2.5 times the rate)")
+                  "file, or anywhere from 6 Hz to 2.5 times the rate)")
       ->type_name("HZ")
       ->check(positive());
   verb.add_option("--axle-tilt-std", command.axle_tilt_std_deg,

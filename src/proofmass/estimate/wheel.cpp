@@ -163,8 +163,18 @@ void add_gated(WheelSolution& solution) {
 }
 
 void judge_turns(const WheelFit& fit, WheelSolution& solution) {
-  if (fit.widest_prediction_rad < 0.8) return;
+  if (fit.widest_prediction_rad < lost_prediction_rad) return;
   solution.turns.reset();
+  solution.angle_final_rad.reset();
+  solution.distance_m.reset();
+  solution.peak_speed_radps.reset();
+  for (WheelSensorFit& sensor : solution.sensors) {
+    sensor.radius_m = fit.given_radius_m;
+    for (auto* figure : {&sensor.mounting_rad, &sensor.skew_rad, &sensor.phase_rad,
+                         &sensor.gyro_scale, &sensor.gyro_bias_radps})
+      figure->reset();
+    for (auto* pair : {&sensor.bias_mps2, &sensor.scale}) pair->fill(std::nullopt);
+  }
   solution.smoother.turns.reset();
   solution.smoother.note = "the angle was lost in between";
   solution.notes.push_back(

@@ -40,8 +40,8 @@ struct WheelOptions {
   /// and braking then no longer lean on the angle.
   std::optional<double> rolling_radius_m;
   /// Of the sensors' filter, −3 dB of one pole: what turns about the sensor is read later by it.
-  /// Not given, it may be anywhere from 10 Hz, or a tenth of the rate where that is lower, to 2.5
-  /// times the rate.
+  /// Not given, it may be anywhere from 6 Hz, or 0.06 of the rate where that is lower, to 2.5 times
+  /// the rate.
   std::optional<double> bandwidth_hz;
   double axle_tilt_std_rad = 5.0 * std::numbers::pi / 180.0;  ///< of the axle from level
   /// One standard deviation of the angle between a sensor's axes and the marks of the wheel, which

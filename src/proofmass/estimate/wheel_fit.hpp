@@ -97,6 +97,9 @@ struct PlacesPrior {
   Eigen::MatrixXd cov;   ///< m²
 };
 
+/// The angle is anybody's guess where its prediction is less sure than this: a turn may be lost.
+inline constexpr double lost_prediction_rad = 0.8;
+
 /// Settles noise, places and constants about the track, then smooths.
 [[nodiscard]] WheelFit fit_wheel(WheelReadings& readings,
                                  WheelTrack track,

@@ -23,7 +23,7 @@ Uncertain delay_of(const WheelOptions& options, double rate_hz) {
     const double delay = delay_s(*options.bandwidth_hz);
     return {delay, 0.1 * delay};
   }
-  const double longest = delay_s(std::min(10.0, 0.1 * rate_hz)), shortest = delay_s(2.5 * rate_hz);
+  const double longest = delay_s(std::min(6.0, 0.06 * rate_hz)), shortest = delay_s(2.5 * rate_hz);
   const double octaves = std::log(longest / shortest);
   const double mean = (longest - shortest) / octaves;
   const double square = 0.5 * (longest * longest - shortest * shortest) / octaves;
@@ -143,13 +143,17 @@ Result<Single> fit_single(const WheelSensor& sensor,
   if (options.progress) options.progress("looking for the wheel's phase", 0.0);
   const double fastest = fastest_radps(single.readings.rate_hz());
   bool followed = false;
+  std::optional<Single> unsure;
   for (std::size_t seek = 0; seek < wheel_seeks; ++seek) {
     const WheelTrack track = find_track(single.readings, seek);
     if (track.lost > not_a_wheel) break;
     followed = true;
     single.fit = fit_with_radius(single.readings, track, options);
-    if (top_speed_radps(single.fit) <= fastest) return single;
+    if (top_speed_radps(single.fit) > fastest) continue;
+    if (single.fit.widest_prediction_rad < lost_prediction_rad) return single;
+    if (!unsure) unsure = single;
   }
+  if (unsure) return *std::move(unsure);
   if (followed)
     return Error{Errc::not_observable,
                  sensor.name +
