@@ -23,6 +23,60 @@ class Wheel(CommandTest):
         self.assertLess(turns["std"], 0.01)
         self.assertAlmostEqual(document["methods"]["smoother"]["turns"], turns["value"])
 
+    def with_gyro(self):
+        """From rest to 60 rpm and back; the gyroscope reads 2 % too much, in a unit that only its heading tells."""
+        lasts, top, radius = 20.0, 2.0 * math.pi, 0.05
+        rows = ["time (s)," + ",".join(f"acc_{axis} (m/s^2)" for axis in "xyz") + ","
+                + ",".join(f"gyr_{axis} (deg/s)" for axis in "xyz")]
+        for k in range(2001):
+            t = lasts * k / 2000.0
+            phase = 2.0 * math.pi * t / lasts
+            angle = 0.5 * top * (t - lasts / (2.0 * math.pi) * math.sin(phase))
+            speed, accel = 0.5 * top * (1.0 - math.cos(phase)), math.pi * top / lasts * math.sin(phase)
+            noise = [0.02 * math.sin(n * k * k) for n in (7.0, 5.0, 3.0, 11.0)] # equidistributed, so nearly white
+            x = 9.80665 * math.sin(angle) - speed**2 * radius + noise[0]
+            y = 9.80665 * math.cos(angle) + accel * radius + noise[1]
+            rows.append(f"{t:.3f},{x:.6f},{y:.6f},{noise[2]:.6f},0.01,-0.02,{1.02 * math.degrees(speed) + 20.0 * noise[3]:.5f}")
+        self.write("gyro.csv", "\n".join(rows) + "\n")
+
+    def test_a_gyroscope_is_calibrated_by_the_turns(self):
+        self.with_gyro()
+        document = self.document("wheel", "gyro.csv", "--spin-axis", "z")
+        scale, bias = (document["gyroscope"][name] for name in ("scale", "bias"))
+        self.assertAlmostEqual(abs(document["turns"]["value"]), 10.0, delta=0.005)
+        self.assertAlmostEqual(scale["value"], 1.02, delta=3.0 * scale["std"])
+        self.assertLess(scale["std"], 0.01)
+        self.assertAlmostEqual(bias["value"], 0.0, delta=3.0 * bias["std"])
+        self.assertEqual((bias["unit"], scale["unit"]), ("rad/s", "1"))
+
+    def test_a_gyroscope_can_be_left_alone(self):
+        self.with_gyro()
+        document = self.document("wheel", "gyro.csv", "--spin-axis", "z", "--no-gyro")
+        self.assertIsNone(document["gyroscope"])
+        self.assertTrue(any("gyroscope: null" in text for text in document["warnings"]))
+
+    def test_a_bandwidth_that_is_given_narrows_the_final_angle(self):
+        self.simulate()
+        given = self.document("wheel", "rig.csv", "--bandwidth", "100")
+        open_ = self.document("wheel", "rig.csv")
+        self.assertLess(2.0 * given["angle_final_rad"]["std"], open_["angle_final_rad"]["std"])
+        self.assertAlmostEqual(given["delay_s"]["value"], 1.0 / (2.0 * math.pi * 100.0), places=9)
+
+    def test_an_axle_that_is_known_to_be_level_narrows_the_scales(self):
+        self.simulate()
+        known = self.document("wheel", "rig.csv", "--axle-tilt-std", "0.1", "--bandwidth", "1000")
+        open_ = self.document("wheel", "rig.csv", "--bandwidth", "1000")
+        self.assertLess(known["sensors"][0]["scale"][0]["std"], open_["sensors"][0]["scale"][0]["std"])
+
+    def test_a_radius_that_the_recording_contradicts_is_an_error_with_both_figures(self):
+        self.write("speeds.toml", "bias_spread_mps2 = 0.0\n[[segment]]\nduration_s = 10.0\nspeed_rpm = 40.0\n"
+                   "[[segment]]\nduration_s = 12.0\nspeed_rpm = 120.0\nramp_s = 3.0\n[[sensor]]\nradius_m = 0.1\n")
+        self.succeed("simulate", "speeds.toml", "-o", "speeds.csv", "--rate", "100")
+        ran = self.run_command("wheel", "speeds.csv", "--radius", "0.15", "--radius-std", "0.001", "--strict")
+        self.assertEqual(ran.returncode, BAD_DATA, ran.stderr)
+        self.assertIn("--radius 150 mm +- 1 mm contradicts the recording, which says 100 mm", ran.stderr.decode())
+        self.succeed("wheel", "speeds.csv", "--radius", "0.1", "--strict")
+
     def test_the_spin_axis_given_turned_round_turns_the_sign(self):
         self.simulate()
         one = self.document("wheel", "rig.csv", "--spin-axis", "z")["turns"]["value"]

@@ -132,5 +132,36 @@ INSTANTIATE_TEST_SUITE_P(Trials,
                                          Wheel{"trial06", "3", 79.924, 79.924, 0.165},
                                          Wheel{"trial10", "1", -105.411, -105.411, 0.143}));
 
+/// The right wheel of a wheelchair pushed by hand: 19.32 ± 0.02 turns, the fraction from gravity's
+/// direction at both ends and the whole turns from the gyroscope.
+TEST(Wheelchair, TurnsAsGravityAndTheGyroscopeSayWithItAndWithout) {
+  const auto file =
+      published_data() / "worklab-wheelchair" / "NGIMU - 3 Right - 003383F9" / "sensors.csv.xz";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
+  const Recording recording = io::read_recording(file.string(), {}).value();
+  WheelSensor sensor;
+  sensor.name = "right";
+  for (std::size_t k = 0; k < recording.samples(); ++k)
+    sensor.time_s.push_back(recording.time.at(k));
+  const auto values = [&](const char* name) {
+    const Channel* channel = recording.find(name);
+    EXPECT_NE(channel, nullptr) << name;
+    std::vector<double> out;
+    if (channel != nullptr)
+      for (const double value : channel->values) out.push_back(channel->unit.si(value));
+    return out;
+  };
+  sensor.accel_mps2 = {values("Accelerometer X"), values("Accelerometer Y"),
+                       values("Accelerometer Z")};
+  const auto alone = solve({sensor});
+  sensor.rate_radps = {values("Gyroscope X"), values("Gyroscope Y"), values("Gyroscope Z")};
+  const auto with_gyro = solve({sensor});
+  for (const auto* solution : {&alone, &with_gyro}) {
+    EXPECT_NEAR(solution->turns->value, 19.32, 3.0 * std::hypot(solution->turns->std, 0.02));
+    EXPECT_LT(solution->turns->std, 0.1);
+  }
+  EXPECT_NEAR(with_gyro.sensors[0].gyro_scale->value, 1.0, 0.03);
+}
+
 }  // namespace
 }  // namespace proofmass::wheel_real_test

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "proofmass/core/units.hpp"
@@ -88,6 +89,15 @@ Table sensors_table(const WheelReport& report) {
     table.head.push_back(cells[0]);
     for (std::size_t k = 1; k < cells.size(); ++k) table.rows[k - 1].push_back(cells[k]);
   }
+  if (std::ranges::none_of(solution.sensors, &WheelSensorFit::has_gyro)) return table;
+  table.rows.push_back({"Gyroscope, scale"});
+  table.rows.push_back({"Gyroscope, bias"});
+  for (const WheelSensorFit& fit : solution.sensors) {
+    const std::string_view without = fit.has_gyro ? absent : "none";
+    const std::size_t scale = table.rows.size() - 2;
+    table.rows[scale].push_back(with_std(fit.gyro_scale, "", without));
+    table.rows[scale + 1].push_back(with_std(fit.gyro_bias_radps, "rad/s", without));
+  }
   return table;
 }
 
@@ -142,8 +152,9 @@ std::string wheel_html(const WheelReport& report) {
                            .figures = {turns_figure(solution), plain_methods_figure(solution),
                                        filter_figure(solution), angle_std_figure(solution)}});
   page.sections.push_back({.heading = "Speed", .figures = {speed_figure(solution)}});
-  page.sections.push_back(
-      {.heading = "The sensors, as this recording shows them", .tables = {sensors_table(report)}});
+  page.sections.push_back({.heading = "The sensors, as this recording shows them",
+                           .paragraphs = {wheel_delay(report)},
+                           .tables = {sensors_table(report)}});
   if (!solution.not_observable.empty()) {
     page.sections.push_back(
         {.heading = "What this recording cannot tell", .points = solution.not_observable});

@@ -50,19 +50,6 @@ Rows sensor_rows(const WheelSolution& solution) {
   return rows;
 }
 
-/// What the band of the angle holds for the sensors' filters, and what would narrow it.
-std::string delay_words(const WheelReport& report) {
-  const Uncertain& delay = report.solution.delay_s;
-  const std::string late = with_std(*scaled(delay, 1e3), "ms");
-  if (report.options.bandwidth_hz)
-    return fmt::format("The sensor's filter ({} Hz) delays the angle by {}: taken out.",
-                       significant(*report.options.bandwidth_hz, 3), late);
-  return fmt::format(
-      "The sensor's filter was taken to delay the angle by {}: give --bandwidth to "
-      "know it.",
-      late);
-}
-
 Channel channel(const char* name, const char* unit, const std::vector<double>& values) {
   return {name, parse_unit(unit).value_or(Unit{Quantity::unknown, 1.0, 0.0, unit}), values};
 }
@@ -84,6 +71,18 @@ std::string wheel_conclusion(const WheelSolution& solution) {
   return fmt::format("{}; top speed {} rpm.", far, significant(rpm, 3));
 }
 
+std::string wheel_delay(const WheelReport& report) {
+  const Uncertain& delay = report.solution.delay_s;
+  const std::string late = with_std(*scaled(delay, 1e3), "ms");
+  if (report.options.bandwidth_hz)
+    return fmt::format("The sensor's filter ({} Hz) delays the angle by {}: taken out.",
+                       significant(*report.options.bandwidth_hz, 3), late);
+  return fmt::format(
+      "The sensor's filter was taken to delay the angle by {}: give --bandwidth to "
+      "know it.",
+      late);
+}
+
 std::string wheel_text(const WheelReport& report) {
   const WheelSolution& solution = report.solution;
   std::string text = wheel_conclusion(solution) + "\n\n";
@@ -101,7 +100,7 @@ std::string wheel_text(const WheelReport& report) {
                           method_row("atan2", solution.atan2),
                           method_row("double integration", solution.double_integration)});
   text += '\n' + aligned(sensor_rows(solution));
-  text += "\n  " + delay_words(report) + '\n';
+  text += "\n  " + wheel_delay(report) + '\n';
   text += "\n  Consistency: " + nis_words(solution.consistency) + ".\n";
   text += "  " + consistency_conclusion(solution.consistency) + '\n';
   text += fmt::format("  Rejected: {}.\n", count_words(solution.rejected_samples, "row"));

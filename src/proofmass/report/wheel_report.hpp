@@ -27,6 +27,9 @@ struct WheelReport {
 /// "The wheel turned 79.614 ± 0.002 times backwards in 91.6 s; top speed 147 rpm."
 [[nodiscard]] std::string wheel_conclusion(const estimate::WheelSolution& solution);
 
+/// What the band of the angle holds for the sensors' filters, and what would narrow it.
+[[nodiscard]] std::string wheel_delay(const WheelReport& report);
+
 /// The whole time line as a recording with the columns time, angle, angle_std, speed, …: what
 /// `--output` writes.
 [[nodiscard]] Recording wheel_series(const WheelReport& report);
