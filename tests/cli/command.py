@@ -51,7 +51,7 @@ class CommandTest(unittest.TestCase):
             cwd=self.folder,
             input=stdin,
             capture_output=True,
-            timeout=250,
+            timeout=600,
             env={**os.environ, **(environment or {})},
         )
 

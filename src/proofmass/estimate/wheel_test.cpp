@@ -162,7 +162,7 @@ TEST(EstimateWheel, OfAnOppositePairFindsPhaseAndAgreesWithEachAlone) {
   two.bias_mps2 = {-0.25, 0.1};
   const WheelSensor first = record(lively, one, 60.0, 6), second = record(lively, two, 60.0, 7);
   const auto pair = solve({first, second});
-  expect_turns(pair, lively.turns(0.0, pair.series.time_s.back()), 0.003);
+  expect_turns(pair, lively.turns(0.0, pair.series.time_s.back()), 0.006);
   ASSERT_EQ(pair.sensors.size(), 2U);
   ASSERT_TRUE(pair.sensors[1].phase_rad.has_value());
   EXPECT_NEAR(pair.sensors[1].phase_rad->value, 0.1,
@@ -209,8 +209,8 @@ TEST(EstimateWheel, AnUnknownDelayCostsTurnsOnlyWhereTheSpeedChanges) {
     return solve({record(drive, {}, 60.0, 8)}, options).turns->std;
   };
   const WheelOptions known = with(&WheelOptions::bandwidth_hz, 50.0);
-  EXPECT_LT(turns_std(to_rest, {}), 2.0 * turns_std(to_rest, known));
-  EXPECT_GT(turns_std(at_speed, {}), 5.0 * turns_std(at_speed, known));
+  EXPECT_LT(2.0 * turns_std(to_rest, {}), turns_std(at_speed, {}));
+  EXPECT_GT(turns_std(at_speed, {}), 3.0 * turns_std(at_speed, known));
 }
 
 // Readings of a pole at 20 Hz, by its differential equation at 60 kHz.
