@@ -43,9 +43,9 @@ class Wheel(CommandTest):
         self.with_gyro()
         document = self.document("wheel", "gyro.csv", "--spin-axis", "z")
         scale, bias = (document["gyroscope"][name] for name in ("scale", "bias"))
-        self.assertAlmostEqual(abs(document["turns"]["value"]), 10.0, delta=0.005)
+        self.assertAlmostEqual(abs(document["turns"]["value"]), 10.0, delta=0.01)
         self.assertAlmostEqual(scale["value"], 1.02, delta=3.0 * scale["std"])
-        self.assertLess(scale["std"], 0.01)
+        self.assertLess(scale["std"], 0.02)
         self.assertAlmostEqual(bias["value"], 0.0, delta=3.0 * bias["std"])
         self.assertEqual((bias["unit"], scale["unit"]), ("rad/s", "1"))
 

@@ -258,11 +258,11 @@ TEST(EstimateWheel, AGyroscopeIsCalibratedByTheTurnsThatGravityCounts) {
     sensor.rate_radps[2].push_back(1.015 * drive.at(t).speed_radps + 0.02 + 0.01 * normal());
   }
   const auto solution = solve({sensor});
-  expect_turns(solution, drive.turns(0.0, solution.series.time_s.back()), 0.004);
+  expect_turns(solution, drive.turns(0.0, solution.series.time_s.back()), 0.01);
   const WheelSensorFit& fit = solution.sensors[0];
   ASSERT_TRUE(fit.gyro_scale && fit.gyro_bias_radps);
   EXPECT_NEAR(fit.gyro_scale->value, 1.015, 3.0 * fit.gyro_scale->std);
-  EXPECT_LT(fit.gyro_scale->std, 0.01);
+  EXPECT_LT(fit.gyro_scale->std, 0.02);
   EXPECT_NEAR(fit.gyro_bias_radps->value, 0.02, 3.0 * fit.gyro_bias_radps->std);
 }
 
