@@ -24,8 +24,8 @@ struct WheelSensor {
   /// Specific force along x, y, z, as long as time_s; NaN where there is no reading. z is empty for
   /// a two-axis sensor, whose x and y then lie in the plane of the wheel.
   std::array<std::vector<double>, 3> accel_mps2;
-  /// Of a gyroscope in the same axes, as long as time_s; empty where there is none. NaN where it
-  /// has no reading.
+  /// Angular rate in the same axes, as long as time_s; empty without a gyroscope, NaN at samples
+  /// without a reading.
   std::array<std::vector<double>, 3> rate_radps{};
 };
 
@@ -39,9 +39,9 @@ struct WheelOptions {
   /// Radius on which the wheel rolls, where it carries a vehicle and this is known: its speeding up
   /// and braking then no longer lean on the angle.
   std::optional<double> rolling_radius_m;
-  /// Of the sensors' filter, −3 dB of one pole: what turns about the sensor is read later by it.
-  /// Not given, it may be anywhere from 6 Hz, or 0.06 of the rate where that is lower, to 2.5 times
-  /// the rate.
+  /// −3 dB bandwidth of the sensors' one-pole filter, which delays the measured gravity vector. If
+  /// not given, the corner is taken to lie between 6 Hz (0.06 of the rate, where that is lower) and
+  /// 2.5 times the rate.
   std::optional<double> bandwidth_hz;
   double axle_tilt_std_rad = 5.0 * std::numbers::pi / 180.0;  ///< of the axle from level
   /// One standard deviation of the angle between a sensor's axes and the marks of the wheel, which
@@ -70,7 +70,7 @@ struct WheelSensorFit {
   std::optional<Uncertain> phase_rad;       ///< second sensor against the first, about the axle
   std::optional<Uncertain> clock_offset_s;  ///< second sensor's clock against the first's
   bool has_gyro = false;                    ///< and the turns were counted with it
-  /// Of the gyroscope about the axle, reading = scale · speed + bias.
+  /// Gyroscope about the axle: reading = scale · speed + bias.
   std::optional<Uncertain> gyro_scale, gyro_bias_radps;
   double noise_mps2 = 0.0;  ///< per sample and axis, at rest or at the quietest
   std::size_t samples = 0;

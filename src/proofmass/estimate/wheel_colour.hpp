@@ -33,8 +33,8 @@ class BlockVariance {
   double sum_ = 0.0, own_ = 0.0, blocks_ = 0.0;
 };
 
-/// Of all states from wheel::first_of(0) on, over blocks of a fortieth of the recording, at least
-/// one second.
+/// Inflation of the standard deviations of all constant states (from wheel::first_of(0) on), from
+/// blocks of a fortieth of the recording, at least one second.
 template <int S>
 class StandingColour {
  public:
@@ -72,7 +72,8 @@ class StandingColour {
   std::array<BlockVariance, static_cast<std::size_t>(wheel::standing(S))> states_{};
 };
 
-/// Of the angle, over blocks of as many instants as the smoother averages.
+/// Inflation of the angle's standard deviation, from blocks as long as the smoother's effective
+/// averaging window.
 template <int S>
 class AngleColour {
  public:
