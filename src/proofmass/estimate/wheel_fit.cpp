@@ -1,117 +1,13 @@
 #include "proofmass/estimate/wheel_fit.hpp"
 
-#include <complex>
-
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel_colour.hpp"
-#include "proofmass/estimate/wheel_passes.hpp"
+#include "proofmass/estimate/wheel_settle.hpp"
 
 namespace proofmass::estimate {
 namespace {
-
-template <int S>
-struct Settled {
-  WheelNoise noise;
-  WheelPrior prior;
-  Eigen::MatrixXd places_cov;
-  Eigen::VectorXd widened;  ///< FoundPlaces::widened
-  double log_likelihood = 0.0;
-};
-
-/// One standard deviation of each part of the ripple, about zero: a wheel by hand or by a motor.
-constexpr double ripple_share = 0.02;
-
-/// The model of the settled passes: linear about a path, the places held.
-template <int S>
-WheelModel<S> held_model(const WheelReadings& readings,
-                         const WheelNoise& noise,
-                         const WheelPath& about) {
-  auto model = wheel_model<S>(readings, noise);
-  model.about = &about;
-  model.places_held = true;
-  model.with_ripple = true;
-  return model;
-}
-
-/// What may be believed of the constants, by how far the wheel turns.
-ConstantsPrior prior_for(const WheelPath& path) {
-  const auto angle = [](const Mat<wheel::moving>& at) { return at(wheel::angle); };
-  const auto [lowest, highest] = std::ranges::minmax_element(path.moving, {}, angle);
-  if (angle(*highest) - angle(*lowest) < rad_per_turn) return short_way_prior;
-  ConstantsPrior prior;
-  prior.ripple = ripple_share;
-  return prior;
-}
-
-/// 1, 2 and the two strongest others in the path's acceleration, which is what they shake the wheel
-/// with. For a path that was found without them.
-RippleOrders orders_in(const WheelPath& path) {
-  std::array<std::complex<double>, highest_order + 1> sums{};
-  for (const Mat<wheel::moving>& at : path.moving) {
-    const std::complex<double> turn = std::polar(1.0, -at(wheel::angle));
-    std::complex<double> power = turn * turn;
-    for (std::size_t n = 3; n < sums.size(); ++n) sums[n] += at(wheel::accel) * (power *= turn);
-  }
-  RippleOrders orders = first_orders;
-  const auto strongest = [&] {
-    const auto at =
-        std::ranges::max_element(sums, {}, [](const auto& sum) { return std::norm(sum); });
-    *at = 0.0;
-    return static_cast<int>(at - sums.begin());
-  };
-  orders[2] = strongest();
-  orders[3] = strongest();
-  return orders;
-}
-
-/// The belief with its mean moved to where a place may be, along the directions in which little was
-/// believed.
-PlacesPrior moved_where_open(const PlacesPrior& belief, const Places& to) {
-  PlacesPrior moved = belief;
-  const SymmetricEigen axes = symmetric_eigen(belief.cov);
-  for (Eigen::Index i = 0; i < axes.values.size(); ++i)
-    if (axes.values(i) > 0.25 * axes.values.maxCoeff())
-      moved.mean += axes.vectors.col(i).dot(to - belief.mean) * axes.vectors.col(i);
-  return moved;
-}
-
-/// One round: the readings' variance, the motion's noise and the sensors' places, all about the
-/// path found so far.
-template <int S>
-Settled<S> settle(WheelReadings& readings,
-                  const WheelTrack& track,
-                  const PlacesPrior& belief,
-                  double tuning_factor) {
-  auto model = held_model<S>(readings, track.noise, track.path);
-  const Places places = track.path.standing.tail<2 * S>();
-  WheelPrior prior{track.beginning, prior_for(track.path), places};
-  settle_variance(model, prior, readings);
-  const Excerpt<S> excerpt = liveliest(model, prior);
-  model.noise = tune_noise(model, excerpt, tuning_factor).noise;
-  const FoundPlaces likeliest = likeliest_places(model, excerpt, prior, belief);
-  WheelPath about = track.path;
-  about.standing.tail<2 * S>() = likeliest.mean;
-  model.about = &about;
-  const FoundPlaces found =
-      places_by_levers(model, levers_of(track.path, readings.time_s), readings.time_s, prior,
-                       moved_where_open(belief, likeliest.mean));
-  prior.places = found.mean;
-  return {model.noise, prior, found.cov, found.widened, likeliest.log_likelihood};
-}
-
-/// Moves the track to the smoother's under the settled figures.
-template <int S>
-void improve(const WheelReadings& readings, const Settled<S>& settled, WheelTrack& track) {
-  const auto model = held_model<S>(readings, settled.noise, track.path);
-  WheelPath path = track.path;
-  const auto end = trace_path(model, prior_state<S>(settled.prior), path);
-  track.path = std::move(path);
-  track.noise = settled.noise;
-  track.beginning.angle_rad = end.mean(wheel::start);
-  track.beginning.speed_radps = track.path.moving.front()(wheel::speed);
-}
 
 void resize(WheelSeries& series, std::size_t size) {
   for (std::vector<double>* column :
@@ -394,26 +290,6 @@ void add_gravity_uncertainty(const WheelReadings& readings,
   const Places places = fit.constants.tail<2 * S>();
   change.tail<2 * S>() = part * (places - believed * places);
   fit.constants_cov += change * change.transpose();
-}
-
-/// Rounds until the likelihood has settled, at most `most`.
-template <int S>
-Settled<S> settle_rounds(WheelReadings& readings,
-                         WheelTrack& track,
-                         const PlacesPrior& belief,
-                         int most,
-                         const Progress& progress) {
-  double tuning_factor = 10.0;
-  Settled<S> settled = settle<S>(readings, track, belief, tuning_factor);
-  for (int round = 1; round < most; ++round) {
-    if (progress) progress("noise and constants", static_cast<double>(round) / most);
-    const double before = settled.log_likelihood;
-    improve(readings, settled, track);
-    tuning_factor = std::sqrt(10.0);
-    settled = settle<S>(readings, track, belief, tuning_factor);
-    if (round > 1 && std::abs(settled.log_likelihood - before) < 1.0) break;
-  }
-  return settled;
 }
 
 /// How many readings may be averaged before the wheel turns a twentieth of a radian meanwhile.

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "proofmass/estimate/wheel_passes.hpp"
+
+// The rounds in which noise, ripple, places and path of a wheel settle about each other. Private to
+// the module's wheel_*.cpp.
+namespace proofmass::estimate {
+
+/// What the rounds end with.
+template <int S>
+struct Settled {
+  WheelNoise noise;
+  WheelPrior prior;
+  Eigen::MatrixXd places_cov;
+  Eigen::VectorXd widened;  ///< FoundPlaces::widened
+  double log_likelihood = 0.0;
+};
+
+/// The model of the settled passes: linear about a path, the places held.
+template <int S>
+WheelModel<S> held_model(const WheelReadings& readings,
+                         const WheelNoise& noise,
+                         const WheelPath& about) {
+  auto model = wheel_model<S>(readings, noise);
+  model.about = &about;
+  model.places_held = true;
+  model.with_ripple = true;
+  return model;
+}
+
+/// Orders 1 and 2 and the two strongest others, up to highest_order, in the acceleration of a path
+/// that was found without ripple.
+[[nodiscard]] RippleOrders orders_in(const WheelPath& path);
+
+/// Moves the track to the smoother's under the settled figures.
+template <int S>
+void improve(const WheelReadings& readings, const Settled<S>& settled, WheelTrack& track);
+
+/// Rounds until the likelihood has settled, at most `most`.
+template <int S>
+[[nodiscard]] Settled<S> settle_rounds(WheelReadings& readings,
+                                       WheelTrack& track,
+                                       const PlacesPrior& belief,
+                                       int most,
+                                       const Progress& progress);
+
+}  // namespace proofmass::estimate
