@@ -329,6 +329,8 @@ Recorded record(const World& world, std::uint64_t seed) {
         out.truth.turns = (angle_then - first_angle) / (2.0 * pi);
         out.truth.final_angle_rad = angle_then + world.units.front().mounting_rad;
       }
+      out.truth.time_s.push_back(at);
+      out.truth.angle_rad.push_back(angle_then + world.units.front().mounting_rad);
       ++row;
       if (!end && missing.unit() < world.missing) continue;
       const double stamp_s = stamp(at, end);

@@ -56,6 +56,8 @@ struct World {
 /// What is true of a recording.
 struct Truth {
   double turns = 0.0, final_angle_rad = 0.0;
+  /// Of the first unit's u, at the times of all rows, those that are missing among them.
+  std::vector<double> time_s, angle_rad;
   std::vector<Unit> units;
   /// Biases at the last instant, walk and warm-up in them.
   std::vector<std::array<double, 2>> final_bias_mps2;

@@ -116,6 +116,21 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
     solution.double_integration.note += "; took the sensors' first axes for the spoke";
 }
 
+void note_gyroscope(const PlanarReadings& readings, WheelSensorFit& fit, WheelSolution& solution) {
+  const auto read =
+      std::ranges::count_if(readings.speed_radps, [](double speed) { return !std::isnan(speed); });
+  fit.has_gyro = read > 0;
+  const std::size_t saturated = readings.saturated_speeds;
+  if (saturated == 0) return;
+  solution.notes.push_back(
+      {Severity::warning,
+       fit.name + (fit.has_gyro ? ": " + std::to_string(saturated) +
+                                      " readings of the gyroscope are at the end of its range, and "
+                                      "are not used"
+                                : ": the gyroscope reads the same value throughout, and is not "
+                                  "used")});
+}
+
 void add_sensor(const WheelSensor& sensor,
                 const Single& single,
                 bool axis_given,
@@ -125,7 +140,7 @@ void add_sensor(const WheelSensor& sensor,
   fit.spin_axis = single.prepared.plane.axis;
   fit.spin_axis_given = axis_given;
   fit.samples = sensor.time_s.size();
-  fit.has_gyro = !sensor.rate_radps[0].empty();
+  note_gyroscope(single.readings.sensors.front(), fit, solution);
   fit.unusable = single.prepared.screened.unusable;
   std::vector<double> variance;
   for (std::size_t row = 0; row < sensor.time_s.size(); ++row)

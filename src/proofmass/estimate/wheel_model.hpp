@@ -96,6 +96,7 @@ struct PlanarReadings {
   /// Of a gyroscope about the axle, NaN where there is none; empty without one.
   std::vector<double> speed_radps{};
   double speed_variance = 0.0;  ///< of each, rad²/s²
+  std::size_t saturated_speeds = 0;
 
   [[nodiscard]] bool has(std::size_t row) const {
     return !std::isnan(u_mps2[row]) && !std::isnan(v_mps2[row]);

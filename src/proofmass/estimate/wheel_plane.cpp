@@ -140,7 +140,8 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
   return plane_about(axis);
 }
 
-/// Readings that stay at a channel's largest value for three rows or more: the gyroscope's end.
+/// Readings that stay at a channel's largest value for three rows or more: the end of the
+/// gyroscope's range. A channel that never changes is all of that, and tells nothing either.
 std::vector<bool> saturated(const std::vector<double>& rate_radps) {
   double most = 0.0;
   for (const double rate : rate_radps)
@@ -169,9 +170,12 @@ void add_speeds(const WheelSensor& sensor,
     const Axis rate{sensor.rate_radps[0][row], sensor.rate_radps[1][row],
                     sensor.rate_radps[2][row]};
     const double speed = dot(rate, plane.axis);
-    bool good = screened.usable[row] && std::abs(speed) < beyond_belief_radps;
-    for (const auto& end : at_its_end) good = good && (end.empty() || !end[row]);
-    if (!good) continue;
+    if (!screened.usable[row] || !(std::abs(speed) < beyond_belief_radps)) continue;
+    if (std::ranges::any_of(at_its_end,
+                            [&](const auto& end) { return !end.empty() && end[row]; })) {
+      ++readings.saturated_speeds;
+      continue;
+    }
     readings.speed_radps[row] = speed;
     if (row >= 2)
       seconds.push_back(speed - 2.0 * readings.speed_radps[row - 1] +

@@ -131,6 +131,36 @@ TEST(WheelPlane, ProjectsWhatIsUsableAndKeepsTheRestEmpty) {
   EXPECT_DOUBLE_EQ(readings.v_mps2[6], sensor.accel_mps2[1][6]);
 }
 
+/// A recording whose gyroscope's third channel reads so.
+template <class Reading>
+PlanarReadings with_gyroscope(const Reading& reading) {
+  WheelSensor sensor = record(turning, {}, 100.0, 1);
+  const std::size_t size = sensor.time_s.size();
+  sensor.rate_radps = {std::vector<double>(size, 0.0), std::vector<double>(size, 0.0), {}};
+  for (const double t : sensor.time_s) sensor.rate_radps[2].push_back(reading(t));
+  return project(sensor, screen_rows(sensor), plane_of(sensor, Axis{0.0, 0.0, 1.0}));
+}
+
+TEST(WheelPlane, LeavesOutWhatAGyroscopeReadsAtTheEndOfItsRange) {
+  const auto speed = [](double t) { return 2.0 + std::sin(t); };
+  const PlanarReadings readings = with_gyroscope([&](double t) { return std::min(speed(t), 2.7); });
+  std::size_t saturated = 0;
+  for (std::size_t row = 0; row < readings.speed_radps.size(); ++row) {
+    const double t = 0.01 * static_cast<double>(row);
+    const bool at_end = speed(t) >= 2.7;
+    saturated += at_end;
+    EXPECT_EQ(std::isnan(readings.speed_radps[row]), at_end) << t;
+  }
+  EXPECT_GT(saturated, 100U);
+  EXPECT_EQ(readings.saturated_speeds, saturated);
+}
+
+TEST(WheelPlane, TakesNothingFromAGyroscopeThatNeverChanges) {
+  const PlanarReadings readings = with_gyroscope([](double) { return 0.5; });
+  EXPECT_EQ(readings.saturated_speeds, readings.speed_radps.size());
+  for (const double speed : readings.speed_radps) EXPECT_TRUE(std::isnan(speed));
+}
+
 struct Spoilt {
   double value;
   const char* reason;

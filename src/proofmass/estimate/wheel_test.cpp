@@ -1,6 +1,7 @@
 #include "proofmass/estimate/wheel.hpp"
 
 #include <algorithm>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "proofmass/estimate/wheel_test_support.hpp"
@@ -264,6 +265,32 @@ TEST(EstimateWheel, AGyroscopeIsCalibratedByTheTurnsThatGravityCounts) {
   EXPECT_NEAR(fit.gyro_scale->value, 1.015, 3.0 * fit.gyro_scale->std);
   EXPECT_LT(fit.gyro_scale->std, 0.02);
   EXPECT_NEAR(fit.gyro_bias_radps->value, 0.02, 3.0 * fit.gyro_bias_radps->std);
+}
+
+TEST(EstimateWheel, SaysHowManyReadingsOfASaturatedGyroscopeItLeavesOut) {
+  const auto noted = [](double most_radps) {
+    WheelSensor sensor = record(lively, {}, 60.0, 9);
+    test::Normal normal(5);
+    for (const double t : sensor.time_s) {
+      sensor.rate_radps[0].push_back(0.01 * normal());
+      sensor.rate_radps[1].push_back(0.01 * normal());
+      sensor.rate_radps[2].push_back(
+          std::min(lively.at(t).speed_radps + 0.01 * normal(), most_radps));
+    }
+    const auto solution =
+        solve({sensor}, with(&WheelOptions::spin_axis, std::array{0.0, 0.0, 1.0}));
+    expect_turns(solution, lively.turns(0.0, 9.0), 0.02);
+    std::string texts = solution.sensors[0].has_gyro ? "" : "unused ";
+    for (const Note& note : solution.notes)
+      if (note.text.find("gyroscope") != std::string::npos) texts += note.text;
+    return texts;
+  };
+  EXPECT_EQ(noted(100.0), "");
+  EXPECT_THAT(noted(6.0), testing::MatchesRegex(
+                              "sensor: [1-9][0-9]+ readings of the gyroscope are at the end of its "
+                              "range, and are not used"));
+  EXPECT_EQ(noted(-1.0),
+            "unused sensor: the gyroscope reads the same value throughout, and is not used");
 }
 
 // Two seconds without an accelerometer, in which a turn may hide without the gyroscope.
