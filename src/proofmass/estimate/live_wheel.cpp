@@ -121,6 +121,7 @@ class LiveWheel final : public LiveAnalysis {
     if (!filter_->is_lost()) return give(instant.time_s, out);
     notes_.push_back({Severity::warning, "the wheel was lost at " + at_second(instant.time_s) +
                                              " s and is looked for anew: turns may be lost"});
+    turns_std_rad_ += rad_per_turn;
     forget();
   }
 
@@ -209,6 +210,7 @@ class LiveWheel final : public LiveAnalysis {
     const double rate_hz = static_cast<double>(gathered_.size() - 1) / span_s;
     filter_.emplace(start, static_cast<std::size_t>(std::lround(options_.lag_s * rate_hz)),
                     options_.wheel.alignment_std_rad);
+    double apart_rad = 0.0;  // of the new filter and what was given, at the last such instant
     for (std::size_t k = 0; k < gathered_.size(); ++k) {
       const double time_s = gathered_[k].time_s;
       filter_->step(gathered_[k]);
@@ -219,9 +221,24 @@ class LiveWheel final : public LiveAnalysis {
       if (std::isnan(given_rad_[k])) {
         given_rad_[k] = filter_->angle_rad() + turned_rad_;
         give(time_s, out);
+      } else {
+        apart_rad = filter_->angle_rad() + turned_rad_ - given_rad_[k];
       }
     }
+    if (std::abs(apart_rad) > 0.5 * rad_per_turn) say_slipped(apart_rad);
     if (options_.wheel.radius_m) filter_->use_radius(*options_.wheel.radius_m);
+  }
+
+  /// One of two filters of the same samples has slipped, and which does not show.
+  void say_slipped(double apart_rad) {
+    const double turns = std::max(std::round(std::abs(apart_rad) / rad_per_turn), 1.0);
+    turns_std_rad_ += turns * rad_per_turn;
+    notes_.push_back({Severity::warning,
+                      "at " + at_second(gathered_.back().time_s) + " s the count changes by " +
+                          std::to_string(static_cast<int>(turns)) +
+                          (turns > 1.0 ? " turns" : " turn") + ": readings since " +
+                          at_second(gathered_.front().time_s) +
+                          " s fit both counts, and turns may be lost"});
   }
 
   /// No accelerometer tells one turn from the next: counts on from what was given for the first
@@ -240,12 +257,12 @@ class LiveWheel final : public LiveAnalysis {
     last_ = {time_s, row.angle_rad.value + turned_rad_, row.speed_radps.value};
     out.stamps_s.push_back(time_s);
     const std::array values{*last_.angle_rad,
-                            row.angle_rad.std,
+                            std::hypot(row.angle_rad.std, turns_std_rad_),
                             row.speed_radps.value,
                             row.speed_radps.std,
                             row.smoothed_time_s,
                             row.smoothed_angle_rad.value + turned_rad_,
-                            row.smoothed_angle_rad.std,
+                            std::hypot(row.smoothed_angle_rad.std, turns_std_rad_),
                             row.smoothed_speed_radps.value,
                             row.smoothed_speed_radps.std,
                             row.nis};
@@ -267,7 +284,8 @@ class LiveWheel final : public LiveAnalysis {
   double gathered_from_rad_ = 0.0;  ///< the filter's angle at the first of them, or a later one
   double pause_s_, resume_s_ = -std::numeric_limits<double>::infinity();
   LastRow last_;
-  double turned_rad_ = 0.0;  ///< whole turns between what is given and the filter's angle
+  double turned_rad_ = 0.0;     ///< whole turns between what is given and the filter's angle
+  double turns_std_rad_ = 0.0;  ///< of the whole turns given, since the wheel was lost
   std::vector<Note> notes_;
   std::vector<std::string> said_;
 };

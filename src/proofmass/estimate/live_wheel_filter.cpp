@@ -16,6 +16,8 @@ constexpr double rival_factor = 3.1622776601683795;
 /// A smoothed mean NIS beyond this is no chance: the wheel does what the noise did not expect.
 constexpr double surprising = 4.0;
 constexpr double surprise_instants = 10.0;
+/// Beyond half of gravity, squared, an innovation is a lost phase rather than a shaken hub.
+constexpr double most_shaking2 = 0.25;
 /// White jerk of a wheel that is handled, rad²/s⁵: what the noise rises to at once.
 constexpr double lively_jerk_psd = 100.0;
 /// Between these the noise is moved about.
@@ -52,12 +54,14 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelStart& start,
     : planes_(start.planes),
       variance_m2ps4_(start.variance_m2ps4),
       alignment_variance_rad2_(alignment_std_rad * alignment_std_rad),
+      delay_std_s_(start.delay_s.std),
       window_(lag_instants),
       window_time_s_(lag_instants + 1),
       window_places_(lag_instants + 1) {
   now_.gravity_mps2 = start.gravity_mps2;
   now_.rolling_radius_m = start.rolling_radius_m;
   now_.phase_rad = start.phase_rad;
+  now_.delay_s = start.delay_s;
   now_.instants.assign(2, {0.0, {0, S == 2 ? 0 : WheelInstant::no_row}});
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s)
     now_.sensors.push_back({{0.0}, {0.0}, {variance_m2ps4_[s]}});
@@ -161,7 +165,7 @@ double LiveWheelFilter<S>::predicted_std_rad() const {
 template <int S>
 void LiveWheelFilter<S>::judge() {
   int channel = 0;
-  double clipped = 0.0;
+  double clipped = 0.0, innovation2 = 0.0;
   nis_ = 0.0;
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
     if (!model_.has_readings(s, 1)) continue;
@@ -171,6 +175,8 @@ void LiveWheelFilter<S>::judge() {
       const double nis = u.innovation * u.innovation / expected;
       nis_ += nis;
       clipped += std::min(nis, 4.0 * surprising);
+      innovation2 += std::min(u.innovation * u.innovation,
+                              most_shaking2 * now_.gravity_mps2 * now_.gravity_mps2);
       if (!u.used) continue;
       noise_[s].innovation2 += std::min(nis, 4.0 * wheel_gate.huber) * expected;
       noise_[s].explained += expected - variance_m2ps4_[s];
@@ -183,6 +189,7 @@ void LiveWheelFilter<S>::judge() {
     return;
   }
   nis_ /= channel;
+  recent_innovation2_ += (innovation2 / channel - recent_innovation2_) / surprise_instants;
   notice_surprise(clipped / channel);
 }
 
@@ -197,13 +204,23 @@ void LiveWheelFilter<S>::notice_surprise(double mean_nis) {
   loosen();
 }
 
-/// More noise at once; the stretch so far says nothing of the readings'.
+/// More noise at once: of the motion, and of the readings, since a road shakes the hub as soon as
+/// the wheel rolls on it. The rivals and the innovations to come tell which of the two it was.
 template <int S>
 void LiveWheelFilter<S>::loosen() {
-  model_.noise.jerk_psd =
-      std::min(std::max(lively_jerk_psd, 10.0 * model_.noise.jerk_psd), most_jerk_psd);
+  if (loosened_ > 1)
+    model_.noise.jerk_psd =
+        std::min(std::max(lively_jerk_psd, 10.0 * model_.noise.jerk_psd), most_jerk_psd);
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s)
+    variance_m2ps4_[s] = std::max(variance_m2ps4_[s], 0.5 * recent_innovation2_);
   widen_motion(main_.x);
   for (Moved& moved : moved_) widen_motion(moved.state.x);
+  forget_stretch();
+}
+
+/// What the stretch so far says of the noise no longer counts.
+template <int S>
+void LiveWheelFilter<S>::forget_stretch() {
   for (Rival& rival : rivals_) {
     rival.state = main_;
     rival.log_likelihood = 0.0;
@@ -230,19 +247,15 @@ void LiveWheelFilter<S>::end_stretch() {
   const Rival& better =
       rivals_[0].log_likelihood >= rivals_[1].log_likelihood ? rivals_[0] : rivals_[1];
   if (better.log_likelihood > main_log_likelihood_) scale_motion(model_.noise, better.factor);
-  for (Rival& rival : rivals_) {
-    rival.state = main_;
-    rival.log_likelihood = 0.0;
-  }
-  main_log_likelihood_ = 0.0;
-  noise_ = {};
-  stretch_start_s_ = time_s_;
+  forget_stretch();
 }
 
 template <int S>
 LiveWheelRow LiveWheelFilter<S>::row() const {
   const auto of = [&](const Gaussian<2>& x, int i, double by_places) {
-    const double more = by_places + (i == wheel::angle ? alignment_variance_rad2_ : 0.0);
+    const double late = x.mean(wheel::speed) * delay_std_s_;
+    const double more =
+        by_places + (i == wheel::angle ? alignment_variance_rad2_ + late * late : 0.0);
     return Uncertain{x.mean(i), std::sqrt(std::max(x.cov(i, i), 0.0) + more)};
   };
   const Mat<2>& by_places = window_places_[(instants_ - 1) % window_places_.size()];

@@ -75,6 +75,7 @@ class LiveWheelFilter {
   void loosen();
   void end_stretch();
   void adapt_variance(std::size_t sensor);
+  void forget_stretch();
   [[nodiscard]] double predicted_std_rad() const;
   // live_wheel_places.cpp, with what is public of the places:
   void expect();
@@ -88,7 +89,7 @@ class LiveWheelFilter {
   std::size_t instants_ = 0;
   double time_s_ = 0.0;
   std::array<double, 2> variance_m2ps4_;  ///< of each sensor's readings
-  double alignment_variance_rad2_ = 0.0;
+  double alignment_variance_rad2_ = 0.0, delay_std_s_ = 0.0;
 
   FilterState<states> main_;
   StepOf<Model> step_, other_step_;
@@ -103,8 +104,8 @@ class LiveWheelFilter {
 
   std::array<Noise, 2> noise_{};
   std::array<double, static_cast<std::size_t>(2 * S)> expected_{};  ///< squares of the innovations
-  double first_time_s_ = 0.0, stretch_start_s_ = 0.0, surprise_ = 1.0, nis_ = 0.0,
-         since_loosened_s_ = 0.0;
+  double first_time_s_ = 0.0, stretch_start_s_ = 0.0, nis_ = 0.0, since_loosened_s_ = 0.0;
+  double surprise_ = 1.0, recent_innovation2_ = 0.0;  ///< smoothed; per channel
   int loosened_ = 0;
   bool lost_ = false;
 };

@@ -82,6 +82,7 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveInstant>& instants,
   start.gravity_mps2 = joint.readings.gravity_mps2;
   start.rolling_radius_m = joint.readings.rolling_radius_m;
   start.phase_rad = joint.readings.phase_rad;
+  start.delay_s = joint.readings.delay_s;
   start.noise = joint.fit.track.noise;
   for (std::size_t s = 0; s < count; ++s)
     start.variance_m2ps4[s] =

@@ -16,6 +16,7 @@ namespace proofmass::estimate {
 struct LiveWheelStart {
   std::vector<WheelPlane> planes;  ///< of each sensor
   double gravity_mps2 = standard_gravity_mps2, rolling_radius_m = 0.0, phase_rad = 0.0;
+  Uncertain delay_s{};  ///< of the sensors' filters
   WheelNoise noise;
   std::array<double, 2> variance_m2ps4{};  ///< of a reading of each sensor, at the instants' rate
   WheelPrior prior;                        ///< of the state at the first instant

@@ -40,6 +40,7 @@ LiveWheelOptions options_for(std::size_t sensors, std::optional<double> radius_m
   for (std::size_t s = 0; s < sensors; ++s)
     options.sensors.push_back({"acc" + std::to_string(s + 1), 3 * s, 3 * s + 1, 3 * s + 2});
   options.wheel.radius_m = radius_m;
+  options.wheel.bandwidth_hz = 5000.0;  // what record() makes is not delayed
   return options;
 }
 
@@ -98,6 +99,14 @@ TEST(LiveWheel, ItsBandsHoldTheTruth) {
                  2) /
         1500.0;
   EXPECT_LT(std::sqrt(rms), 0.1 * rad_per_deg);
+}
+
+TEST(LiveWheel, AnUnknownBandwidthWidensTheAngleByWhatTheDelayMayTurnIt) {
+  LiveWheelOptions unknown = options_for(1);
+  unknown.wheel.bandwidth_hz.reset();
+  const Followed known = follow(one_sensor(), options_for(1)), open = follow(one_sensor(), unknown);
+  EXPECT_GT(open["angle_std"][1500], 2.0 * known["angle_std"][1500]);
+  EXPECT_GT(coverage(open, even, 4.0), 0.93);
 }
 
 TEST(LiveWheel, TheLaggedAngleIsTheBetterOne) {

@@ -62,9 +62,9 @@ TEST(WheelLevers, OfARampAreMeansOverTheTurnAboutEachInstant) {
   const WheelLevers levers = levers_of(ramp.path, ramp.time_s);
   for (std::size_t k = 0; k < levers.size(); ++k) {
     const double w = ramp.path.moving[k](wheel::speed);
-    const double half_s = 0.5 * rad_per_turn / w;
-    EXPECT_NEAR(levers[k](0), w * w,
-                ramp.accel_radps2 * ramp.accel_radps2 * half_s * half_s / 3 + 1e-6);
+    // Means over rows, of which the outermost are half a step within the window or beyond.
+    const double half_s = 0.5 * rad_per_turn / w + 0.01;
+    EXPECT_LE(levers[k](0), w * w + std::pow(ramp.accel_radps2 * half_s, 2) / 3.0);
     EXPECT_GE(levers[k](0), w * w - 1e-9);
     EXPECT_NEAR(levers[k](1), ramp.accel_radps2, 1e-9);
   }
