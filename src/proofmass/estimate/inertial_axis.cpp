@@ -5,6 +5,9 @@
 namespace proofmass::estimate {
 namespace {
 
+/// Of a speed that is constant but for what no reading shows: 1 cm/s within a second.
+constexpr double cruise_walk_m2ps3 = 1e-4;
+
 // ∫∫ of white noise N², of a walk q of the bias, and of an unknown acceleration that is one
 // constant over the step.
 Mat<3, 3> motion_noise(const InertialEpoch& epoch, const InertialNoise& noise) {
@@ -28,6 +31,14 @@ Transition<3, 3> InertialAxis::transition(const Mat<3>& x, std::size_t k) const 
   const double h = epoch.dt_s;
   Transition<3, 3> step;
   step.walk.setZero();
+  if (epoch.resting && epoch.cruising) {
+    step.F << 1.0, h, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0;
+    step.mean = step.F * x;
+    step.Q.setZero();
+    step.Q(1, 1) = cruise_walk_m2ps3 * h;
+    step.Q(2, 2) = noise.rest_walk_m2ps5 * h;
+    return step;
+  }
   if (epoch.resting) {
     step.F = Mat<3>(1.0, 0.0, 1.0).asDiagonal();
     step.mean = step.F * x;

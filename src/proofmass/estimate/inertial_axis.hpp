@@ -11,6 +11,7 @@
 //
 //     moving   p' = v,   v' = a − b − n,   b' = w        n of density N², w of density q
 //     at rest  p' = 0,   v = 0,            b' = w,       readings of b
+//     cruise   p' = v,   v' = 0,           b' = w,       readings of b
 //
 // and b jumps, with variance J, where a motion begins and where it ends: the sensor is held at
 // another angle than it is laid down. In motion n has a density of its own, L, beside N²: it rocks.
@@ -25,7 +26,8 @@ inline constexpr int bias_mps2 = 2;
 /// How one epoch follows from the one before, and what is read there; NaN where nothing is.
 struct InertialEpoch {
   double dt_s = 0.0;
-  bool resting = false;                               ///< on the way here
+  bool resting = false;   ///< on the way here
+  bool cruising = false;  ///< on the way here, if `resting`: at constant speed instead of none
   bool leaves_rest = false, arrives_at_rest = false;  ///< the motion begins before, ends after it
   /// What the readings on the way integrate to, from standstill.
   double velocity_step_mps = 0.0, position_step_m = 0.0;

@@ -6,6 +6,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/track_carried.hpp"
 #include "proofmass/estimate/track_findings.hpp"
+#include "proofmass/estimate/track_hypotheses.hpp"
 #include "proofmass/estimate/track_motion.hpp"
 #include "proofmass/estimate/track_pva.hpp"
 #include "proofmass/estimate/track_strokes.hpp"
@@ -298,12 +299,6 @@ Result<AlongAxis> solve(const TrackSignal& signal, const TrackOptions& options) 
   return found;
 }
 
-// A quiet stretch at which half of the speed is left over is hardly a rest.
-bool still_moves(const Closure& closure) {
-  return std::abs(closure.velocity_mps) > 0.5 * closure.fastest_mps &&
-         std::abs(closure.velocity_mps) > 0.05;
-}
-
 }  // namespace
 
 namespace {
@@ -318,8 +313,97 @@ TrackSolution described(const TrackSignal& signal, const TrackOptions& options) 
   solution.missing = signal.missing;
   solution.rests = signal.stops.rests;
   solution.rests_by_quietness = signal.stops.by_quietness;
+  solution.cruises = signal.stops.cruises;
+  solution.plateaus = signal.stops.plateaus;
+  solution.no_motion_shown = signal.stops.only_ends;
   solution.series.time_s = signal.time_s;
   return solution;
+}
+
+std::vector<signal::Rest> stops_of(const std::vector<signal::Rest>& stops,
+                                   const StopHypothesis& hypothesis) {
+  std::vector<signal::Rest> rests;
+  for (std::size_t i = 0; i < stops.size(); ++i)
+    if (hypothesis.stretches[i] == QuietStretch::rest) rests.push_back(stops[i]);
+  return rests;
+}
+
+// Of what the alternatives say, how probable it is that the displacement is as by the first.
+double probability_of_first(const std::vector<TrackAlternative>& alternatives) {
+  constexpr double same = 2.0;  // standard deviations
+  const Uncertain& first = alternatives.front().displacement_m;
+  double sum = 0.0;
+  for (const TrackAlternative& one : alternatives)
+    if (std::abs(one.displacement_m.value - first.value) <
+        same * std::hypot(one.displacement_m.std, first.std))
+      sum += one.probability;
+  return sum;
+}
+
+// What each of several readings of the quiet stretches makes of the displacement.
+std::vector<TrackAlternative> alternatives_of(TrackSignal signal,
+                                              const std::vector<StopHypothesis>& hypotheses,
+                                              const TrackOptions& options) {
+  constexpr std::size_t most = 4;
+  constexpr double least_probability = 0.02;
+  const std::vector<signal::Rest> all = signal.stops.rests;
+  std::vector<TrackAlternative> alternatives;
+  for (const StopHypothesis& hypothesis : hypotheses) {
+    if (hypothesis.probability < least_probability || alternatives.size() == most) break;
+    signal.stops.rests = stops_of(all, hypothesis);
+    const auto solved = solve(signal, options);
+    if (!solved) continue;
+    TrackAlternative& alternative = alternatives.emplace_back();
+    alternative.probability = hypothesis.probability;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (hypothesis.stretches[i] != QuietStretch::rest)
+        alternative.no_rests.push_back({signal.time_s[all[i].first], signal.time_s[all[i].last]});
+    const Gaussian<3>& end = solved->pass.smoothed.back();
+    alternative.displacement_m = {end.mean(inertial_axis::position_m), std::sqrt(end.cov(0, 0))};
+  }
+  return alternatives;
+}
+
+// Whether the readings look like jerk with the loud ones of the stops left out; then they are.
+bool leaves_jerk(TrackSignal& signal, const TrackOptions& options, Result<AlongAxis>& solved) {
+  if (options.take_as_acceleration) return false;
+  TrackSignal quiet = signal;
+  quiet.stops.rests = quiet_rests(signal);
+  quiet.stops.cruises = signal.stops.rests.size() - quiet.stops.rests.size();
+  auto found = solve(quiet, options);
+  if (!found) return false;
+  TrackSolution solution = described(quiet, options);
+  solution.series.accel_mps2 = found->accel_mps2;
+  fill_series(quiet, found->run, found->pass, solution);
+  if (!suspect_jerk(quiet, solution.series).suspected) return false;
+  signal = std::move(quiet);
+  solved = std::move(found);
+  return true;
+}
+
+// Leaves of the stops what are rests by the likeliest hypothesis, and solves anew. Where that does
+// not win clearly: the alternatives.
+std::vector<TrackAlternative> settle_stops(TrackSignal& signal,
+                                           const TrackOptions& options,
+                                           Result<AlongAxis>& solved) {
+  constexpr double clear = 0.95;
+  std::vector<TrackAlternative> alternatives;
+  const auto hypotheses = stop_hypotheses(signal, solved->run, solved->closures);
+  const StopHypothesis& likeliest = hypotheses.front();
+  if (hypotheses.size() > 1 && leaves_jerk(signal, options, solved)) return alternatives;
+  if (likeliest.probability < clear) {
+    alternatives = alternatives_of(signal, hypotheses, options);
+    if (alternatives.empty() || probability_of_first(alternatives) >= clear) alternatives.clear();
+  }
+  const auto count = [&](QuietStretch kind) {
+    return static_cast<std::size_t>(std::ranges::count(likeliest.stretches, kind));
+  };
+  if (count(QuietStretch::rest) == likeliest.stretches.size()) return alternatives;
+  signal.stops.cruises = count(QuietStretch::cruise);
+  signal.stops.plateaus += count(QuietStretch::plateau);
+  signal.stops.rests = stops_of(signal.stops.rests, likeliest);
+  solved = solve(signal, options);
+  return alternatives;
 }
 
 // The methods, from the series.
@@ -335,7 +419,7 @@ void judge(const TrackSignal& signal,
   DoubleIntegral integral = double_integral(signal.time_s, series.accel_mps2);
   series.double_integral_m = std::move(integral.position_m);
   solution.suspected_jerk = !options.take_as_acceleration && suspect_jerk(signal, series).suspected;
-  if (!solution.suspected_jerk) {
+  if (!solution.suspected_jerk && solution.alternatives.empty()) {
     const std::vector<double> free(signal.time_s.size(), free_m);
     const double factor = solution.factor_95;
     const View<double> t = series.time_s;
@@ -359,17 +443,12 @@ Result<TrackSolution> track_without_gyro(const TrackSensor& sensor,
   if (!solved) return solved.error();
   const std::size_t belied = drop_belied_rests(signal, solved->accel_mps2, options);
   if (belied > 0) solved = solve(signal, options);
-  std::size_t cruises = 0;
-  if (std::any_of(solved->closures.begin(), solved->closures.end(), still_moves)) {
-    std::vector<signal::Rest> quiet = quiet_rests(signal);
-    cruises = signal.stops.rests.size() - quiet.size();
-    signal.stops.rests = std::move(quiet);
-    if (cruises > 0) solved = solve(signal, options);
-  }
+  std::vector<TrackAlternative> alternatives;
+  if (options.still.empty()) alternatives = settle_stops(signal, options, solved);
   AlongAxis found = std::move(solved).value();
   TrackSolution solution = described(signal, options);
   solution.false_rests = belied;
-  solution.cruises = cruises;
+  solution.alternatives = std::move(alternatives);
   solution.axis = found.axis.direction;
   solution.travel_share = found.axis.share;
   solution.scale_std = scale_std(signal, options, solution);
@@ -431,6 +510,23 @@ Result<TrackSolution> track_with_gyro(const TrackSensor& sensor,
   return solution;
 }
 
+// Where all of the recording is as quiet as rest, a slow motion may hide in its noise: then only
+// the two ends are taken for rests, and the interval is that of a motion between them.
+void keep_ends_of_rest(TrackSignal& signal) {
+  constexpr double nearly_all = 0.95, longest_end_s = 2.0;
+  const double all_s = signal.time_s.back() - signal.time_s.front();
+  double resting_s = 0.0;
+  for (const signal::Rest& rest : signal.stops.rests) resting_s += length_s(signal, rest);
+  if (resting_s < nearly_all * all_s) return;
+  const double end_s = std::min(longest_end_s, 0.25 * all_s);
+  const std::size_t n = signal.time_s.size();
+  const std::size_t first = sample_at(signal.time_s, signal.time_s.front() + end_s),
+                    last = sample_at(signal.time_s, signal.time_s.back() - end_s);
+  if (first == 0 || last + 1 >= n || first >= last) return;
+  signal.stops.rests = {{0, first}, {last, n - 1}};
+  signal.stops.only_ends = true;
+}
+
 bool has_gyro(const TrackSensor& sensor) {
   return std::none_of(sensor.rate_radps.begin(), sensor.rate_radps.end(),
                       [](const auto& axis) { return axis.empty(); });
@@ -444,6 +540,10 @@ Result<TrackSolution> estimate_track(const TrackSensor& sensor, const TrackOptio
   TrackSignal signal = std::move(made).value();
   if (signal.stops.rests.empty() && options.fixes.empty()) return no_stop(signal);
   if (options.still.empty() && may_hide_motion(signal)) return hidden_motion();
+  if (options.still.empty()) {
+    drop_plateaus(signal);
+    keep_ends_of_rest(signal);
+  }
   const bool inertial = options.model == TrackModel::inertial;
   if (inertial && has_gyro(sensor) && signal.gravity == GravityContent::present)
     return track_with_gyro(sensor, signal, options);

@@ -159,6 +159,13 @@ struct FusedTrack {
   double variance_gain = 1.0;  ///< smallest variance of a displacement of theirs over the fused one
 };
 
+/// What the recording says if these quiet stretches are no rests.
+struct TrackAlternative {
+  double probability = 0.0;
+  std::vector<TimeSpan> no_rests{};
+  Uncertain displacement_m{};
+};
+
 struct TrackSolution {
   TrackModel model = TrackModel::inertial;
   std::optional<Uncertain> jerk_psd_m2ps5;  ///< as used; std 0 where given; absent: not told
@@ -170,9 +177,13 @@ struct TrackSolution {
   GravityContent gravity = GravityContent::unknown;
   std::vector<signal::Rest> rests;
   bool rests_by_quietness = false;  ///< found against the motion, not by the noise of a sensor
-  std::size_t cruises = 0;          ///< quiet stretches that are none: the velocity was not 0
-  std::size_t false_rests = 0;      ///< short ones that the motion between the long ones belies
-  bool suspected_jerk = false;      ///< then no method has a figure
+  std::size_t cruises = 0;          ///< quiet stretches that are none: the speed was constant
+  std::size_t plateaus = 0;         ///< and those in which the acceleration was constant
+  /// Where several readings of the quiet stretches remain: then no method has a figure.
+  std::vector<TrackAlternative> alternatives{};
+  bool no_motion_shown = false;  ///< all of it is as quiet as rest: only its ends are taken for it
+  std::size_t false_rests = 0;   ///< short ones that the motion between the long ones belies
+  bool suspected_jerk = false;   ///< then no method has a figure
   std::optional<TrackMethod> double_integration, kalman, smoother;
   std::vector<Stroke> strokes;
   MotionErrorFigures motion_error;  ///< found from the closures; zeros with a gyroscope

@@ -25,22 +25,28 @@ void tell_of_rests(const TrackOptions& options, TrackSolution& solution) {
     notes.push_back({Severity::info,
                      "no noise of a resting sensor to go by (readings of several sensors fused, or "
                      "smoothed): rests are where it is quiet against the motion"});
-  if (solution.cruises > 0)
+  if (solution.cruises > 0 && solution.alternatives.empty())
     notes.push_back(
         {Severity::warning,
-         text("%zu quiet stretches are no rests: at half the speed or more the velocity "
-              "was not 0 there, and they are louder than the quietest rest",
+         text("%zu quiet stretches are taken for constant speed instead of rest: the "
+              "velocities left over there cancel, which no tilt or bias would make them",
               solution.cruises)});
+  if (solution.plateaus > 0 && solution.alternatives.empty())
+    notes.push_back({Severity::info,
+                     text("%zu quiet stretches are taken for constant acceleration: the readings "
+                          "there are not as long as at rest",
+                          solution.plateaus)});
   if (solution.false_rests > 0)
     notes.push_back(
         {Severity::info,
          text("%zu short quiet stretches are no rests: velocity and level there are not "
               "what the motion between the long rests leads to",
               solution.false_rests)});
-  if (std::all_of(solution.series.resting.begin(), solution.series.resting.end(),
-                  [](unsigned char rests) { return rests != 0; }))
+  if (solution.no_motion_shown)
     notes.push_back(
-        {Severity::info, "the sensor lay still throughout: there is no motion to measure"});
+        {Severity::info,
+         "no motion stands out of the noise: the interval holds what a slow one between "
+         "the two ends could hide"});
   else if (solution.rests.size() == 1 && options.fixes.empty())
     notes.push_back({Severity::warning,
                      "only one rest: no second one checks the velocity, so that the band rests on "
@@ -73,6 +79,26 @@ void tell_of_turning(TrackSolution& solution) {
          text("between two rests the sensor turned by %.2g deg: gravity leans into the axis, which "
               "the band holds as far as the rests show it; gyroscope channels would tell it",
               *solution.turned_rad / degree)});
+}
+
+void tell_of_alternatives(TrackSolution& solution) {
+  if (solution.alternatives.empty()) return;
+  std::string all;
+  for (const TrackAlternative& one : solution.alternatives) {
+    std::string where;
+    for (const TimeSpan& span : one.no_rests)
+      where += text("%s%.1f to %.1f s", where.empty() ? "" : ", ", span.start_s, span.end_s);
+    all += text("%s%.3g m with probability %.2g (%s)", all.empty() ? "" : "; ",
+                one.displacement_m.value, one.probability,
+                where.empty() ? "all of them rests" : ("under way " + where).c_str());
+  }
+  solution.notes.push_back(
+      {Severity::bad,
+       "it cannot be told which of the quiet stretches are rests and which are "
+       "motion at constant speed: " +
+           all +
+           "; no displacement is given. Say when the sensor stood still with "
+           "--still FILE"});
 }
 
 // What errs in motion but not at rest is mostly gravity, as the sensor leans.
@@ -141,6 +167,7 @@ double scale_std(const TrackSignal& signal,
 
 void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackSolution& solution) {
   tell_of_jerk(solution);
+  tell_of_alternatives(solution);
   tell_of_rests(options, solution);
   tell_of_turning(solution);
   if (!solution.suspected_jerk) tell_of_leaning(options, solution);

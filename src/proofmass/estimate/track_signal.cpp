@@ -128,9 +128,34 @@ double noise_of(const TrackSignal& signal, const signal::Rest& rest) {
 
 }  // namespace
 
-std::vector<signal::Rest> quiet_rests(const TrackSignal& signal) {
+double RestLevel::cosine_to(const RestLevel& other) const {
+  double product = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) product += level_mps2[a] * other.level_mps2[a];
+  return product / (length_mps2 * other.length_mps2);
+}
+
+std::vector<RestLevel> rest_levels(const TrackSignal& signal) {
+  std::vector<RestLevel> levels;
+  for (const signal::Rest& rest : signal.stops.rests) {
+    RestLevel level{level_of(signal, rest)};
+    for (std::size_t a = 0; a < 3; ++a) level.level_mps2[a] += signal.reference_mps2[a];
+    level.length_mps2 = norm(level.level_mps2);
+    level.duration_s = signal.time_s[rest.last] - signal.time_s[rest.first];
+    level.std_mps2 =
+        noise_of(signal, rest) / std::sqrt(static_cast<double>(rest.last - rest.first + 1));
+    levels.push_back(level);
+  }
+  return levels;
+}
+
+std::vector<double> rest_noises(const TrackSignal& signal) {
   std::vector<double> noise;
   for (const signal::Rest& rest : signal.stops.rests) noise.push_back(noise_of(signal, rest));
+  return noise;
+}
+
+std::vector<signal::Rest> quiet_rests(const TrackSignal& signal) {
+  const std::vector<double> noise = rest_noises(signal);
   std::vector<signal::Rest> quiet;
   for (std::size_t i = 0; i < noise.size(); ++i)
     if (noise[i] <= 2.0 * *std::min_element(noise.begin(), noise.end()))

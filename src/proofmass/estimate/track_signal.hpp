@@ -31,6 +31,19 @@ struct TrackSignal {
 [[nodiscard]] Result<TrackSignal> track_signal(const TrackSensor& sensor,
                                                const TrackOptions& options);
 
+/// The mean reading of a rest, its reference put back.
+struct RestLevel {
+  std::array<double, 3> level_mps2{};
+  double length_mps2 = 0.0, std_mps2 = 0.0;  ///< of the level, and of that by the noise of rest
+  double duration_s = 0.0;
+  [[nodiscard]] double cosine_to(const RestLevel& other) const;
+};
+/// Of each rest, of three axes.
+[[nodiscard]] std::vector<RestLevel> rest_levels(const TrackSignal& signal);
+
+/// Noise of each rest, from the differences of its readings over all axes, m/s².
+[[nodiscard]] std::vector<double> rest_noises(const TrackSignal& signal);
+
 /// The rests that are at most twice as loud as the quietest: a sensor that is carried at constant
 /// speed reads as at rest, but it shakes.
 [[nodiscard]] std::vector<signal::Rest> quiet_rests(const TrackSignal& signal);

@@ -11,7 +11,9 @@ namespace proofmass::estimate {
 struct Stops {
   std::vector<signal::Rest> rests;  ///< ascending, apart
   bool by_quietness = false;
-  std::string why_none;
+  std::string why_none{};
+  std::size_t cruises = 0, plateaus = 0;  ///< taken out: at constant speed, constant acceleration
+  bool only_ends = false;  ///< all of the recording is as quiet as rest, and may hide a motion
 };
 
 /// The rests of signal::find_rests(); where it finds none, stretches that are quiet against the

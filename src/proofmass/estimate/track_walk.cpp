@@ -40,8 +40,8 @@ struct GridPoint {
 };
 
 // Nothing at all three times in four, else normal in the logarithm of the root.
-std::vector<GridPoint> grid() {
-  constexpr double center = -2.5, std = 0.7, first = -4.5, last = 0.5, step = 0.5;
+std::vector<GridPoint> grid(double step) {
+  constexpr double center = -2.5, std = 0.7, first = -4.5, last = 0.5;
   constexpr double none = 0.75;
   std::vector<GridPoint> points;
   double sum = 0.0;
@@ -55,7 +55,12 @@ std::vector<GridPoint> grid() {
   return points;
 }
 
-// What of a long rest says nothing of the motion around it: its middle.
+double outside(double x) {
+  return std::erfc(x / std::numbers::sqrt2);
+}
+
+}  // namespace
+
 std::vector<InertialEpoch> without_middles(View<InertialEpoch> knots) {
   constexpr std::size_t kept = 3;
   std::vector<InertialEpoch> out(knots.begin(), knots.end());
@@ -74,12 +79,6 @@ std::vector<InertialEpoch> without_middles(View<InertialEpoch> knots) {
   return join_epochs(out, read);
 }
 
-double outside(double x) {
-  return std::erfc(x / std::numbers::sqrt2);
-}
-
-}  // namespace
-
 double mixture_factor(View<double> weight, View<double> variance) {
   double mean = 0.0;
   for (std::size_t i = 0; i < weight.size(); ++i) mean += weight[i] * variance[i];
@@ -94,25 +93,51 @@ double mixture_factor(View<double> weight, View<double> variance) {
   return high;
 }
 
-MotionError motion_error(View<InertialEpoch> all_knots,
-                         InertialNoise noise,
-                         const InertialStart& start) {
-  const std::vector<InertialEpoch> knots = without_middles(all_knots);
+namespace {
+
+/// The score of every point of the grid, its prior weight added to the logarithm.
+struct GridScores {
   std::vector<double> weight, closure;
   std::vector<std::array<double, 3>> at;
-  const std::vector<GridPoint> points = grid();
+};
+
+GridScores scores_on_grid(View<InertialEpoch> knots,
+                          InertialNoise noise,
+                          const InertialStart& start,
+                          double step) {
+  GridScores scores;
+  const std::vector<GridPoint> points = grid(step);
   for (const GridPoint& walk : points)
     for (const GridPoint& jump : points)
       for (const GridPoint& lean : points) {
-        at.push_back({walk.variance, jump.variance, lean.variance});
+        scores.at.push_back({walk.variance, jump.variance, lean.variance});
         noise.motion_walk_m2ps5 = std::max(walk.variance, noise.rest_walk_m2ps5);
         noise.motion_jump_m2ps4 = jump.variance;
         noise.motion_lean_m2ps3 = lean.variance;
         const Score found = score(knots, noise, start);
-        weight.push_back(found.log_likelihood + walk.log_weight + jump.log_weight +
-                         lean.log_weight);
-        closure.push_back(found.closure_variance);
+        scores.weight.push_back(found.log_likelihood + walk.log_weight + jump.log_weight +
+                                lean.log_weight);
+        scores.closure.push_back(found.closure_variance);
       }
+  return scores;
+}
+
+}  // namespace
+
+double log_evidence(View<InertialEpoch> knots,
+                    const InertialNoise& noise,
+                    const InertialStart& start) {
+  const std::vector<double> weight = scores_on_grid(knots, noise, start, 1.0).weight;
+  const double best = *std::max_element(weight.begin(), weight.end());
+  double sum = 0.0;
+  for (const double one : weight) sum += std::exp(one - best);
+  return best + std::log(sum);
+}
+
+MotionError motion_error(View<InertialEpoch> all_knots,
+                         InertialNoise noise,
+                         const InertialStart& start) {
+  auto [weight, closure, at] = scores_on_grid(without_middles(all_knots), noise, start, 0.5);
   const double best = *std::max_element(weight.begin(), weight.end());
   double sum = 0.0;
   for (double& one : weight) sum += one = std::exp(one - best);

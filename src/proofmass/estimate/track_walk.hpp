@@ -28,6 +28,14 @@ struct MotionError {
                                        InertialNoise noise,
                                        const InertialStart& start);
 
+/// Logarithm of the likelihood of the readings, the three integrated out over the same prior.
+[[nodiscard]] double log_evidence(View<InertialEpoch> knots,
+                                  const InertialNoise& noise,
+                                  const InertialStart& start);
+
+/// The knots less those in the middle of long rests, which say nothing of the motion around.
+[[nodiscard]] std::vector<InertialEpoch> without_middles(View<InertialEpoch> knots);
+
 /// Half width of the central 95 % of a mixture of normals about 0, over the root of its variance.
 /// The weights sum to 1.
 [[nodiscard]] double mixture_factor(View<double> weight, View<double> variance);

@@ -140,6 +140,20 @@ void tell_of_strokes(const TrackSolution& solution, std::vector<std::string>& al
     all.emplace_back("strokes[]: turn_s, back_m: null of a stroke that goes one way");
 }
 
+Value alternatives(const TrackSolution& solution) {
+  Array all;
+  for (const estimate::TrackAlternative& one : solution.alternatives) {
+    Array spans;
+    for (const estimate::TimeSpan& span : one.no_rests)
+      spans.push_back(Object{{"start_s", span.start_s}, {"end_s", span.end_s}});
+    all.push_back(Object{{"probability", one.probability},
+                         {"displacement_m", one.displacement_m.value},
+                         {"std_m", one.displacement_m.std},
+                         {"no_rests", std::move(spans)}});
+  }
+  return all;
+}
+
 // Every null has its reason here.
 std::vector<std::string> warnings(const TrackReport& report) {
   const TrackSolution& solution = report.solution;
@@ -199,6 +213,9 @@ std::string track_json(const TrackReport& report) {
        {"rests", rests(solution)},
        {"rests_by_quietness", solution.rests_by_quietness},
        {"cruises", solution.cruises},
+       {"plateaus", solution.plateaus},
+       {"alternatives", alternatives(solution)},
+       {"no_motion_shown", solution.no_motion_shown},
        {"strokes", strokes(solution.strokes)},
        {"stroke_summary", stroke_summary(solution.strokes)},
        {"closures", closures(solution)},

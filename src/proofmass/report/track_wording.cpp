@@ -152,6 +152,8 @@ std::vector<std::string> budget_words(const TrackSolution& solution) {
 
 std::string refusal(const TrackSolution& solution) {
   if (solution.smoother) return {};
+  if (!solution.alternatives.empty())
+    return "which of the quiet stretches are rests cannot be told";
   return solution.suspected_jerk
              ? "the readings behave like the rate of change of an acceleration (jerk)"
              : "this recording does not determine it";

@@ -29,7 +29,7 @@ void trim_loud_ends(const RestBlocks& blocks, const RestNoise& noise, RestRun& r
     all.push_back(loudness(blocks, noise, k, width));
   const auto quarter = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 4);
   std::ranges::nth_element(all, quarter);
-  const auto dof = static_cast<double>(blocks.axes * width * (blocks.block - 1));
+  const auto dof = static_cast<double>(width * (blocks.block - 1));
   const double bound = 2.0 * std::max(1.0, *quarter) * chi_square_quantile(level, dof) / dof;
   while (run.size() > width && loudness(blocks, noise, run.first, width) > bound) ++run.first;
   while (run.size() > width && loudness(blocks, noise, run.end - width, width) > bound) --run.end;
@@ -88,6 +88,37 @@ bool agree(const RestBlocks& blocks,
          chi_square_quantile(level, static_cast<double>(blocks.axes));
 }
 
+/// Whether what lies between two rests moved the sensor to another place: the readings, less the
+/// level on both sides and integrated twice, come to more than noise makes of them. The unit does
+/// not count; a knock moves nothing far.
+bool moves(const RestBlocks& blocks,
+           const RestNoise& noise,
+           const RestRun& one,
+           const RestRun& next) {
+  constexpr double beyond_noise = 12.0;
+  const RestBlock before = joined(blocks, one.first, one.size());
+  const RestBlock after = joined(blocks, next.first, next.size());
+  const auto end = static_cast<double>(blocks.end_sample(next.first - 1));
+  const double samples = end - static_cast<double>(blocks.first_sample(one.end));
+  for (std::size_t a = 0; a < blocks.axes; ++a) {
+    double moved = 0.0;  // in steps of time squared
+    for (std::size_t k = one.end; k < next.first; ++k) {
+      const auto first = static_cast<double>(blocks.first_sample(k));
+      const auto last = static_cast<double>(blocks.end_sample(k));
+      const double level = 0.5 * (before.mean[a] + after.mean[a]);
+      if (blocks.at[k].count > 0.0)
+        moved += (blocks.at[k].mean[a] - level) * (last - first) * (end - 0.5 * (first + last));
+    }
+    // White noise over n samples, and the level's own error, n²/2 of it.
+    const double of_level =
+        0.25 * noise.block_variance[a] * (1.0 / before.count + 1.0 / after.count);
+    const double variance = noise.block_variance[a] * samples * samples * samples / 3.0 +
+                            of_level * std::pow(samples, 4) / 4.0;
+    if (moved * moved > beyond_noise * beyond_noise * variance) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void trim_ends(const RestBlocks& blocks, const RestNoise& noise, RestRun& run) {
@@ -101,7 +132,8 @@ void join_runs(const RestBlocks& blocks, const RestNoise& noise, std::vector<Res
   std::vector<RestRun> joined_runs;
   joined_runs.reserve(runs.size());
   for (const RestRun& run : runs) {
-    if (!joined_runs.empty() && agree(blocks, noise, joined_runs.back(), run))
+    if (!joined_runs.empty() && agree(blocks, noise, joined_runs.back(), run) &&
+        !moves(blocks, noise, joined_runs.back(), run))
       joined_runs.back().end = run.end;
     else
       joined_runs.push_back(run);

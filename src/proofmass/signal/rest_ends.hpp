@@ -13,8 +13,9 @@ namespace proofmass::signal {
 /// reaches the last two at one end in 2000 for each length.
 void trim_ends(const RestBlocks& blocks, const RestNoise& noise, RestRun& run);
 
-/// Joins runs whose means agree on both sides of no more than a window: what lies between was a
-/// knock. Both must be as long as a window.
+/// Joins runs whose means agree on both sides of no more than a window, if what lies between moved
+/// the sensor nowhere: it was a knock. Both must be as long as a window. A stroke from rest to rest
+/// leaves the level as it was, too.
 void join_runs(const RestBlocks& blocks, const RestNoise& noise, std::vector<RestRun>& runs);
 
 }  // namespace proofmass::signal

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/signal/event_source.hpp"
 
 namespace proofmass::signal {
@@ -13,11 +15,25 @@ namespace {
 constexpr std::size_t least_windows = 8;
 
 struct Window {
-  double level;
-  std::size_t first;  ///< block
-  PerAxis variance;
+  double level = 0.0;
+  std::size_t first = 0;  ///< block
+  PerAxis variance{};
 };
 using Set = View<Window>;
+
+/// Of the axis that is loudest against its own quietest twentieth: a motion along one axis is none
+/// the less a motion.
+void set_levels(std::size_t axes, std::vector<Window>& windows) {
+  std::vector<double> logs(windows.size());
+  for (Window& window : windows) window.level = -std::numeric_limits<double>::infinity();
+  for (std::size_t a = 0; a < axes; ++a) {
+    std::ranges::transform(windows, logs.begin(),
+                           [a](const Window& w) { return 0.5 * std::log(w.variance[a]); });
+    const double quiet = quantile(logs, 0.05).value_or(0.0);
+    for (Window& window : windows)
+      window.level = std::max(window.level, 0.5 * std::log(window.variance[a]) - quiet);
+  }
+}
 
 std::vector<Window> windows_of(const RestBlocks& blocks) {
   std::vector<Window> windows;
@@ -27,13 +43,12 @@ std::vector<Window> windows_of(const RestBlocks& blocks) {
   for (std::size_t k = 0; k + blocks.window <= blocks.at.size(); ++k) {
     const RestBlock all = joined(blocks, k, blocks.window);
     if (all.count < enough) continue;
-    Window window{0.0, k, {}};
-    for (std::size_t a = 0; a < blocks.axes; ++a) {
+    Window window{.first = k};
+    for (std::size_t a = 0; a < blocks.axes; ++a)
       window.variance[a] = std::max(all.squares[a] / (all.count - 1.0), blocks.variance_floor[a]);
-      window.level += 0.5 * std::log(window.variance[a]) / static_cast<double>(blocks.axes);
-    }
     windows.push_back(window);
   }
+  set_levels(blocks.axes, windows);
   return windows;
 }
 
@@ -204,15 +219,18 @@ double loudness(const RestBlocks& blocks,
                 const RestNoise& noise,
                 std::size_t k,
                 std::size_t count) {
-  double sum = 0.0;
+  PerAxis squares{};
   double free = 0.0;
   for (std::size_t b = k; b < k + count; ++b) {
     const RestBlock& block = blocks.at[b];
     if (block.count < 2.0) continue;
-    for (std::size_t a = 0; a < blocks.axes; ++a) sum += block.squares[a] / noise.block_variance[a];
-    free += static_cast<double>(blocks.axes) * (block.count - 1.0);
+    for (std::size_t a = 0; a < blocks.axes; ++a) squares[a] += block.squares[a];
+    free += block.count - 1.0;
   }
-  return free > 0.0 ? sum / free : 0.0;
+  double loudest = 0.0;
+  for (std::size_t a = 0; a < blocks.axes; ++a)
+    loudest = std::max(loudest, squares[a] / noise.block_variance[a]);
+  return free > 0.0 ? loudest / free : 0.0;
 }
 
 PerAxis noise_ratio(const RestBlocks& blocks,

@@ -30,15 +30,16 @@ struct RestNoise {
 
 /// The noise of the quietest well-filled set of windows; nullopt if there are fewer than eight.
 ///
-/// With v_a the variance of a window on axis a, its level is the mean over the axes of ½ ln v_a, so
-/// that neither the unit nor different noise of the axes count. χ² scatters the level of n samples
-/// on A axes by 1/√(2 A (n − 1)); a set is what lies within ln 2 + 4 of these. Of the sets
-/// that begin within a factor of 4 of the lowest the fullest is taken. If that swings, the lowest
-/// may do, or what is left of the fullest without the windows whose halves differ. Figures are
-/// medians over the set, corrected to means of χ².
+/// With v_a the variance of a window on axis a, its level is the largest over the axes of ½ ln v_a
+/// less its 5 % quantile, so that neither the unit nor different noise of the axes count and motion
+/// along a single axis does. A set is what lies within ln 2 + 4/√(2 A (n − 1)), by how far χ²
+/// scatters a mean over A axes of n samples each. Of the sets that begin within a factor of 4 of
+/// the lowest the fullest is taken. If that swings, the lowest may do, or what is left of the
+/// fullest without the windows whose halves differ. Figures are medians over the set, corrected to
+/// means of χ².
 [[nodiscard]] std::optional<RestNoise> find_rest_noise(const RestBlocks& blocks);
 
-/// How much noisier blocks are than rest: Σ_a squares_a / σ_a² over its degrees of freedom.
+/// How much noisier blocks are than rest, as a variance, on the axis where they are noisiest.
 [[nodiscard]] double loudness(const RestBlocks& blocks,
                               const RestNoise& noise,
                               std::size_t k,

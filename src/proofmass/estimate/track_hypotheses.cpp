@@ -1,0 +1,208 @@
+#include "proofmass/estimate/track_hypotheses.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "proofmass/estimate/track_walk.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+double log_normal_density(double x, double std) {
+  return -0.5 * (x * x / (std * std) + std::log(2.0 * std::numbers::pi * std * std));
+}
+
+/// Of the logarithm of a stretch's noise over that of the quietest.
+double log_loudness_density(double log_ratio, QuietStretch kind) {
+  constexpr double same_std = 0.1;
+  const bool rests = kind == QuietStretch::rest;
+  const double same = rests ? 0.75 : 0.3, louder_std = rests ? 0.5 : 0.8;
+  return std::log(same * std::exp(log_normal_density(log_ratio, same_std)) +
+                  (1.0 - same) * 2.0 * std::exp(log_normal_density(log_ratio, louder_std)));
+}
+
+double log_prior(QuietStretch kind, bool at_an_end) {
+  const double no_rest = at_an_end ? 1e-3 : 0.1;
+  return std::log(kind == QuietStretch::rest ? 1.0 - no_rest : no_rest);
+}
+
+/// Knots of one stretch: that of the arrival, and those on the way through.
+struct StretchKnots {
+  std::size_t arrival = 0, first = 0, end = 0;
+  double level_mps2 = 0.0, level_std_mps2 = 0.0;
+};
+
+std::vector<StretchKnots> stretches_in(const std::vector<InertialEpoch>& knots) {
+  std::vector<StretchKnots> found;
+  for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+    if (knots[k].resting || !knots[k + 1].resting) continue;
+    StretchKnots stretch{k, k + 1, k + 1};
+    double weight = 0.0, sum = 0.0;
+    for (; stretch.end < knots.size() && knots[stretch.end].resting; ++stretch.end) {
+      const InertialEpoch& knot = knots[stretch.end];
+      if (std::isnan(knot.level_mps2)) continue;
+      weight += 1.0 / knot.level_variance;
+      sum += knot.level_mps2 / knot.level_variance;
+    }
+    stretch.level_mps2 = weight > 0.0 ? sum / weight : 0.0;
+    stretch.level_std_mps2 = weight > 0.0 ? 1.0 / std::sqrt(weight) : 1.0;
+    found.push_back(stretch);
+  }
+  return found;
+}
+
+/// What a stretch may be instead of a rest: its level is that of a neighbour, or it is not.
+std::vector<QuietStretch> other_kinds(const std::vector<StretchKnots>& stretches) {
+  constexpr double wander_mps2 = 0.02;
+  std::vector<QuietStretch> kinds(stretches.size(), QuietStretch::cruise);
+  for (std::size_t i = 1; i + 1 < stretches.size(); ++i) {
+    const auto apart = [&](std::size_t j) {
+      const double std = std::hypot(stretches[i].level_std_mps2, stretches[j].level_std_mps2);
+      return std::abs(stretches[i].level_mps2 - stretches[j].level_mps2) > wander_mps2 + 5.0 * std;
+    };
+    if (apart(i - 1) && apart(i + 1)) kinds[i] = QuietStretch::plateau;
+  }
+  return kinds;
+}
+
+void make_cruise(const StretchKnots& stretch,
+                 double speed_std_mps,
+                 std::vector<InertialEpoch>& knots) {
+  knots[stretch.arrival].velocity_std_mps = speed_std_mps;
+  for (std::size_t k = stretch.first; k < stretch.end; ++k) knots[k].cruising = true;
+}
+
+/// The readings are integrated instead of telling the bias; returns the logarithm of their density
+/// about a level of their own, of which as many count as without_middles() leaves of a rest.
+double make_plateau(const StretchKnots& stretch, std::vector<InertialEpoch>& knots) {
+  constexpr double accel_std_mps2 = 0.5;
+  constexpr std::size_t counted = 6;
+  double log_density = log_normal_density(stretch.level_mps2, accel_std_mps2);
+  knots[stretch.arrival].velocity_std_mps = std::numeric_limits<double>::quiet_NaN();
+  knots[stretch.arrival].arrives_at_rest = false;
+  for (std::size_t k = stretch.first; k < stretch.end; ++k) {
+    InertialEpoch& knot = knots[k];
+    const double level = std::isnan(knot.level_mps2) ? stretch.level_mps2 : knot.level_mps2;
+    if (k > stretch.first && k < stretch.first + counted && knot.level_variance > 0.0)
+      log_density += log_normal_density(level - stretch.level_mps2, std::sqrt(knot.level_variance));
+    knot.resting = false;
+    knot.velocity_step_mps = level * knot.dt_s;
+    knot.position_step_m = 0.5 * level * knot.dt_s * knot.dt_s;
+    knot.level_mps2 = std::numeric_limits<double>::quiet_NaN();
+  }
+  if (stretch.end < knots.size()) knots[stretch.end].leaves_rest = false;
+  return log_density;
+}
+
+/// Of the readings, given what each stretch is.
+double log_evidence_of(const std::vector<QuietStretch>& kinds,
+                       const std::vector<StretchKnots>& stretches,
+                       const std::vector<InertialEpoch>& knots,
+                       const AxisRun& run) {
+  const bool cruises = std::ranges::find(kinds, QuietStretch::cruise) != kinds.end();
+  const std::vector<double> speeds_mps = cruises ? std::vector{0.3, 3.0, 30.0} : std::vector{0.0};
+  std::vector<double> logs;
+  for (const double speed_mps : speeds_mps) {
+    std::vector<InertialEpoch> labelled = knots;
+    double log_density = 0.0;
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+      if (kinds[i] == QuietStretch::cruise) make_cruise(stretches[i], speed_mps, labelled);
+      if (kinds[i] == QuietStretch::plateau) log_density += make_plateau(stretches[i], labelled);
+    }
+    logs.push_back(log_density + log_evidence(without_middles(labelled), run.noise, run.start));
+  }
+  const double best = std::ranges::max(logs);
+  double sum = 0.0;
+  for (const double one : logs) sum += std::exp(one - best);
+  return best + std::log(sum / static_cast<double>(logs.size()));
+}
+
+/// The stretches beside the largest velocities that were left over, at most seven.
+std::vector<std::size_t> doubtful(const std::vector<Closure>& closures, std::size_t stretches) {
+  constexpr double left_over_share = 0.25, least_mps = 0.05;
+  constexpr std::size_t most = 7;
+  std::vector<std::pair<double, std::size_t>> left_over;  // m/s, and the stretch arrived at
+  for (std::size_t i = 0; i < closures.size(); ++i) {
+    const double speed = std::abs(closures[i].velocity_mps);
+    if (speed > left_over_share * closures[i].fastest_mps && speed > least_mps)
+      left_over.emplace_back(speed, stretches - closures.size() + i);
+  }
+  std::ranges::sort(left_over, std::greater{});
+  std::vector<std::size_t> found;
+  for (const auto& [speed, at] : left_over)
+    for (const std::size_t stretch : {at, at - 1}) {
+      if (at == 0 || std::ranges::find(found, stretch) != found.end()) continue;
+      if (found.size() < most) found.push_back(stretch);
+    }
+  return found;
+}
+
+}  // namespace
+
+void drop_plateaus(TrackSignal& signal) {
+  std::vector<signal::Rest>& rests = signal.stops.rests;
+  if (signal.axes.size() != 3 || signal.gravity != GravityContent::present || rests.size() < 2)
+    return;
+  const std::vector<RestLevel> levels = rest_levels(signal);
+  const auto agree = [&](const RestLevel& a, const RestLevel& b) {
+    // An uncalibrated sensor reads gravity longer or shorter in another position.
+    constexpr double bias_mps2 = 0.5, wander_mps2 = 0.02;
+    const double sine2 = std::max(0.0, 1.0 - std::pow(a.cosine_to(b), 2));
+    return std::abs(a.length_mps2 - b.length_mps2) <=
+           5.0 * std::hypot(a.std_mps2, b.std_mps2) + wander_mps2 + bias_mps2 * std::sqrt(sine2);
+  };
+  const auto agreeing_s = [&](const RestLevel& level) {
+    double sum = 0.0;
+    for (const RestLevel& other : levels) sum += agree(level, other) ? other.duration_s : 0.0;
+    return sum;
+  };
+  const auto most = std::ranges::max_element(levels, {}, agreeing_s);
+  std::vector<signal::Rest> kept;
+  for (std::size_t i = 0; i < rests.size(); ++i)
+    if (agree(*most, levels[i])) kept.push_back(rests[i]);
+  signal.stops.plateaus += rests.size() - kept.size();
+  rests = std::move(kept);
+}
+
+std::vector<StopHypothesis> stop_hypotheses(const TrackSignal& signal,
+                                            const AxisRun& run,
+                                            const std::vector<Closure>& closures) {
+  const std::size_t count = signal.stops.rests.size();
+  const std::vector<QuietStretch> all_rests(count, QuietStretch::rest);
+  const std::vector<std::size_t> candidates =
+      closures.size() < count ? doubtful(closures, count) : std::vector<std::size_t>{};
+  const std::vector<InertialEpoch> knots = join_epochs(run.made.epochs, run.made.knots);
+  const std::vector<StretchKnots> stretches = stretches_in(knots);
+  if (candidates.empty() || stretches.size() != count) return {{all_rests, 1.0}};
+  const std::vector<QuietStretch> other = other_kinds(stretches);
+  const std::vector<double> noise = rest_noises(signal);
+  const double quietest = std::ranges::min(noise);
+  std::vector<StopHypothesis> hypotheses;
+  std::vector<double> logs;
+  for (std::size_t mask = 0; mask < std::size_t{1} << candidates.size(); ++mask) {
+    StopHypothesis hypothesis{all_rests};
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+      if (mask >> i & 1) hypothesis.stretches[candidates[i]] = other[candidates[i]];
+    if (std::ranges::find(hypothesis.stretches, QuietStretch::rest) == hypothesis.stretches.end())
+      continue;
+    double log = log_evidence_of(hypothesis.stretches, stretches, knots, run);
+    for (const std::size_t i : candidates)
+      log += log_prior(hypothesis.stretches[i], i == 0 || i + 1 == count) +
+             log_loudness_density(quietest > 0.0 ? std::log(noise[i] / quietest) : 0.0,
+                                  hypothesis.stretches[i]);
+    hypotheses.push_back(std::move(hypothesis));
+    logs.push_back(log);
+  }
+  const double best = std::ranges::max(logs);
+  double sum = 0.0;
+  for (double& log : logs) sum += log = std::exp(log - best);
+  for (std::size_t i = 0; i < logs.size(); ++i) hypotheses[i].probability = logs[i] / sum;
+  std::ranges::sort(hypotheses, std::greater{}, &StopHypothesis::probability);
+  std::erase_if(hypotheses, [](const StopHypothesis& one) { return one.probability < 1e-3; });
+  return hypotheses;
+}
+
+}  // namespace proofmass::estimate
