@@ -47,6 +47,10 @@ struct TimeBase {
   /// The first sample's time on the file's own clock (its origin may be an epoch, a power-up or
   /// nothing at all): what two recordings of one clock are laid beside each other with.
   std::optional<std::int64_t> start_ns;
+  /// Where single steps do not say whether a row is missing (stamps rounded to about a step of the
+  /// samples, rows in bursts): the width of the band about evenly spaced instants that the stamps
+  /// lie in while none is. 0 where they do.
+  double band_s = 0.0;
   std::size_t mended = 0;            ///< stamps that a reader replaced, being no number or far off
   std::size_t mended_backwards = 0;  ///< stamps below the one before that no longer are
 

@@ -103,6 +103,7 @@ void RunningTimeBase::decide_on_stamps(const TimeEvidence& rows) {
 
 void RunningTimeBase::take_rate(const StampSteps& steps) {
   base_.rate_hz = 1.0 / in_seconds(steps.nominal(), unit_s_);
+  base_.band_s = in_seconds(steps.band, unit_s_);
   rate_notes_ = notes_on_rate(base_, steps, unit_s_, header_rate_hz_);
 }
 

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/io/coarse_stamps.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -81,10 +82,42 @@ bool are_multiples(const std::vector<double>& steps, double single) {
   return multiples * 10 >= steps.size() * 9 && singles * 2 >= steps.size();
 }
 
+/// The median of the steps within half a step of it: that of all is too long where rows are lost
+/// and stamps jitter, as each loss takes a step out of the lower half.
+double ordinary_median(const std::vector<double>& steps, double median_step) {
+  double ordinary = median_step;
+  for (int pass = 0; pass < 4; ++pass) {
+    std::vector<double> near;
+    std::ranges::copy_if(steps, std::back_inserter(near),
+                         [&](double step) { return std::abs(step - ordinary) <= 0.5 * ordinary; });
+    const double next = *median(near);
+    if (next == ordinary) break;
+    ordinary = next;
+  }
+  return ordinary;
+}
+
+/// The step by a line through the stamps, where it is the same as the single one within what the
+/// jitter makes that uncertain by; else 0. Only of stamps that jitter.
+double step_by_jittered_line(View<double> stamps, const std::vector<double>& steps, double single) {
+  std::vector<double> near;
+  std::ranges::copy_if(steps, std::back_inserter(near),
+                       [&](double step) { return std::abs(step - single) <= 0.5 * single; });
+  const double jitter = *robust_std(near);
+  if (jitter < 0.01 * single || near.size() * 2 < steps.size()) return 0.0;
+  // Source: asymptotic variance of the median, π/2 times that of the mean.
+  const double std = 1.2533 * jitter / std::sqrt(static_cast<double>(near.size()));
+  const double line = step_by_line(stamps, single, 0.0);
+  return std::abs(line - single) <= 3.0 * std ? line : 0.0;
+}
+
 bool come_in_bursts(const StampSteps& out, const std::vector<double>& steps) {
-  const double single = out.rounding > 0.0 ? out.mean_near : out.median;
+  const double single = out.single;
   if (out.long_run <= 0.0 || std::abs(out.long_run / single - 1.0) <= 0.05) return false;
   if (out.long_run < single) return out.repeated > 0.12;
+  // Of rows that are lost at random half are not followed by another loss: the long run is less
+  // than two steps.
+  if (out.long_run > 3.0 * single) return true;
   return !are_multiples(steps, single);
 }
 
@@ -106,12 +139,26 @@ StampSteps measure_steps(View<double> stamps) {
   if (up.empty()) return out;
   out.median = *median(up);
   out.rounding = rounding_of(up, out.median);
+  if (out.rounding == 0.0)
+    if (const auto coarse = find_coarse_stamps(stamps, up, out.median)) {
+      out.rounding = coarse->tick;
+      out.coarse = coarse->step;
+      out.band = coarse->band;
+    }
   Moments near;
   for (const double step : up)
     if (std::abs(step - out.median) <= 1.001 * out.rounding) near.add(step);
   out.mean_near = near.count > 0 ? near.mean : out.median;
+  out.single = out.rounding > 0.0 ? out.mean_near : ordinary_median(up, out.median);
   out.long_run = long_run_of(stamps);
-  out.in_bursts = come_in_bursts(out, all);
+  out.in_bursts = out.coarse == 0.0 && come_in_bursts(out, all);
+  if (out.in_bursts) {
+    out.band = band_of_bursts(stamps, out.long_run);
+    if (out.band > 0.0) out.long_run = step_by_line(stamps, out.long_run, out.band);
+  } else if (out.rounding == 0.0) {
+    if (const double line = step_by_jittered_line(stamps, up, out.single); line > 0.0)
+      out.single = line;
+  }
   return out;
 }
 

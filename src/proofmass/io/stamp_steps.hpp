@@ -20,15 +20,21 @@ struct StampSteps {
   double rounding =
       0.0;  ///< what all steps are multiples of, if more than 1 % of the median; else 0
   double mean_near = 0.0;  ///< mean of the steps within one rounding of the median
+  double single = 0.0;     ///< from one row to the next where none is lost between: mean_near, or
+                           ///< the median of the steps within half a step of it; where stamps
+                           ///< jitter by more than 1 % and agree, by a line through them
   double middle = 0.0;     ///< median of all finite steps, those of zero and below too
   double ascending = 0.0;  ///< fraction of the finite steps that are not below zero
   double repeated = 0.0;   ///< fraction of the finite steps that are zero
   double long_run = 0.0;   ///< time a row over many rows, whatever a few gaps are; 0 if not known
   bool in_bursts = false;  ///< the single steps do not say what the long run does
+  double coarse = 0.0;     ///< step where it is about one rounding (CoarseStamps); else 0
+  double band = 0.0;       ///< TimeBase::band_s, in the unit of the stamps
 
   /// From one sample to the next as the sensor took them.
   [[nodiscard]] double nominal() const {
-    return in_bursts ? long_run : (rounding > 0.0 ? mean_near : median);
+    if (coarse > 0.0) return coarse;
+    return in_bursts ? long_run : single;
   }
   /// Whether a clock can have such steps, in whatever unit.
   [[nodiscard]] bool is_of_clock() const {
@@ -37,7 +43,10 @@ struct StampSteps {
     return median > least && median < most && nominal() > least && nominal() < most;
   }
   /// Up to what a step is a usual one: between bursts there is more than a nominal one.
-  [[nodiscard]] double usual() const { return 1.5 * (median > nominal() ? median : nominal()); }
+  [[nodiscard]] double usual() const {
+    if (coarse > 0.0) return coarse + 1.01 * rounding;
+    return 1.5 * (median > nominal() ? median : nominal());
+  }
 };
 
 /// Rows come in bursts (packets, a busy computer) where the long run differs by more than 5 % from

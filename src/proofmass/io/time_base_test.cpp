@@ -1,9 +1,13 @@
 #include "proofmass/io/time_base.hpp"
 
 #include <cmath>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <random>
 
 #include "proofmass/io/test_support.hpp"
+#include "proofmass/signal/audit.hpp"
+#include "proofmass/signal/even_grid.hpp"
 
 namespace proofmass::io::time_base_test {
 namespace {
@@ -220,6 +224,64 @@ TEST(TimeBase, NoticesARateInThePreambleThatTheStampsBelie) {
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(read->time.rate_hz, 10.0);
   EXPECT_TRUE(is_noted(*read, "one of them is wrong")) << notes_of(*read);
+}
+
+/// Rounded to whole milliseconds, at this rate; of the samples some are lost at random.
+std::vector<std::string> in_whole_ms(double rate_hz, int samples, double lost, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform;
+  const double phase_ms = uniform(random);
+  std::vector<std::string> out;
+  for (int k = 0; k < samples; ++k)
+    if (uniform(random) >= lost)
+      out.push_back(fmt::format("{:.0f}", std::floor(1e3 * k / rate_hz + phase_ms)));
+  return out;
+}
+
+TEST(TimeBase, FindsTheRateBehindStampsOfWholeTicks) {
+  for (const double rate_hz : {667.0, 680.0, 700.0, 833.0, 952.0, 980.0, 1125.0, 1600.0}) {
+    const auto read = read_text(table("t_ms", in_whole_ms(rate_hz, 8000, 0.0, 1)));
+    ASSERT_TRUE(read.has_value());
+    EXPECT_NEAR(read->time.rate_hz, rate_hz, 5e-5 * rate_hz);
+    const auto audit = signal::audit(*read);
+    EXPECT_EQ(audit.timing.gap_count, 0U) << rate_hz;
+  }
+}
+
+TEST(TimeBase, FindsWhatIsLostBesideWholeTicks) {
+  for (const double rate_hz : {680.0, 700.0, 833.0, 952.0}) {
+    const std::vector<std::string> stamps = in_whole_ms(rate_hz, 8000, 0.002, 2);
+    const auto read = read_text(table("t_ms", stamps));
+    ASSERT_TRUE(read.has_value());
+    EXPECT_NEAR(read->time.rate_hz, rate_hz, 1e-4 * rate_hz);
+    const auto grid = signal::even_grid(read->time, read->samples());
+    ASSERT_TRUE(grid.has_value());
+    EXPECT_EQ(grid->missing + stamps.size(), 8000U) << rate_hz;
+  }
+}
+
+TEST(TimeBase, TakesNoLossForRounding) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const auto read = read_text(table("t_ms", in_whole_ms(1000.0, 4000, 0.05, seed)));
+    ASSERT_TRUE(read.has_value());
+    EXPECT_EQ(read->time.rate_hz, 1000.0) << seed;
+  }
+}
+
+TEST(TimeBase, FindsNoGapsBetweenBursts) {
+  for (const int rows : {4, 7, 16}) {
+    std::vector<std::string> stamps;
+    for (int k = 0; k < 8000; ++k)
+      stamps.push_back(fmt::format("{:.6f}", (k / rows * rows + rows) / 200.0));
+    const auto read = read_text(table("t_s", stamps));
+    ASSERT_TRUE(read.has_value());
+    EXPECT_NEAR(read->time.rate_hz, 200.0, 0.01);
+    const auto audit = signal::audit(*read);
+    EXPECT_EQ(audit.timing.gap_count, 0U) << rows;
+    const auto grid = signal::even_grid(read->time, read->samples());
+    ASSERT_TRUE(grid.has_value());
+    EXPECT_EQ(grid->missing, 0U) << rows;
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "proofmass/report/inspect_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "proofmass/report/document.hpp"
@@ -61,6 +62,7 @@ Value timing_value(const TimingAudit& timing) {
   }
   return Object{{"source", word(timing.source)},
                 {"channel", timing.channel.empty() ? Value() : Value(timing.channel)},
+                {"rate_long_run_hz", optional(timing.long_run_hz)},
                 {"jitter_s", optional(timing.jitter_s)},
                 {"gaps", std::move(gaps)},
                 {"gap_count", timing.gap_count},
@@ -105,6 +107,9 @@ std::vector<std::string> reasons(const RecordingAudit& audit) {
   std::vector<std::string> all;
   if (!has_rate(audit)) {
     all.emplace_back("rate_hz, duration_s: null: no time column and no --rate");
+  }
+  if (!audit.timing.long_run_hz) {
+    all.emplace_back("timing.rate_long_run_hz: null: without stamps there is none");
   }
   if (!audit.timing.jitter_s) {
     all.emplace_back("timing.jitter_s: null: too few stamps to judge the steps between them");
@@ -168,6 +173,16 @@ std::string inspect_json(const std::vector<InspectedFile>& files) {
   return to_json(head, body);
 }
 
+/// The nominal rate; and that of the long run where the two differ by more than 0.1 %.
+std::string rate_words(const TimingAudit& timing) {
+  if (!(timing.rate_hz > 0.0)) return "unknown";
+  const std::string nominal = compact(timing.rate_hz, 7) + " Hz";
+  const double long_run_hz = timing.long_run_hz.value_or(timing.rate_hz);
+  if (std::abs(long_run_hz / timing.rate_hz - 1.0) <= 1e-3) return nominal;
+  return fmt::format("{} by the usual step, {} Hz in the long run", nominal,
+                     compact(long_run_hz, 7));
+}
+
 std::string jitter_words(const TimingAudit& timing) {
   if (!timing.jitter_s) return "unknown";
   constexpr double rounding_s = 1e-9;
@@ -196,7 +211,7 @@ std::string inspect_text(const InspectedFile& file) {
                    {"samples", std::to_string(audit.samples)},
                    {"time", fmt::format("{}{}", word(timing.source),
                                         timing.channel.empty() ? "" : " (" + timing.channel + ")")},
-                   {"rate", has_rate(audit) ? compact(timing.rate_hz, 7) + " Hz" : "unknown"},
+                   {"rate", rate_words(timing)},
                    {"jitter", jitter_words(timing)},
                    {"gaps", std::to_string(timing.gap_count)},
                    {"stamps", fmt::format("{} backwards, {} repeated, {} mended", timing.backwards,

@@ -33,17 +33,21 @@ struct ChannelAudit {
   double longest_stuck_start_s = 0.0;
 };
 
-/// A hole in the stamps: two samples further apart than 1.5 nominal steps.
+/// A hole in the stamps: two samples further apart than 1.5 nominal steps. Where single steps do
+/// not tell (TimeBase::band_s): samples missing by StampBand, within some rows of their place.
 struct Gap {
   double start_s = 0.0;     ///< time of the last sample before it, since the first sample
-  double duration_s = 0.0;  ///< from that sample to the next
+  double duration_s = 0.0;  ///< from that sample to the next; by StampBand in whole nominal steps
 };
 
 /// How regular the sampling was.
 struct TimingAudit {
   TimeSource source = TimeSource::none;
-  std::string channel;             ///< column behind the time base; empty if none
-  double rate_hz = 0.0;            ///< 0 if unknown
+  std::string channel;   ///< column behind the time base; empty if none
+  double rate_hz = 0.0;  ///< 0 if unknown
+  /// Samples, missing ones counted, over the duration; rate_hz itself where that is off by more
+  /// than 2 % or time runs backwards. None without stamps.
+  std::optional<double> long_run_hz;
   std::optional<double> jitter_s;  ///< std of the steps about the nominal one, gaps left out; none
                                    ///< where there are no stamps
   std::vector<Gap> gaps;           ///< the first most_listed of them
@@ -77,9 +81,11 @@ struct RecordingAudit {
 /// multiples of, fitted by how often they are read; none if fewer than half of the values repeat
 /// one another. Values count as clipped where the exact extreme is read three times running or
 /// more, and more often than the fiftieth of the range next to it; only channels that a converter's
-/// range can clip. Of LSB and clipping see running_audit.hpp for recordings of more than a quarter
-/// of a million samples. Cost: one pass, and a sort of at most a quarter of a million values of
-/// each channel.
+/// range can clip. Where the LSB is known, the signal has to run into the rail, too: a crest in
+/// coarse steps, or a position at rest, reads its extreme for long as well. A rail that noise was
+/// added to behind it, and one that the signal bends to, are not found. Of LSB and clipping see
+/// running_audit.hpp for recordings of more than a quarter of a million samples. Cost: one pass,
+/// and a sort of at most a quarter of a million values of each channel.
 [[nodiscard]] RecordingAudit audit(const Recording& recording);
 
 }  // namespace proofmass::signal

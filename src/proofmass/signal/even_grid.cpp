@@ -16,7 +16,7 @@ Result<EvenGrid> even_grid(const TimeBase& time, std::size_t samples) {
     return EvenGrid{.rate_hz = time.rate_hz, .recorded = samples, .missing = 0, .holes = {}};
   const View<double> stamps_s = time.stamps_s;
   PM_EXPECTS(stamps_s.size() == samples);
-  HoleFinder finder(time.rate_hz);
+  HoleFinder finder(time.rate_hz, time.band_s);
   std::vector<Hole> holes;
   constexpr std::size_t piece = 4096;
   for (std::size_t from = 0; from < samples; from += piece)

@@ -27,11 +27,12 @@ struct EvenGrid {
 
 /// Where the samples of a recording stand on an even grid. Jitter is ignored; a step longer than
 /// 1.5 nominal ones is a hole of round(step · rate) − 1 samples, unless the eight samples on either
-/// side make up for it, as they do where a computer was late with a stamp, not the sensor. The
-/// rate is the nominal one, or where there are stamps (and none runs backwards by more than a step)
-/// that of the grid over their duration, if the two are within 2 %.
-/// Errors: invalid_argument (no rate known), corrupt (the grid would have more than four times as
-/// many places as there are samples). Cost: O(N). Of a recording in pieces: RunningEvenGrid.
+/// side make up for it, as they do where a computer was late with a stamp, not the sensor. Where
+/// single steps do not tell (TimeBase::band_s), StampBand says where samples are missing. The rate
+/// is the nominal one, or where there are stamps (and none runs backwards by more than a step) that
+/// of the grid over their duration, if the two are within 2 %. Errors: invalid_argument (no rate
+/// known), corrupt (the grid would have more than four times as many places as there are samples).
+/// Cost: O(N). Of a recording in pieces: RunningEvenGrid.
 [[nodiscard]] Result<EvenGrid> even_grid(const TimeBase& time, std::size_t samples);
 
 /// The values of a channel on the grid: NaN in the holes, and for values that are no measurement

@@ -16,18 +16,54 @@ void HoleFinder::add(View<double> stamps_s, std::vector<Hole>& holes) {
   if (samples_ == 0) {
     first_s_ = stamps_s.front();
     decided_ = 1;
+    if (band_) band_->take(first_s_, 0.0);
   }
   last_s_ = stamps_s.back();
   recent_.insert(recent_.end(), stamps_s.begin(), stamps_s.end());
   samples_ += stamps_s.size();
-  decide(false, holes);
+  if (band_)
+    decide_by_band(false, holes);
+  else
+    decide(false, holes);
   // What the next undecided sample may be compared with is kept.
   const std::size_t needed = std::min(recent_.size(), samples_ - decided_ + nearby);
   recent_.erase(recent_.begin(), recent_.end() - static_cast<std::ptrdiff_t>(needed));
 }
 
 void HoleFinder::finish(std::vector<Hole>& holes) {
-  decide(true, holes);
+  if (band_)
+    decide_by_band(true, holes);
+  else
+    decide(true, holes);
+}
+
+void HoleFinder::count(double missing, std::vector<Hole>& holes) {
+  missing_ += missing;
+  if (!(missing >= 1.0)) return;
+  ++hole_count_;
+  // Of a size that no recording has, only check() says.
+  holes.push_back({decided_, static_cast<std::size_t>(std::min(missing, 0x1p62))});
+}
+
+void HoleFinder::decide_by_band(bool is_end, std::vector<Hole>& holes) {
+  const std::size_t first = samples_ - recent_.size();
+  for (; decided_ < samples_; ++decided_) {
+    const std::size_t at = decided_ - first;
+    double missing = 0.0;
+    if (!band_->holds(recent_[at])) {
+      if (!is_end && at + StampBand::ahead > recent_.size()) return;
+      const std::size_t behind = std::min(StampBand::ahead, recent_.size() - at);
+      missing = band_->missing_before(View<double>(recent_).subspan(at, behind));
+    }
+    band_->take(recent_[at], missing);
+    const double steps = (recent_[at] - recent_[at - 1]) * rate_hz_;
+    ascending_ = ascending_ && steps > -1.0;
+    if (missing == 0.0) {
+      squares_ += (steps - 1.0) * (steps - 1.0);
+      ++regular_;
+    }
+    count(missing, holes);
+  }
 }
 
 void HoleFinder::decide(bool is_end, std::vector<Hole>& holes) {
@@ -42,12 +78,7 @@ void HoleFinder::decide(bool is_end, std::vector<Hole>& holes) {
       continue;
     }
     if (!is_end && at + nearby >= recent_.size()) return;
-    const double missing = missing_before(at);
-    missing_ += missing;
-    if (!(missing >= 1.0)) continue;
-    ++hole_count_;
-    // Of a size that no recording has, only check() says.
-    holes.push_back({decided_, static_cast<std::size_t>(std::min(missing, 0x1p62))});
+    count(missing_before(at), holes);
   }
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/even_grid.hpp"
+#include "proofmass/signal/stamp_band.hpp"
 
 namespace proofmass::signal {
 
@@ -13,7 +15,12 @@ namespace proofmass::signal {
 /// even_grid() and RunningEvenGrid have it from.
 class HoleFinder {
  public:
-  explicit HoleFinder(double rate_hz) : rate_hz_(rate_hz) {}
+  /// band_s: of the TimeBase.
+  explicit HoleFinder(double rate_hz, double band_s = 0.0) : rate_hz_(rate_hz) {
+    if (band_s > 0.0) band_.emplace(1.0 / rate_hz, band_s);
+  }
+  /// Rows behind a sample that may be needed to decide on it.
+  static constexpr std::size_t most_undecided = StampBand::ahead;
 
   /// Appends the holes that can be told by now.
   void add(View<double> stamps_s, std::vector<Hole>& holes);
@@ -35,9 +42,12 @@ class HoleFinder {
 
  private:
   void decide(bool is_end, std::vector<Hole>& holes);
+  void decide_by_band(bool is_end, std::vector<Hole>& holes);
+  void count(double missing, std::vector<Hole>& holes);
   [[nodiscard]] double missing_before(std::size_t at) const;
 
   double rate_hz_;
+  std::optional<StampBand> band_;
   std::vector<double> recent_;  ///< stamps from some before the first undecided sample on
   std::size_t samples_ = 0, decided_ = 0;
   double first_s_ = 0.0, last_s_ = 0.0;

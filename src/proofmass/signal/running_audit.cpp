@@ -38,7 +38,7 @@ struct CounterColumn {
 
 struct RunningAudit::State {
   explicit State(const Recording& head)
-      : rate_hz(head.time.rate_hz), timing(head.time.rate_hz), waiting(head.channels.size()) {
+      : rate_hz(head.time.rate_hz), timing(head.time), waiting(head.channels.size()) {
     const std::size_t count = head.channels.size();
     channels.assign(count, RunningChannel(sample_capacity(count)));
     views.resize(count);

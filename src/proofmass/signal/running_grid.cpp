@@ -20,7 +20,7 @@ constexpr double patience = 1e8;
 RunningEvenGrid::RunningEvenGrid(const TimeBase& time,
                                  std::size_t channels,
                                  std::size_t expected_samples)
-    : finder_(time.rate_hz),
+    : finder_(time.rate_hz, time.band_s),
       expected_(expected_samples),
       held_(channels),
       piece_(channels, std::vector<double>(piece_places)) {

@@ -1,29 +1,40 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/audit.hpp"
+#include "proofmass/signal/hole_finder.hpp"
 
 namespace proofmass::signal {
 
 /// Judges the stamps of a recording that come in chunks.
 class RunningTiming {
  public:
-  /// The nominal rate; 0 if none is known.
-  explicit RunningTiming(double rate_hz) : rate_hz_(rate_hz) {}
+  /// The base without stamps; of a rate of 0 if none is known.
+  explicit RunningTiming(const TimeBase& time)
+      : rate_hz_(time.rate_hz),
+        band_s_(time.rate_hz > 0.0 ? time.band_s : 0.0),
+        holes_(time.rate_hz, band_s_) {}
 
   void add(View<double> stamps_s);
 
   /// All of a TimingAudit but what a counter says of lost rows. `time` is the base as known at the
   /// end.
-  [[nodiscard]] TimingAudit finish(const TimeBase& time) const;
+  [[nodiscard]] TimingAudit finish(const TimeBase& time);
 
  private:
   void add_step(double before_s, double step_s);
+  void add_gap(const Gap& gap);
+  void take_holes();
 
   double rate_hz_;
+  double band_s_;
+  HoleFinder holes_;  ///< for the rate of the long run, and the gaps where there is a band
+  std::vector<Hole> fresh_;
+  std::vector<double> recent_;  ///< stamps that a hole may still be found among
   std::size_t stamps_ = 0;
   double last_s_ = 0.0;
   TimingAudit found_;  ///< counts and gaps
