@@ -1,5 +1,6 @@
 #include "proofmass/signal/audit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -116,6 +117,47 @@ TEST(Clipping, IsNotSeenInASineOrInAFewLevelsOfNoise) {
   std::vector<double> levels = noise(5000, 0.8);
   for (double& x : levels) x = std::round(x);
   EXPECT_EQ(audit(recording_of(levels)).channels[0].clipped, 0u);
+}
+
+/// Coarse readings of what lies between these levels, each held for 1000 samples, with noise.
+std::vector<double> coarse_positions(const std::vector<double>& levels, double step, double std) {
+  const std::vector<double> errors = noise(1000 * levels.size(), std);
+  std::vector<double> out;
+  for (std::size_t k = 0; k < errors.size(); ++k)
+    out.push_back(std::round((levels[k / 1000] + errors[k]) / step) * step);
+  return out;
+}
+
+TEST(Clipping, IsNotSeenInCoarseReadings) {
+  constexpr double step = 0.0383;
+  for (const double std : {0.05, 0.1, 0.2, 0.4}) {
+    // The offset brings each level to anywhere between two steps.
+    for (int k = 0; k < 10; ++k) {
+      const double offset = 0.1 * k * step;
+      const RecordingAudit found = audit(recording_of(coarse_positions(
+          {9.81 + offset, -9.81 + offset, 0.3, 0.1, -0.2, 0.4}, step, std * step)));
+      EXPECT_EQ(found.channels[0].clipped, 0u) << std << " " << k;
+      EXPECT_FALSE(found.is_bad());
+    }
+  }
+  for (const double omega : {0.002, 0.01, 0.05, 0.2}) {
+    std::vector<double> sine;
+    for (int k = 0; k < 9000; ++k)
+      sine.push_back(std::round((2.0 * std::sin(omega * k) + 0.011) / step) * step);
+    EXPECT_EQ(audit(recording_of(sine)).channels[0].clipped, 0u) << omega;
+  }
+}
+
+TEST(Clipping, IsSeenInCoarseReadings) {
+  constexpr double step = 0.0383, rail = 500.0 * step;
+  std::vector<double> values;
+  for (int k = 0; k < 9000; ++k)
+    values.push_back(std::round(std::clamp(30.0 * std::sin(0.05 * k), -rail, rail) / step) * step);
+  const auto at_rail =
+      std::ranges::count_if(values, [&](double x) { return std::abs(x) > rail - 0.5 * step; });
+  // But for a visit of one or two samples.
+  EXPECT_NEAR(static_cast<double>(audit(recording_of(values)).channels[0].clipped),
+              static_cast<double>(at_rail), 2.0);
 }
 
 TEST(Clipping, IsNotSeenInAValueThatIsHeldForOnce) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "proofmass/signal/channel_audit.hpp"
 
@@ -15,7 +16,11 @@ bool has_range(Quantity quantity) {
 
 /// Samples in runs of three or more at a rail, if the signal piles up there: more often than in the
 /// fiftieth of the range beside it, and not just for once as a value that is held is.
-std::size_t count_clipped(const RailRuns& at, std::size_t longest_elsewhere, double beside) {
+std::size_t count_clipped(const RailRuns& at,
+                          std::size_t longest_elsewhere,
+                          double beside,
+                          std::optional<double> lsb) {
+  if (lsb && !at.is_run_into(*lsb)) return 0;
   const bool is_rail = at.runs >= 2 || at.longest > longest_elsewhere;
   return is_rail && at.rail != 0.0 && static_cast<double>(at.samples) > beside ? at.samples : 0;
 }
@@ -101,8 +106,10 @@ std::size_t RunningChannel::clipped(const ChannelAudit& audit, Quantity quantity
   constexpr double fewest_levels = 32.0;
   if (audit.lsb && range < fewest_levels * *audit.lsb) return 0;
   const double nearby = range / 50.0;
-  return count_clipped(runs_.high(), runs_.longest_but_high(), highest_.beside(nearby, sample_)) +
-         count_clipped(runs_.low(), runs_.longest_but_low(), lowest_.beside(nearby, sample_));
+  return count_clipped(runs_.high(), runs_.longest_but_high(), highest_.beside(nearby, sample_),
+                       audit.lsb) +
+         count_clipped(runs_.low(), runs_.longest_but_low(), lowest_.beside(nearby, sample_),
+                       audit.lsb);
 }
 
 }  // namespace proofmass::signal

@@ -4,6 +4,21 @@
 
 namespace proofmass::signal {
 
+void RailRuns::add_approach(std::size_t run, double before, double earlier) {
+  if (run < shortest_run || approaches.size() >= most_approaches) return;
+  const double side = before < rail ? 1.0 : -1.0;
+  const double step = std::min(side * (rail - before), side * (before - earlier));
+  approaches.push_back(step * std::min(1.0, static_cast<double>(run) / 4.0));
+}
+
+bool RailRuns::is_run_into(double lsb) const {
+  const auto steep =
+      std::ranges::count_if(approaches, [&](double step) { return step > 1.99 * lsb; });
+  // A jump from one position to another ends at an extreme too, but seldom; and where the extreme
+  // is a level of rest, its noise reaches it anew again and again.
+  return steep >= 2 && static_cast<std::size_t>(steep) * 4 >= approaches.size();
+}
+
 void ValueRuns::end_run() {
   if (run_ > 0) take_run(value_, run_, start_);
   run_ = 0;
@@ -62,7 +77,12 @@ void ValueRuns::take_rail_runs(View<double> values, std::size_t first, const Sam
     }
     std::size_t end = k + 1;
     while (end < values.size() && values[end] == values[k]) ++end;
-    if (end < values.size()) take_run(values[k], end - k, times.at(first + k));
+    if (end < values.size()) {
+      take_run(values[k], end - k, times.at(first + k));
+      // What stands before the chunk is not known: there are others.
+      if (k >= 2)
+        (values[k] == low ? low_ : high_).add_approach(end - k, values[k - 1], values[k - 2]);
+    }
     k = end;
   }
 }

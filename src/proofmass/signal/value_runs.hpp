@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/sample_times.hpp"
@@ -16,12 +17,23 @@ struct RailRuns {
   std::size_t samples = 0;  ///< in runs of shortest_run or more
   std::size_t runs = 0;     ///< of these
   std::size_t longest = 0;  ///< of all
+  /// Of each run of shortest_run or more (the first most_approaches of them) how steeply the rail
+  /// was reached: the smaller of the last two steps towards it, times a quarter of the run where
+  /// that is shorter than four. A crest that is sampled in steps of a converter is flat for a run
+  /// of L only where the step before is below 8 / L of them.
+  std::vector<double> approaches{};
+  static constexpr std::size_t most_approaches = 4096;
 
   void add(std::size_t run) {
     longest = std::max(longest, run);
     samples += run >= shortest_run ? run : 0;
     runs += run >= shortest_run ? 1 : 0;
   }
+  /// Of a run that was added: the two values before it, the later one first.
+  void add_approach(std::size_t run, double before, double earlier);
+  /// Of a converter's steps of this size: whether the signal runs into the rail, and does not
+  /// merely stay at its extreme.
+  [[nodiscard]] bool is_run_into(double lsb) const;
 };
 
 /// Runs of one and the same value in a channel that comes in chunks: the longest, those at either
