@@ -268,6 +268,22 @@ TEST(TimeBase, TakesNoLossForRounding) {
   }
 }
 
+TEST(TimeBase, DoesNotLetLostRowsMoveTheRateOfStampsThatJitter) {
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform;
+    std::normal_distribution<double> jitter(0.0, 0.08);
+    std::vector<std::string> stamps;
+    for (int k = 0; k < 6000; ++k)
+      if (const double at = k + jitter(random); uniform(random) >= 0.2)
+        stamps.push_back(fmt::format("{:.6f}", 1.0 + at / 100.0));
+    const auto read = read_text(table("t_s", stamps));
+    ASSERT_TRUE(read.has_value());
+    EXPECT_NEAR(read->time.rate_hz, 100.0, 0.1) << seed;
+    EXPECT_NEAR(signal::audit(*read).timing.long_run_hz.value(), 100.0, 0.1) << seed;
+  }
+}
+
 TEST(TimeBase, FindsNoGapsBetweenBursts) {
   for (const int rows : {4, 7, 16}) {
     std::vector<std::string> stamps;
