@@ -211,7 +211,7 @@ struct RecordCommand {
   double stall_s = 2.0, stall_end_s = 30.0;
   std::string estimate;  ///< wheel, track or tilt; empty: none
   GuideFlags guide;
-  std::optional<double> lag_s, radius_m;
+  std::optional<double> lag_s, radius_m, bandwidth_hz;
   std::string axis;  ///< of the wheel's axle, or of the motion
   InputFlags input;  ///< rate, unit, channels, sensors, supply and gravity
   OutputFlags output;

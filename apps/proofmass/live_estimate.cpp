@@ -44,10 +44,14 @@ Made make_wheel(const RecordCommand& command, const CalibratedSamples& samples) 
   if (command.lag_s) options.lag_s = *command.lag_s;
   options.wheel.gravity_mps2 = gravity_mps2(command.input);
   options.wheel.radius_m = command.radius_m;
+  options.wheel.bandwidth_hz = command.bandwidth_hz;
   if (!command.axis.empty()) options.wheel.spin_axis = parse_axis(command.axis);
-  if (!samples.models().empty())
-    options.wheel.alignment_std_rad =
-        sensor::alignment_std_rad(samples.models().front()).value_or(0.0);
+  if (!samples.models().empty()) {
+    const sensor::SensorModel& model = samples.models().front();
+    options.wheel.alignment_std_rad = sensor::alignment_std_rad(model).value_or(0.0);
+    if (const auto& bandwidth = model.electrical.bandwidth[0]; bandwidth && !command.bandwidth_hz)
+      options.wheel.bandwidth_hz = bandwidth->value;
+  }
   return estimate::live_wheel(options);
 }
 

@@ -316,6 +316,7 @@ TrackSolution described(const TrackSignal& signal, const TrackOptions& options) 
   solution.cruises = signal.stops.cruises;
   solution.plateaus = signal.stops.plateaus;
   solution.no_motion_shown = signal.stops.only_ends;
+  solution.too_many_in_doubt = signal.stops.too_many_in_doubt;
   solution.series.time_s = signal.time_s;
   return solution;
 }
@@ -389,6 +390,10 @@ std::vector<TrackAlternative> settle_stops(TrackSignal& signal,
   constexpr double clear = 0.95;
   std::vector<TrackAlternative> alternatives;
   const auto hypotheses = stop_hypotheses(signal, solved->run, solved->closures);
+  if (hypotheses.empty()) {
+    signal.stops.too_many_in_doubt = true;
+    return alternatives;
+  }
   const StopHypothesis& likeliest = hypotheses.front();
   if (hypotheses.size() > 1 && leaves_jerk(signal, options, solved)) return alternatives;
   if (likeliest.probability < clear) {
@@ -419,7 +424,7 @@ void judge(const TrackSignal& signal,
   DoubleIntegral integral = double_integral(signal.time_s, series.accel_mps2);
   series.double_integral_m = std::move(integral.position_m);
   solution.suspected_jerk = !options.take_as_acceleration && suspect_jerk(signal, series).suspected;
-  if (!solution.suspected_jerk && solution.alternatives.empty()) {
+  if (!solution.suspected_jerk && solution.alternatives.empty() && !solution.too_many_in_doubt) {
     const std::vector<double> free(signal.time_s.size(), free_m);
     const double factor = solution.factor_95;
     const View<double> t = series.time_s;

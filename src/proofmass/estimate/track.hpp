@@ -181,6 +181,7 @@ struct TrackSolution {
   std::size_t plateaus = 0;         ///< and those in which the acceleration was constant
   /// Where several readings of the quiet stretches remain: then no method has a figure.
   std::vector<TrackAlternative> alternatives{};
+  bool too_many_in_doubt = false;  ///< more quiet stretches than can be compared: no figure either
   bool no_motion_shown = false;  ///< all of it is as quiet as rest: only its ends are taken for it
   std::size_t false_rests = 0;   ///< short ones that the motion between the long ones belies
   bool suspected_jerk = false;   ///< then no method has a figure

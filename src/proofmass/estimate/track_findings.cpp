@@ -82,6 +82,13 @@ void tell_of_turning(TrackSolution& solution) {
 }
 
 void tell_of_alternatives(TrackSolution& solution) {
+  if (solution.too_many_in_doubt)
+    solution.notes.push_back(
+        {Severity::bad,
+         "at more than sixteen quiet stretches much of the speed is left over: which are rests and "
+         "which are motion at constant speed cannot be told, and no displacement is given. Say "
+         "when "
+         "the sensor stood still with --still FILE"});
   if (solution.alternatives.empty()) return;
   std::string all;
   for (const TrackAlternative& one : solution.alternatives) {

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "proofmass/estimate/track_walk.hpp"
 
@@ -120,25 +124,89 @@ double log_evidence_of(const std::vector<QuietStretch>& kinds,
   return best + std::log(sum / static_cast<double>(logs.size()));
 }
 
-/// The stretches beside the largest velocities that were left over, at most seven.
+constexpr std::size_t most_doubtful = 16;
+
+/// The stretches beside the velocities that were left over.
 std::vector<std::size_t> doubtful(const std::vector<Closure>& closures, std::size_t stretches) {
   constexpr double left_over_share = 0.25, least_mps = 0.05;
-  constexpr std::size_t most = 7;
-  std::vector<std::pair<double, std::size_t>> left_over;  // m/s, and the stretch arrived at
+  std::vector<bool> is_doubtful(stretches, false);
   for (std::size_t i = 0; i < closures.size(); ++i) {
     const double speed = std::abs(closures[i].velocity_mps);
-    if (speed > left_over_share * closures[i].fastest_mps && speed > least_mps)
-      left_over.emplace_back(speed, stretches - closures.size() + i);
+    if (speed < left_over_share * closures[i].fastest_mps || speed < least_mps) continue;
+    const std::size_t at = stretches - closures.size() + i;
+    is_doubtful[at - 1] = is_doubtful[at] = true;
   }
-  std::ranges::sort(left_over, std::greater{});
   std::vector<std::size_t> found;
-  for (const auto& [speed, at] : left_over)
-    for (const std::size_t stretch : {at, at - 1}) {
-      if (at == 0 || std::ranges::find(found, stretch) != found.end()) continue;
-      if (found.size() < most) found.push_back(stretch);
-    }
+  for (std::size_t i = 0; i < stretches; ++i)
+    if (is_doubtful[i]) found.push_back(i);
   return found;
 }
+
+/// Which of the candidates are no rests if the velocities left over add up from one to the next, as
+/// they do where the sensor never stands: those at more than a quarter of the highest such speed,
+/// and all plateaus.
+std::uint32_t by_summed_velocities(const std::vector<Closure>& closures,
+                                   const std::vector<StretchKnots>& stretches,
+                                   const std::vector<InertialEpoch>& knots,
+                                   const std::vector<QuietStretch>& other,
+                                   const std::vector<std::size_t>& candidates) {
+  std::vector<double> speed_mps(stretches.size(), 0.0);
+  double v = 0.0, highest = 0.0;
+  for (std::size_t i = 1; i < stretches.size(); ++i) {
+    const std::size_t closure = closures.size() + i;
+    if (closure >= stretches.size()) v += closures[closure - stretches.size()].velocity_mps;
+    speed_mps[i] = std::abs(v);
+    highest = std::max(highest, speed_mps[i]);
+    if (other[i] != QuietStretch::plateau) continue;
+    for (std::size_t k = stretches[i].first; k < stretches[i].end; ++k)
+      v += stretches[i].level_mps2 * knots[k].dt_s;
+  }
+  std::uint32_t mask = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (other[candidates[i]] == QuietStretch::plateau || speed_mps[candidates[i]] > 0.25 * highest)
+      mask |= std::uint32_t{1} << i;
+  return mask;
+}
+
+/// Climbs from each start to a likeliest combination, by one or two stretches at a time, and keeps
+/// what it has seen: the combinations beside the likeliest, and its opposite, are among them.
+template <class LogPosterior>
+class Climb {
+ public:
+  using Mask = std::uint32_t;
+
+  Climb(std::size_t candidates, std::array<Mask, 2> starts, LogPosterior log_posterior)
+      : count_(candidates), log_posterior_(std::move(log_posterior)) {
+    for (const Mask start : starts) climb_from(start);
+  }
+  [[nodiscard]] const std::map<Mask, double>& seen() const { return seen_; }
+
+ private:
+  void climb_from(Mask best) {
+    see(best);
+    for (bool climbs = true; climbs;) {
+      const Mask from = best;
+      for (std::size_t i = 0; i < count_; ++i) take_better(from ^ bit(i), best);
+      for (std::size_t i = 0; best == from && i < count_; ++i)
+        for (std::size_t j = 0; j < i; ++j) take_better(from ^ bit(i) ^ bit(j), best);
+      if (best == from) take_better(from ^ (bit(count_) - 1), best);
+      climbs = best != from;
+    }
+  }
+  static Mask bit(std::size_t i) { return Mask{1} << i; }
+  double see(Mask mask) {
+    const auto [at, is_new] = seen_.try_emplace(mask, 0.0);
+    if (is_new) at->second = log_posterior_(mask);
+    return at->second;
+  }
+  void take_better(Mask mask, Mask& best) {
+    if (see(mask) > seen_.at(best)) best = mask;
+  }
+
+  std::size_t count_;
+  LogPosterior log_posterior_;
+  std::map<Mask, double> seen_{};
+};
 
 }  // namespace
 
@@ -177,29 +245,35 @@ std::vector<StopHypothesis> stop_hypotheses(const TrackSignal& signal,
   const std::vector<InertialEpoch> knots = join_epochs(run.made.epochs, run.made.knots);
   const std::vector<StretchKnots> stretches = stretches_in(knots);
   if (candidates.empty() || stretches.size() != count) return {{all_rests, 1.0}};
+  if (candidates.size() > most_doubtful) return {};
   const std::vector<QuietStretch> other = other_kinds(stretches);
   const std::vector<double> noise = rest_noises(signal);
   const double quietest = std::ranges::min(noise);
-  std::vector<StopHypothesis> hypotheses;
-  std::vector<double> logs;
-  for (std::size_t mask = 0; mask < std::size_t{1} << candidates.size(); ++mask) {
-    StopHypothesis hypothesis{all_rests};
+  const auto kinds_of = [&](std::uint32_t mask) {
+    std::vector<QuietStretch> kinds = all_rests;
     for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (mask >> i & 1) hypothesis.stretches[candidates[i]] = other[candidates[i]];
-    if (std::ranges::find(hypothesis.stretches, QuietStretch::rest) == hypothesis.stretches.end())
-      continue;
-    double log = log_evidence_of(hypothesis.stretches, stretches, knots, run);
+      if (mask >> i & 1) kinds[candidates[i]] = other[candidates[i]];
+    return kinds;
+  };
+  const std::array<std::uint32_t, 2> starts{
+      0, by_summed_velocities(closures, stretches, knots, other, candidates)};
+  const Climb climb(candidates.size(), starts, [&](std::uint32_t mask) {
+    const std::vector<QuietStretch> kinds = kinds_of(mask);
+    if (std::ranges::find(kinds, QuietStretch::rest) == kinds.end())
+      return -std::numeric_limits<double>::infinity();
+    double log = log_evidence_of(kinds, stretches, knots, run);
     for (const std::size_t i : candidates)
-      log += log_prior(hypothesis.stretches[i], i == 0 || i + 1 == count) +
-             log_loudness_density(quietest > 0.0 ? std::log(noise[i] / quietest) : 0.0,
-                                  hypothesis.stretches[i]);
-    hypotheses.push_back(std::move(hypothesis));
-    logs.push_back(log);
-  }
-  const double best = std::ranges::max(logs);
+      log += log_prior(kinds[i], i == 0 || i + 1 == count) +
+             log_loudness_density(quietest > 0.0 ? std::log(noise[i] / quietest) : 0.0, kinds[i]);
+    return log;
+  });
+  const auto log_of = [](const auto& one) { return one.second; };
+  const double best = std::ranges::max_element(climb.seen(), {}, log_of)->second;
   double sum = 0.0;
-  for (double& log : logs) sum += log = std::exp(log - best);
-  for (std::size_t i = 0; i < logs.size(); ++i) hypotheses[i].probability = logs[i] / sum;
+  for (const auto& [mask, log] : climb.seen()) sum += std::exp(log - best);
+  std::vector<StopHypothesis> hypotheses;
+  for (const auto& [mask, log] : climb.seen())
+    hypotheses.push_back({kinds_of(mask), std::exp(log - best) / sum});
   std::ranges::sort(hypotheses, std::greater{}, &StopHypothesis::probability);
   std::erase_if(hypotheses, [](const StopHypothesis& one) { return one.probability < 1e-3; });
   return hypotheses;

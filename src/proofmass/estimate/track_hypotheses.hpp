@@ -31,7 +31,9 @@ void drop_plateaus(TrackSignal& signal);
 /// about 0.3, 3 or 30 m/s; it is mostly, and a rest seldom, louder than the quietest stretch. A
 /// frame that moves at constant speed is no other than one at rest: only these priors tell a
 /// recording that ends under way from one that began so.
-/// Cost: 343 passes over the knots for each of at most 128 hypotheses, three times with a cruise.
+/// None where more than sixteen stretches are in doubt.
+/// Cost: 343 passes over the knots for each combination tried, three times with a cruise: n + 1 for
+/// each step of the climb and n²/2 at its end, with n stretches in doubt.
 [[nodiscard]] std::vector<StopHypothesis> stop_hypotheses(const TrackSignal& signal,
                                                           const AxisRun& run,
                                                           const std::vector<Closure>& closures);

@@ -13,6 +13,7 @@ struct Stops {
   bool by_quietness = false;
   std::string why_none{};
   std::size_t cruises = 0, plateaus = 0;  ///< taken out: at constant speed, constant acceleration
+  bool too_many_in_doubt = false;         ///< whether they are rests
   bool only_ends = false;  ///< all of the recording is as quiet as rest, and may hide a motion
 };
 

@@ -152,7 +152,7 @@ std::vector<std::string> budget_words(const TrackSolution& solution) {
 
 std::string refusal(const TrackSolution& solution) {
   if (solution.smoother) return {};
-  if (!solution.alternatives.empty())
+  if (!solution.alternatives.empty() || solution.too_many_in_doubt)
     return "which of the quiet stretches are rests cannot be told";
   return solution.suspected_jerk
              ? "the readings behave like the rate of change of an acceleration (jerk)"

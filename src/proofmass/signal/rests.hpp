@@ -10,7 +10,7 @@
 namespace proofmass::signal {
 
 /// A stretch in which the sensor lay still. It may hold single outliers, samples that are no
-/// measurement, and a knock of up to a window that left the level as it was.
+/// measurement, and a knock of up to a window that left level and place as they were.
 struct Rest {
   std::size_t first, last;  ///< samples, inclusive
 };
