@@ -29,7 +29,7 @@ void trim_loud_ends(const RestBlocks& blocks, const RestNoise& noise, RestRun& r
     all.push_back(loudness(blocks, noise, k, width));
   const auto quarter = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 4);
   std::ranges::nth_element(all, quarter);
-  const auto dof = static_cast<double>(width * (blocks.block - 1));
+  const auto dof = static_cast<double>(blocks.axes * width * (blocks.block - 1));
   const double bound = 2.0 * std::max(1.0, *quarter) * chi_square_quantile(level, dof) / dof;
   while (run.size() > width && loudness(blocks, noise, run.first, width) > bound) ++run.first;
   while (run.size() > width && loudness(blocks, noise, run.end - width, width) > bound) --run.end;

@@ -219,18 +219,15 @@ double loudness(const RestBlocks& blocks,
                 const RestNoise& noise,
                 std::size_t k,
                 std::size_t count) {
-  PerAxis squares{};
+  double sum = 0.0;
   double free = 0.0;
   for (std::size_t b = k; b < k + count; ++b) {
     const RestBlock& block = blocks.at[b];
     if (block.count < 2.0) continue;
-    for (std::size_t a = 0; a < blocks.axes; ++a) squares[a] += block.squares[a];
-    free += block.count - 1.0;
+    for (std::size_t a = 0; a < blocks.axes; ++a) sum += block.squares[a] / noise.block_variance[a];
+    free += static_cast<double>(blocks.axes) * (block.count - 1.0);
   }
-  double loudest = 0.0;
-  for (std::size_t a = 0; a < blocks.axes; ++a)
-    loudest = std::max(loudest, squares[a] / noise.block_variance[a]);
-  return free > 0.0 ? loudest / free : 0.0;
+  return free > 0.0 ? sum / free : 0.0;
 }
 
 PerAxis noise_ratio(const RestBlocks& blocks,

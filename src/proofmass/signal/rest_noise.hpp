@@ -39,7 +39,7 @@ struct RestNoise {
 /// means of χ².
 [[nodiscard]] std::optional<RestNoise> find_rest_noise(const RestBlocks& blocks);
 
-/// How much noisier blocks are than rest, as a variance, on the axis where they are noisiest.
+/// How much noisier blocks are than rest: Σ_a squares_a / σ_a² over its degrees of freedom.
 [[nodiscard]] double loudness(const RestBlocks& blocks,
                               const RestNoise& noise,
                               std::size_t k,

@@ -16,7 +16,7 @@ double bound_of(const RestBlocks& blocks, double dof) {
 }
 
 double dof_of_block(const RestBlocks& blocks) {
-  return static_cast<double>(blocks.block - 1);
+  return static_cast<double>(blocks.axes * (blocks.block - 1));
 }
 
 /// Runs of the blocks that pass; missing blocks pass if they are no more than a window.
