@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/estimate/track_motion.hpp"
+#include "proofmass/estimate/track_walk.hpp"
+
+// The track along one axis, by the rests that the signal has. Private to the module's track*.cpp.
+namespace proofmass::estimate {
+
+/// Axis, readings and errors of motion, and what filter and smoother make of them.
+struct AlongAxis {
+  FoundAxis axis;
+  std::vector<double> accel_mps2;
+  AxisRun run;
+  MotionError error;
+  AxisPass pass;
+  std::vector<Closure> closures;
+  Consistency consistency;
+};
+
+/// Errors: invalid_argument (an axis of no length, or where the sensor has none).
+[[nodiscard]] Result<AlongAxis> solve(const TrackSignal& signal, const TrackOptions& options);
+
+/// The sample nearest to a time.
+[[nodiscard]] std::size_t sample_at(View<double> time_s, double t);
+
+/// Rests, turns and fixes by sample.
+[[nodiscard]] TrackReadings readings_of(const TrackSignal& signal, const TrackOptions& options);
+
+/// Everything that is told of the readings before they are integrated.
+[[nodiscard]] TrackSolution described(const TrackSignal& signal, const TrackOptions& options);
+
+/// Fills what is told of every sample.
+void fill_series(const TrackSignal& signal,
+                 const AxisRun& run,
+                 const AxisPass& pass,
+                 TrackSolution& solution);
+
+}  // namespace proofmass::estimate
