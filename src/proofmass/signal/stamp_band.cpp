@@ -7,6 +7,7 @@ namespace proofmass::signal {
 namespace {
 
 constexpr double wander = 1.0 / 4096.0;  // of the width, a row
+constexpr double most_reach = 1024.0;    // rows about the likeliest that are tried
 constexpr double slack = 0.02;           // of a step: sums of doubles, and a clock's own jitter
 
 }  // namespace
@@ -29,11 +30,13 @@ double StampBand::missing_before(View<double> next) const {
   if (next.empty() || holds(next.front())) return 0.0;
   const double off = next.front() - first_ - number_ * step_;
   const double likely = std::floor((off - low_) / step_);
-  const double reach = std::ceil(width_ / step_) + 1.0;
+  // A count of rows, however far a stamp jumps.
+  const double reach = std::min(std::ceil(width_ / step_) + 1.0, most_reach);
   const double as_is = outside(next, 0.0);
   double best = 0.0;
   double least = as_is;
-  for (double missing = std::max(1.0, likely - reach); missing <= likely + 1.0; missing += 1.0) {
+  for (double back = reach; back >= -1.0; back -= 1.0) {
+    const double missing = std::max(1.0, likely - back);
     const double out = outside(next, missing);
     if (out >= least) continue;
     best = missing;

@@ -49,6 +49,14 @@ TEST(StampBand, TellsMissingPacketsFromPackets) {
   EXPECT_NEAR(numbers_in_band(stamps, 1.0, 16.0).back(), 5999.0, 16.0);
 }
 
+// Where a row more is no other number, counting rows would never end.
+TEST(StampBand, EndsWhereAStampJumpsBeyondAllRows) {
+  std::vector<double> stamps = whole_ticks(100, 1.2, {});
+  stamps.push_back(1e20);
+  stamps.push_back(1e20);
+  EXPECT_GT(numbers_in_band(stamps, 1.2, 1.0).back(), 1e19);
+}
+
 TEST(StampBand, GivesTheGridItsHoles) {
   TimeBase time;
   time.source = TimeSource::stamps;
