@@ -1,7 +1,6 @@
 #include "proofmass/estimate/wheel_settle.hpp"
 
 #include <complex>
-#include <functional>
 #include <numeric>
 
 #include "proofmass/core/linalg.hpp"
@@ -68,9 +67,12 @@ RippleOrders orders_in(const WheelPath& path) {
   }
   std::array<int, highest_order - 2> others{};
   std::iota(others.begin(), others.end(), 3);
-  std::ranges::stable_sort(others, std::greater{}, [&](int order) {
-    return std::norm(sums[static_cast<std::size_t>(order)]);
-  });
+  const auto is_stronger = [&](int one, int other) {
+    const double a = std::norm(sums[static_cast<std::size_t>(one)]);
+    const double b = std::norm(sums[static_cast<std::size_t>(other)]);
+    return a > b || (a == b && one < other);
+  };
+  std::ranges::sort(others, is_stronger);
   return {1, 2, others[0], others[1]};
 }
 
