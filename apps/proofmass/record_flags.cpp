@@ -51,8 +51,7 @@ void add_estimate_flags(CLI::App& verb, RecordCommand& command) {
       ->needs(estimate);
   add("--bandwidth", command.bandwidth_hz, "HZ",
       "-3 dB of the filter of the wheel's sensors, which delays the angle (default: of the "
-      "--sensor "
-      "file, or not known)")
+      "--sensor file, or not known)")
       ->check(positive())
       ->needs(estimate);
   add("--axis", command.axis, "AXIS", "of the wheel's axle, or of the motion (default: found)")

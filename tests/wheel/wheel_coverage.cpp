@@ -48,18 +48,13 @@ void print_one(const char* scenario, std::uint64_t seed, const Coverage& one) {
   std::printf("\n");
 }
 
-void append(Tally& to, const Tally& from) {
-  to.z.insert(to.z.end(), from.z.begin(), from.z.end());
-  to.none += from.none;
-}
-
 void append(Coverage& to, const Coverage& from) {
-  append(to.turns, from.turns);
-  append(to.angle, from.angle);
-  append(to.radius, from.radius);
-  append(to.bias, from.bias);
-  append(to.scale, from.scale);
-  append(to.skew, from.skew);
+  to.turns.append(from.turns);
+  to.angle.append(from.angle);
+  to.radius.append(from.radius);
+  to.bias.append(from.bias);
+  to.scale.append(from.scale);
+  to.skew.append(from.skew);
   to.recordings += from.recordings;
   to.refused += from.refused;
 }
@@ -71,6 +66,11 @@ void Tally::add(const std::optional<Uncertain>& told, double truth) {
     z.push_back((told->value - truth) / told->std);
   else
     ++none;
+}
+
+void Tally::append(const Tally& other) {
+  z.insert(z.end(), other.z.begin(), other.z.end());
+  none += other.none;
 }
 
 double Tally::coverage_95() const {

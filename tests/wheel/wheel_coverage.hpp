@@ -15,6 +15,7 @@ struct Tally {
   std::size_t none = 0;  ///< not given
 
   void add(const std::optional<Uncertain>& told, double truth);
+  void append(const Tally& other);
   [[nodiscard]] std::size_t given() const { return z.size(); }
   [[nodiscard]] double coverage_95() const;
   [[nodiscard]] double largest() const;

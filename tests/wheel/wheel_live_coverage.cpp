@@ -75,11 +75,6 @@ LiveCoverage compare(const estimate::test::Followed& run, const Truth& truth, Ra
   return one;
 }
 
-void append(Tally& to, const Tally& from) {
-  to.z.insert(to.z.end(), from.z.begin(), from.z.end());
-  to.none += from.none;
-}
-
 }  // namespace
 
 LiveCoverage live_coverage_of(const Scenario& scenario,
@@ -104,10 +99,10 @@ LiveCoverage live_coverage_of(const Scenario& scenario,
                   one.slipped > 0 ? " slipped" : "", one.silently > 0 ? " silently" : "");
       for (const Note& note : run.fed.notes) std::printf("    %s\n", note.text.c_str());
     }
-    append(all.angle, one.angle);
-    append(all.smoothed, one.smoothed);
-    append(all.counted, one.counted);
-    append(all.speed, one.speed);
+    all.angle.append(one.angle);
+    all.smoothed.append(one.smoothed);
+    all.counted.append(one.counted);
+    all.speed.append(one.speed);
     all.recordings += one.recordings;
     all.never_found += one.never_found;
     all.slipped += one.slipped;

@@ -5,7 +5,7 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Of a speed that is constant but for what no reading shows: 1 cm/s within a second.
+/// Random walk of the speed during a cruise: 1 cm/s in one second.
 constexpr double cruise_walk_m2ps3 = 1e-4;
 
 // ∫∫ of white noise N², of a walk q of the bias, and of an unknown acceleration that is one

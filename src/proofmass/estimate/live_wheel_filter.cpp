@@ -204,8 +204,8 @@ void LiveWheelFilter<S>::notice_surprise(double mean_nis) {
   loosen();
 }
 
-/// More noise at once: of the motion, and of the readings, since a road shakes the hub as soon as
-/// the wheel rolls on it. The rivals and the innovations to come tell which of the two it was.
+/// Increases the process noise and the measurement noise at once: a road shakes the hub as soon as
+/// the wheel rolls on it. The parallel filters and later innovations separate the two.
 template <int S>
 void LiveWheelFilter<S>::loosen() {
   if (loosened_ > 1)

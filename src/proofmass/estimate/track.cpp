@@ -168,6 +168,10 @@ Result<TrackSolution> track_without_gyro(const TrackSensor& sensor,
   solution.axis = found.axis.direction;
   solution.travel_share = found.axis.share;
   solution.scale_std = scale_std(signal, options, solution);
+  for (TrackAlternative& one : solution.alternatives) {
+    Uncertain& displacement = one.displacement_m;
+    displacement.std = std::hypot(displacement.std, solution.scale_std * displacement.value);
+  }
   solution.motion_error = {std::sqrt(found.error.walk_m2ps5), std::sqrt(found.error.jump_m2ps4),
                            std::sqrt(found.error.lean_m2ps3)};
   solution.factor_95 = found.error.factor_95;

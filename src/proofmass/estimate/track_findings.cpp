@@ -25,16 +25,17 @@ void tell_of_rests(const TrackOptions& options, TrackSolution& solution) {
     notes.push_back({Severity::info,
                      "no noise of a resting sensor to go by (readings of several sensors fused, or "
                      "smoothed): rests are where it is quiet against the motion"});
-  if (solution.cruises > 0 && solution.alternatives.empty())
+  const bool decided = solution.alternatives.empty() && !solution.too_many_in_doubt;
+  if (solution.cruises > 0 && decided)
     notes.push_back(
         {Severity::warning,
-         text("%zu quiet stretches are taken for constant speed instead of rest: the "
-              "velocities left over there cancel, which no tilt or bias would make them",
+         text("%zu quiet stretches are taken as constant speed instead of rest: the "
+              "velocities integrated up to them cancel, which a tilt or bias would not cause",
               solution.cruises)});
-  if (solution.plateaus > 0 && solution.alternatives.empty())
+  if (solution.plateaus > 0 && decided)
     notes.push_back({Severity::info,
-                     text("%zu quiet stretches are taken for constant acceleration: the readings "
-                          "there are not as long as at rest",
+                     text("%zu quiet stretches are taken as constant acceleration: the magnitude "
+                          "of the readings differs there from that at rest",
                           solution.plateaus)});
   if (solution.false_rests > 0)
     notes.push_back(
@@ -85,9 +86,8 @@ void tell_of_alternatives(TrackSolution& solution) {
   if (solution.too_many_in_doubt)
     solution.notes.push_back(
         {Severity::bad,
-         "at more than sixteen quiet stretches much of the speed is left over: which are rests and "
-         "which are motion at constant speed cannot be told, and no displacement is given. Say "
-         "when "
+         "the integrated velocity is far from 0 at more than sixteen quiet stretches: rests cannot "
+         "be distinguished from motion at constant speed, and no displacement is given. State when "
          "the sensor stood still with --still FILE"});
   if (solution.alternatives.empty()) return;
   std::string all;
@@ -101,11 +101,8 @@ void tell_of_alternatives(TrackSolution& solution) {
   }
   solution.notes.push_back(
       {Severity::bad,
-       "it cannot be told which of the quiet stretches are rests and which are "
-       "motion at constant speed: " +
-           all +
-           "; no displacement is given. Say when the sensor stood still with "
-           "--still FILE"});
+       "rests cannot be distinguished from motion at constant speed: " + all +
+           "; no displacement is given. State when the sensor stood still with --still FILE"});
 }
 
 // What errs in motion but not at rest is mostly gravity, as the sensor leans.

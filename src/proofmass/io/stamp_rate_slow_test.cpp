@@ -91,6 +91,16 @@ Wrong count_wrong(const Kind& kind, int recordings) {
   return wrong;
 }
 
+Kind whole_ms(
+    const char* name, double lowest_hz, double highest_hz, double tolerance, double lost = 0.0) {
+  return {.name = name,
+          .lowest_hz = lowest_hz,
+          .highest_hz = highest_hz,
+          .tick_s = 1e-3,
+          .lost = lost,
+          .tolerance = tolerance};
+}
+
 class StampRate : public testing::TestWithParam<Kind> {};
 
 TEST_P(StampRate, AndGapsAreRight) {
@@ -103,27 +113,10 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds,
     StampRate,
     testing::Values(
-        Kind{.name = "whole ms, 667–980 Hz",
-             .lowest_hz = 667.0,
-             .highest_hz = 980.0,
-             .tick_s = 1e-3,
-             .tolerance = 1e-4},
-        Kind{.name = "whole ms, 1020–2000 Hz",
-             .lowest_hz = 1020.0,
-             .highest_hz = 2000.0,
-             .tick_s = 1e-3,
-             .tolerance = 1e-4},
-        Kind{.name = "whole ms, 100–660 Hz",
-             .lowest_hz = 100.0,
-             .highest_hz = 660.0,
-             .tick_s = 1e-3,
-             .tolerance = 1e-3},
-        Kind{.name = "whole ms and 0.2 % lost, 667–950 Hz",
-             .lowest_hz = 667.0,
-             .highest_hz = 950.0,
-             .tick_s = 1e-3,
-             .lost = 0.002,
-             .tolerance = 2e-3},
+        whole_ms("whole ms, 667–980 Hz", 667.0, 980.0, 1e-4),
+        whole_ms("whole ms, 1020–2000 Hz", 1020.0, 2000.0, 1e-4),
+        whole_ms("whole ms, 100–660 Hz", 100.0, 660.0, 1e-3),
+        whole_ms("whole ms and 0.2 % lost, 667–950 Hz", 667.0, 950.0, 2e-3, 0.002),
         Kind{.name = "8 % jitter, 10 % lost", .jitter = 0.08, .lost = 0.1, .tolerance = 2e-3},
         Kind{.name = "8 % jitter, 20 % lost", .jitter = 0.08, .lost = 0.2, .tolerance = 2e-3},
         Kind{.name = "2 % jitter, 10 % lost", .jitter = 0.02, .lost = 0.1, .tolerance = 2e-3},
