@@ -29,7 +29,9 @@ void add_flags(CLI::App& app, TiltCommand& command) {
       "a rest lasts at least so long (default 0.5)")
       ->check(positive());
   add("--bias-std", command.bias_std_mps2, "M_PER_S2",
-      "standard deviation of each axis' bias, where no --sensor file says (default 0)")
+      "standard deviation of each axis' bias; with a --sensor file, of what it has changed by "
+      "since "
+      "the calibration (default: judged by the force at rest)")
       ->check(not_negative());
   add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", gravity_std_help)
       ->check(not_negative());

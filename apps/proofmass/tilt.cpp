@@ -1,7 +1,9 @@
 #include "proofmass/estimate/tilt.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cmath>
 #include <fmt/format.h>
 
 #include "console.hpp"
@@ -12,6 +14,7 @@
 #include "proofmass/estimate/tilt_axis.hpp"
 #include "proofmass/report/document.hpp"
 #include "proofmass/report/tilt_report.hpp"
+#include "proofmass/signal/channel_audit.hpp"
 #include "verbs.hpp"
 
 namespace proofmass::app {
@@ -109,6 +112,30 @@ std::optional<GyroscopeChannels> gyroscope_of(const TiltCommand& command,
   return channels;
 }
 
+// The step of a converter shows before calibration mixes the axes: the largest and the smallest
+// reading say what it is afterwards.
+struct RawSteps {
+  double lsb = 0.0;  ///< 0: continuous, or one value throughout
+  std::size_t lowest = 0, highest = 0;
+  double range = 0.0;
+};
+
+RawSteps raw_steps(const std::vector<double>& values) {
+  RawSteps out{.lsb = signal::find_lsb(values).value_or(0.0)};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!(values[k] >= values[out.lowest])) out.lowest = std::isfinite(values[k]) ? k : out.lowest;
+    if (!(values[k] <= values[out.highest]))
+      out.highest = std::isfinite(values[k]) ? k : out.highest;
+  }
+  if (!values.empty()) out.range = values[out.highest] - values[out.lowest];
+  return out;
+}
+
+double step_after(const RawSteps& raw, const std::vector<double>& values) {
+  if (!(raw.lsb > 0.0) || !(raw.range > 0.0)) return 0.0;
+  return raw.lsb * std::abs(values[raw.highest] - values[raw.lowest]) / raw.range;
+}
+
 estimate::TiltRecord prepare(const TiltCommand& command,
                              estimate::TiltOptions& options,
                              std::vector<Note>& notes) {
@@ -117,6 +144,10 @@ estimate::TiltRecord prepare(const TiltCommand& command,
   Recording& recording = recordings.front();
   const auto models = load_sensors(command.input, notes);
   const Accelerometer one = only_accelerometer(recordings);
+  const std::array axes{one.triad.x, one.triad.y, one.triad.z};
+  std::array<RawSteps, 3> raw;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (axes[i]) raw[i] = raw_steps(recording.channels[*axes[i]].values);
   calibrate(models, {one}, recordings);
   remove_warm_up(command.input, models, {one}, recordings, notes);
   notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
@@ -126,9 +157,9 @@ estimate::TiltRecord prepare(const TiltCommand& command,
   }
   estimate::TiltRecord record;
   if (recording.time.source != TimeSource::none) record.time_s = times_of(recording);
-  const std::array axes{one.triad.x, one.triad.y, one.triad.z};
   for (std::size_t i = 0; i < 3; ++i) {
     if (!axes[i]) continue;
+    record.step_mps2[i] = step_after(raw[i], recording.channels[*axes[i]].values);
     record.accel_mps2[i] = recording.channels[*axes[i]].values;
     if (command.reads == "-g")
       for (double& value : record.accel_mps2[i]) value = -value;
@@ -145,7 +176,7 @@ estimate::TiltBase base_of(const std::string& text) {
 
 estimate::TiltSolution solve(const TiltCommand& command, report::TiltReport& report) {
   estimate::TiltOptions options{.base = base_of(command.base),
-                                .bias_std_mps2 = command.bias_std_mps2.value_or(0.0),
+                                .bias_std_mps2 = command.bias_std_mps2,
                                 .shortest_rest_s = command.shortest_rest_s,
                                 .progress = progress_bar(command.output)};
   std::vector<Note> of_gravity;

@@ -13,6 +13,8 @@ namespace {
 
 /// Over how long a time the force tells what the base does at present.
 constexpr double memory_s = 6.0;
+/// Over how long a time the force is averaged that it departs from, with and without gyroscope.
+constexpr double mean_memory_s = 2.0, free_mean_memory_s = 20.0;
 /// What no base is quieter than, relative to gravity, and no longer in one state than.
 constexpr double least_accel = 2e-3, least_time_s = 0.05, longest_time_s = 1.0;
 /// Degrees of freedom of the scatter: as of base_accel().
@@ -22,6 +24,10 @@ constexpr double free_drive = 1.0;
 /// Over how long a time filters that take it for another are compared.
 constexpr double predicted_s = 2.0;
 constexpr double apart_s = 0.1;
+
+Mat<3, 3> least_cov(double gravity_mps2) {
+  return square(least_accel * gravity_mps2) * Mat<3, 3>::Identity();
+}
 
 double step_of(const std::vector<LiveInstant>& instants) {
   return (instants.back().time_s - instants.front().time_s) /
@@ -73,7 +79,7 @@ LiveTiltFilter::LiveTiltFilter(const std::vector<LiveInstant>& first,
                                const LiveTiltOptions& options)
     : gyroscope_(options.gyroscope.has_value()),
       usual_step_s_(step_of(first)),
-      scatter_(memory_s, gyroscope_),
+      scatter_(memory_s, gyroscope_ ? mean_memory_s : free_mean_memory_s, gyroscope_),
       correlation_(instants_in(apart_s, usual_step_s_)),
       apart_s_(static_cast<double>(instants_in(apart_s, usual_step_s_)) * usual_step_s_),
       window_(instants_in(options.lag_s, usual_step_s_)),
@@ -92,7 +98,7 @@ LiveTiltFilter::LiveTiltFilter(const std::vector<LiveInstant>& first,
   now_.step_s.assign(2, 0.0);
   now_.force_mps2.assign(2, Mat<3>::Zero());
   now_.resting.assign(2, 0);
-  now_.accel_std_mps2.assign(2, least_accel * known_.gravity_mps2);
+  now_.accel_cov_m2ps4.assign(2, least_cov(known_.gravity_mps2));
   if (gyroscope_) now_.rate_radps.assign(2, Mat<3>::Zero());
   now_.rate_at_radps = now_.rate_radps;
 }
@@ -116,19 +122,15 @@ void LiveTiltFilter::follow_motion() {
   const Mat<3>& f = now_.force_mps2[1];
   if (!f.allFinite()) return;
   const auto departure = scatter_.add(f, known_.gravity_mps2);
-  correlation_.add(gyroscope_ ? departure.mps2 : Mat<3>(f.norm() - known_.gravity_mps2, 0.0, 0.0),
-                   usual_step_s_ / memory_s);
+  correlation_.add(departure.mps2, usual_step_s_ / memory_s);
   double time_s = std::clamp(correlation_.time() * apart_s_, least_time_s, longest_time_s);
-  double std_mps2 = std::sqrt(scatter_.variance());
   // As in base_accel(): what so few times leave open, and what the running mean has taken.
-  std_mps2 *= student_t_quantile(0.975, effective_dof) / 1.959964;
-  if (gyroscope_) {
-    const double taken = 1.0 + time_s / BaseScatter::mean_memory_s;
-    time_s *= taken;
-    std_mps2 *= std::sqrt(taken);
-  }
-  motion_.accel_time_s = time_s;
-  now_.accel_std_mps2[1] = std::max(std_mps2, least_accel * known_.gravity_mps2);
+  const double taken = 1.0 + time_s / (gyroscope_ ? mean_memory_s : free_mean_memory_s);
+  const double wider = student_t_quantile(0.975, effective_dof) / 1.959964;
+  motion_.accel_time_s = time_s * taken;
+  now_.accel_cov_m2ps4[1] =
+      wider * wider * taken * scatter_.covariance(known_.gravity_mps2, known_.norm_std_mps2) +
+      least_cov(known_.gravity_mps2);
 }
 
 void LiveTiltFilter::step(const LiveInstant& instant) {
@@ -136,7 +138,7 @@ void LiveTiltFilter::step(const LiveInstant& instant) {
   follow_motion();
   if (instants_ == 0) {
     now_.force_mps2[0] = now_.force_mps2[1];
-    now_.accel_std_mps2[0] = now_.accel_std_mps2[1];
+    now_.accel_cov_m2ps4[0] = now_.accel_cov_m2ps4[1];
   }
   const TiltModel model(now_, known_, motion_);
   if (instants_ == 0) state_ = model.start();

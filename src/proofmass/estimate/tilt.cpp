@@ -22,8 +22,12 @@ void follow(const TiltRecord& record, const TiltOptions& options, TiltSolution& 
   Mat<3> rate_bias = Mat<3>::Zero();
   // A biased gyroscope's turning would pass for acceleration: once more without its bias.
   for (int round = 0; round < (gyroscope ? 2 : 1); ++round) {
-    const BaseAccel accel = base_accel(instants, rate_bias, known.gravity_mps2);
-    instants.accel_std_mps2 = accel.std_mps2;
+    constexpr double without_s = 20.0, bias_unknown_s = 2.0, bias_known_s = 10.0;
+    const double mean_memory_s = !gyroscope   ? without_s
+                                 : round == 0 ? bias_unknown_s
+                                              : bias_known_s;
+    const BaseAccel accel = base_accel(instants, rate_bias, known, mean_memory_s);
+    instants.accel_cov_m2ps4 = accel.cov_m2ps4;
     solution.motion = fit_tilt_motion(instants, known, accel, gyroscope);
     if (gyroscope) rate_bias = rate_bias_of(instants, known, *solution.motion);
   }
@@ -40,6 +44,7 @@ Result<TiltSolution> estimate_tilt(const TiltRecord& record, const TiltOptions& 
   const Result<bool> moving = is_moving(record, options, found, solution);
   if (!moving) return moving.error();
   solution.moving = *moving;
+  if (solution.moving) drop_smooth_rests(record, found);
   if (!solution.moving && found.rests.empty()) {
     found.rests.push_back({0, solution.samples - 1});
     solution.notes.push_back(
@@ -47,9 +52,7 @@ Result<TiltSolution> estimate_tilt(const TiltRecord& record, const TiltOptions& 
                                 "): the mean of the whole recording is taken, as if it were"});
   }
   find_rests(record, options, found.rests, solution);
-  const double bias_std = options.bias_std_mps2;
-  judge_norm(options, solution);
-  if (options.bias_std_mps2 != bias_std) find_rests(record, options, found.rests, solution);
+  if (judge_norm(options, solution)) find_rests(record, options, found.rests, solution);
   make_series(record, solution);
   if (!solution.moving) {
     fill_still(record, options, solution);

@@ -24,6 +24,8 @@ struct TiltRecord {
   std::vector<double> time_s;                     ///< ascending; empty: the rate is not known
   std::array<std::vector<double>, 3> accel_mps2;  ///< specific force: +g upwards at rest
   std::array<std::vector<double>, 3> rate_radps;  ///< gyroscope: all three, or none
+  /// Step of the converter behind an axis, 0: none; absent: as the values show.
+  std::array<std::optional<double>, 3> step_mps2{};
 };
 
 enum class TiltBase { automatic, still, moving };
@@ -33,8 +35,10 @@ struct TiltOptions {
   TiltBase base = TiltBase::automatic;  ///< automatic: still where rests make up nine tenths
   /// Of the sensor that the readings went through; its uncertainty goes into that of the angles.
   std::optional<sensor::Calibration> calibration = std::nullopt;
-  sensor::NoiseModel noise = {};           ///< its flicker and walk add to what the recording shows
-  double bias_std_mps2 = 0.0;              ///< of each axis, where no calibration says
+  sensor::NoiseModel noise = {};  ///< its flicker and walk add to what the recording shows
+  /// Of each axis: without calibration its bias, with one what that may have changed by since.
+  /// Absent: judged by how far the force at rest departs from gravity.
+  std::optional<double> bias_std_mps2 = std::nullopt;
   double rate_bias_std_radps = 0.05;       ///< of the gyroscope's bias at the start
   double rate_bias_walk_radps_rts = 2e-5;  ///< what it walks in the root of a second
   double rate_scale_std = 0.05;            ///< relative error of a turn
@@ -49,9 +53,10 @@ struct TiltShares {
 
 /// One stretch in which the sensor lay still.
 struct TiltRest {
-  std::size_t first = 0, last = 0;       ///< samples, inclusive
-  Mat<3> force_mps2 = Mat<3>::Zero();    ///< mean; NaN on an axis that is not there
-  std::optional<Uncertain> norm_mps2{};  ///< of the mean, where there are three axes
+  std::size_t first = 0, last = 0;         ///< samples, inclusive
+  Mat<3> force_mps2 = Mat<3>::Zero();      ///< mean; NaN on an axis that is not there
+  Mat<3> rounding_m2ps4 = Mat<3>::Zero();  ///< variance of what the converter's steps hide
+  std::optional<Uncertain> norm_mps2{};    ///< of the mean, where there are three axes
   TiltAngles angles{};
   TiltShares shares{};
 };
@@ -77,6 +82,8 @@ struct TiltSeries {
   std::vector<double> roll_rad, pitch_rad, roll_std_rad, pitch_std_rad;  ///< given all readings
   std::vector<double> filtered_roll_rad, filtered_pitch_rad;             ///< given those up to it
   std::vector<double> filtered_roll_std_rad, filtered_pitch_std_rad;
+  /// Unit vector upwards in sensor axes, given all readings; NaN where an axis is missing.
+  std::array<std::vector<double>, 3> up;
   /// Weight that the filter gave the reading, 1: all; 0 where there is none.
   std::vector<float> weight;
   std::vector<unsigned char> resting;  ///< 1 within a rest
@@ -91,7 +98,8 @@ struct TiltSolution {
   TiltAngles final{};   ///< of the last rest, or of the last sample where the base moves
   TiltShares shares{};  ///< of it
   std::vector<TiltRest> rests;
-  std::optional<TiltMotion> motion{};                         ///< where the base moves
+  double bias_std_mps2 = 0.0;          ///< TiltOptions::bias_std_mps2, as given or as judged
+  std::optional<TiltMotion> motion{};  ///< where the base moves
   std::optional<std::array<Uncertain, 3>> rate_bias_radps{};  ///< at the end, with gyroscope
   std::optional<Consistency> consistency{};                   ///< of the filter in motion
   TiltSeries series;

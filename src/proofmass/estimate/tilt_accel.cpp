@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
@@ -17,7 +18,7 @@ constexpr double memory_times = 60.0, least_memory_s = 2.0, most_memory_s = 20.0
 constexpr double effective_dof = 10.0;
 // What no base is quieter than while it moves, relative to gravity.
 constexpr double least_accel = 2e-3;
-constexpr double longest_s = 1.0;
+constexpr double longest_s = 2.0;
 
 // Departures of the force, turned back into one frame that stands still: what autocorrelates.
 struct Departures {
@@ -46,17 +47,38 @@ double correlation_time(const Departures& found, double step_s) {
   return longest_s;
 }
 
+// (tr S⁸)^(1/8), which is the largest where it stands out and 3^(1/8) times that where all are
+// equal.
+double largest_eigenvalue(const Mat<3, 3>& S) {
+  const double size = S.trace();
+  if (!(size > 0.0)) return 0.0;
+  const Mat<3, 3> once = S / size, twice = once * once, four = twice * twice;
+  return size * std::pow(four.squaredNorm(), 0.125);
+}
+
 BaseAccel base_accel_over(const TiltInstants& instants,
                           const Mat<3>& rate_bias,
-                          double gravity_mps2,
-                          double memory_s) {
+                          const TiltKnown& known,
+                          double memory_s,
+                          double mean_memory_s) {
   BaseAccel out;
   const bool gyroscope = !instants.rate_radps.empty();
-  BaseScatter scatter(memory_s, gyroscope);
+  BaseScatter scatter(memory_s, mean_memory_s, gyroscope);
   Departures departures;
   Mat<3, 3> back = Mat<3, 3>::Identity();
   std::vector<double> steps, differences;
   const Mat<3>* last = nullptr;
+  const Mat<3, 3> least = square(least_accel * known.gravity_mps2) * Mat<3, 3>::Identity();
+  // What the first seconds show holds from the start on.
+  double early_s = 0.0;
+  for (std::size_t k = 0; k < instants.step_s.size() && early_s < memory_s; ++k) {
+    const double h = instants.step_s[k];
+    early_s += h;
+    scatter.turn(h, gyroscope ? Mat<3>(instants.rate_radps[k] - rate_bias) : Mat<3>::Zero());
+    const Mat<3>& f = instants.force_mps2[k];
+    if (f.allFinite()) scatter.add(f, known.gravity_mps2);
+  }
+  scatter.restart();
   for (std::size_t k = 0; k < instants.step_s.size(); ++k) {
     const double h = instants.step_s[k];
     if (gyroscope) {
@@ -68,70 +90,82 @@ BaseAccel base_accel_over(const TiltInstants& instants,
     }
     const Mat<3>& f = instants.force_mps2[k];
     if (f.allFinite()) {
-      const auto departure = scatter.add(f, gravity_mps2);
+      const auto departure = scatter.add(f, known.gravity_mps2);
       if (instants.resting[k] == 0) {
         if (departure.since_s) steps.push_back(*departure.since_s);
         if (last) differences.push_back((f - *last)(static_cast<Eigen::Index>(k % 3)));
-        departures.vectors.push_back(gyroscope ? Mat<3>(back * departure.mps2)
-                                               : Mat<3>(f.norm() - gravity_mps2, 0.0, 0.0));
+        departures.vectors.emplace_back(back * departure.mps2);
       }
       last = &f;
     }
-    out.std_mps2.push_back(std::sqrt(scatter.variance()));
+    out.cov_m2ps4.push_back(scatter.covariance(known.gravity_mps2, known.norm_std_mps2) + least);
   }
-  for (double& std : out.std_mps2) std = std::max(std, least_accel * gravity_mps2);
   const double step_s = median(steps).value_or(0.01);
   out.time_s = std::max(correlation_time(departures, step_s), 0.5 * step_s);
-  out.reading_std_mps2 = std::max(1e-4 * gravity_mps2, 0.3 * robust_std(differences).value_or(0.0));
+  out.reading_std_mps2 = std::max(
+      1e-4 * known.gravity_mps2, std::numbers::sqrt2 / 2.0 * robust_std(differences).value_or(0.0));
   return out;
 }
 
 }  // namespace
 
-void BaseScatter::Fading::add(double value, double fade) {
-  sum_ = fade * sum_ + value;
-  weight_ = fade * weight_ + 1.0;
-}
-
 void BaseScatter::turn(double step_s, const Mat<3>& rate_radps) {
   since_s_ += step_s;
   if (!gyroscope_) return;
-  if (rate_radps.allFinite())
-    mean_ = rotation_by(Mat<3>(-step_s * rate_radps)) * mean_;
-  else
+  if (rate_radps.allFinite()) {
+    const Mat<3, 3> R = rotation_by(Mat<3>(-step_s * rate_radps));
+    mean_ = R * mean_;
+    scatter_.sum = R * scatter_.sum * R.transpose();
+  } else {
     begun_ = false;  // nothing carries the mean over
+  }
 }
 
 BaseScatter::Departure BaseScatter::add(const Mat<3>& force, double gravity_mps2) {
   if (!begun_) mean_ = force;
-  mean_ += (1.0 - std::exp(-since_s_ / mean_memory_s)) * (force - mean_);
+  mean_ += (1.0 - std::exp(-since_s_ / mean_memory_s_)) * (force - mean_);
   Departure departure{force - mean_, std::nullopt};
   const double fade = std::exp(-since_s_ / memory_s_);
   if (begun_) {
-    scatter_.add(departure.mps2.squaredNorm() / 3.0, fade);
+    scatter_.add(departure.mps2 * departure.mps2.transpose(), fade);
     departure.since_s = since_s_;
   }
-  norm_.add(square(force.norm() - gravity_mps2), fade);
+  const double off = force.norm() - gravity_mps2;
+  norm_.add(square(off), fade);
+  excess_.add(off, fade);
   begun_ = true;
   since_s_ = 0.0;
   return departure;
 }
 
-double BaseScatter::variance() const {
-  return gyroscope_ ? std::max(scatter_.mean(), norm_.mean()) : norm_.mean();
+Mat<3, 3> BaseScatter::covariance(double gravity_mps2, double norm_std_mps2) const {
+  const Mat<3, 3> one = Mat<3, 3>::Identity(), departed = scatter_.mean();
+  const double along = norm_.mean();
+  if (gyroscope_) return std::max(along, largest_eigenvalue(departed)) * one;
+  if (!(mean_.norm() > 0.0)) return along * one;
+  const Mat<3> up = mean_.normalized();
+  const Mat<3, 3> level = one - up * up.transpose();
+  const Mat<3, 3> across = level * departed * level;
+  const double most = 2.0 * gravity_mps2 * (std::abs(excess_.mean()) + norm_std_mps2);
+  return along * one + std::min(1.0, most / std::max(across.trace(), 1e-12)) * across;
 }
 
-BaseAccel base_accel(const TiltInstants& instants, const Mat<3>& rate_bias, double gravity_mps2) {
-  const BaseAccel first = base_accel_over(instants, rate_bias, gravity_mps2, least_memory_s);
+BaseAccel base_accel(const TiltInstants& instants,
+                     const Mat<3>& rate_bias,
+                     const TiltKnown& known,
+                     double mean_memory_s) {
+  const BaseAccel first =
+      base_accel_over(instants, rate_bias, known, least_memory_s, mean_memory_s);
   const double memory_s = std::clamp(memory_times * first.time_s, least_memory_s, most_memory_s);
-  BaseAccel out = base_accel_over(instants, rate_bias, gravity_mps2, memory_s);
-  if (instants.rate_radps.empty()) return out;
+  BaseAccel out = base_accel_over(instants, rate_bias, known, memory_s, mean_memory_s);
   // The running mean has taken its share of the slow part: M/(M + τ) is left.
-  const double taken = 1.0 + out.time_s / BaseScatter::mean_memory_s;
-  // A scatter over so few correlation times is Student's, not Gauss's.
-  const double wider = student_t_quantile(0.975, effective_dof) / 1.959964;
+  const double taken = 1.0 + out.time_s / mean_memory_s;
   out.time_s *= taken;
-  for (double& std : out.std_mps2) std *= wider * std::sqrt(taken);
+  // A scatter over so few correlation times is Student's, not Gauss's; with gyroscope the largest
+  // eigenvalue is taken for all directions, which is wide enough.
+  const double wider =
+      instants.rate_radps.empty() ? student_t_quantile(0.975, effective_dof) / 1.959964 : 1.0;
+  for (Mat<3, 3>& cov : out.cov_m2ps4) cov *= wider * wider * taken;
   return out;
 }
 

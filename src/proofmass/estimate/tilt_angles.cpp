@@ -44,6 +44,29 @@ void set_roll(TiltAngles& out, const Mat<3>& f, const Mat<3, 3>& cov) {
   out.roll_rad = Uncertain{std::atan2(f.y(), f.z()), std};
 }
 
+std::optional<Inclination> inclination_of(const Mat<3>& f, const Mat<3, 3>& cov) {
+  Eigen::Index axis = 0;
+  f.cwiseAbs().maxCoeff(&axis);
+  const Eigen::Index a = (axis + 1) % 3, b = (axis + 2) % 3;
+  const double across = std::hypot(f(a), f(b)), squares = f.squaredNorm();
+  // Along the lean; where there is none any direction across the axis will do.
+  Mat<3> lean = Mat<3>::Unit(a);
+  if (across > 0.0) lean = (f(a) * Mat<3>::Unit(a) + f(b) * Mat<3>::Unit(b)) / across;
+  const double size = std::abs(f(axis));
+  const Mat<3> gradient =
+      (size * lean - across * std::copysign(1.0, f(axis)) * Mat<3>::Unit(axis)) / squares;
+  Inclination out{.axis = static_cast<std::size_t>(axis),
+                  .up = f(axis) > 0.0,
+                  .angle_rad = {std::atan2(across, size), std_along(gradient, cov)},
+                  .azimuth_rad = std::nullopt};
+  if (out.angle_rad.std > largest_std_rad) return std::nullopt;
+  if (out.angle_rad.value < 2.0 * out.angle_rad.std) return out;
+  const Mat<3> turn = (f(a) * Mat<3>::Unit(b) - f(b) * Mat<3>::Unit(a)) / (across * across);
+  const double std = std_along(turn, cov);
+  if (std < largest_std_rad) out.azimuth_rad = Uncertain{std::atan2(f(b), f(a)), std};
+  return out;
+}
+
 }  // namespace
 
 TiltAngles angles_of(const Mat<3>& force, const Mat<3, 3>& cov) {
@@ -51,6 +74,7 @@ TiltAngles angles_of(const Mat<3>& force, const Mat<3, 3>& cov) {
   PM_EXPECTS(norm > 0.0);
   TiltAngles out;
   set_roll(out, force, cov);
+  out.inclination = inclination_of(force, cov);
   for (int i = 0; i < 3; ++i) {
     // d asin(f_i / |f|) = (e_i − f f_i / |f|²)ᵀ df / √(|f|² − f_i²)
     const double across = std::sqrt(std::max(0.0, norm * norm - force(i) * force(i)));

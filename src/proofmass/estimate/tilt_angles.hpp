@@ -17,12 +17,23 @@
 // Roll is positive where y goes up, pitch where x goes down; both are 0 where z points up.
 namespace proofmass::estimate {
 
+/// Of the sensor axis that is nearest to the vertical: what stays defined where roll does not.
+struct Inclination {
+  std::size_t axis = 2;  ///< 0, 1, 2: x, y, z
+  bool up = true;        ///< it points up rather than down
+  Uncertain angle_rad;   ///< between it and the vertical, 0 … 55°
+  /// Of the upward vertical in the plane of the other two axes: from y to z for x, from z to x for
+  /// y, from x to y for z. Absent where the angle is below two of its standard deviations.
+  std::optional<Uncertain> azimuth_rad;
+};
+
 /// Angles with standard deviations, or why there are none.
 struct TiltAngles {
   std::optional<Uncertain> roll_rad, pitch_rad;
   std::string why_no_roll, why_no_pitch;
   /// Of each axis above the horizon, where it was recorded and not nearly upright.
   std::array<std::optional<Uncertain>, 3> elevation_rad;
+  std::optional<Inclination> inclination;  ///< of three axes
 };
 
 /// roll = atan2(f_y, f_z), pitch = atan2(−f_x, √(f_y² + f_z²)), to first order in the covariance.

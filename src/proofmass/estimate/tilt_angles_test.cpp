@@ -130,5 +130,21 @@ TEST(CalibrationSpread, IsAbsentWhereNoFigureHasAStandardDeviation) {
   EXPECT_FALSE(CalibrationSpread::of({}));
 }
 
+TEST(TiltAngles, InclinationIsThatOfTheAxisNearestToTheVertical) {
+  const Mat<3, 3> cov = 1e-4 * Mat<3, 3>::Identity();
+  const TiltAngles leaning = angles_of({-9.7, 0.3, -0.4}, cov);
+  ASSERT_TRUE(leaning.inclination.has_value());
+  EXPECT_EQ(leaning.inclination->axis, 0U);
+  EXPECT_FALSE(leaning.inclination->up);
+  EXPECT_NEAR(leaning.inclination->angle_rad.value, std::atan2(0.5, 9.7), 1e-12);
+  EXPECT_NEAR(leaning.inclination->angle_rad.std, 0.01 / Mat<3>(-9.7, 0.3, -0.4).norm(), 1e-9);
+  EXPECT_NEAR(leaning.inclination->azimuth_rad->value, std::atan2(-0.4, 0.3), 1e-12);
+  EXPECT_NEAR(leaning.inclination->azimuth_rad->std, 0.01 / 0.5, 1e-9);
+  const TiltAngles upright = angles_of({0.0, 9.8, 0.001}, cov);
+  EXPECT_EQ(upright.inclination->axis, 1U);
+  EXPECT_TRUE(upright.inclination->up);
+  EXPECT_FALSE(upright.inclination->azimuth_rad.has_value());
+}
+
 }  // namespace
 }  // namespace proofmass::estimate::tilt_angles_test

@@ -10,6 +10,9 @@
 namespace proofmass::estimate {
 namespace {
 
+// What the norm of a calibrated sensor's readings at rest varies by from one attitude to another.
+constexpr double calibrated_norm_std_mps2 = 5e-3;
+
 // Standard deviation of white noise as strong at low frequency as the longest rest shows.
 Mat<3> rest_std(const std::array<std::vector<double>, 3>& axes,
                 const TiltSolution& solution,
@@ -87,6 +90,8 @@ TiltKnown known_of(const TiltRecord& record,
                   .rest_std_mps2 = rest_std(record.accel_mps2, solution, 1e-4),
                   .rate_bias_std_radps = options.rate_bias_std_radps,
                   .rate_bias_walk_radps_rts = options.rate_bias_walk_radps_rts};
+  if (options.calibration) known.norm_std_mps2 = calibrated_norm_std_mps2;
+  if (solution.bias_std_mps2 > 0.0) known.norm_std_mps2 = solution.bias_std_mps2;
   std::vector<double> norms;
   for (const TiltRest& rest : solution.rests)
     if (rest.norm_mps2) norms.push_back(rest.norm_mps2->value);

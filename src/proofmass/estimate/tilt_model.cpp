@@ -84,9 +84,7 @@ Transition<9, 9> TiltModel::transition(const Mat<9>& x, std::size_t k) const {
   step.F.block<3, 3>(3, 3) = R;
   if (motion_.gyroscope && phi > 0.0 && instants_.rate_radps[k].allFinite())
     step.F.block<3, 3>(3, 6) = -h * cross_matrix(step.mean.segment<3>(3));
-  if (!rests)
-    step.Q.block<3, 3>(3, 3) =
-        square(instants_.accel_std_mps2[k]) * (1.0 - phi * phi) * Mat<3, 3>::Identity();
+  if (!rests) step.Q.block<3, 3>(3, 3) = (1.0 - phi * phi) * instants_.accel_cov_m2ps4[k];
   return step;
 }
 
@@ -128,13 +126,14 @@ FilterState<9> TiltModel::start_about(const Mat<3>& g) const {
   state.x.mean.setZero();
   state.x.mean.head<3>() = g;
   const bool rests = !instants_.resting.empty() && instants_.resting.front() != 0;
-  const double accel = rests ? 0.0 : square(instants_.accel_std_mps2.front());
+  Mat<3, 3> accel = Mat<3, 3>::Zero();
+  if (!rests) accel = instants_.accel_cov_m2ps4.front();
   // The reading that the start was taken from is read once more: so wide that it counts once.
-  const double wide = 100.0 * (accel + square(motion_.reading_std_mps2) +
+  const double wide = 100.0 * (accel.trace() / 3.0 + square(motion_.reading_std_mps2) +
                                known_.rest_std_mps2.cwiseAbs2().maxCoeff());
   state.x.cov.topLeftCorner<3, 3>() =
       std::min(wide, square(G)) / square(G) * across(g) + square(norm_std) * g * g.transpose();
-  state.x.cov.block<3, 3>(3, 3) = accel * Mat<3, 3>::Identity();
+  state.x.cov.block<3, 3>(3, 3) = accel;
   const double third = motion_.gyroscope ? square(known_.rate_bias_std_radps)
                                          : (rests ? 0.0 : square(known_.usual_rate_radps * G));
   state.x.cov.bottomRightCorner<3, 3>() = third * Mat<3, 3>::Identity();

@@ -18,13 +18,14 @@ struct TiltInstants {
   std::vector<Mat<3>> rate_radps;     ///< mean over the step to it; NaN: unknown; empty: no gyro
   std::vector<Mat<3>> rate_at_radps;  ///< of the instant itself, for rests
   std::vector<unsigned char> resting;
-  std::vector<double> accel_std_mps2;  ///< of the base's acceleration, each component: base_accel()
+  std::vector<Mat<3, 3>> accel_cov_m2ps4;  ///< of the base's acceleration: base_accel()
 };
 
 /// Figures that are known before the likelihood is asked.
 struct TiltKnown {
   double gravity_mps2 = standard_gravity_mps2;  ///< G
   double gravity_std_mps2 = 0.0;
+  double norm_std_mps2 = 0.02;  ///< of what the norm of a reading at rest varies by
   Mat<3> rest_std_mps2 = Mat<3>::Constant(1e-3);        ///< of a reading at rest
   Mat<3> rest_rate_std_radps = Mat<3>::Constant(1e-3);  ///< of the gyroscope's at rest
   double rate_bias_std_radps = 0.1, rate_bias_walk_radps_rts = 2e-5;

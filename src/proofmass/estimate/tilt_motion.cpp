@@ -8,6 +8,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/relinearised.hpp"
 #include "proofmass/estimate/tilt_rest.hpp"
+#include "proofmass/estimate/tilt_still.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -63,8 +64,8 @@ TiltMotion fit_tilt_motion(const TiltInstants& instants,
                            const BaseAccel& accel,
                            bool gyroscope) {
   std::vector<double> moving;
-  for (std::size_t k = 0; k < accel.std_mps2.size(); ++k)
-    if (instants.resting[k] == 0) moving.push_back(accel.std_mps2[k]);
+  for (std::size_t k = 0; k < accel.cov_m2ps4.size(); ++k)
+    if (instants.resting[k] == 0) moving.push_back(std::sqrt(accel.cov_m2ps4[k].trace() / 3.0));
   TiltMotion motion{.gyroscope = gyroscope,
                     .drive = known.rate_noise_radps_rthz.value_or(usual_rate_noise_radps_rthz),
                     .accel_std_mps2 = median(moving).value_or(0.0),
@@ -181,7 +182,9 @@ void run_tilt(const TiltInstants& instants,
               TiltSolution& solution) {
   TiltMotion& motion = *solution.motion;
   const TiltModel model(instants, known, motion);
-  const ForceSpread spread(options);
+  Mat<3> rounding = Mat<3>::Zero();
+  for (const TiltRest& rest : solution.rests) rounding = rounding.cwiseMax(rest.rounding_m2ps4);
+  const ForceSpread spread(options, rounding);
   motion.log_likelihood = tilt_log_likelihood(instants, known, motion);
   FilterNotes notes(instants, model, spread, solution);
   std::vector<Mat<9>> path(model.size()), next(model.size());
@@ -197,6 +200,7 @@ void run_tilt(const TiltInstants& instants,
       if (pass + 1 < passes) return;
       const Mat<3, 3> cov = later.template cov<3>(step.filtered);
       set(solution, k, spread.angles(next[k].template head<3>(), cov), true);
+      set_up(solution.series, k, next[k].template head<3>());
       if (k + 1 == next.size()) set_final(next[k], step.filtered.cov, spread, solution);
     };
   };

@@ -27,6 +27,10 @@ namespace proofmass::estimate {
 /// The stretches in which the accelerometer lay still.
 [[nodiscard]] signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options);
 
+/// Of a moving base: leaves out quiet stretches that go over smoothly into what is before and after
+/// them, as the crest of a slow acceleration does. A rest begins or ends at an edge.
+void drop_smooth_rests(const TiltRecord& record, signal::RestSearch& found);
+
 /// Whether the base moves. Errors: not_observable, too_few_samples where it does and cannot be
 /// followed.
 [[nodiscard]] Result<bool> is_moving(const TiltRecord& record,
@@ -34,7 +38,7 @@ namespace proofmass::estimate {
                                      const signal::RestSearch& found,
                                      const TiltSolution& solution);
 
-/// A number with two decimals, for sentences.
-[[nodiscard]] std::string decimal(double value);
+/// A number with so many decimals, for sentences.
+[[nodiscard]] std::string decimal(double value, int decimals = 2);
 
 }  // namespace proofmass::estimate

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <utility>
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/sensor/noise_conversions.hpp"
+#include "proofmass/signal/channel_audit.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -20,6 +23,26 @@ double span_s(const TiltRecord& record, const signal::Rest& samples) {
 
 }  // namespace
 
+double rounding_variance(std::vector<double> values, double step) {
+  if (!(step > 0.0) || values.empty()) return 0.0;
+  const double hidden = step * step / 12.0;
+  const double variance = square(moments(values).std() / step) - 1.0 / 12.0;
+  if (variance > 1.0) return 0.0;
+  std::ranges::sort(values);
+  // Where nearly all are of two codes, noise far below the step may swing across their border.
+  constexpr double nearly_all = 0.998;
+  std::size_t most = 0;
+  for (std::size_t first = 0, end = 0; first < values.size(); ++first) {
+    while (end < values.size() && values[end] < values[first] + 1.5 * step) ++end;
+    most = std::max(most, end - first);
+  }
+  const bool two_codes =
+      static_cast<double>(most) >= nearly_all * static_cast<double>(values.size());
+  if (two_codes || variance <= 0.0) return hidden;
+  constexpr double pi = std::numbers::pi;
+  return std::min(hidden, square(step / pi) / 2.0 * std::exp(-4.0 * pi * pi * variance));
+}
+
 StretchMean stretch_mean(View<double> values, double step) {
   std::vector<double> finite;
   finite.reserve(values.size());
@@ -30,7 +53,6 @@ StretchMean stretch_mean(View<double> values, double step) {
   if (finite.empty()) return out;
   const Moments all = moments(finite);
   out.mean = all.mean;
-  out.scatter = square(all.std());
   const std::size_t length = finite.size() < 4 * batches ? 1 : finite.size() / batches;
   Moments means;
   for (std::size_t first = 0; first + length <= finite.size(); first += length)
@@ -40,37 +62,45 @@ StretchMean stretch_mean(View<double> values, double step) {
     const double wider = student_t_quantile(0.975, count - 1.0) / 1.959964;
     out.variance = square(wider * means.std()) / count;
   }
-  if (std::sqrt(out.scatter) < 0.5 * step) out.variance += step * step / 12.0;
+  out.scatter = square(all.std());
+  out.rounding = rounding_variance(std::move(finite), step);
   return out;
 }
 
-double least_step(View<double> values) {
-  std::vector<double> sorted;
-  sorted.reserve(values.size());
-  for (const double value : values)
-    if (std::isfinite(value)) sorted.push_back(value);
-  std::ranges::sort(sorted);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 1; k < sorted.size(); ++k) {
-    const double step = sorted[k] - sorted[k - 1];
-    // Below it lies what conversion of units leaves between equal readings.
-    if (step > 1e-9 * std::max(1.0, std::abs(sorted[k]))) least = std::min(least, step);
+std::optional<std::array<double, 3>> converter_steps(const TiltRecord& record) {
+  std::array<double, 3> steps{};
+  std::array<bool, 3> constant{};
+  double largest = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::vector<double>& axis = record.accel_mps2[i];
+    if (axis.empty()) continue;
+    const auto first = std::ranges::find_if(axis, [](double v) { return std::isfinite(v); });
+    constant[i] = first != axis.end() && std::all_of(first, axis.end(), [&](double value) {
+                    return value == *first || !std::isfinite(value);
+                  });
+    steps[i] = record.step_mps2[i] ? *record.step_mps2[i] : signal::find_lsb(axis).value_or(0.0);
+    largest = std::max(largest, steps[i]);
   }
-  return std::isfinite(least) ? least : 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!constant[i] || steps[i] > 0.0) continue;
+    if (!(largest > 0.0)) return std::nullopt;
+    steps[i] = largest;
+  }
+  return steps;
 }
 
-ForceSpread::ForceSpread(const TiltOptions& options) {
-  if (options.calibration) {
-    calibration_ = CalibrationSpread::of(*options.calibration);
-    if (options.calibration->alignment_std)
-      alignment_variance_ = square(options.calibration->alignment_std->si());
-  }
-  if (!calibration_) bias_variance_ = square(options.bias_std_mps2);
+ForceSpread::ForceSpread(const TiltOptions& options, const Mat<3>& rounding_m2ps4)
+    : beside_(rounding_m2ps4.array() + square(options.bias_std_mps2.value_or(0.0))) {
+  if (!options.calibration) return;
+  calibration_ = CalibrationSpread::of(*options.calibration);
+  if (options.calibration->alignment_std)
+    alignment_variance_ = square(options.calibration->alignment_std->si());
 }
 
 Mat<3, 3> ForceSpread::calibration(const Mat<3>& force) const {
-  if (calibration_) return calibration_->at(force);
-  return bias_variance_ * Mat<3, 3>::Identity();
+  Mat<3, 3> cov = beside_.asDiagonal();
+  if (calibration_) cov += calibration_->at(force);
+  return cov;
 }
 
 Mat<3, 3> ForceSpread::alignment(const Mat<3>& force) const {
@@ -98,7 +128,7 @@ double slow_variance(const sensor::NoiseModel& noise, std::size_t axis, double s
 TiltRest rest_of(const TiltRecord& record,
                  const TiltOptions& options,
                  const signal::Rest& samples,
-                 const std::array<double, 3>& steps) {
+                 const std::optional<std::array<double, 3>>& steps) {
   TiltRest rest{.first = samples.first, .last = samples.last};
   Mat<3, 3> noise = Mat<3, 3>::Zero();
   rest.force_mps2.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -106,17 +136,23 @@ TiltRest rest_of(const TiltRecord& record,
     if (record.accel_mps2[axis].empty()) continue;
     const StretchMean mean = stretch_mean(
         View<double>(record.accel_mps2[axis]).subspan(rest.first, rest.last - rest.first + 1),
-        steps[axis]);
+        steps ? (*steps)[axis] : 0.0);
     if (mean.count == 0) continue;
     const auto row = static_cast<Eigen::Index>(axis);
     rest.force_mps2(row) = mean.mean;
-    noise(row, row) = mean.variance + slow_variance(options.noise, axis, span_s(record, samples));
+    rest.rounding_m2ps4(row) = mean.rounding;
+    noise(row, row) =
+        mean.variance + mean.rounding + slow_variance(options.noise, axis, span_s(record, samples));
   }
   const ForceSpread spread(options);
   const Mat<3> known = rest.force_mps2.array().isFinite().select(rest.force_mps2, 0.0);
   const Mat<3, 3> calibration = spread.calibration(known), alignment = spread.alignment(known);
   const Mat<3, 3> cov = noise + calibration + alignment;
-  if (known.norm() > 0.0)
+  if (!steps)
+    rest.angles.why_no_roll = rest.angles.why_no_pitch =
+        "an axis reads one and the same value throughout: it is stuck, or its converter is too "
+        "coarse to state an uncertainty";
+  else if (known.norm() > 0.0)
     rest.angles = angles_of_some(rest.force_mps2, cov, options.gravity_mps2);
   else
     rest.angles.why_no_roll = rest.angles.why_no_pitch = "the force is zero";

@@ -1,5 +1,7 @@
 #include <cmath>
+#include <cstdio>
 #include <gtest/gtest.h>
+#include <ostream>
 
 #include "proofmass/estimate/tilt.hpp"
 #include "proofmass/estimate/tilt_test_support.hpp"
@@ -33,6 +35,7 @@ TEST(TiltCoverage, AtRestIsNinetyFivePercent) {
 TEST(TiltCoverage, AtRestWithAnUncertainCalibrationIsNinetyFivePercent) {
   Coverage roll, pitch;
   TiltOptions options{.gravity_mps2 = {9.80665, 0.02}, .base = TiltBase::still};
+  options.bias_std_mps2 = 0.0;
   options.calibration.emplace();
   options.calibration->bias = sensor::make_axis_figures({0.0, 0.0, 0.0}, "m/s^2", "test");
   for (auto& bias : options.calibration->bias) bias->std = 0.02;
@@ -49,16 +52,85 @@ TEST(TiltCoverage, AtRestWithAnUncertainCalibrationIsNinetyFivePercent) {
   EXPECT_NEAR(pitch.share(), 0.95, 0.02);
 }
 
+// A converter of 0.04 m/s² (10 bits, ± 2 g) and noise from 0.05 to 1 of its steps.
+TEST(TiltCoverage, AtRestWithACoarseConverterIsAtLeastNinetyThreePercent) {
+  constexpr double step = 0.04;
+  for (const double noise : {0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 1.0}) {
+    Coverage held;
+    std::size_t none = 0;
+    Random random(7, "poses");
+    for (std::uint64_t run = 0; run < 1000; ++run) {
+      const double roll = 0.8 * random.uniform(), pitch = 0.8 * random.uniform();
+      TiltRecord record = still_record(force_at(roll, pitch), noise * step, 1000, run);
+      for (auto& axis : record.accel_mps2)
+        for (double& value : axis) value = step * std::round(value / step);
+      const auto solution =
+          estimate_tilt(record, {.gravity_mps2 = {9.80665, 0.02}, .base = TiltBase::still});
+      if (!solution || !solution->final.roll_rad || !solution->final.pitch_rad) {
+        ++none;
+        continue;
+      }
+      held.add(solution->final.roll_rad->value, solution->final.roll_rad->std, roll);
+      held.add(solution->final.pitch_rad->value, solution->final.pitch_rad->std, pitch);
+    }
+    std::printf("| noise of %.2f steps | %.1f %% | %zu without figure |\n", noise,
+                100.0 * held.share(), none);
+    EXPECT_GE(held.share(), 0.93) << noise;
+  }
+}
+
+// A sensor whose biases moved after its calibration, in one attitude: by nothing in half of the
+// recordings and else as the prior has it, then by up to a fixed size. One norm shows one of three
+// components, so that bands cannot hold for every size alike.
+TEST(TiltCoverage, WithASensorFileOfAnotherSessionIsAtLeastNinetyThreePercent) {
+  constexpr double mg = 1e-3 * standard_gravity_mps2;
+  Random random(8, "moved");
+  const auto held_by = [&](double gravity_std_mps2, const auto& draw_change) {
+    Coverage held;
+    for (std::uint64_t run = 0; run < 1000; ++run) {
+      TiltOptions options{.gravity_mps2 = {9.80665, gravity_std_mps2}, .base = TiltBase::still};
+      options.calibration.emplace();
+      options.calibration->bias = sensor::make_axis_figures({0.0, 0.0, 0.0}, "m/s^2", "test");
+      for (auto& bias : options.calibration->bias) bias->std = 0.1 * mg;
+      const Mat<3> known(random.normal(), random.normal(), random.normal());
+      const double roll = 0.8 * random.uniform(), pitch = 0.8 * random.uniform();
+      const Mat<3> force = force_at(roll, pitch) + 0.1 * mg * known + draw_change();
+      const auto solution = estimate_tilt(still_record(force, 0.01, 400, run), options).value();
+      held.add(solution.final.roll_rad->value, solution.final.roll_rad->std, roll);
+      held.add(solution.final.pitch_rad->value, solution.final.pitch_rad->std, pitch);
+    }
+    return held.share();
+  };
+  for (const double gravity_std_mps2 : {1e-4, 0.018}) {
+    const double by_prior = held_by(gravity_std_mps2, [&] {
+      const double size = random.unit() < 0.5 ? 0.0 : 3.0 * mg * std::exp(1.2 * random.normal());
+      return Mat<3>(size * random.normal(), size * random.normal(), size * random.normal());
+    });
+    EXPECT_GE(by_prior, 0.93) << gravity_std_mps2;
+    std::printf("| gravity ± %.4f m/s² | %.0f %%", gravity_std_mps2, 100.0 * by_prior);
+    for (const double most : {0.0, 1.0 * mg, 5.0 * mg, 20.0 * mg})
+      std::printf(" | %.0f %%", 100.0 * held_by(gravity_std_mps2, [&] {
+                                  return Mat<3>(most * random.uniform(), most * random.uniform(),
+                                                most * random.uniform());
+                                }));
+    std::printf(" |\n");
+  }
+}
+
 // Shares of instants 2 s apart, of roll and pitch together.
-void expect_moving_coverage(const MovingOptions& base_options, double rate_scale_std) {
+struct Shares {
+  double smoothed, filtered;
+};
+
+Shares moving_coverage(const MovingOptions& base_options, double rate_scale_std, int runs = 250) {
   Coverage smoothed, filtered;
-  for (std::uint64_t run = 0; run < 250; ++run) {
-    const MovingBase base = moving_base(base_options, 5000 + run);
+  for (int run = 0; run < runs; ++run) {
+    const MovingBase base = moving_base(base_options, 5000 + static_cast<std::uint64_t>(run));
     const auto solution = estimate_tilt(base.record, {.gravity_mps2 = {9.80665, 1e-3},
                                                       .base = TiltBase::moving,
-                                                      .rate_scale_std = rate_scale_std});
-    ASSERT_TRUE(solution);
-    const TiltSeries& s = solution->series;
+                                                      .rate_scale_std = rate_scale_std})
+                              .value();
+    const TiltSeries& s = solution.series;
     for (std::size_t k = 300; k + 150 < base_options.samples; k += 200) {
       smoothed.add(s.roll_rad[k], s.roll_std_rad[k], base.roll_rad[k]);
       smoothed.add(s.pitch_rad[k], s.pitch_std_rad[k], base.pitch_rad[k]);
@@ -66,21 +138,74 @@ void expect_moving_coverage(const MovingOptions& base_options, double rate_scale
       filtered.add(s.filtered_pitch_rad[k], s.filtered_pitch_std_rad[k], base.pitch_rad[k]);
     }
   }
-  EXPECT_NEAR(smoothed.share(), 0.95, 0.02);
-  EXPECT_NEAR(filtered.share(), 0.95, 0.02);
+  return {smoothed.share(), filtered.share()};
 }
 
 TEST(TiltCoverage, OnAMovingBaseWithGyroscopeAndRestsIsNinetyFivePercent) {
-  expect_moving_coverage({.rest_s = 1.5}, 0.0);
+  const Shares held = moving_coverage({.rest_s = 1.5}, 0.0);
+  EXPECT_NEAR(held.smoothed, 0.95, 0.02);
+  EXPECT_NEAR(held.filtered, 0.95, 0.02);
 }
 
-TEST(TiltCoverage, OnAMovingBaseWithGyroscopeAndNoRestIsNinetyFivePercent) {
-  expect_moving_coverage({}, 0.0);
+// The largest of three equal eigenvalues' estimates stands for all: cautious.
+TEST(TiltCoverage, OnAMovingBaseWithGyroscopeAndNoRestIsAtLeastNinetyThreePercent) {
+  const Shares held = moving_coverage({}, 0.0);
+  EXPECT_GT(held.smoothed, 0.93);
+  EXPECT_GT(held.filtered, 0.93);
 }
 
-TEST(TiltCoverage, OnAMovingBaseWithoutGyroscopeIsNinetyFivePercent) {
-  expect_moving_coverage({.angular_accel_radps2_rthz = 0.5, .gyroscope = false}, 0.0);
+TEST(TiltCoverage, OnAMovingBaseWithoutGyroscopeIsAtLeastNinetyThreePercent) {
+  const Shares held = moving_coverage({.angular_accel_radps2_rthz = 0.5, .gyroscope = false}, 0.0);
+  EXPECT_GT(held.smoothed, 0.93);
+  EXPECT_GT(held.filtered, 0.93);
 }
+
+// A base that is swayed along one level direction, slowly or faster, with rests at its ends and
+// without: docs/methods/tilt.md has the table.
+struct Sway {
+  const char* name;
+  MovingOptions base;
+  double least;  ///< share held by the smoother
+};
+
+void PrintTo(const Sway& sway, std::ostream* out) {
+  *out << sway.name;
+}
+
+class SwayedTilt : public testing::TestWithParam<Sway> {};
+
+TEST_P(SwayedTilt, ItsBandsHold) {
+  const Shares held = moving_coverage(GetParam().base, 0.05, 100);
+  std::printf("| %s | %.0f %% | %.0f %% |\n", GetParam().name, 100.0 * held.smoothed,
+              100.0 * held.filtered);
+  EXPECT_GE(held.smoothed, GetParam().least);
+}
+
+MovingOptions swayed(
+    double sway_mps2, double slowest_hz, double fastest_hz, bool gyroscope, double rest_s) {
+  return {.samples = 6000,
+          .rest_s = rest_s,
+          .accel_std_mps2 = 0.0,
+          .sway_mps2 = sway_mps2,
+          .slowest_sway_hz = slowest_hz,
+          .fastest_sway_hz = fastest_hz,
+          .turning = gyroscope ? 0.5 : 0.0,
+          .reading_std_mps2 = 0.02,
+          .gyroscope = gyroscope};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds,
+    SwayedTilt,
+    testing::Values(
+        Sway{"gyroscope, 3 m/s², 0.02–0.2 Hz", swayed(3.0, 0.02, 0.2, true, 0.0), 0.93},
+        Sway{"gyroscope, 3 m/s², 0.02–0.2 Hz, rests", swayed(3.0, 0.02, 0.2, true, 3.0), 0.93},
+        Sway{"gyroscope, 1 m/s², 0.5–3 Hz", swayed(1.0, 0.5, 3.0, true, 0.0), 0.93},
+        Sway{"no gyroscope, 3 m/s², 0.02–0.2 Hz", swayed(3.0, 0.02, 0.2, false, 0.0), 0.85},
+        Sway{"no gyroscope, 1 m/s², 0.02–0.2 Hz, rests", swayed(1.0, 0.02, 0.2, false, 3.0), 0.75},
+        Sway{"no gyroscope, 1 m/s², 0.1–0.5 Hz, rests", swayed(1.0, 0.1, 0.5, false, 3.0), 0.93},
+        Sway{"no gyroscope, 0.3 m/s², 0.02–0.2 Hz", swayed(0.3, 0.02, 0.2, false, 0.0), 0.90},
+        Sway{"no gyroscope, 1 m/s², 0.5–3 Hz, rests", swayed(1.0, 0.5, 3.0, false, 3.0), 0.93}));
 
 }  // namespace
 }  // namespace proofmass::estimate::tilt_slow_test

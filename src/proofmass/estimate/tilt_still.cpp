@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/tilt_bias_change.hpp"
 #include "proofmass/estimate/tilt_record.hpp"
 
 namespace proofmass::estimate {
@@ -26,51 +27,68 @@ Mat<3> noise_of_one(const TiltRecord& record, const TiltRest& rest) {
   return out;
 }
 
+Note change_note(const BiasChange& change, double off_mps2) {
+  const std::string widened = decimal(change.std_mps2, 4) + " m/s^2 (--bias-std states it)";
+  if (change.probability > 0.95)
+    return {Severity::warning,
+            "at rest the force departs from gravity by " + decimal(off_mps2) +
+                " m/s^2, more than the calibration allows: the sensor has changed since, or it was "
+                "not at rest; each axis is taken to be off by " +
+                widened};
+  return {Severity::info,
+          "the bias may have changed since the calibration: each axis is taken to be off by " +
+              widened};
+}
+
 }  // namespace
 
 void find_rests(const TiltRecord& record,
                 const TiltOptions& options,
                 const std::vector<signal::Rest>& found,
                 TiltSolution& solution) {
-  std::array<double, 3> steps{};
-  for (std::size_t i = 0; i < 3; ++i) steps[i] = least_step(record.accel_mps2[i]);
+  const auto steps = converter_steps(record);
   solution.rests.clear();
   for (const signal::Rest& rest : found)
     solution.rests.push_back(rest_of(record, options, rest, steps));
 }
 
-void judge_norm(TiltOptions& options, TiltSolution& solution) {
+bool judge_norm(TiltOptions& options, TiltSolution& solution) {
+  if (options.bias_std_mps2) {
+    solution.bias_std_mps2 = *options.bias_std_mps2;
+    return false;
+  }
   const ForceSpread spread(options);
   double squares = 0.0, count = 0.0;
   for (const TiltRest& rest : solution.rests) {
     if (!rest.norm_mps2) continue;
-    const double off = rest.norm_mps2->value - options.gravity_mps2.value;
-    squares += off * off;
+    squares += square(rest.norm_mps2->value - options.gravity_mps2.value);
     count += 1.0;
   }
   const double off = count > 0.0 ? std::sqrt(squares / count) : 0.0;
-  const bool unknown = !spread.knows_calibration() && options.bias_std_mps2 == 0.0;
-  if (unknown && off > 2.0 * options.gravity_mps2.std) {
+  if (spread.knows_calibration()) {
+    const BiasChange change = bias_change(solution.rests, spread, options.gravity_mps2);
+    options.bias_std_mps2 = change.std_mps2;
+    solution.notes.push_back(change_note(change, off));
+  } else if (off > 2.0 * options.gravity_mps2.std) {
     options.bias_std_mps2 = off;
     solution.notes.push_back(
         {Severity::warning,
          "at rest the force departs from gravity by " + decimal(off) +
              " m/s^2, and nothing says how well the sensor is calibrated: each axis is taken to be "
              "off by as much; a sensor file tells better"});
-  } else if (unknown) {
+  } else {
     solution.notes.push_back(
         {Severity::warning,
          "nothing says how well the sensor is calibrated: standard deviations count its noise "
          "alone, and a bias of 0.1 m/s^2 tilts by 0.6 degrees; give --sensor or --bias-std"});
-  } else if (count > 0.0 && solution.rests.front().norm_mps2 &&
-             off > 3.0 * std::hypot(solution.rests.front().norm_mps2->std,
-                                    options.gravity_mps2.std)) {
-    solution.notes.push_back(
-        {Severity::warning,
-         "at rest the force departs from gravity by " + decimal(off) +
-             " m/s^2, more than three standard deviations of the calibration: the sensor has "
-             "changed, or it was not at rest"});
   }
+  solution.bias_std_mps2 = options.bias_std_mps2.value_or(0.0);
+  return options.bias_std_mps2.has_value();
+}
+
+void set_up(TiltSeries& series, std::size_t k, const Mat<3>& force) {
+  const Mat<3> up = force.normalized();
+  for (std::size_t i = 0; i < 3; ++i) series.up[i][k] = up(static_cast<Eigen::Index>(i));
 }
 
 void make_series(const TiltRecord& record, TiltSolution& solution) {
@@ -80,6 +98,7 @@ void make_series(const TiltRecord& record, TiltSolution& solution) {
        {&s.roll_rad, &s.pitch_rad, &s.roll_std_rad, &s.pitch_std_rad, &s.filtered_roll_rad,
         &s.filtered_pitch_rad, &s.filtered_roll_std_rad, &s.filtered_pitch_std_rad})
     values->assign(solution.samples, no_value);
+  for (auto& component : s.up) component.assign(solution.samples, no_value);
   s.weight.assign(solution.samples, 0.0F);
   s.resting.assign(solution.samples, 0);
   for (const TiltRest& rest : solution.rests)
@@ -97,6 +116,7 @@ void fill_still(const TiltRecord& record, const TiltOptions& options, TiltSoluti
     for (std::size_t k = rest.first; k <= rest.last; ++k) {
       put(rest.angles.roll_rad, s.roll_rad[k], s.roll_std_rad[k]);
       put(rest.angles.pitch_rad, s.pitch_rad[k], s.pitch_std_rad[k]);
+      set_up(s, k, rest.force_mps2);
       const Mat<3> f = vector_at(record.accel_mps2, k);
       if (static_cast<std::size_t>(f.array().isFinite().count()) == solution.axes) {
         sum += f;

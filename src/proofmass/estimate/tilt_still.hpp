@@ -13,10 +13,13 @@ void find_rests(const TiltRecord& record,
                 const std::vector<signal::Rest>& found,
                 TiltSolution& solution);
 
-/// Notes what the norm of the force at rest says of the calibration. Where nothing is known of the
-/// sensor's errors, a norm that is not gravity's shows their size, and the options' bias_std_mps2
-/// becomes it.
-void judge_norm(TiltOptions& options, TiltSolution& solution);
+/// The direction of a force as that of the vertical at one sample.
+void set_up(TiltSeries& series, std::size_t k, const Mat<3>& force);
+
+/// Notes what the norm of the force at rest says of the calibration. Without one, a norm that is
+/// not gravity's shows the size of the sensor's errors; with one, by how much the biases may have
+/// changed since (tilt_bias_change.hpp). Returns whether the options' bias_std_mps2 became it.
+bool judge_norm(TiltOptions& options, TiltSolution& solution);
 
 /// An empty series of the record's length, with its rests.
 void make_series(const TiltRecord& record, TiltSolution& solution);

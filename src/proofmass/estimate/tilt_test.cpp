@@ -22,11 +22,11 @@ double rms_error_rad(const std::vector<double>& angle, const std::vector<double>
 }
 
 TEST(Tilt, OfNoiseFreeReadingsIsExact) {
-  TiltRecord record = still_record(force_at(0.4, -0.3), 0.0, 300, 1);
+  TiltRecord record = still_record(force_at(0.4, -0.3), 1e-9, 300, 1);
   const auto solution = estimate_tilt(record, exact);
   ASSERT_TRUE(solution) << solution.error().message;
-  EXPECT_NEAR(solution->final.roll_rad->value, 0.4, 1e-12);
-  EXPECT_NEAR(solution->final.pitch_rad->value, -0.3, 1e-12);
+  EXPECT_NEAR(solution->final.roll_rad->value, 0.4, 1e-10);
+  EXPECT_NEAR(solution->final.pitch_rad->value, -0.3, 1e-10);
 }
 
 TEST(Tilt, AtRestIsThatOfTheMeanForceAndItsStandardError) {
@@ -52,6 +52,7 @@ TEST(Tilt, AtRestCountsCorrelatedNoise) {
 
 TEST(Tilt, CountsTheCalibrationOfTheSensorFile) {
   TiltOptions options = exact;
+  options.bias_std_mps2 = 0.0;
   options.calibration.emplace();
   options.calibration->bias = sensor::make_axis_figures({0.0, 0.0, 0.0}, "m/s^2", "test");
   for (auto& bias : options.calibration->bias) bias->std = 0.05;
@@ -68,6 +69,51 @@ TEST(Tilt, TakesAnUnknownSensorToBeAsFarOffAsItsNormShows) {
   EXPECT_NEAR(solution->final.pitch_rad->std, 0.02, 1e-3);
   ASSERT_FALSE(solution->notes.empty());
   EXPECT_NE(solution->notes.front().text.find("departs from gravity"), std::string::npos);
+}
+
+// Two axes that never change and one that flickers between two codes.
+TEST(Tilt, CountsWhatACoarseConverterHides) {
+  constexpr double step = 0.04;
+  TiltRecord record = still_record(force_at(-0.6521, -0.002), 0.05 * step, 1000, 6);
+  for (auto& axis : record.accel_mps2)
+    for (double& value : axis) value = step * std::round(value / step);
+  const auto solution = estimate_tilt(record, exact);
+  ASSERT_TRUE(solution) << solution.error().message;
+  EXPECT_NEAR(solution->final.roll_rad->value, -0.6521, 2.0 * solution->final.roll_rad->std);
+  EXPECT_NEAR(solution->final.roll_rad->std, step / std::sqrt(12.0) / 9.80665, 5e-4);
+  for (auto& axis : record.accel_mps2) std::ranges::fill(axis, axis.front());
+  const auto stuck = estimate_tilt(record, exact);
+  ASSERT_TRUE(stuck) << stuck.error().message;
+  EXPECT_FALSE(stuck->final.roll_rad.has_value());
+  EXPECT_NE(stuck->final.why_no_roll.find("one and the same value"), std::string::npos);
+}
+
+TEST(Tilt, NoiseOfAStepDithersTheRoundingAway) {
+  std::vector<double> coarse, dithered;
+  Random random(5, "dither");
+  for (int k = 0; k < 4000; ++k) {
+    coarse.push_back(std::round(0.3 + 0.05 * random.normal()));
+    dithered.push_back(std::round(0.3 + 1.0 * random.normal()));
+  }
+  EXPECT_NEAR(rounding_variance(coarse, 1.0), 1.0 / 12.0, 1e-12);
+  EXPECT_LT(rounding_variance(dithered, 1.0), 1e-12);
+}
+
+TEST(Tilt, WidensTheBandOfASensorThatHasChangedSinceItsCalibration) {
+  TiltOptions options{.gravity_mps2 = {9.80665, 1e-4}};
+  options.calibration.emplace();
+  options.calibration->bias = sensor::make_axis_figures({0.0, 0.0, 0.0}, "m/s^2", "test");
+  for (auto& bias : options.calibration->bias) bias->std = 0.001;
+  const auto std_of = [&](const Mat<3>& bias) {
+    const auto solution =
+        estimate_tilt(still_record(force_at(0.0, 0.0) + bias, 0.01, 2000, 4), options);
+    return solution.value().final.pitch_rad->std * 9.80665;
+  };
+  const double same = std_of(Mat<3>::Zero()), moved = std_of(Mat<3>(0.05, 0.05, 0.05));
+  EXPECT_LT(same, 0.01);
+  EXPECT_GT(moved, 0.03);
+  options.bias_std_mps2 = 0.0;
+  EXPECT_NEAR(std_of(Mat<3>::Zero()), 0.001, 2e-4);
 }
 
 TEST(Tilt, FollowsAMovingBaseWithAGyroscopeBetterThanTheForceDoes) {
@@ -102,6 +148,34 @@ TEST(Tilt, FollowsAMovingBaseWithoutAGyroscope) {
   EXPECT_LT(rms_error_rad(solution->series.pitch_rad, base.pitch_rad), 0.02);
 }
 
+// Swayed on the level at 1 m/s², 5.8° of apparent tilt, while it does not turn. Its crests are as
+// quiet as rests.
+TEST(Tilt, WithoutAGyroscopeTheBandHoldsWhatALevelAccelerationHides) {
+  int inside = 0, all = 0;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const MovingBase base = moving_base({.samples = 6000,
+                                         .rest_s = 3.0,
+                                         .accel_std_mps2 = 0.0,
+                                         .sway_mps2 = 1.0,
+                                         .slowest_sway_hz = 0.1,
+                                         .fastest_sway_hz = 0.5,
+                                         .turning = 0.0,
+                                         .reading_std_mps2 = 0.02,
+                                         .gyroscope = false},
+                                        seed);
+    TiltOptions options = exact;
+    options.base = TiltBase::moving;
+    const TiltSolution solution = estimate_tilt(base.record, options).value();
+    EXPECT_LE(solution.rests.size(), 2U) << seed;
+    for (std::size_t k = 500; k < 5500; k += 250) {
+      const double off = solution.series.pitch_rad[k] - base.pitch_rad[k];
+      inside += std::abs(off) < 1.96 * solution.series.pitch_std_rad[k] ? 1 : 0;
+      ++all;
+    }
+  }
+  EXPECT_GE(inside, 0.93 * all);
+}
+
 TEST(Tilt, PassesTheUprightAxisWithoutASingularity) {
   TiltRecord record;
   for (int k = 0; k < 1000; ++k) {
@@ -132,7 +206,9 @@ TEST(Tilt, KeepsGoingOverRowsWithoutReadings) {
   ASSERT_TRUE(solution) << solution.error().message;
   EXPECT_EQ(solution->unusable, 60U);
   for (std::size_t k = 690; k < 920; ++k)
-    EXPECT_NEAR(solution->series.pitch_rad[k], base.pitch_rad[k], 0.03) << k;
+    EXPECT_NEAR(solution->series.pitch_rad[k], base.pitch_rad[k],
+                4.0 * solution->series.pitch_std_rad[k])
+        << k;
 }
 
 TEST(Tilt, CountsAReadingThatALoggerRepeatsOnce) {
@@ -184,7 +260,7 @@ TEST(TiltModel, HasTheJacobianOfItsMotion) {
                         .rate_radps = {{0.3, -0.8, 0.5}, {0.3, -0.8, 0.5}},
                         .rate_at_radps = {{0.3, -0.8, 0.5}, {0.3, -0.8, 0.5}},
                         .resting = {0, 0},
-                        .accel_std_mps2 = {0.5, 0.5}};
+                        .accel_cov_m2ps4 = {Mat<3, 3>::Identity(), Mat<3, 3>::Identity()}};
   const TiltModel model(instants, {}, {.gyroscope = true, .drive = 1e-3, .accel_time_s = 0.1});
   Mat<9> x;
   x << force_at(0.2, 0.1), 0.3, -0.4, 0.2, 0.02, -0.01, 0.03;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -33,7 +34,7 @@ inline TiltRecord still_record(const Mat<3>& force,
   return record;
 }
 
-/// A base that turns and is shaken, and what is true of it.
+/// A base that turns and is shaken or swayed, and what is true of it.
 struct MovingBase {
   TiltRecord record;
   std::vector<Mat<3>> up;  ///< gravity's reaction in sensor axes, m/s²
@@ -46,6 +47,9 @@ struct MovingOptions {
   double rest_s = 0.0;          ///< at either end
   double accel_std_mps2 = 0.5;  ///< in world axes, exponentially correlated
   double accel_time_s = 0.1;
+  double sway_mps2 = 0.0;  ///< amplitude of a sine along one level direction
+  double slowest_sway_hz = 0.02, fastest_sway_hz = 0.2;
+  double turning = 1.0;  ///< factor on the rates
   double rate_noise_radps_rthz = 1e-3;
   double rate_bias_radps = 0.01, rate_scale = 0.0;
   double angular_accel_radps2_rthz = 0.0;  ///< > 0: white angular acceleration turns the base
@@ -63,6 +67,11 @@ inline MovingBase moving_base(const MovingOptions& o, std::uint64_t seed) {
   const double h = 1.0 / o.rate_hz;
   Mat<3> g = force_at(0.3 * random.uniform(), 0.3 * random.uniform());
   const Mat<3> phase(random.phase(), random.phase(), random.phase());
+  Mat<3> sway = normals(1.0);
+  sway = o.sway_mps2 * Mat<3>(sway - g * (g.dot(sway) / g.squaredNorm())).normalized();
+  const double sway_hz =
+      o.slowest_sway_hz * std::pow(o.fastest_sway_hz / o.slowest_sway_hz, random.unit());
+  const double sway_phase = random.phase();
   const Mat<3> bias = normals(o.rate_bias_radps);
   Mat<3, 3> error = Mat<3, 3>::Identity();
   for (int i = 0; i < 3; ++i) error.col(i) += normals(o.rate_scale);
@@ -78,12 +87,20 @@ inline MovingBase moving_base(const MovingOptions& o, std::uint64_t seed) {
     else if (o.angular_accel_radps2_rthz > 0.0)
       rate += normals(o.angular_accel_radps2_rthz * std::sqrt(h));
     else
-      rate = Mat<3>(0.6 * std::sin(1.3 * t + phase.x()), 0.5 * std::sin(0.9 * t + phase.y()),
-                    0.4 * std::sin(0.5 * t + phase.z()));
+      rate = o.turning * Mat<3>(0.6 * std::sin(1.3 * t + phase.x()),
+                                0.5 * std::sin(0.9 * t + phase.y()),
+                                0.4 * std::sin(0.5 * t + phase.z()));
     const Mat<3, 3> R = rotation_by(Mat<3>(-0.5 * h * (rate + before)));
-    if (k > 0) g = R * g;
+    if (k > 0) {
+      g = R * g;
+      sway = R * sway;
+    }
     accel = phi * (R * accel) + normals(o.accel_std_mps2 * std::sqrt(1.0 - phi * phi));
-    const Mat<3> f = g + (rests ? Mat<3>(Mat<3>::Zero()) : accel) + normals(o.reading_std_mps2);
+    // A sway sets in within a second.
+    const double strength = std::clamp(std::min(t - o.rest_s, end_s - t), 0.0, 1.0);
+    const Mat<3> swayed = strength * std::sin(rad_per_turn * sway_hz * t + sway_phase) * sway;
+    const Mat<3> f =
+        g + (rests ? Mat<3>(Mat<3>::Zero()) : Mat<3>(accel + swayed)) + normals(o.reading_std_mps2);
     const Mat<3> w = error * rate + bias + normals(o.rate_noise_radps_rthz / std::sqrt(h));
     out.record.time_s.push_back(t);
     for (std::size_t i = 0; i < 3; ++i) {

@@ -1,6 +1,9 @@
 #include "proofmass/report/tilt_figures.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"
@@ -101,6 +104,26 @@ std::vector<Figure> tilt_figures(const estimate::TiltSolution& solution) {
           angle_figure({"Pitch", "Pitch (°)", s.pitch_rad, s.pitch_std_rad, s.filtered_pitch_rad,
                         s.filtered_pitch_std_rad},
                        time_s, s.weight, timed)};
+}
+
+Figure gravity_figure(const estimate::TiltSolution& solution) {
+  const estimate::TiltSeries& s = solution.series;
+  const std::vector<double> time_s = times_of(s.time_s, solution.samples);
+  Figure figure{.title = "Direction of gravity",
+                .description =
+                    "How far each axis of the sensor points above the horizon, given "
+                    "all readings; defined in every attitude.",
+                .x = {.label = s.time_s.empty() ? "Sample" : "Time (s)"},
+                .y = {.label = "Elevation (°)"}};
+  constexpr std::array names{"x", "y", "z"};
+  constexpr std::array inks{Ink::blue, Ink::green, Ink::red};
+  for (std::size_t i = 0; i < 3; ++i) {
+    Curve curve{names[i], time_s, {}, inks[i]};
+    for (const double up : s.up[i])
+      curve.y.push_back(std::asin(std::clamp(up, -1.0, 1.0)) * deg_per_rad);
+    figure.curves.push_back(std::move(curve));
+  }
+  return figure;
 }
 
 Figure tilt_std_figure(const estimate::TiltSolution& solution) {

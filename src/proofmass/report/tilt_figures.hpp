@@ -14,6 +14,9 @@ namespace proofmass::report {
 /// The angle with its bands, and the gyroscope's bias.
 [[nodiscard]] std::vector<Figure> axis_tilt_figures(const estimate::AxisTiltSolution& solution);
 
+/// Elevation of each axis against time, given all readings.
+[[nodiscard]] Figure gravity_figure(const estimate::TiltSolution& solution);
+
 /// Standard deviations of filter and smoother against time.
 [[nodiscard]] Figure tilt_std_figure(const estimate::TiltSolution& solution);
 

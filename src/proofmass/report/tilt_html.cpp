@@ -133,10 +133,12 @@ std::string tilt_html(const TiltReport& report) {
   const TiltSolution& solution = *report.solution;
   page.key_figures = {{"Roll", degree_words(solution.final.roll_rad)},
                       {"Pitch", degree_words(solution.final.pitch_rad)},
+                      {"From the vertical", inclination_words(solution.final)},
                       {"Rests", std::to_string(solution.rests.size())}};
   if (solution.consistency)
     page.key_figures.push_back({"Mean NIS (1 expected)", fixed(solution.consistency->nis, 3)});
   Section angles{.heading = "Roll and pitch", .figures = tilt_figures(solution)};
+  if (solution.axes == 3) angles.figures.push_back(gravity_figure(solution));
   angles.figures.push_back(tilt_std_figure(solution));
   for (const auto& [name, why] : {std::pair{"roll", solution.final.why_no_roll},
                                   std::pair{"pitch", solution.final.why_no_pitch}})

@@ -30,6 +30,15 @@ Object elevation_json(const TiltAngles& angles, std::vector<std::string>& nulls)
   return out;
 }
 
+Value inclination_json(const TiltAngles& angles) {
+  if (!angles.inclination) return nullptr;
+  const estimate::Inclination& one = *angles.inclination;
+  return Object{{"axis", axis_names[one.axis]},
+                {"up", one.up},
+                {"angle_rad", quantity(one.angle_rad, "rad")},
+                {"azimuth_rad", quantity(one.azimuth_rad, "rad")}};
+}
+
 Array rests_json(const TiltSolution& solution, std::vector<std::string>& nulls) {
   Array out;
   for (const estimate::TiltRest& rest : solution.rests) {
@@ -87,6 +96,13 @@ Object tilt_body(const TiltSolution& solution, std::vector<std::string>& nulls) 
               {"pitch_rad", quantity(solution.final.pitch_rad, "rad")},
               {"elevation_rad", elevation_json(solution.final, nulls)}};
   add_nulls(solution.final, "", nulls);
+  body.push_back({"inclination", inclination_json(solution.final)});
+  if (!solution.final.inclination)
+    nulls.emplace_back("inclination: null: it takes three axes and a direction that is known");
+  else if (!solution.final.inclination->azimuth_rad)
+    nulls.emplace_back(
+        "inclination.azimuth_rad: null: the axis is vertical within its uncertainty");
+  body.push_back({"bias_std_mps2", solution.bias_std_mps2});
   if (solution.axes == 3)
     body.push_back({"std_from", Object{{"noise_rad", solution.shares.noise},
                                        {"calibration_rad", solution.shares.calibration},

@@ -1,5 +1,7 @@
 #include "proofmass/report/tilt_report.hpp"
 
+#include <array>
+#include <cctype>
 #include <fmt/format.h>
 
 #include "proofmass/core/units.hpp"
@@ -18,6 +20,13 @@ constexpr std::size_t most_rests = 20;
 std::string angles_words(const TiltAngles& angles) {
   return fmt::format("roll {}, pitch {}", degree_words(angles.roll_rad),
                      degree_words(angles.pitch_rad));
+}
+
+// Roll means little where x is nearly vertical: one in ten of its standard deviation is the tilt's.
+bool is_nearly_vertical(const TiltAngles& angles) {
+  constexpr double near_rad = 10.0 * rad_per_deg;
+  return angles.inclination && angles.inclination->axis == 0 &&
+         angles.inclination->angle_rad.value < near_rad;
 }
 
 Channel channel(const char* name, const char* unit, const std::vector<double>& values) {
@@ -72,6 +81,18 @@ std::string axis_text(const TiltReport& report) {
 
 }  // namespace
 
+std::string inclination_words(const TiltAngles& angles) {
+  if (!angles.inclination) return std::string(absent);
+  const estimate::Inclination& one = *angles.inclination;
+  constexpr std::array names{"x", "y", "z"};
+  std::string text = fmt::format("{} points {}, {} from the vertical", names[one.axis],
+                                 one.up ? "up" : "down", degree_words(one.angle_rad));
+  if (one.azimuth_rad)
+    text += fmt::format(", azimuth {} from {} to {}", degree_words(one.azimuth_rad),
+                        names[(one.axis + 1) % 3], names[(one.axis + 2) % 3]);
+  return text;
+}
+
 std::vector<Note> tilt_notes(const TiltReport& report) {
   std::vector<Note> notes = report.notes;
   const std::vector<Note>& own = report.solution ? report.solution->notes : report.axis->notes;
@@ -84,7 +105,10 @@ std::string tilt_conclusion(const TiltReport& report) {
     return fmt::format("The angle is {} at the end.", degree_words(report.axis->angle_rad));
   const TiltSolution& solution = *report.solution;
   std::string text = angles_words(solution.final);
-  text.front() = 'R';
+  if (is_nearly_vertical(solution.final))
+    text = fmt::format("{}; pitch {}", inclination_words(solution.final),
+                       degree_words(solution.final.pitch_rad));
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   if (solution.moving) return text + ", at the end of the recording.";
   if (solution.rests.size() == 1) return text + ", over one rest.";
   return fmt::format("{}, over the last of {} rests.", text, solution.rests.size());
@@ -94,7 +118,11 @@ std::string tilt_text(const TiltReport& report) {
   std::string text = tilt_conclusion(report) + "\n\n";
   if (report.axis) return text + axis_text(report);
   const TiltSolution& solution = *report.solution;
-  if (!solution.final.why_no_roll.empty())
+  if (is_nearly_vertical(solution.final))
+    text += "  Roll " + degree_words(solution.final.roll_rad) +
+            ": with x nearly vertical roll and heading are nearly one rotation; the azimuth says "
+            "which way it leans.\n\n";
+  else if (!solution.final.why_no_roll.empty())
     text += "  No roll: " + solution.final.why_no_roll + ".\n\n";
   if (!solution.final.why_no_pitch.empty())
     text += "  No pitch: " + solution.final.why_no_pitch + ".\n\n";
@@ -139,6 +167,8 @@ Recording tilt_series(const TiltReport& report) {
                   channel("filtered_roll_std", "rad", s.filtered_roll_std_rad),
                   channel("filtered_pitch", "rad", s.filtered_pitch_rad),
                   channel("filtered_pitch_std", "rad", s.filtered_pitch_std_rad)};
+  constexpr std::array up{"up_x", "up_y", "up_z"};
+  for (std::size_t i = 0; i < 3; ++i) out.channels.push_back({up[i], {}, s.up[i]});
   out.channels.push_back({"weight", {}, std::vector<double>(s.weight.begin(), s.weight.end())});
   out.channels.push_back({"at_rest", {}, std::vector<double>(s.resting.begin(), s.resting.end())});
   return out;

@@ -31,6 +31,9 @@ struct TiltReport {
 /// "Roll −3.21 ± 0.04°, pitch 0.50 ± 0.04°, over the last of 3 rests."
 [[nodiscard]] std::string tilt_conclusion(const TiltReport& report);
 
+/// "x points down, 3.0 ± 0.8° from the vertical, azimuth −142 ± 15° from y to z".
+[[nodiscard]] std::string inclination_words(const estimate::TiltAngles& angles);
+
 /// Angles against time with their standard deviations, filtered and smoothed: what `--output`
 /// writes.
 [[nodiscard]] Recording tilt_series(const TiltReport& report);

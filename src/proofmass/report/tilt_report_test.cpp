@@ -31,6 +31,9 @@ TiltReport fake_tilt(bool moving) {
          {&solution.series.roll_rad, &solution.series.roll_std_rad,
           &solution.series.filtered_roll_rad, &solution.series.filtered_roll_std_rad})
       values->push_back(none);
+    solution.series.up[0].push_back(-1.0);
+    solution.series.up[1].push_back(0.0);
+    solution.series.up[2].push_back(0.0);
     solution.series.weight.push_back(k == 50 ? 0.1F : 1.0F);
     solution.series.resting.push_back(1);
   }
