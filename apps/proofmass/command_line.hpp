@@ -135,7 +135,8 @@ struct TrackCommand {
   bool same_place = false;
   double same_place_std_m = 1e-3;
   std::string fixes, still, turns;  ///< files: positions, intervals, times of velocity 0
-  double fix_std_m = 0.01;          ///< of fixes without their own
+  std::string rests = "found";
+  double fix_std_m = 0.01;  ///< of fixes without their own
   std::optional<double> shortest_rest_s, scale_std;
   double rest_speed_std_mps = 1e-4;
   bool take_as_acceleration = false, no_gyro = false;

@@ -94,8 +94,14 @@ void add_track_flags(CLI::App& verb, TrackCommand& command) {
   add("--fix-std", command.fix_std_m, "M", "of those without their own (default 0.01)")
       ->check(positive())
       ->needs(fixes);
-  add("--still", command.still, "FILE",
-      "list of intervals in which it stood still, instead of those found");
+  CLI::Option* still = add("--still", command.still, "FILE",
+                           "list of intervals in which it stood still, instead of those found");
+  add("--rests", command.rests, "WHICH",
+      "which quiet stretches are rests: found (default: as they fit the motion), or ends: the "
+      "first "
+      "and the last alone")
+      ->check(CLI::IsMember({"found", "ends"}))
+      ->excludes(still);
   add("--turns", command.turns, "FILE", "list of times at which it turned round: velocity 0");
   add("--shortest-rest", command.shortest_rest_s, "S",
       "a rest lasts at least so long (default 0.5)")

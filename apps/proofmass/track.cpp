@@ -178,6 +178,7 @@ TrackOptions options_of(TrackCommand& command) {
   TrackOptions options;
   read_gravity(command, options);
   using estimate::TrackModel;
+  options.only_end_rests = command.rests == "ends";
   options.model = command.model == "pva"     ? TrackModel::pva
                   : command.model == "fused" ? TrackModel::fused
                                              : TrackModel::inertial;

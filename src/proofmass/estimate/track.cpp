@@ -152,15 +152,21 @@ void judge(const TrackSignal& signal,
   add_findings(signal, options, solution);
 }
 
+// Nobody has said when it stood still.
+bool rests_are_in_doubt(const TrackOptions& options) {
+  return options.still.empty() && !options.only_end_rests;
+}
+
 Result<TrackSolution> track_without_gyro(const TrackSensor& sensor,
                                          TrackSignal signal,
                                          const TrackOptions& options) {
   auto solved = solve(signal, options);
   if (!solved) return solved.error();
-  const std::size_t belied = drop_belied_rests(signal, solved->accel_mps2, options);
+  const std::size_t belied =
+      options.only_end_rests ? 0 : drop_belied_rests(signal, solved->accel_mps2, options);
   if (belied > 0) solved = solve(signal, options);
   std::vector<TrackAlternative> alternatives;
-  if (options.still.empty()) alternatives = settle_stops(signal, options, solved);
+  if (rests_are_in_doubt(options)) alternatives = settle_stops(signal, options, solved);
   AlongAxis found = std::move(solved).value();
   TrackSolution solution = described(signal, options);
   solution.false_rests = belied;
@@ -242,8 +248,8 @@ Result<TrackSolution> estimate_track(const TrackSensor& sensor, const TrackOptio
   if (!made) return made.error();
   TrackSignal signal = std::move(made).value();
   if (signal.stops.rests.empty() && options.fixes.empty()) return no_stop(signal);
-  if (options.still.empty() && may_hide_motion(signal)) return hidden_motion();
-  if (options.still.empty()) {
+  if (rests_are_in_doubt(options)) {
+    if (may_hide_motion(signal)) return hidden_motion();
     drop_plateaus(signal);
     keep_ends_of_rest(signal);
   }

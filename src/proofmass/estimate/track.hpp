@@ -76,7 +76,8 @@ struct TrackOptions {
   double same_place_std_m = 1e-3;    ///< how well
   std::vector<PositionFix> fixes{};  ///< ascending in time
   std::vector<TimeSpan> still{};     ///< when it stood still, in place of the rests that are found
-  std::vector<double> turns_s{};     ///< where the user says that it turned round: velocity 0
+  bool only_end_rests = false;    ///< of the rests that are found only the first and the last are
+  std::vector<double> turns_s{};  ///< where the user says that it turned round: velocity 0
   std::optional<double> shortest_rest_s = std::nullopt;  ///< as of signal::RestOptions
   double rest_speed_std_mps = 1e-4;                      ///< of a sensor that lies still
   /// Of the sensor file, per axis; absent: white noise from the rests, no walk.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/core/units.hpp"
 #include "proofmass/estimate/fusion.hpp"
 #include "proofmass/signal/channel_audit.hpp"
 
@@ -82,25 +84,59 @@ std::string formatted(const char* format, double value) {
   return buffer;
 }
 
-// In motion, parallel sensors read the same: the slope of one over the other is 1.
-Status check_parallel(const SensorAlong& first,
-                      const SensorAlong& other,
-                      const std::vector<PvaSample>& samples,
-                      double rate_hz) {
-  double xx = 0.0, xy = 0.0, noise = 0.0;
+// Slope of one axis of a further sensor over the first sensor's reading along the motion.
+struct Slope {
+  double value = 0.0, std = 0.0;
+};
+
+Slope slope_of(View<double> along, View<double> other, const std::vector<PvaSample>& samples) {
+  Moments at_rest;
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    if (samples[k].resting && signal::is_plausible(other[k])) at_rest.add(other[k]);
+  double xx = 0.0, xy = 0.0, yy = 0.0, count = 0.0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    const double x = first.accel_mps2[k], y = other.accel_mps2[k];
-    if (samples[k].resting || std::isnan(x) || std::isnan(y)) continue;
+    const double x = along[k], y = other[k] - at_rest.mean;
+    if (samples[k].resting || std::isnan(x) || !signal::is_plausible(other[k])) continue;
     xx += x * x;
     xy += x * y;
-    noise += first.white_m2ps3 * rate_hz;
+    yy += y * y;
+    count += 1.0;
   }
-  const bool tells = xx > 30.0 * noise;
-  if (!tells || (xy > 0.7 * xx && xy < 1.4 * xx)) return Done{};
+  if (!(xx > 0.0) || count < 3.0) return {0.0, std::numeric_limits<double>::infinity()};
+  const double left = std::max(0.0, yy - xy * xy / xx);
+  return {xy / xx, std::sqrt(left / (xx * (count - 1.0)))};
+}
+
+// In motion, parallel sensors read the same: the slope of one over the other along the axis is 1
+// but for the scales, and along axes across it 0 whatever the scales are.
+Status check_parallel(const SensorAlong& first,
+                      const SensorAlong& other,
+                      const ParallelAccelerometer& sensor,
+                      const std::array<double, 3>& axis,
+                      const std::vector<PvaSample>& samples) {
+  const Slope along = slope_of(first.accel_mps2, other.accel_mps2, samples);
+  constexpr double told = 0.05, clear = 4.0, largest_rad = 0.175;  // 10°: 1.5 % of the length
+  if (!(along.std < told)) return Done{};
+  if (!(along.value > 0.7 && along.value < 1.4))
+    return Error{Errc::invalid_argument,
+                 formatted("along the axis of the motion it reads %.2f times what the first does: "
+                           "sensors to be fused have parallel axes and the same scale",
+                           along.value)}
+        .at(other.name);
+  double squares = 0.0, variance = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (sensor.accel_mps2[a].size() != samples.size()) continue;
+    const Slope slope = slope_of(first.accel_mps2, sensor.accel_mps2[a], samples);
+    const double across = slope.value - along.value * axis[a];
+    squares += across * across;
+    variance += slope.std * slope.std;
+  }
+  const double angle_rad = std::atan2(std::sqrt(squares), along.value);
+  if (angle_rad < largest_rad || squares < clear * clear * variance) return Done{};
   return Error{Errc::invalid_argument,
-               formatted("along the axis of the motion it reads %.2f times what the first does: "
-                         "sensors to be fused have parallel axes and the same scale",
-                         xy / xx)}
+               formatted("it sees the motion along an axis that is turned by %.0f deg from that of "
+                         "the first: sensors to be fused have parallel axes",
+                         angle_rad / rad_per_deg)}
       .at(other.name);
 }
 
@@ -153,7 +189,7 @@ Result<SensorsAlong> sensors_along(const PvaTask& task,
     auto one = beside_along(task, other, solution.axis);
     if (!one) return one.error();
     const Status parallel =
-        check_parallel(sensors.all.front(), *one, sensors.samples, task.signal.rate_hz);
+        check_parallel(sensors.all.front(), *one, other, solution.axis, sensors.samples);
     if (!parallel) return parallel.error();
     sensors.all.push_back(std::move(one).value());
   }

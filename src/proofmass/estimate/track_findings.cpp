@@ -100,9 +100,9 @@ void tell_of_alternatives(TrackSolution& solution) {
                 where.empty() ? "all of them rests" : ("under way " + where).c_str());
   }
   solution.notes.push_back(
-      {Severity::bad,
-       "rests cannot be distinguished from motion at constant speed: " + all +
-           "; no displacement is given. State when the sensor stood still with --still FILE"});
+      {Severity::bad, "rests cannot be distinguished from motion at constant speed: " + all +
+                          "; no displacement is given. State when the sensor stood still with "
+                          "--still FILE, or --rests ends"});
 }
 
 // What errs in motion but not at rest is mostly gravity, as the sensor leans.

@@ -162,6 +162,16 @@ TEST(TrackFused, RefusesWhatIsNoParallelSensor) {
   for (double& x : made.sensor.beside[0].accel_mps2[0]) x = -x;
   EXPECT_NE(estimate_track(made.sensor, options).error().message.find("parallel"),
             std::string::npos);
+  // Turned by 30° about z it reads 0.87 times as much along x, as one of another scale would.
+  made.sensor.beside[0] = beside(made, 0.02, 9);
+  auto& turned = made.sensor.beside[0].accel_mps2;
+  for (std::size_t k = 0; k < turned[0].size(); ++k) {
+    const double x = turned[0][k], y = turned[1][k];
+    turned[0][k] = std::cos(0.5236) * x - std::sin(0.5236) * y;
+    turned[1][k] = std::sin(0.5236) * x + std::cos(0.5236) * y;
+  }
+  EXPECT_NE(estimate_track(made.sensor, options).error().message.find("turned by 30 deg"),
+            std::string::npos);
   made.sensor.beside[0].accel_mps2[0].clear();
   EXPECT_NE(estimate_track(made.sensor, options).error().message.find("--axis"), std::string::npos);
   made.sensor.beside[0].accel_mps2[0] = {1.0, 2.0};

@@ -62,6 +62,16 @@ TEST(TrackRides, StrokesShorterThanHalfASecondAreKept) {
   EXPECT_LT(held.rms_m(), 0.01);
 }
 
+TEST(TrackRides, OnRequestOnlyTheEndsAreRests) {
+  Draw draw(5);
+  const rides::RideRecord made = rides::record(rides::lift(draw, 1, 0.0), draw);
+  const TrackSolution found = estimate_track(made.sensor, {.only_end_rests = true}).value();
+  EXPECT_EQ(found.rests.size(), 2U);
+  ASSERT_TRUE(found.smoother.has_value());
+  EXPECT_NEAR(found.smoother->displacement_m.value, made.displacement_m,
+              found.smoother->half_width_95_m);
+}
+
 TEST(TrackRides, ASlideWithinTheNoiseIsNeverZeroAndSure) {
   const auto held = rides::held_by(rides::slow_slide, 1, 12);
   EXPECT_GE(held.held, held.given - 1);

@@ -105,6 +105,8 @@ Stops find_stops(View<View<double>> axes,
     stops.rests = quiet_stretches(axes, rate_hz, options.shortest_rest_s.value_or(0.5));
     stops.by_quietness = !stops.rests.empty();
   }
+  if (options.only_end_rests && stops.rests.size() > 2)
+    stops.rests = {stops.rests.front(), stops.rests.back()};
   return stops;
 }
 
