@@ -16,7 +16,7 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-COLUMN = 34  # where the help's descriptions begin, in bytes
+COLUMN = 30  # where the help's descriptions begin, in bytes
 
 
 @dataclass
@@ -58,24 +58,13 @@ def escaped(text: str) -> str:
 
 
 def entry(name: str, what: str) -> tuple[str, str]:
-    """"-o,--output FILE Needs: --x": what is typed as it is in bold, what stands for something in italics, and
-    what else it takes behind the description."""
-    name, *others = re.split(r" (?=Needs: |Excludes: )", name)
+    """"-o,--output FILE": what is typed as it is in bold, what stands for something in italics."""
     names, _, kind = name.partition(" ")
-    kind, required, _ = kind.partition("REQUIRED")
-    kind, _, values = kind.strip().partition(":")
-    if default := re.search(r"=([\d.e+-]+)$", kind):
-        kind, others = kind[: default.start()], [f"default {default[1]}", *others]
     style = "B" if names.startswith("-") else "I"
     shown = ", ".join(f"\\f{style}{escaped(one)}\\fR" for one in names.split(","))
     if kind:
         shown += f" \\fI{escaped(kind)}\\fR"
-    if values and values != "{" + kind.replace("|", ",") + "}":
-        shown += " " + escaped(re.sub(r"^\w+ in \[(\S+) - (\S+)\]", r"(\1 to \2)", values))
-    notes = [other.replace("Needs:", "needs").replace("Excludes:", "not with") for other in others]
-    notes = [note.replace(" --", ", --").replace(",", "", 1) for note in notes]
-    notes += ["required"] if required else []
-    return shown, escaped(what + (f" ({'; '.join(notes)})" if notes else ""))
+    return shown, escaped(what)
 
 
 def of_markdown(text: str) -> str:
@@ -114,22 +103,19 @@ def synopsis(name: list[str], usage: str) -> list[str]:
     return [".SH SYNOPSIS", "\\fB" + escaped(" ".join(name)) + "\\fR " + escaped(usage).replace("OPTIONS", "\\fIOPTIONS\\fR")]
 
 
-def options(found: Help) -> list[str]:
+def options(groups: dict[str, list[tuple[str, str]]]) -> list[str]:
     lines = []
-    for group, flags in found.groups.items():
-        if group not in ("Positionals", "Options", "Subcommands"):
-            lines.append(f".SS {group}")
-        elif group != "Subcommands":
-            lines.append({"Positionals": ".SH ARGUMENTS", "Options": ".SH OPTIONS"}[group])
-        if group != "Subcommands":
-            lines += entries(entry(name, what) for name, what in flags)
+    for group, flags in groups.items():
+        lines.append({"Positionals": ".SH ARGUMENTS", "Options": ".SH OPTIONS"}.get(group, f".SS {group}"))
+        lines += entries(entry(name, what) for name, what in flags)
     return lines
 
 
 def footer(found: Help) -> list[str]:
-    text = [line for line in found.footer if line and not line.startswith("Example")]
-    if not found.footer or not found.footer[0].startswith("Example"):
+    start = next((k for k, line in enumerate(found.footer) if line.startswith("Example")), None)
+    if start is None:
         return []
+    text = [line for line in found.footer[start + 1 :] if line]
     return [".SH EXAMPLES", ".EX", *(escaped(line.strip()) for line in text), ".EE"]
 
 
@@ -151,8 +137,12 @@ def opening(verb: str, cli: dict[str, str]) -> list[str]:
     return [text[:1].upper() + text[1:], *(line for item in items for line in (".IP \\(bu 3", of_markdown(item.strip())))]
 
 
+def verbs_of(top: Help) -> list[tuple[str, str]]:
+    return [verb for group, verbs in top.groups.items() if group != "Options" for verb in verbs]
+
+
 def main_page(found: Help, version: str, cli: dict[str, str]) -> list[str]:
-    verbs = found.groups["Subcommands"]
+    verbs = verbs_of(found)
     name = found.description.split(":")[0]
     return [
         *head("proofmass", version),
@@ -163,7 +153,7 @@ def main_page(found: Help, version: str, cli: dict[str, str]) -> list[str]:
         escaped(found.description),
         ".SH VERBS",
         *entries((f"\\fBproofmass\\-{verb}\\fR(1)", escaped(what)) for verb, what in verbs),
-        *options(found),
+        *options({"Options": found.groups["Options"]}),
         *exit_status(cli),
         *environment(cli),
         ".SH SEE ALSO",
@@ -183,7 +173,7 @@ def verb_page(verb: str, found: Help, version: str, cli: dict[str, str]) -> list
         *synopsis(["proofmass", verb], found.usage),
         ".SH DESCRIPTION",
         *(opening(verb, cli) if verb in cli else [escaped(found.description)]),
-        *options(found),
+        *options(found.groups),
         *footer(found),
         *exit_status(cli),
         ".SH SEE ALSO",
@@ -214,8 +204,11 @@ def main() -> int:
     for old in folder.glob("*.1.gz"):
         old.unlink()
     write(folder, "proofmass", main_page(top, version, cli))
-    for verb, _ in top.groups["Subcommands"]:
-        write(folder, f"proofmass-{verb}", verb_page(verb, read_help(says(verb, "--help")), version, cli))
+    for verb, _ in verbs_of(top):
+        found = read_help(says(verb, "--help"))
+        if any("--help-input" in name for name, _ in found.groups["Options"]):
+            found.groups |= read_help(says(verb, "--help-input")).groups
+        write(folder, f"proofmass-{verb}", verb_page(verb, found, version, cli))
     return 0
 
 

@@ -129,7 +129,7 @@ void add_flags(CLI::App& app, TumbleCommand& command) {
                 "the sensor sat on a wheel that turned: scale factor and bias from its turns");
   verb.add_option("--coefficients", command.coefficients,
                   "fit these coefficients of the whole model equation")
-      ->type_name("K0,K1,…")
+      ->type_name("K0,K1...")
       ->delimiter(',')
       ->allow_extra_args(false);
   verb.add_option("--update-sensor", command.update_sensor,

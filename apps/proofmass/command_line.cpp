@@ -5,27 +5,18 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <iostream>
-#include <memory>
 
 #include "completion.hpp"
 #include "config_file.hpp"
 #include "exit_status.hpp"
+#include "help_format.hpp"
 #include "output.hpp"
 #include "proofmass/core/version.hpp"
+#include "usage_error.hpp"
 #include "verb_flags.hpp"
 
 namespace proofmass::app {
 namespace {
-
-// Names the positionals the way people do: "FILE...", "[RIG]".
-class Formatter : public CLI::Formatter {
- public:
-  [[nodiscard]] std::string make_option_usage(const CLI::Option* option) const override {
-    const std::string name = option->get_name(true) + (option->get_expected_max() > 1 ? "..." : "");
-    return option->get_required() ? name : "[" + name + "]";
-  }
-};
 
 // The verbs, each bound to its command.
 struct Commands {
@@ -131,8 +122,7 @@ std::vector<std::string> configured(CLI::App& app,
   return more;
 }
 
-std::vector<std::string> with_config(CLI::App& app, int argc, char** argv) {
-  std::vector<std::string> arguments(argv + 1, argv + argc);
+std::vector<std::string> with_config(CLI::App& app, std::vector<std::string> arguments) {
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     CLI::App* verb = find_verb(app, arguments[k]);
     if (verb == nullptr) continue;
@@ -163,9 +153,64 @@ Command chosen(CLI::App& app, Commands& commands) {
   return std::move(commands.budget);
 }
 
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
+// The first word that is no flag, and has to be a verb.
+std::string first_word(const std::vector<std::string>& arguments) {
+  const auto word = std::ranges::find_if(
+      arguments, [](const std::string& argument) { return !argument.starts_with('-'); });
+  return word == arguments.end() ? std::string() : *word;
+}
+
+// "help wheel" as "wheel --help", nothing as "--help", "version" as "--version".
+std::vector<std::string> as_flags(std::vector<std::string> arguments) {
+  if (arguments.empty()) return {"--help"};
+  if (arguments.front() == "version" || arguments.front() == "-V") return {"--version"};
+  if (arguments.front() != "help") return arguments;
+  arguments.erase(arguments.begin());
+  arguments.emplace_back("--help");
+  return arguments;
+}
+
+void add_verbs(CLI::App& app, Commands& commands) {
+  const auto group = [&app](const char* name, auto&... all) {
+    (add_flags(app, all), ...);
+    for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; }))
+      if (verb->get_group() == "Subcommands") verb->group(name);
+  };
+  group("Look", commands.inspect, commands.convert);
+  group("Characterise", commands.noise, commands.drift, commands.calibrate, commands.tumble,
+        commands.sensor);
+  group("Estimate", commands.wheel, commands.track, commands.tilt, commands.tune, commands.budget);
+  group("Live", commands.record, commands.recover);
+  group("Study", commands.simulate, commands.thesis);
+  const std::string name = std::string("--") + input_help_flag;
+  const std::string what = "list the flags for reading recordings";
+  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; }))
+    if (std::ranges::count(verb->get_groups(), input_group) > 0) verb->add_flag(name, what);
+}
+
+// One empty line at a time, and none at the end.
+std::string without_empty_lines(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    if (c != '\n' || !out.ends_with("\n\n")) out += c;
+  while (out.ends_with("\n\n")) out.pop_back();
+  return out;
+}
+
+// Whether help was asked for and printed.
+bool print_help(CLI::App& app, const std::vector<std::string>& arguments) {
+  const CLI::App* verb = find_verb(app, first_word(arguments));
+  const auto asks_for = [&](const std::string& flag) {
+    return std::ranges::count(arguments, flag) > 0;
+  };
+  const bool for_input = verb != nullptr && asks_for(std::string("--") + input_help_flag);
+  if (!for_input && !asks_for("--help") && !asks_for("-h")) return false;
+  HelpFormat format(help_width(), for_input);
+  format.label("SUBCOMMAND", "VERB");
+  const std::string name = verb == nullptr ? "proofmass" : "proofmass " + verb->get_name();
+  const CLI::App* about = verb == nullptr ? &app : verb;
+  print_out(without_empty_lines(format.make_help(about, name, CLI::AppFormatMode::Normal)));
+  return true;
 }
 
 }  // namespace
@@ -177,42 +222,27 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
       "proofmass");
   app.set_version_flag("--version", fmt::format("proofmass {}", version()));
   app.require_subcommand(1);
-  app.formatter(std::make_shared<Formatter>());
-  app.get_formatter()->column_width(34);
-  app.footer("Each verb explains itself: proofmass VERB --help");
+  app.footer("Each verb explains itself: proofmass help VERB");
   Commands commands;
-  add_flags(app, commands.inspect);
-  add_flags(app, commands.convert);
-  add_flags(app, commands.wheel);
-  add_flags(app, commands.noise);
-  add_flags(app, commands.drift);
-  add_flags(app, commands.calibrate);
-  add_flags(app, commands.tumble);
-  add_flags(app, commands.tilt);
-  add_flags(app, commands.track);
-  add_flags(app, commands.tune);
-  add_flags(app, commands.simulate);
-  add_flags(app, commands.budget);
-  add_flags(app, commands.record);
-  add_flags(app, commands.recover);
-  add_flags(app, commands.sensor);
-  add_flags(app, commands.thesis);
+  add_verbs(app, commands);
   if (argc > 1 && argv[1] == completion_verb) {
     print_out(completions(app, {argv + 2, argv + argc}));
     return std::nullopt;
   }
-  std::vector<std::string> arguments = with_config(app, argc, argv);
-  std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+  std::vector<std::string> arguments = as_flags({argv + 1, argv + argc});
+  const std::string word = first_word(arguments);
+  if (!word.empty() && find_verb(app, word) == nullptr)
+    throw Failure(usage, unknown_verb(app, word));
+  if (print_help(app, arguments)) return std::nullopt;
+  arguments = with_config(app, std::move(arguments));
+  std::ranges::reverse(arguments);  // as CLI11 takes them
   try {
     app.parse(std::move(arguments));
+  } catch (const CLI::CallForVersion& version_asked) {
+    print_out(std::string(version_asked.what()) + "\n");
+    return std::nullopt;
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {  // --help, --version
-      app.exit(error, std::cout, std::cerr);
-      return std::nullopt;
-    }
-    const auto used = app.get_subcommands();
-    const std::string verb = used.empty() ? "" : used.front()->get_name() + " ";
-    throw Failure(usage, fmt::format("{}: see proofmass {}--help", one_line(error.what()), verb));
+    throw Failure(usage, usage_error(app, error));
   }
   return chosen(app, commands);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "help_format.hpp"
 #include "live_source.hpp"
 #include "proofmass/acquire/source.hpp"
 
@@ -61,14 +62,6 @@ Typed read(const CLI::App& app, const std::vector<std::string>& words) {
     }
   }
   return typed;
-}
-
-// "NAME:{tumble,static}": what a check of membership says of itself.
-std::vector<std::string> listed_values(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
-  const std::size_t from = type.find('{'), to = type.rfind('}');
-  if (from == std::string::npos || to == std::string::npos || to <= from + 1) return {};
-  return CLI::detail::split(type.substr(from + 1, to - from - 1), ',');
 }
 
 void offer_files(const std::string& type, const std::string& prefix, Answer& answer) {

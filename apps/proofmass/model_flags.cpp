@@ -81,9 +81,8 @@ void add_flags(CLI::App& app, BudgetCommand& command) {
       ->type_name("FILE.toml")
       ->allow_extra_args(false);
   verb.add_option("--times", command.times_s, "after these times (default 1,10,60,3600)")
-      ->type_name("S,…")
+      ->type_name("S,S...")
       ->delimiter(',')
-      ->allow_extra_args(false)
       ->check(not_negative());
   add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);

@@ -1,5 +1,6 @@
 """What goes wrong ends with the status that the contract names, and one line that helps."""
 import os
+import re
 import signal
 import subprocess
 import time
@@ -9,11 +10,35 @@ from command import BAD_INPUT, DONE, FAILED, INTERRUPTED, PROGRAM, USAGE, Comman
 
 
 class Usage(CommandTest):
-    def test_no_verb_is_a_usage_error(self):
-        self.expect_failure(USAGE)
+    def test_no_verb_shows_the_help(self):
+        self.assertEqual(self.succeed(), self.succeed("--help"))
 
-    def test_an_unknown_verb_is_a_usage_error(self):
-        self.expect_failure(USAGE, "weel", "a.csv")
+    def test_help_and_version_are_understood_as_verbs(self):
+        self.assertEqual(self.succeed("help"), self.succeed("--help"))
+        self.assertEqual(self.succeed("help", "wheel"), self.succeed("wheel", "--help"))
+        for version in ("version", "-V"):
+            self.assertEqual(self.succeed(version), self.succeed("--version"))
+
+    def test_an_unknown_verb_is_a_usage_error_that_names_the_one_that_was_meant(self):
+        for typed, meant in (("weel", "wheel"), ("wheal", "wheel"), ("noize", "noise"), ("Track", "track"),
+                             ("calibrat", "calibrate"), ("simluate", "simulate")):
+            self.assertIn(f"'{typed}': did you mean {meant}?", self.expect_failure(USAGE, typed, "a.csv"))
+        self.assertNotIn("did you mean", self.expect_failure(USAGE, "frobnicate"))
+
+    def test_an_unknown_flag_is_a_usage_error_that_names_the_one_that_was_meant(self):
+        for arguments, meant in ((("wheel", "a.csv", "--raduis", "0.1"), "--radius"),
+                                 (("wheel", "--raduis=0.1", "a.csv"), "--radius"),
+                                 (("wheel", "--raduis", "0.1"), "--radius"),
+                                 (("noise", "a.csv", "--taus", "all", "--stop-ration", "2"), "--stop-ratio")):
+            self.assertIn(f"did you mean {meant}?", self.expect_failure(USAGE, *arguments))
+
+    def test_a_file_in_the_place_of_an_output_is_answered_with_the_flag(self):
+        for arguments in (("convert", "a.csv", "b.csv"), ("convert", "a.csv", "b.csv", "-q")):
+            self.assertIn("-o b.csv", self.expect_failure(USAGE, *arguments))
+
+    def test_a_list_may_be_given_in_words_or_with_commas(self):
+        self.assertEqual(self.succeed("budget", "--times", "1", "2", "3"),
+                         self.succeed("budget", "--times", "1,2,3"))
 
     def test_an_unknown_flag_is_named_and_the_help_is_pointed_to(self):
         line = self.expect_failure(USAGE, "wheel", "a.csv", "--spin-axes", "z")
@@ -65,7 +90,8 @@ class Usage(CommandTest):
         self.assertIn("--unit", self.expect_failure(USAGE, "wheel", "a.csv"))
 
     def test_three_files_are_one_too_many(self):
-        self.expect_failure(USAGE, "wheel", "a.csv", "b.csv", "c.csv")
+        line = self.expect_failure(USAGE, "wheel", "a.csv", "b.csv", "c.csv")
+        self.assertIn("wheel takes at most 2 of FILE, not 3", line)
 
 
 class Input(CommandTest):
@@ -186,11 +212,20 @@ class Help(CommandTest):
 
     def test_all_reading_verbs_have_all_input_flags(self):
         for verb in ("inspect", "convert", "wheel"):
-            text = self.succeed(verb, "--help")
             for flag in ("--rate", "--unit", "--channel", "--time", "--from", "--to", "--sensor",
-                         "--gravity", "--latitude", "--height", "--json", "--config", "--quiet",
-                         "--strict", "-v"):
-                self.assertIn(flag, text, verb)
+                         "--gravity", "--latitude", "--height"):
+                self.assertIn(flag, self.succeed(verb, "--help-input"), verb)
+            for flag in ("--help-input", "--json", "--config", "--quiet", "--strict", "-v"):
+                self.assertIn(flag, self.succeed(verb, "--help"), verb)
+
+    def test_help_fits_a_terminal_of_80_columns(self):
+        verbs = re.findall(r"^  ([a-z]+) ", self.succeed("--help"), re.M)
+        self.assertEqual(len(verbs), 16)
+        for verb in verbs:
+            for flag in ("--help", "--help-input"):
+                ran = self.run_command(verb, flag)
+                for line in ran.stdout.decode().split("Example")[0].splitlines():
+                    self.assertLessEqual(len(line), 80, f"{verb} {flag}: {line}")
 
 
 class Terminal(CommandTest):
