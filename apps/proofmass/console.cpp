@@ -17,23 +17,38 @@ namespace {
 // What a signal handler may look at and set.
 volatile std::sig_atomic_t held_back = 0;    // how deep in work that is not to be broken off
 volatile std::sig_atomic_t signal_seen = 0;  // the one that came meanwhile
+volatile std::sig_atomic_t signal_count = 0;
+volatile std::sig_atomic_t was_awaited = 0;
 volatile std::sig_atomic_t bar_shown = 0;
 
 constexpr std::string_view wipe = "\r\033[K";
 
 // Calls nothing but what POSIX allows in a signal handler.
-[[noreturn]] void end_by(int signal_number) {
+[[noreturn]] void end_interrupted() {
+  constexpr int status = 130;
   constexpr std::string_view text = "proofmass: interrupted\n";
   // Whether that is heard makes no difference to how the process ends.
   [[maybe_unused]] ssize_t written = 0;
   if (bar_shown != 0) written = write(STDERR_FILENO, wipe.data(), wipe.size());
-  written = write(STDERR_FILENO, text.data(), text.size());
-  _exit(128 + signal_number);
+  if (was_awaited == 0) written = write(STDERR_FILENO, text.data(), text.size());
+  _exit(status);
 }
 
 extern "C" void on_signal(int signal_number) {
-  if (held_back == 0) end_by(signal_number);
+  // Ctrl-C is easily pressed twice, and closing a file takes a moment.
+  constexpr int most_held_back = 2;
+  signal_count = signal_count + 1;
+  if (held_back == 0 || signal_count > most_held_back) end_interrupted();
   signal_seen = signal_number;
+}
+
+void watch_for(int signal_number) {
+  struct sigaction action{};
+  if (sigaction(signal_number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) return;
+  action.sa_handler = on_signal;
+  action.sa_flags = 0;
+  sigemptyset(&action.sa_mask);
+  sigaction(signal_number, &action, nullptr);
 }
 
 bool on_terminal() {
@@ -108,12 +123,8 @@ class Bar {
 }  // namespace
 
 void watch_for_interrupts() {
-  struct sigaction action{};
-  action.sa_handler = on_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) watch_for(signal_number);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 void without_interruption(const std::function<void()>& work) {
@@ -125,11 +136,15 @@ void without_interruption(const std::function<void()>& work) {
     const Hold hold;
     work();
   }
-  if (held_back == 0 && signal_seen != 0) end_by(signal_seen);
+  if (held_back == 0 && signal_seen != 0) end_interrupted();
 }
 
 void ignore_broken_pipes() {
   std::signal(SIGPIPE, SIG_IGN);
+}
+
+void interruption_was_awaited() {
+  was_awaited = 1;
 }
 
 bool interruption_waits() {

@@ -12,13 +12,19 @@
 // Standard error: notes, a progress bar where someone watches, and the one line of an error.
 namespace proofmass::app {
 
-/// From here on SIGINT ends the process with 130 and SIGTERM with 143, each with a line that says
-/// so.
+/// From here on SIGINT, SIGTERM and SIGHUP end the process with 130 and a line that says so, unless
+/// whoever started it has them ignored (nohup). A file that grows beyond the limit of `ulimit -f`
+/// is a failure to write, not the end of the process.
 void watch_for_interrupts();
 
 /// Does what must not be broken off half way, such as writing a file. A signal that comes meanwhile
-/// ends the process behind it, behind the outermost where they are nested; a second one at once.
+/// ends the process afterwards, after the outermost where they are nested; a second one changes
+/// nothing, and a third ends it at once.
 void without_interruption(const std::function<void()>& work);
+
+/// The signal that without_interruption() holds back was the end that the user was asked for: no
+/// line calls it an interruption.
+void interruption_was_awaited();
 
 /// A peer that goes away ends a connection, not the process.
 void ignore_broken_pipes();

@@ -159,8 +159,9 @@ void finish(const RecordGuide& guide, const std::string& file, const OutputFlags
   if (!interruption_waits()) guide.run_verb(file);
 }
 
-bool is_broken_off(const RecordSummary& summary) {
-  return summary.end == RecordEnd::source_gone || summary.end == RecordEnd::disk_failed;
+void expect_no_break(const RecordSummary& summary) {
+  if (summary.end == RecordEnd::source_gone) throw Failure(bad_device, summary.end_reason);
+  if (summary.end == RecordEnd::disk_failed) throw Failure(failed, summary.end_reason);
 }
 
 }  // namespace
@@ -186,8 +187,9 @@ void run(const RecordCommand& given) {
               own);
     if (guide && !report.summary.files.empty())
       finish(*guide, report.summary.files.front(), command.output);
-    if (is_broken_off(report.summary)) throw Failure(bad_device, report.summary.end_reason);
+    expect_no_break(report.summary);
     hold_to_strict(command.output, report::is_bad(report));
+    if (report.summary.end == RecordEnd::stopped) interruption_was_awaited();
   });
 }
 

@@ -25,7 +25,8 @@ void add_file_flags(CLI::App& verb, RecordCommand& command) {
       ->check(not_negative())
       ->needs(trigger);
   verb.add_flag("--reconnect", command.reconnect,
-                "wait for a source that has gone, and go on behind a marked gap")
+                "wait for a source that is not there yet or has gone, and continue after a marked "
+                "gap")
       ->group("Recording");
   add("--stall", command.stall_s, "S", "silence that is told (default 2)")->check(positive());
   add("--stall-end", command.stall_end_s, "S",

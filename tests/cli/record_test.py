@@ -2,13 +2,14 @@
 import json
 import os
 import pty
+import resource
 import signal
 import subprocess
 import time
 import tty
 import unittest
 
-from command import DONE, INTERRUPTED, PROGRAM, USAGE, CommandTest, parse_json
+from command import DONE, FAILED, INTERRUPTED, PROGRAM, USAGE, CommandTest, parse_json
 
 BAD_DEVICE = 4
 ROW = b"%d,%.3f,%.3f,%.3f\n"
@@ -30,6 +31,7 @@ class Record(CommandTest):
             stdout=subprocess.PIPE,
             stderr=how.get("stderr", subprocess.PIPE),
             env={**os.environ, **how.get("environment", {})},
+            preexec_fn=how.get("preexec_fn"),
         )
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
@@ -89,6 +91,49 @@ class Record(CommandTest):
         self.assertEqual(document["end"], "stopped")
         self.assertGreater(document["samples"], 0)
         self.assertEqual(self.document("inspect", "run.mcap")["samples"], document["samples"])
+        self.assertEqual(self.leftovers(), [])
+
+    def test_every_usual_signal_closes_the_file_without_a_word_of_interruption(self):
+        # A terminal that is closed, a service that is stopped, and Ctrl-C pressed twice.
+        for signals in ([signal.SIGHUP], [signal.SIGTERM], [signal.SIGINT, signal.SIGINT]):
+            name = f"{signals[0].name}{len(signals)}.mcap"
+            process = self.start("sim:?rate=200", "-o", name)
+            self.wait_for_part(name, 20000)
+            for one in signals:
+                process.send_signal(one)
+            out, err = process.communicate(timeout=200)
+            self.assertEqual(process.returncode, INTERRUPTED, err.decode())
+            self.assertNotIn(b"interrupted", err)
+            self.assertIn(b"Nothing was lost", out)
+            self.assertGreater(self.document("inspect", name)["samples"], 0)
+        self.assertEqual(self.leftovers(), [])
+
+    def test_what_nohup_ignores_stays_ignored(self):
+        process = self.start("sim:?rate=200", "-o", "run.mcap",
+                             preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        self.wait_for_part("run.mcap", 1)
+        process.send_signal(signal.SIGHUP)
+        time.sleep(0.3)
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=200)
+        self.assertEqual(process.returncode, INTERRUPTED)
+
+    def test_a_limit_on_the_size_of_files_is_a_full_disk(self):
+        most = 2_500_000
+        process = self.start("sim:?rate=1000&speed=max&seconds=100", "-o", "run.mcap",
+                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+        out, err = process.communicate(timeout=200)
+        self.assertEqual(process.returncode, FAILED, err.decode())
+        self.assertIn(b"are in no file, since the disk failed", out)
+        self.assertNotIn(b"Nothing was lost", out)
+        self.assertGreater(self.document("inspect", "run.mcap")["samples"], 0)
+
+    def test_a_limit_that_leaves_no_room_at_all_leaves_no_part(self):
+        process = self.start("sim:?rate=1000&speed=max&seconds=100", "-o", "run.mcap",
+                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)))
+        _, err = process.communicate(timeout=200)
+        self.assertNotEqual(process.returncode, DONE, err.decode())
         self.assertEqual(self.leftovers(), [])
 
     def test_killed_it_is_recovered(self):

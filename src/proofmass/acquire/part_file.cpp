@@ -1,10 +1,13 @@
 #include "proofmass/acquire/part_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <system_error>
 #include <unistd.h>
 #include <utility>
@@ -77,6 +80,8 @@ class DiskPart final : public PartFile {
     return Done{};
   }
 
+  void discard() override { ::unlink(names_.part.c_str()); }
+
  private:
   [[nodiscard]] Status rename_part() const {
     const char* part = names_.part.c_str();
@@ -101,10 +106,14 @@ class DiskPart final : public PartFile {
 
 /// Room that is free again once the descriptor is closed; -1 where there is none.
 int room_kept_in(const std::string& folder) {
-  constexpr off_t bytes = off_t{1} << 20;
-  const int file = io::nameless_file(folder);
+  constexpr std::uint64_t wanted = std::uint64_t{1} << 20;
+  struct statvfs disk{};
+  if (::statvfs(folder.c_str(), &disk) != 0) return -1;
+  const std::uint64_t free_bytes = std::uint64_t{disk.f_bavail} * disk.f_frsize;
+  const std::uint64_t bytes = std::min(wanted, free_bytes / 8);
+  const int file = bytes > 0 ? io::nameless_file(folder) : -1;
   if (file < 0) return -1;
-  if (::posix_fallocate(file, 0, bytes) == 0) return file;
+  if (::posix_fallocate(file, 0, static_cast<off_t>(bytes)) == 0) return file;
   ::close(file);
   return -1;
 }

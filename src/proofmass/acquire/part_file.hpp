@@ -27,6 +27,8 @@ class PartFile {
   [[nodiscard]] virtual Status truncate(std::uint64_t bytes) = 0;
   /// Gives it its name; never over another file.
   [[nodiscard]] virtual Status keep() = 0;
+  /// Removes the part, which holds nothing worth keeping.
+  virtual void discard() = 0;
 };
 
 /// Where a file is and will be.
@@ -39,9 +41,9 @@ using CreatePartFile = std::function<Result<std::unique_ptr<PartFile>>(const Par
 /// "run.mcap.part" for "run.mcap".
 [[nodiscard]] PartNames part_names(const std::string& path);
 
-/// Room for a megabyte is kept aside, so that a file on a disk that is full can be closed.
-/// Errors: invalid_argument (one of the names is there: what to do with it), unreadable (it cannot
-/// be created: why).
+/// A megabyte, at most an eighth of the free room, is kept aside so that a file on a full disk can
+/// be closed. Errors: invalid_argument (one of the names is there: what to do with it), unreadable
+/// (it cannot be created: why).
 [[nodiscard]] Result<std::unique_ptr<PartFile>> create_part_file(const PartNames& names);
 
 }  // namespace proofmass::acquire

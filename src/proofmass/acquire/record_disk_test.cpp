@@ -69,6 +69,10 @@ class TestPart final : public PartFile {
     disk_.files.erase(names_.part);
     return Done{};
   }
+  void discard() override {
+    const std::scoped_lock lock(disk_.mutex);
+    disk_.files.erase(names_.part);
+  }
 
  private:
   TestDisk& disk_;
@@ -115,6 +119,7 @@ TEST(RecordDisk, KeepsAndClosesWhatADiskTookThatIsFull) {
   EXPECT_EQ(read.samples(), summary->samples);
   EXPECT_GT(read.samples(), 50'000u);
   EXPECT_GT(summary->not_written, 0u);
+  EXPECT_EQ(summary->lost, summary->not_written);
   EXPECT_NE(all_notes(read).find("1 disk_full"), std::string::npos) << all_notes(read);
   for (std::size_t k = 0; k < read.samples(); ++k)
     ASSERT_EQ(read.channels[0].values[k], static_cast<double>(k));

@@ -26,6 +26,7 @@ void RecordSession::close() {
   }
   const std::uint64_t kept = rows_ - summary.not_kept;
   summary.not_written = kept - std::min(kept, summary.samples);
+  summary.lost += summary.not_written;
 }
 
 void RecordSession::close_file() {

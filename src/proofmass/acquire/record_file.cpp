@@ -62,8 +62,12 @@ Result<std::unique_ptr<RecordFile>> RecordFile::create(DiskWriter& disk,
                                                        const RecordFileHead& head) {
   std::unique_ptr<RecordFile> file(new RecordFile(disk, std::move(part), head));
   const std::string front = file->front(head);
-  if (const Status written = file->part_->append(front); !written) return written.error();
-  if (const Status synced = file->part_->sync(); !synced) return synced.error();
+  Status written = file->part_->append(front);
+  if (written) written = file->part_->sync();
+  if (!written) {
+    file->part_->discard();
+    return written.error();
+  }
   file->front_ = {{}, file->mcap_.mark(), 0};
   disk.open(file->part_, file->front_);
   return file;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <thread>
 #include <utility>
 
 #include "proofmass/acquire/source_uri.hpp"
@@ -52,6 +53,7 @@ Result<RecordSummary> RecordSession::run() {
 
 Status RecordSession::begin() {
   auto source = open_();
+  while (!source && may_try_again(source.error())) source = open_();
   if (!source) return source.error();
   std::unique_ptr<Source> opened = std::move(source).value();
   if (const Status used = use(opened->head()); !used) return used;
@@ -62,6 +64,33 @@ Status RecordSession::begin() {
   if (watch_.opened) watch_.opened(head_);
   reader_ = std::make_unique<SourceReader>(std::move(opened), open_, options_, queue_);
   return Done{};
+}
+
+/// Waits a moment for a source that is not there, or went while it was opened, as for one that went
+/// later.
+bool RecordSession::may_try_again(const Error& error) {
+  constexpr std::chrono::milliseconds slice{50}, between{500};
+  const auto is_stopped = [&] { return watch_.stopped && watch_.stopped(); };
+  if (!options_.reconnect || error.code != Errc::device) return false;
+  const std::int64_t now_ns = host_now_ns();
+  if (!waiting_since_ns_) {
+    waiting_since_ns_ = now_ns;
+    const RecordEvent event{EventKind::disconnected,
+                            Severity::warning,
+                            0.0,
+                            0.0,
+                            0,
+                            "the source cannot be opened yet, or went while it was; what it sent "
+                            "until now is not recorded: " +
+                                error.message};
+    (void)tally_.add(event);
+    if (watch_.event) watch_.event(event);
+  }
+  if (static_cast<double>(now_ns - *waiting_since_ns_) * 1e-9 > options_.reconnect_for_s)
+    return false;
+  for (auto waited = slice; waited < between && !is_stopped(); waited += slice)
+    std::this_thread::sleep_for(slice);
+  return !is_stopped();
 }
 
 /// What depends on the source's channels.

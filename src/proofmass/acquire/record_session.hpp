@@ -38,6 +38,7 @@ class RecordSession {
  private:
   // record_session.cpp: the course of it; record_end.cpp: its end.
   [[nodiscard]] Status begin();
+  [[nodiscard]] bool may_try_again(const Error& error);
   [[nodiscard]] Status use(const SourceHead& head);
   void begin_watching();
   void loop();
@@ -110,8 +111,9 @@ class RecordSession {
   std::vector<Closed> closed_;
 
   std::optional<RecordEnd> end_;
-  std::string gone_;        ///< why the source is
-  std::uint64_t rows_ = 0;  ///< that arrived
+  std::optional<std::int64_t> waiting_since_ns_;  ///< for a source that could not be opened
+  std::string gone_;                              ///< why the source is
+  std::uint64_t rows_ = 0;                        ///< that arrived
   std::uint64_t estimate_rows_ = 0;
   std::int64_t start_ns_ = 0;  ///< of the first row, by the time of day
   std::int64_t next_clock_ns_ = 0, next_pair_ns_ = 0;

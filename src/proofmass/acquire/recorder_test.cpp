@@ -39,6 +39,28 @@ TEST(Recorder, WritesEveryRowOfASourceAndItReadsBack) {
   EXPECT_NE(all_notes(read).find("who = I"), std::string::npos) << all_notes(read);
 }
 
+TEST(Recorder, WaitsForASourceThatGoesWhileItIsOpenedWhereReconnectionIsAskedFor) {
+  for (const bool reconnect : {false, true}) {
+    const TestFolder folder;
+    int tries = 0;
+    const OpenSource open =
+        [&, script = open_scripts({{.acts = arrivals(3)}})]() -> Result<std::unique_ptr<Source>> {
+      if (++tries < 3) return Error{Errc::device, "went"};
+      return script();
+    };
+    std::vector<RecordEvent> told;
+    const RecordWatch watch{.event = [&](const RecordEvent& event) { told.push_back(event); }};
+    const auto summary =
+        record(open, {.path = folder.file("run.mcap"), .reconnect = reconnect}, watch);
+    ASSERT_EQ(summary.has_value(), reconnect);
+    EXPECT_EQ(tries, reconnect ? 3 : 1);
+    if (!reconnect) continue;
+    EXPECT_EQ(summary->samples, 30u);
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0].kind, EventKind::disconnected);
+  }
+}
+
 TEST(Recorder, KeepsTheOrderOfWhatASourceSays) {
   const TestFolder folder;
   std::vector<RecordEvent> told;

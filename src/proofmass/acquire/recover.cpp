@@ -34,6 +34,8 @@ Result<Recovery> recover(const std::string& from, const std::string& to, const P
   };
   auto saved = io::salvage_mcap(from, put, progress);
   if (!part && !saved) return saved.error();
+  if (saved && saved->messages == 0)
+    saved = Error{Errc::corrupt, from + ": holds no message that could be saved"};
   const Status kept = saved ? part->keep() : Status(saved.error());
   if (!kept) {
     ::unlink(names.part.c_str());

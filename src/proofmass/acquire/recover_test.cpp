@@ -44,6 +44,19 @@ std::string recorded(const TestFolder& folder, std::size_t count) {
   return bytes_of(path);
 }
 
+TEST(Recover, MakesNoFileOfAPartThatHoldsNoMessage) {
+  const TestFolder folder;
+  const std::string whole = recorded(folder, 200);
+  // A second of a recording, and nothing but its head: what a crash within the first second leaves.
+  const std::size_t head = whole.find("sensor.toml") + 200;
+  put(folder.file("cut.mcap"), std::string_view(whole).substr(0, head));
+  const auto saved = recover(folder.file("cut.mcap"), folder.file("new.mcap"));
+  ASSERT_FALSE(saved);
+  EXPECT_EQ(saved.error().code, Errc::corrupt);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("new.mcap")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("new.mcap.recovered.part")));
+}
+
 TEST(Recover, LeavesNothingOutOfAFileThatIsWhole) {
   const TestFolder folder;
   (void)recorded(folder, 200);

@@ -62,7 +62,7 @@ class SensorServerSource : public Source {
     head_.has_device_clock = true;
   }
 
-  /// Waits until each sensor has told how many values it has.
+  /// Waits until each sensor has sent a message, which says how many values it has.
   Status open(const std::string& uri, const OpenOptions& options) {
     const auto until = Clock::now() + options.patience;
     while (!std::ranges::all_of(sensors_, &Listed::width, {})) {
@@ -74,6 +74,7 @@ class SensorServerSource : public Source {
       if (*message) learn(**message);
     }
     describe(uri);
+    for (const std::string& text : std::exchange(early_, {})) take(text);
     return Done{};
   }
 
@@ -121,7 +122,10 @@ class SensorServerSource : public Source {
     return std::nullopt;
   }
   void learn(std::string_view text) {
-    if (const auto sensor = sensor_of(text)) sensors_[*sensor].width = message_.values.size();
+    const auto sensor = sensor_of(text);
+    if (!sensor) return;
+    if (sensors_[*sensor].width == 0) sensors_[*sensor].width = message_.values.size();
+    early_.emplace_back(text);
   }
   void take(std::string_view text) {
     const auto sensor = sensor_of(text);
@@ -169,6 +173,7 @@ class SensorServerSource : public Source {
   SourceHead head_{};
   std::optional<SensorMerge> merge_{};
   SensorMessage message_{};
+  std::vector<std::string> early_{};  ///< messages that came while it was opened
   std::vector<Note> notes_{};
   std::uint64_t passed_over_ = 0, told_at_ = 1;
 };

@@ -39,6 +39,7 @@ TEST_F(SensorServerSource, HandsOutEachMessage) {
   const Taken taken = take_rows(**source, 500);
   ASSERT_GE(taken.device_ns.size(), 500U);
   EXPECT_EQ(broken_steps(taken.channels[0]), "");
+  EXPECT_EQ(taken.channels[0].front(), 0.0) << "the message that described the sensor is a row";
   EXPECT_EQ(taken.device_ns[1] - taken.device_ns[0], 2'000'000);
 }
 

@@ -67,10 +67,10 @@ struct RecordSummary {
   RecordEnd end = RecordEnd::stopped;
   std::string end_reason{};  ///< of source_gone and disk_failed: one line
   std::uint64_t samples = 0;
-  std::uint64_t lost = 0;         ///< known missing: device, protocol, overruns, clocks
+  std::uint64_t lost = 0;         ///< known missing: device, protocol, overruns, clocks, the disk
   std::uint64_t overrun = 0;      ///< of these, for want of room in the queue
   std::uint64_t not_kept = 0;     ///< rows that the trigger did not ask for
-  std::uint64_t not_written = 0;  ///< rows that no file has, since the disk failed
+  std::uint64_t not_written = 0;  ///< of these, since the disk failed: rows that no file has
   double duration_s = 0.0;
   std::vector<RecordEvent> gaps;  ///< lost, overrun and gap events: the first 10 000
   std::size_t gap_count = 0;

@@ -97,10 +97,13 @@ std::vector<std::string> warnings_of(const RecordReport& report) {
 }
 
 std::string missing_words(const RecordSummary& summary) {
+  // What the disk failed to take has a line of its own.
+  const std::uint64_t lost = summary.lost - std::min(summary.lost, summary.not_written);
   if (summary.gap_count == 0 && summary.lost == 0) return "Nothing was lost, and there is no gap.";
+  if (summary.gap_count == 0 && lost == 0) return {};
   const std::string gaps = count_words(summary.gap_count, "gap");
-  if (summary.lost == 0) return gaps + "; how many samples are missing cannot be told.";
-  std::string out = fmt::format("{} lost in {}", count_words(summary.lost, "sample"), gaps);
+  if (lost == 0) return gaps + "; how many samples are missing cannot be determined.";
+  std::string out = fmt::format("{} lost in {}", count_words(lost, "sample"), gaps);
   if (summary.overrun > 0)
     out += fmt::format(", {} of them because the disk could not keep up", grouped(summary.overrun));
   return out + ".";

@@ -47,6 +47,17 @@ TEST(RecordReport, NamesGapsWithTheirTime) {
   EXPECT_TRUE(is_bad(report));
 }
 
+TEST(RecordReport, DoesNotSayThatNothingWasLostWhereTheDiskFailed) {
+  RecordReport report = whole_recording();
+  report.summary.end = RecordEnd::disk_failed;
+  report.summary.lost = report.summary.not_written = 19'200;
+  const std::string text = record_text(report);
+  EXPECT_THAT(text, Not(HasSubstr("Nothing was lost")));
+  EXPECT_THAT(text, HasSubstr("19\u202f200 samples are in no file, since the disk failed."));
+  EXPECT_THAT(text, Not(HasSubstr("lost in")));
+  EXPECT_EQ(nlohmann::json::parse(record_json(report))["lost"], 19200);
+}
+
 TEST(RecordReport, OfManyGapsListsTheFirstAndCountsTheRest) {
   RecordReport report = whole_recording();
   report.summary.gaps.assign(10, gap_event());
