@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "proofmass/core/statistics.hpp"
@@ -177,9 +178,29 @@ void add_gated(WheelSolution& solution) {
   }
 }
 
-void judge_turns(const WheelFit& fit, WheelSolution& solution) {
-  if (fit.widest_prediction_rad < lost_prediction_rad) return;
+/// "from 12.3 to 14.1 s and from …"
+std::string stretches_of(const WheelFit& fit) {
+  std::string text;
+  const auto seconds = [&](std::size_t k) {
+    const double time_s = fit.series.time_s[k];
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.1f", time_s);
+    return std::string(buffer);
+  };
+  constexpr std::size_t most = 3;
+  for (std::size_t i = 0; i < std::min(fit.doubts.size(), most); ++i)
+    text += (i == 0 ? "from " : ", from ") +
+            seconds(std::max<std::size_t>(fit.doubts[i].first, 1) - 1) + " to " +
+            seconds(fit.doubts[i].last) + " s";
+  if (fit.doubts.size() > most)
+    text += " and " + std::to_string(fit.doubts.size() - most) + " times more";
+  return text;
+}
+
+void judge_turns(const WheelFit& fit, const std::string& where, WheelSolution& solution) {
+  if (fit.doubts.empty()) return;
   solution.turns.reset();
+  solution.turns_candidates = fit.turns_candidates;
   solution.angle_final_rad.reset();
   solution.distance_m.reset();
   solution.peak_speed_radps.reset();
@@ -191,11 +212,12 @@ void judge_turns(const WheelFit& fit, WheelSolution& solution) {
     for (auto* pair : {&sensor.bias_mps2, &sensor.scale}) pair->fill(std::nullopt);
   }
   solution.smoother.turns.reset();
-  solution.smoother.note = "the angle was lost in between";
+  solution.smoother.note = "the angle was lost " + where;
   solution.notes.push_back(
       {Severity::bad,
-       "turns: readings are missing or spoilt for so long that the angle is unknown by "
-       "more than 45 degrees in between: a turn more or less cannot be told"});
+       "turns: readings are missing or spoilt " + where +
+           ", for so long that the angle is unknown by more than 45 degrees: a turn more or less "
+           "cannot be distinguished"});
 }
 
 /// A wheel that shakes more when it turns is most likely under a vehicle, whose speeding up leans
@@ -241,6 +263,7 @@ WheelSolution conclude(const WheelReadings& readings,
                        const WheelOptions& options,
                        WheelSolution solution) {
   describe_sensors(fit, readings.phase_rad, solution.sensors);
+  const std::string doubtful = stretches_of(fit);
   solution.series = std::move(fit.series);
   solution.turns = fit.turns;
   solution.delay_s = readings.delay_s;
@@ -261,7 +284,7 @@ WheelSolution conclude(const WheelReadings& readings,
   add_gated(solution);
   note_travel(readings, options, solution);
   check_radius(fit, options, solution);
-  judge_turns(fit, solution);
+  judge_turns(fit, doubtful, solution);
   return solution;
 }
 

@@ -101,8 +101,17 @@ struct Stretch {
   std::string reason;
 };
 
+/// A number of turns that the recording allows.
+struct TurnsCandidate {
+  Uncertain turns;
+  double probability = 0.0;
+};
+
 struct WheelSolution {
-  std::optional<Uncertain> turns;       ///< signed, about the spin axis of the first sensor
+  std::optional<Uncertain> turns;  ///< signed, about the spin axis of the first sensor
+  /// Where the count is in doubt and `turns` is absent: the counts that fit, by falling
+  /// probability.
+  std::vector<TurnsCandidate> turns_candidates;
   std::optional<Uncertain> distance_m;  ///< path of the rim if given, else of the first sensor
   std::string distance_of;              ///< "rim" or the sensor's name
   std::optional<Uncertain> angle_final_rad;

@@ -4,6 +4,7 @@
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel_colour.hpp"
+#include "proofmass/estimate/wheel_rivals.hpp"
 #include "proofmass/estimate/wheel_settle.hpp"
 
 namespace proofmass::estimate {
@@ -106,6 +107,24 @@ void filter_calibrated(const WheelModel<S>& model,
   });
 }
 
+/// Doubts less than half a second apart are one.
+void add_doubt(std::size_t k,
+               const Gaussian<wheel::moving>& predicted,
+               const std::vector<double>& time_s,
+               std::vector<WheelDoubt>& doubts) {
+  constexpr double apart_s = 0.5;
+  const auto variance = [](const Gaussian<wheel::moving>& state) {
+    return state.cov(wheel::angle, wheel::angle);
+  };
+  if (doubts.empty() || time_s[k] - time_s[doubts.back().last] > apart_s)
+    doubts.push_back({.first = k});
+  WheelDoubt& doubt = doubts.back();
+  doubt.last = k;
+  if (variance(predicted) <= variance(doubt.predicted)) return;
+  doubt.widest = k;
+  doubt.predicted = predicted;
+}
+
 /// What filter and smoother say with the places held where they were found.
 template <int S>
 WheelFit smooth_at_places(const WheelReadings& readings,
@@ -133,11 +152,12 @@ WheelFit smooth_at_places(const WheelReadings& readings,
       model, prior, wheel_gate,
       [&](std::size_t k, const auto& step) {
         if (k > 0 && readings.time_s[k] > readings.time_s.front() + 1.0) {
-          const Mat<wheel::moving> from_angle =
-              model.transition(end.mean, k).F.row(wheel::angle).transpose();
-          const double variance = from_angle.dot(
-              end.cov.template topLeftCorner<wheel::moving, wheel::moving>() * from_angle);
-          fit.widest_prediction_rad = std::max(fit.widest_prediction_rad, std::sqrt(variance));
+          const auto transition = model.transition(end.mean, k);
+          const auto before = end.cov.template topLeftCorner<wheel::moving, wheel::moving>();
+          const Gaussian<wheel::moving> predicted{
+              transition.mean, transition.F * before * transition.F.transpose() + transition.Q};
+          if (predicted.cov(wheel::angle, wheel::angle) > square(lost_prediction_rad))
+            add_doubt(k, predicted, readings.time_s, fit.doubts);
         }
         end = step.filtered;
         colour.add(step);
@@ -365,6 +385,7 @@ WheelFit fit_sensors(WheelReadings& readings,
   add_delay_uncertainty(readings, settled, track.path, fit);
   add_rolling_uncertainty(readings, settled, track.path, fit);
   add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
+  fit.turns_candidates = turns_candidates(fit);
   return fit;
 }
 

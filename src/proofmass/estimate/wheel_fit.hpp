@@ -75,6 +75,14 @@ struct WheelTrack {
 [[nodiscard]] WheelTrack find_track(WheelReadings& readings, std::size_t first = 0);
 inline constexpr std::size_t wheel_seeks = 4;
 
+/// A stretch over which the angle is predicted to no better than lost_prediction_rad: instants, the
+/// first and the last that are predicted so badly.
+struct WheelDoubt {
+  std::size_t first = 0, last = 0;
+  std::size_t widest = 0;               ///< where the prediction is least certain
+  Gaussian<wheel::moving> predicted{};  ///< that prediction, of the moving states
+};
+
 struct WheelFit {
   /// All that stands, in the state's order from wheel::first_of(0) on, with its covariance (the
   /// places' uncertainty in it) and what that was before the recording spoke.
@@ -83,8 +91,9 @@ struct WheelFit {
   WheelTrack track;
   Uncertain turns;
   double ekf_turns = 0.0;
-  Consistency consistency;             ///< channels: along u and v of each sensor, without names
-  double widest_prediction_rad = 0.0;  ///< std of the predicted angle, once past the first second
+  Consistency consistency;         ///< channels: along u and v of each sensor, without names
+  std::vector<WheelDoubt> doubts;  ///< once past the first second
+  std::vector<TurnsCandidate> turns_candidates;  ///< where there are doubts
   /// Of each sensor, where a radius was given: what the recording alone says of it.
   std::vector<Uncertain> free_radius_m;
   std::optional<Uncertain> given_radius_m;  ///< the radius that was given, as far as it is trusted

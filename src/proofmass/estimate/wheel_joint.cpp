@@ -150,7 +150,7 @@ Result<Single> fit_single(const WheelSensor& sensor,
     followed = true;
     single.fit = fit_with_radius(single.readings, track, options);
     if (top_speed_radps(single.fit) > fastest) continue;
-    if (single.fit.widest_prediction_rad < lost_prediction_rad) return single;
+    if (single.fit.doubts.empty()) return single;
     if (!unsure) unsure = single;
   }
   if (unsure) return *std::move(unsure);
@@ -225,9 +225,11 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
                                  options.clocks_shared);
   if (!clocks) return clocks.error().at("two sensors");
   pair.clocks = *clocks;
-  // On one clock an offset has to show clearly before the stamps are called wrong.
-  if (options.clocks_shared &&
-      std::abs(pair.clocks.offset_s.value) < std::max(5.0 * pair.clocks.offset_s.std, 2e-4))
+  // On one clock an offset has to show clearly before the stamps are called wrong, and it does not
+  // where an angle was lost.
+  const bool lost = !pair.singles[0].fit.doubts.empty() || !pair.singles[1].fit.doubts.empty();
+  if (options.clocks_shared && (lost || std::abs(pair.clocks.offset_s.value) <
+                                            std::max(5.0 * pair.clocks.offset_s.std, 2e-4)))
     pair.clocks.offset_s.value = 0.0;
   return pair;
 }

@@ -92,6 +92,14 @@ std::string lacking(const WheelSensorFit& fit, bool first, bool clocks_shared) {
 }
 
 // Every null has its reason here.
+Array candidates(const WheelSolution& solution) {
+  Array out;
+  for (const estimate::TurnsCandidate& one : solution.turns_candidates)
+    out.push_back(Object{
+        {"value", one.turns.value}, {"std", one.turns.std}, {"probability", one.probability}});
+  return out;
+}
+
 std::vector<std::string> warnings(const WheelReport& report) {
   const WheelSolution& solution = report.solution;
   std::vector<std::string> all = texts(report.notes, Severity::warning);
@@ -144,6 +152,7 @@ std::string wheel_json(const WheelReport& report) {
   return to_json(
       {"wheel", report.inputs, warnings(report)},
       {{"turns", quantity(solution.turns, "turn")},
+       {"turns_candidates", candidates(solution)},
        {"distance_m", quantity(solution.distance_m, "m")},
        {"distance_of", solution.distance_of},
        {"angle_final_rad", quantity(solution.angle_final_rad, "rad")},

@@ -56,11 +56,27 @@ Channel channel(const char* name, const char* unit, const std::vector<double>& v
 
 }  // namespace
 
+namespace {
+
+// "The wheel turned 19.53 (probability 0.6) or 20.53 (0.4) times in 60 s"
+std::string either_words(const WheelSolution& solution, const std::string& when) {
+  std::string text = "The wheel turned ";
+  for (std::size_t i = 0; i < solution.turns_candidates.size(); ++i) {
+    const estimate::TurnsCandidate& one = solution.turns_candidates[i];
+    text += fmt::format("{}{} ({}{})", i == 0 ? "" : " or ", fixed(one.turns.value, 2),
+                        i == 0 ? "probability " : "", significant(one.probability, 2));
+  }
+  return text + " times" + when;
+}
+
+}  // namespace
+
 std::string wheel_conclusion(const WheelSolution& solution) {
   const std::vector<double>& time_s = solution.series.time_s;
   const std::string when =
       time_s.empty() ? "" : " in " + duration_words(time_s.back() - time_s.front());
-  const std::string far = solution.turns
+  const std::string far = solution.turns_candidates.size() > 1 ? either_words(solution, when)
+                          : solution.turns
                               ? fmt::format("The wheel {}{}", how_far(*solution.turns), when)
                               : fmt::format(
                                     "How far the wheel turned{} cannot be told from this "
