@@ -5,13 +5,16 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "completion.hpp"
 #include "config_file.hpp"
 #include "exit_status.hpp"
 #include "help_format.hpp"
 #include "output.hpp"
+#include "proofmass/acquire/source.hpp"
 #include "proofmass/core/version.hpp"
+#include "provenance.hpp"
 #include "usage_error.hpp"
 #include "verb_flags.hpp"
 
@@ -188,6 +191,38 @@ void add_verbs(CLI::App& app, Commands& commands) {
     if (std::ranges::count(verb->get_groups(), input_group) > 0) verb->add_flag(name, what);
 }
 
+// What a file is read for, or changed by; anything else of this type is written.
+bool names_input(const CLI::Option& option) {
+  if (option.get_positional()) return true;
+  for (const char* written : {"json", "report", "output", "update-sensor"})
+    if (option.check_lname(written)) return false;
+  return option.get_type_name().starts_with("FILE");
+}
+
+// Passwords do not leave the program.
+std::vector<std::string> shown(std::vector<std::string> words) {
+  for (std::string& word : words)
+    if (word.find("password=") != std::string::npos) word = acquire::shown_uri(word);
+  return words;
+}
+
+// How the verb was called, as parsed.
+std::shared_ptr<Invocation> invocation(const CLI::App& verb,
+                                       const std::vector<std::string>& arguments) {
+  std::vector<std::pair<std::string, std::string>> options;
+  std::vector<std::string> files;
+  for (const CLI::Option* option : verb.get_options()) {
+    if (option->count() == 0) continue;
+    const auto values = shown(option->results());
+    if (names_input(*option)) files.insert(files.end(), values.begin(), values.end());
+    if (!option->get_positional())
+      options.emplace_back("--" + option->get_single_name(),
+                           fmt::format("{}", fmt::join(values, ",")));
+  }
+  return std::make_shared<Invocation>("proofmass " + quoted(shown(arguments)), std::move(options),
+                                      std::move(files));
+}
+
 // One empty line at a time, and none at the end.
 std::string without_empty_lines(const std::string& text) {
   std::string out;
@@ -234,6 +269,7 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
   if (!word.empty() && find_verb(app, word) == nullptr)
     throw Failure(usage, unknown_verb(app, word));
   if (print_help(app, arguments)) return std::nullopt;
+  const std::vector<std::string> typed = arguments;
   arguments = with_config(app, std::move(arguments));
   std::ranges::reverse(arguments);  // as CLI11 takes them
   try {
@@ -244,7 +280,14 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw Failure(usage, usage_error(app, error));
   }
-  return chosen(app, commands);
+  Command command = chosen(app, commands);
+  std::visit(
+      [&](auto& verb) {
+        if (!verb.output.json.empty() || !verb.output.report.empty())
+          verb.output.invocation = invocation(*app.get_subcommands().front(), typed);
+      },
+      command);
+  return command;
 }
 
 std::array<double, 3> parse_axis(const std::string& text) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -28,10 +29,13 @@ struct InputFlags {
   std::optional<double> since_switch_on_s;
 };
 
+class Invocation;
+
 /// Flags of every verb.
 struct OutputFlags {
   std::string json, report, output;
   bool quiet = false, verbose = false, strict = false;
+  std::shared_ptr<Invocation> invocation{};  ///< where a document or a page was asked for
 };
 
 struct InspectCommand {

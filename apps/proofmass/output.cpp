@@ -11,6 +11,7 @@
 #include "exit_status.hpp"
 #include "input.hpp"
 #include "proofmass/io/write_recording.hpp"
+#include "provenance.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -53,11 +54,16 @@ void print_out(const std::string& text) {
 }
 
 void publish(const Results& results, const OutputFlags& flags) {
-  if (!flags.report.empty()) write_text(flags.report, results.html());
-  if (!flags.json.empty() && flags.json != "-") write_text(flags.json, results.json());
+  const auto json = [&] {
+    return report::with_provenance(results.json(), flags.invocation->provenance());
+  };
+  if (!flags.report.empty())
+    write_text(flags.report,
+               report::page_with_provenance(results.html(), flags.invocation->provenance()));
+  if (!flags.json.empty() && flags.json != "-") write_text(flags.json, json());
   // One thing only goes to standard output: the series, the document or the text.
   if (flags.output == "-") return;
-  print_out(flags.json == "-" ? results.json() : results.text());
+  print_out(flags.json == "-" ? json() : results.text());
 }
 
 void write_series(const Recording& recording,

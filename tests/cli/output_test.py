@@ -1,4 +1,6 @@
 """Where results go: standard output, --json, --report, --quiet."""
+import hashlib
+import platform
 import unittest
 
 from command import CommandTest, parse_json, turning_csv
@@ -22,11 +24,47 @@ class Output(CommandTest):
         self.assertEqual(self.leftovers(), [])
 
     def test_the_same_run_gives_the_same_bytes(self):
-        for name in ("1", "2"):
-            self.succeed("inspect", "a.csv", "--json", f"{name}.json", "--report", f"{name}.html")
-        for kind in ("json", "html"):
-            self.assertEqual((self.folder / f"1.{kind}").read_bytes(),
-                             (self.folder / f"2.{kind}").read_bytes())
+        made = []
+        for _ in range(2):
+            self.succeed("inspect", "a.csv", "--json", "a.json", "--report", "a.html",
+                         environment={"SOURCE_DATE_EPOCH": "0"})
+            made.append([(self.folder / name).read_bytes() for name in ("a.json", "a.html")])
+        self.assertEqual(made[0], made[1])
+
+    def test_documents_and_pages_say_what_is_needed_to_repeat_them(self):
+        (self.folder / "set").mkdir()
+        self.write("set/b.csv", turning_csv(seconds=3))
+        self.write("flags.toml", 'unit = "m/s2"\n')
+        document = self.document("inspect", "a.csv", "set", "--from", "0.5", "--config", "flags.toml",
+                                 "--report", "my page.html", environment={"SOURCE_DATE_EPOCH": "86400"})
+        said = document["provenance"]
+        self.assertEqual(said["command"], "proofmass inspect a.csv set --from 0.5 --config flags.toml "
+                                          "--report 'my page.html' --json -")
+        self.assertEqual((said["options"]["--from"], said["options"]["--unit"]), ("0.5", "m/s2"))
+        self.assertEqual(said["date"], "1970-01-02T00:00:00Z")
+        self.assertEqual(said["version"], document["proofmass"])
+        self.assertEqual(said["host"], platform.node())
+        inputs = {one["path"]: (one["bytes"], one["sha256"]) for one in said["inputs"]}
+        for name in ("a.csv", "set/b.csv", "flags.toml"):
+            content = (self.folder / name).read_bytes()
+            self.assertEqual(inputs.pop(name), (len(content), hashlib.sha256(content).hexdigest()))
+        self.assertEqual(inputs, {})
+        page = (self.folder / "my page.html").read_text()
+        self.assertIn(hashlib.sha256((self.folder / "a.csv").read_bytes()).hexdigest(), page)
+        self.assertIn("1970-01-02T00:00:00Z", page)
+
+    def test_what_comes_on_standard_input_has_a_reason_for_a_sum(self):
+        document = self.document("inspect", "-", stdin=(self.folder / "a.csv").read_bytes())
+        self.assertEqual(document["provenance"]["inputs"],
+                         [{"path": "-", "reason": "standard input is read once"}])
+
+    def test_a_password_does_not_get_into_a_document(self):
+        self.run_command("record", "mqtt://127.0.0.1:1/t?user=me&password=geheim", "-o", "r.mcap",
+                         "--duration", "0.1", "--json", "r.json")
+        document = self.document("record", "sim:?speed=max&seconds=1", "-o", "s.mcap")
+        self.assertIn("sim:?speed=max&seconds=1", document["provenance"]["command"])
+        for made in self.folder.iterdir():
+            self.assertNotIn(b"geheim", made.read_bytes() if made.is_file() else b"")
 
     def test_quiet_says_nothing_on_standard_error(self):
         lines = turning_csv(seconds=4).splitlines()
@@ -41,8 +79,10 @@ class Output(CommandTest):
         self.assertGreater(len(told), len(plain))
 
     def test_a_decimal_comma_locale_changes_nothing(self):
-        here = self.succeed("inspect", "a.csv", "--json", "-")
-        there = self.succeed("inspect", "a.csv", "--json", "-", environment={"LC_ALL": "de_DE.UTF-8"})
+        epoch = {"SOURCE_DATE_EPOCH": "0"}
+        here = self.succeed("inspect", "a.csv", "--json", "-", environment=epoch)
+        there = self.succeed("inspect", "a.csv", "--json", "-",
+                             environment={**epoch, "LC_ALL": "de_DE.UTF-8"})
         self.assertEqual(here, there)
 
 

@@ -62,8 +62,12 @@ std::string to_json(const DocumentHead& head, const Object& body) {
                   {"input", array_of(head.input)},
                   {"warnings", array_of(head.warnings)}};
   document.insert(document.end(), body.begin(), body.end());
+  return json_text(document) + '\n';
+}
+
+std::string json_text(const Value& value) {
   constexpr int indent = 2;
-  return json_of(document).dump(indent, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_of(value).dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 Value quantity(const std::optional<Uncertain>& figure, std::string_view unit) {

@@ -74,13 +74,16 @@ struct DocumentHead {
 /// two, closed by a newline. Bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string to_json(const DocumentHead& head, const Object& body);
 
-/// {"value", "std", "unit"}, or null where there is no figure or it is not finite.
+/// A value by itself, indented by two, without a newline at its end.
+[[nodiscard]] std::string json_text(const Value& value);
+
 /// The value, or null.
 template <class T>
 [[nodiscard]] Value or_null(const std::optional<T>& value) {
   return value ? Value(*value) : Value();
 }
 
+/// {"value", "std", "unit"}, or null where there is no figure or it is not finite.
 [[nodiscard]] Value quantity(const std::optional<Uncertain>& figure, std::string_view unit);
 
 /// A quantity whose value and standard deviation are both multiplied by `factor`, for units that
