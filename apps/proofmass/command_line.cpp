@@ -12,6 +12,7 @@
 #include "exit_status.hpp"
 #include "help_format.hpp"
 #include "output.hpp"
+#include "plain_text.hpp"
 #include "proofmass/acquire/source.hpp"
 #include "proofmass/core/version.hpp"
 #include "provenance.hpp"
@@ -244,7 +245,8 @@ bool print_help(CLI::App& app, const std::vector<std::string>& arguments) {
   format.label("SUBCOMMAND", "VERB");
   const std::string name = verb == nullptr ? "proofmass" : "proofmass " + verb->get_name();
   const CLI::App* about = verb == nullptr ? &app : verb;
-  print_out(without_empty_lines(format.make_help(about, name, CLI::AppFormatMode::Normal)));
+  const std::string help = format.make_help(about, name, CLI::AppFormatMode::Normal);
+  print_out(terminal_text(without_empty_lines(help)));
   return true;
 }
 

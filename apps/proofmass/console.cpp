@@ -1,6 +1,7 @@
 #include "console.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -10,6 +11,8 @@
 #include <string_view>
 #include <sys/ioctl.h>
 #include <unistd.h>
+
+#include "plain_text.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -67,7 +70,8 @@ std::string painted(std::string_view text, int colour) {
   return in_colour() ? fmt::format("\033[{}m{}\033[0m", colour, text) : std::string(text);
 }
 
-void print(const std::string& text) {
+void print(const std::string& message) {
+  const std::string text = terminal_text(message);
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
@@ -108,16 +112,38 @@ class Bar {
     constexpr int width = 30, steps = 10 * width;
     const int step =
         static_cast<int>(std::clamp(std::isfinite(fraction) ? fraction : 0.0, 0.0, 1.0) * steps);
-    if (step == shown_) return;
+    if (step == shown_ && stage == stage_) return;
+    if (step < shown_ || stage != stage_) begin(stage);
     shown_ = step;
     bar_shown = 1;
     const int full = step * width / steps;
-    print(fmt::format("\r\033[K[{:=<{}}{: <{}}] {:3d} %  {}", "", full, "", width - full,
-                      100 * step / steps, stage));
+    const std::string line = fmt::format(
+        "[{:=<{}}{: <{}}] {:3d} %  {}{}{}", "", full, "", width - full, 100 * step / steps,
+        passes_ > 1 ? fmt::format("step {}: ", passes_) : "", stage, left_words(step, steps));
+    print("\r\033[K" + cut(line, terminal_width() - 1));
   }
 
  private:
-  int shown_ = -1;
+  using Clock = std::chrono::steady_clock;
+
+  // What is done in several passes fills the bar once for each.
+  void begin(std::string_view stage) {
+    stage_ = stage;
+    begun_ = Clock::now();
+    ++passes_;
+  }
+  [[nodiscard]] std::string left_words(int step, int steps) const {
+    constexpr double soonest_s = 2.0;  // before that it is a guess
+    const double gone_s = std::chrono::duration<double>(Clock::now() - begun_).count();
+    if (step == 0 || step == steps || gone_s < soonest_s) return {};
+    const double left_s = gone_s * (steps - step) / step;
+    return left_s < 90.0 ? fmt::format(", {:.0f} s left", std::ceil(left_s))
+                         : fmt::format(", {:.0f} min left", std::ceil(left_s / 60.0));
+  }
+
+  int shown_ = -1, passes_ = 0;
+  std::string stage_;
+  Clock::time_point begun_;
 };
 
 }  // namespace

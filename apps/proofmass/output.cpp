@@ -10,6 +10,7 @@
 #include "console.hpp"
 #include "exit_status.hpp"
 #include "input.hpp"
+#include "plain_text.hpp"
 #include "proofmass/io/write_recording.hpp"
 #include "provenance.hpp"
 
@@ -63,7 +64,7 @@ void publish(const Results& results, const OutputFlags& flags) {
   if (!flags.json.empty() && flags.json != "-") write_text(flags.json, json());
   // One thing only goes to standard output: the series, the document or the text.
   if (flags.output == "-") return;
-  print_out(flags.json == "-" ? json() : results.text());
+  print_out(flags.json == "-" ? json() : shown_text(results.text()));
 }
 
 void write_series(const Recording& recording,

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import jsonschema
 
+os.environ["LC_ALL"] = "C.UTF-8"
 PROGRAM = os.environ["PROOFMASS"]
 SCHEMAS = Path(os.environ["PROOFMASS_SCHEMAS"])
 

@@ -1,8 +1,12 @@
 """What goes wrong ends with the status that the contract names, and one line that helps."""
+import fcntl
 import os
+import pty
 import re
 import signal
+import struct
 import subprocess
+import termios
 import time
 import unittest
 
@@ -229,6 +233,28 @@ class Help(CommandTest):
 
 
 class Terminal(CommandTest):
+    def test_what_is_longer_than_the_terminal_is_wide_is_wrapped_at_words(self):
+        self.succeed("simulate", "--rpm", "15", "--duration", "20", "--seed", "3", "-o", "rig.csv")
+        plain = self.succeed("wheel", "rig.csv")
+        self.assertGreater(max(map(len, plain.splitlines())), 100)
+        for width in (60, 80):
+            ours, theirs = pty.openpty()
+            fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, width, 0, 0))
+            process = subprocess.Popen([PROGRAM, "wheel", "rig.csv"], cwd=self.folder, stdout=theirs,
+                                       stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+            os.close(theirs)
+            shown = b""
+            try:
+                while piece := os.read(ours, 65536):
+                    shown += piece
+            except OSError: # the other side is closed
+                pass
+            process.wait(timeout=60)
+            os.close(ours)
+            lines = shown.decode().replace("\r", "").splitlines()
+            self.assertLessEqual(max(map(len, lines)), width, shown.decode())
+            self.assertEqual(" ".join(lines).split(), plain.split())
+
     def test_no_escape_sequence_leaves_the_program_where_no_terminal_is(self):
         self.write("a.csv", turning_csv(seconds=2))
         ran = self.run_command("inspect", "a.csv", "-v")

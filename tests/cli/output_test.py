@@ -58,6 +58,32 @@ class Output(CommandTest):
         self.assertEqual(document["provenance"]["inputs"],
                          [{"path": "-", "reason": "standard input is read once"}])
 
+    def test_figures_are_written_as_other_programs_read_them(self):
+        self.succeed("simulate", "--rpm", "30", "--duration", "60", "--seed", "1", "-o", "rig.csv")
+        for arguments in (["inspect", "rig.csv"], ["wheel", "rig.csv"], ["noise", "rig.csv"], ["budget"]):
+            ran = self.run_command(*arguments)
+            text = (ran.stdout + ran.stderr).decode()
+            self.assertNotIn("\u2212", text)
+            self.assertNotIn("\u202f", text)
+        self.assertIn("12000", self.succeed("inspect", "rig.csv"))
+        page = self.succeed("inspect", "rig.csv", "--report", "rig.html") and (self.folder / "rig.html").read_text()
+        self.assertIn("\u2212", page)
+
+    def test_where_the_locale_is_not_utf_8_the_text_is_ascii(self):
+        self.succeed("simulate", "--rpm", "30", "--duration", "60", "--seed", "1", "-o", "rig.csv")
+        for arguments in (["inspect", "rig.csv"], ["wheel", "rig.csv"], ["noise", "rig.csv"], ["budget"], ["--help"],
+                          ["calibrate", "--help"], ["wheel", "absent-\u00e4.csv"]):
+            for locale in ("C", "POSIX", "de_DE.ISO-8859-1"):
+                ran = self.run_command(*arguments, environment={"LC_ALL": locale})
+                self.assertTrue((ran.stdout + ran.stderr).isascii(), arguments)
+        ascii = self.succeed("wheel", "rig.csv", environment={"LC_ALL": "C"})
+        self.assertIn("+-", ascii)
+        self.assertIn("deg", ascii)
+        # The columns begin where they do in UTF-8.
+        rows = self.succeed("wheel", "rig.csv").splitlines()
+        begin = [row.index("path of") for row in rows if "path of" in row]
+        self.assertEqual(begin, [row.index("path of") for row in ascii.splitlines() if "path of" in row])
+
     def test_a_password_does_not_get_into_a_document(self):
         self.run_command("record", "mqtt://127.0.0.1:1/t?user=me&password=geheim", "-o", "r.mcap",
                          "--duration", "0.1", "--json", "r.json")

@@ -249,7 +249,7 @@ class Show(CommandTest):
 
     def test_it_prints_every_figure_with_unit_and_origin(self):
         text = self.succeed("sensor", "show", "s.toml")
-        for words in ("ADXL335", "bias y", "−0.2000 ± 0.0010", "tumble", "static.csv, 2 h", "below 2e-6"):
+        for words in ("ADXL335", "bias y", "-0.2000 ± 0.0010", "tumble", "static.csv, 2 h", "below 2e-6"):
             self.assertIn(words, text)
 
     def test_its_document_is_in_si(self):
