@@ -3,6 +3,7 @@
 
 #include "command_line.hpp"
 #include "console.hpp"
+#include "distinct_files.hpp"
 #include "exit_status.hpp"
 #include "verbs.hpp"
 
@@ -21,6 +22,7 @@ int main(int argc, char** argv) {
   watch_for_interrupts();
   try {
     const std::optional<Command> command = parse_command_line(argc, argv);
+    if (command) hold_apart(*command);
     if (command) std::visit([](const auto& chosen) { run(chosen); }, *command);
     return done;
   } catch (const Failure& failure) {

@@ -4,53 +4,39 @@
 #include <cstdio>
 #include <cstring>
 #include <fmt/format.h>
-#include <memory>
-#include <unistd.h>
 
 #include "console.hpp"
 #include "exit_status.hpp"
 #include "input.hpp"
 #include "plain_text.hpp"
+#include "proofmass/core/new_file.hpp"
 #include "proofmass/io/write_recording.hpp"
 #include "provenance.hpp"
 
 namespace proofmass::app {
 namespace {
 
-struct Close {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-[[noreturn]] void cannot_write(const std::string& path, int error) {
-  throw Failure(failed,
-                fmt::format("{}: cannot be written: {}: choose a place that exists and has room",
-                            path, std::strerror(error)));
-}
-
-bool fill(const std::string& path, const std::string& text) {
-  std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "wb"));
-  if (!file) return false;
-  if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) return false;
-  return std::fclose(file.release()) == 0;
+[[noreturn]] void cannot_print(int error) {
+  throw Failure(failed, fmt::format("standard output: cannot be written: {}: choose a place that "
+                                    "exists and has room",
+                                    std::strerror(error)));
 }
 
 }  // namespace
 
 void write_text(const std::string& path, const std::string& text) {
-  const std::string part = fmt::format("{}.part{}", path, getpid());
-  errno = 0;
   without_interruption([&] {
-    if (fill(part, text) && std::rename(part.c_str(), path.c_str()) == 0) return;
-    const int error = errno;
-    std::remove(part.c_str());
-    cannot_write(path, error);
+    const Status written = write_file(path, text);
+    if (!written) {
+      throw Failure(failed, written.error().message + ": choose a place that exists and has room");
+    }
   });
 }
 
 void print_out(const std::string& text) {
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    cannot_write("standard output", errno);
+    cannot_print(errno);
   }
 }
 

@@ -9,8 +9,7 @@
 
 namespace proofmass::app {
 
-/// Writes a text file beside `path` first and then renames it, so that nobody sees half of it.
-/// Throws Failure (failed).
+/// write_file(), or Failure (failed).
 void write_text(const std::string& path, const std::string& text);
 
 /// Writes to standard output. Throws Failure (failed) where that does not take it.

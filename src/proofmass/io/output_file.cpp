@@ -2,9 +2,10 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
 #include <system_error>
-#include <unistd.h>
+#include <utility>
+
+#include "proofmass/core/new_file.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -40,48 +41,27 @@ class StandardOutput final : public OutputFile {
 
 class DiskFile final : public OutputFile {
  public:
-  DiskFile(std::FILE* file, std::string path)
-      : file_(file), path_(std::move(path)), part_(path_ + ".part") {}
-  ~DiskFile() override {
-    if (file_ == nullptr) return;
-    std::fclose(file_);
-    std::remove(part_.c_str());
-  }
+  DiskFile(NewFile file, std::string path) : file_(std::move(file)), path_(std::move(path)) {}
 
   [[nodiscard]] Status append(std::string_view bytes) override {
-    if (bytes.empty()) return Done{};
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) return failed();
-    size_ += bytes.size();
-    return Done{};
+    const Status written = file_.append(bytes);
+    if (written) size_ += bytes.size();
+    return written;
   }
   [[nodiscard]] Status overwrite(std::uint64_t offset, std::string_view bytes) override {
-    const bool done = ::fseeko(file_, static_cast<off_t>(offset), SEEK_SET) == 0 &&
-                      std::fwrite(bytes.data(), 1, bytes.size(), file_) == bytes.size() &&
-                      ::fseeko(file_, 0, SEEK_END) == 0;
-    return done ? Status(Done{}) : failed();
+    std::FILE* stream = file_.stream();
+    const bool done = ::fseeko(stream, static_cast<off_t>(offset), SEEK_SET) == 0 &&
+                      std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size() &&
+                      ::fseeko(stream, 0, SEEK_END) == 0;
+    return done ? Status(Done{}) : cannot_write(path_, std::generic_category().message(errno));
   }
   [[nodiscard]] std::uint64_t size() const override { return size_; }
-  [[nodiscard]] const std::string& part_path() const override { return part_; }
-  [[nodiscard]] Status keep() override {
-    // What a power cut leaves under the name must be whole.
-    const bool flushed = std::fflush(file_) == 0 && ::fsync(::fileno(file_)) == 0;
-    const int why = errno;
-    const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
-    std::error_code problem;
-    if (flushed && closed) std::filesystem::rename(part_, path_, problem);
-    if (flushed && closed && !problem) return Done{};
-    std::remove(part_.c_str());
-    return cannot_write(path_, problem ? problem.message()
-                                       : std::generic_category().message(flushed ? errno : why));
-  }
+  [[nodiscard]] const std::string& part_path() const override { return file_.part_path(); }
+  [[nodiscard]] Status keep() override { return file_.keep(); }
 
  private:
-  [[nodiscard]] Error failed() const {
-    return cannot_write(path_, std::generic_category().message(errno));
-  }
-  std::FILE* file_;
+  NewFile file_;
   std::string path_;
-  std::string part_;
   std::uint64_t size_ = 0;
 };
 
@@ -90,9 +70,9 @@ class DiskFile final : public OutputFile {
 Result<std::unique_ptr<OutputFile>> create_file(const std::string& path) {
   using Created = std::unique_ptr<OutputFile>;
   if (path == "-") return Created(std::make_unique<StandardOutput>());
-  std::FILE* file = std::fopen((path + ".part").c_str(), "w+b");
-  if (file == nullptr) return cannot_write(path, std::generic_category().message(errno));
-  return Created(std::make_unique<DiskFile>(file, path));
+  auto file = NewFile::create(path);
+  if (!file) return file.error();
+  return Created(std::make_unique<DiskFile>(std::move(file).value(), path));
 }
 
 }  // namespace proofmass::io

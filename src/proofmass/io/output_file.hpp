@@ -9,8 +9,8 @@
 
 namespace proofmass::io {
 
-/// A file on its way: "<path>.part" until keep() gives it its name; without that it goes again.
-/// Path "-" is standard output, where nothing can be written over.
+/// A file being written: a NewFile, which has its name from keep() on and is removed without it.
+/// Path "-" is standard output, where nothing can be overwritten.
 class OutputFile {
  public:
   OutputFile() = default;
@@ -23,7 +23,7 @@ class OutputFile {
   /// Writes over what was written before; it ends within it.
   [[nodiscard]] virtual Status overwrite(std::uint64_t offset, std::string_view bytes) = 0;
   [[nodiscard]] virtual std::uint64_t size() const = 0;  ///< bytes appended
-  /// "<path>.part", for libraries that write files themselves.
+  /// NewFile::part_path(), for libraries that write files themselves.
   [[nodiscard]] virtual const std::string& part_path() const = 0;
   [[nodiscard]] virtual Status keep() = 0;
 };

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "proofmass/core/new_file.hpp"
 #include "proofmass/io/output_file.hpp"
 #include "proofmass/io/recording_writers.hpp"
 
@@ -46,7 +47,9 @@ const Extension* extension_of(std::string_view path) {
   if (path == "-") return &extensions[0];
   const auto* found = std::ranges::find_if(
       extensions, [&](const Extension& e) { return path.ends_with(e.ending); });
-  return found == extensions.end() ? nullptr : found;
+  if (found != extensions.end()) return found;
+  // "/dev/stdout", or the pipe that a shell gives for ">(command)".
+  return is_special_file(std::string(path)) ? &extensions[0] : nullptr;
 }
 
 }  // namespace
@@ -60,6 +63,9 @@ Result<std::unique_ptr<RecordingWriter>> open_writer(const std::string& path,
   if (extension == nullptr)
     return Error{Errc::unsupported,
                  path + ": the extension names no format that is written: " + all_endings()};
+  if (extension->open != csv_writer && is_special_file(path))
+    return Error{Errc::unsupported,
+                 path + ": is no regular file, into which only CSV can be written"};
   auto file = create_file(path);
   if (!file) return file.error();
   std::unique_ptr<OutputFile> output = std::move(file).value();

@@ -1,15 +1,40 @@
 #include "proofmass/sensor/sensor_file_change.hpp"
 
+#include <fcntl.h>
 #include <filesystem>
+#include <sys/file.h>
 #include <system_error>
+#include <unistd.h>
 #include <utility>
 
 #include "proofmass/sensor/sensor_file.hpp"
 
 namespace proofmass::sensor {
+namespace {
+
+/// Lets one change at a time happen in a folder, so that none is lost between reading and writing;
+/// file systems that know no locks have none.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder)
+      : folder_(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (folder_ >= 0) ::flock(folder_, LOCK_EX);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock() {
+    if (folder_ >= 0) ::close(folder_);
+  }
+
+ private:
+  int folder_;
+};
+
+}  // namespace
 
 Status change_sensor_file(const std::string& path,
                           const std::function<Status(SensorModel&)>& change) {
+  const FolderLock lock(std::filesystem::path(path).parent_path());
   SensorModel model;
   std::error_code unknown;
   // Where it cannot be told whether there is a file, there may be one that must not be lost.

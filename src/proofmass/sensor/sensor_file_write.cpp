@@ -1,9 +1,7 @@
 #include <algorithm>
-#include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <system_error>
 
+#include "proofmass/core/new_file.hpp"
 #include "proofmass/sensor/sensor_fields.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 
@@ -110,20 +108,11 @@ std::string format_sensor_file(const SensorModel& model) {
 }
 
 Status write_sensor_file(const SensorModel& model, const std::string& path) {
-  const std::string beside = path + ".part";
-  std::ofstream out(beside, std::ios::binary);
-  out << format_sensor_file(model);
-  out.close();
-  std::error_code failed;
-  if (out) std::filesystem::rename(beside, path, failed);
-  if (!out || failed) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    return Error{Errc::unreadable, path +
-                                       ": the sensor file cannot be written there; is the folder "
-                                       "there, writable and not full?"};
-  }
-  return Done{};
+  Status written = write_file(path, format_sensor_file(model));
+  if (written) return written;
+  return Error{Errc::unreadable,
+               written.error().message +
+                   ": the sensor file needs a folder that exists, is writable and has room"};
 }
 
 }  // namespace proofmass::sensor
