@@ -68,9 +68,9 @@ class MemorySource final : public ByteSource {
   std::size_t position_ = 0;
 };
 
-/// Text in two bytes a character without a mark shows a zero in every second byte.
+/// Text in two bytes a character without a mark has a zero in every second byte.
 bool zeros_at(std::string_view head, std::size_t parity) {
-  if (head.size() < 16) return false;
+  if (head.size() < 8) return false;
   std::size_t zeros = 0;
   std::size_t others = 0;
   for (std::size_t i = 0; i < head.size(); ++i)

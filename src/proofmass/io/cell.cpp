@@ -43,6 +43,21 @@ Cell read_figure(std::string_view digits, bool negative, char point) {
   return {CellKind::number, negative ? -value : value};
 }
 
+/// How many digits a text begins with.
+std::size_t digits_at(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::find_if_not(text, is_digit) - text.begin());
+}
+
+/// The mark between groups of digits that a text begins with; empty if it begins with none.
+std::string_view grouping_mark(std::string_view text, char point) {
+  // An apostrophe, straight or typographic; a low line; blanks: usual, no-break, narrow, thin.
+  constexpr std::array<std::string_view, 9> marks{
+      ",", ".", "'", "\xE2\x80\x99", "_", " ", "\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"};
+  for (const std::string_view mark : marks)
+    if (text.starts_with(mark) && mark[0] != point) return text.substr(0, mark.size());
+  return {};
+}
+
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {
@@ -63,7 +78,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-Cell read_cell(std::string_view field, char point) {
+Cell read_cell(std::string_view field, char point, bool is_grouped) {
   std::string_view text = trimmed(field);
   if (text.empty() || is_word_for_nothing(text)) return {CellKind::missing, nan};
   const bool negative = text[0] == '-';
@@ -71,7 +86,34 @@ Cell read_cell(std::string_view field, char point) {
   if (same_word(text, "inf") || same_word(text, "infinity") || same_word(text, "1.#inf") ||
       text == "∞")
     return {CellKind::number, negative ? -infinity : infinity};
-  return read_figure(text, negative, point);
+  const Cell cell = read_figure(text, negative, point);
+  if (!is_grouped || cell.kind != CellKind::text) return cell;
+  const std::string plain = without_grouping(field, point);
+  return plain.empty() ? cell : read_cell(plain, point);
+}
+
+std::string without_grouping(std::string_view field, char point) {
+  std::string_view text = trimmed(field);
+  std::string plain;
+  if (!text.empty() && (text[0] == '-' || text[0] == '+')) {
+    plain += text[0];
+    text.remove_prefix(1);
+  }
+  const std::string_view lead = text.substr(0, digits_at(text));
+  if (lead.empty() || lead.size() > 3 || lead[0] == '0') return {};
+  plain += lead;
+  text.remove_prefix(lead.size());
+  const std::string_view mark = grouping_mark(text, point);
+  if (mark.empty()) return {};
+  while (text.starts_with(mark)) {
+    text.remove_prefix(mark.size());
+    if (digits_at(text) != 3) return {};
+    plain += text.substr(0, 3);
+    text.remove_prefix(3);
+  }
+  if (!text.empty() && text[0] != point) return {};
+  plain += text;
+  return read_cell(plain, point).kind == CellKind::number ? plain : std::string{};
 }
 
 double to_double(const Decimal& decimal) {

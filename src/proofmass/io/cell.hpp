@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace proofmass::io {
@@ -19,7 +20,14 @@ struct Cell {
 /// `text` less blanks and a pair of quotes around it.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
-/// Reads a field of any shape; `point` is the decimal mark. No hexadecimals.
-[[nodiscard]] Cell read_cell(std::string_view field, char point);
+/// Reads a field of any shape; `point` is the decimal mark. No hexadecimals. Thousands may be
+/// separated where `is_grouped`.
+[[nodiscard]] Cell read_cell(std::string_view field, char point, bool is_grouped = false);
+
+/// A figure with its thousands separated ("1,234.5", "1'234", "1 234 567"), without the separators:
+/// one to three digits that do not begin with 0, then groups of three behind the same mark, which
+/// is an apostrophe, a low line, any blank, or the one of comma and point that is not `point`.
+/// Empty where the field is anything else.
+[[nodiscard]] std::string without_grouping(std::string_view field, char point);
 
 }  // namespace proofmass::io

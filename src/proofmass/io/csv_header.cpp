@@ -322,4 +322,40 @@ CsvHeader read_header(const CsvLayout& layout) {
   return header;
 }
 
+std::optional<std::string> contradiction(const CsvHeader& header,
+                                         const CsvLayout& layout,
+                                         const PreambleLine& line) {
+  if (!header.found) return std::nullopt;
+  const Fields fields = fields_of(line.text, layout.separator);
+  const bool is_units = is_unit_row(fields);
+  std::vector<ColumnLabel> labels;
+  for (const std::string& field : fields)
+    labels.push_back(is_units ? ColumnLabel{{}, unit_in(field).value_or(Unit{})}
+                              : read_label(field));
+  const auto place = [&](const std::string& name) {
+    const auto at = std::ranges::find_if(
+        header.labels, [&](const ColumnLabel& label) { return lower(label.name) == lower(name); });
+    return static_cast<std::size_t>(at - header.labels.begin());
+  };
+  const std::size_t width = std::min(labels.size(), header.labels.size());
+  std::size_t known = 0;
+  std::optional<std::string> why;
+  for (std::size_t c = 0; c < width; ++c) {
+    const std::size_t at = is_units ? c : place(labels[c].name);
+    if (at == header.labels.size()) continue;
+    ++known;
+    const ColumnLabel& first = header.labels[at];
+    const bool have_units =
+        labels[c].unit.quantity != Quantity::unknown && first.unit.quantity != Quantity::unknown;
+    if (!why && at != c)
+      why = fmt::format("{} is column {} from here on, not {}", first.name, c + 1, at + 1);
+    if (!why && have_units && labels[c].unit != first.unit)
+      why = fmt::format("{} is in {} from here on, not in {}", first.name, labels[c].unit.symbol,
+                        first.unit.symbol);
+  }
+  if (!why || known * 2 < width) return std::nullopt;
+  return fmt::format("line {}: a second header, by which {}: split the file there", line.number,
+                     *why);
+}
+
 }  // namespace proofmass::io

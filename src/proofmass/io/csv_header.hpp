@@ -44,4 +44,11 @@ struct CsvHeader {
 /// ascending first, which is "time"; else "column 1", …
 [[nodiscard]] CsvHeader read_header(const CsvLayout& layout);
 
+/// Why the rows behind a line of words between the rows cannot be read as those before it: it is a
+/// second header (or row of units) with another unit, or with the columns in another order. Nothing
+/// where it is neither, or says the same.
+[[nodiscard]] std::optional<std::string> contradiction(const CsvHeader& header,
+                                                       const CsvLayout& layout,
+                                                       const PreambleLine& line);
+
 }  // namespace proofmass::io

@@ -5,8 +5,11 @@
 #include <cmath>
 #include <map>
 
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/core/units.hpp"
 #include "proofmass/io/cell.hpp"
 #include "proofmass/io/clock_text.hpp"
+#include "proofmass/io/decimal.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -59,8 +62,8 @@ struct Tally {
   std::size_t clock = 0;
   std::size_t time_of_day = 0;
 
-  void add(std::string_view field, char point) {
-    switch (read_cell(field, point).kind) {
+  void add(std::string_view field, char point, bool is_grouped) {
+    switch (read_cell(field, point, is_grouped).kind) {
       case CellKind::number:
         ++number;
         return;
@@ -92,11 +95,14 @@ struct Tally {
 struct Trial {
   char separator = ',';
   char point = '.';
+  bool is_grouped = false;
   std::size_t width = 0;  ///< of most lines, an empty last field not counted
   bool trailing = false;  ///< most lines of that width end in a separator
   double score = -1e300;
-  std::vector<Tally> tallies;
+  std::vector<Tally> tallies{};
 };
+
+using Fielded = std::vector<std::vector<std::string_view>>;
 
 std::size_t width_of(const std::vector<std::string_view>& fields) {
   const bool trailing = fields.size() > 1 && trimmed(fields.back()).empty();
@@ -147,8 +153,8 @@ void tally_columns(const std::vector<std::vector<std::string_view>>& rows, Trial
   trial.tallies.assign(trial.width, {});
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::size_t c = 0; c < trial.width; ++c) {
-      all[c].add(rows[r][c], trial.point);
-      if (r >= rows.size() / 2) trial.tallies[c].add(rows[r][c], trial.point);
+      all[c].add(rows[r][c], trial.point, trial.is_grouped);
+      if (r >= rows.size() / 2) trial.tallies[c].add(rows[r][c], trial.point, trial.is_grouped);
     }
   }
   for (const Tally& tally : all)
@@ -156,18 +162,28 @@ void tally_columns(const std::vector<std::vector<std::string_view>>& rows, Trial
         static_cast<double>(tally.number + tally.clocks()) - 1.5 * static_cast<double>(tally.text);
 }
 
-Trial attempt(const std::vector<Line>& lines,
-              const std::vector<Line>& sample,
-              char separator,
-              char point) {
-  Trial trial{separator, point, 0, false, 0.0, {}};
-  std::vector<std::vector<std::string_view>> split;
+/// The lines of words that go before the first with a figure are a header, which says nothing of
+/// how the rows are separated; a short file is half header.
+void drop_header(Fielded& rows, const Trial& trial) {
+  const auto has_value = [&](const std::vector<std::string_view>& fields) {
+    return std::ranges::any_of(fields, [&](std::string_view field) {
+      return read_cell(field, trial.point, trial.is_grouped).kind == CellKind::number ||
+             read_clock(field).has_value();
+    });
+  };
+  const auto first = std::ranges::find_if(rows, has_value);
+  if (first != rows.end()) rows.erase(rows.begin(), first);
+}
+
+Trial attempt(const std::vector<Line>& lines, const std::vector<Line>& sample, Trial trial) {
+  trial.score = 0.0;
+  const char separator = trial.separator;
+  Fielded split;
+  for (const Line& line : sample)
+    if (!is_remark(line.text, separator)) split_fields(line.text, separator, split.emplace_back());
+  drop_header(split, trial);
   std::vector<std::size_t> widths;
-  for (const Line& line : sample) {
-    if (is_remark(line.text, separator)) continue;
-    split_fields(line.text, separator, split.emplace_back());
-    widths.push_back(width_of(split.back()));
-  }
+  for (const auto& fields : split) widths.push_back(width_of(fields));
   trial.width = std::min(commonest(widths), most_columns + 1);
   if (has_last_column(lines, split, trial)) ++trial.width;
   const std::size_t tried = split.size();
@@ -192,7 +208,7 @@ bool header_is_one_wide(const std::vector<Line>& lines) {
 /// "0,5" below one name is half, not two columns.
 Trial halves_instead(const std::vector<Line>& lines, const std::vector<Line>& sample, Trial best) {
   if (best.separator != ',' || best.width != 2 || !header_is_one_wide(lines)) return best;
-  Trial halves = attempt(lines, sample, ';', ',');
+  Trial halves = attempt(lines, sample, {.separator = ';', .point = ','});
   return halves.width == 1 && halves.score > 0.0 ? halves : best;
 }
 
@@ -201,20 +217,76 @@ std::string separators_of(std::optional<char> given) {
   return given ? std::string(1, *given) : std::string(",;\t| ");
 }
 
+/// Whether nine in ten lines have the same number of tabs, which then separate the columns: two of
+/// them beside each other are an empty field, not a wide blank.
+bool has_even_tabs(const std::vector<Line>& sample) {
+  std::map<std::size_t, std::size_t> counts;
+  std::size_t lines = 0;
+  for (const Line& line : sample) {
+    if (is_remark(line.text, '\t')) continue;
+    ++lines;
+    ++counts[static_cast<std::size_t>(std::ranges::count(line.text, '\t'))];
+  }
+  return std::ranges::any_of(
+      counts, [&](const auto& entry) { return entry.first > 0 && entry.second * 10 >= lines * 9; });
+}
+
+/// Thousands that a semicolon's or a tab's table separates by commas look like decimals: "999",
+/// "1,000". They are thousands where no figure of the file has a comma in any other place, and the
+/// figures that have one continue those of their column that have none.
+bool commas_are_thousands(const std::vector<Line>& lines, const Trial& trial) {
+  std::vector<std::vector<double>> plain(trial.width), marked(trial.width);
+  std::vector<std::string_view> fields;
+  for (const Line& line : lines) {
+    split_fields(line.text, trial.separator, fields);
+    if (is_remark(line.text, trial.separator) || width_of(fields) != trial.width) continue;
+    for (std::size_t c = 0; c < trial.width; ++c) {
+      const Cell cell = read_cell(fields[c], ',');
+      if (cell.kind != CellKind::number) continue;
+      const bool has_comma = fields[c].find(',') != std::string_view::npos;
+      if (has_comma && without_grouping(fields[c], '.').empty()) return false;
+      if (cell.value != 0.0) (has_comma ? marked : plain)[c].push_back(std::abs(cell.value));
+    }
+  }
+  std::size_t continued = 0;
+  for (std::size_t c = 0; c < trial.width; ++c) {
+    if (plain[c].empty() || marked[c].empty()) continue;
+    const double step = std::log10(*median(plain[c]) / *median(marked[c]));
+    if (std::abs(step) < std::abs(step - 3.0)) return false;
+    ++continued;
+  }
+  return continued > 0;
+}
+
+/// The best way to take the lines apart under separators and marks of the usual kinds.
+Trial best_of(const std::vector<Line>& lines,
+              const std::vector<Line>& sample,
+              const std::string& separators) {
+  Trial best;
+  const bool has_tabs = has_even_tabs(sample);
+  const auto take_if_better = [&](char separator, char point, bool is_grouped) {
+    if (separator == point) return;
+    if (separator == ' ' && has_tabs && best.separator == '\t' && best.score > 0.0) return;
+    Trial trial =
+        attempt(lines, sample, {.separator = separator, .point = point, .is_grouped = is_grouped});
+    // A comma in a line without any separator is one, but for halves_instead().
+    const bool separates = point != ',' || trial.width > 1;
+    if (separates && trial.score > best.score) best = std::move(trial);
+  };
+  for (const bool is_grouped : {false, true})
+    for (const char point : {'.', ','})
+      for (const char separator : separators) take_if_better(separator, point, is_grouped);
+  return best;
+}
+
 Trial best_trial(const std::vector<Line>& lines,
                  const std::vector<Line>& sample,
                  std::optional<char> given) {
-  Trial best;
-  for (const char point : {'.', ','}) {
-    for (const char separator : separators_of(given)) {
-      if (separator == point) continue;
-      Trial trial = attempt(lines, sample, separator, point);
-      // A comma in a line without any separator is one, but for the exception below.
-      const bool separates = point != ',' || trial.width > 1;
-      if (separates && trial.score > best.score) best = std::move(trial);
-    }
-  }
-  return given ? best : halves_instead(lines, sample, std::move(best));
+  Trial best = best_of(lines, sample, separators_of(given));
+  if (!given) best = halves_instead(lines, sample, std::move(best));
+  if (best.point == ',' && best.separator != ',' && commas_are_thousands(lines, best))
+    return attempt(lines, sample, {.separator = best.separator, .point = '.', .is_grouped = true});
+  return best;
 }
 
 /// Lines to judge by: the last of those looked at, which are rows whatever precedes them.
@@ -235,10 +307,10 @@ bool is_row(const std::vector<std::string_view>& fields, const CsvLayout& layout
     if (layout.columns[c] == ColumnKind::text) continue;
     // Words that only some rows have may stand in the very first of them.
     if (layout.columns[c] == ColumnKind::blank) {
-      any = any || read_cell(fields[c], layout.point).kind == CellKind::number;
+      any = any || read_cell(fields[c], layout.point, layout.is_grouped).kind == CellKind::number;
       continue;
     }
-    const CellKind kind = read_cell(fields[c], layout.point).kind;
+    const CellKind kind = read_cell(fields[c], layout.point, layout.is_grouped).kind;
     const bool stands_for_value = layout.columns[c] == ColumnKind::number
                                       ? kind == CellKind::number
                                       : read_clock(fields[c]).has_value();
@@ -263,7 +335,7 @@ bool first_column_ascends(const std::vector<Line>& rows, const CsvLayout& layout
   double last = std::nan("");
   for (const Line& row : rows) {
     split_fields(row.text, layout.separator, fields);
-    const double value = read_cell(fields.front(), layout.point).value;
+    const double value = read_cell(fields.front(), layout.point, layout.is_grouped).value;
     if (!std::isnan(last) && !std::isnan(value)) {
       ++steps;
       if (value > last) ++up;
@@ -299,6 +371,50 @@ std::vector<Line> find_rows(const std::vector<Line>& lines, CsvLayout& layout) {
   return rows;
 }
 
+/// Whether a word is a figure that is spelt as no reader can be sure of: "(0.5)", "5 %", "1.5 g",
+/// "1.5D-3", digits of full width.
+bool is_odd_figure(std::string_view word) {
+  constexpr std::string_view figures = "0123456789.,'_() %";
+  word = trimmed(word);
+  if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+  constexpr std::string_view full_width = "\xEF\xBC";  // of U+FF00 … U+FF3F
+  bool has_digit = false;
+  while (!word.empty()) {
+    const bool is_wide = word.starts_with(full_width) && word.size() > 2;
+    // Bytes of other characters, as of blanks and minus signs, say nothing for or against.
+    const bool is_other = static_cast<unsigned char>(word[0]) >= 0x80;
+    if (!is_wide && !is_other && figures.find(word[0]) == std::string_view::npos) break;
+    has_digit = has_digit || is_wide || is_digit(word[0]);
+    word.remove_prefix(is_wide ? 3 : 1);
+  }
+  if (!has_digit) return false;
+  if (!word.empty() && (word[0] == 'D' || word[0] == 'd')) {
+    word.remove_prefix(1);
+    if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+    return !word.empty() && std::ranges::all_of(word, is_digit);
+  }
+  return word.empty() || parse_unit(word).has_value();
+}
+
+/// Columns of text that are mostly odd figures.
+void note_odd_figures(const std::vector<Line>& rows, CsvLayout& layout) {
+  const std::size_t width = layout.columns.size();
+  layout.odd_figures.assign(width, {});
+  std::vector<std::size_t> odd(width, 0), words(width, 0);
+  std::vector<std::string_view> fields;
+  for (const Line& row : rows) {
+    split_fields(row.text, layout.separator, fields);
+    for (std::size_t c = 0; c < std::min(width, fields.size()); ++c) {
+      if (layout.columns[c] != ColumnKind::text || trimmed(fields[c]).empty()) continue;
+      ++words[c];
+      if (!is_odd_figure(fields[c])) continue;
+      if (odd[c]++ == 0) layout.odd_figures[c] = trimmed(fields[c]).substr(0, 24);
+    }
+  }
+  for (std::size_t c = 0; c < width; ++c)
+    if (odd[c] * 2 <= words[c]) layout.odd_figures[c].clear();
+}
+
 /// Fills in where the rows begin and what stands before them; false if there is no row.
 bool place_rows(const std::vector<Line>& lines, CsvLayout& layout) {
   const std::vector<Line> rows = find_rows(lines, layout);
@@ -309,6 +425,7 @@ bool place_rows(const std::vector<Line>& lines, CsvLayout& layout) {
   for (const Line& row : rows) bytes += row.text.size() + 1;
   layout.bytes_per_row = static_cast<double>(bytes) / static_cast<double>(rows.size());
   layout.first_ascends = first_column_ascends(rows, layout);
+  note_odd_figures(rows, layout);
   return true;
 }
 
@@ -364,6 +481,7 @@ Result<CsvLayout> infer_layout(std::string_view head, bool is_whole_text) {
                  "has more than " + std::to_string(most_columns) + " columns: no table"};
   layout.separator = trial.separator;
   layout.point = trial.point;
+  layout.is_grouped = trial.is_grouped;
   layout.trailing_separator = trial.trailing;
   for (const Tally& tally : trial.tallies) layout.columns.push_back(tally.kind());
   if (!place_rows(lines, layout))

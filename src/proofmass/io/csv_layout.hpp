@@ -31,9 +31,13 @@ struct PreambleLine {
 struct CsvLayout {
   char separator = ',';  ///< ' ' stands for any run of blanks and tabs
   char point = '.';
+  bool is_grouped = false;          ///< figures may have their thousands separated
   char line_end = '\n';             ///< '\r' in files that know no other
   bool trailing_separator = false;  ///< rows end in a separator
   std::vector<ColumnKind> columns;
+  /// Of columns of text, the first field among the rows looked at that has the shape of a figure,
+  /// if most have: "(0.5)", "5 %".
+  std::vector<std::string> odd_figures;
   std::size_t data_offset = 0;         ///< byte at which the first row of numbers begins
   std::size_t first_line = 1;          ///< its line
   std::vector<PreambleLine> preamble;  ///< the lines before it that are not blank

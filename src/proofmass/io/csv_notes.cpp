@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <iterator>
 
+#include "proofmass/io/cell.hpp"
+#include "proofmass/io/channel_units.hpp"
+
 namespace proofmass::io {
 namespace {
 
@@ -27,6 +30,26 @@ std::string rows_from(const Seen& seen, std::string_view fault) {
   return seen.count == 1
              ? fmt::format("line {} {}", seen.first_line, fault)
              : fmt::format("{} lines, the first {}, {}", seen.count, seen.first_line, fault);
+}
+
+/// A channel whose figures cannot be read is no column of words: it is lost. It is known by its
+/// unit, by its name or by the look of its fields.
+void tell_lost_channels(const CsvLayout& layout,
+                        const CsvHeader& header,
+                        const CsvColumns& columns,
+                        std::vector<Note>& notes) {
+  for (std::size_t c = 0; c < layout.columns.size(); ++c) {
+    if (layout.columns[c] != ColumnKind::text || columns.date == c) continue;
+    const ColumnLabel& label = header.labels[c];
+    const std::string& figure = layout.odd_figures[c];
+    const bool is_measured = label.unit.quantity != Quantity::unknown ||
+                             (header.found && is_accelerometer_name(label.name));
+    if (!is_measured && figure.empty()) continue;
+    notes.push_back(
+        {Severity::bad,
+         fmt::format("{}: its fields are no numbers{}: the channel is lost", label.name,
+                     figure.empty() ? "" : fmt::format(", as \"{}\" is none", figure))});
+  }
 }
 
 /// Says what became of the columns of words.
@@ -61,11 +84,13 @@ void tell_layout(const CsvLayout& layout,
                    head, layout.columns.size(), layout.first_line)});
   notes.insert(notes.end(), header.notes.begin(), header.notes.end());
   tell_words(header, columns, notes);
+  tell_lost_channels(layout, header, columns, notes);
 }
 
 void tell_faults(const RowFaults& faults,
                  const CsvHeader& header,
                  const CsvColumns& columns,
+                 char point,
                  std::vector<Note>& notes) {
   const auto tell = [&](Severity severity, const Seen& seen, std::string_view fault) {
     if (seen.count > 0) notes.push_back({severity, rows_from(seen, fault)});
@@ -76,6 +101,13 @@ void tell_faults(const RowFaults& faults,
   tell(Severity::warning, faults.cut, "breaks off: its last field is not used");
   tell(Severity::warning, faults.nul, "holding bytes of zero, as a power cut leaves them");
   tell(Severity::info, faults.remarks, "a remark between the rows: passed over");
+  for (const auto& [column, seen] : faults.grouped) {
+    const std::string& first = faults.first_grouped.at(column);
+    notes.push_back({Severity::warning,
+                     fmt::format("{}: thousands are separated, as in \"{}\" on line {}, read as {}",
+                                 header.labels[column].name, first, seen.first_line,
+                                 without_grouping(first, point))});
+  }
   constexpr std::size_t most_columns_told = 16;
   std::size_t told = 0;
   for (const auto& [column, seen] : faults.words) {

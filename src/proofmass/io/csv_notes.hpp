@@ -16,10 +16,12 @@ void tell_layout(const CsvLayout& layout,
                  const CsvColumns& columns,
                  std::vector<Note>& notes);
 
-/// Says what was wrong with the rows, each fault with its count and first line.
+/// Says what was wrong with the rows, each fault with its count and first line; `point` is the
+/// decimal mark.
 void tell_faults(const RowFaults& faults,
                  const CsvHeader& header,
                  const CsvColumns& columns,
+                 char point,
                  std::vector<Note>& notes);
 
 }  // namespace proofmass::io

@@ -158,6 +158,9 @@ class CsvReader final : public RecordingReader {
     while (rows_->rows() - before < most) {
       const auto more = feed_.step(*rows_);
       if (!more) return more.error();
+      for (const auto& lines = rows_->wordy_lines(); seen_wordy_ < lines.size(); ++seen_wordy_)
+        if (const auto why = contradiction(header_, layout_, lines[seen_wordy_]))
+          return Error{Errc::corrupt, *why};
       if (!*more) break;
       if (progress_) progress_("reading", source_->fraction_read());
     }
@@ -171,7 +174,7 @@ class CsvReader final : public RecordingReader {
     if (const auto labels = label_column(columns_, *rows_, has_figures_))
       take_labels(*labels, recording);
     tell_layout(layout_, header_, columns_, recording.notes);
-    tell_faults(rows_->faults(), header_, columns_, recording.notes);
+    tell_faults(rows_->faults(), header_, columns_, layout_.point, recording.notes);
     std::ranges::move(source_->notes(), std::back_inserter(recording.notes));
     if (rows_->stamps() && rows_->stamps()->zone_missing())
       recording.notes.push_back({Severity::info, header_.labels[*columns_.stamps].name +
@@ -234,6 +237,7 @@ class CsvReader final : public RecordingReader {
   std::optional<CsvRows> rows_;
   RawHead head_;
   Progress progress_;
+  std::size_t seen_wordy_ = 0;  ///< of CsvRows::wordy_lines()
 };
 
 }  // namespace

@@ -200,9 +200,14 @@ double CsvRows::read_field(std::size_t column, std::size_t fields) {
   if (column >= fields) return nan;
   if (uses_[column] == ColumnUse::stamps) {
     const bool dated = date_column_ && *date_column_ < fields;
+    if (layout_.is_grouped) {
+      const std::string plain = without_grouping(fields_[column], layout_.point);
+      if (!plain.empty()) return stamps_->read(plain);
+    }
     return stamps_->read(fields_[column], dated ? fields_[*date_column_] : std::string_view{});
   }
-  const Cell cell = read_cell(fields_[column], layout_.point);
+  const Cell cell = read_cell(fields_[column], layout_.point, layout_.is_grouped);
+  if (layout_.is_grouped) note_grouping(column);
   if (cell.kind == CellKind::text) {
     faults_.words[column].add(line_);
     faults_.first_word.try_emplace(column, trimmed(fields_[column]).substr(0, 24));
@@ -232,7 +237,13 @@ std::size_t CsvRows::usable_fields(bool is_cut) {
 bool CsvRows::is_figure(std::size_t column) const {
   if (!has_values(uses_[column])) return false;
   if (uses_[column] == ColumnUse::stamps && !plain_) return !trimmed(fields_[column]).empty();
-  return read_cell(fields_[column], layout_.point).kind != CellKind::text;
+  return read_cell(fields_[column], layout_.point, layout_.is_grouped).kind != CellKind::text;
+}
+
+void CsvRows::note_grouping(std::size_t column) {
+  if (without_grouping(fields_[column], layout_.point).empty()) return;
+  faults_.grouped[column].add(line_);
+  faults_.first_grouped.try_emplace(column, trimmed(fields_[column]).substr(0, 24));
 }
 
 void CsvRows::parse_fields(std::string_view line, bool is_cut) {
@@ -250,6 +261,8 @@ void CsvRows::parse_fields(std::string_view line, bool is_cut) {
   while (first_figure < used && !is_figure(first_figure)) ++first_figure;
   if (first_figure == used) {
     if (!is_cut) faults_.unreadable.add(line_);
+    if (!is_cut && count == uses_.size() && wordy_lines_.size() < most_wordy_lines)
+      wordy_lines_.push_back({line_, false, std::string(line)});
     pending_gap_ = true;
     return;
   }

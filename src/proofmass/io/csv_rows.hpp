@@ -36,6 +36,8 @@ struct RowFaults {
   Seen nul;                           ///< bytes of zero in it
   std::map<std::size_t, Seen> words;  ///< by column: a word where a number was expected
   std::map<std::size_t, std::string> first_word;
+  std::map<std::size_t, Seen> grouped;  ///< by column: figures with their thousands separated
+  std::map<std::size_t, std::string> first_grouped;
   Seen remarks;  ///< between the rows
   /// Lines between the rows that are no sample: then line and sample do not run in step.
   bool out_of_step = false;
@@ -62,6 +64,9 @@ class CsvRows {
   [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] std::size_t line() const { return line_; }
   [[nodiscard]] const RowFaults& faults() const { return faults_; }
+  /// Lines between the rows that hold as many fields as there are columns, and no figure: the first
+  /// few, among which a second header will be.
+  [[nodiscard]] const std::vector<PreambleLine>& wordy_lines() const { return wordy_lines_; }
   [[nodiscard]] const std::optional<StampReader>& stamps() const { return stamps_; }
   /// The values of the file's column c, which must be kept or stamps, since they were last taken;
   /// after flush().
@@ -82,9 +87,11 @@ class CsvRows {
   std::size_t usable_fields(bool is_cut);
   [[nodiscard]] bool is_figure(std::size_t column) const;
   double read_field(std::size_t column, std::size_t fields);
+  void note_grouping(std::size_t column);
   void commit();
   void commit_words();
 
+  static constexpr std::size_t most_wordy_lines = 64;
   static constexpr std::size_t block = 512;  ///< rows gathered before columns are appended to
 
   const CsvLayout& layout_;
@@ -105,6 +112,7 @@ class CsvRows {
   bool pending_gap_ = false;  ///< a line that is no sample, harmful only if a sample follows
   bool plain_ = true;         ///< no calendar time: parse_plain may be tried
   RowFaults faults_;
+  std::vector<PreambleLine> wordy_lines_;
 };
 
 }  // namespace proofmass::io

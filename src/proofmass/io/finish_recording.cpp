@@ -8,6 +8,7 @@
 
 #include "proofmass/io/channel_units.hpp"
 #include "proofmass/io/clock_pair.hpp"
+#include "proofmass/io/raw_rows.hpp"
 #include "proofmass/signal/counter.hpp"
 #include "proofmass/signal/skew.hpp"
 
@@ -78,6 +79,7 @@ Result<Recording> finish_recording(RecordingReader& reader,
                                    RawRows rows,
                                    const ReadOptions& options) {
   if (const Status rate = check_rate(options); !rate) return rate.error();
+  if (rows_of(rows) == 0) return Error{Errc::too_few_samples, "holds no sample"};
   Recording recording = reader.head().recording;
   for (std::size_t c = 0; c < recording.channels.size(); ++c)
     recording.channels[c].values = std::move(rows.channels[c]);

@@ -72,6 +72,7 @@ class RecordingStream::Reading {
         return read.error();
       ahead_.push_back(std::move(rest));
     }
+    if (ahead_.empty()) return Error{Errc::too_few_samples, "holds no sample"};
     RawRows all = ahead_.size() == 1 ? std::move(ahead_.front()) : joined(std::move(ahead_));
     auto finished = finish_recording(*reader_, std::move(all), options_);
     if (!finished) return finished.error();
