@@ -171,8 +171,8 @@ bool is_same_or_within(const std::string& file, const std::string& file_or_folde
   if (a && b && S_ISREG(a->st_mode) && is_one(*a, *b)) return true;
   if (a && !S_ISREG(a->st_mode)) return false;
   std::error_code problem;
-  const fs::path inner = fs::weakly_canonical(file, problem);
-  const fs::path outer = fs::weakly_canonical(file_or_folder, problem);
+  const fs::path inner = fs::weakly_canonical(fs::absolute(file, problem), problem);
+  const fs::path outer = fs::weakly_canonical(fs::absolute(file_or_folder, problem), problem);
   if (inner == outer) return !inner.empty();
   if (!a || !b || !S_ISDIR(b->st_mode)) return false;
   return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();

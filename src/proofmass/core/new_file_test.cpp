@@ -163,6 +163,7 @@ TEST_F(NewFiles, AreComparedByWhatTheyAreNotByTheirNames) {
   EXPECT_FALSE(is_same_or_within(path("a"), path("room")));
   EXPECT_FALSE(is_same_or_within(path("room/new"), path("room"))) << "nothing is lost by it";
   EXPECT_TRUE(is_same_or_within(path("new"), path("room/../new")));
+  EXPECT_TRUE(is_same_or_within("not_there", "./not_there"));
   EXPECT_FALSE(is_same_or_within("/dev/null", "/dev/null"));
 }
 

@@ -78,6 +78,14 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+bool is_formula(std::string_view text) {
+  return !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
+}
+
+std::string_view without_guard(std::string_view text) {
+  return text.starts_with('\'') && is_formula(text.substr(1)) ? text.substr(1) : text;
+}
+
 Cell read_cell(std::string_view field, char point, bool is_grouped) {
   std::string_view text = trimmed(field);
   if (text.empty() || is_word_for_nothing(text)) return {CellKind::missing, nan};

@@ -20,6 +20,13 @@ struct Cell {
 /// `text` less blanks and a pair of quotes around it.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
+/// Whether a spreadsheet takes a text for a formula: it begins with '=', '+', '-', '@', a tab or a
+/// carriage return.
+[[nodiscard]] bool is_formula(std::string_view text);
+
+/// A text less the apostrophe by which it was kept from being a formula.
+[[nodiscard]] std::string_view without_guard(std::string_view text);
+
 /// Reads a field of any shape; `point` is the decimal mark. No hexadecimals. Thousands may be
 /// separated where `is_grouped`.
 [[nodiscard]] Cell read_cell(std::string_view field, char point, bool is_grouped = false);

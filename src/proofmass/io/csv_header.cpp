@@ -10,6 +10,7 @@
 #include "proofmass/io/cell.hpp"
 #include "proofmass/io/csv_start.hpp"
 #include "proofmass/io/names.hpp"
+#include "proofmass/io/shown_text.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -20,7 +21,7 @@ Fields fields_of(std::string_view line, char separator) {
   std::vector<std::string_view> views;
   split_fields(line, separator, views);
   Fields fields;
-  for (const std::string_view view : views) fields.emplace_back(trimmed(view));
+  for (const std::string_view view : views) fields.emplace_back(without_guard(trimmed(view)));
   while (fields.size() > 1 && fields.back().empty()) fields.pop_back();
   return fields;
 }
@@ -314,6 +315,7 @@ void complete_names(std::vector<ColumnLabel>& labels, std::vector<Note>& notes) 
 
 CsvHeader read_header(const CsvLayout& layout) {
   CsvHeader header = HeaderFinder(layout).find();
+  for (ColumnLabel& label : header.labels) label.name = clean_text(label.name);
   for (const PreambleLine& line : layout.preamble)
     if (!header.rate_hz && line.number != header.line) header.rate_hz = rate_in(line.text);
   CsvStart start = read_csv_start(layout);

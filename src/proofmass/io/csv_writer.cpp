@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "proofmass/io/cell.hpp"
 #include "proofmass/io/recording_writers.hpp"
 #include "proofmass/io/row_times.hpp"
 #include "proofmass/io/stamp_reader.hpp"
@@ -23,7 +24,11 @@ void append_figure(std::string& out, double value) {
   out.append(text.data(), end.ptr);
 }
 
+/// A name or a label. Spreadsheets take what begins with one of these signs for a formula and
+/// work it out: an apostrophe before it, which the reader takes off again, says that it is text.
+/// Source: OWASP, "CSV Injection".
 void append_words(std::string& out, std::string words) {
+  if (is_formula(words)) words.insert(0, 1, '\'');
   std::ranges::replace(words, '"', '\'');
   std::ranges::replace_if(words, [](char c) { return c == '\n' || c == '\r'; }, ' ');
   const bool quoted = words.find_first_of(",;\t'#") != std::string::npos;

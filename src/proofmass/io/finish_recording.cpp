@@ -8,7 +8,9 @@
 
 #include "proofmass/io/channel_units.hpp"
 #include "proofmass/io/clock_pair.hpp"
+#include "proofmass/io/names.hpp"
 #include "proofmass/io/raw_rows.hpp"
+#include "proofmass/io/shown_text.hpp"
 #include "proofmass/signal/counter.hpp"
 #include "proofmass/signal/skew.hpp"
 
@@ -52,6 +54,20 @@ std::string names_of(const Recording& recording) {
   return names;
 }
 
+/// The channels that a matrix's columns, or a sensor's axes, have become: "acc" is "acc_x", "acc_y"
+/// and "acc_z".
+std::vector<std::size_t> columns_of(const Recording& recording, const std::string& name) {
+  std::vector<std::size_t> columns;
+  const std::string stem = lower(name);
+  for (std::size_t c = 0; c < recording.channels.size(); ++c) {
+    const std::string channel = lower(recording.channels[c].name);
+    if (!stem.empty() && channel.starts_with(stem) &&
+        (channel[stem.size()] == '_' || channel[stem.size()] == ' '))
+      columns.push_back(c);
+  }
+  return columns;
+}
+
 }  // namespace
 
 Status check_rate(const ReadOptions& options) {
@@ -65,10 +81,15 @@ Result<std::vector<std::size_t>> chosen_channels(const Recording& recording,
   std::set<std::size_t> chosen;
   for (const std::string& name : names) {
     const Channel* channel = recording.find(name);
-    if (channel == nullptr)
+    if (channel != nullptr) {
+      chosen.insert(static_cast<std::size_t>(channel - recording.channels.data()));
+      continue;
+    }
+    const std::vector<std::size_t> columns = columns_of(recording, name);
+    if (columns.empty())
       return Error{Errc::invalid_argument,
                    fmt::format("has no channel {}; it has {}", name, names_of(recording))};
-    chosen.insert(static_cast<std::size_t>(channel - recording.channels.data()));
+    chosen.insert(columns.begin(), columns.end());
   }
   if (names.empty())
     for (std::size_t c = 0; c < recording.channels.size(); ++c) chosen.insert(c);
@@ -87,6 +108,7 @@ Result<Recording> finish_recording(RecordingReader& reader,
   attach_time(recording, reader.head(), std::move(rows.stamps), options);
   if (recording.channels.empty())
     return Error{Errc::too_few_samples, "has no column of numbers beside the time"};
+  clean_texts(recording);
   settle_units(recording, options);
   tell_other_clocks(recording);
   if (options.skew_s != 0.0) {

@@ -13,6 +13,7 @@ struct Foreign {
 constexpr std::array foreign = std::to_array<Foreign>({
     {"#ROSBAG", "is a ROS 1 bag, which is not read: make an MCAP file of it (mcap convert)"},
     {"BZh", "is compressed by bzip2, which is not read: unpack it, or use gzip or xz"},
+    {"\x04\x22\x4D\x18", "is compressed by lz4, which is not read: unpack it, or use gzip or xz"},
     {"SQLite format 3", "is an SQLite data base, which is not read: export the table as CSV"},
     {"%PDF", "is a PDF: expected a recording"},
     {"{", "is a JSON document: expected a table, such as CSV"},

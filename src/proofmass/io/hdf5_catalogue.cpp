@@ -22,7 +22,7 @@ Hdf5Dataset read_dataset(WordReader& from) {
   constexpr std::size_t most_dimensions = 32;
   Hdf5Dataset dataset;
   dataset.path = from.text();
-  dataset.address = from.text();
+  dataset.address = from.bytes_text(usual_text);
   dataset.type = from.text();
   dataset.shape = from.list(most_dimensions, [&] { return from.number(); });
   dataset.group_length = from.number();

@@ -52,8 +52,8 @@ inline constexpr std::size_t most_hdf5_runs = std::size_t{1} << 16;
 inline constexpr std::size_t most_catalogue_bytes = std::size_t{8} << 20;
 
 /// A catalogue as bytes and back. decode() believes nothing: lengths are held to the bytes there
-/// are, names come back as printable text, shapes that no file can have are refused.
-/// Errors of decode: corrupt.
+/// are, names (but not addresses) come back as printable text, shapes that no file can have are
+/// refused. Errors of decode: corrupt.
 [[nodiscard]] std::string encode(const Hdf5Catalogue& catalogue);
 [[nodiscard]] Result<Hdf5Catalogue> decode(std::string_view bytes);
 

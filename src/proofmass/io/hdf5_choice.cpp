@@ -31,7 +31,11 @@ class Chooser {
   }
 
   Status run() {
-    if (options_.variables.empty()) return take_best("");
+    if (options_.variables.empty()) {
+      const Status taken = take_best("");
+      if (taken && take_asked_for()) add_time();
+      return taken;
+    }
     for (const std::string& name : options_.variables)
       if (const Status taken = take_named(name); !taken) return taken;
     add_time();
@@ -50,20 +54,33 @@ class Chooser {
  private:
   static constexpr std::size_t most_columns_joined = 512;
 
+  /// Chooses the datasets that the channels asked for are of, instead; false where there are none,
+  /// or they are chosen already.
+  bool take_asked_for() {
+    std::set<const MatArray*> asked = arrays_asked_for(tables_, options_);
+    if (std::ranges::includes(chosen_, asked)) return false;
+    chosen_ = std::move(asked);
+    return true;
+  }
+
   /// Of the tables within a group, those of the group in it that has most to say.
   Status take_best(std::string_view within) {
     struct Weight {
-      bool is_acceleration = false;
+      bool may_be_samples = false;
+      TableKind kind = TableKind::other;
       std::size_t figures = 0;
       auto operator<=>(const Weight&) const = default;
     };
+    std::size_t longest = 0;
+    for (const MatTable& table : tables_)
+      if (is_within(table.array->path, within)) longest = std::max(longest, table.rows);
     std::map<std::pair<std::string_view, std::size_t>, Weight> weights;
     for (const MatTable& table : tables_) {
       if (!is_within(table.array->path, within)) continue;
       Weight& weight = weights[{table.array->group(), table.rows}];
+      weight.may_be_samples = may_be_samples(table, longest);
       weight.figures += table.figures();
-      weight.is_acceleration =
-          weight.is_acceleration || lower(table.array->path).find("acc") != std::string::npos;
+      weight.kind = std::max(weight.kind, kind_of(table));
     }
     const auto best =
         std::ranges::max_element(weights, {}, [](const auto& entry) { return entry.second; });

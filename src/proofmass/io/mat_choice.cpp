@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <set>
+#include <tuple>
 
 #include "proofmass/io/array_recording.hpp"
+#include "proofmass/io/channel_units.hpp"
 #include "proofmass/io/names.hpp"
 
 namespace proofmass::io {
@@ -46,6 +48,17 @@ bool is_within(std::string_view path, std::string_view group) {
          std::string_view(".({").find(path[group.size()]) != std::string_view::npos;
 }
 
+/// Whether a channel has a table's name, or that and the ending of a column.
+bool is_channel_of(const std::string& channel, const MatTable& table) {
+  const std::string wanted = lower(channel);
+  const auto is_of = [&](const std::string& name) {
+    if (wanted == name) return true;
+    return table.width > 1 && wanted.starts_with(name) &&
+           (wanted[name.size()] == '_' || wanted[name.size()] == ' ');
+  };
+  return is_of(lower(table.name())) || is_of(lower(table.array->path));
+}
+
 class Chooser {
  public:
   Chooser(const MatCatalogue& catalogue, const ReadOptions& options)
@@ -55,7 +68,10 @@ class Chooser {
   }
 
   Status run() {
-    if (options_.variables.empty()) return take_largest("");
+    if (options_.variables.empty()) {
+      const Status taken = take_largest("");
+      return taken && take_asked_for() ? add_time() : taken;
+    }
     for (const std::string& name : options_.variables)
       if (const Status taken = take_named(name); !taken) return taken;
     return add_time();
@@ -73,12 +89,28 @@ class Chooser {
   }
 
  private:
-  /// The largest table within a group, and the vectors beside it.
+  /// Chooses the tables that the channels asked for are of, instead; false where there are none, or
+  /// they are chosen already.
+  bool take_asked_for() {
+    std::set<const MatArray*> asked = arrays_asked_for(tables_, options_);
+    if (std::ranges::includes(chosen_, asked)) return false;
+    chosen_ = std::move(asked);
+    return true;
+  }
+
+  /// The largest table within a group, those of accelerations before others, and the vectors beside
+  /// it.
   Status take_largest(std::string_view group) {
+    std::size_t longest = 0;
+    for (const MatTable& table : tables_)
+      if (is_within(table.array->path, group)) longest = std::max(longest, table.rows);
+    const auto rank = [&](const MatTable& table) {
+      return std::tuple(may_be_samples(table, longest), kind_of(table), table.figures());
+    };
     const MatTable* largest = nullptr;
     for (const MatTable& table : tables_)
       if (is_within(table.array->path, group) &&
-          (largest == nullptr || table.figures() > largest->figures()))
+          (largest == nullptr || rank(table) > rank(*largest)))
         largest = &table;
     if (largest == nullptr) return Error{Errc::too_few_samples, nothing_there()};
     chosen_.insert(largest->array);
@@ -215,6 +247,46 @@ bool is_rate_name(std::string_view name) {
 
 bool is_rate(double rate_hz) {
   return rate_hz > 0.01 && rate_hz < 1e7;
+}
+
+TableKind kind_of(const MatTable& table) {
+  constexpr std::array<std::string_view, 11> others{
+      "gyr", "omega", "ang", "mag", "euler", "quat", "vel", "pos", "temp", "orient", "baro"};
+  const std::string name = bare_name(table.name());
+  const auto is_part = [&](std::string_view part) { return name.find(part) != std::string::npos; };
+  // "x" alone may be an axis of anything.
+  const bool is_axis = !name.empty() && name[0] >= 'x' && name[0] <= 'z';
+  if (is_accelerometer_name(name) && !is_axis) return TableKind::acceleration;
+  if (std::ranges::any_of(others, is_part)) return TableKind::other;
+  return lower(table.array->path).find("acc") != std::string::npos ? TableKind::acceleration
+                                                                   : TableKind::unknown;
+}
+
+bool may_be_samples(const MatTable& table, std::size_t longest) {
+  constexpr std::size_t fewest = 10, share = 20;
+  return table.rows >= std::min(fewest, longest) && table.rows * share >= longest;
+}
+
+bool is_asked_for(const MatTable& table, const ReadOptions& options) {
+  return std::ranges::any_of(
+      options.channels, [&](const std::string& channel) { return is_channel_of(channel, table); });
+}
+
+std::set<const MatArray*> arrays_asked_for(const std::vector<MatTable>& tables,
+                                           const ReadOptions& options) {
+  std::set<const MatArray*> found;
+  std::set<std::size_t> lengths;
+  for (const std::string& channel : options.channels) {
+    bool any = false;
+    for (const MatTable& table : tables) {
+      if (!is_channel_of(channel, table)) continue;
+      any = true;
+      found.insert(table.array);
+      lengths.insert(table.rows);
+    }
+    if (!any) return {};
+  }
+  return lengths.size() == 1 ? found : std::set<const MatArray*>{};
 }
 
 std::string MatTable::name() const {

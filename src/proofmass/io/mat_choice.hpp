@@ -26,6 +26,24 @@ struct MatTable {
   [[nodiscard]] std::string name() const;
 };
 
+/// What a table is by its name, most wanted first: other kinds are angular rates, quaternions,
+/// angles, fields, positions and the like.
+enum class TableKind : unsigned char { other, unknown, acceleration };
+[[nodiscard]] TableKind kind_of(const MatTable& table);
+
+/// Whether a table may be the one that is meant where none is named: long enough beside the longest
+/// of the file to be its samples. A matrix of calibration is not.
+[[nodiscard]] bool may_be_samples(const MatTable& table, std::size_t longest);
+
+/// Whether one of the channels asked for is a table's: it has the table's name, or that and an
+/// ending: "gyr", "gyr_x", "gyr 2".
+[[nodiscard]] bool is_asked_for(const MatTable& table, const ReadOptions& options);
+
+/// The arrays of the tables that the channels asked for are of; none where a channel is of no
+/// table, or the tables are not equally long.
+[[nodiscard]] std::set<const MatArray*> arrays_asked_for(const std::vector<MatTable>& tables,
+                                                         const ReadOptions& options);
+
 /// More columns than that are no channels of one instrument.
 inline constexpr std::size_t most_mat_channels = 64;
 

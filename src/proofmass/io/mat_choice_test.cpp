@@ -154,5 +154,42 @@ TEST(MatChoice, OtherFormatsHaveNoVariables) {
   EXPECT_EQ(read.error().code, Errc::invalid_argument);
 }
 
+TEST(MatChoice, PutsAccelerationsBeforeLargerTablesOfOtherThings) {
+  const std::string quaternions =
+      doubles("quat", samples, joined({axes, values(1, 1), values(1, 2), values(1, 3)}));
+  const std::string matrix =
+      time_vector + quaternions + doubles("accel", samples, axes) + doubles("gyr", samples, axes);
+  EXPECT_EQ(names_of(read_mat5(matrix)), (Names{"x", "y", "z"}));
+  const std::string vectors = time_vector + quaternions +
+                              doubles("ax", samples, values(0.1, 0.01)) +
+                              doubles("az", samples, values(9.7, 0.01));
+  EXPECT_EQ(names_of(read_mat5(vectors)), (Names{"ax", "az"}));
+  // A matrix of calibration is no recording, whatever it is called.
+  const std::string calibration = doubles("acc_scale", 3, values(1, 0.1, 7, 9)) +
+                                  doubles("data", 200, values(9.7, 0.01, 7, 600));
+  const auto read = read_mat5(calibration);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->samples(), 200u);
+}
+
+TEST(MatChoice, FindsTheVariableOfAChannelThatIsAskedFor) {
+  const std::string file = time_vector + doubles("acc", samples, axes) +
+                           doubles("gyr", samples, axes) + doubles("temp", samples, values(20, 1));
+  const auto asked = [&](std::vector<std::string> channels) {
+    ReadOptions options;
+    options.channels = std::move(channels);
+    const auto read = read_mat5(file, options);
+    if (read) {
+      EXPECT_NEAR(read->time.rate_hz, 100.0, 1e-6);
+    }
+    return names_of(read);
+  };
+  EXPECT_EQ(asked({"gyr_y"}), (Names{"gyr_y"}));
+  EXPECT_EQ(asked({"gyr"}), (Names{"gyr_x", "gyr_y", "gyr_z"}));
+  EXPECT_EQ(asked({"acc_x", "gyr_z"}), (Names{"acc_x", "gyr_z"}));
+  EXPECT_EQ(asked({"temp"}), (Names{"temp"}));
+  EXPECT_EQ(asked({"x"}), (Names{"x"})) << "of the table that is read without --variable";
+}
+
 }  // namespace
 }  // namespace proofmass::io::mat_choice_test

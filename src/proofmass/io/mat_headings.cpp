@@ -7,23 +7,12 @@
 #include <map>
 
 #include "proofmass/io/array_recording.hpp"
-#include "proofmass/io/names.hpp"
 #include "proofmass/io/shown_text.hpp"
 
 namespace proofmass::io {
 namespace {
 
 using Columns = std::vector<std::vector<double>>;
-
-/// Whether a matrix's name says that it is of something else than acceleration.
-bool is_of_other_kind(std::string_view name) {
-  constexpr std::array<std::string_view, 9> others{"gyr",  "omega", "ang", "mag", "euler",
-                                                   "quat", "vel",   "pos", "temp"};
-  const std::string bare = bare_name(name);
-  return bare.find("acc") == std::string::npos && std::ranges::any_of(others, [&](auto other) {
-           return bare.find(other) != std::string::npos;
-         });
-}
 
 /// Headings for the columns of a matrix; `prefix` is empty where its name says nothing.
 std::vector<std::string> headings_of(std::string_view prefix, std::size_t width, bool is_timed) {
@@ -48,7 +37,10 @@ std::vector<std::string> headings_of(const std::vector<MatTable>& tables,
                                      const ReadOptions& options) {
   const auto is_matrix = [](const MatTable& table) { return table.width > 1; };
   const auto matrices = std::ranges::count_if(tables, is_matrix);
-  if (tables.size() == 1 && matrices == 1 && !is_of_other_kind(tables[0].name())) return {};
+  const auto is_named = [&](const MatTable& table) {
+    return kind_of(table) == TableKind::other || is_asked_for(table, options);
+  };
+  if (tables.size() == 1 && matrices == 1 && !is_named(tables[0])) return {};
   std::vector<std::string> vectors;
   for (const MatTable& table : tables)
     if (!is_matrix(table)) vectors.push_back(table.name());
@@ -62,7 +54,7 @@ std::vector<std::string> headings_of(const std::vector<MatTable>& tables,
     }
     const bool has_time = !is_timed && ascends(values[i][0]);
     is_timed = is_timed || has_time;
-    const bool is_told = matrices > 1 || is_of_other_kind(name);
+    const bool is_told = matrices > 1 || is_named(tables[i]);
     std::ranges::move(headings_of(is_told ? name : "", tables[i].width, has_time),
                       std::back_inserter(headings));
   }

@@ -13,6 +13,7 @@
 #include "proofmass/io/open_recording.hpp"
 #include "proofmass/io/raw_rows.hpp"
 #include "proofmass/io/running_time.hpp"
+#include "proofmass/io/shown_text.hpp"
 #include "proofmass/signal/counter.hpp"
 
 namespace proofmass::io {
@@ -97,6 +98,7 @@ class RecordingStream::Reading {
     counter_ = signal::find_counter(first);
     decide_on_time(raw, first);
     first.notes.clear();
+    clean_texts(first);
     settle_units(first, options_);
     unit_notes_ = std::exchange(first.notes, {});
     const auto chosen = chosen_channels(first, options_.channels);
@@ -217,6 +219,7 @@ class RecordingStream::Reading {
     add(at_end);
     add(time_->notes(head_.first_line));
     add(unit_notes_);
+    clean_texts(head_);
   }
 
   std::unique_ptr<TableFile> file_;

@@ -24,7 +24,7 @@ void WordRuns::change(std::size_t row, std::string_view field) {
   last_row_ = row;
   field_ = field;
   name_.reset();
-  const std::string_view word = trimmed(field);
+  const std::string_view word = without_guard(trimmed(field));
   if (word.size() > longest_name) return give_up();
   if (read_cell(field, '.').kind == CellKind::missing) return;
   const auto at = static_cast<std::size_t>(std::ranges::find(names_, word) - names_.begin());
