@@ -4,7 +4,12 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <string>
+#include <thread>
 #include <unistd.h>
+#include <vector>
+
+#include "proofmass/sensor/sensor_file_change.hpp"
 
 namespace proofmass::sensor::sensor_file_test {
 namespace {
@@ -163,6 +168,25 @@ TEST(SensorFile, IsWrittenToDiskAndReadBack) {
   ASSERT_FALSE(gone);
   EXPECT_EQ(gone.error().code, Errc::unreadable);
   EXPECT_FALSE(write_sensor_file(full_model(), "/nowhere/at/all/sensor.toml"));
+}
+
+TEST(SensorFile, LosesNoChangeOfTwoAtOnce) {
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("proofmass_changed_" + std::to_string(::getpid()) + ".toml");
+  constexpr int writers = 4, changes = 10;
+  const auto count_up = [&] {
+    for (int k = 0; k < changes; ++k)
+      EXPECT_TRUE(change_sensor_file(path.string(), [](SensorModel& model) -> Status {
+        model.serial = std::to_string(model.serial.empty() ? 1 : std::stoi(model.serial) + 1);
+        return Done{};
+      }));
+  };
+  std::vector<std::thread> threads;
+  for (int k = 0; k < writers; ++k) threads.emplace_back(count_up);
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(read_sensor_file(path.string()).value().model.serial,
+            std::to_string(writers * changes));
+  std::filesystem::remove(path);
 }
 
 }  // namespace
