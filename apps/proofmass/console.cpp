@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "plain_text.hpp"
+#include "proofmass/io/shown_text.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -187,7 +188,8 @@ void show_notes(const std::vector<Note>& notes,
     if (note.severity == Severity::bad) word = painted("bad data", red);
     if (note.severity == Severity::info) word = painted("note", grey);
     if (note.severity == Severity::info && !flags.verbose) continue;
-    print(fmt::format("{}: {}{}{}\n", word, where, where.empty() ? "" : ": ", note.text));
+    print(fmt::format("{}: {}{}{}\n", word, io::clean_text(where), where.empty() ? "" : ": ",
+                      io::clean_text(note.text)));
   }
 }
 
@@ -225,7 +227,7 @@ void show_line(const std::string& line, const OutputFlags& flags) {
 
 void show_error(const std::string& message) {
   constexpr int red = 31;
-  print(fmt::format("{}: {}\n", painted("proofmass", red), message));
+  print(fmt::format("{}: {}\n", painted("proofmass", red), io::clean_text(message)));
 }
 
 }  // namespace proofmass::app

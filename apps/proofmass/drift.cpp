@@ -188,6 +188,7 @@ void run(const DriftCommand& command) {
   });
   report.runs = compare_recordings(recordings, report.since_switch_on_s,
                                    progress_bar(command.output), report.notes);
+  need_a_channel(channels);
   if (!command.update_sensor.empty()) {
     without_interruption([&] { update_drift(command.update_sensor, channels, report.notes); });
   }

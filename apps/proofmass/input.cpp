@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "exit_status.hpp"
+#include "proofmass/core/rising_stamps.hpp"
 #include "proofmass/sensor/calibration.hpp"
 #include "proofmass/sensor/gravity.hpp"
 #include "proofmass/sensor/warm_up.hpp"
@@ -110,6 +111,18 @@ std::string duckdb_library() {
 Recording load(const std::string& file, const InputFlags& flags, const Progress& progress) {
   return cut_to_window(
       need(io::read_recording(file, read_options(flags, progress)), Stage::reading), flags);
+}
+
+Recording load_rising(const std::string& file, const InputFlags& flags, const Progress& progress) {
+  const Recording whole = load(file, flags, progress);
+  Recording rising = with_rising_stamps(whole);
+  const std::size_t lost = whole.samples() - rising.samples();
+  if (lost > 0)
+    rising.notes.push_back(
+        {Severity::warning, fmt::format("{} that {} the time of the sample before {} left out",
+                                        lost == 1 ? "1 sample" : fmt::format("{} samples", lost),
+                                        lost == 1 ? "has" : "have", lost == 1 ? "is" : "are")});
+  return rising;
 }
 
 Recording cut_to_window(Recording recording, const InputFlags& flags) {

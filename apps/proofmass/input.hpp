@@ -14,6 +14,11 @@
 // From the input flags to recordings.
 namespace proofmass::app {
 
+/// As load(), without samples whose time does not rise (a note says so): for estimates of motion.
+[[nodiscard]] Recording load_rising(const std::string& file,
+                                    const InputFlags& flags,
+                                    const Progress& progress);
+
 /// Reads a recording as the flags say, cut to --from and --to. Throws Failure.
 [[nodiscard]] Recording load(const std::string& file,
                              const InputFlags& flags,

@@ -231,6 +231,7 @@ void run(const NoiseCommand& command) {
     own.progress = std::move(progress);
     analyse(channels[k], std::move(own));
   });
+  need_a_channel(channels);
   if (!command.update_sensor.empty()) {
     without_interruption([&] { update_noise(command.update_sensor, channels); });
   }

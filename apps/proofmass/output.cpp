@@ -1,5 +1,6 @@
 #include "output.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -10,6 +11,7 @@
 #include "input.hpp"
 #include "plain_text.hpp"
 #include "proofmass/core/new_file.hpp"
+#include "proofmass/io/shown_text.hpp"
 #include "proofmass/io/write_recording.hpp"
 #include "provenance.hpp"
 
@@ -20,6 +22,18 @@ namespace {
   throw Failure(failed, fmt::format("standard output: cannot be written: {}: choose a place that "
                                     "exists and has room",
                                     std::strerror(error)));
+}
+
+// What goes to a terminal, line by line: names of files and channels may hold what it obeys.
+std::string clean_lines(const std::string& text) {
+  std::string out;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    out += io::clean_text(std::string_view(text).substr(begin, end - begin));
+    if (end < text.size()) out += '\n';
+    begin = end + 1;
+  }
+  return out;
 }
 
 }  // namespace
@@ -50,7 +64,7 @@ void publish(const Results& results, const OutputFlags& flags) {
   if (!flags.json.empty() && flags.json != "-") write_text(flags.json, json());
   // One thing only goes to standard output: the series, the document or the text.
   if (flags.output == "-") return;
-  print_out(flags.json == "-" ? json() : shown_text(results.text()));
+  print_out(flags.json == "-" ? json() : shown_text(clean_lines(results.text())));
 }
 
 void write_series(const Recording& recording,

@@ -22,7 +22,7 @@ std::vector<Recording> load_recordings(const TumbleCommand& command) {
   }
   std::vector<Recording> recordings;
   for (const std::string& file : command.files) {
-    recordings.push_back(load(file, input, progress_bar(command.output)));
+    recordings.push_back(load_rising(file, input, progress_bar(command.output)));
     if (recordings.back().time.source == TimeSource::none) {
       throw Failure(usage, file + ": no time column and no --rate: give --rate HZ or --time NAME");
     }

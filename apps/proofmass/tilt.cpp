@@ -71,7 +71,8 @@ void expect_time(const TiltCommand& command, const Recording& recording) {
 estimate::AxisTiltSolution solve_axis(const TiltCommand& command, std::vector<Note>& notes) {
   if (command.rate_channel.empty())
     throw Failure(usage, "--angle: expected --rate-channel COLUMN with the gyroscope's rate too");
-  const Recording recording = load(command.file, command.input, progress_bar(command.output));
+  const Recording recording =
+      load_rising(command.file, command.input, progress_bar(command.output));
   expect_time(command, recording);
   notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
   estimate::AxisTiltRecord record{
@@ -140,7 +141,7 @@ estimate::TiltRecord prepare(const TiltCommand& command,
                              estimate::TiltOptions& options,
                              std::vector<Note>& notes) {
   std::vector<Recording> recordings{
-      load(command.file, command.input, progress_bar(command.output))};
+      load_rising(command.file, command.input, progress_bar(command.output))};
   Recording& recording = recordings.front();
   const auto models = load_sensors(command.input, notes);
   const Accelerometer one = only_accelerometer(recordings);

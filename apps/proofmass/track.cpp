@@ -150,7 +150,7 @@ TrackSensor sensor_of(const TrackCommand& command,
 
 TrackSensor prepare(const TrackCommand& command, TrackOptions& options, std::vector<Note>& notes) {
   std::vector<Recording> recordings{
-      load(command.file, command.input, progress_bar(command.output))};
+      load_rising(command.file, command.input, progress_bar(command.output))};
   Recording& recording = recordings.front();
   if (recording.time.source == TimeSource::none)
     throw Failure(usage,

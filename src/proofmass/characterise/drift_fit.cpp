@@ -84,6 +84,11 @@ std::string reason_for(const DriftFit& fit,
     case DriftReason::unexplained:
       return "something moves the bias that is neither noise nor an exponential: what is left is "
              "not white once the noise is divided out";
+    case DriftReason::begun_later:
+      return fmt::format(
+          "a drift with a time constant of {:.3g} s, {:.3g} s after switching on, is no warm-up: "
+          "it would have been over long before",
+          fit.best_time_constant_s, evidence.start_s());
     case DriftReason::shorter_than_resolved:
       return fmt::format(
           "settled within {:.3g} s, which is too short for blocks of {:.3g} s: "
@@ -169,6 +174,8 @@ class DriftVerdict {
                  : DriftReason::no_warm_up;
     // What spans fewer is a few odd blocks at the beginning.
     constexpr double fewest_blocks = 10.0, line_level = 0.05;
+    constexpr double longest_ago = 10.0;  // of e^-10 of its amplitude no recording shows anything
+    if (evidence_.start_s() > longest_ago * T.value) return DriftReason::begun_later;
     if (!T.lower_95 || T.value < fewest_blocks * evidence_.block_s())
       return DriftReason::shorter_than_resolved;
     if (!T.upper_95 || *T.upper_95 > evidence_.duration_s() || T.value > evidence_.duration_s())

@@ -104,6 +104,7 @@ enum class DriftReason {
   line,                   ///< a straight line explains it as well: T cannot be told
   longer_than_record,     ///< T is not bounded within the record
   shorter_than_resolved,  ///< T at or below what the blocks resolve
+  begun_later,            ///< an exponential that would be long over, had it begun at switching on
   unexplained             ///< what is left is no noise: something else moves the bias
 };
 

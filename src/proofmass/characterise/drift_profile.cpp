@@ -31,7 +31,8 @@ double satterthwaite(const DriftTrial& trial, const MatrixXd& X, const MatrixXd&
   const VectorXd gradient = P.transpose() * inverse_square.cwiseProduct(u.cwiseAbs2());
   const MatrixXd information = 0.5 * P.transpose() * (inverse_square.asDiagonal() * P);
   const double variance = gradient.dot(positive_inverse(information) * gradient);
-  return std::clamp(2.0 * C(i, i) * C(i, i) / variance, least, most);
+  const double dof = 2.0 * C(i, i) * C(i, i) / variance;
+  return dof > least ? std::min(dof, most) : least;  // nothing known of it, too
 }
 
 // From `best` in steps to where the loss reaches its bound; none before `limit`.

@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 
+#include "proofmass/core/rising_stamps.hpp"
+
 namespace proofmass {
 namespace {
 
@@ -69,6 +71,25 @@ std::vector<Label> cut_labels(const std::vector<Label>& labels,
   return parts;
 }
 
+/// The samples `kept`, one at least, with their time counted from the first.
+Recording samples_of(const Recording& recording, const std::vector<std::size_t>& kept) {
+  Recording part{recording.source, recording.format, recording.time, {}, recording.notes, 0};
+  const double origin_s = recording.time.at(kept.front());
+  if (part.time.start_ns) *part.time.start_ns += static_cast<std::int64_t>(origin_s * 1e9);
+  part.time.stamps_s.clear();
+  if (!recording.time.is_uniform())
+    for (const std::size_t k : kept) part.time.stamps_s.push_back(recording.time.at(k) - origin_s);
+  for (const Channel& channel : recording.channels) {
+    Channel& copy = part.channels.emplace_back(Channel{channel.name, channel.unit, {}});
+    copy.values.reserve(kept.size());
+    for (const std::size_t k : kept) copy.values.push_back(channel.values[k]);
+  }
+  if (recording.first_line > 0) part.first_line = recording.first_line + kept.front();
+  part.labels = cut_labels(recording.labels, kept);
+  part.label_channel = recording.label_channel;
+  return part;
+}
+
 }  // namespace
 
 const Channel* Recording::find(std::string_view name) const {
@@ -89,21 +110,14 @@ Result<Recording> cut(const Recording& recording, double from_s, double to_s) {
   if (kept.empty())
     return Error{Errc::too_few_samples, "no sample lies in the window; the recording lasts " +
                                             std::to_string(recording.duration_s()) + " s"};
-  Recording part{recording.source, recording.format, recording.time, {}, recording.notes, 0};
-  const double origin_s = recording.time.at(kept.front());
-  if (part.time.start_ns) *part.time.start_ns += static_cast<std::int64_t>(origin_s * 1e9);
-  part.time.stamps_s.clear();
-  if (!recording.time.is_uniform())
-    for (const std::size_t k : kept) part.time.stamps_s.push_back(recording.time.at(k) - origin_s);
-  for (const Channel& channel : recording.channels) {
-    Channel& copy = part.channels.emplace_back(Channel{channel.name, channel.unit, {}});
-    copy.values.reserve(kept.size());
-    for (const std::size_t k : kept) copy.values.push_back(channel.values[k]);
-  }
-  if (recording.first_line > 0) part.first_line = recording.first_line + kept.front();
-  part.labels = cut_labels(recording.labels, kept);
-  part.label_channel = recording.label_channel;
-  return part;
+  return samples_of(recording, kept);
+}
+
+Recording with_rising_stamps(const Recording& recording) {
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < recording.samples(); ++k)
+    if (kept.empty() || recording.time.at(k) > recording.time.at(kept.back())) kept.push_back(k);
+  return kept.size() == recording.samples() ? recording : samples_of(recording, kept);
 }
 
 std::vector<Triad> accelerometer_triads(const Recording& recording) {

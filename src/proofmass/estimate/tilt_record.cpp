@@ -112,8 +112,11 @@ void drop_smooth_rests(const TiltRecord& record, signal::RestSearch& found) {
 
 std::string decimal(double value, int decimals) {
   char text[32];
-  const auto end =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals);
+  // Figures that no sensor gives are not spelt out digit by digit.
+  constexpr double longest = 1e7;
+  const auto format =
+      std::abs(value) < longest ? std::chars_format::fixed : std::chars_format::scientific;
+  const auto end = std::to_chars(text, text + sizeof text, value, format, decimals);
   return end.ec == std::errc() ? std::string(text, end.ptr) : std::to_string(value);
 }
 

@@ -76,7 +76,7 @@ FoundAxis farthest_axis(const std::vector<std::vector<double>>& velocity,
     }
   const SymmetricEigen eigen = symmetric_eigen(scatter);
   const double total = eigen.values.sum();
-  if (total > 0.0) found.share = eigen.values(n - 1) / total;
+  if (total > 0.0) found.share = std::min(eigen.values(n - 1) / total, 1.0);
   for (int a = 0; a < n; ++a)
     found.direction[axes[static_cast<std::size_t>(a)]] = eigen.vectors(a, n - 1);
   const double largest =

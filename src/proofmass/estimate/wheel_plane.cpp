@@ -79,12 +79,13 @@ WheelPlane plane_about(const Axis& axis) {
   return plane;
 }
 
-/// Medians of the force over stretches of a twentieth of a second: shaking and single bad rows fall
-/// out, turning stays.
+/// Medians of the force over stretches of a twentieth of a second, in shorter recordings of a tenth
+/// of the rows: shaking and single bad rows fall out, turning stays.
 Eigen::MatrixX3d averaged(const WheelSensor& sensor, const std::vector<std::size_t>& rows) {
   const double span_s = sensor.time_s[rows.back()] - sensor.time_s[rows.front()];
   const double rate_hz = span_s > 0.0 ? static_cast<double>(rows.size()) / span_s : 0.0;
-  const auto each = static_cast<std::size_t>(std::clamp(0.05 * rate_hz, 1.0, 1e4));
+  const auto wanted = static_cast<std::size_t>(std::clamp(0.05 * rate_hz, 1.0, 1e4));
+  const std::size_t each = std::min(wanted, std::max<std::size_t>(rows.size() / 10, 1));
   const std::size_t count = rows.size() / each;
   Eigen::MatrixX3d medians(static_cast<Eigen::Index>(count), 3);
   std::vector<double> stretch(each);

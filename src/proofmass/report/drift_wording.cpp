@@ -72,6 +72,9 @@ std::string why_not(const DriftFit& fit, const Unit& unit) {
       return "the recording is too short for the time constant, which is " + one_sided_words(fit);
     case DriftReason::shorter_than_resolved:
       return "it is over before it can be resolved: the time constant is " + one_sided_words(fit);
+    case DriftReason::begun_later:
+      return "what drifts began long after switching on, with a time constant of " +
+             duration_words(fit.best_time_constant_s);
     case DriftReason::unexplained:
       return "something moves the bias that is neither noise nor an exponential";
     case DriftReason::no_warm_up:
@@ -152,6 +155,8 @@ std::string reason_code(DriftReason reason) {
       return "longer_than_record";
     case DriftReason::shorter_than_resolved:
       return "shorter_than_resolved";
+    case DriftReason::begun_later:
+      return "begun_later";
     case DriftReason::unexplained:
       return "unexplained";
     case DriftReason::no_warm_up:

@@ -1,6 +1,7 @@
 #include "proofmass/report/noise_nulls.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "proofmass/report/noise_wording.hpp"
@@ -54,6 +55,10 @@ void explain_coefficients(const NoiseAnalysis& analysis, const Say& say) {
   }
 }
 
+bool is_bounded(const DeviationPoint& point) {
+  return std::isfinite(point.upper);
+}
+
 // Why a channel's nulls are nulls.
 void explain_nulls(const ChannelNoise& found, const Say& say) {
   std::string lacking;
@@ -81,6 +86,9 @@ void explain_nulls(const ChannelNoise& found, const Say& say) {
   const auto is_open = [](const DeviationPoint& point) { return !point.alpha_lag1; };
   if (knows_lag1(analysis.deviation) && std::ranges::any_of(analysis.deviation.points, is_open)) {
     say("alpha_lag1: null where fewer than 30 averages are left to tell it from");
+  }
+  if (!std::ranges::all_of(analysis.deviation.points, is_bounded)) {
+    say("upper: null where so few degrees of freedom bound nothing at this confidence");
   }
 }
 
