@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import random
 import re
 import shutil
 import subprocess
@@ -96,6 +97,14 @@ class CommandTest(unittest.TestCase):
     def leftovers(self) -> list:
         """Files that were begun and not finished."""
         return [p.name for p in self.folder.iterdir() if "part" in p.name or "tmp" in p.name]
+
+
+def rest_csv(seconds=30.0, rate_hz=100.0, seed=1) -> str:
+    """Three axes at rest with white noise."""
+    draw = random.Random(seed)
+    rows = (f"{k / rate_hz:.4f}," + ",".join(f"{draw.gauss(mean, 0.01):.6f}" for mean in (0.1, -0.2, 9.8)) + "\n"
+            for k in range(int(seconds * rate_hz)))
+    return "time (s),acc_x (m/s^2),acc_y (m/s^2),acc_z (m/s^2)\n" + "".join(rows)
 
 
 def turning_csv(seconds=20.0, rate_hz=100.0, rpm=30.0, radius_m=0.15) -> str:
