@@ -10,6 +10,8 @@ ExitStatus status_of(const Error& error, Stage stage) {
       return stage == Stage::reading ? bad_input : usage;
     case Errc::device:
       return bad_device;
+    case Errc::unwritable:
+      return failed;
     case Errc::unreadable:
     case Errc::corrupt:
     case Errc::too_few_samples:

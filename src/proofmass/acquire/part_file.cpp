@@ -18,7 +18,7 @@ namespace proofmass::acquire {
 namespace {
 
 Error cannot(const std::string& path, const char* what) {
-  return {Errc::unreadable,
+  return {Errc::unwritable,
           fmt::format("{}: {}: {}", path, what, std::generic_category().message(errno))};
 }
 
@@ -88,7 +88,7 @@ class DiskPart final : public PartFile {
     const char* path = names_.path.c_str();
     if (::renameat2(AT_FDCWD, part, AT_FDCWD, path, RENAME_NOREPLACE) == 0) return Done{};
     if (errno == EEXIST)
-      return Error{Errc::unreadable, fmt::format("{}: is there by now; the recording stays in {}",
+      return Error{Errc::unwritable, fmt::format("{}: is there by now; the recording stays in {}",
                                                  names_.path, names_.part)};
     // File systems that cannot promise it.
     if (errno == EINVAL && !is_there(names_.path) && ::rename(part, path) == 0) return Done{};

@@ -19,7 +19,7 @@ class PartFile {
   PartFile& operator=(const PartFile&) = delete;
   virtual ~PartFile() = default;
 
-  /// Errors of all: unreadable, "run.mcap.part: cannot be written: No space left on device".
+  /// Errors of all: unwritable, "run.mcap.part: cannot be written: No space left on device".
   [[nodiscard]] virtual Status append(std::string_view bytes) = 0;
   /// What was appended is on the disk.
   [[nodiscard]] virtual Status sync() = 0;

@@ -183,7 +183,7 @@ TEST(RecordAnalysis, EndsWithARecordingThatCannotBegin) {
   const TestFolder folder;
   const auto refused = record(open_scripts({{.acts = arrivals(3)}}),
                               {.path = folder.file("no/a.mcap")}, {}, doubled);
-  EXPECT_EQ(refused.error().code, Errc::unreadable);
+  EXPECT_EQ(refused.error().code, Errc::unwritable);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ class TestPart final : public PartFile {
     const std::size_t room = disk_.plan.room - std::min(disk_.plan.room, disk_.used());
     disk_.files[names_.part] += bytes.substr(0, room);
     if (bytes.size() <= room) return Done{};
-    return Error{Errc::unreadable, names_.part + ": cannot be written: No space left on device"};
+    return Error{Errc::unwritable, names_.part + ": cannot be written: No space left on device"};
   }
   Status sync() override { return Done{}; }
   Status truncate(std::uint64_t bytes) override {
@@ -64,7 +64,7 @@ class TestPart final : public PartFile {
   }
   Status keep() override {
     const std::scoped_lock lock(disk_.mutex);
-    if (disk_.plan.refuses_names) return Error{Errc::unreadable, names_.path + ": is there by now"};
+    if (disk_.plan.refuses_names) return Error{Errc::unwritable, names_.path + ": is there by now"};
     disk_.files[names_.path] = std::move(disk_.files[names_.part]);
     disk_.files.erase(names_.part);
     return Done{};

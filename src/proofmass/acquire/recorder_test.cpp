@@ -138,7 +138,7 @@ TEST(Recorder, SaysWhyItCannotBegin) {
   EXPECT_EQ(record(open_scripts({{.acts = arrivals(3)}}), {.path = folder.file("no/a.mcap")})
                 .error()
                 .code,
-            Errc::unreadable);
+            Errc::unwritable);
 }
 
 TEST(Recorder, TurnsOverToNewFilesExactlyInTime) {

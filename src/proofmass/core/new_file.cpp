@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Error not_written(const std::string& path, int error) {
-  return {Errc::unreadable,
+  return {Errc::unwritable,
           path + ": cannot be written: " + std::generic_category().message(error)};
 }
 

@@ -19,7 +19,7 @@ namespace proofmass {
 /// - A device, a pipe or a socket, and what standard output is open on: written into as it is.
 class NewFile {
  public:
-  /// Errors of all: unreadable, "<path>: cannot be written: No space left on device".
+  /// Errors of all: unwritable, "<path>: cannot be written: No space left on device".
   [[nodiscard]] static Result<NewFile> create(const std::string& path);
 
   NewFile(NewFile&& other) noexcept = default;

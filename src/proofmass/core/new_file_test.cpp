@@ -132,7 +132,7 @@ TEST_F(NewFiles, SayWhyTheyCannotBe) {
   for (const auto& [name, why] : {std::pair{"none/a", "No such file"}, {".", "Is a directory"}}) {
     const Status written = write_file(path(name), "x");
     ASSERT_FALSE(written);
-    EXPECT_EQ(written.error().code, Errc::unreadable);
+    EXPECT_EQ(written.error().code, Errc::unwritable);
     EXPECT_NE(written.error().message.find(why), std::string::npos) << written.error().message;
   }
   if (fs::exists("/dev/full")) {

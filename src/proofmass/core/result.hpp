@@ -13,6 +13,7 @@ namespace proofmass {
 /// What went wrong, coarse enough for a caller to branch on.
 enum class Errc {
   invalid_argument,  ///< what the caller asked for makes no sense
+  unwritable,        ///< a file that cannot be written: no room, no permission, no such folder
   unreadable,        ///< no such file, no permission, a failing disk
   corrupt,           ///< bytes that cannot be what they claim to be
   unsupported,       ///< understood, but not built in

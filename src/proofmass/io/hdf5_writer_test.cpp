@@ -162,7 +162,7 @@ TEST_F(Hdf5Written, SaysWhenThereIsNoRoom) {
     std::signal(SIGXFSZ, SIG_IGN);
     ::setrlimit(RLIMIT_FSIZE, &most);
     const Status written = write(recording, 100);
-    return !written && written.error().code == Errc::unreadable &&
+    return !written && written.error().code == Errc::unwritable &&
            written.error().message.find('\n') == std::string::npos;
   };
   // In a process of its own: the library does not give back the memory of a file it cannot write.

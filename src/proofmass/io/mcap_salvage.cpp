@@ -218,7 +218,7 @@ Result<Recovery> salvage_mcap(const std::string& path,
                               const PutBytes& put,
                               const Progress& progress) {
   auto file = open_file(path);
-  if (!file) return file.error();
+  if (!file) return file.error().at(path);
   auto saved = salvage(std::move(file).value(), put, progress);
   if (!saved && saved.error().code == Errc::corrupt) return saved.error().at(path);
   return saved;

@@ -11,7 +11,7 @@ namespace proofmass::io {
 namespace {
 
 Error cannot_write(const std::string& path, const std::string& why) {
-  return Error{Errc::unreadable, path + ": cannot be written: " + why};
+  return Error{Errc::unwritable, path + ": cannot be written: " + why};
 }
 
 class StandardOutput final : public OutputFile {

@@ -18,7 +18,7 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
   virtual ~OutputFile() = default;
 
-  /// Errors of all: unreadable, "<path>: cannot be written: No space left on device".
+  /// Errors of all: unwritable, "<path>: cannot be written: No space left on device".
   [[nodiscard]] virtual Status append(std::string_view bytes) = 0;
   /// Writes over what was written before; it ends within it.
   [[nodiscard]] virtual Status overwrite(std::uint64_t offset, std::string_view bytes) = 0;

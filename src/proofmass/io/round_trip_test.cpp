@@ -149,7 +149,7 @@ TEST_F(RoundTrip, CsvKeepsLabels) {
 TEST_F(RoundTrip, RefusesWhatItCannotWrite) {
   const Recording recording = troubled({});
   EXPECT_EQ(write_recording(recording, path("a.wav")).error().code, Errc::unsupported);
-  EXPECT_EQ(write_recording(recording, path("no/such/folder.csv")).error().code, Errc::unreadable);
+  EXPECT_EQ(write_recording(recording, path("no/such/folder.csv")).error().code, Errc::unwritable);
   EXPECT_EQ(write_recording({}, path("a.csv")).error().code, Errc::too_few_samples);
 }
 

@@ -26,7 +26,7 @@ namespace proofmass::io {
 /// docs/formats.md has the layout of each. The file appears under its name only when it is
 /// complete.
 /// Errors: unsupported (another extension: names those there are; a library that is not there),
-/// unreadable (cannot be written), too_few_samples (no channels).
+/// unwritable (cannot be written), too_few_samples (no channels).
 [[nodiscard]] Status write_recording(const Recording& recording,
                                      const std::string& path,
                                      const WriteOptions& options = {});

@@ -152,7 +152,7 @@ TEST_F(SensorFileUpdate, LeavesAFileThatItCannotReadOrImproveAsItIs) {
   EXPECT_EQ(text("t.toml"), "[sensor]\nname = \"t\"\n");
   const Status nowhere = update_sensor_file(path("no/such/folder.toml"), std::vector{measured_x()});
   ASSERT_FALSE(nowhere);
-  EXPECT_EQ(nowhere.error().code, Errc::unreadable);
+  EXPECT_EQ(nowhere.error().code, Errc::unwritable);
 }
 
 }  // namespace

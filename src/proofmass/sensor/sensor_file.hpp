@@ -34,7 +34,7 @@ struct SensorFile {
 [[nodiscard]] std::string format_sensor_file(const SensorModel& model);
 
 /// Writes it beside `path` first and then renames, so that no reader sees half a file.
-/// Errors: unreadable (cannot be written).
+/// Errors: unwritable (cannot be written).
 [[nodiscard]] Status write_sensor_file(const SensorModel& model, const std::string& path);
 
 }  // namespace proofmass::sensor

@@ -110,7 +110,7 @@ std::string format_sensor_file(const SensorModel& model) {
 Status write_sensor_file(const SensorModel& model, const std::string& path) {
   Status written = write_file(path, format_sensor_file(model));
   if (written) return written;
-  return Error{Errc::unreadable,
+  return Error{Errc::unwritable,
                written.error().message +
                    ": the sensor file needs a folder that exists, is writable and has room"};
 }
