@@ -172,7 +172,8 @@ Section limits_section(const CertificateData& data) {
       "Traceability of local gravity, of the readings' reference and of the contributions of type "
       "B, for which whoever signs answers."};
   section.points.insert(section.points.end(), data.limits.begin(), data.limits.end());
-  section.signatures = {"Place and date", "Measured by", "Approved by"};
+  section.signatures = {"Certificate number", "Laboratory", "Place and date", "Measured by",
+                        "Approved by"};
   return section;
 }
 

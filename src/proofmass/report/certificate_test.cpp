@@ -93,6 +93,8 @@ TEST(Certificate, SaysWhatIsNotStatedAndWhatItDoesNotCover) {
   EXPECT_EQ(page.find("Monte Carlo"), std::string::npos);
   EXPECT_NE(page.find("The angle between the sensor"), std::string::npos);
   EXPECT_NE(page.find("Approved by"), std::string::npos);
+  EXPECT_NE(page.find("Certificate number"), std::string::npos);
+  EXPECT_NE(page.find("counter(pages)"), std::string::npos) << "page n of m, printed";
 }
 
 TEST(Certificate, ShowsMisalignmentsInMilliradians) {

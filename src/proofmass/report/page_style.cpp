@@ -47,7 +47,7 @@ table{font-size:.86rem}.stacks,.stacks tbody,.stacks thead{display:block}.stacks
 grid-template-columns:4fr 5fr 3fr}.stacks th:first-child{grid-column:1/-1}.stacks thead th:first-child{display:none}
 .stacks tbody th{border:0;padding-bottom:0}.stacks td:only-of-type{grid-column:1/-1}
 figure{overflow-x:auto}figcaption{position:sticky;left:0}.pm-figure{min-width:38rem}}
-@page{size:A4;margin:15mm 17mm}
+@page{size:A4;margin:15mm 17mm;@bottom-right{content:"page " counter(page) " of " counter(pages);font:8pt sans-serif;color:#666}}
 @media print{body{font-size:10pt;line-height:1.4}main{max-width:none;padding:0}.conclusion{font-size:15pt}
 h2{font-size:12.5pt;margin:1.2rem 0 .4rem;break-after:avoid}p,ul{max-width:none}.sheet{break-before:page}
 .wide{overflow:visible;margin:.7rem 0 1.1rem}table{font-size:9pt}th,td{padding:.22rem .7rem .22rem 0}
