@@ -240,7 +240,9 @@ void note_travel(const WheelReadings& readings,
                                 "two rests do not change"});
 }
 
-void check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolution& solution) {
+/// Errors: invalid_argument (a radius so far from the recording's that its unit must be another).
+Status check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolution& solution) {
+  constexpr double another_unit = 20.0;
   for (std::size_t s = 0; s < fit.free_radius_m.size(); ++s) {
     const Uncertain& found = fit.free_radius_m[s];
     const double off = std::abs(found.value - *options.radius_m);
@@ -249,19 +251,22 @@ void check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolutio
     const auto in_mm = [](double value_m) {
       return std::to_string(std::lround(std::ceil(value_m * 1e3)));
     };
-    solution.notes.push_back(
-        {Severity::bad, solution.sensors[s].name + ": --radius " +
-                            std::to_string(std::lround(*options.radius_m * 1e3)) + " mm +- " +
-                            in_mm(given_std) + " mm contradicts the recording, which says " +
-                            std::to_string(std::lround(found.value * 1e3)) + " mm +- " +
-                            in_mm(found.std) + " mm: leave it out or mend it"});
+    const std::string text = solution.sensors[s].name + ": --radius " +
+                             std::to_string(std::lround(*options.radius_m * 1e3)) + " mm +- " +
+                             in_mm(given_std) + " mm contradicts the recording, which says " +
+                             std::to_string(std::lround(found.value * 1e3)) + " mm +- " +
+                             in_mm(found.std) + " mm: ";
+    if (*options.radius_m > another_unit * (std::abs(found.value) + 4.0 * found.std))
+      return Error{Errc::invalid_argument, text + "it is expected in metres, 0.1 for 100 mm"};
+    solution.notes.push_back({Severity::bad, text + "leave it out or mend it"});
   }
+  return Done{};
 }
 
-WheelSolution conclude(const WheelReadings& readings,
-                       WheelFit fit,
-                       const WheelOptions& options,
-                       WheelSolution solution) {
+Result<WheelSolution> conclude(const WheelReadings& readings,
+                               WheelFit fit,
+                               const WheelOptions& options,
+                               WheelSolution solution) {
   describe_sensors(fit, readings.phase_rad, solution.sensors);
   const std::string doubtful = stretches_of(fit);
   solution.series = std::move(fit.series);
@@ -283,7 +288,7 @@ WheelSolution conclude(const WheelReadings& readings,
   solution.not_observable = say_not_observable(fit, solution.sensors);
   add_gated(solution);
   note_travel(readings, options, solution);
-  check_radius(fit, options, solution);
+  if (const Status radius = check_radius(fit, options, solution); !radius) return radius.error();
   judge_turns(fit, doubtful, solution);
   return solution;
 }

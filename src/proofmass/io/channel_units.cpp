@@ -216,6 +216,30 @@ void settle_by_gravity(Recording& recording, const Triad& triad) {
       {severity, fmt::format("{}: unit taken to be {}: {}; --unit overrides", names, symbol, why)});
 }
 
+/// Holds a unit that was given against a header with another: at rest, gravity says which is right.
+/// Errors: invalid_argument (the header's unit gives gravity, the one given does not).
+Status check_given_unit(const Recording& recording, const Unit& given) {
+  if (given.quantity != Quantity::acceleration) return Done{};
+  for (const Triad& triad : accelerometer_triads(recording)) {
+    const auto axes = axes_of(recording, triad);
+    const Unit& unit = axes.front()->unit;
+    const bool is_other = unit.quantity == Quantity::acceleration && unit.to_si != given.to_si;
+    if (!is_other || axes.size() < 3) continue;
+    const QuietWindow quiet = quietest_second(recording, axes);
+    const auto is_gravity = [&](const Unit& one) {
+      return std::abs(quiet.norm * one.to_si / standard_gravity_mps2 - 1.0) < 0.1;
+    };
+    if (std::isfinite(quiet.spread) && is_gravity(unit) && !is_gravity(given))
+      return Error{
+          Errc::invalid_argument,
+          fmt::format("--unit {} contradicts the header's {} of {}: in the quietest second "
+                      "the axes add up to {}, which is gravity in {}",
+                      given.symbol, unit.symbol, axes.front()->name, in_words(quiet.norm),
+                      unit.symbol)};
+  }
+  return Done{};
+}
+
 /// One column that is called no more than "y" may be anything: its size is no proof of gravity.
 bool says_acceleration(const Recording& recording, const Triad& triad) {
   if (triad.axes() > 1) return true;
@@ -252,14 +276,19 @@ bool is_accelerometer_name(std::string_view name) {
          std::ranges::find(stems, std::string_view(bare).substr(0, bare.size() - 1)) != stems.end();
 }
 
-void settle_units(Recording& recording, const ReadOptions& options) {
+Status settle_units(Recording& recording, const ReadOptions& options) {
   for (Channel& channel : recording.channels)
     if (is_unknown(channel) && signal::is_counter_name(channel.name))
       channel.unit = *parse_unit("counts");
   read_gauss_as_g(recording);
   recognise_instrument(recording);
-  if (options.unit) apply_given_unit(recording, options);
+  if (options.unit) {
+    const Status possible = check_given_unit(recording, *options.unit);
+    if (!possible) return possible;
+    apply_given_unit(recording, options);
+  }
   recognise_gravity(recording);
+  return Done{};
 }
 
 }  // namespace proofmass::io

@@ -11,7 +11,7 @@ namespace proofmass::io {
 /// accelerometers before anything else; known instruments by the names of their columns; else the
 /// size of gravity in the quietest second of the accelerometers: 9.8 is m/s^2, 1 is g, 1000 is mg.
 /// Whole numbers that fit none of these are counts.
-void settle_units(Recording& recording, const ReadOptions& options);
+[[nodiscard]] Status settle_units(Recording& recording, const ReadOptions& options);
 
 /// Whether a name is an accelerometer's: by "acc", or by an axis and nothing else ("x", "ay2").
 [[nodiscard]] bool is_accelerometer_name(std::string_view name);

@@ -109,7 +109,7 @@ Result<Recording> finish_recording(RecordingReader& reader,
   if (recording.channels.empty())
     return Error{Errc::too_few_samples, "has no column of numbers beside the time"};
   clean_texts(recording);
-  settle_units(recording, options);
+  if (const Status settled = settle_units(recording, options); !settled) return settled.error();
   tell_other_clocks(recording);
   if (options.skew_s != 0.0) {
     auto even = signal::without_skew(recording, options.skew_s);

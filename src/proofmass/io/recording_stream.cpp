@@ -99,7 +99,7 @@ class RecordingStream::Reading {
     decide_on_time(raw, first);
     first.notes.clear();
     clean_texts(first);
-    settle_units(first, options_);
+    if (const Status settled = settle_units(first, options_); !settled) return settled.error();
     unit_notes_ = std::exchange(first.notes, {});
     const auto chosen = chosen_channels(first, options_.channels);
     if (!chosen) return chosen.error();

@@ -32,6 +32,23 @@ std::optional<std::int64_t> start_of(const StampOrigin& origin, double first, do
   return out;
 }
 
+/// What is to be said of stamps beside a rate that was given: a warning where they contradict it.
+Note note_on_unused(const StampColumn& stamps, double rate_hz) {
+  const StampSteps steps = measure_steps(stamps.values);
+  const bool is_count = !stamps.is_named && steps.median == 1.0;
+  if (steps.is_of_clock() && steps.ascending >= 0.8 && !is_count) {
+    constexpr double most_off = 0.05;
+    const double found_hz =
+        1.0 / in_seconds(steps.nominal(), unit_of(stamps, steps.nominal()).unit_s);
+    if (std::abs(found_hz / rate_hz - 1.0) > most_off)
+      return {Severity::warning,
+              fmt::format("{}: its stamps say {} Hz and are not used, as a rate of {} Hz was given",
+                          stamps.name, in_words(found_hz), in_words(rate_hz))};
+  }
+  return {Severity::info,
+          fmt::format("{}: its stamps are not used, as a rate was given", stamps.name)};
+}
+
 }  // namespace
 
 RunningTimeBase::RunningTimeBase(const TimeEvidence& first_rows, const ReadOptions& options)
@@ -41,10 +58,7 @@ RunningTimeBase::RunningTimeBase(const TimeEvidence& first_rows, const ReadOptio
   const auto& stamps = first_rows.stamps;
   if (options.rate_hz) {
     decide_on_rate(first_rows, *options.rate_hz);
-    if (stamps)
-      decisions_.push_back(
-          {Severity::info,
-           fmt::format("{}: its stamps are not used, as a rate was given", stamps->name)});
+    if (stamps) decisions_.push_back(note_on_unused(*stamps, *options.rate_hz));
     return;
   }
   if (stamps) decide_on_stamps(first_rows);

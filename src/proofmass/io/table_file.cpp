@@ -137,8 +137,13 @@ void tell_the_others(std::span<const TableSummary> tables,
   if (tables.size() > most_told + 1)
     others += fmt::format(" and {} more", tables.size() - most_told - 1);
   const int likeness = likeness_to_accelerations(tables[chosen]);
+  // Another table with accelerations of its own may have been meant.
+  bool is_open = false;
+  for (std::size_t t = 0; t < tables.size(); ++t)
+    is_open = is_open || (t != chosen && likeness == 2 && !tables[t].is_derived &&
+                          likeness_to_accelerations(tables[t]) == likeness);
   notes.push_back(
-      {Severity::info,
+      {is_open ? Severity::warning : Severity::info,
        fmt::format("{} is read{}; also holds {}: --variable \"{}\"", tables[chosen].name,
                    likeness > 0 ? ", having accelerations" : "", others, example)});
 }
