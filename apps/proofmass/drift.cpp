@@ -188,7 +188,6 @@ void run(const DriftCommand& command) {
   });
   report.runs = compare_recordings(recordings, report.since_switch_on_s,
                                    progress_bar(command.output), report.notes);
-  need_a_channel(channels);
   if (!command.update_sensor.empty()) {
     without_interruption([&] { update_drift(command.update_sensor, channels, report.notes); });
   }
@@ -202,6 +201,7 @@ void run(const DriftCommand& command) {
            .json = [&] { return report::drift_json(report); },
            .html = [&] { return report::drift_html(report); }},
           command.output);
+  need_a_channel(report.channels);
   hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
 }
 

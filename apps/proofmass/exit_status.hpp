@@ -48,9 +48,9 @@ template <class T>
 /// reason.
 template <class Channels>
 void need_a_channel(const Channels& channels) {
-  const auto is_analysed = [](const auto& channel) { return channel.shown.refused.empty(); };
+  const auto is_analysed = [](const auto& channel) { return channel.refused.empty(); };
   if (channels.empty() || std::ranges::any_of(channels, is_analysed)) return;
-  const auto& first = channels.front().shown;
+  const auto& first = channels.front();
   throw Failure(bad_input, "no channel can be analysed: " + first.name + ": " + first.refused);
 }
 

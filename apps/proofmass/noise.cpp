@@ -231,7 +231,6 @@ void run(const NoiseCommand& command) {
     own.progress = std::move(progress);
     analyse(channels[k], std::move(own));
   });
-  need_a_channel(channels);
   if (!command.update_sensor.empty()) {
     without_interruption([&] { update_noise(command.update_sensor, channels); });
   }
@@ -245,6 +244,7 @@ void run(const NoiseCommand& command) {
            .json = [&] { return report::noise_json(report); },
            .html = [&] { return report::noise_html(report); }},
           command.output);
+  need_a_channel(report.channels);
   hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
 }
 

@@ -69,6 +69,15 @@ class CommandTest(unittest.TestCase):
         self.check_document(verb, document)
         return document
 
+    def refused_document(self, verb, *arguments) -> dict:
+        """The document of a run that could analyse no channel: it ends with BAD_INPUT, and says why."""
+        ran = self.run_command(verb, *arguments, "--json", "-")
+        self.assertEqual(ran.returncode, BAD_INPUT, ran.stderr.decode())
+        self.assertIn("proofmass: no channel can be analysed: ", ran.stderr.decode())
+        document = parse_json(ran.stdout.decode())
+        self.check_document(verb, document)
+        return document
+
     def check_document(self, verb, document):
         schema = json.loads((SCHEMAS / f"{verb}.schema.json").read_text())
         jsonschema.Draft202012Validator.check_schema(schema)

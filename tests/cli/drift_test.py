@@ -280,7 +280,7 @@ class Drift(CommandTest):
     def test_no_recording_is_no_crash(self):
         self.expect_failure(BAD_INPUT, "drift", "nowhere.csv")
         self.write("tiny.csv", "acc_x (g)\n0.1\n0.2\n")
-        document = self.document("drift", "tiny.csv", "--rate", "10")
+        document = self.refused_document("drift", "tiny.csv", "--rate", "10")
         self.assertIsNone(document["channels"][0]["a1"])
         self.assertIsNone(document["channels"][0]["a2"])
 

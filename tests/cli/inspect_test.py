@@ -112,9 +112,10 @@ class Inspect(CommandTest):
         self.write("a.mat", mat)
         document = self.document("inspect", "a.mat")
         self.assertEqual(document["format"], "MAT v4")
-        self.assertEqual([channel["name"] for channel in document["channels"]], ["long"])
-        document = self.document("inspect", "a.mat", "--variable", "ax")
-        self.assertEqual([channel["name"] for channel in document["channels"]], ["ax"])
+        self.assertEqual([channel["name"] for channel in document["channels"]], ["ax"], "accelerations come first")
+        for flag in ("--variable", "--channel"):
+            chosen = self.document("inspect", "a.mat", flag, "long")
+            self.assertEqual([channel["name"] for channel in chosen["channels"]], ["long"])
         self.assertAlmostEqual(document["rate_hz"], 100.0, places=6)
         self.write("cut.mat", mat[:-8])
         self.assertIn("byte", self.expect_failure(BAD_INPUT, "inspect", "cut.mat"))

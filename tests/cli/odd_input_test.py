@@ -3,7 +3,7 @@ import gzip
 import os
 import unittest
 
-from command import BAD_DATA, BAD_INPUT, DONE, FAILED, USAGE, CommandTest, parse_json, rest_csv
+from command import BAD_DATA, BAD_INPUT, DONE, FAILED, USAGE, CommandTest, parse_json, rest_csv, turning_csv
 from odd_recordings import OddRecording
 
 RECORDINGS = int(os.environ.get("PROOFMASS_ODD_RECORDINGS", "150"))
@@ -37,7 +37,37 @@ class Streams(CommandTest):
     def test_where_no_channel_can_be_analysed_the_input_is_bad(self):
         self.write("a.csv", "t (s),ax (g)\n" + "".join(f"0.{k},nan\n" for k in range(9)))
         for verb in ("noise", "drift"):
-            self.expect_failure(BAD_INPUT, verb, "a.csv")
+            self.refused_document(verb, "a.csv")
+
+
+class Flags(CommandTest):
+    """A flag that contradicts the file is not obeyed in silence."""
+
+    def test_of_a_rate_beside_stamps_are_warned_of(self):
+        self.write("a.csv", turning_csv(seconds=4))
+        warnings = "\n".join(self.document("inspect", "a.csv", "--rate", "50")["warnings"])
+        self.assertIn("its stamps say 100 Hz and are not used", warnings)
+        self.assertNotIn("its stamps", "\n".join(self.document("inspect", "a.csv", "--rate", "100")["warnings"]))
+
+    def test_of_a_unit_that_gravity_contradicts_are_refused(self):
+        self.write("a.csv", rest_csv(seconds=4))
+        for verb in ("noise", "calibrate", "inspect", "track"):
+            self.assertIn("contradicts the header's m/s^2", self.expect_failure(USAGE, verb, "a.csv", "--unit", "g"))
+        # A header that is wrong itself, and one that says nothing that can be checked, can be overruled.
+        self.write("wrong.csv", rest_csv(seconds=4).replace("m/s^2", "g"))
+        self.assertEqual(self.document("inspect", "wrong.csv", "--unit", "m/s2")["channels"][0]["unit"], "m/s^2")
+
+    def test_of_a_radius_in_millimetres_are_refused(self):
+        self.write("a.csv", turning_csv())
+        self.assertIn("in metres", self.expect_failure(USAGE, "wheel", "a.csv", "--radius", "150"))
+        self.succeed("wheel", "a.csv", "--radius", "0.15")
+
+    def test_of_a_folder_with_several_recordings_name_the_one_that_is_read(self):
+        (self.folder / "runs").mkdir()
+        for name in ("one", "two"):
+            self.write(f"runs/{name}.csv", turning_csv(seconds=5))
+        warnings = "\n".join(self.document("inspect", "runs")["warnings"])
+        self.assertRegex(warnings, "one is read, .*also holds two")
 
 
 class Names(CommandTest):
@@ -100,7 +130,7 @@ class Verbs(CommandTest):
                     continue
                 document = parse_json((self.folder / "d.json").read_text())
                 self.check_document("tumble_rotating" if "--rotating" in arguments else verb, document)
-        self.assertGreater(sum(count for (_, end), count in ends.items() if end == DONE), RECORDINGS // 6)
+        self.assertGreater(sum(count for (_, end), count in ends.items() if end == DONE), RECORDINGS // 10)
 
     def test_of_a_wheel_may_be_of_a_few_samples(self):
         self.succeed("simulate", "--rpm", "15", "--seed", "7", "--duration", "10", "-o", "w.csv")

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proofmass/core/contract.hpp"
 #include "proofmass/core/units.hpp"
 
 namespace proofmass::estimate {
@@ -71,8 +70,13 @@ std::optional<Inclination> inclination_of(const Mat<3>& f, const Mat<3, 3>& cov)
 
 TiltAngles angles_of(const Mat<3>& force, const Mat<3, 3>& cov) {
   const double norm = force.norm();
-  PM_EXPECTS(norm > 0.0);
   TiltAngles out;
+  // A sensor that falls, or says nothing, has no direction of gravity in it.
+  constexpr double least = 1e-100;
+  if (!(norm > least)) {
+    out.why_no_roll = out.why_no_pitch = "the readings leave the direction open";
+    return out;
+  }
   set_roll(out, force, cov);
   out.inclination = inclination_of(force, cov);
   for (int i = 0; i < 3; ++i) {

@@ -40,7 +40,7 @@ struct TiltAngles {
 /// Roll is absent where x is so nearly upright that its standard deviation passes 0.5 rad, pitch
 /// where that of the direction does.
 /// Source: M. Pedley, Tilt Sensing Using a Three-Axis Accelerometer (2013), equations 25 and 26, in
-/// axes with z upwards. Expects f ≠ 0.
+/// axes with z upwards. None of f = 0.
 [[nodiscard]] TiltAngles angles_of(const Mat<3>& force, const Mat<3, 3>& cov);
 
 /// The same of one or two axes; the others are NaN in `force`. With sin(elevation) = f / g:
