@@ -78,8 +78,17 @@ void add_position_flags(CLI::App& verb, TumbleCommand& command) {
       ->check(CLI::IsMember({0, 180}));
   add("--input-axis", command.input_axis, "NAME",
       "the channel whose axis sees g·sin(angle) (default: found from the readings)");
-  add("--indexing-std", command.indexing_std_deg, "DEG", "standard deviation of the table's angles")
+  add("--indexing-std", command.indexing_std_deg, "DEG",
+      "standard deviation of the table's angles (default: 0.5, less where the residuals show it)")
       ->check(not_negative());
+  add("--drift-std", command.drift_std_mps2, "M_PER_S2",
+      "standard deviation of the amplitudes by which the bias wanders about a straight line "
+      "(default: 0.0057, 1 mg/√3, and a quarter of the linear drift; less where repeats show it)")
+      ->check(not_negative());
+  add("--bandwidth", command.bandwidth_hz, "HZ",
+      "of the sensor's filter, one pole, with --rotating --angle: its delay is taken out of the "
+      "misalignment")
+      ->check(positive());
   add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", gravity_std_help)
       ->check(not_negative());
 }

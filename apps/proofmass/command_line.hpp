@@ -107,7 +107,8 @@ struct TumbleCommand {
   std::string angle_channel;        ///< --angle: the column with the angle; empty: by its name
   std::string input_axis;           ///< --input-axis: channel whose axis is at gravity × sin
   std::vector<int> planes, mounts;  ///< --plane, --mount: of each file; empty: columns or 1 and 0
-  double indexing_std_deg = 0.0;
+  /// --indexing-std, --drift-std, --bandwidth; absent: assumed, or found from the residuals
+  std::optional<double> indexing_std_deg, drift_std_mps2, bandwidth_hz;
   std::optional<double> gravity_std_mps2;
   bool rotating = false;                  ///< --rotating: run_rotation()
   std::vector<std::string> coefficients;  ///< --coefficients: run_model_equation()

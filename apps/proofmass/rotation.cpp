@@ -142,6 +142,11 @@ void run_rotation(const TumbleCommand& command) {
                   "--update-sensor does not go with --rotating: the axes that do not lie in "
                   "the plane of the wheel are not known");
   }
+  if (command.bandwidth_hz && command.angle_channel.empty()) {
+    throw Failure(usage,
+                  "--bandwidth: without --angle there is no angle that the readings could "
+                  "be late to");
+  }
   report::RotationReport report;
   report.inputs = command.files;
   std::vector<Recording> recordings = load_recordings(command);
@@ -172,7 +177,8 @@ void run_rotation(const TumbleCommand& command) {
   report.fit =
       need(calibrate::fit_rotation(turning, {.gravity_mps2 = report.gravity_mps2,
                                              .gravity_std_mps2 = gravity.std,
-                                             .readings_are_accelerations = report.unit == "m/s^2"}),
+                                             .readings_are_accelerations = report.unit == "m/s^2",
+                                             .bandwidth_hz = command.bandwidth_hz.value_or(0.0)}),
            Stage::computing);
   for (const std::string& text : report.fit.doubts) {
     report.notes.push_back({Severity::bad, text});

@@ -114,6 +114,21 @@ sensor::MeasuredCalibration measured(const report::TumbleReport& report,
   return out;
 }
 
+// Which flags state what the fits had to assume.
+void note_assumptions(report::TumbleReport& report) {
+  const auto any = [&](const auto& assumed) {
+    return std::any_of(report.channels.begin(), report.channels.end(),
+                       [&](const ChannelTumble& c) { return c.fit && assumed(*c.fit); });
+  };
+  if (any([](const calibrate::TumbleFit& fit) { return fit.indexing.assumed; }))
+    report.notes.push_back(
+        {Severity::info, "--indexing-std states how good the table's angles are; 0 is exact"});
+  if (any([](const calibrate::TumbleFit& fit) { return fit.drift.wander_assumed; }))
+    report.notes.push_back({Severity::info,
+                            "--drift-std states how the bias wanders; a second turn, a turn "
+                            "backwards or a column with the temperature shows it"});
+}
+
 void update_sensor(const TumbleCommand& command,
                    const TumbleReadings& readings,
                    report::TumbleReport& report) {
@@ -129,6 +144,8 @@ void check(const TumbleCommand& command) {
     throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
   if (!command.angles_deg.empty() && !command.angle_channel.empty())
     throw Failure(usage, "--angles and --angle: give one of them");
+  if (command.bandwidth_hz)
+    throw Failure(usage, "--bandwidth: a table at rest shows no delay; it goes with --rotating");
   if (!command.rests.empty() && command.files.size() > 1)
     throw Failure(usage, "--rests: one list goes with one file");
   if (!command.update_sensor.empty() && !command.input.sensors.empty())
@@ -149,7 +166,7 @@ void run(const TumbleCommand& command) {
       uncertain_gravity_mps2(command.input, command.gravity_std_mps2, report.notes);
   report.gravity_mps2 = gravity.value;
   report.gravity_std_mps2 = gravity.std;
-  report.indexing_std_rad = command.indexing_std_deg * rad_per_deg;
+  if (command.indexing_std_deg) report.indexing_std_rad = *command.indexing_std_deg * rad_per_deg;
   const TumbleReadings readings = tumble_readings(command, report.notes);
   report.source = readings.source;
   std::vector<std::vector<double>> outputs;
@@ -160,10 +177,12 @@ void run(const TumbleCommand& command) {
       calibrate::tumble_axes(readings.positions, outputs, input);
   const calibrate::TumbleOptions options{.gravity_mps2 = report.gravity_mps2,
                                          .gravity_std_mps2 = report.gravity_std_mps2,
-                                         .indexing_std_rad = report.indexing_std_rad};
+                                         .indexing_std_rad = report.indexing_std_rad,
+                                         .drift_std_mps2 = command.drift_std_mps2};
   for (std::size_t k = 0; k < axes.size(); ++k)
     report.channels.push_back(analysed(readings, readings.outputs[k], axes[k], options));
   report.main = main_channel(report, input);
+  note_assumptions(report);
   if (!command.update_sensor.empty())
     without_interruption([&] { update_sensor(command, readings, report); });
   const std::vector<Note> notes = report::tumble_notes(report);

@@ -24,6 +24,8 @@ constexpr std::array<std::string_view, 7> std_names{"std",       "sigma",       
 constexpr std::array<std::string_view, 4> direction_names{"direction", "dir", "way", "sense"};
 constexpr std::array<std::string_view, 4> mount_names{"mount", "mounting", "mountdeg", "remount"};
 constexpr std::array<std::string_view, 4> time_names{"time", "times", "t", "elapsed"};
+constexpr std::array<std::string_view, 5> temperature_names{"temperature", "temp", "tempc",
+                                                            "temperaturec", "temperaturedegc"};
 
 std::optional<std::size_t> place_of(const Recording& recording, const std::string& name) {
   const Channel* channel = recording.find(name);
@@ -65,6 +67,15 @@ std::optional<std::size_t> find_angle(const Recording& recording) {
   return count == 1 ? only : std::nullopt;
 }
 
+// By unit, else by name.
+std::optional<std::size_t> find_temperature(const Recording& recording) {
+  for (std::size_t k = 0; k < recording.channels.size(); ++k)
+    if (recording.channels[k].unit.quantity == Quantity::temperature) return k;
+  const auto named = by_name(recording, temperature_names);
+  if (!named || recording.channels[*named].unit.quantity != Quantity::unknown) return std::nullopt;
+  return named;
+}
+
 bool can_be_output(const Channel& channel) {
   return channel.unit.quantity == Quantity::acceleration ||
          channel.unit.quantity == Quantity::voltage || channel.unit.quantity == Quantity::counts ||
@@ -85,7 +96,8 @@ std::vector<std::size_t> find_outputs(const Recording& recording, const TumbleCo
   for (std::size_t k = 0; k < recording.channels.size(); ++k) {
     const auto at = std::optional(k);
     const bool used = at == taken.angle || at == taken.std || at == taken.direction ||
-                      at == taken.mount || at == taken.plane || at == taken.time;
+                      at == taken.mount || at == taken.plane || at == taken.time ||
+                      at == taken.temperature;
     if (used || (!table && at == counter) || !can_be_output(recording.channels[k])) continue;
     all.push_back(k);
   }
@@ -118,6 +130,7 @@ TumbleColumns tumble_columns(const Recording& recording,
   out.mount = by_name(recording, mount_names);
   out.plane = by_name(recording, std::array<std::string_view, 1>{"plane"});
   out.time = by_name(recording, time_names);
+  out.temperature = find_temperature(recording);
   if (chosen.empty()) out.outputs = find_outputs(recording, out);
   for (const std::string& name : chosen) out.outputs.push_back(named(recording, name, "--channel"));
   if (out.outputs.empty())

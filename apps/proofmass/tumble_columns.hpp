@@ -12,7 +12,7 @@
 namespace proofmass::app {
 
 struct TumbleColumns {
-  std::optional<std::size_t> angle, std, direction, mount, plane, time;
+  std::optional<std::size_t> angle, std, direction, mount, plane, time, temperature;
   std::vector<std::size_t> outputs;
   std::vector<std::optional<std::size_t>> output_std;  ///< of each output, "x_std"
 };

@@ -106,6 +106,16 @@ std::vector<double> given_angles(const Recording& recording,
   return out;
 }
 
+double mean_temperature(const Recording& recording,
+                        const TumbleColumns& columns,
+                        const Dwell& dwell) {
+  const Channel& channel = recording.channels[*columns.temperature];
+  double sum = 0.0;
+  for (std::size_t k = dwell.first; k <= dwell.last; ++k) sum += channel.values[k];
+  const double mean = sum / static_cast<double>(dwell.last - dwell.first + 1);
+  return channel.unit.quantity == Quantity::temperature ? channel.unit.si(mean) : mean;
+}
+
 // Where the sensor lay still, and at which angles of the table.
 struct Settings {
   std::vector<Dwell> dwells;
@@ -161,6 +171,7 @@ TumblePart read_rests(const Recording& recording,
     TumblePosition p;
     p.angle_rad = angles[k];
     if (timed) p.time_s = 0.5 * (begin + recording.time.at(dwells[k].last));
+    if (columns.temperature) p.temperature = mean_temperature(recording, columns, dwells[k]);
     p.label = timed ? fmt::format("rest at {} s", report::fixed(begin, 1))
                     : fmt::format("rest {}", k + 1);
     part.readings.positions.push_back(std::move(p));

@@ -84,6 +84,12 @@ std::vector<TumblePosition> table_positions(const Recording& recording,
       p.time_s = at(columns.time, row, 0.0);
     else if (recording.time.source == TimeSource::stamps)
       p.time_s = recording.time.at(row);
+    if (columns.temperature) {
+      const Channel& channel = recording.channels[*columns.temperature];
+      p.temperature = channel.unit.quantity == Quantity::temperature
+                          ? channel.unit.si(channel.values[row])
+                          : channel.values[row];
+    }
     p.label = recording.first_line > 0 ? fmt::format("line {}", recording.first_line + row)
                                        : fmt::format("row {}", row + 1);
     out.push_back(std::move(p));

@@ -95,10 +95,34 @@ class Tumble(CommandTest):
     def test_stated_noise_gives_standard_deviations_and_a_lack_of_fit(self):
         rows = [(a, v, 3e-6) for a, v in self.noisy(range(0, 360, 30))]
         self.write("p.csv", table(rows, "theta (deg),E (V),std"))
-        found = self.document("tumble", "p.csv", "--indexing-std", "0.001", "--gravity-std", "1e-4")
+        found = self.document("tumble", "p.csv", "--indexing-std", "0.001", "--gravity-std", "1e-4",
+                              "--drift-std", 0)
         self.assertTrue(found["noise_known"])
         self.assertEqual(found["lack_of_fit"]["against"], "noise of the means")
         self.assertEqual([share["type"] for share in found["shares"]], ["A", "B", "B"])
+
+    def test_what_is_not_stated_of_the_table_and_the_drift_is_assumed_and_said(self):
+        rows = [(a, v, 3e-6) for a, v in self.noisy([0, 90, 180, 270, 0])]
+        self.write("p.csv", table(rows, "theta (deg),E (V),std"))
+        found = self.document("tumble", "p.csv")
+        self.assertTrue(found["indexing"]["assumed"] and found["drift"]["wander_assumed"])
+        self.assertAlmostEqual(found["indexing"]["std_rad"], math.radians(0.5))
+        self.assertTrue(any("angles is not stated" in w for w in found["warnings"]))
+        self.assertTrue(any("--indexing-std" in n for n in found["notes"]))
+        self.assertIn("drift that is not straight", [share["source"] for share in found["shares"]])
+        exact = self.document("tumble", "p.csv", "--indexing-std", 0, "--drift-std", 0)
+        self.assertLess(exact["misalignment_rad"]["std"], 0.01 * found["misalignment_rad"]["std"])
+        self.assertFalse(exact["indexing"]["assumed"] or exact["drift"]["wander_assumed"])
+
+    def test_a_column_of_temperatures_is_taken_out(self):
+        rows = [(a, v + K1 * 0.02 * math.sin(0.9 * k), 20 + 2 * math.sin(0.9 * k), 3e-6)
+                for k, (a, v) in enumerate(self.noisy([*range(0, 360, 30), 0]))]
+        self.write("p.csv", table(rows, "angle (deg),x (V),temperature (degC),std"))
+        found = self.document("tumble", "p.csv")
+        self.expect_near(found["bias_per_kelvin"], 0.01)
+        self.assertEqual(found["bias_per_kelvin"]["unit"], "m/s^2/K")
+        self.assertEqual(found["in_g"]["bias_per_kelvin"]["unit"], "mg/K")
+        self.expect_near(found["misalignment_rad"], DELTA)
 
     def test_angles_may_be_in_radians(self):
         self.write("p.csv", table([(math.radians(a), v) for a, v in self.noisy(range(0, 360, 15))],

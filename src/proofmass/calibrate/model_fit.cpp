@@ -118,6 +118,7 @@ struct Solution {
   Eigen::MatrixXd covariance;
   Eigen::VectorXd inflation;
   Eigen::VectorXd residuals;  ///< over sigma
+  Eigen::VectorXd leverage;   ///< of each row on its own fit
 };
 
 Solution solve(const Linear& problem, const std::vector<Index>& columns) {
@@ -127,7 +128,7 @@ Solution solve(const Linear& problem, const std::vector<Index>& columns) {
   const auto factored = fit::factor_columns(X);
   const Eigen::VectorXd beta = factored->R_inverse * (factored->Q.transpose() * problem.y);
   Solution solution{Eigen::VectorXd::Zero(p), Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p),
-                    problem.y - X * beta};
+                    problem.y - X * beta, factored->Q.rowwise().squaredNorm()};
   for (Index a = 0; a < told; ++a) {
     const Index at = columns[size_of(a)];
     solution.beta(at) = beta(a);
@@ -179,6 +180,33 @@ void judge_residuals(const Linear& problem, const Solution& solution, ModelFit& 
                   "(p = {:.2g}): a term is missing, the motion is wrong, or the readings are "
                   "noisier than stated; standard deviations were widened by that factor",
                   fit.scatter, fit.test->p));
+}
+
+// How far a row is off a fit to the others, as a probability by chance; 1 where it alone carries a
+// term, or where the others do not agree with each other.
+double deletion_p(const Solution& solution, Index row, const ModelFit& fit) {
+  constexpr double least_own = 1e-9, others_fit = 0.01;
+  const double own = 1.0 - solution.leverage(row), left = static_cast<double>(fit.dof) - 1.0;
+  if (own < least_own || left < 1.0) return 1.0;
+  const double square = solution.residuals(row) * solution.residuals(row) / own;
+  const double others = solution.residuals.squaredNorm() - square;
+  if (fit.std_stated && chi_square_p(std::max(others, 0.0), left) > others_fit)
+    return chi_square_p(square, 1.0);
+  if (!(others > 0.0)) return 1.0;
+  return student_t_p(std::sqrt(square * left / others), left);
+}
+
+void name_wrong_rows(const Solution& solution, ModelFit& fit) {
+  constexpr double chance = 0.01;
+  const double least = chance / static_cast<double>(solution.residuals.size());
+  for (Index row = 0; row < solution.residuals.size(); ++row) {
+    if (deletion_p(solution, row, fit) >= least) continue;
+    fit.suspects.push_back(size_of(row));
+    fit.notes.push_back(
+        fmt::format("row {} contradicts the others (residual {:.3g}): look at its reading and its "
+                    "motion; it stays in the fit",
+                    row + 1, fit.residuals[size_of(row)]));
+  }
 }
 
 void note_near_confounding(const std::vector<Index>& columns,
@@ -315,6 +343,7 @@ Result<ModelFit> fit_model_equation(View<ModelRow> rows, const ModelFitOptions& 
   fit.condition = found.condition;
   Solution solution = solve(problem, columns);
   judge_residuals(problem, solution, fit);
+  name_wrong_rows(solution, fit);
   solution.covariance *= fit.scatter * fit.scatter;
   if (const Status status = k1_is_told(problem, found, solution, fit); !status)
     return status.error();

@@ -63,14 +63,15 @@ struct ModelFit {
   std::vector<FittedCoefficient> coefficients;  ///< in the order asked for
   Eigen::MatrixXd covariance;  ///< of those, in their order; zero where there is no value
   std::vector<Confounded> confounded;
-  std::vector<double> residuals;     ///< of the rows, in the unit of the output
-  double residual_rms = 0.0;         ///< √(Σ residual²/rows)
-  std::size_t dof = 0;               ///< rows less determined coefficients and combinations
-  std::optional<ResidualTest> test;  ///< absent without stated standard deviations or with dof 0
-  double scatter = 1.0;              ///< factor on the stated standard deviations, see below
-  double condition = 0.0;            ///< of the design, columns of unit length
-  bool std_stated = false;           ///< the rows' standard deviations, not the residuals, judge
-  std::vector<std::string> notes;    ///< sentences for the user
+  std::vector<double> residuals;      ///< of the rows, in the unit of the output
+  std::vector<std::size_t> suspects;  ///< rows that contradict the others; they stay in the fit
+  double residual_rms = 0.0;          ///< √(Σ residual²/rows)
+  std::size_t dof = 0;                ///< rows less determined coefficients and combinations
+  std::optional<ResidualTest> test;   ///< absent without stated standard deviations or with dof 0
+  double scatter = 1.0;               ///< factor on the stated standard deviations, see below
+  double condition = 0.0;             ///< of the design, columns of unit length
+  bool std_stated = false;            ///< the rows' standard deviations, not the residuals, judge
+  std::vector<std::string> notes;     ///< sentences for the user
 
   [[nodiscard]] const FittedCoefficient* find(sensor::Coefficient coefficient) const;
 };
@@ -83,6 +84,10 @@ struct ModelFit {
 /// Where the rows state standard deviations those give the covariance, widened by √(χ²/dof) where
 /// the residuals exceed them beyond chance (p < 0.01); otherwise s² = Σ residual²/dof does, and
 /// intervals want Student's t with dof.
+/// A row is suspect where its residual against a fit to the others would be chance in one of a
+/// hundred tests (Bonferroni's bound over the rows): against the stated standard deviation where
+/// that explains the other rows, else by Student's t with dof − 1. Source: R. D. Cook, S. Weisberg,
+/// Residuals and Influence in Regression (1982), 2.2.
 /// Terms that the rows do not excite, and groups of terms that are linearly dependent in all rows
 /// to within one part in ten thousand (motion is seldom known better), have no values but reasons;
 /// what can be told of a group is among its combinations. Where K1 itself is in such a group the

@@ -374,5 +374,40 @@ TEST(ModelFit, RefusesToDivideByAScaleFactorThatIsNotThere) {
   EXPECT_EQ(fit_model_equation(noise, {{K1, K0}, {}}).error().code, Errc::not_observable);
 }
 
+// 41 rows of a tumble with noise of 1e-4.
+std::vector<ModelRow> noisy_rows(bool stated, std::mt19937_64& random) {
+  std::normal_distribution<double> noise(0.0, 1e-4);
+  std::vector<ModelRow> rows;
+  for (int k = 0; k <= 40; ++k) {
+    const double phi = 2.0 * std::numbers::pi * k / 40.0, a = g * std::sin(phi);
+    ModelRow row{.motion = {.ai_mps2 = a, .ap_mps2 = g * std::cos(phi)}};
+    row.output = 0.0336 * (0.2 + a + 8e-5 * a * a) + noise(random);
+    if (stated) row.output_std = 1e-4;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST(ModelFit, NamesTheRowThatContradictsTheOthers) {
+  const ModelFitOptions options{.fitted = {Coefficient::K1, Coefficient::K0, Coefficient::K2},
+                                .held = {}};
+  for (const bool stated : {true, false}) {
+    std::mt19937_64 random(21);
+    int named = 0, others = 0, for_nothing = 0;
+    constexpr int tests = 200;
+    for (int test = 0; test < tests; ++test) {
+      std::vector<ModelRow> rows = noisy_rows(stated, random);
+      for_nothing += fit_model_equation(rows, options).value().suspects.empty() ? 0 : 1;
+      rows[17].output += 20e-4;
+      const ModelFit fit = fit_model_equation(rows, options).value();
+      for (const std::size_t row : fit.suspects) ++(row == 17 ? named : others);
+      EXPECT_NE(fit.notes.back().find("row 18 contradicts"), std::string::npos);
+    }
+    EXPECT_EQ(named, tests) << stated;
+    EXPECT_LE(others, 6) << stated;
+    EXPECT_LE(for_nothing, 6) << stated;
+  }
+}
+
 }  // namespace
 }  // namespace proofmass::calibrate::model_fit_test

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <numbers>
 #include <utility>
 
+#include "proofmass/calibrate/rotation_delay.hpp"
 #include "proofmass/calibrate/rotation_pass.hpp"
 #include "proofmass/calibrate/rotation_results.hpp"
+#include "proofmass/calibrate/rotation_ripple.hpp"
 #include "proofmass/calibrate/rotation_turns.hpp"
 #include "proofmass/calibrate/rotation_words.hpp"
 #include "proofmass/core/units.hpp"
@@ -56,7 +59,18 @@ Status check(View<RotationRecording> recordings, const RotationOptions& options)
   return Done{};
 }
 
-// Phase by the turns, and the mean of ω².
+// Whether the encoder's angle grows over a section, or falls.
+double sense_of(const SteadyTurns& section, const std::vector<double>& angle_rad) {
+  double first = std::numeric_limits<double>::quiet_NaN(), last = first;
+  for (std::size_t k = section.first; k <= section.last; ++k) {
+    if (!std::isfinite(angle_rad[k])) continue;
+    if (!std::isfinite(first)) first = angle_rad[k];
+    last = angle_rad[k];
+  }
+  return last < first ? -1.0 : 1.0;
+}
+
+// Phase by the turns.
 void start_phase(RotationState& state, const RotationOptions& options) {
   constexpr double most_intervals = 300.0;
   for (const SteadyTurns& section : state.sections) {
@@ -69,6 +83,9 @@ void start_phase(RotationState& state, const RotationOptions& options) {
       theta.push_back(rad_per_turn * static_cast<double>(k));
     }
     state.splines.push_back(fit_spline(section.turn_s, theta, static_cast<std::size_t>(intervals)));
+    state.ripples.emplace_back(Ripple::Zero());
+    if (state.angle_given)
+      state.sense.push_back(sense_of(section, state.recordings[section.recording].angle_rad));
   }
 }
 
@@ -163,9 +180,17 @@ void refer_to_fitted_speed(RotationState& state, RotationFit& fit) {
   const int before = fit.iterations;
   judge_speed(state, fit);
   if (!state.speed_told) {
-    for (Harmonics& h : state.harmonics) h(7) = 0.0;
+    for (Harmonics& h : state.harmonics) h(square_speed_column) = 0.0;
   }
   fit.converged = false;
+  iterate(state, fit);
+  fit.iterations += before;
+}
+
+// The encoder shows how the speed varies within the turn, and r ω² and r ω̇ with it.
+void fit_with_measured_ripples(RotationState& state, RotationFit& fit) {
+  measure_ripples(state);
+  const int before = fit.iterations;
   iterate(state, fit);
   fit.iterations += before;
 }
@@ -200,6 +225,7 @@ Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
   state.axes = counted.front().axes.size();
   start_phase(state, options);
   judge_speed(state, fit);
+  judge_delay(state);
   // Harmonics against the phase as it is, the phase turned, and harmonics again.
   step(state, false);
   if (const Status status = settle_phase(state); !status) return status.error();
@@ -210,11 +236,15 @@ Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
   if (const Status status = follows_gravity(state); !status) return status.error();
   iterate(state, fit);
   refer_to_fitted_speed(state, fit);
+  if (!state.angle_given)
+    fit_ripples(state);
+  else
+    fit_with_measured_ripples(state, fit);
   const RotationNormal normal = normal_equations(state);
   RotationEstimate estimate;
   estimate.harmonics.resize(state.size());
   for (std::size_t axis = 0; axis < state.axes; ++axis) {
-    estimate.harmonics.segment<8>(harmonic_count * static_cast<Eigen::Index>(axis)) =
+    estimate.harmonics.segment<harmonic_count>(harmonic_count * static_cast<Eigen::Index>(axis)) =
         state.harmonics[axis];
   }
   estimate.blocks = block_scores(state, make_solver(state, normal));
@@ -222,7 +252,12 @@ Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
   estimate.constraints = state.speed_told ? 2 : 1;
   fit.dof = estimate.dof();
   if (state.axes == 2) fit.direction = state.direction > 0.0 ? 1 : -1;
-  if (state.axes == 2 && !fit.angle_given) separate_ripples(state, estimate, fit);
+  if (fit.angle_given) {
+    allow_for_delay(state, options, estimate, fit);
+    allow_for_radius(state, options, estimate);
+  } else {
+    separate_ripples(state, options, estimate, fit);
+  }
   fill_rotation(state, estimate, options, fit);
   fold_turns(state, fit);
   note_doubts(state, options, fit);

@@ -29,7 +29,15 @@ struct RotationOptions {
   double gravity_std_mps2 = 0.0;
   bool readings_are_accelerations = false;  ///< so that K1 should be about 1
   double turns_per_knot = 4.0;              ///< of the phase, where no encoder tells it; at least 3
+  double bandwidth_hz = 0.0;                ///< of the sensor's filter, one pole; 0: not stated
 };
+
+/// Standard deviation of each component of the sensor's distance from the axle, where one speed
+/// does not determine it.
+inline constexpr double assumed_radius_std_m = 0.1;
+/// Standard deviation of the delay of the sensor's filter where neither its bandwidth is stated nor
+/// the speeds determine it: one pole at 16 Hz.
+inline constexpr double assumed_delay_std_s = 0.01;
 
 // NOLINTBEGIN(readability-identifier-naming): these are the standard's names.
 enum class RotationQuantity {
@@ -69,6 +77,7 @@ struct RotationAxis {
   std::array<double, 8> harmonics{};
   double residual_rms = 0.0;
   RotationFold fold;
+  std::optional<Uncertain> delay_s;  ///< of the readings after the encoder's angle
 
   [[nodiscard]] const RotationCoefficient& operator[](RotationQuantity quantity) const {
     return coefficients[static_cast<std::size_t>(quantity)];
@@ -80,11 +89,10 @@ struct SpeedRipple {
   int per_turn = 1;
   std::optional<Uncertain> amplitude = {};  ///< relative; absent where chance explains it
   double chance_p = 1.0;  ///< of so large harmonics if there were no ripple and no nonlinearity
-  double ripple_p = 1.0;  ///< of harmonics so unlike a ripple's if there were nothing else
   bool accepted = false;  ///< the harmonics are put down to it, not to the sensor
 };
 
-/// What a ripple of 1 % that goes unnoticed would look like.
+/// The change of the coefficients by a ripple of 1 % that is put down to the sensor.
 struct RippleEffect {
   double bias_mps2, second_order_s2pm;                         ///< once a turn
   double scale_relative, misalignment_rad, third_order_s4pm2;  ///< twice a turn
@@ -106,7 +114,7 @@ struct RotationFit {
   std::optional<int> direction;  ///< +1: the second axis leads by a quarter turn; two axes only
   /// Distance from the axle in the plane of the axes: of two axes, √(r_1² + r_2²).
   RotationCoefficient radius{.quantity = RotationQuantity::radius};
-  std::vector<SpeedRipple> ripples;  ///< once and twice a turn; of two axes without an encoder
+  std::vector<SpeedRipple> ripples;  ///< once to five times a turn; without an encoder
   RippleEffect per_percent{};        ///< of ripple
   double turns = 0.0;                ///< used
   double steady_fraction = 0.0;      ///< of the time that was recorded
@@ -130,12 +138,16 @@ struct RotationFit {
 ///
 /// by Gauss–Newton. Without an encoder φ(t) is a cubic spline whose knots lie several turns apart,
 /// so that it follows slow changes of speed but nothing within a turn, and the first axis's C1 is
-/// zero by definition. Coefficients follow as in RotationQuantity, by the delta method.
+/// zero by definition. Beside the spline a ripple of one to five times a turn is fitted in each
+/// section; what of it the sensor's own terms may be is in the intervals, see RippleSplit. With an
+/// encoder a delay τ of the sensor turns the phase by −τ φ̇: fitted where the speed varies, else in
+/// the interval of the misalignment. Coefficients follow as in RotationQuantity, by the delta
+/// method; standard deviations are half-widths of the 95 % intervals over 1.96.
 ///
 /// Standard deviations come from the scatter of the fit's gradient between blocks of whole turns
 /// (up to 24, at least 4 turns where there are enough),
 ///
-///     cov = H⁻¹ (Σ_b g_b g_bᵀ) H⁻¹ · B/(B − 1),
+///     cov = H⁻¹ (Σ_b g_b g_bᵀ) H⁻¹ · B/(B − c),   c = 1 or, with a radius, 2,
 ///
 /// and so hold for noise of any colour whose memory is shorter than a block; figures that hang on
 /// the mean of the readings (K0, radius) use blocks up to three times as long. Where neighbouring

@@ -60,17 +60,19 @@ std::vector<std::size_t> blocks_per_section(const RotationState& state, double& 
 
 }  // namespace
 
-Harmonics columns_at(double phase, double relative_square_speed) {
-  const double s = std::sin(phase), c = std::cos(phase);
-  const double s2 = 2.0 * s * c, c2 = 1.0 - 2.0 * s * s;
-  Harmonics columns;
-  columns << 1.0, s, c, s2, c2, s2 * c + c2 * s, c2 * c - s2 * s, 1.0 - relative_square_speed;
-  return columns;
-}
-
-double slope_at(const Harmonics& x, const Harmonics& h) {
-  return h(1) * x(2) - h(2) * x(1) + 2.0 * (h(3) * x(4) - h(4) * x(3)) +
-         3.0 * (h(5) * x(6) - h(6) * x(5));
+void place(const RotationState& state, const RotationRecording& recording, RotationSample& sample) {
+  const PhaseSpline& spline = state.splines[sample.section];
+  const double even = spline.value(sample.local), even_speed = spline.slope_per_s(sample.local);
+  sample.theta = state.angle_given ? recording.angle_rad[sample.k] : even;
+  const RippleAt ripple =
+      ripple_at(state.ripples[sample.section], state.offset[0] + state.direction * sample.theta);
+  if (!state.angle_given) sample.theta += state.direction * ripple.value;
+  const double speed = even_speed * (1.0 + ripple.slope), mean = state.mean_square_speed;
+  sample.speed_squared = speed * speed;
+  if (mean <= 0.0) return;  // before it is known
+  sample.relative_acceleration = even_speed * even_speed * ripple.curvature / mean;
+  if (state.angle_given)
+    sample.relative_speed = state.direction * state.sense[sample.section] * speed / std::sqrt(mean);
 }
 
 AxisAt axis_at(const RotationState& state,
@@ -78,10 +80,17 @@ AxisAt axis_at(const RotationState& state,
                const RotationSample& sample,
                double reading) {
   AxisAt at;
-  at.columns = columns_at(state.offset[axis] + state.direction * sample.theta,
-                          sample.speed_squared / state.mean_square_speed);
+  at.columns = columns_at({.phase = state.offset[axis] + state.direction * sample.theta,
+                           .relative_square_speed = sample.speed_squared / state.mean_square_speed,
+                           .relative_speed = sample.relative_speed});
   at.residual = reading - at.columns.dot(state.harmonics[axis]);
   at.slope = state.direction * slope_at(at.columns, state.harmonics[axis]);
+  if (!state.speed_told || state.axes < 2) return at;
+  // r φ̈: along the first axis that of the second's distance from the axle, with its sign turned.
+  const Harmonics &own = state.harmonics[axis], &other = state.harmonics[1 - axis];
+  if (own(1) == 0.0 || other(1) == 0.0) return at;
+  const double distance = own(1) * other(square_speed_column) / other(1);
+  at.residual += (axis == 0 ? distance : -distance) * sample.relative_acceleration;
   return at;
 }
 
@@ -95,13 +104,14 @@ RotationNormal normal_equations(const RotationState& state) {
       const Index from = harmonic_count * static_cast<Index>(axis);
       normal.squares[axis] += at.residual * at.residual;
       ++normal.count[axis];
-      normal.H.block<8, 8>(from, from) += weight * at.columns * at.columns.transpose();
-      normal.g.segment<8>(from) += weight * at.residual * at.columns;
+      normal.H.block<harmonic_count, harmonic_count>(from, from) +=
+          weight * at.columns * at.columns.transpose();
+      normal.g.segment<harmonic_count>(from) += weight * at.residual * at.columns;
       if (state.angle_given) continue;
       RotationNormal::Section& section = normal.sections[sample.section];
       const Index knot = sample.local.first;
       const Eigen::Vector4d basis = at.slope * sample.local.value;
-      section.cross.block<8, 4>(from, knot) += weight * at.columns * basis.transpose();
+      section.cross.block<harmonic_count, 4>(from, knot) += weight * at.columns * basis.transpose();
       section.H.block<4, 4>(knot, knot) += weight * basis * basis.transpose();
       section.g.segment<4>(knot) += weight * at.residual * basis;
     }
@@ -143,7 +153,7 @@ double step(RotationState& state, bool move_phase) {
     largest = std::max(largest, phase.cwiseAbs().maxCoeff());
   }
   for (std::size_t axis = 0; axis < state.axes; ++axis) {
-    const Harmonics by = change.segment<8>(harmonic_count * static_cast<Index>(axis));
+    const Harmonics by = change.segment<harmonic_count>(harmonic_count * static_cast<Index>(axis));
     state.harmonics[axis] += by;
     const double size = std::abs(state.harmonics[axis](1));
     if (size > 0.0) largest = std::max(largest, by.cwiseAbs().maxCoeff() / size);
@@ -175,7 +185,8 @@ BlockScores block_scores(const RotationState& state, const RotationSolver& solve
       const AxisAt at = axis_at(state, axis, sample, recording.axes[axis][sample.k]);
       if (!std::isfinite(at.residual)) continue;
       const double weighted = at.residual / state.variance[axis];
-      score.segment<8>(harmonic_count * static_cast<Index>(axis)) += weighted * at.columns;
+      score.segment<harmonic_count>(harmonic_count * static_cast<Index>(axis)) +=
+          weighted * at.columns;
       if (state.angle_given) continue;
       score -= solver.elimination[sample.section].middleCols<4>(sample.local.first) *
                (weighted * at.slope * sample.local.value);

@@ -7,15 +7,12 @@
 #include <vector>
 
 #include "proofmass/calibrate/phase_spline.hpp"
+#include "proofmass/calibrate/rotation_harmonics.hpp"
 #include "proofmass/calibrate/rotation_turns.hpp"
 
 // Passes over the samples of a wheel that turns: normal equations and the scatter of their
 // gradient.
 namespace proofmass::calibrate {
-
-/// B0, S1, C1, S2, C2, S3, C3 and that of −(ω²/ω̄² − 1).
-using Harmonics = Eigen::Matrix<double, 8, 1>;
-inline constexpr Eigen::Index harmonic_count = 8;
 
 /// What the passes go over, and where the fit stands.
 struct RotationState {
@@ -24,9 +21,12 @@ struct RotationState {
   bool angle_given = false;
   bool phase_defined = false;  ///< by the first axis, whose C1 is zero then
   bool speed_told = false;     ///< ω² varies enough for its column
+  bool delay_told = false;     ///< with an encoder: ω varies enough for the delay's column
   std::size_t axes = 1;
 
   std::vector<PhaseSpline> splines;  ///< of each section, counted in radians
+  std::vector<Ripple> ripples;       ///< of each section; empty where an encoder gives the angle
+  std::vector<double> sense;         ///< of each section: sign of the encoder's speed
   double mean_square_speed = 0.0;    ///< ω̄²
   double direction = 1.0;            ///< φ = offset + direction · θ
   std::array<double, 2> offset{};    ///< of each axis
@@ -38,7 +38,11 @@ struct RotationState {
   }
   /// Whether a harmonic is fitted: not the first axis's C1 where it defines the phase.
   [[nodiscard]] bool fitted(Eigen::Index column) const {
-    return (!phase_defined || column != 2) && (speed_told || column % harmonic_count != 7);
+    const Eigen::Index k = column % harmonic_count;
+    if (k == square_speed_column) return speed_told;
+    if (k == delay_column) return delay_told;
+    if (k > square_speed_column) return !angle_given;
+    return !phase_defined || column != 2;
   }
 };
 
@@ -48,7 +52,12 @@ struct RotationSample {
   PhaseSpline::Local local;
   double theta = 0.0;  ///< rad
   double speed_squared = 0.0;
+  double relative_acceleration = 0.0;  ///< φ̈/ω̄² by the ripple
+  double relative_speed = 0.0;         ///< φ̇/√ω̄², with its sign; with an encoder only
 };
+
+/// Fills in angle and speed, the ripple included.
+void place(const RotationState& state, const RotationRecording& recording, RotationSample& sample);
 
 /// Calls f(recording, sample) for each sample of the steady sections.
 template <class F>
@@ -57,21 +66,13 @@ void for_each_sample(const RotationState& state, F&& f) {
     const SteadyTurns& section = state.sections[s];
     const RotationRecording& recording = state.recordings[section.recording];
     for (std::size_t k = section.first; k <= section.last; ++k) {
-      RotationSample sample{s, k, state.splines[s].at(recording.time_s[k]), 0.0, 0.0};
-      const double speed = state.splines[s].slope_per_s(sample.local);
-      sample.speed_squared = speed * speed;
-      sample.theta =
-          state.angle_given ? recording.angle_rad[k] : state.splines[s].value(sample.local);
+      RotationSample sample{
+          .section = s, .k = k, .local = state.splines[s].at(recording.time_s[k])};
+      place(state, recording, sample);
       if (std::isfinite(sample.theta)) f(recording, sample);
     }
   }
 }
-
-/// The columns of one axis at phase φ.
-[[nodiscard]] Harmonics columns_at(double phase, double relative_square_speed);
-
-/// ∂E/∂φ.
-[[nodiscard]] double slope_at(const Harmonics& columns, const Harmonics& harmonics);
 
 /// An axis's columns, its residual and ∂E/∂θ at a sample; no number in the residual where the
 /// reading is none.

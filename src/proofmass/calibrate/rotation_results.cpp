@@ -19,7 +19,7 @@ using Q = RotationQuantity;
 constexpr std::string_view one_speed =
     "radius and radial bias cannot be told apart at one speed: record a second speed";
 
-// A quantity's value and its derivatives by the eight harmonics of its axis.
+// A quantity's value and its derivatives by the harmonics of its axis.
 struct Derived {
   double value = 0.0;
   Harmonics gradient = Harmonics::Zero();
@@ -105,17 +105,20 @@ std::string why_not(const RotationState& state,
     case Q::Kip:
       return accepted(1)
                  ? "the second harmonics of both axes are those of a speed that varies once "
-                   "a turn: what the sensor adds to them cannot be told"
+                   "a turn, from which the sensor's part cannot be separated without an "
+                   "encoder"
                  : "";
     case Q::K3:
-      return accepted(2)
-                 ? "the third harmonics of both axes are those of a speed that varies twice "
-                   "a turn: what the sensor adds to them cannot be told"
-                 : "";
+      return accepted(2) ? "the third harmonics of both axes are those of a speed that varies "
+                           "twice a turn, from which the sensor's part cannot be separated without "
+                           "an encoder"
+                         : "";
     default:
       return "";
   }
 }
+
+constexpr double normal_factor = 1.959964;  // 95 % of a normal distribution
 
 double half_width(double std, double dof) {
   return std * student_t_quantile(0.975, dof);
@@ -126,7 +129,8 @@ Eigen::Matrix2d slow_covariance(const Eigen::MatrixXd& J, const RotationEstimate
   const Eigen::Matrix2d blocks = J * estimate.covariance() * J.transpose();
   Eigen::Vector2d factor;
   for (Index k = 0; k < 2; ++k) {
-    const double std = estimate.spread_of(J.row(k).transpose(), true).std;
+    const RotationSpread spread = estimate.spread_of(J.row(k).transpose(), true);
+    const double std = half_width(spread.std, spread.dof) / normal_factor;
     factor(k) = blocks(k, k) > 0.0 ? std / std::sqrt(blocks(k, k)) : 0.0;
   }
   return factor.asDiagonal() * blocks * factor.asDiagonal();
@@ -149,14 +153,20 @@ void fill_radius(const RotationState& state,
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2, size);
   Eigen::Vector2d along;
   for (Index axis = 0; axis < 2; ++axis) {
-    const Derived one = derived(Q::radius, estimate.harmonics.segment<8>(8 * axis),
-                                {options.gravity_mps2, state.mean_square_speed});
+    const Derived one =
+        derived(Q::radius, estimate.harmonics.segment<harmonic_count>(harmonic_count * axis),
+                {options.gravity_mps2, state.mean_square_speed});
     along(axis) = one.value;
-    J.row(axis).segment<8>(8 * axis) = one.gradient.transpose();
+    J.row(axis).segment<harmonic_count>(harmonic_count * axis) = one.gradient.transpose();
   }
+  // Where the second axis is not square to the first it lies along that in part.
+  const double off_square =
+      (estimate.harmonics(harmonic_count + 2) / estimate.harmonics(harmonic_count + 1)) -
+      estimate.harmonics(2) / estimate.harmonics(1);
+  along(1) += off_square * along(0);
+  J.row(1) += off_square * J.row(0);
   const Eigen::Matrix2d C = slow_covariance(J, estimate);
-  const double dof = estimate.spread_of(J.row(0).transpose(), true).dof;
-  const auto length = cross_axis_sensitivity(along, C, dof);
+  const auto length = cross_axis_sensitivity(along, C, 0.0);
   if (!length) {
     radius.reason = length.error().message;
   } else if (!length->value) {
@@ -164,7 +174,7 @@ void fill_radius(const RotationState& state,
                                 length->upper_95);
   } else {
     radius.value = length->value;
-    radius.half_width_95 = half_width(length->value->std, dof);
+    radius.half_width_95 = normal_factor * length->value->std;
   }
 }
 
@@ -180,17 +190,18 @@ bool fill_value(const RotationState& state,
                 const OfAxis& of) {
   RotationCoefficient& one = of.coefficient;
   const Index from = harmonic_count * static_cast<Index>(of.axis);
-  const Derived found = derived(one.quantity, estimate.harmonics.segment<8>(from),
+  const Derived found = derived(one.quantity, estimate.harmonics.segment<harmonic_count>(from),
                                 {options.gravity_mps2, state.mean_square_speed});
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(state.size());
-  gradient.segment<8>(from) = found.gradient;
+  gradient.segment<harmonic_count>(from) = found.gradient;
   const bool slow =
       one.quantity == Q::K0 || one.quantity == Q::K0_radial || one.quantity == Q::radius;
   const RotationSpread spread = estimate.spread_of(gradient, slow);
   const double by_gravity = found.value * power_of_gravity(one.quantity) *
                             options.gravity_std_mps2 / options.gravity_mps2;
-  one.value = Uncertain{found.value, std::hypot(spread.std, by_gravity)};
-  one.half_width_95 = std::hypot(half_width(spread.std, spread.dof), 1.959964 * by_gravity);
+  one.half_width_95 = estimate.half_width(
+      gradient, std::hypot(half_width(spread.std, spread.dof), normal_factor * by_gravity));
+  one.value = Uncertain{found.value, one.half_width_95 / normal_factor};
   return spread.widened;
 }
 
@@ -209,8 +220,9 @@ void fill_rotation(const RotationState& state,
   std::string widened_names;
   fit.axes.resize(state.axes);
   for (std::size_t axis = 0; axis < state.axes; ++axis) {
-    const auto h = estimate.harmonics.segment<8>(harmonic_count * static_cast<Index>(axis));
-    std::copy(h.begin(), h.end(), fit.axes[axis].harmonics.begin());
+    const auto h =
+        estimate.harmonics.segment<harmonic_count>(harmonic_count * static_cast<Index>(axis));
+    std::copy_n(h.begin(), fit.axes[axis].harmonics.size(), fit.axes[axis].harmonics.begin());
     for (std::size_t q = 0; q < rotation_quantities; ++q) {
       RotationCoefficient& one = fit.axes[axis].coefficients[q];
       one.quantity = static_cast<Q>(q);

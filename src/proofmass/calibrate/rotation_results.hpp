@@ -8,7 +8,7 @@
 // From the harmonics of a turning wheel's readings to the coefficients of the model equation.
 namespace proofmass::calibrate {
 
-/// Of a figure: standard deviation and the degrees of freedom that it has itself.
+/// Standard deviation of a figure, and its own degrees of freedom.
 struct RotationSpread {
   double std = 0.0, dof = 0.0;
   bool widened = false;
@@ -19,23 +19,26 @@ struct RotationEstimate {
   Eigen::VectorXd harmonics;
   BlockScores blocks;
   std::size_t constraints = 1;  ///< that the scores of one harmonic obey: 2 with a term in ω²
+  /// Errors that the scatter of the blocks does not show: each moves the harmonics along its vector
+  /// by no more than ± 1 in 95 % of tests.
+  std::vector<Eigen::VectorXd> bounds;
+  /// The same where the error may well be all of it, so that it adds to the others' in full.
+  std::vector<Eigen::VectorXd> shared;
 
-  /// Of gradient · harmonics,
+  /// Of gradient · harmonics, by the blocks alone,
   ///
-  ///     var = B/(B − 1) Σ_b z_b²,   z_b = gradient · score_b,
+  ///     var = B/(B − c) Σ_b z_b²,   z_b = gradient · score_b, c constraints,
   ///
   /// at least (1 + ρ)/(1 − ρ) times that where the z of neighbouring blocks have a correlation ρ
   /// beyond chance (one-sided 5 %). A `slow` figure hangs on the mean of the readings, in which
   /// noise remembers longest: its blocks are joined, up to three to one, at least six being left.
   [[nodiscard]] RotationSpread spread_of(const Eigen::VectorXd& gradient, bool slow) const;
+  /// Half the width of a 95 % interval of gradient · harmonics, that of the scatter being
+  /// `by_scatter`.
+  [[nodiscard]] double half_width(const Eigen::VectorXd& gradient, double by_scatter) const;
   [[nodiscard]] double dof() const;
   [[nodiscard]] Eigen::MatrixXd covariance() const;
 };
-
-/// Two axes without an encoder: finds ripples of speed once and twice a turn, and takes those that
-/// are accepted out of the estimate. Where the radius is told, what the ripple makes of r ω² and
-/// r ω̇ once a turn goes with it.
-void separate_ripples(const RotationState& state, RotationEstimate& estimate, RotationFit& fit);
 
 /// Fills in the coefficients of all axes, the radius, and the notes on what was widened.
 void fill_rotation(const RotationState& state,

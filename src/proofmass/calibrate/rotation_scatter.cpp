@@ -43,7 +43,8 @@ RotationSpread RotationEstimate::spread_of(const Eigen::VectorXd& gradient, bool
   // Expected of independent blocks about their mean: −1/B.
   const double rho = squares > 0.0 ? products / squares + 1.0 / count : 0.0;
   RotationSpread spread{0.0, dof(), rho * std::sqrt(count) > one_sided_95};
-  double variance = squares * count / (count - 1.0);
+  const auto lost = static_cast<double>(constraints);
+  double variance = squares * count / (count - lost);
   if (spread.widened) variance *= (1.0 + std::min(rho, 0.9)) / (1.0 - std::min(rho, 0.9));
   const auto to_one =
       static_cast<std::size_t>(std::clamp(std::floor(count / least_joined), 1.0, most_to_one));
@@ -52,8 +53,8 @@ RotationSpread RotationEstimate::spread_of(const Eigen::VectorXd& gradient, bool
     double sum = 0.0;
     for (const double x : joined) sum += x * x;
     const auto left = static_cast<double>(joined.size());
-    spread.dof = left - static_cast<double>(constraints);
-    variance = std::max(spread.widened ? variance : 0.0, sum * left / (left - 1.0));
+    spread.dof = left - lost;
+    variance = std::max(spread.widened ? variance : 0.0, sum * left / (left - lost));
   }
   spread.std = std::sqrt(variance);
   return spread;
@@ -65,7 +66,18 @@ double RotationEstimate::dof() const {
 
 Eigen::MatrixXd RotationEstimate::covariance() const {
   const auto count = static_cast<double>(blocks.scores.cols());
-  return blocks.scores * blocks.scores.transpose() * (count / (count - 1.0));
+  return blocks.scores * blocks.scores.transpose() *
+         (count / (count - static_cast<double>(constraints)));
+}
+
+double RotationEstimate::half_width(const Eigen::VectorXd& gradient, double by_scatter) const {
+  double squares = by_scatter * by_scatter, sum = 0.0;
+  for (const Eigen::VectorXd& bound : bounds) {
+    const double along = gradient.dot(bound);
+    squares += along * along;
+  }
+  for (const Eigen::VectorXd& bound : shared) sum += std::abs(gradient.dot(bound));
+  return std::sqrt(squares) + sum;
 }
 
 }  // namespace proofmass::calibrate

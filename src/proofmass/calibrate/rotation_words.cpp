@@ -1,6 +1,7 @@
 #include "proofmass/calibrate/rotation_words.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <string>
@@ -42,67 +43,74 @@ void note_doubts(const RotationState& state, const RotationOptions& options, Rot
 
 namespace {
 
-void note_ripple(const SpeedRipple& ripple, double gravity, RotationFit& fit) {
-  const bool once = ripple.per_turn == 1;
+const char* how_often(int per_turn) {
+  constexpr std::array words{"once", "twice", "three times", "four times", "five times"};
+  return words[static_cast<std::size_t>(per_turn - 1)];
+}
+
+// "1.1 % once and 0.3 % three times"
+std::string accepted_ripples(const RotationFit& fit) {
+  std::string text;
+  for (const SpeedRipple& ripple : fit.ripples) {
+    if (!ripple.accepted || !ripple.amplitude) continue;
+    text += fmt::format("{}{:.2g} % {}", text.empty() ? "" : ", ", 100.0 * ripple.amplitude->value,
+                        how_often(ripple.per_turn));
+  }
+  return text;
+}
+
+void note_accepted(const RotationFit& fit, std::vector<std::string>& notes) {
+  const std::string found = accepted_ripples(fit);
+  if (found.empty()) return;
+  notes.push_back(
+      fmt::format("{} a speed that varies within the turn, by {} a turn; it was taken "
+                  "out",
+                  fit.axes.size() == 2 ? "both axes show" : "the harmonics show", found));
+  if (fit.radius.value) return;
+  notes.push_back(fmt::format(
+      "it varies r ω² and r ω̇ too: for the radius, which one speed does not determine, a standard "
+      "deviation of {} m was allowed",
+      assumed_radius_std_m));
+}
+
+void note_shared(const RotationFit& fit, std::vector<std::string>& notes) {
   constexpr double beyond_chance = 0.01;
-  if (ripple.accepted && ripple.amplitude) {
-    fit.notes.push_back(
-        fmt::format("both axes show a speed that varies by {:.2g} % {} a turn; it was taken out",
-                    100.0 * ripple.amplitude->value, once ? "once" : "twice"));
-  } else if (!ripple.accepted && ripple.chance_p < beyond_chance) {
-    fit.notes.push_back(fmt::format(
-        "the {} harmonics of the axes are not those of a varying speed alone (p = {:.2g}): they "
-        "are put down to the sensor",
-        once ? "second" : "third", ripple.ripple_p));
+  for (const SpeedRipple& ripple : fit.ripples) {
+    if (ripple.per_turn > 2 || ripple.accepted || ripple.chance_p >= beyond_chance) continue;
+    notes.push_back(fmt::format(
+        "the {} harmonics are beyond chance (p = {:.2g}): without an encoder they may be the "
+        "sensor's or those of a speed that varies {} a turn, and the intervals hold both",
+        ripple.per_turn == 1 ? "second" : "third", ripple.chance_p, how_often(ripple.per_turn)));
   }
-  if (!once || !ripple.accepted || !ripple.amplitude || fit.radius.value) return;
-  // r ω² swings by 2 r ω² times the ripple.
-  double square = 0.0;
-  for (const RotationSection& one : fit.sections) {
-    square = std::max(square, one.speed_radps * one.speed_radps);
-  }
-  constexpr double example_m = 0.1;
-  fit.notes.push_back(fmt::format(
-      "it swings r ω² too: each {} m of radius, which is not told, makes up to {:.2g} % "
-      "of K1",
-      example_m, 100.0 * 2.0 * ripple.amplitude->value * example_m * square / gravity));
 }
 
 }  // namespace
 
 void note_ripples(const RotationOptions& options, RotationFit& fit) {
   const double g = options.gravity_mps2, one = 0.01;
-  // A phase error ε sin nφ, ε = one/n, has harmonics n ± 1 of ε/2.
-  fit.per_percent = {.bias_mps2 = 0.5 * one * g,
+  // A phase error ε sin nφ, ε = one/n, moves the harmonics n ± 1 by ε/2: n = 1 both B0 and C2 of
+  // K0 = (B0 + C2)/K1, n = 2 both S1 and S3 of K1 = (S1 + 3 S3)/g.
+  fit.per_percent = {.bias_mps2 = one * g,
                      .second_order_s2pm = one / g,
-                     .scale_relative = 0.25 * one,
+                     .scale_relative = one,
                      .misalignment_rad = 0.25 * one,
                      .third_order_s4pm2 = one / (g * g)};
-  bool once = false, twice = false;
-  for (const SpeedRipple& ripple : fit.ripples) {
-    (ripple.per_turn == 1 ? once : twice) = ripple.accepted;
-    note_ripple(ripple, g, fit);
-  }
-  const std::string what =
-      fit.angle_given ? "an angle that is wrong as if the speed varied" : "a speed that varies";
-  if (!once) {
+  if (fit.angle_given) {
     fit.notes.push_back(fmt::format(
-        "{} by 1 % once a turn would look like K2 − Kpp or Kip of {:.2g} g/g² and a bias of "
-        "{:.2g} mg",
-        what, fit.per_percent.second_order_s2pm * g, 1e3 * fit.per_percent.bias_mps2 / g));
-  }
-  if (!twice) {
-    fit.notes.push_back(fmt::format(
-        "{} by 1 % twice a turn would look like {:.2g} % of K1, a misalignment of {:.2g} mrad and "
-        "K3 of {:.2g} g/g³",
-        what, 100.0 * fit.per_percent.scale_relative, 1e3 * fit.per_percent.misalignment_rad,
+        "an angle that is wrong as if the speed varied by 1 % once a turn would look like K2 − Kpp "
+        "or Kip of {:.2g} g/g² and a bias of {:.2g} mg; twice a turn, like {:.2g} % of K1, a "
+        "misalignment of {:.2g} mrad and K3 of {:.2g} g/g³",
+        fit.per_percent.second_order_s2pm * g, 1e3 * fit.per_percent.bias_mps2 / g,
+        100.0 * fit.per_percent.scale_relative, 1e3 * fit.per_percent.misalignment_rad,
         fit.per_percent.third_order_s4pm2 * g * g));
+    return;
   }
-  if (fit.axes.size() == 1 && !fit.angle_given) {
+  note_accepted(fit, fit.notes);
+  note_shared(fit, fit.notes);
+  if (fit.axes.size() == 1)
     fit.notes.push_back(
         "one axis without an encoder does not show which way the wheel turns: the sign of Kip is "
         "that of a wheel on which the reading's rise is followed by its top");
-  }
 }
 
 }  // namespace proofmass::calibrate

@@ -12,7 +12,7 @@ namespace proofmass::calibrate {
 /// Why the recording may be no test on a bench.
 void note_doubts(const RotationState& state, const RotationOptions& options, RotationFit& fit);
 
-/// What ripples were found, and what one that goes unnoticed would look like.
+/// The ripples that were found, and the effect of one that is put down to the sensor.
 void note_ripples(const RotationOptions& options, RotationFit& fit);
 
 }  // namespace proofmass::calibrate

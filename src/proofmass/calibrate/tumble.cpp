@@ -22,7 +22,8 @@ std::string named(View<TumblePosition> positions, std::size_t k) {
 
 Status check(View<TumblePosition> positions, const TumbleOptions& options) {
   PM_EXPECTS(options.gravity_mps2 > 0.0 && options.gravity_std_mps2 >= 0.0);
-  PM_EXPECTS(options.indexing_std_rad >= 0.0 && options.noise_dof >= 0.0);
+  PM_EXPECTS(options.indexing_std_rad.value_or(0.0) >= 0.0 && options.noise_dof >= 0.0);
+  PM_EXPECTS(options.drift_std_mps2.value_or(0.0) >= 0.0);
   if (positions.size() < 2)
     return Error{Errc::too_few_samples,
                  fmt::format("{} positions: scale factor and bias need two, the input axis up and "
@@ -68,15 +69,32 @@ TumbleErrors errors_of(View<TumblePosition> positions,
   return errors;
 }
 
-// Fits once for K1 where indexing counts, and again with its lever.
+// Fits once for K1 and the drift, and again with what follows from them in units of the output.
 TumbleRegression regress(const TumbleDesign& design,
                          const Eigen::VectorXd& outputs,
                          TumbleErrors errors,
-                         double indexing_std_rad) {
+                         const TumbleOptions& options) {
+  const double indexing = options.indexing_std_rad.value_or(assumed_indexing_std_rad);
+  const double wander = options.drift_std_mps2.value_or(assumed_drift_std_mps2);
   TumbleRegression found = regress_tumble(design.A, outputs, errors);
-  if (indexing_std_rad <= 0.0) return found;
-  errors.lever *= std::abs(swing_of(design, found.beta));
-  errors.indexing_std_rad = indexing_std_rad;
+  // Without a scale for the scatter, or residuals, there is no standard deviation to be widened.
+  const double swing = std::abs(swing_of(design, found.beta));
+  const bool exact = indexing <= 0.0 && wander <= 0.0;
+  if (exact || !found.has_scale || !(found.sigma > 0.0) || !(swing > 0.0)) return found;
+  errors.lever *= swing;
+  errors.indexing_std_rad = indexing;
+  errors.indexing_assumed = !options.indexing_std_rad;
+  errors.drift_std = wander * swing / options.gravity_mps2;
+  errors.drift_assumed = !options.drift_std_mps2;
+  // A drift with a straight part has a curved one: an exponential of a third of the test, 0.12 and
+  // 0.06 of its whole change (cosine and sine), a step in the middle 0.32.
+  constexpr double curved = 0.25;
+  const auto drift = design.find(TumbleTerm::drift);
+  double by_line = 0.0;
+  if (errors.drift_assumed && drift)
+    by_line = curved * std::abs(found.beta(static_cast<Eigen::Index>(*drift)));
+  errors.drift_std = std::hypot(errors.drift_std, by_line);
+  errors.drift = drift_shapes(design, errors.drift_std > 0.0 ? by_line / errors.drift_std : 0.0);
   return regress_tumble(design.A, outputs, errors);
 }
 
@@ -118,15 +136,28 @@ void add_zero_note(const TumbleOptions& options, TumbleFit& fit) {
         options.output_unit.empty() ? "" : " ", options.output_unit));
 }
 
+// A misfit that no position alone explains.
+void add_unnamed_note(TumbleFit& fit) {
+  constexpr double beyond_chance = 0.01;
+  const bool named = std::any_of(fit.positions.begin(), fit.positions.end(),
+                                 [](const TumbleResidual& r) { return r.suspect; });
+  if (named || !fit.lack_of_fit || fit.lack_of_fit->p >= beyond_chance) return;
+  fit.notes.push_back(fmt::format(
+      "the residuals are beyond chance (p = {:.2g}): a wrong reading, the angles of the table or a "
+      "drift; with {} to judge by no single position can be named",
+      fit.lack_of_fit->p, fit.dof == 1 ? "one residual" : fmt::format("{} residuals", fit.dof)));
+}
+
 void add_notes(View<TumblePosition> positions, bool some_noise, TumbleFit& fit) {
   const auto add = [&](std::string note) { fit.notes.push_back(std::move(note)); };
   if (some_noise)
     add("the noise is stated of some positions only: it was left aside, the residuals judge");
   if (fit.scatter > 1.0)
     add(
-        fmt::format("the residuals are {:.3g} times what the noise explains: all standard "
+        fmt::format("the residuals are {:.3g} times what the stated errors explain: the standard "
                     "deviations were widened by that",
                     fit.scatter));
+  add_unnamed_note(fit);
   for (std::size_t k = 0; k < fit.positions.size(); ++k) {
     const TumbleResidual& r = fit.positions[k];
     if (r.suspect)
@@ -136,7 +167,7 @@ void add_notes(View<TumblePosition> positions, bool some_noise, TumbleFit& fit) 
                       named(positions, k), compact(positions[k].angle_rad / rad_per_deg, 4),
                       std::abs(*r.studentised)));
   }
-  if (fit.lack_of_fit && fit.lack_of_fit->p < 0.01 && fit.scatter == 1.0)
+  if (fit.lack_of_fit && fit.lack_of_fit->p < 0.01 && !fit.noise_known)
     add(
         fmt::format("the model does not fit to within the scatter of the repeated positions (F = "
                     "{:.3g}, p = {:.2g})",
@@ -180,9 +211,8 @@ Result<TumbleFit> fit_tumble(View<TumblePosition> positions, const TumbleOptions
   const double largest = outputs.cwiseAbs().maxCoeff(), offset = outputs.mean();
   outputs.array() -= offset;
   const TumbleRegression regression =
-      regress(design, outputs, errors_of(positions, options, design, fit.noise_known),
-              options.indexing_std_rad);
-  const TumbleSolution solution{design, regression, options, offset};
+      regress(design, outputs, errors_of(positions, options, design, fit.noise_known), options);
+  const TumbleSolution solution{design, regression, options, offset, outputs};
   if (const Status seen = check_swing(solution, largest); !seen) return seen.error();
   fit.parameters = design.columns.size();
   fit.dof = positions.size() - fit.parameters;
@@ -194,6 +224,7 @@ Result<TumbleFit> fit_tumble(View<TumblePosition> positions, const TumbleOptions
   fit.lack_of_fit = find_lack_of_fit(solution, positions, outputs);
   fit.drift = find_drift(solution, positions, fit);
   fit.indexing = indexing_words(solution, fit);
+  add_assumptions(solution, fit);
   add_notes(positions, stated > 0 && !fit.noise_known, fit);
   add_zero_note(options, fit);
   return fit;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,11 +15,23 @@
 // The tumble test: coefficients of the model equation from one accelerometer axis on a turntable.
 namespace proofmass::calibrate {
 
+/// Standard deviation of the table's angle at each setting where nothing is stated of it: set by
+/// hand to a scale of degrees.
+inline constexpr double assumed_indexing_std_rad = 0.5 * std::numbers::pi / 180.0;
+/// Of the amplitudes, cosine and sine, of the bias's wander about a straight line with the period
+/// of the test, where nothing is stated of it: ± 1 mg, rectangular
+/// (JCGM 100:2008, 4.3.7), what 1 K makes of an ADXL335 (1 mg/K, its data sheet).
+inline constexpr double assumed_drift_std_mps2 = 1e-3 * 9.80665 / std::numbers::sqrt3;
+
 struct TumbleOptions {
   double gravity_mps2;
   double gravity_std_mps2 = 0.0;
-  /// Of the table's angle at each setting, the same error at each visit of one setting.
-  double indexing_std_rad = 0.0;
+  /// Of the table's angle at each setting, the same error at each visit of one setting. Absent:
+  /// assumed_indexing_std_rad, or less where the residuals show it.
+  std::optional<double> indexing_std_rad = {};
+  /// Of the amplitudes of the bias's wander about a straight line during the test. Absent:
+  /// assumed_drift_std_mps2 and a quarter of the linear drift, or less where the residuals show it.
+  std::optional<double> drift_std_mps2 = {};
   /// How well the positions' noise is known; 0: for certain.
   double noise_dof = 0.0;
   std::string output_unit = "m/s^2";  ///< in which the outputs are; for the coefficients' units
@@ -42,7 +55,8 @@ struct TumbleCoefficient {
 
 /// A part of the covariance, in the order of TumbleFit::coefficients.
 struct TumbleShare {
-  std::string source;  ///< "scatter of the positions", "indexing of the table", "gravity"
+  /// "scatter of the positions", "indexing of the table", "drift that is not straight", "gravity"
+  std::string source;
   bool type_a = true;
   Eigen::MatrixXd covariance;
   double dof = 0.0;  ///< 0: infinitely many
@@ -72,12 +86,16 @@ struct TumbleDrift {
   bool removed = false;  ///< fitted with the coefficients; else it is part of the residuals
   std::optional<double> rate_mps2;  ///< per second or per position; TumbleQuantity::drift has more
   std::optional<double> p;          ///< of so much drift or more by chance
+  double wander_std_mps2 = 0.0;     ///< allowed for about the straight line
+  bool wander_assumed = false;      ///< nothing was stated of it
   std::string words;
 };
 
 /// Errors of the table's angle that come again every turn.
 struct TumbleIndexing {
   bool once_separated = false, twice_separated = false;
+  double std_rad = 0.0;            ///< of the angle at each setting, as used
+  bool assumed = false;            ///< nothing was stated of it
   std::vector<std::string> words;  ///< what is confounded with what, or how large it is
 };
 
@@ -111,12 +129,15 @@ struct TumbleFit {
 ///           + cos φ (a₁ cos θ + b₁ sin θ + a₂ cos 2θ + b₂ sin 2θ)
 ///
 /// by least squares, weighted where all positions state their noise, as far as the positions carry
-/// it: U, S, D, Q first, then what the test was laid out for (drift where a position is visited
-/// again late, hysteresis where there are both directions, indexing where the sensor was mounted
-/// anew), then P, T, C3. A term is left out where its column is not its own to 5 % or where none of
-/// the positions would be over to judge by. The coefficients follow, K1 = (S + 3 T)/g and so on:
-/// tumble_model.hpp. cov = σ² (AᵀWA)⁻¹ + the share of indexing + that of gravity; σ² from the
-/// residuals, less what indexing explains of them, or from the stated noise.
+/// it: U, S, D, Q first, then what the test was laid out for (the bias per kelvin where
+/// temperatures are given, drift where a position is visited again late, hysteresis where there are
+/// both directions, indexing where the sensor was mounted anew), then P, T, C3. A term is left out
+/// where its column is not its own to 5 % or where no position would be over to judge by (three
+/// beside C3, which is a test; none beside the drift where noise is stated). The coefficients
+/// follow, K1 = (S + 3 T)/g and so on: tumble_model.hpp. cov = σ² (AᵀWA)⁻¹ + the shares of
+/// indexing, of drift that is not straight, and of gravity; σ² from the residuals, less what the
+/// others explain of them, or from the stated noise. Of errors that are assumed, not stated, see
+/// find_sizes().
 ///
 /// Source: IEEE Std 1293-2018, the model equation, and 12.3.4 for static multipoint tumbling (by
 /// its published description); GUM (JCGM 100:2008), 5 and G.4.

@@ -85,6 +85,8 @@ std::vector<Form> forms_of(const TumbleDesign& design) {
   forms.push_back(make_form(design, Q::K3, 0, {{T::cube, 0, -4.0}}));
   forms.push_back(make_form(design, Q::drift, 0, {{T::drift, 0, 1.0}}));
   if (design.span > 0.0) forms.back().factor = 1.0 / design.span;
+  forms.push_back(make_form(design, Q::temperature, 0, {{T::temperature, 0, 1.0}}));
+  if (design.kelvin_span > 0.0) forms.back().factor = 1.0 / design.kelvin_span;
   forms.push_back(make_form(design, Q::hysteresis, 0, {{T::hysteresis, 0, 1.0}}));
   forms.push_back(make_form(design, Q::backlash, 0, {{T::backlash, 0, 1.0}}));
   forms.push_back(make_form(design, Q::indexing_cos, 0, {{T::indexing_cos, 0, 1.0}}));
@@ -149,7 +151,8 @@ void find_bias(const TumbleSolution& solution, TumbleFit& fit) {
   if (const auto Q = design.find(TumbleTerm::square)) L(static_cast<Eigen::Index>(*Q)) = 2.0;
   fit.bias_output = L.dot(regression.beta) + solution.output_offset;
   if (!regression.has_scale) return;
-  const Eigen::MatrixXd covariance = regression.noise_covariance + regression.indexing_covariance;
+  const Eigen::MatrixXd covariance =
+      regression.noise_covariance + regression.indexing_covariance + regression.drift_covariance;
   fit.bias_output_std = std::sqrt(std::max(L.dot(covariance * L), 0.0));
 }
 
@@ -157,7 +160,11 @@ void find_bias(const TumbleSolution& solution, TumbleFit& fit) {
 void judge(TumbleCoefficient& coefficient, double variance, double noise, double dof) {
   coefficient.std = std::sqrt(std::max(variance, 0.0));
   if (dof > 0.0 && noise > 0.0) coefficient.dof = dof * variance * variance / (noise * noise);
-  coefficient.half_width_95 = coverage_factor(0.95, coefficient.dof) * *coefficient.std;
+  // The sum of the degrees of freedom alone would trust a scatter that is small by chance.
+  const double rest = std::max(variance - noise, 0.0);
+  coefficient.half_width_95 =
+      std::hypot(coverage_factor(0.95, dof) * std::sqrt(std::max(noise, 0.0)),
+                 coverage_factor(0.95, 0.0) * std::sqrt(rest));
 }
 
 }  // namespace
@@ -178,13 +185,17 @@ void find_coefficients(const TumbleSolution& solution, TumbleFit& fit) {
   if (regression.indexing_covariance.cwiseAbs().maxCoeff() > 0.0)
     fit.shares.push_back({"indexing of the table", false,
                           J_b * regression.indexing_covariance * J_b.transpose(), 0.0});
+  if (regression.drift_covariance.cwiseAbs().maxCoeff() > 0.0)
+    fit.shares.push_back({"drift that is not straight", false,
+                          J_b * regression.drift_covariance * J_b.transpose(), 0.0});
   if (u > 0.0) fit.shares.push_back({"gravity", false, u * u * J_g * J_g.transpose(), 0.0});
   if (fit.noise_known && fit.scatter == 1.0) fit.shares.front().source = "noise of the means";
   fit.covariance = Eigen::MatrixXd::Zero(J.rows(), J.rows());
   for (const TumbleShare& share : fit.shares) fit.covariance += share.covariance;
   // Beside the errors of indexing hardly a residual may be left that shows the scatter.
-  const bool scatter_unseen =
-      !fit.noise_known && solution.options.indexing_std_rad > 0.0 && regression.dof < 2.0;
+  const bool scatter_unseen = !fit.noise_known &&
+                              solution.options.indexing_std_rad.value_or(0.0) > 0.0 &&
+                              regression.dof < 2.0;
   for (std::size_t k = 0; k < forms.size(); ++k) {
     TumbleCoefficient& coefficient = forms[k].coefficient;
     const auto row = static_cast<Eigen::Index>(k);

@@ -11,7 +11,8 @@ struct TumbleSolution {
   const TumbleDesign& design;
   const TumbleRegression& regression;
   const TumbleOptions& options;
-  double output_offset = 0.0;  ///< taken off all outputs before the regression
+  double output_offset = 0.0;      ///< taken off all outputs before the regression
+  const Eigen::VectorXd& outputs;  ///< less that
 };
 
 /// K1 g = S + 3 T, of the regression.

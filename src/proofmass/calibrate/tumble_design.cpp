@@ -95,7 +95,7 @@ bool is_closed(const std::vector<std::size_t>& mounting, const TumbleDesign& des
 
 // What a position adds to a column.
 struct Row {
-  double phi, theta, when;
+  double phi, theta, when, temperature;
   int plane, direction;
   std::size_t mounting;
 };
@@ -120,6 +120,8 @@ double element(const TumbleColumn& column, const Row& row) {
       return std::cos(3.0 * row.phi);
     case TumbleTerm::drift:
       return row.when;
+    case TumbleTerm::temperature:
+      return row.temperature;
     case TumbleTerm::hysteresis:
       return way;
     case TumbleTerm::backlash:
@@ -139,11 +141,11 @@ double element(const TumbleColumn& column, const Row& row) {
 // Columns taken one by one, with an orthonormal basis of what they span.
 class Selection {
  public:
-  Selection(std::vector<Row> rows, std::size_t to_spare, TumbleDesign& design)
-      : rows_(std::move(rows)), to_spare_(to_spare), design_(design) {}
+  Selection(std::vector<Row> rows, TumbleDesign& design)
+      : rows_(std::move(rows)), design_(design) {}
 
-  // `spare`: only while positions are left to judge by.
-  void offer(const TumbleColumn& column, bool spare) {
+  // `spare`: positions that must be left to judge by.
+  void offer(const TumbleColumn& column, std::size_t spare) {
     const auto n = static_cast<Eigen::Index>(rows_.size());
     Eigen::VectorXd a(n);
     for (Eigen::Index k = 0; k < n; ++k) a(k) = element(column, rows_[static_cast<std::size_t>(k)]);
@@ -153,7 +155,7 @@ class Selection {
     const double rms = own.norm() / std::sqrt(static_cast<double>(n));
     if (rms < least_of_its_own) {
       design_.missing.push_back({column, LeftOut::not_told_apart});
-    } else if (columns_.size() + 1 + (spare ? to_spare_ : 0) > rows_.size()) {
+    } else if (columns_.size() + 1 + spare > rows_.size()) {
       design_.missing.push_back({column, LeftOut::none_to_spare});
     } else {
       basis_.push_back(own / own.norm());
@@ -176,39 +178,67 @@ class Selection {
 
  private:
   std::vector<Row> rows_;
-  std::size_t to_spare_;
   TumbleDesign& design_;
   std::vector<Eigen::VectorXd> basis_, columns_;
 };
 
+// What a column must leave over: the term that only tests the model, enough for the test.
+constexpr std::size_t one_to_spare = 1, test_to_spare = 3;
+
 void choose(View<TumblePosition> positions,
             const std::vector<int>& planes,
+            bool noise_known,
             Selection& select,
             const TumbleDesign& design) {
   const auto went = [&](int way) {
     return std::any_of(positions.begin(), positions.end(),
                        [&](const TumblePosition& p) { return p.direction == way; });
   };
-  select.offer({.term = TumbleTerm::sine}, false);
-  select.offer({.term = TumbleTerm::up_down}, false);
+  select.offer({.term = TumbleTerm::sine}, 0);
+  select.offer({.term = TumbleTerm::up_down}, 0);
   for (std::size_t m = 0; m < design.mountings.size(); ++m)
-    select.offer({TumbleTerm::cosine, design.mountings[m].plane, m}, false);
-  for (const int plane : planes) select.offer({TumbleTerm::square, plane}, false);
-  for (const TumbleTerm term : {TumbleTerm::drift, TumbleTerm::backlash, TumbleTerm::hysteresis}) {
-    const bool asked = term == TumbleTerm::drift ? design.closed : went(1) && went(-1);
-    asked ? select.offer({.term = term}, true) : select.not_asked_for(term);
-  }
+    select.offer({TumbleTerm::cosine, design.mountings[m].plane, m}, 0);
+  for (const int plane : planes) select.offer({TumbleTerm::square, plane}, 0);
+  if (design.kelvin_span > 0.0)
+    select.offer({.term = TumbleTerm::temperature}, one_to_spare);
+  else
+    select.not_asked_for(TumbleTerm::temperature);
+  // The two readings of one setting determine a drift even where they leave nothing over.
+  if (design.closed)
+    select.offer({.term = TumbleTerm::drift}, noise_known ? 0 : one_to_spare);
+  else
+    select.not_asked_for(TumbleTerm::drift);
+  for (const TumbleTerm term : {TumbleTerm::backlash, TumbleTerm::hysteresis})
+    went(1) && went(-1) ? select.offer({.term = term}, one_to_spare) : select.not_asked_for(term);
   const bool anew = design.mountings.size() > planes.size();
   const auto offer_indexing = [&](std::initializer_list<TumbleTerm> terms) {
     for (const TumbleTerm term : terms)
-      anew ? select.offer({.term = term}, true) : select.not_asked_for(term);
+      anew ? select.offer({.term = term}, one_to_spare) : select.not_asked_for(term);
   };
   offer_indexing({TumbleTerm::indexing_cos});
-  for (const int plane : planes) select.offer({TumbleTerm::product, plane}, true);
+  for (const int plane : planes) select.offer({TumbleTerm::product, plane}, one_to_spare);
   offer_indexing({TumbleTerm::indexing_sin});
-  select.offer({.term = TumbleTerm::cube}, true);
-  for (const int plane : planes) select.offer({TumbleTerm::third_cosine, plane}, true);
+  select.offer({.term = TumbleTerm::cube}, one_to_spare);
+  for (const int plane : planes) select.offer({TumbleTerm::third_cosine, plane}, test_to_spare);
   offer_indexing({TumbleTerm::indexing_cos2, TumbleTerm::indexing_sin2});
+}
+
+// Each temperature less their mean, over their span; zeros where one is missing or all are alike.
+std::vector<double> relative_temperatures(View<TumblePosition> positions, double& span) {
+  std::vector<double> out(positions.size(), 0.0);
+  span = 0.0;
+  double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0.0;
+  for (const TumblePosition& p : positions) {
+    if (!p.temperature || !std::isfinite(*p.temperature)) return out;
+    low = std::min(low, *p.temperature);
+    high = std::max(high, *p.temperature);
+    sum += *p.temperature;
+  }
+  if (!(high > low)) return out;
+  span = high - low;
+  const double mean = sum / static_cast<double>(positions.size());
+  for (std::size_t k = 0; k < out.size(); ++k) out[k] = (*positions[k].temperature - mean) / span;
+  return out;
 }
 
 std::vector<int> planes_of(const TumbleDesign& design) {
@@ -242,6 +272,26 @@ std::optional<LeftOut> TumbleDesign::why_not(TumbleTerm term, int plane) const {
   return std::nullopt;
 }
 
+Eigen::MatrixXd drift_shapes(const TumbleDesign& design, double higher) {
+  constexpr Eigen::Index most = 6;
+  const auto n = static_cast<Eigen::Index>(design.when.size());
+  if (!(design.span > 0.0)) return Eigen::MatrixXd::Zero(n, 0);
+  const bool line = !design.closed;
+  const Eigen::Index multiples = higher > 0.0 ? most : 1;
+  Eigen::MatrixXd shapes(n, 2 * multiples + (line ? 1 : 0));
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double part = design.when[static_cast<std::size_t>(k)] / design.span;
+    for (Eigen::Index m = 1; m <= multiples; ++m) {
+      const auto times = static_cast<double>(m);
+      const double size = m == 1 ? 1.0 : higher / times;
+      shapes(k, 2 * m - 2) = size * std::cos(2.0 * std::numbers::pi * times * part);
+      shapes(k, 2 * m - 1) = size * std::sin(2.0 * std::numbers::pi * times * part);
+    }
+    if (line) shapes(k, 2 * multiples) = 2.0 * (part - 0.5);
+  }
+  return shapes;
+}
+
 TumbleDesign design_tumble(View<TumblePosition> positions,
                            const std::array<double, 2>& phase_rad,
                            bool noise_known) {
@@ -253,16 +303,18 @@ TumbleDesign design_tumble(View<TumblePosition> positions,
   design.closed = is_closed(mounting, design);
   double mean = 0.0;
   for (const double when : design.when) mean += when / static_cast<double>(positions.size());
+  const std::vector<double> temperature = relative_temperatures(positions, design.kelvin_span);
   std::vector<Row> rows;
   for (std::size_t k = 0; k < positions.size(); ++k) {
     const TumblePosition& p = positions[k];
     const double phase = phase_rad[p.plane == 2 ? 1 : 0];
     design.phi_rad.push_back(p.angle_rad + p.mount_rad + phase);
     const double when = design.span > 0.0 ? (design.when[k] - mean) / design.span : 0.0;
-    rows.push_back({design.phi_rad.back(), p.angle_rad, when, p.plane, p.direction, mounting[k]});
+    rows.push_back({design.phi_rad.back(), p.angle_rad, when, temperature[k], p.plane, p.direction,
+                    mounting[k]});
   }
-  Selection select(std::move(rows), noise_known ? 0 : 1, design);
-  choose(positions, planes_of(design), select, design);
+  Selection select(std::move(rows), design);
+  choose(positions, planes_of(design), noise_known, select, design);
   design.A = select.matrix();
   return design;
 }

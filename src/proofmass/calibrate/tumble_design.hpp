@@ -23,6 +23,7 @@ enum class TumbleTerm {
   cube,           ///< T: sin 3φ
   third_cosine,   ///< C3: cos 3φ in one plane
   drift,          ///< R: (t − t̄)/span
+  temperature,    ///< (T − T̄)/span
   hysteresis,     ///< H: ± ½
   backlash,       ///< L: ± ½ cos φ
   indexing_cos,   ///< a₁: cos φ cos θ
@@ -66,12 +67,19 @@ struct TumbleDesign {
   double span = 0.0;                   ///< of `when`
   bool in_time = false;                ///< `when` is in seconds
   bool closed = false;                 ///< a position was visited again late enough
+  double kelvin_span = 0.0;            ///< of the temperatures; 0 where they are not known
 
   [[nodiscard]] std::optional<std::size_t> find(TumbleTerm term,
                                                 int plane = 0,
                                                 std::size_t mounting = 0) const;
   [[nodiscard]] std::optional<LeftOut> why_not(TumbleTerm term, int plane = 0) const;
 };
+
+/// Shapes of a drift that is not straight: cos 2πt/span and sin 2πt/span of amplitude 1, which in
+/// one turn of the table are harmonics of its angle, and their multiples to the sixth of amplitude
+/// `higher`/n, as a step, a walk or an exponential has them. Where no position was visited again to
+/// show it, a straight line from −1 to 1 as well.
+[[nodiscard]] Eigen::MatrixXd drift_shapes(const TumbleDesign& design, double higher);
 
 /// Chooses the columns in the order of fit_tumble(). A position counts as visited again late enough
 /// where two visits within half a degree lie at least half of their mounting's time apart.

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <tuple>
 
+#include "proofmass/calibrate/tumble_components.hpp"
 #include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/linalg.hpp"
 #include "proofmass/core/number_words.hpp"
 
 namespace proofmass::calibrate {
@@ -82,6 +84,63 @@ Within within_visits(View<TumblePosition> positions,
   return out;
 }
 
+// The errors of all positions but one.
+TumbleErrors without(const TumbleErrors& errors, const std::vector<Eigen::Index>& kept) {
+  TumbleErrors out = errors;
+  out.noise_std = errors.noise_std(kept);
+  out.lever = errors.lever(kept);
+  if (errors.drift.cols() > 0) out.drift = errors.drift(kept, Eigen::all);
+  out.setting.clear();
+  for (const Eigen::Index k : kept)
+    out.setting.push_back(errors.setting[static_cast<std::size_t>(k)]);
+  return out;
+}
+
+// (P y)_k/√P_kk with the sizes of the errors as the other positions alone have them; nullopt where
+// they do not determine the fit, or contradict each other themselves.
+std::optional<double> against_the_others(const TumbleSolution& solution, Eigen::Index row) {
+  const Eigen::MatrixXd& A = solution.design.A;
+  const TumbleErrors& errors = solution.regression.errors;
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < A.rows(); ++k)
+    if (k != row) kept.push_back(k);
+  const Eigen::MatrixXd A_kept = A(kept, Eigen::all);
+  constexpr double least_information = 1e-6;
+  if (symmetric_eigen(A_kept.transpose() * A_kept).values.minCoeff() < least_information)
+    return std::nullopt;
+  const TumbleSizes sizes = find_sizes(A_kept, solution.outputs(kept), without(errors, kept));
+  if ((errors.noise_known && sizes.noise > 1.0) || sizes.noise <= 0.0) return std::nullopt;
+  return solve_tumble(A, solution.outputs, errors, sizes).deleted(row);
+}
+
+// The positions that fit the others least, each tried against a fit without it: a wrong reading
+// widens the errors by which it would be judged.
+void name_suspects(const TumbleSolution& solution, double least, TumbleFit& fit) {
+  constexpr std::size_t most_candidates = 4;
+  const TumbleErrors& errors = solution.regression.errors;
+  const TumbleSolved plain = solve_tumble(solution.design.A, solution.outputs, errors, {});
+  std::vector<std::size_t> order(fit.positions.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  const auto size = [&](std::size_t k) {
+    return std::abs(plain.deleted(static_cast<Eigen::Index>(k)));
+  };
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return size(a) > size(b); });
+  order.resize(std::min(order.size(), most_candidates));
+  const double left = errors.noise_known ? errors.noise_dof : static_cast<double>(fit.dof) - 1.0;
+  double largest = 0.0;
+  std::optional<std::size_t> found;
+  for (const std::size_t k : order) {
+    const auto t = against_the_others(solution, static_cast<Eigen::Index>(k));
+    if (!t || std::abs(*t) <= largest) continue;
+    largest = std::abs(*t);
+    found = k;
+    fit.positions[k].studentised = *t;
+  }
+  if (!found || residual_p(largest, left) >= least) return;
+  for (TumbleResidual& r : fit.positions) r.suspect = false;
+  fit.positions[*found].suspect = true;
+}
+
 std::string rate_unit(bool in_time) {
   return in_time ? "per second" : "per position";
 }
@@ -112,9 +171,10 @@ void find_residuals(const TumbleSolution& solution,
                     View<TumblePosition> positions,
                     TumbleFit& fit) {
   const TumbleRegression& regression = solution.regression;
-  const bool indexing = solution.options.indexing_std_rad > 0.0;
+  const bool indexing = regression.indexing_std_rad > 0.0,
+             by_deletion = regression.deleted.size() > 0;
   // With two kinds of error there is no exact rule: Student's t errs to the careful side.
-  const bool external = (!fit.noise_known || fit.scatter > 1.0) && !indexing;
+  const bool external = (!fit.noise_known || fit.scatter > 1.0) && !indexing && !by_deletion;
   const auto dof = static_cast<double>(fit.dof);
   const double left = external ? dof - 1.0 : regression.dof;
   double size = 0.0;
@@ -129,10 +189,14 @@ void find_residuals(const TumbleSolution& solution,
     if (regression.has_scale) out.std = std::sqrt(variance);
     // A position that alone carries a parameter is met exactly.
     const bool judged = out.std && *out.std > rounding * size && fit.dof > 0;
-    if (judged) out.studentised = studentised(out.residual / *out.std, dof, external);
+    if (judged && by_deletion)
+      out.studentised = regression.deleted(row);
+    else if (judged)
+      out.studentised = studentised(out.residual / *out.std, dof, external);
     out.suspect = out.studentised && residual_p(*out.studentised, left) < least;
     fit.positions.push_back(out);
   }
+  if (fit.dof >= 2 && regression.sigma > 0.0) name_suspects(solution, least, fit);
 }
 
 std::optional<TumbleLackOfFit> find_lack_of_fit(const TumbleSolution& solution,
@@ -153,7 +217,7 @@ std::optional<TumbleLackOfFit> find_lack_of_fit(const TumbleSolution& solution,
     return out;
   }
   // An error of indexing comes again at each visit: repeated positions do not show it.
-  if (solution.options.indexing_std_rad > 0.0) return std::nullopt;
+  if (solution.options.indexing_std_rad.value_or(0.0) > 0.0) return std::nullopt;
   const auto drift = solution.design.find(TumbleTerm::drift);
   Eigen::VectorXd column;
   if (drift) column = solution.design.A.col(static_cast<Eigen::Index>(*drift));

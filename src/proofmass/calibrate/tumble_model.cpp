@@ -32,6 +32,8 @@ std::string_view name_of(TumbleQuantity quantity) {
       return "Kio";
     case TumbleQuantity::drift:
       return "drift";
+    case TumbleQuantity::temperature:
+      return "bias_per_kelvin";
     case TumbleQuantity::hysteresis:
       return "hysteresis";
     case TumbleQuantity::backlash:
@@ -55,6 +57,7 @@ int acceleration_power(TumbleQuantity quantity) {
     case TumbleQuantity::K0_second:
     case TumbleQuantity::third_cosine:
     case TumbleQuantity::drift:
+    case TumbleQuantity::temperature:
     case TumbleQuantity::hysteresis:
       return 1;
     case TumbleQuantity::K1:

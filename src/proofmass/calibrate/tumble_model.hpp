@@ -17,6 +17,7 @@ struct TumblePosition {
   /// 1: the pendulous axis lies in the plane of rotation with the input axis; 2: the output axis.
   int plane = 1;
   std::optional<double> time_s = {};
+  std::optional<double> temperature = {};  ///< K, or °C: its differences count
   std::string label = {};  ///< as the user named it: "row 7", "rest at 12 s"; may be empty
 };
 
@@ -40,6 +41,7 @@ enum class TumbleQuantity {
   K2_minus_Koo,    ///< −2 C2/(K1 g²)
   Kio,             ///< 2 S2/(K1 g²)
   drift,           ///< the bias's, per second or per position
+  temperature,     ///< the bias's, per kelvin
   hysteresis,      ///< H/K1: output reached forwards less backwards
   backlash,        ///< L/(K1 g): angle reached forwards less backwards
   indexing_cos,    ///< a₁/(K1 g), the table's true angle less the indicated, times cos θ

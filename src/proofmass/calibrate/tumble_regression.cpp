@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proofmass/calibrate/tumble_components.hpp"
 #include "proofmass/calibrate/tumble_scatter.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/linalg.hpp"
@@ -67,6 +68,56 @@ void judge_by_residuals(const Eigen::MatrixXd& A,
   out.has_scale = true;
 }
 
+// χ² of the noise alone, and of what is stated beside it: what is assumed does not explain misfits.
+double chi_square_as_stated(const Eigen::MatrixXd& A,
+                            const Eigen::VectorXd& y,
+                            const TumbleErrors& errors) {
+  const TumbleSizes stated{.indexing_rad = errors.indexing_assumed ? 0.0 : errors.indexing_std_rad,
+                           .drift = errors.drift_assumed ? 0.0 : errors.drift_std};
+  return solve_tumble(A, y, errors, stated).chi_square;
+}
+
+TumbleRegression regress_with_components(const Eigen::MatrixXd& A,
+                                         const Eigen::VectorXd& y,
+                                         const TumbleErrors& errors) {
+  const TumbleSizes sizes = find_sizes(A, y, errors);
+  const TumbleSolved solved = solve_tumble(A, y, errors, sizes);
+  TumbleRegression out;
+  out.errors = errors;
+  out.beta = solved.beta;
+  out.residual = y - A * out.beta;
+  out.rss = out.residual.squaredNorm();
+  out.noise_known = errors.noise_known;
+  out.noise_dof = errors.noise_dof;
+  out.sigma = sizes.noise;
+  out.indexing_std_rad = sizes.indexing_rad;
+  out.drift_std = sizes.drift;
+  const auto dof = static_cast<double>(A.rows() - A.cols());
+  out.has_scale = errors.noise_known || dof > 0.0;
+  out.dof = errors.noise_known && sizes.noise <= 1.0 ? errors.noise_dof : dof;
+  if (errors.noise_known && dof > 0.0) out.chi_square = chi_square_as_stated(A, y, errors);
+  const Eigen::MatrixXd& G = solved.gain;
+  const Eigen::MatrixXd by_noise = G * (sizes.noise * errors.noise_std).asDiagonal();
+  out.noise_covariance = by_noise * by_noise.transpose();
+  const Eigen::MatrixXd by_drift = sizes.drift * G * errors.drift;
+  out.drift_covariance = by_drift * by_drift.transpose();
+  // The rest is the settings': V is the sum of the three.
+  out.indexing_covariance = Eigen::MatrixXd::Zero(A.cols(), A.cols());
+  if (sizes.indexing_rad > 0.0)
+    out.indexing_covariance = solved.covariance - out.noise_covariance - out.drift_covariance;
+  out.deleted.resize(y.size());
+  for (Eigen::Index k = 0; k < y.size(); ++k) out.deleted(k) = solved.deleted(k);
+  // r = V P y, so that a residual is as many standard deviations off as (P y)_k is.
+  out.residual_variance = Eigen::VectorXd::Zero(y.size());
+  for (Eigen::Index k = 0; k < y.size(); ++k) {
+    const double z = out.deleted(k);
+    if (solved.projector(k) > 0.0)
+      out.residual_variance(k) =
+          z * z > 1e-12 ? std::pow(out.residual(k) / z, 2) : 1.0 / solved.projector(k);
+  }
+  return out;
+}
+
 std::vector<Eigen::VectorXd> scaled(std::vector<Eigen::VectorXd> levers, double u) {
   for (Eigen::VectorXd& v : levers) v *= u;
   return levers;
@@ -77,7 +128,9 @@ std::vector<Eigen::VectorXd> scaled(std::vector<Eigen::VectorXd> levers, double 
 TumbleRegression regress_tumble(const Eigen::MatrixXd& A,
                                 const Eigen::VectorXd& y,
                                 const TumbleErrors& errors) {
+  if (errors.with_components()) return regress_with_components(A, y, errors);
   TumbleRegression out;
+  out.errors = errors;
   const Eigen::Index n = A.rows();
   const double u = errors.indexing_std_rad;
   // From here on in units of each position's noise.
@@ -103,6 +156,8 @@ TumbleRegression regress_tumble(const Eigen::MatrixXd& A,
     out.indexing_covariance += u * u * moved * moved.transpose();
   }
 
+  out.indexing_std_rad = u;
+  out.drift_covariance = Eigen::MatrixXd::Zero(A.cols(), A.cols());
   out.noise_known = errors.noise_known;
   out.noise_dof = errors.noise_dof;
   if (errors.noise_known)

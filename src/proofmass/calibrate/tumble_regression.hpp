@@ -15,6 +15,15 @@ struct TumbleErrors {
   Eigen::VectorXd lever;             ///< output per radian of indexing: K1 g cos φ
   std::vector<std::size_t> setting;  ///< positions of one number share their error of indexing
   double indexing_std_rad = 0.0;
+  bool indexing_assumed = false;  ///< the residuals may show it to be smaller, or larger
+  Eigen::MatrixXd drift;       ///< shapes of a drift that is not straight: columns of amplitude 1
+  double drift_std = 0.0;      ///< of each shape's size, in the unit of the output
+  bool drift_assumed = false;  ///< as indexing_assumed
+
+  /// Whether there is more than noise and stated errors of indexing.
+  [[nodiscard]] bool with_components() const {
+    return indexing_assumed || (drift_std > 0.0 && drift.cols() > 0);
+  }
 };
 
 /// y = A β + e, cov e = σ² diag(noise_std²) + indexing.
@@ -22,7 +31,11 @@ struct TumbleRegression {
   Eigen::VectorXd beta, residual;
   Eigen::MatrixXd noise_covariance;     ///< of β
   Eigen::MatrixXd indexing_covariance;  ///< of β
+  Eigen::MatrixXd drift_covariance;     ///< of β
+  double indexing_std_rad = 0.0;        ///< as used
+  double drift_std = 0.0;               ///< as used, unit of the output
   Eigen::VectorXd residual_variance;    ///< of each residual, as expected
+  Eigen::VectorXd deleted;              ///< each against a fit to the others, in its std
   double sigma = 0.0;                   ///< factor on noise_std; of unknown noise its std
   double dof = 0.0;                     ///< of sigma; 0: infinitely many
   bool noise_known = false;
@@ -30,6 +43,7 @@ struct TumbleRegression {
   double rss = 0.0;         ///< Σ residual²
   double chi_square = 0.0;  ///< rᵀV⁻¹r about the best fit, V of the stated errors (known noise)
   bool has_scale = false;   ///< sigma is known: stated noise, or positions to spare
+  TumbleErrors errors;      ///< those that it was done with
 };
 
 /// β = (AᵀWA)⁻¹AᵀWy = G y, W = diag(1/noise_std²);
@@ -38,7 +52,8 @@ struct TumbleRegression {
 ///
 /// Where noise is not known σ² = rss/(n − p), beside indexing by restricted likelihood
 /// (tumble_scatter.hpp); where it is, σ = 1, or √(χ²/(n − p)) if χ² is beyond chance.
-/// A must have full rank. Cost: O(n p²), with indexing O(settings · n · p).
+/// Where errors are assumed (with_components()) β is of generalised least squares, V with the sizes
+/// of find_sizes(). A must have full rank. Cost: O(n p²), with indexing O(settings · n · p).
 [[nodiscard]] TumbleRegression regress_tumble(const Eigen::MatrixXd& A,
                                               const Eigen::VectorXd& y,
                                               const TumbleErrors& errors);

@@ -101,8 +101,12 @@ inline std::vector<TumblePosition> read_table(const std::vector<TumblePosition>&
   return read;
 }
 
+/// Angles that are exact and a bias that drifts straight, if at all.
 inline TumbleOptions table_options() {
-  return {.gravity_mps2 = table_gravity_mps2, .output_unit = "V"};
+  return {.gravity_mps2 = table_gravity_mps2,
+          .indexing_std_rad = 0.0,
+          .drift_std_mps2 = 0.0,
+          .output_unit = "V"};
 }
 
 /// What a coefficient should come to in a test of so many positions, biases at its middle.
@@ -137,6 +141,8 @@ inline double true_value(TableTruth t, TumbleQuantity quantity, std::size_t posi
       return t.Kio;
     case Q::drift:
       return t.drift_mps2;
+    case Q::temperature:
+      return 0.0;
     case Q::hysteresis:
       return t.hysteresis_mps2;
     case Q::backlash:

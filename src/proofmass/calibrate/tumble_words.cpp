@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <numbers>
 
+#include "proofmass/core/number_words.hpp"
 #include "proofmass/core/units.hpp"
 
 namespace proofmass::calibrate {
@@ -24,6 +25,8 @@ std::string not_asked_words(TumbleTerm term) {
   switch (term) {
     case TumbleTerm::drift:
       return "no position was visited again late enough: return to the first one at the end";
+    case TumbleTerm::temperature:
+      return "the positions have no temperatures, or all the same";
     case TumbleTerm::hysteresis:
     case TumbleTerm::backlash:
       return "the positions are not known to have been reached from both directions";
@@ -57,7 +60,9 @@ std::string not_told_words(TumbleTerm term) {
 }
 
 std::string rms_words(double rms_rad) {
-  return fmt::format("{:.3g} arcsec", rms_rad / rad_per_arcsec);
+  constexpr double fine = 0.01 * rad_per_deg;
+  return rms_rad < fine ? fmt::format("{:.3g} arcsec", rms_rad / rad_per_arcsec)
+                        : fmt::format("{:.3g}°", rms_rad / rad_per_deg);
 }
 
 // Amplitude of the harmonic with this rms.
@@ -190,6 +195,8 @@ std::string meaning_words(const TumbleCoefficient& coefficient, const TumbleDesi
              "twice a turn";
     case Q::drift:
       return design.in_time ? "change of the bias per second" : "change of the bias per position";
+    case Q::temperature:
+      return "change of the bias per kelvin";
     case Q::hysteresis:
       return "output where reached forwards less where reached backwards";
     case Q::backlash:
@@ -213,6 +220,7 @@ std::string unit_words(TumbleQuantity quantity, const TumbleSolution& solution) 
     return output.empty() ? "1/(m/s^2)" : output + "/(m/s^2)";
   }
   if (quantity == Q::drift) return solution.design.in_time ? "m/s^3" : "m/s^2";
+  if (quantity == Q::temperature) return "m/s^2/K";
   switch (acceleration_power(quantity)) {
     case 1:
       return "m/s^2";
@@ -227,9 +235,11 @@ std::string unit_words(TumbleQuantity quantity, const TumbleSolution& solution) 
 
 TumbleIndexing indexing_words(const TumbleSolution& solution, const TumbleFit& fit) {
   const TumbleDesign& design = solution.design;
-  const double stated = solution.options.indexing_std_rad;
-  const double rms = stated > 0.0 ? stated : rad_per_arcsec;
   TumbleIndexing out;
+  out.std_rad = solution.regression.indexing_std_rad;
+  out.assumed = !solution.options.indexing_std_rad;
+  const double example = 0.1 * rad_per_deg;
+  const double rms = out.assumed || out.std_rad <= 0.0 ? example : out.std_rad;
   out.once_separated =
       design.find(TumbleTerm::indexing_cos) && design.find(TumbleTerm::indexing_sin);
   out.twice_separated =
@@ -243,6 +253,29 @@ TumbleIndexing indexing_words(const TumbleSolution& solution, const TumbleFit& f
   else
     out.words.push_back(twice_words(rms, design.find(TumbleTerm::cube).has_value()));
   return out;
+}
+
+void add_assumptions(const TumbleSolution& solution, TumbleFit& fit) {
+  const TumbleRegression& regression = solution.regression;
+  if (!regression.has_scale) return;
+  const double K1 =
+      std::abs(swing_of(solution.design, regression.beta)) / solution.options.gravity_mps2;
+  fit.drift.wander_std_mps2 = regression.drift_std / K1;
+  fit.drift.wander_assumed = !solution.options.drift_std_mps2;
+  const auto by = [](double used, double assumed) {
+    if (used > 1.001 * assumed) return "as the residuals ask for";
+    return used < 0.999 * assumed ? "the most that the residuals allow" : "an assumption";
+  };
+  if (fit.indexing.assumed)
+    fit.notes.push_back(fmt::format(
+        "the error of the table's angles is not stated: a standard deviation of {} was used, {}",
+        rms_words(fit.indexing.std_rad), by(fit.indexing.std_rad, assumed_indexing_std_rad)));
+  if (fit.drift.wander_assumed)
+    fit.notes.push_back(fmt::format(
+        "how the bias wanders about a straight line is not stated: amplitudes of {} mg (standard "
+        "deviation) over the test were used, {}",
+        compact(1e3 * fit.drift.wander_std_mps2 / standard_gravity_mps2, 2),
+        by(fit.drift.wander_std_mps2, assumed_drift_std_mps2)));
 }
 
 }  // namespace proofmass::calibrate

@@ -25,4 +25,7 @@ namespace proofmass::calibrate {
 /// What errors of the table's angle look like, or how large they are.
 [[nodiscard]] TumbleIndexing indexing_words(const TumbleSolution& solution, const TumbleFit& fit);
 
+/// Notes what was assumed of the table's angles and of the drift, where nothing is stated.
+void add_assumptions(const TumbleSolution& solution, TumbleFit& fit);
+
 }  // namespace proofmass::calibrate

@@ -30,6 +30,7 @@ Value axis(const RotationReport& report, std::size_t at) {
     intervals.push_back({std::string(name_of(one.quantity)), Array{middle - half, middle + half}});
   }
   body.push_back({"interval_95", std::move(intervals)});
+  body.push_back({"delay_s", quantity(axis.delay_s, "s")});
   body.push_back({"residual_rms", axis.residual_rms});
   body.push_back({"fold", Object{{"angle_rad", array_of(axis.fold.angle_rad)},
                                  {"mean", array_of(axis.fold.mean)},
@@ -55,7 +56,6 @@ Array ripples(const RotationFit& fit) {
     items.push_back(Object{{"per_turn", one.per_turn},
                            {"amplitude", quantity(one.amplitude, "1")},
                            {"chance_p", one.chance_p},
-                           {"ripple_p", one.ripple_p},
                            {"accepted", one.accepted}});
   }
   return items;
@@ -80,14 +80,22 @@ std::vector<std::string> warnings(const RotationReport& report) {
                                 one.reason));
     }
   }
+  for (std::size_t at = 0; at < fit.axes.size(); ++at) {
+    if (fit.axes[at].delay_s) continue;
+    all.push_back(fmt::format("{}: delay_s: null: {}", report.axis_names[at],
+                              fit.angle_given ? "one speed does not distinguish it from a "
+                                                "misalignment, and no bandwidth is stated"
+                                              : "without an encoder there is no angle that the "
+                                                "readings could be late to"));
+  }
   if (!fit.radius.value) all.push_back("radius_m: null: " + fit.radius.reason);
   if (!fit.direction) all.push_back("direction: null: one axis alone does not show it");
   for (const calibrate::SpeedRipple& one : fit.ripples) {
     if (!one.amplitude) {
       all.push_back(
-          fmt::format("ripples: amplitude {} a turn: null: none that both axes share "
-                      "stands out",
-                      one.per_turn == 1 ? "once" : "twice"));
+          fmt::format("ripples: amplitude at {} per turn: null: the harmonics may be chance or the "
+                      "sensor's",
+                      one.per_turn));
     }
   }
   return all;

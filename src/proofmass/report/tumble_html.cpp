@@ -113,9 +113,9 @@ Section conditions_section(const TumbleReport& report) {
                           ? ", std " + significant(report.gravity_std_mps2, 2) + " m/s²"
                           : ", its own uncertainty not stated"));
   add("Indexing of the table",
-      report.indexing_std_rad > 0.0
-          ? "std " + significant(report.indexing_std_rad / rad_per_deg * 3600.0, 3) + " arcsec"
-          : "uncertainty not stated");
+      report.indexing_std_rad
+          ? "std " + significant(*report.indexing_std_rad / rad_per_deg * 3600.0, 3) + " arcsec"
+          : "not stated");
   add("Convention", "input axis upwards at 90°: aᵢ = g sin φ, aₚ = g cos φ");
   return {.heading = "Conditions of the test",
           .paragraphs = {"Model: E = K1 [K0 + aᵢ + K2 aᵢ² + K3 aᵢ³ + δo aₚ + Kip aᵢ aₚ + Kpp aₚ²], "

@@ -101,6 +101,8 @@ Object drift(const TumbleFit& fit) {
           {"known", found.known},
           {"removed", found.removed},
           {"p", or_null(found.p)},
+          {"wander_std_mps2", found.wander_std_mps2},
+          {"wander_assumed", found.wander_assumed},
           {"words", found.words}};
 }
 
@@ -110,6 +112,8 @@ Object indexing(const TumbleFit& fit) {
     if (!text.empty()) words.push_back(text);
   return {{"once_separated", fit.indexing.once_separated},
           {"twice_separated", fit.indexing.twice_separated},
+          {"std_rad", fit.indexing.std_rad},
+          {"assumed", fit.indexing.assumed},
           {"cos_rad", figure(fit.find(Q::indexing_cos))},
           {"sin_rad", figure(fit.find(Q::indexing_sin))},
           {"cos2_rad", figure(fit.find(Q::indexing_cos2))},
@@ -144,6 +148,7 @@ Array positions(const ChannelTumble& channel) {
                {"suspect", r.suspect},     {"direction", p.direction},
                {"mount_rad", p.mount_rad}, {"plane", p.plane}};
     if (p.time_s) one.push_back({"time_s", *p.time_s});
+    if (p.temperature) one.push_back({"temperature", *p.temperature});
     if (!p.label.empty()) one.push_back({"label", p.label});
     out.push_back(std::move(one));
   }
@@ -250,7 +255,8 @@ std::string tumble_json(const TumbleReport& report) {
   out.push_back({"source", report.source});
   out.push_back({"gravity_mps2", report.gravity_mps2});
   out.push_back({"gravity_std_mps2", report.gravity_std_mps2});
-  out.push_back({"indexing_std_rad", report.indexing_std_rad});
+  out.push_back(
+      {"indexing_std_rad", report.indexing_std_rad.value_or(calibrate::assumed_indexing_std_rad)});
   out.push_back({"notes", array_of(texts(tumble_notes(report), Severity::info))});
   return to_json({"tumble", report.inputs, tumble_warnings(report)}, out);
 }

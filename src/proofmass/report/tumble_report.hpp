@@ -29,7 +29,7 @@ struct TumbleReport {
   std::size_t main = 0;     ///< the channel whose figures stand at the top of the document
   std::vector<Note> notes;  ///< of reading and preparing; those of the fits are added
   double gravity_mps2 = standard_gravity_mps2, gravity_std_mps2 = 0.0;
-  double indexing_std_rad = 0.0;
+  std::optional<double> indexing_std_rad = {};  ///< as stated
   std::string source;  ///< where the positions came from: "a table of positions"
 };
 

@@ -49,6 +49,8 @@ std::string base_symbol(Q quantity) {
       return "Kio";
     case Q::drift:
       return "drift";
+    case Q::temperature:
+      return "bias per kelvin";
     case Q::hysteresis:
       return "hysteresis";
     case Q::backlash:
@@ -73,8 +75,10 @@ std::string mounted(const TumbleCoefficient& coefficient) {
 
 std::string lack_of_fit_words(const calibrate::TumbleLackOfFit& found) {
   constexpr double chance = 0.05;
-  const char* verdict =
-      found.p < chance ? "the model leaves more than chance would" : "the model fits to within it";
+  // A drift or an angle error that follows the turn leaves no residual: they never show that the
+  // model fits.
+  const char* verdict = found.p < chance ? "the residuals are larger than chance explains"
+                                         : "the residuals are no larger than chance explains";
   return fmt::format("Against the {}: mean square {} times as large, p = {}: {}.", found.against,
                      significant(found.statistic, 3), significant(found.p, 2), verdict);
 }
@@ -96,6 +100,7 @@ InG in_g(const TumbleCoefficient& coefficient, const Unit& output) {
     if (coefficient.unit == "m/s^3") return {1e3 / g * s_per_h, "mg/h"};
     return {1e3 / g, "mg per position"};
   }
+  if (coefficient.quantity == Q::temperature) return {1e3 / g, "mg/K"};
   switch (calibrate::acceleration_power(coefficient.quantity)) {
     case 1:
       return {1e3 / g, "mg"};

@@ -53,6 +53,8 @@ Result<TumbledAxis> fitted(const TumbleRecord& record,
       out.positions,
       {.gravity_mps2 = gravity_mps2,
        .gravity_std_mps2 = gravity_std_mps2(record, gravity_mps2),
+       .indexing_std_rad = 0.0,  // as the thesis takes the wheel's marks
+       .drift_std_mps2 = 0.0,
        .noise_dof = channel.noise_dof,
        .output_unit = out.ideal ? "m/s^2" : out.unit,
        .phase_rad = {axis.phase_rad[0].value_or(0.0), axis.phase_rad[1].value_or(0.0)}});
