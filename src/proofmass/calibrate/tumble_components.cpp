@@ -11,6 +11,7 @@ namespace {
 
 constexpr double fits_p = 0.01;    // below, the stated noise is too small
 constexpr double allowed = 1.353;  // ln L below its maximum: one-sided 95 %
+constexpr double decisive = 4.0;   // ln L of one explanation above another
 constexpr double exceeded = 0.5;   // the same where residuals exceed what was assumed
 
 /// The restricted likelihood as a function of the sizes.
@@ -41,6 +42,13 @@ class SizeSearch {
   }
   [[nodiscard]] const TumbleSizes& unit() const { return unit_; }
   [[nodiscard]] double scatter() const { return scatter_; }
+  /// Whether the stated noise alone does not explain the residuals.
+  [[nodiscard]] bool misfits() const {
+    const auto dof = static_cast<double>(A_.rows() - A_.cols());
+    const double square = scatter_ * scatter_;
+    return (errors_.noise_dof > 0.0 ? fisher_f_p(square, dof, errors_.noise_dof)
+                                    : chi_square_p(square * dof, dof)) < fits_p;
+  }
   /// The best of one size, the others as they are: zero or 10^(−1.5 … 2.5) units, and then between
   /// the best one's neighbours.
   void climb(double TumbleSizes::* size, TumbleSizes& at, double& best) const {
@@ -184,8 +192,9 @@ TumbleSolved solve_tumble(const Eigen::MatrixXd& A,
 TumbleSizes find_sizes(const Eigen::MatrixXd& A,
                        const Eigen::VectorXd& y,
                        const TumbleErrors& errors) {
-  TumbleSizes sizes{
-      .noise = 1.0, .indexing_rad = errors.indexing_std_rad, .drift = errors.drift_std};
+  TumbleSizes sizes{.noise = errors.noise_known ? 1.0 : 0.0,
+                    .indexing_rad = errors.indexing_std_rad,
+                    .drift = errors.drift_std};
   if (A.rows() <= A.cols()) return sizes;
   const SizeSearch search(A, y, errors);
   constexpr double none = 1e-100;
@@ -197,6 +206,8 @@ TumbleSizes find_sizes(const Eigen::MatrixXd& A,
   if (errors.drift_assumed) at.drift = 0.0;
   double best = search.of(at);
   const double plain = best, scatter = at.noise;
+  TumbleSizes scattered = at;
+  scattered.noise = search.scatter();
   constexpr int rounds = 3;
   const auto climb = [&](bool noise) {
     for (int round = 0; round < rounds; ++round) {
@@ -212,8 +223,9 @@ TumbleSizes find_sizes(const Eigen::MatrixXd& A,
                                             : chi_square_p(chi_square, dof);
     if (p < fits_p) {
       climb(true);
-      at.noise = std::max(at.noise, 1.0);
-      best = search.of(at);
+    } else if (search.misfits() && best - search.of(scattered) < decisive) {
+      // Larger errors of all readings explain the residuals nearly as well: one of them is wrong.
+      sizes.noise = search.scatter();
     }
   } else if (best - plain < 2.0) {
     // Nothing asks for other errors than scatter, which then has all of the residuals.
@@ -222,7 +234,7 @@ TumbleSizes find_sizes(const Eigen::MatrixXd& A,
           .drift = errors.drift_assumed ? 0.0 : errors.drift_std};
     best = plain;
   }
-  sizes.noise = at.noise;
+  sizes.noise = std::max(sizes.noise, at.noise);
   if (errors.indexing_assumed)
     sizes.indexing_rad =
         judged(search, &TumbleSizes::indexing_rad, at, best, errors.indexing_std_rad);
