@@ -10,6 +10,7 @@
 #include "proofmass/calibrate/multi_position_budget.hpp"
 #include "proofmass/calibrate/multi_position_check.hpp"
 #include "proofmass/calibrate/multi_position_cross_axis.hpp"
+#include "proofmass/calibrate/session_noise.hpp"
 #include "proofmass/calibrate/validation.hpp"
 #include "proofmass/report/calibrate_report.hpp"
 #include "proofmass/report/document.hpp"
@@ -63,11 +64,24 @@ std::vector<TypeB> type_b_of(const CalibrateCommand& command) {
 // A fit that the poses do not carry is the input's fault; its message names the files.
 MultiPosition fitted(const PoseSet& set, MultiPositionOptions options) {
   options.noise_dof = set.noise_dof;
+  options.between = set.between;
   const Result<MultiPosition> fit = calibrate::calibrate_positions(set.poses, options);
   if (fit) return *fit;
   std::string files;
   for (const report::PoseFile& file : set.files) files += (files.empty() ? "" : ", ") + file.file;
   throw Failure(status_of(fit.error(), Stage::computing), fit.error().at(files).message);
+}
+
+// The noise of the means over the session, where the recordings show it.
+std::optional<calibrate::SessionNoise> settle_noise(const MultiPositionOptions& model,
+                                                    PoseSet& set) {
+  MultiPositionOptions options = model;
+  options.noise_dof = set.noise_dof;
+  auto noise = calibrate::session_noise(set.poses, set.sessions, options);
+  if (!noise) return noise;
+  set.poses = noise->poses;
+  set.between = noise->between;
+  return noise;
 }
 
 // Of several supplies the one whose figures stand at the top: the nearest to their mean.
@@ -98,7 +112,8 @@ void calibrate_supplies(const CalibrateCommand& command,
   std::vector<calibrate::SupplyPoint> points;
   for (std::size_t k = 0; k < command.files.size(); ++k) {
     std::vector<Note> notes;
-    const PoseSet set = read_poses({command.files[k]}, command, notes);
+    PoseSet set = read_poses({command.files[k]}, command, notes);
+    settle_noise(options, set);
     // Those of the files at the top have been told.
     if (command.supplies_v[k] != main_supply_v(command)) {
       for (const Note& note : notes)
@@ -191,6 +206,7 @@ void check_by_draws(const CalibrateCommand& command,
                     report::CalibrateReport& report) {
   if (command.monte_carlo == 0) return;
   options.noise_dof = set.noise_dof;
+  options.between = set.between;
   Result<calibrate::MonteCarloCheck> check = calibrate::check_by_monte_carlo(
       set.poses, options, report.fit,
       {.lines = lines, .reading_unit = report.unit.symbol, .draws = command.monte_carlo});
@@ -228,6 +244,7 @@ void run(const CalibrateCommand& command) {
         {Severity::info,
          fmt::format("the figures at the top are those at {:g} V", *main_supply_v(command))});
   }
+  settle_noise(options, set);
   report.fit = fitted(set, options);
   auto budgets = calibrate::budget_of(report.fit, lines, report.unit.symbol);
   if (!budgets) throw Failure(usage, budgets.error().at("--type-b").message);

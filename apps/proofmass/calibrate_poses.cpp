@@ -34,6 +34,7 @@ struct FilePoses {
   std::optional<double> reference_supply_v;
   double noise_dof = 0.0;
   std::array<double, 3> sample_std{};
+  std::optional<calibrate::RestSession> session;
 };
 
 std::optional<Eigen::Vector3d> vector_of(const std::optional<std::array<double, 3>>& up) {
@@ -234,6 +235,7 @@ FilePoses recording_poses(Recording recording,
   out.poses = std::move(means.poses);
   out.noise_dof = means.noise_dof;
   out.sample_std = means.sample_std;
+  out.session = std::move(means.session);
   out.sensor = triad.name;
   set_times(read, rests.dwells, out);
   out.file = {.file = read.source,
@@ -282,6 +284,7 @@ PoseSet read_poses(const std::vector<std::string>& files,
     out.pose_file.insert(out.pose_file.end(), one.poses.size(), out.files.size());
     out.poses.insert(out.poses.end(), one.poses.begin(), one.poses.end());
     out.files.push_back(std::move(one.file));
+    if (one.session) out.sessions.push_back(std::move(*one.session));
   }
   return out;
 }

@@ -335,5 +335,38 @@ TEST(CalibrationOfATable, IsItsAuthors) {
   }
 }
 
+// --- one bad position, by a simulator of others --------------------------------------------------
+
+// A search from a robust fit named positions 2, 3 and 5 of the first and 3 of the second, where 7
+// and 5 are off, and the figures were 12 and 49 standard deviations off.
+TEST(CalibrationWithABadPosition, BlamesNoGoodOne) {
+  struct Case {
+    const char* file;
+    std::size_t bad;
+    Three bias, scale;
+  };
+  for (const Case& one : {Case{"calib_wrong_named_14_50_20.csv.xz",
+                               7,
+                               {-0.0215082, -0.3602039, -0.2877141},
+                               {0.9887140, 0.9963668, 0.9907596}},
+                          Case{"calib_wrong_named_18_10_1.csv.xz",
+                               5,
+                               {0.2373926, -0.1763239, 0.4739476},
+                               {0.9951833, 1.0063927, 0.9905728}}}) {
+    const auto file = published_data() / "independent" / one.file;
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
+    const MultiPosition fit = fitted(at_rest(read(file)), {.gravity_mps2 = standard_gravity_mps2});
+    for (std::size_t k = 0; k < fit.poses.size(); ++k) {
+      EXPECT_TRUE(k + 1 == one.bad || !fit.poses[k].suspect) << one.file << " " << k + 1;
+    }
+    EXPECT_TRUE(fit.poses[one.bad - 1].suspect ||
+                std::ranges::count(fit.doubtful, one.bad - 1) == 1);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(fit.bias[k]->value, one.bias[k], 3.0 * fit.bias[k]->std) << one.file;
+      EXPECT_NEAR(fit.scale[k]->value, one.scale[k], 3.0 * fit.scale[k]->std) << one.file;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace proofmass::calibrate_real_test

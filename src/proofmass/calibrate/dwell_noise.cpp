@@ -24,24 +24,6 @@ void halve(std::vector<double>& means, double& squares, double& pairs) {
   means.resize(half);
 }
 
-Levels levels_of(const std::vector<std::span<const double>>& rests) {
-  std::vector<std::vector<double>> means;
-  means.reserve(rests.size());
-  for (const std::span<const double> rest : rests) {
-    // Differences are all that counts: an offset of 33 000 counts would only cost digits.
-    std::vector<double>& own = means.emplace_back(rest.begin(), rest.end());
-    const double first = own.empty() ? 0.0 : own.front();
-    for (double& value : own) value -= first;
-  }
-  Levels levels;
-  for (double m = 1.0;; m *= 2.0) {
-    double squares = 0.0, pairs = 0.0;
-    for (std::vector<double>& own : means) halve(own, squares, pairs);
-    if (pairs == 0.0) return levels;
-    levels.push_back({m, squares / pairs, pairs});
-  }
-}
-
 Eigen::Vector3d shape(double m) {
   return {1.0 / m, 1.0, m};
 }
@@ -131,6 +113,24 @@ Averaged averaged(const Levels& levels, double dwell) {
 
 }  // namespace
 
+std::vector<AllanLevel> allan_levels(const std::vector<std::span<const double>>& rests) {
+  std::vector<std::vector<double>> means;
+  means.reserve(rests.size());
+  for (const std::span<const double> rest : rests) {
+    // Differences are all that counts: an offset of 33 000 counts would only cost digits.
+    std::vector<double>& own = means.emplace_back(rest.begin(), rest.end());
+    const double first = own.empty() ? 0.0 : own.front();
+    for (double& value : own) value -= first;
+  }
+  Levels levels;
+  for (double m = 1.0;; m *= 2.0) {
+    double squares = 0.0, pairs = 0.0;
+    for (std::vector<double>& own : means) halve(own, squares, pairs);
+    if (pairs == 0.0) return levels;
+    levels.push_back({m, squares / pairs, pairs});
+  }
+}
+
 double DwellNoise::variance_of_mean(std::size_t samples) const {
   const auto m = static_cast<double>(samples);
   return white / m + flicker + random_walk * m + rounding;
@@ -156,7 +156,7 @@ DwellNoise fit_dwell_noise(View<AllanLevel> levels, double dwell, double lsb) {
 }
 
 DwellNoise fit_dwell_noise(const std::vector<std::span<const double>>& rests, double lsb) {
-  const Levels levels = levels_of(rests);
+  const Levels levels = allan_levels(rests);
   if (levels.empty()) return {};
   std::vector<std::size_t> dwell;
   dwell.reserve(rests.size());

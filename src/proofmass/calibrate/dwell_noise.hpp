@@ -37,6 +37,10 @@ struct DwellNoise {
 [[nodiscard]] DwellNoise fit_dwell_noise(const std::vector<std::span<const double>>& rests,
                                          double lsb);
 
+/// The Allan variances of the rests, m ascending.
+[[nodiscard]] std::vector<signal::AllanLevel> allan_levels(
+    const std::vector<std::span<const double>>& rests);
+
 /// The same from Allan variances that are there already, ascending, with the dwell in samples for
 /// which the degrees of freedom are told.
 [[nodiscard]] DwellNoise fit_dwell_noise(View<signal::AllanLevel> levels, double dwell, double lsb);

@@ -13,6 +13,7 @@
 #include "proofmass/calibrate/six_position.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/core/units.hpp"
 
 namespace proofmass::calibrate {
 namespace {
@@ -50,6 +51,21 @@ Weighable weighable(View<Pose> poses, double noise_dof) {
   return out;
 }
 
+// A wander that is known beside noise that is not would have no scale.
+NormData norm_data(const Weighable& weighed,
+                   const ReadingScale& scale,
+                   const MultiPositionOptions& options) {
+  NormData data{.poses = normalise(weighed.poses, scale)};
+  if (weighed.noise_dof == 0.0) return data;
+  const auto n = static_cast<Eigen::Index>(weighed.poses.size());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double half = scale.half(static_cast<Eigen::Index>(axis));
+    if (options.between[axis].rows() == n)
+      data.between[axis] = options.between[axis] / (half * half);
+  }
+  return data;
+}
+
 Eigen::MatrixXd information_of(const PoseSelection& selection, NormParameters free) {
   const auto count = static_cast<Eigen::Index>(free);
   Eigen::MatrixXd N = Eigen::MatrixXd::Zero(count, count);
@@ -85,23 +101,23 @@ struct NormCalibration {
 };
 
 // Nine parameters where asked for or carried, else six.
-Result<NormCalibration> choose(const std::vector<NormalisedPose>& poses,
+Result<NormCalibration> choose(const NormData& data,
                                double noise_dof,
                                const MultiPositionOptions& options) {
   const bool asked = options.model.has_value();
-  const bool nine_first = asked ? *options.model == PoseModel::norm_9 : poses.size() >= 9;
+  const bool nine_first = asked ? *options.model == PoseModel::norm_9 : data.poses.size() >= 9;
   for (const NormParameters free : {NormParameters::nine, NormParameters::six}) {
     if (free == NormParameters::nine && !nine_first) continue;
     const auto count = static_cast<std::size_t>(free);
-    if (poses.size() < count) {
+    if (data.poses.size() < count) {
       return Error{Errc::too_few_samples,
                    fmt::format("{} positions for {} parameters: at least {} are needed, and 18 "
                                "spread over all directions are sensible",
-                               poses.size(), count, count)};
+                               data.poses.size(), count, count)};
     }
-    const Parameters start = ellipsoid_start(poses, free == NormParameters::nine);
+    const Parameters start = ellipsoid_start(data.poses, free == NormParameters::nine);
     Result<PoseSelection> selection =
-        select_poses(poses, start, {free, noise_dof, options.keep_suspects});
+        select_poses(data, start, {free, noise_dof, options.keep_suspects});
     if (!selection) return selection.error();
     if (carried(*selection, options)) return NormCalibration{free, *selection};
     if (free == NormParameters::nine && !asked) continue;
@@ -116,12 +132,12 @@ Result<NormCalibration> choose(const std::vector<NormalisedPose>& poses,
 // The normalised parameters' sensitivity to the three angles that six parameters leave out: the
 // others give way as the residuals ask.
 Eigen::Matrix<double, 9, 3> sensitivity_to_angles(const PoseSelection& selection) {
-  Eigen::Matrix<double, 6, 3> pull = Eigen::Matrix<double, 6, 3>::Zero();
-  for (std::size_t k = 0; k < selection.fit.terms.size(); ++k) {
-    if (!selection.used[k]) continue;
-    const NormTerm& term = selection.fit.terms[k];
-    pull += term.gradient.head<6>().transpose() * term.gradient.tail<3>() / term.variance;
-  }
+  const auto n = static_cast<Eigen::Index>(selection.fit.terms.size());
+  Eigen::MatrixXd J(n, 9);
+  for (Eigen::Index k = 0; k < n; ++k)
+    J.row(k) = selection.fit.terms[static_cast<std::size_t>(k)].gradient;
+  const Eigen::MatrixXd pull =
+      J.leftCols<6>().transpose() * selection.weights.times(J.rightCols<3>());
   Eigen::Matrix<double, 9, 3> out;
   out << -selection.fit.cofactor * pull, Eigen::Matrix3d::Identity();
   return out;
@@ -138,6 +154,11 @@ std::vector<UncertaintyShare> shares_of(const NormCalibration& norm,
   std::vector<UncertaintyShare> shares;
   if (selection.scatter.dof > 0.0)
     shares.push_back({"noise of the means", true, slope * noise * slope, selection.scatter.dof});
+  if (selection.by_choice.size() > 0) {
+    ParameterMatrix choice = ParameterMatrix::Zero();
+    choice.topLeftCorner(count, count) = selection.by_choice;
+    shares.push_back({"which position is bad", true, slope * choice * slope, 0.0});
+  }
   if (norm.free == NormParameters::six) {
     const Eigen::Matrix<double, 9, 3> S =
         options.orthogonality_std_rad * (slope * sensitivity_to_angles(selection));
@@ -158,6 +179,7 @@ std::vector<PoseResidual> residuals_of(const PoseSelection& selection,
     if (selection.leave_one_out[k])
       out[k].leave_one_out_mps2 = gravity_mps2 * *selection.leave_one_out[k];
     out[k].studentised = selection.studentised[k];
+    if (selection.detectable[k]) out[k].detectable_mps2 = gravity_mps2 * *selection.detectable[k];
     out[k].suspect = selection.suspect[k];
     out[k].used = selection.used[k];
     out[k].force_mps2 = gravity_mps2 * term.force;
@@ -165,10 +187,30 @@ std::vector<PoseResidual> residuals_of(const PoseSelection& selection,
   return out;
 }
 
+// With few positions more than parameters some are checked by no others.
+void add_unchecked(MultiPosition& out) {
+  constexpr double large = 15.0;  // of what noise does; among 18 well spread positions it is 6
+  std::string positions;
+  double largest_mps2 = 0.0;
+  for (std::size_t k = 0; k < out.poses.size(); ++k) {
+    const PoseResidual& pose = out.poses[k];
+    if (!pose.used || !pose.detectable_mps2 || !(pose.predicted_std_mps2 > 0.0)) continue;
+    if (*pose.detectable_mps2 < large * pose.predicted_std_mps2) continue;
+    positions += fmt::format("{}{}", positions.empty() ? "" : ", ", k + 1);
+    largest_mps2 = std::max(largest_mps2, *pose.detectable_mps2);
+  }
+  if (positions.empty()) return;
+  out.notes.push_back(fmt::format(
+      "the others hardly check position {}: an error of up to {:.2g} mg there would not "
+      "be noticed, and the intervals do not contain it; add positions near it",
+      positions, 1e3 * largest_mps2 / standard_gravity_mps2));
+}
+
 void add_notes(const NormCalibration& norm,
                const MultiPositionOptions& options,
                MultiPosition& out) {
   if (out.dof == 0.0) out.notes.emplace_back(noise_missing);
+  add_unchecked(out);
   if (norm.free == NormParameters::six) {
     out.notes.push_back(fmt::format(
         "misalignment_rad: null: {}; the axes are taken for orthogonal within {:.3g} rad, "
@@ -192,7 +234,7 @@ MultiPosition assembled(const NormCalibration& norm,
   out.gravity_mps2 = options.gravity_mps2;
   out.poses = residuals_of(selection, noise_dof > 0.0, options.gravity_mps2);
   set_residual_sums(out);
-  out.lack_of_fit = selection.scatter.lack_of_fit;
+  out.lack_of_fit = selection.lack_of_fit;
   out.doubtful = selection.alike;
   out.condition = selection.fit.condition;
   const double factor = selection.scatter.dof > 0.0 ? selection.scatter.factor : 1.0;
@@ -219,7 +261,7 @@ Result<MultiPosition> calibrate_positions(View<Pose> poses, const MultiPositionO
   if (options.model == PoseModel::six_position)
     return calibrate_six_position(weighed.poses, weighed.noise_dof, options);
   const Result<NormCalibration> norm =
-      choose(normalise(weighed.poses, *scale), weighed.noise_dof, options);
+      choose(norm_data(weighed, *scale, options), weighed.noise_dof, options);
   if (!norm) return norm.error();
   return assembled(*norm, *scale, weighed.noise_dof, options);
 }

@@ -30,6 +30,10 @@ struct MultiPositionOptions {
   double gravity_std_mps2 = 0.0;
   /// Of the means' covariances' common factor: how well the noise is known; 0: not at all.
   double noise_dof = 0.0;
+  /// Of each axis, the covariance between the means of different poses, in the reading's unit
+  /// squared, by a bias that wanders (see session_noise.hpp); empty: they are independent. What
+  /// norm_9 and norm_6 make use of.
+  std::array<Eigen::MatrixXd, 3> between = {};
   /// Standard deviation of each misalignment angle where the model leaves them out.
   double orthogonality_std_rad = 0.01;
   /// Standard deviation of a position's tilt about either axis where six_position takes it for
@@ -45,8 +49,10 @@ struct PoseResidual {
   /// |f| − g by a fit to the other poses; absent where those do not carry the parameters.
   std::optional<double> leave_one_out_mps2;
   std::optional<double> studentised;  ///< leave_one_out over its standard deviation
-  bool suspect = false;               ///< it contradicts the others
-  bool used = true;                   ///< suspects are left out, unless they are kept
+  /// The least error of |f| in this position that would be noticed; absent where none would.
+  std::optional<double> detectable_mps2;
+  bool suspect = false;  ///< it contradicts the others
+  bool used = true;      ///< suspects are left out, unless they are kept
   Eigen::Vector3d force_mps2 = Eigen::Vector3d::Zero();  ///< calibrated, in the sensor's axes
 };
 

@@ -156,6 +156,7 @@ std::array<std::vector<double>, 9> calibrated_draws(View<Pose> poses,
   MultiPositionOptions again = options;
   again.model = fit.model;
   again.keep_suspects = true;
+  again.between = from.between;
   Draw draw(how.seed);
   std::array<std::vector<double>, 9> columns;
   for (std::size_t k = 0; k < how.draws; ++k) {
@@ -177,6 +178,10 @@ Result<MonteCarloCheck> check_by_monte_carlo(View<Pose> poses,
                                              const MultiPosition& fit,
                                              const MonteCarloOptions& how) {
   PM_EXPECTS(fit.poses.size() == poses.size());
+  if (!fit.doubtful.empty())
+    return Error{Errc::not_observable,
+                 "one of several positions is bad, which cannot be decided: there is no one fit to "
+                 "draw from"};
   const auto budgets = budget_of(fit, how.lines, how.reading_unit);
   if (!budgets) return budgets.error();
   const auto effects = effects_of(fit, how.lines, how.reading_unit);

@@ -44,8 +44,8 @@ struct MonteCarloCheck {
 /// with the budget of each parameter: the standard deviation, and how many draws its 95 % interval
 /// holds, each tested at 1 % over all parameters.
 /// poses, options: those that `fit` came from, and lines not yet added to it.
-/// Errors: those of budget_of; too_few_samples (fewer than 100 draws were calibrated).
-/// Cost: one calibration a draw.
+/// Errors: those of budget_of; not_observable (positions are doubtful); too_few_samples (fewer than
+/// 100 draws were calibrated). Cost: one calibration a draw.
 [[nodiscard]] Result<MonteCarloCheck> check_by_monte_carlo(View<Pose> poses,
                                                            const MultiPositionOptions& options,
                                                            const MultiPosition& fit,

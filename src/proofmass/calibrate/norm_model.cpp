@@ -1,5 +1,7 @@
 #include "proofmass/calibrate/norm_model.hpp"
 
+#include "proofmass/core/linalg.hpp"
+
 namespace proofmass::calibrate {
 
 Parameters ReadingScale::slope() const {
@@ -62,6 +64,48 @@ NormTerm norm_term(const Parameters& p, const NormalisedPose& pose) {
       -n.y() * w.z();
   term.variance = nM * pose.covariance * nM.transpose();
   return term;
+}
+
+double ResidualWeights::operator()(Eigen::Index i, Eigen::Index j) const {
+  if (dense.size() > 0) return dense(i, j);
+  return i == j ? diagonal(i) : 0.0;
+}
+
+Eigen::MatrixXd ResidualWeights::times(const Eigen::MatrixXd& rows) const {
+  if (dense.size() > 0) return dense * rows;
+  return diagonal.asDiagonal() * rows;
+}
+
+ResidualWeights residual_weights(const NormData& data,
+                                 const std::vector<NormTerm>& terms,
+                                 const std::vector<bool>& used) {
+  const auto n = static_cast<Eigen::Index>(terms.size());
+  ResidualWeights out{Eigen::VectorXd::Zero(n), {}};
+  std::vector<Eigen::Index> rows;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    if (!used[k]) continue;
+    rows.push_back(static_cast<Eigen::Index>(k));
+    out.diagonal(rows.back()) = 1.0 / terms[k].variance;
+  }
+  if (data.independent()) return out;
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
+  for (const Eigen::Index i : rows) {
+    const NormTerm& one = terms[static_cast<std::size_t>(i)];
+    C(i, i) = one.variance;
+    for (const Eigen::Index j : rows) {
+      if (j >= i) break;
+      const NormTerm& other = terms[static_cast<std::size_t>(j)];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto column = static_cast<Eigen::Index>(axis);
+        C(i, j) += one.gradient(column) * other.gradient(column) * data.between[axis](i, j);
+      }
+      C(j, i) = C(i, j);
+    }
+  }
+  out.dense = Eigen::MatrixXd::Zero(n, n);
+  out.dense(rows, rows) = positive_inverse(C(rows, rows));
+  out.diagonal = out.dense.diagonal();
+  return out;
 }
 
 }  // namespace proofmass::calibrate

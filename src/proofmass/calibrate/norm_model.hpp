@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -31,6 +32,16 @@ struct NormalisedPose {
   Eigen::Matrix3d covariance;  ///< of u, by noise
 };
 
+/// All poses of a fit.
+struct NormData {
+  std::vector<NormalisedPose> poses;
+  /// Of each axis, the covariance of u between different poses, by a bias that wanders from one to
+  /// the next; empty: there is none. The diagonal is not read.
+  std::array<Eigen::MatrixXd, 3> between = {};
+
+  [[nodiscard]] bool independent() const { return between[0].size() == 0; }
+};
+
 /// Midrange and half range of the means. nullopt if no axis reads two different values.
 [[nodiscard]] std::optional<ReadingScale> reading_scale(View<Pose> poses, double gravity_mps2);
 
@@ -49,5 +60,19 @@ struct NormTerm {
 
 /// NaN where the force is zero.
 [[nodiscard]] NormTerm norm_term(const Parameters& p, const NormalisedPose& pose);
+
+/// W, the inverse of the residuals' covariance; 0 for poses that are not used.
+struct ResidualWeights {
+  Eigen::VectorXd diagonal;
+  Eigen::MatrixXd dense;  ///< empty: there is nothing beside the diagonal
+
+  [[nodiscard]] double operator()(Eigen::Index i, Eigen::Index j) const;
+  [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& rows) const;
+};
+
+/// Of the poses for which `used` holds. Cost: O(n³), O(n) where they are independent.
+[[nodiscard]] ResidualWeights residual_weights(const NormData& data,
+                                               const std::vector<NormTerm>& terms,
+                                               const std::vector<bool>& used);
 
 }  // namespace proofmass::calibrate

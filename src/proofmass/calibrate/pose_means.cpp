@@ -33,6 +33,8 @@ std::vector<double> sound_values(View<double> samples, double lsb) {
 struct AxisMeans {
   std::vector<double> mean, variance;
   std::vector<std::size_t> samples;
+  std::vector<signal::AllanLevel> levels;
+  double rounding = 0.0;
   double dof = 0.0, sample_std = 0.0;
   std::size_t rejected = 0;
 };
@@ -57,6 +59,8 @@ Result<AxisMeans> axis_means(View<double> axis, View<Dwell> rests, double lsb) {
   for (const std::vector<double>& rest : sound) views.emplace_back(rest);
   const DwellNoise noise = fit_dwell_noise(views, lsb);
   out.dof = noise.dof;
+  out.levels = allan_levels(views);
+  out.rounding = noise.rounding;
   double squares = 0.0, count = 0.0;
   for (const std::vector<double>& rest : sound) {
     const Moments m = moments(rest);
@@ -92,11 +96,17 @@ Result<PoseMeans> pose_means(const std::array<View<double>, 3>& axes,
       pose.label = rests[k].label;
       pose.up = rests[k].up;
     }
+    out.session.levels[axis] = one->levels;
+    out.session.rounding[axis] = one->rounding;
     dof = std::min(dof, one->dof);
     out.sample_std[axis] = one->sample_std;
     out.rejected += one->rejected;
   }
   if (!rests.empty() && std::isfinite(dof)) out.noise_dof = dof;
+  out.session.rests = rests.size();
+  for (const Dwell& rest : rests)
+    out.session.spans.push_back(
+        {static_cast<double>(rest.first), static_cast<double>(rest.last) + 1.0});
   return out;
 }
 

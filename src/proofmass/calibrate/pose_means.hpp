@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "proofmass/calibrate/bias_wander.hpp"
 #include "proofmass/calibrate/pose.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
+#include "proofmass/signal/dyadic_ladder.hpp"
 
 namespace proofmass::calibrate {
 
@@ -18,10 +20,19 @@ struct Dwell {
   std::optional<Eigen::Vector3d> up = {};  ///< as Pose::up
 };
 
+/// What the rests of one recording say of the noise.
+struct RestSession {
+  std::size_t rests = 0;
+  std::array<std::vector<signal::AllanLevel>, 3> levels;  ///< of x, y, z
+  std::array<double, 3> rounding{};                       ///< DwellNoise::rounding
+  std::vector<Span> spans;                                ///< of the rests, in samples
+};
+
 struct PoseMeans {
   std::vector<Pose> poses;  ///< without times
   /// Of all covariances' common factor; 0: the noise is not known.
   double noise_dof = 0.0;
+  RestSession session;
   std::array<double, 3> sample_std{};  ///< of one sample at rest, per axis
   std::size_t rejected = 0;            ///< samples passed over: no number, or a spike
 };

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "proofmass/calibrate/pose_hypotheses.hpp"
 #include "proofmass/core/chi_square.hpp"
 
 namespace proofmass::calibrate {
@@ -11,62 +13,205 @@ namespace {
 constexpr double suspect_p = 0.01;     // after Bonferroni's correction
 constexpr double tell_apart = 9.0;     // three standard deviations
 constexpr double rounding_g = 1e-9;    // less than this contradicts nobody
-constexpr double all_leverage = 1e-6;  // of 1 − h: the pose alone carries a parameter
+constexpr double noticed_stds = 4.13;  // see the header
+constexpr double largest_F = 1e12;     // beyond which there is no probability left
 
-// One pose left out of the fit, or judged by a fit that it had no part in.
-struct Deleted {
-  std::optional<double> residual, studentised;
-  double p = 1.0;  // of so large a residual in any of the poses
+// n choose k.
+double sets_of(std::size_t k, std::size_t n) {
+  double count = 1.0;
+  for (std::size_t i = 0; i < k; ++i)
+    count *= static_cast<double>(n - i) / static_cast<double>(i + 1);
+  return count;
+}
+
+// How many poses are bad.
+class Choice {
+ public:
+  Choice(PoseHypotheses& hypotheses, std::size_t poses, const SelectionOptions& options)
+      : hypotheses_(hypotheses), poses_(poses), options_(options) {}
+
+  /// The fewest poses without which the others agree.
+  PoseSet fewest();
+
+  /// None of them, and each that may be bad, where the residuals leave that open: no pose is
+  /// suspect, but chance alone explains them in one of twenty cases at most.
+  std::vector<PoseSet> in_question();
+
+  Scatter scatter_without(const PoseSet& out) {
+    const NormFit& fit = *hypotheses_.without(out);
+    return scatter_of(fit.rss, static_cast<double>(fit.dof()), options_.noise_dof);
+  }
+
+ private:
+  // Probability of so much a lower sum by chance, against the noise of what remains.
+  double chance(const PoseSet& from, const PoseSet& to, double noise_dof);
+  bool worth_fitting(const PoseSet& from, std::size_t size);
+  std::optional<PoseSet> larger(const PoseSet& from, std::size_t size);
+  std::optional<PoseSet> many(const PoseSet& from);
+  bool explained(const PoseSet& out);
+
+  PoseHypotheses& hypotheses_;
+  std::size_t poses_;
+  const SelectionOptions& options_;
 };
 
-Deleted deleted(const PoseSelection& now, bool used, std::size_t k, double noise_dof) {
-  const NormFit& fit = now.fit;
-  const NormTerm& term = fit.terms[k];
-  const double e = term.residual / std::sqrt(term.variance);
-  const double h = fit.leverage[k];
-  Deleted out;
-  if (used && !(1.0 - h > all_leverage)) return out;
-  if (used && fit.dof() == 0) return out;
-  out.residual = used ? term.residual / (1.0 - h) : term.residual;
-  const double rss = used ? std::max(0.0, fit.rss - e * e / (1.0 - h)) : fit.rss;
+double Choice::chance(const PoseSet& from, const PoseSet& to, double noise_dof) {
+  const NormFit* before = hypotheses_.without(from);
+  const NormFit* after = hypotheses_.without(to);
+  if (before == nullptr || after == nullptr) return 1.0;
+  const Scatter scatter = scatter_of(after->rss, static_cast<double>(after->dof()), noise_dof);
+  const double gain = before->rss - after->rss;
+  const bool rounding = std::ranges::all_of(
+      to, [&](std::size_t k) { return std::abs(after->terms[k].residual) < rounding_g; });
+  if (scatter.dof == 0.0 || !(gain > 0.0) || rounding) return 1.0;
+  const auto extra = static_cast<double>(to.size() - from.size());
+  const double F = std::min(gain / extra / std::max(scatter.factor, 1e-300), largest_F);
+  const double sets = std::ranges::includes(to, from)
+                          ? sets_of(to.size() - from.size(), poses_ - from.size())
+                          : sets_of(to.size(), poses_);
+  return sets * fisher_f_p(F, extra, scatter.dof);
+}
+
+// What is far from any suspicion needs no fits.
+bool Choice::worth_fitting(const PoseSet& from, std::size_t size) {
+  constexpr double far = 0.1;
+  const NormFit& before = *hypotheses_.without(from);
+  const std::optional<double> rss = hypotheses_.linear_rss(size);
+  const auto free = static_cast<std::size_t>(options_.free);
+  if (!rss || poses_ < free + size) return false;
   const Scatter scatter =
-      scatter_of(rss, static_cast<double>(fit.dof() - std::size_t{used}), noise_dof);
-  if (scatter.dof == 0.0 || !(scatter.factor > 0.0)) return out;
-  out.studentised = e / std::sqrt(scatter.factor * (used ? 1.0 - h : 1.0 + h));
-  if (std::abs(*out.residual) < rounding_g) return out;
-  const auto n = static_cast<double>(fit.terms.size());
-  out.p = std::min(1.0, n * student_t_p(*out.studentised, scatter.dof));
+      scatter_of(*rss, static_cast<double>(poses_ - free - size), options_.noise_dof);
+  const auto extra = static_cast<double>(size - from.size());
+  const double gain = before.rss - *rss;
+  if (scatter.dof == 0.0 || !(gain > 0.0)) return false;
+  const double F = std::min(gain / extra / std::max(scatter.factor, 1e-300), largest_F);
+  return sets_of(size - from.size(), poses_) * fisher_f_p(F, extra, scatter.dof) < far;
+}
+
+std::optional<PoseSet> Choice::larger(const PoseSet& from, std::size_t size) {
+  if (!worth_fitting(from, size)) return std::nullopt;
+  const std::vector<PoseSet> sets = hypotheses_.best(size);
+  // Where the noise is larger than stated, two at once are soon found that agree with it: these are
+  // judged by the residuals that remain alone.
+  const double noise_dof = size == from.size() + 1 ? options_.noise_dof : 0.0;
+  if (sets.empty() || chance(from, sets.front(), noise_dof) >= suspect_p) return std::nullopt;
+  return sets.front();
+}
+
+bool Choice::explained(const PoseSet& out) {
+  const auto test = scatter_without(out).lack_of_fit;
+  return test ? test->p >= suspect_p : !hypotheses_.suspicious();
+}
+
+// More than two: the trimmed ones, less those that do not contradict the others after all.
+std::optional<PoseSet> Choice::many(const PoseSet& from) {
+  const auto free = static_cast<std::size_t>(options_.free);
+  if (poses_ < free + 4) return std::nullopt;
+  const std::size_t most = std::min(poses_ / 4, (poses_ - free) / 2);
+  if (most < 3) return std::nullopt;
+  PoseSet out = hypotheses_.trimmed(most);
+  if (hypotheses_.without(out) == nullptr) return std::nullopt;
+  while (out.size() > 2) {
+    double largest = 0.0;
+    PoseSet without_one;
+    for (std::size_t member = 0; member < out.size(); ++member) {
+      PoseSet others = out;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(member));
+      const double p = chance(others, out, 0.0);
+      if (p <= largest) continue;
+      largest = p;
+      without_one = std::move(others);
+    }
+    if (largest < suspect_p || without_one.empty()) break;
+    out = std::move(without_one);
+  }
+  if (out.size() <= std::max<std::size_t>(2, from.size()) || chance(from, out, 0.0) >= suspect_p)
+    return std::nullopt;
   return out;
 }
 
-// The pose that is to be left out or taken back next, if any.
-std::optional<std::size_t> next_change(const std::vector<Deleted>& all,
-                                       const std::vector<double>& weights,
-                                       PoseSelection& now) {
-  std::optional<std::size_t> back, out;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (weights[k] == 0.0 && all[k].p >= suspect_p && (!back || all[k].p > all[*back].p)) back = k;
-    const bool bad = weights[k] != 0.0 && all[k].p < suspect_p;
-    if (bad && (!out || std::abs(*all[k].studentised) > std::abs(*all[*out].studentised))) out = k;
+PoseSet Choice::fewest() {
+  PoseSet out;
+  while (out.size() < 2) {
+    std::optional<PoseSet> next = larger(out, out.size() + 1);
+    // Two that pull against each other may hide as long as one of them stays.
+    if (!next && out.empty()) next = larger(out, 2);
+    if (!next) break;
+    out = *next;
   }
-  now.alike.clear();
-  if (back) return back;
-  if (!out) return std::nullopt;
-  const double worst = std::abs(*all[*out].studentised);
-  // Leaving a pose out lowers the sum by e²/(1 − h); for the worst that is its t² in units of the
-  // noise that then remains.
-  const auto gain = [&](std::size_t k) {
-    const NormTerm& term = now.fit.terms[k];
-    return term.residual * term.residual / term.variance / (1.0 - now.fit.leverage[k]);
-  };
-  const double unit = gain(*out) / (worst * worst);
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (weights[k] == 0.0 || k == *out || !all[k].studentised) continue;
-    if (gain(*out) - gain(k) < tell_apart * unit) now.alike.push_back(k);
+  if (explained(out)) return out;
+  return many(out).value_or(out);
+}
+
+std::vector<PoseSet> Choice::in_question() {
+  const Scatter scatter = scatter_without({});
+  if (!scatter.lack_of_fit || scatter.lack_of_fit->p >= 0.05) return {{}};
+  const std::vector<PoseSet> sets = hypotheses_.best(1);
+  if (sets.empty()) return {{}};
+  const NormFit& best = *hypotheses_.without(sets.front());
+  const Scatter left = scatter_without(sets.front());
+  std::vector<PoseSet> out =
+      hypotheses_.alike(sets.front(), best.rss + tell_apart * std::max(left.factor, 1e-20));
+  out.emplace_back();
+  return out;
+}
+
+// The mean over the fits that cannot be told apart.
+void average(PoseHypotheses& hypotheses, const std::vector<PoseSet>& alike, PoseSelection& now) {
+  const auto count = static_cast<double>(alike.size());
+  const Eigen::Index free = now.fit.cofactor.rows();
+  Parameters mean = Parameters::Zero();
+  Eigen::MatrixXd cofactor = Eigen::MatrixXd::Zero(free, free);
+  for (const PoseSet& out : alike) {
+    mean += hypotheses.without(out)->p / count;
+    cofactor += hypotheses.without(out)->cofactor / count;
   }
-  if (now.alike.empty()) return out;
-  now.alike.insert(now.alike.begin(), *out);
-  return std::nullopt;
+  now.by_choice = Eigen::MatrixXd::Zero(free, free);
+  for (const PoseSet& out : alike) {
+    const Eigen::VectorXd apart = (hypotheses.without(out)->p - mean).head(free);
+    now.by_choice += apart * apart.transpose() / count;
+  }
+  now.fit.p = mean;
+  now.fit.cofactor = cofactor;
+}
+
+// Those in all of the sets, and those in some.
+std::pair<PoseSet, PoseSet> in_all_and_some(const std::vector<PoseSet>& sets) {
+  PoseSet all = sets.front(), some = sets.front();
+  for (const PoseSet& set : sets) {
+    PoseSet both, either;
+    std::ranges::set_intersection(all, set, std::back_inserter(both));
+    std::ranges::set_union(some, set, std::back_inserter(either));
+    all = std::move(both);
+    some = std::move(either);
+  }
+  PoseSet doubtful;
+  std::ranges::set_difference(some, all, std::back_inserter(doubtful));
+  return {std::move(all), std::move(doubtful)};
+}
+
+// Each pose by the others, those of `out` having no part.
+void judge(const PoseShifts& shifts, const PoseSet& out, double noise_dof, PoseSelection& now) {
+  const PoseShifts rest = shifts.without(out);
+  const auto dof = static_cast<double>(now.fit.dof());
+  const std::optional<double> rss = shifts.rss_without(out);
+  for (std::size_t k = 0; k < shifts.poses(); ++k) {
+    const bool left_out = std::ranges::count(out, k) > 0;
+    PoseSet others = out;
+    if (left_out) others.erase(std::ranges::find(others, k));
+    const auto shift = left_out ? shifts.without(others).shift_of(k) : rest.shift_of(k);
+    auto& residual = now.leave_one_out.emplace_back();
+    auto& studentised = now.studentised.emplace_back();
+    auto& detectable = now.detectable.emplace_back();
+    if (!shift || !rss || (!left_out && dof == 0.0)) continue;
+    residual = shift->value;
+    const double own = left_out ? 0.0 : shift->value * shift->value / shift->cofactor;
+    const Scatter scatter =
+        scatter_of(std::max(0.0, *rss - own), left_out ? dof : dof - 1.0, noise_dof);
+    if (scatter.dof == 0.0 || !(scatter.factor > 0.0)) continue;
+    studentised = shift->value / std::sqrt(scatter.factor * shift->cofactor);
+    detectable = noticed_stds * std::sqrt(now.scatter.factor * shift->cofactor);
+  }
 }
 
 }  // namespace
@@ -74,49 +219,41 @@ std::optional<std::size_t> next_change(const std::vector<Deleted>& all,
 Scatter scatter_of(double rss, double dof, double noise_dof) {
   if (noise_dof == 0.0) return dof > 0.0 ? Scatter{rss / dof, dof, {}} : Scatter{};
   if (!(dof > 0.0)) return {1.0, noise_dof, {}};
-  const LackOfFit test{rss / dof, fisher_f_p(rss / dof, dof, noise_dof), dof};
+  const LackOfFit test{rss / dof, fisher_f_p(std::min(rss / dof, largest_F), dof, noise_dof), dof};
   if (test.p < 0.05) return {rss / dof, dof, test};
   return {(rss + noise_dof) / (dof + noise_dof), dof + noise_dof, test};
 }
 
-Result<PoseSelection> select_poses(View<NormalisedPose> poses,
+Result<PoseSelection> select_poses(const NormData& data,
                                    const Parameters& start,
                                    const SelectionOptions& options) {
-  const auto free = static_cast<std::size_t>(options.free);
-  RobustStart from{start, std::vector<double>(poses.size(), 1.0)};
-  if (poses.size() >= free + 4) {
-    RobustStart robust = robust_start(poses, options.free, start);
-    const auto kept = std::count(robust.weights.begin(), robust.weights.end(), 1.0);
-    if (static_cast<std::size_t>(kept) >= free + 2) from = std::move(robust);
-  }
+  const std::size_t n = data.poses.size();
   PoseSelection now;
-  std::vector<Deleted> all(poses.size());
-  for (std::size_t round = 0;; ++round) {
-    const Result<NormFit> fit = fit_norm(poses, from.weights, options.free, from.p);
-    if (!fit) return fit.error();
-    now.fit = *fit;
-    from.p = fit->p;
-    for (std::size_t k = 0; k < poses.size(); ++k)
-      all[k] = deleted(now, from.weights[k] != 0.0, k, options.noise_dof);
-    const std::optional<std::size_t> change = next_change(all, from.weights, now);
-    if (!change || round == 2 * poses.size()) break;
-    from.weights[*change] = 1.0 - from.weights[*change];
+  now.used.assign(n, true);
+  now.suspect.assign(n, false);
+  const Result<NormFit> full = fit_norm(data, now.used, options.free, start);
+  if (!full) return full.error();
+  PoseHypotheses hypotheses(data, options.free, *full);
+  Choice choice(hypotheses, n, options);
+  const PoseSet out = choice.fewest();
+  const Scatter unexplained = choice.scatter_without(out);
+  const double room = tell_apart * std::max(unexplained.factor, 1e-20);
+  const std::vector<PoseSet> alike = hypotheses.alike(out, hypotheses.without(out)->rss + room);
+  auto [bad, doubtful] = in_all_and_some(alike);
+  now.alike = std::move(doubtful);
+  for (const std::size_t k : bad) now.suspect[k] = true;
+  if (options.keep_suspects) bad.clear();
+  for (const std::size_t k : bad) now.used[k] = false;
+  now.fit = *hypotheses.without(bad);
+  now.scatter = options.keep_suspects ? choice.scatter_without(bad) : unexplained;
+  now.lack_of_fit = choice.scatter_without(bad).lack_of_fit;
+  judge(hypotheses.shifts(now.fit), bad, options.noise_dof, now);
+  const std::vector<PoseSet> possible = out.empty() ? choice.in_question() : alike;
+  if (possible.size() > 1 && !options.keep_suspects) {
+    average(hypotheses, possible, now);
+    now.fit.terms = terms_of(data.poses, now.fit.p);
   }
-  for (const double weight : from.weights) now.suspect.push_back(weight == 0.0);
-  if (options.keep_suspects && now.fit.used < poses.size()) {
-    std::fill(from.weights.begin(), from.weights.end(), 1.0);
-    const Result<NormFit> fit = fit_norm(poses, from.weights, options.free, from.p);
-    if (!fit) return fit.error();
-    now.fit = *fit;
-    for (std::size_t k = 0; k < poses.size(); ++k)
-      all[k] = deleted(now, true, k, options.noise_dof);
-  }
-  for (const double weight : from.weights) now.used.push_back(weight != 0.0);
-  now.scatter = scatter_of(now.fit.rss, static_cast<double>(now.fit.dof()), options.noise_dof);
-  for (const Deleted& one : all) {
-    now.leave_one_out.push_back(one.residual);
-    now.studentised.push_back(one.studentised);
-  }
+  now.weights = residual_weights(data, now.fit.terms, now.used);
   return now;
 }
 

@@ -92,7 +92,8 @@ struct Drawn {
 };
 
 PoseSelection selected(const std::vector<NormalisedPose>& poses, double noise_dof) {
-  return select_poses(poses, ellipsoid_start(poses, true), {NormParameters::nine, noise_dof, false})
+  return select_poses({.poses = poses}, ellipsoid_start(poses, true),
+                      {NormParameters::nine, noise_dof, false})
       .value();
 }
 
@@ -114,8 +115,8 @@ TEST(PoseSelection, StudentisesByTheFitToTheOthers) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     std::vector<NormalisedPose> others = poses;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-    const std::vector<double> weights(others.size(), 1.0);
-    const NormFit fit = fit_norm(others, weights, NormParameters::nine, all.fit.p).value();
+    const std::vector<bool> used(others.size(), true);
+    const NormFit fit = fit_norm({.poses = others}, used, NormParameters::nine, all.fit.p).value();
     const double expected = studentised_by(fit, fit.rss / static_cast<double>(fit.dof()), poses[k]);
     EXPECT_NEAR(all.studentised[k].value(), expected, 0.01 * std::abs(expected) + 1e-3) << k;
   }
@@ -127,7 +128,7 @@ TEST(PoseSelection, JudgesWhatItLeftOutAsANewPose) {
   const PoseSelection found = selected(poses, 500.0);
   ASSERT_TRUE(found.suspect[drawn.pushed]);
   EXPECT_NEAR(found.studentised[drawn.pushed].value(),
-              studentised_by(found.fit, found.scatter.factor, poses[drawn.pushed]), 1e-9);
+              studentised_by(found.fit, found.scatter.factor, poses[drawn.pushed]), 1e-5);
 }
 
 TEST(PoseSelection, KeepsWhatIsSuspectInTheFitThatJudgesTheOthers) {
@@ -135,12 +136,14 @@ TEST(PoseSelection, KeepsWhatIsSuspectInTheFitThatJudgesTheOthers) {
   const std::vector<NormalisedPose> poses = normalised(drawn.poses);
   const Parameters start = ellipsoid_start(poses, true);
   const PoseSelection kept =
-      select_poses(poses, start, {NormParameters::nine, 500.0, true}).value();
+      select_poses({.poses = poses}, start, {NormParameters::nine, 500.0, true}).value();
   EXPECT_TRUE(kept.suspect[drawn.pushed]);
   EXPECT_EQ(kept.fit.used, poses.size());
   const std::size_t k = (drawn.pushed + 1) % poses.size();
-  EXPECT_NEAR(kept.leave_one_out[k].value(),
-              kept.fit.terms[k].residual / (1.0 - kept.fit.leverage[k]), 1e-12);
+  const NormTerm& term = kept.fit.terms[k];
+  const double leverage =
+      (term.gradient * kept.fit.cofactor * term.gradient.transpose()).value() / term.variance;
+  EXPECT_NEAR(kept.leave_one_out[k].value(), term.residual / (1.0 - leverage), 1e-9);
 }
 
 TEST(PoseSelection, TakesBackWhatTheNoiseExplains) {
@@ -213,6 +216,98 @@ TEST(PoseSelection, SaysAmongWhichOneIsBadWhereElevenCannotTell) {
   EXPECT_EQ(count.wrongly, 0);
   EXPECT_GE(count.doubtful, 5);
   EXPECT_EQ(count.doubted, count.doubtful);
+}
+
+// Directions at random, as a hand lays them: some positions are checked by few others. A good one
+// was named in one of forty such sensors by a search that began from a robust fit.
+struct Blame {
+  int named = 0, wrongly = 0, hidden_in_doubt = 0;
+};
+
+Blame blame_of(std::size_t count, std::size_t bad, double push_mps2, unsigned runs) {
+  Blame out;
+  std::normal_distribution<double> normal(0.0, 1e-4 * g);
+  for (unsigned run = 1; run <= runs; ++run) {
+    std::mt19937_64 random(1000 * count + run);
+    const Parameters truth = drawn_sensor(random);
+    std::vector<Pose> poses = drawn_poses(truth, {.count = count}, random);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Eigen::Vector3d up = test::drawn_direction(random);
+      const double length = g + (k < bad ? (random() % 2 == 0 ? push_mps2 : -push_mps2) : 0.0);
+      const Eigen::Vector3d error(normal(random), normal(random), normal(random));
+      poses[k].mean = reading(truth, length * up) + truth.segment<3>(3).cwiseProduct(error);
+    }
+    const PoseSelection found = selected(normalised(poses), 1000.0);
+    for (std::size_t k = 0; k < count; ++k) (k < bad ? out.named : out.wrongly) += found.suspect[k];
+    out.hidden_in_doubt += !found.alike.empty() && found.alike.front() >= bad;
+  }
+  return out;
+}
+
+TEST(PoseSelection, BlamesNoGoodPositionForABadOne) {
+  for (const std::size_t count : {std::size_t{12}, std::size_t{13}, std::size_t{14}}) {
+    const Blame blame = blame_of(count, 1, 2.0 * mg, 60);
+    EXPECT_EQ(blame.wrongly, 0) << count;
+    EXPECT_LE(blame.hidden_in_doubt, 1) << count;
+    EXPECT_GT(blame.named, count == 12 ? 12 : 30) << count;
+  }
+  EXPECT_EQ(blame_of(14, 1, 10.0 * mg, 60).wrongly, 0);
+}
+
+TEST(PoseSelection, NamesFourOfTwentyFourFromSubsets) {
+  const Blame blame = blame_of(24, 4, 5.0 * mg, 20);
+  EXPECT_GE(blame.named, 4 * 19);
+  EXPECT_EQ(blame.wrongly, 0);
+}
+
+TEST(PoseSelection, NamesNoneForNoiseThatIsLargerThanStated) {
+  int named = 0;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    const PoseSelection found =
+        selected(normalised(Drawn(seed, {.count = 20, .noise_mps2 = 0.3 * mg}, 0.0).poses), 1000.0);
+    named += std::ranges::count(found.suspect, true) > 0;
+  }
+  EXPECT_LE(named, 6);
+}
+
+// Two ways to leave one out that fit alike: the figures are their mean, and the covariance spans
+// both.
+TEST(PoseSelection, SpansTheFitsWithoutEachDoubtfulPosition) {
+  int in_doubt = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const Drawn drawn(seed, {.count = 11}, 5.0 * mg);
+    const NormData data{.poses = normalised(drawn.poses)};
+    const PoseSelection found = selected(data.poses, 1000.0);
+    if (found.alike.size() < 2) continue;
+    ++in_doubt;
+    for (const std::size_t k : found.alike) {
+      std::vector<bool> used(data.poses.size(), true);
+      used[k] = false;
+      const NormFit one = fit_norm(data, used, NormParameters::nine, found.fit.p).value();
+      const double widest = std::sqrt(static_cast<double>(found.alike.size()));
+      for (Eigen::Index i = 0; i < 9; ++i)
+        EXPECT_LE(std::abs(one.p(i) - found.fit.p(i)),
+                  widest * std::sqrt(found.by_choice(i, i)) + 1e-12);
+    }
+  }
+  EXPECT_GT(in_doubt, 3);
+}
+
+// An error of the size that is said to be noticed, put on its position, is as many standard
+// deviations as that.
+TEST(PoseSelection, SaysWhichErrorsItWouldNotice) {
+  const Drawn drawn(11, {.count = 14, .noise_mps2 = 0.0}, 0.0);
+  const std::vector<NormalisedPose> clean = normalised(drawn.poses);
+  const PoseSelection before = selected(clean, 1e6);
+  for (const std::size_t k : {std::size_t{2}, std::size_t{6}, std::size_t{9}}) {
+    Drawn pushed = drawn;
+    pushed.push(k, g * before.detectable[k].value());
+    const PoseSelection after =
+        select_poses({.poses = normalise(pushed.poses, reading_scale(drawn.poses, g).value())},
+                     before.fit.p, {NormParameters::nine, 1e6, true})
+            .value();
+    EXPECT_NEAR(std::abs(after.studentised[k].value()), 4.13, 0.1) << k;
+  }
 }
 
 TEST(PoseSelection, LeavesNoneOutOfNine) {

@@ -58,9 +58,43 @@ Vector3d three_normal(Draw& draw) {
   return {x, y, z};
 }
 
+// Of all poses, where their means are not independent.
+Eigen::Matrix3Xd drawn_noise(const DrawnFrom& from, Draw& draw) {
+  if (from.axis_roots[0].size() == 0) return {};
+  const auto n = static_cast<Eigen::Index>(from.poses.size());
+  Eigen::Matrix3Xd noise(3, n);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    Eigen::VectorXd normal(n);
+    for (double& value : normal) value = draw.normal();
+    noise.row(axis) = (from.axis_roots[static_cast<std::size_t>(axis)] * normal).transpose();
+  }
+  return noise;
+}
+
 Vector3d turned(const Vector3d& v, const Vector3d& by_rad) {
   const double angle = by_rad.norm();
   return angle > 0.0 ? Vector3d(Eigen::AngleAxisd(angle, by_rad / angle) * v) : v;
+}
+
+// The covariances of the means from one pose to the next, times what the residuals ask for.
+void draw_between(const MultiPositionOptions& options,
+                  const MultiPosition& fit,
+                  double factor,
+                  DrawnFrom& from) {
+  std::vector<Eigen::Index> used;
+  for (std::size_t k = 0; k < fit.poses.size(); ++k)
+    if (fit.poses[k].used) used.push_back(static_cast<Eigen::Index>(k));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (options.between[axis].rows() != static_cast<Eigen::Index>(fit.poses.size())) continue;
+    from.between[axis] = options.between[axis](used, used);
+    Eigen::MatrixXd covariance = from.between[axis];
+    const auto place = static_cast<Eigen::Index>(axis);
+    for (std::size_t k = 0; k < from.poses.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      covariance(row, row) = from.poses[k].mean_covariance(place, place);
+    }
+    from.axis_roots[axis] = std::sqrt(factor) * root_of(covariance);
+  }
 }
 
 }  // namespace
@@ -86,6 +120,7 @@ DrawnFrom drawn_from(View<Pose> poses,
       scatter_factor(from.poses, residuals, from, fit, known ? options.noise_dof : 0.0);
   for (const Pose& pose : from.poses)
     from.roots.emplace_back(std::sqrt(factor) * root_of(pose.mean_covariance));
+  if (known) draw_between(options, fit, factor, from);
   if (!known)
     for (Pose& pose : from.poses) pose.mean_covariance.setZero();
   from.reading = correction(estimate_of(fit)).inverse();
@@ -102,8 +137,11 @@ std::vector<Pose> redrawn(const DrawnFrom& from, const MultiPosition& fit, Draw&
   p.tail<3>() += from.orthogonality_std_rad * three_normal(draw);
   const Matrix3d reading = correction(p).inverse();
   std::vector<Pose> poses = from.poses;
+  const Eigen::Matrix3Xd of_axes = drawn_noise(from, draw);
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    const Vector3d noise = from.roots[k] * three_normal(draw);
+    const auto column = static_cast<Eigen::Index>(k);
+    const Vector3d noise = of_axes.size() > 0 ? Vector3d(of_axes.col(column))
+                                              : Vector3d(from.roots[k] * three_normal(draw));
     const Vector3d& force = from.forces_mps2[k];
     const Vector3d placed = turned(force, from.placement_std_rad * three_normal(draw));
     poses[k].mean += noise + (reading * placed - from.reading * force);

@@ -118,6 +118,9 @@ std::string lack_of_fit_sentence(const CalibrateReport& report) {
   if (!report.fit.lack_of_fit) return "";
   const LackOfFit& test = *report.fit.lack_of_fit;
   if (test.p >= some_p) return "Noise explains the residuals.";
+  if (!report.fit.doubtful.empty())
+    return fmt::format("With all positions the residuals are {} times what the noise explains.",
+                       significant(std::sqrt(test.statistic), 2));
   return fmt::format(
       "The residuals are {} times what the noise explains: the positions were not quite at rest, "
       "temperature moved, or the sensor is not linear; the uncertainties hold that.",
@@ -144,8 +147,9 @@ std::string doubtful_sentence(const CalibrateReport& report) {
   for (const std::size_t k : doubtful) names.push_back(position_words(report, k));
   if (names.size() == 1) return "Position " + names.front() + " is doubtful: repeat it.";
   return fmt::format(
-      "One of positions {} is bad, which one the rest cannot tell: all stay in the fit; repeat "
-      "them or add others.",
+      "One of positions {} is bad, and the others do not show which: the figures are the mean of "
+      "the "
+      "fits without each, and the intervals hold all of these; repeat them or add others.",
       joined(names));
 }
 

@@ -48,6 +48,7 @@ Object position_json(const CalibrateReport& report, std::size_t k) {
                                {"predicted_std", std > 0.0 ? Value(std) : Value()},
                                {"leave_one_out", or_null(residual.leave_one_out_mps2)},
                                {"studentised", or_null(residual.studentised)},
+                               {"detectable", or_null(residual.detectable_mps2)},
                                {"suspect", residual.suspect},
                                {"used", residual.used}})
     out.push_back(std::move(member));
