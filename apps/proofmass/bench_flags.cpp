@@ -41,6 +41,11 @@ void add_uncertainty_flags(CLI::App& verb, CalibrateCommand& command) {
       "of the positions that --six-position takes for exact")
       ->check(not_negative())
       ->capture_default_str();
+  add("--bias-stability", command.bias_stability_mg, "MG",
+      "standard deviation of the biases from one session to another, as drift finds it of several "
+      "power-ups (default: by the flicker noise and random walk of the file to update, else of the "
+      "recording)")
+      ->check(not_negative());
   add("--type-b", command.type_b, "NAME,TARGET,VALUE UNIT[,DISTRIBUTION[,DOF]]",
       "a contribution to the uncertainty: \"ADC reference,scale,0.05 %,uniform\"; may be repeated")
       ->allow_extra_args(false);

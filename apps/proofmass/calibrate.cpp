@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
+#include <numbers>
 
 #include "calibrate_poses.hpp"
 #include "console.hpp"
@@ -16,6 +18,7 @@
 #include "proofmass/report/document.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/calibration_update.hpp"
+#include "proofmass/sensor/sensor_file.hpp"
 #include "verbs.hpp"
 
 namespace proofmass::app {
@@ -73,15 +76,65 @@ MultiPosition fitted(const PoseSet& set, MultiPositionOptions options) {
 }
 
 // The noise of the means over the session, where the recordings show it.
-std::optional<calibrate::SessionNoise> settle_noise(const MultiPositionOptions& model,
-                                                    PoseSet& set) {
+void settle_noise(const MultiPositionOptions& model, PoseSet& set) {
   MultiPositionOptions options = model;
   options.noise_dof = set.noise_dof;
-  auto noise = calibrate::session_noise(set.poses, set.sessions, options);
-  if (!noise) return noise;
-  set.poses = noise->poses;
-  set.between = noise->between;
-  return noise;
+  set.wander = calibrate::session_noise(set.poses, set.sessions, options);
+  if (!set.wander) return;
+  set.poses = set.wander->poses;
+  set.between = set.wander->between;
+}
+
+// The wander that the sensor file to be updated has of all three axes.
+std::optional<calibrate::WanderStrengths> filed_wander(const CalibrateCommand& command,
+                                                       const MultiPosition& fit,
+                                                       const Unit& unit) {
+  if (command.update_sensor.empty() || !std::filesystem::exists(command.update_sensor)) return {};
+  const sensor::SensorFile file =
+      need(sensor::read_sensor_file(command.update_sensor), Stage::reading);
+  const sensor::NoiseModel& noise = file.model.noise;
+  calibrate::WanderStrengths out;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!noise.flicker[axis]) return {};
+    const double scale = unit.quantity == Quantity::acceleration ? 1.0 : fit.estimate[3 + axis];
+    const double flicker = scale * noise.flicker[axis]->si();
+    out.flicker[axis] = flicker * flicker / std::numbers::pi;
+    if (!noise.random_walk[axis]) continue;
+    const double walk = scale * noise.random_walk[axis]->si();
+    out.random_walk[axis] = walk * walk;
+  }
+  return out;
+}
+
+// How well the biases repeat from one session to another, as stated, by the sensor file or by what
+// this recording shows.
+std::optional<calibrate::BiasStability> stability_of(const CalibrateCommand& command,
+                                                     const PoseSet& set,
+                                                     const MultiPosition& fit) {
+  if (command.bias_stability_mg) {
+    calibrate::BiasStability out{.std = {}, .source = "--bias-stability"};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      out.std[axis] =
+          *command.bias_stability_mg * 1e-3 * standard_gravity_mps2 *
+          (set.unit.quantity == Quantity::acceleration ? 1.0 : std::abs(fit.estimate[3 + axis]));
+    return out;
+  }
+  double session_s = 0.0, samples = 0.0;
+  for (const report::PoseFile& file : set.files) {
+    session_s = std::max(session_s, file.duration_s);
+    samples = std::max(samples, static_cast<double>(file.samples));
+  }
+  if (const auto filed = filed_wander(command, fit, set.unit))
+    return calibrate::stability_of(*filed, session_s,
+                                   "the noise in " + report::file_name(command.update_sensor));
+  if (!set.wander || !(session_s > 0.0)) return std::nullopt;
+  calibrate::WanderStrengths own;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    own.flicker[axis] = set.wander->flicker[axis] / (2.0 * std::numbers::ln2);
+    own.random_walk[axis] = 3.0 * set.wander->random_walk[axis] * samples / session_s;
+  }
+  return calibrate::stability_of(own, session_s,
+                                 "the flicker noise and random walk that it allows");
 }
 
 // Of several supplies the one whose figures stand at the top: the nearest to their mean.
@@ -163,6 +216,8 @@ sensor::MeasuredCalibration measured(const CalibrateCommand& command,
     }
   }
   if (fit.dof > 0.0) out.dof = fit.dof;
+  if (report.stability)
+    for (std::size_t axis = 0; axis < 3; ++axis) out.stability[axis] = report.stability->std[axis];
   out.gravity_mps2 = report.certificate.gravity_mps2;
   if (command.temperature_c) out.temperature_k = *command.temperature_c + 273.15;
   out.supply_v = reference_supply_v;
@@ -226,6 +281,10 @@ void run(const CalibrateCommand& command) {
   const Uncertain gravity =
       uncertain_gravity_mps2(command.input, command.gravity_std_mps2, report.notes);
   PoseSet set = read_poses(main_files(command), command, report.notes);
+  if (set.unit.quantity == Quantity::acceleration) {
+    const Status plausible = calibrate::check_acceleration_unit(set.poses, gravity.value);
+    if (!plausible) throw Failure(bad_input, plausible.error().at(set.files.front().file).message);
+  }
   report.files = set.files;
   report.sensor = set.sensor;
   report.unit = set.unit;
@@ -249,7 +308,14 @@ void run(const CalibrateCommand& command) {
   auto budgets = calibrate::budget_of(report.fit, lines, report.unit.symbol);
   if (!budgets) throw Failure(usage, budgets.error().at("--type-b").message);
   report.budgets = std::move(budgets).value();
+  report.stability = stability_of(command, set, report.fit);
   fill_certificate(command, gravity, report);
+  if (report.stability) {
+    std::vector<TypeB> all = lines;
+    for (TypeB& line : calibrate::type_b_of(*report.stability, report.unit.symbol))
+      all.push_back(std::move(line));
+    report.certificate.budgets = calibrate::budget_of(report.fit, all, report.unit.symbol).value();
+  }
   check_by_draws(command, lines, options, set, report);
   const Status added = calibrate::add_type_b(report.fit, lines, report.unit.symbol);
   if (!added) throw Failure(usage, added.error().at("--type-b").message);

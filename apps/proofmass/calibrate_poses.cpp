@@ -252,8 +252,9 @@ FilePoses poses_of(const std::string& file,
                    const CalibrateCommand& command,
                    std::vector<Note>& notes) {
   Recording recording = load(file, command.input, progress_bar(command.output));
-  if (command.means || io::looks_like_pose_table(recording))
-    return table_poses(recording, command.input, notes);
+  const bool means = command.means || io::looks_like_pose_table(recording) ||
+                     (command.rests.empty() && io::is_plain_pose_table(recording));
+  if (means) return table_poses(recording, command.input, notes);
   return recording_poses(std::move(recording), command, notes);
 }
 

@@ -5,6 +5,7 @@
 
 #include "command_line.hpp"
 #include "proofmass/calibrate/pose_means.hpp"
+#include "proofmass/calibrate/session_noise.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/report/calibrate_report.hpp"
 
@@ -20,9 +21,10 @@ struct PoseSet {
   Unit unit;                           ///< SI: m/s^2, V or counts
   /// Supply at which the readings in volts would have been these, brought there by a recorded one.
   std::optional<double> reference_supply_v;
-  double noise_dof = 0.0;                        ///< of the poses' covariances; 0: not known
-  std::vector<calibrate::RestSession> sessions;  ///< one for each recording; none of tables
-  std::array<Eigen::MatrixXd, 3> between;        ///< MultiPositionOptions::between
+  double noise_dof = 0.0;                         ///< of the poses' covariances; 0: not known
+  std::vector<calibrate::RestSession> sessions;   ///< one for each recording; none of tables
+  std::array<Eigen::MatrixXd, 3> between;         ///< MultiPositionOptions::between
+  std::optional<calibrate::SessionNoise> wander;  ///< where the recordings show it
   std::array<double, 3> sample_std{};
 };
 

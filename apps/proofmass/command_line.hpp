@@ -88,7 +88,7 @@ struct CalibrateCommand {
   std::optional<double> shortest_rest_s;
   bool means = false, keep_suspects = false, six_position = false;
   std::optional<int> parameters;  ///< 6, 9 or 12
-  std::optional<double> gravity_std_mps2, temperature_c;
+  std::optional<double> gravity_std_mps2, temperature_c, bias_stability_mg;
   double orthogonality_std_deg = 0.57, placement_std_deg = 1.0;
   std::vector<double> supplies_v;
   std::vector<std::string> type_b, validate;

@@ -249,7 +249,7 @@ Uncertain uncertain_gravity_mps2(const InputFlags& flags,
   if (flags.latitude_deg) return {gravity, sensor::gravity_anomaly_std_mps2};
   notes.push_back({Severity::warning,
                    "gravity: taken for 9.80665 m/s^2, which no place has exactly: it makes every "
-                   "scale uncertain by 0.16 %; give --gravity, or --latitude and --height"});
+                   "scale uncertain by 0.15 %; give --gravity, or --latitude and --height"});
   return {gravity, sensor::gravity_std_on_earth_mps2};
 }
 

@@ -118,7 +118,13 @@ Result<NormCalibration> choose(const NormData& data,
     const Parameters start = ellipsoid_start(data.poses, free == NormParameters::nine);
     Result<PoseSelection> selection =
         select_poses(data, start, {free, noise_dof, options.keep_suspects});
-    if (!selection) return selection.error();
+    if (!selection) {
+      if (free == NormParameters::nine && !asked) continue;
+      return Error{
+          Errc::not_observable,
+          "no bias and scale bring the positions to one length: " + selection.error().message +
+              "; check the unit of the readings, and add positions in other directions"};
+    }
     if (carried(*selection, options)) return NormCalibration{free, *selection};
     if (free == NormParameters::nine && !asked) continue;
     const Eigen::MatrixXd information = information_of(*selection, free);
@@ -247,6 +253,25 @@ MultiPosition assembled(const NormCalibration& norm,
 }
 
 }  // namespace
+
+Status check_acceleration_unit(View<Pose> poses, double gravity_mps2) {
+  std::vector<double> lengths;
+  lengths.reserve(poses.size());
+  for (const Pose& pose : poses) lengths.push_back(pose.mean.norm());
+  const double length = median(lengths).value_or(gravity_mps2);
+  constexpr double near = 0.25;
+  const auto wrong = [&](const char* meaning, const char* unit) {
+    return Error{Errc::invalid_argument,
+                 fmt::format("at rest the readings are {:.3g} m/s^2 long, which is gravity in {}: "
+                             "give --unit {}",
+                             length, meaning, unit)};
+  };
+  if (std::abs(length - 1.0) < near) return wrong("g", "g");
+  if (std::abs(length / 1000.0 - 1.0) < near) return wrong("mg", "mg");
+  if (std::abs(length / (gravity_mps2 * gravity_mps2) - 1.0) < near)
+    return wrong("m/s^2 taken for g", "m/s2");
+  return Done{};
+}
 
 Result<MultiPosition> calibrate_positions(View<Pose> poses, const MultiPositionOptions& options) {
   if (const Status status = check(poses, options); !status) return status.error();

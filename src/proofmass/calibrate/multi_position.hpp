@@ -107,11 +107,16 @@ struct MultiPosition {
   std::vector<std::string> notes;  ///< sentences for the user
 };
 
+/// Whether lengths of the means in m/s^2 can be gravity: half of them within a quarter of it, or
+/// else neither 1 (gravity in g) nor g² (gravity in m/s² taken for g).
+/// Errors: invalid_argument, with the unit to give.
+[[nodiscard]] Status check_acceleration_unit(View<Pose> poses, double gravity_mps2);
+
 /// Fits
 ///
 ///     f = T diag(1/scale) (mean − bias),   T = [1 −α_yz α_zy; 0 1 −α_zx; 0 0 1],   |f| = g,
 ///
-/// to poses at rest; see the .cpp's functions for each model. (Being completed.)
+/// to poses at rest, |f| = g in each; a pose that contradicts the others is left out.
 ///
 /// Errors: too_few_samples (fewer poses than parameters), not_observable (the poses do not carry
 /// the parameters; the message says which and what to add), not_finite, invalid_argument.

@@ -224,6 +224,25 @@ Scatter scatter_of(double rss, double dof, double noise_dof) {
   return {(rss + noise_dof) / (dof + noise_dof), dof + noise_dof, test};
 }
 
+namespace {
+
+// A fit that the poses do not carry says nothing of any of them.
+PoseSelection without_search(const NormData& data, const NormFit& fit, PoseSelection now) {
+  const std::size_t n = data.poses.size();
+  now.fit = fit;
+  now.leave_one_out.resize(n);
+  now.studentised.resize(n);
+  now.detectable.resize(n);
+  return now;
+}
+
+bool well_conditioned(const NormFit& fit) {
+  constexpr double singular = 1e6;
+  return fit.condition < singular && std::isfinite(fit.rss) && fit.cofactor.allFinite();
+}
+
+}  // namespace
+
 Result<PoseSelection> select_poses(const NormData& data,
                                    const Parameters& start,
                                    const SelectionOptions& options) {
@@ -233,6 +252,7 @@ Result<PoseSelection> select_poses(const NormData& data,
   now.suspect.assign(n, false);
   const Result<NormFit> full = fit_norm(data, now.used, options.free, start);
   if (!full) return full.error();
+  if (!well_conditioned(*full)) return without_search(data, *full, std::move(now));
   PoseHypotheses hypotheses(data, options.free, *full);
   Choice choice(hypotheses, n, options);
   const PoseSet out = choice.fewest();

@@ -177,6 +177,20 @@ std::vector<GridPoint> scored(View<RestSession> sessions,
   return grid;
 }
 
+// A strength over the grid.
+struct OverGrid {
+  double sum = 0.0, squares = 0.0;
+
+  void add(double weight, double value) {
+    sum += weight * value;
+    squares += weight * value * value;
+  }
+  [[nodiscard]] double cautious(double total) const {
+    const double mean = sum / total;
+    return mean + std::sqrt(std::max(0.0, squares / total - mean * mean));
+  }
+};
+
 bool known(View<RestSession> sessions) {
   return std::ranges::all_of(sessions, [](const RestSession& session) {
     return session.rests > 0 && std::ranges::all_of(session.levels, [](const auto& levels) {
@@ -201,6 +215,7 @@ std::optional<SessionNoise> session_noise(View<Pose> poses,
   const double best = std::ranges::min(grid, {}, &GridPoint::score).score;
   double total = 0.0;
   Matrices C;
+  std::array<OverGrid, 3> flicker, walk;
   SessionNoise out{.poses = {poses.begin(), poses.end()}, .between = {}};
   for (MatrixXd& one : C) one = MatrixXd::Zero(units.samples.size(), units.samples.size());
   for (const GridPoint& at : grid) {
@@ -208,22 +223,20 @@ std::optional<SessionNoise> session_noise(View<Pose> poses,
     const Matrices own = covariances(units, sessions, at);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       C[axis] += weight * own[axis];
-      out.flicker[axis] += weight * at.white[axis] * at.f;
-      out.random_walk[axis] += weight * at.white[axis] * at.k;
+      flicker[axis].add(weight, at.white[axis] * at.f);
+      walk[axis].add(weight, at.white[axis] * at.k);
     }
     total += weight;
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    out.flicker[axis] /= total;
-    out.random_walk[axis] /= total;
+    out.flicker[axis] = flicker[axis].cautious(total);
+    out.random_walk[axis] = walk[axis].cautious(total);
     out.between[axis] = C[axis] / total;
     const auto place = static_cast<Index>(axis);
     for (std::size_t k = 0; k < poses.size(); ++k) {
       const auto row = static_cast<Index>(k);
       out.poses[k].mean_covariance(place, place) = out.between[axis](row, row);
     }
-    out.wander_std[axis] =
-        std::sqrt(out.flicker[axis] * units.of_flicker + out.random_walk[axis] * units.of_walk);
   }
   return out;
 }

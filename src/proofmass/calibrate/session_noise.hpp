@@ -14,9 +14,8 @@ namespace proofmass::calibrate {
 struct SessionNoise {
   std::vector<Pose> poses;                 ///< as given, with covariances over the session
   std::array<Eigen::MatrixXd, 3> between;  ///< MultiPositionOptions::between
-  /// Standard deviation of the bias by its wander about the session's mean, in the reading's unit.
-  std::array<double, 3> wander_std{};
-  /// Allan variances of the wander: flicker noise's, and the random walk's over one sample.
+  /// Allan variances of the wander, flicker noise's and the random walk's over one sample: the mean
+  /// over the grid and a standard deviation more, for what lies beyond the session is not seen.
   std::array<double, 3> flicker{}, random_walk{};
 };
 

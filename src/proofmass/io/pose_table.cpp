@@ -218,7 +218,34 @@ class TableReader {
   PoseTable table_;
 };
 
+// A column for each position and the rows x, y, z.
+bool is_turned(const Recording& recording) {
+  return recording.samples() == 3 && recording.channels.size() > 3;
+}
+
+Recording turned_upright(const Recording& recording) {
+  Recording upright;
+  upright.source = recording.source;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Channel channel{std::string(1, "xyz"[axis]), recording.channels.front().unit, {}};
+    for (const Channel& position : recording.channels)
+      channel.values.push_back(position.values[axis]);
+    upright.channels.push_back(std::move(channel));
+  }
+  return upright;
+}
+
 }  // namespace
+
+bool is_plain_pose_table(const Recording& recording) {
+  constexpr std::size_t most_rows = 1000;
+  const bool plain = std::ranges::all_of(recording.channels, [](const Channel& channel) {
+    return channel.unit.quantity != Quantity::angular_rate;
+  });
+  return plain && accelerometer_triads(recording).empty() &&
+         (is_turned(recording) || (recording.channels.size() == 3 && recording.samples() > 0 &&
+                                   recording.samples() <= most_rows));
+}
 
 bool looks_like_pose_table(const Recording& recording) {
   constexpr std::size_t most_rows = 1000;
@@ -228,11 +255,23 @@ bool looks_like_pose_table(const Recording& recording) {
 }
 
 Result<PoseTable> pose_table(const Recording& recording, const std::optional<Unit>& unit) {
-  const auto means = find_means(recording);
-  if (!means)
-    return Error{Errc::corrupt,
-                 "is no table of means: expected three columns such as x_mean, y_mean, z_mean"};
-  return TableReader(recording, *means).read(unit);
+  if (const auto means = find_means(recording)) return TableReader(recording, *means).read(unit);
+  if (recording.channels.size() == 3 && recording.samples() > 0)
+    return TableReader(recording, {{}, {0, 1, 2}}).read(unit);
+  if (is_turned(recording)) {
+    const Recording upright = turned_upright(recording);
+    Result<PoseTable> read = TableReader(upright, {{}, {0, 1, 2}}).read(unit);
+    if (!read) return read.error();
+    PoseTable table = std::move(read).value();
+    table.notes.push_back(
+        {Severity::info, fmt::format("the table has three rows and {} columns: each column is a "
+                                     "position, the rows are x, y and z",
+                                     recording.channels.size())});
+    return table;
+  }
+  return Error{Errc::corrupt,
+               "is no table of means: expected three columns such as x_mean, y_mean, z_mean, or "
+               "three columns or three rows in all"};
 }
 
 Result<PoseTable> read_pose_table(const std::string& path, const std::optional<Unit>& unit) {

@@ -35,6 +35,10 @@ struct PoseTable {
 /// accelerations is never taken for one.
 [[nodiscard]] bool looks_like_pose_table(const Recording& recording);
 
+/// Whether a recording in which no accelerometer is found has the shape of a table of means: three
+/// columns of at most a thousand rows, or three rows.
+[[nodiscard]] bool is_plain_pose_table(const Recording& recording);
+
 /// Takes the columns of a recording for a table of means, one row a position:
 ///   x_mean (g), mean_x, acc_x_mean, or plain x, ax, acc_x: the means;
 ///   x_sem, x_std_mean: standard deviation of the mean;
@@ -42,6 +46,7 @@ struct PoseTable {
 ///   number, which says too little where the noise is not white;
 ///   x_true (g), up_x, true_x: the direction of the force, of any length;
 ///   start, end (s); a column of words, or a number called position, pose or id: the label.
+/// Three columns without such names are x, y and z; so are three rows of four columns or more.
 /// A row whose three means are not all finite is left out with a note. `unit` is the means',
 /// whatever the table says.
 /// Errors: corrupt (no three columns of means, or of units that do not go together; a direction of

@@ -112,6 +112,23 @@ std::string cross_axis_sentence(const CalibrateReport& report) {
                    joined(words) + ".";
 }
 
+// What ± means, and what it leaves out.
+std::string scope_sentence(const CalibrateReport& report) {
+  std::string text = "± is the repeatability within this recording";
+  if (!report.stability)
+    return text +
+           "; how the biases change from one session to another is not known: state it by "
+           "--bias-stability.";
+  const std::vector<CalibrationFigure> figures = calibration_figures(report);
+  std::vector<std::string> stds;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    stds.push_back(significant(report.stability->std[axis] * figures[axis].factor, 2));
+  return text + fmt::format(
+                    "; from one session to another the biases x, y, z scatter by {} {} beside it "
+                    "(one standard deviation, by {}).",
+                    fmt::join(stds, ", "), figures[0].printed_unit, report.stability->source);
+}
+
 }  // namespace
 
 std::string lack_of_fit_sentence(const CalibrateReport& report) {
@@ -190,6 +207,7 @@ std::vector<std::string> calibrate_findings(const CalibrateReport& report) {
                               significant(fit.lack_of_fit->statistic, 3),
                               p_words(fit.lack_of_fit->p)));
   }
+  if (stds_known(report)) out.push_back(scope_sentence(report));
   if (fit.mounting_rad) out.push_back(mounting_sentence(report));
   if (std::string words = cross_axis_sentence(report); !words.empty())
     out.push_back(std::move(words));

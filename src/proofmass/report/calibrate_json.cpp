@@ -165,6 +165,15 @@ Object validation_json(const CalibrateReport& report) {
           {"residuals", array_of(found.residuals_mps2)}};
 }
 
+Value stability_json(const CalibrateReport& report) {
+  if (!report.stability) return {};
+  Array stds;
+  for (const double std : report.stability->std) stds.emplace_back(std);
+  return Object{{"bias", std::move(stds)},
+                {"unit", report.unit.symbol},
+                {"source", report.stability->source}};
+}
+
 // What only some models have.
 void add_directions(const MultiPosition& fit, Object& out) {
   if (fit.mounting_rad && fit.mounting_std_rad) {
@@ -210,6 +219,7 @@ Object body(const CalibrateReport& report) {
   add("doubtful", std::move(doubtful));
   add("positions", positions_json(report));
   add("budgets", budgets_json(report));
+  add("stability", stability_json(report));
   add("monte_carlo", monte_carlo_json(report));
   if (report.validation) add("validation", validation_json(report));
   if (report.supply) add("supply", supply_json(report));

@@ -99,6 +99,8 @@ void add_other_reasons(const CalibrateReport& report, Reasons& reasons) {
   }
   reasons.add("cross_axis", without ? "misalignment was not fitted"
                                     : "of z: its axis is the frame that the others are told in");
+  if (!report.stability)
+    reasons.add("stability", "neither the recording nor a sensor file shows how the bias wanders");
   if (!report.check)
     reasons.add("monte_carlo", "not asked for");
   else if (!stds_known(report))

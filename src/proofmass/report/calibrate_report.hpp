@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "proofmass/calibrate/bias_stability.hpp"
 #include "proofmass/calibrate/cross_axis.hpp"
 #include "proofmass/calibrate/multi_position.hpp"
 #include "proofmass/calibrate/multi_position_check.hpp"
@@ -56,6 +57,9 @@ struct CalibrateReport {
   calibrate::MultiPosition fit;        ///< type B contributions included
   std::vector<calibrate::UncertaintyBudget> budgets;
   std::optional<calibrate::MonteCarloCheck> check;
+  /// Between sessions: beside what the figures' own uncertainties say; in the certificate's
+  /// budgets.
+  std::optional<calibrate::BiasStability> stability;
   std::array<std::optional<calibrate::CrossAxis>, 3> cross_axis;  ///< none of z: it is the frame
   std::optional<calibrate::Validation> validation;
   std::vector<std::string> validation_files;

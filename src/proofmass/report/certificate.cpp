@@ -166,7 +166,7 @@ Section limits_section(const CertificateData& data) {
   Section section{.heading = "What this certificate does not cover"};
   section.points = {
       "Other temperatures and supplies than those stated; drift and ageing since the day of "
-      "measurement.",
+      "measurement, beyond a line of the budget on stability between sessions.",
       "The angle between the sensor's axes and its case, which gravity alone does not show.",
       "Forces beyond ± 1 g, vibration, and the response to frequency: the sensor was at rest.",
       "Traceability of local gravity, of the readings' reference and of the contributions of type "

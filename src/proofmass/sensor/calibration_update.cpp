@@ -77,6 +77,19 @@ void put_figures(const MeasuredCalibration& measured,
   }
 }
 
+void put_stability(const MeasuredCalibration& measured,
+                   const Units& units,
+                   Calibration& calibration) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!measured.bias[axis]) continue;
+    auto& figure = calibration.stability[axis];
+    figure.reset();
+    if (measured.stability[axis])
+      figure = Figure{*measured.stability[axis] * std::abs(units.factor), std::nullopt, units.bias,
+                      measured.origin};
+  }
+}
+
 /// In SI, and symmetric to the last bit, as a sensor file must have it.
 Covariance written(const Covariance& covariance, const Units& units) {
   const auto factor = [&](std::size_t k) {
@@ -203,6 +216,7 @@ Result<std::vector<Note>> update_calibration(SensorModel& model,
   std::vector<Note> notes;
   Calibration& calibration = updated.calibration;
   put_figures(measured, *units, calibration);
+  put_stability(measured, *units, calibration);
   if (const Status fits = check_together(calibration); !fits) return fits.error();
   put_covariance(measured, *units, calibration, notes);
   put_conditions(measured, calibration, notes);

@@ -20,6 +20,8 @@ struct MeasuredCalibration {
   std::string scale_unit = "1";     ///< "1", "V/(m/s^2)" or "counts/(m/s^2)", or a multiple
   /// Of bias x y z, scale x y z, misalignment, in the units above and rad.
   std::optional<std::array<std::array<double, 9>, 9>> covariance;
+  /// Calibration::stability, in the unit of the bias.
+  std::array<std::optional<double>, 3> stability{};
   /// False where part of the uncertainty is not known: figures are then written without standard
   /// deviations, and there must be no covariance.
   bool std_known = true;

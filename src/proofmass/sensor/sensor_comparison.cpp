@@ -15,12 +15,44 @@ namespace {
 /// What a figure stands for rather than what the sensor is.
 bool is_condition(const FigureSlot& slot) {
   if (slot.section == "calibration")
-    return slot.key == "gravity" || slot.key == "temperature" || slot.key == "dof";
+    return slot.key == "gravity" || slot.key == "temperature" || slot.key == "dof" ||
+           slot.key == "stability";
   return slot.section == "electrical" && (slot.key == "supply" || slot.key == "reference_supply");
 }
 
 bool is_calibration(const FigureComparison& figure) {
-  return figure.before.section == "calibration" && figure.before.axis.has_value();
+  return figure.before.section == "calibration" && figure.before.axis.has_value() &&
+         !is_condition(figure.before);
+}
+
+/// With the biases as uncertain as they are from one session to another.
+SensorModel over_sessions(SensorModel model) {
+  Calibration& calibration = model.calibration;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto& bias = calibration.bias[axis];
+    const auto& stability = calibration.stability[axis];
+    if (!bias || !bias->std || !stability || stability->unit.si_symbol != bias->unit.si_symbol)
+      continue;
+    bias->std = std::hypot(*bias->std, stability->si() / bias->unit.to_si);
+    if (calibration.covariance)
+      (*calibration.covariance)[axis][axis] += stability->si() * stability->si();
+  }
+  return model;
+}
+
+/// Two calibrations by what each session repeats say nothing of what lies between the sessions.
+void note_repeatability(const SensorModel& before,
+                        const SensorModel& after,
+                        std::vector<Note>& notes) {
+  const auto lacks = [](const SensorModel& model) {
+    const Calibration& c = model.calibration;
+    return c.bias[0] && c.bias[0]->std && !c.stability[0];
+  };
+  if (!lacks(before) || !lacks(after)) return;
+  notes.push_back({Severity::warning,
+                   "calibration.stability: neither file says how well the biases repeat from one "
+                   "session to another: a change of them is tested against the repeatability "
+                   "within one recording only, and an unchanged sensor may fail that"});
 }
 
 /// Two-sided probability of a change by chance.
@@ -217,9 +249,10 @@ std::optional<double> FigureComparison::in_stds() const {
   return *change / *change_std;
 }
 
-SensorComparison compare(const SensorModel& before,
-                         const SensorModel& after,
+SensorComparison compare(const SensorModel& old_file,
+                         const SensorModel& new_file,
                          const ComparisonOptions& options) {
+  const SensorModel before = over_sessions(old_file), after = over_sessions(new_file);
   SensorComparison out;
   out.level = options.level;
   out.figures = compared(before, after);
@@ -237,6 +270,7 @@ SensorComparison compare(const SensorModel& before,
   out.all = verdict_on(out, true, [](const FigureComparison&) { return true; });
   note_other_sensor(before, after, out.notes);
   note_circumstances(before, after, out.notes);
+  note_repeatability(before, after, out.notes);
   note_electrical(before, after, out, out.notes);
   return out;
 }

@@ -66,15 +66,16 @@ struct ComparisonOptions {
   bool with_effect = true;  ///< what takes most of the time
 };
 
-/// Compares each figure in SI: Δ = new − old with u² = u_old² + u_new², two-sided, normal, or of
-/// Student's t where a calibration says its degrees of freedom; and the calibration as a whole by
-/// Δᵀ (C_old + C_new)⁻¹ Δ where both files have a covariance. The probability of any false alarm
-/// is `level` at most: Holm's method over all figures, the calibration counting as one where it was
-/// tested as a whole; its own figures are then looked into only if it has changed. Figures carried
-/// over from one file to the other are not tested.
-/// Source: S. Holm, Scand. J. Statist. 6 (1979) 65; for the order, R. Marcus, E. Peritz, K. R.
-/// Gabriel, Biometrika 63 (1976) 655 (closed testing); for degrees of freedom of sums, B. L. Welch,
-/// Biometrika 34 (1947) 28.
+/// Biases count as uncertain as they are from one session to another: by calibration.stability
+/// beside the repeatability within the recording. Compares each figure in SI: Δ = new − old with u²
+/// = u_old² + u_new², two-sided, normal, or of Student's t where a calibration says its degrees of
+/// freedom; and the calibration as a whole by Δᵀ (C_old + C_new)⁻¹ Δ where both files have a
+/// covariance. The probability of any false alarm is `level` at most: Holm's method over all
+/// figures, the calibration counting as one where it was tested as a whole; its own figures are
+/// then looked into only if it has changed. Figures carried over from one file to the other are not
+/// tested. Source: S. Holm, Scand. J. Statist. 6 (1979) 65; for the order, R. Marcus, E. Peritz, K.
+/// R. Gabriel, Biometrika 63 (1976) 655 (closed testing); for degrees of freedom of sums, B. L.
+/// Welch, Biometrika 34 (1947) 28.
 [[nodiscard]] SensorComparison compare(const SensorModel& before,
                                        const SensorModel& after,
                                        const ComparisonOptions& options = {});

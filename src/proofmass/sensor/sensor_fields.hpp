@@ -27,6 +27,7 @@ void visit_figures(Model& model, Visit&& visit) {
   visit("calibration", "bias", Units{"m/s^2", "V", "counts"}, c.bias);
   visit("calibration", "scale", Units{"1", "V/(m/s^2)", "counts/(m/s^2)"}, c.scale);
   visit("calibration", "misalignment", Units{"rad"}, c.misalignment);
+  visit("calibration", "stability", Units{"m/s^2", "V", "counts"}, c.stability);
   visit("calibration", "dof", Units{"1"}, c.dof);
   visit("calibration", "gravity", Units{"m/s^2"}, c.gravity);
   visit("calibration", "temperature", Units{"K"}, c.temperature);

@@ -48,6 +48,9 @@ struct Calibration {
   AxisFigures misalignment;  ///< α_yz, α_zy, α_zx in rad
   /// Of bias x y z, scale x y z, misalignment, row by row, in SI.
   std::optional<std::array<std::array<double, 9>, 9>> covariance;
+  /// Standard deviation of the bias from one session to another, in the unit of bias: what the
+  /// repeatability within one recording, of which bias.std and covariance are, does not hold.
+  AxisFigures stability;
   std::optional<Figure> dof;          ///< 1, effective degrees of freedom of the std; absent: many
   std::optional<Figure> gravity;      ///< m/s^2, that the calibration took for true
   std::optional<Figure> temperature;  ///< K, at which it was made
