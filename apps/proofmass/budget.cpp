@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "console.hpp"
 #include "exit_status.hpp"
@@ -13,6 +15,10 @@
 namespace proofmass::app {
 namespace {
 
+double si_of(const std::optional<sensor::Figure>& figure) {
+  return figure ? figure->si() : 0.0;
+}
+
 // A calibrated axis: its bias is taken away, what is left is as large as its standard deviation.
 estimate::BudgetSensor axis_of(const sensor::SensorModel& model, std::size_t axis) {
   const sensor::Figure& bias = *model.calibration.bias[axis];
@@ -20,10 +26,53 @@ estimate::BudgetSensor axis_of(const sensor::SensorModel& model, std::size_t axi
   // Of a bias in volts or counts the scale makes an acceleration.
   const bool electric = bias.unit.si_symbol != "m/s^2";
   const double per_mps2 = electric && scale ? scale->si() : 1.0;
-  const auto& white = model.noise.white[axis];
+  const sensor::NoiseModel& noise = model.noise;
   return {fmt::format("{} {}", model.name, "xyz"[axis]),
           {0.0, *bias.std_si() / per_mps2},
-          white ? white->si() : 0.0};
+          {.white_mps2_rthz = si_of(noise.white[axis]),
+           .flicker_mps2 = si_of(noise.flicker[axis]),
+           .random_walk_mps2_rts = si_of(noise.random_walk[axis]),
+           .ramp_mps3 = si_of(noise.ramp[axis])}};
+}
+
+// Which of the noises that grow fastest the file does not know, so that the error has no share of
+// them: one that is not there, or that its recording only bounds.
+std::string unknown_noise(const sensor::SensorModel& model, std::size_t axis) {
+  const sensor::NoiseModel& noise = model.noise;
+  std::vector<std::string> names;
+  const auto look = [&](const char* name, const std::optional<sensor::Figure>& figure) {
+    if (!figure) names.emplace_back(name);
+    if (!figure || figure->value != 0.0 || !figure->std) return;
+    constexpr double one_sided_95 = 1.645;  // as noise --update-sensor writes a bound
+    names.push_back(fmt::format("{} (below {:.2g} {})", name, one_sided_95 * *figure->std,
+                                figure->unit.symbol));
+  };
+  look("white noise", noise.white[axis]);
+  look("flicker", noise.flicker[axis]);
+  look("random walk", noise.random_walk[axis]);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void note_unknown(const sensor::SensorModel& model, std::vector<Note>& notes) {
+  std::array<std::string, 3> unknown;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto& bias = model.calibration.bias[axis];
+    if (bias && bias->std) unknown[axis] = unknown_noise(model, axis);
+  }
+  const auto note = [&](const std::string& of, const std::string& names) {
+    if (names.empty()) return;
+    notes.push_back(
+        {Severity::warning,
+         fmt::format("{}: the sensor file does not determine {}: the error has no share "
+                     "of it and may be larger",
+                     of, names)});
+  };
+  if (unknown[0] == unknown[1] && unknown[1] == unknown[2]) {
+    note(model.name, unknown[0]);
+    return;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    note(fmt::format("{} {}", model.name, "xyz"[axis]), unknown[axis]);
 }
 
 std::vector<estimate::BudgetSensor> axes_of(const std::string& path, std::vector<Note>& notes) {
@@ -34,6 +83,7 @@ std::vector<estimate::BudgetSensor> axes_of(const std::string& path, std::vector
     const auto& bias = file.model.calibration.bias[axis];
     if (bias && bias->std) sensors.push_back(axis_of(file.model, axis));
   }
+  note_unknown(file.model, notes);
   if (sensors.empty()) {
     throw Failure(bad_input,
                   path +
@@ -50,8 +100,7 @@ void run(const BudgetCommand& command) {
   report::BudgetReport report;
   std::vector<estimate::BudgetSensor> sensors;
   for (const double mg : command.bias_mg) {
-    sensors.push_back(
-        {fmt::format("{:.6g} mg", mg), {mg * 1e-3 * standard_gravity_mps2, 0.0}, 0.0});
+    sensors.push_back({fmt::format("{:.6g} mg", mg), {mg * 1e-3 * standard_gravity_mps2, 0.0}, {}});
   }
   for (const std::string& path : command.sensors) {
     for (auto& axis : axes_of(path, report.notes)) sensors.push_back(std::move(axis));

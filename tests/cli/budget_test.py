@@ -30,6 +30,30 @@ class Budget(CommandTest):
         self.assertEqual(rows[0]["error_m"][0]["value"], 0.0)
         self.assertAlmostEqual(rows[0]["error_m"][0]["std"], 0.5 * 0.002 * 100.0, places=12)
 
+    def test_flicker_and_random_walk_of_the_sensor_file_count(self):
+        self.write("s.toml", '[sensor]\nname = "s"\n[calibration]\n'
+                             'bias = { value = 0.1, std = 0.001, unit = "m/s^2", origin = "test" }\n[noise]\n'
+                             'white = { value = 1e-3, unit = "m/s^2/sqrt(Hz)", origin = "test" }\n'
+                             'flicker = { value = 2e-3, unit = "m/s^2", origin = "test" }\n'
+                             'random_walk = { value = 1e-4, unit = "m/s^2/sqrt(s)", origin = "test" }\n')
+        document = self.document("budget", "--sensor", "s.toml", "--times", "600")
+        error = document["rows"][0]["error_m"][0]
+        parts = error["std_parts"]
+        self.assertAlmostEqual(parts["bias"], 0.5 * 0.001 * 600**2, places=9)
+        self.assertAlmostEqual(parts["white"], 1e-3 * (600**3 / 3) ** 0.5, places=9)
+        self.assertAlmostEqual(parts["random_walk"], 1e-4 * (600**5 / 20) ** 0.5, places=9)
+        self.assertAlmostEqual(parts["flicker"] / (0.5 * 2e-3 * 600**2), 0.72, delta=0.02)
+        self.assertAlmostEqual(error["std"] ** 2, sum(part**2 for part in parts.values()), places=6)
+        self.assertEqual(document["warnings"], [])
+
+    def test_noise_that_the_sensor_file_lacks_or_only_bounds_is_named(self):
+        self.write("s.toml", '[sensor]\nname = "s"\n[calibration]\n'
+                             'bias = { value = 0.1, std = 0.001, unit = "m/s^2", origin = "test" }\n[noise]\n'
+                             'white = { value = 1e-3, unit = "m/s^2/sqrt(Hz)", origin = "test" }\n'
+                             'random_walk = { value = 0, std = 1e-4, unit = "m/s^2/sqrt(s)", origin = "test" }\n')
+        warnings = "\n".join(self.document("budget", "--sensor", "s.toml")["warnings"])
+        self.assertIn("does not determine flicker, random walk (below 0.00016 m/s^2/sqrt(s))", warnings)
+
     def test_a_sensor_file_without_a_std_says_what_is_missing(self):
         self.write("s.toml", '[sensor]\nname = "s"\n')
         self.assertIn("calibration.bias", self.expect_failure(BAD_INPUT, "budget", "--sensor", "s.toml"))

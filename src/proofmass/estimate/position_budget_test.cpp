@@ -1,9 +1,12 @@
 #include "proofmass/estimate/position_budget.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <random>
+#include <vector>
 
 #include "proofmass/core/units.hpp"
 #include "proofmass/sensor/grades.hpp"
@@ -80,7 +83,7 @@ TEST(PositionBudget, NoiseSpreadsThePositionAsItsIntegralDoes) {
     squares += position * position;
   }
   const std::vector<BudgetSensor> sensors{
-      {.name = "s", .bias_mps2 = {0.0, 0.0}, .white_noise_mps2_rthz = N}};
+      {.name = "s", .bias_mps2 = {0.0, 0.0}, .noise = {.white_mps2_rthz = N}}};
   const double std_m = position_budget(sensors, std::array{steps * dt})[0].errors[0].position_m.std;
   EXPECT_DOUBLE_EQ(std_m, N * std::pow(10.0, 1.5) / std::sqrt(3.0));
   EXPECT_NEAR(std::sqrt(squares / runs), std_m, 5.0 * std_m / std::sqrt(2.0 * runs));
@@ -88,11 +91,118 @@ TEST(PositionBudget, NoiseSpreadsThePositionAsItsIntegralDoes) {
 
 TEST(PositionBudget, AddsNoiseAndBiasInQuadrature) {
   const std::vector<BudgetSensor> sensors{
-      {.name = "s", .bias_mps2 = {0.0, 0.03}, .white_noise_mps2_rthz = 0.04}};
+      {.name = "s", .bias_mps2 = {0.0, 0.03}, .noise = {.white_mps2_rthz = 0.04}}};
   const double t = 4.0 / 3.0;  // there ½ t² and √(t³/3) are equal
   const double each = 0.5 * t * t;
   EXPECT_NEAR(position_budget(sensors, std::array{t})[0].errors[0].position_m.std, 0.05 * each,
               1e-14);
+}
+
+// --- flicker, random walk and ramp ---------------------------------------------------------------
+
+/// A sum of cosines: amplitude, angular frequency and phase of each.
+struct Cosine {
+  double amplitude, omega, phase;
+};
+
+/// Flicker of the one-sided density B²/(π f) as cosines of random phase and normal amplitude, one
+/// for each of many narrow bands that a logarithmic scale has, from a period of longest_s on.
+std::vector<Cosine> flicker_of(double B, double longest_s, std::mt19937_64& random) {
+  constexpr double width = 0.02, decades = 7.0;
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> turn(0.0, 2.0 * std::numbers::pi);
+  std::vector<Cosine> cosines;
+  for (double octave = 0.0; octave < decades * std::numbers::ln10; octave += width) {
+    const double f = std::exp(octave + 0.5 * width) / longest_s;
+    // A normal amplitude: the variance of a cosine is half its square.
+    const double variance = B * B / std::numbers::pi * width;
+    cosines.push_back(
+        {std::sqrt(2.0 * variance) * normal(random), 2.0 * std::numbers::pi * f, turn(random)});
+  }
+  return cosines;
+}
+
+/// ∫∫ over [0, t] of one cosine, in closed form.
+double twice_integrated(const Cosine& c, double t) {
+  const double end = c.omega * t + c.phase;
+  return c.amplitude * ((std::cos(c.phase) - std::cos(end)) / c.omega - t * std::sin(c.phase)) /
+         c.omega;
+}
+
+double budget_std_m(const BudgetNoise& noise, double t_s) {
+  const std::vector<BudgetSensor> sensors{{.name = "s", .bias_mps2 = {}, .noise = noise}};
+  return position_budget(sensors, std::array{t_s})[0].errors[0].position_m.std;
+}
+
+TEST(PositionBudget, FlickerCountsByPeriodsUpToAnHourOrTenTimesTheIntegration) {
+  constexpr double B = 2e-3, hour_s = 3600.0;
+  constexpr int runs = 1500;
+  std::mt19937_64 random(5);
+  for (const double t_s : {1.0, 10.0, 60.0, 600.0}) {
+    double squares = 0.0;
+    for (int run = 0; run < runs; ++run) {
+      double position = 0.0;
+      for (const Cosine& c : flicker_of(B, std::max(hour_s, 10.0 * t_s), random))
+        position += twice_integrated(c, t_s);
+      squares += position * position;
+    }
+    EXPECT_NEAR(std::sqrt(squares / runs) / budget_std_m({.flicker_mps2 = B}, t_s), 1.0, 0.07)
+        << t_s;
+  }
+}
+
+TEST(PositionBudget, ARandomWalkCountsAsItsIncrementsIntegratedTwice) {
+  constexpr double K = 3e-4, dt = 0.5;
+  constexpr int steps = 1200, runs = 2000;
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  double squares = 0.0;
+  for (int run = 0; run < runs; ++run) {
+    double bias = 0.0, velocity = 0.0, position = 0.0;
+    for (int k = 0; k < steps; ++k) {
+      position += velocity * dt + 0.5 * bias * dt * dt;
+      velocity += bias * dt;
+      bias += K * std::sqrt(dt) * normal(random);
+    }
+    squares += position * position;
+  }
+  const double std_m = budget_std_m({.random_walk_mps2_rts = K}, steps * dt);
+  EXPECT_NEAR(std_m, K * std::pow(600.0, 2.5) / std::sqrt(20.0), 1e-9 * std_m);
+  EXPECT_NEAR(std::sqrt(squares / runs) / std_m, 1.0, 0.07);
+}
+
+// Its own noise for an ADIS16405, N 450 µg/√Hz, B 267 µg, K 45 µg/√s, with a bias good to 0.1 mg:
+// what bias and white noise alone leave out grows to several times what they give.
+TEST(PositionBudget, OfATypicalSensorMostComesFromFlickerAndRandomWalk) {
+  constexpr double ug = 1e-6 * standard_gravity_mps2;
+  const BudgetNoise noise{.white_mps2_rthz = 450.0 * ug,
+                          .flicker_mps2 = 267.0 * ug,
+                          .random_walk_mps2_rts = 45.0 * ug,
+                          .ramp_mps3 = 0.0};
+  const std::vector<BudgetSensor> whole{
+      {.name = "s", .bias_mps2 = {0.0, 100.0 * ug}, .noise = noise}};
+  const std::vector<BudgetSensor> plain{
+      {.name = "s", .bias_mps2 = {0.0, 100.0 * ug}, .noise = {.white_mps2_rthz = 450.0 * ug}}};
+  const std::array times_s{1.0, 10.0, 60.0, 600.0};
+  const auto with = position_budget(whole, times_s), without = position_budget(plain, times_s);
+  const std::array least{1.1, 1.7, 2.5, 5.0};
+  for (std::size_t k = 0; k < times_s.size(); ++k)
+    EXPECT_GT(with[0].errors[k].position_m.std / without[0].errors[k].position_m.std, least[k]);
+}
+
+TEST(PositionBudget, TheStdIsTheRootSumOfSquaresOfItsParts) {
+  const std::vector<BudgetSensor> sensors{
+      {.name = "s", .bias_mps2 = {0.1, 0.02}, .noise = {1e-2, 2e-2, 3e-2, 4e-2}}};
+  const BudgetError error = position_budget(sensors, std::array{3.0})[0].errors[0];
+  const BudgetParts& parts = error.parts;
+  double squares = 0.0;
+  for (const double part :
+       {parts.bias_m, parts.white_m, parts.flicker_m, parts.random_walk_m, parts.ramp_m}) {
+    EXPECT_GT(part, 0.0);
+    squares += part * part;
+  }
+  EXPECT_DOUBLE_EQ(error.position_m.std, std::sqrt(squares));
+  EXPECT_DOUBLE_EQ(parts.ramp_m, 4e-2 * 27.0 / 6.0);
 }
 
 }  // namespace

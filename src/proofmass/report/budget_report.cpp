@@ -12,6 +12,7 @@ namespace proofmass::report {
 namespace {
 
 using estimate::BudgetError;
+using estimate::BudgetParts;
 using estimate::BudgetRow;
 
 constexpr double mps2_per_mg = 1e-3 * standard_gravity_mps2;
@@ -79,6 +80,32 @@ std::string conclusion(const BudgetReport& report) {
                      worst.name);
 }
 
+Object parts_object(const BudgetParts& parts) {
+  return {{"bias", parts.bias_m},
+          {"white", parts.white_m},
+          {"flicker", parts.flicker_m},
+          {"random_walk", parts.random_walk_m},
+          {"ramp", parts.ramp_m}};
+}
+
+// What the figure behind ± consists of at the last time; no row where it is 0.
+Table parts_table(const BudgetReport& report) {
+  Table table{"", {"Sensor", "Bias", "White noise", "Flicker", "Random walk", "Ramp"}, {}};
+  for (const BudgetRow& row : report.rows) {
+    if (row.errors.empty() || !(row.errors.back().position_m.std > 0.0)) continue;
+    const BudgetError& error = row.errors.back();
+    table.caption =
+        "Standard deviation of the position after " + duration_words(error.t_s) + ", by cause";
+    std::vector<std::string>& cells = table.rows.emplace_back();
+    cells.push_back(row.name);
+    const BudgetParts& parts = error.parts;
+    for (const double part :
+         {parts.bias_m, parts.white_m, parts.flicker_m, parts.random_walk_m, parts.ramp_m})
+      cells.push_back(part > 0.0 ? length_words(part) : "–");
+  }
+  return table;
+}
+
 }  // namespace
 
 std::string budget_json(const BudgetReport& report) {
@@ -89,7 +116,8 @@ std::string budget_json(const BudgetReport& report) {
       errors.push_back(Object{{"t_s", error.t_s},
                               {"value", error.position_m.value},
                               {"std", error.position_m.std},
-                              {"unit", "m"}});
+                              {"unit", "m"},
+                              {"std_parts", parts_object(error.parts)}});
     }
     rows.push_back(Object{{"grade", row.name},
                           {"bias", quantity(row.bias_mps2, "m/s^2")},
@@ -120,9 +148,14 @@ std::string budget_html(const BudgetReport& report) {
        .figures = {error_figure(report)}},
       {.heading = "How it was computed",
        .paragraphs = {
-           "A bias b that no calibration has removed gives ½ b t² after the time t. Its own "
-           "standard deviation σ and white noise of density N (velocity random walk) give "
-           "the figure behind ±: √((½ σ t²)² + N² t³/3)."}}};
+           "A bias b that no calibration has removed gives ½ b t² after the time t. The standard "
+           "deviation behind ± is √((½ σ t²)² + N² t³/3 + (½ σ_B t²)² + K² t⁵/20 + (R t³/6)²): σ "
+           "of the bias, N white noise (velocity random walk), K random walk from the beginning of "
+           "the integration, R ramp, and σ_B = B √((ln(P/(2π t)) + 1.17)/π) from flicker B of "
+           "periods up to P, one hour or ten times t. Scale errors and tilt act through the motion "
+           "and are not in it."}}};
+  Table parts = parts_table(report);
+  if (!parts.rows.empty()) page.sections.front().tables.push_back(std::move(parts));
   return html(page);
 }
 
