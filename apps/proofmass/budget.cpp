@@ -15,7 +15,7 @@
 namespace proofmass::app {
 namespace {
 
-double si_of(const std::optional<sensor::Figure>& figure) {
+double si_or_zero(const std::optional<sensor::Figure>& figure) {
   return figure ? figure->si() : 0.0;
 }
 
@@ -29,10 +29,10 @@ estimate::BudgetSensor axis_of(const sensor::SensorModel& model, std::size_t axi
   const sensor::NoiseModel& noise = model.noise;
   return {fmt::format("{} {}", model.name, "xyz"[axis]),
           {0.0, *bias.std_si() / per_mps2},
-          {.white_mps2_rthz = si_of(noise.white[axis]),
-           .flicker_mps2 = si_of(noise.flicker[axis]),
-           .random_walk_mps2_rts = si_of(noise.random_walk[axis]),
-           .ramp_mps3 = si_of(noise.ramp[axis])}};
+          {.white_mps2_rthz = si_or_zero(noise.white[axis]),
+           .flicker_mps2 = si_or_zero(noise.flicker[axis]),
+           .random_walk_mps2_rts = si_or_zero(noise.random_walk[axis]),
+           .ramp_mps3 = si_or_zero(noise.ramp[axis])}};
 }
 
 // Which of the noises that grow fastest the file does not know, so that the error has no share of

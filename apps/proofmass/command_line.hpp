@@ -75,7 +75,7 @@ struct NoiseCommand {
 
 struct DriftCommand {
   std::vector<std::string> files;
-  std::string temperature, update_sensor;
+  std::string temperature, update_sensor, order = "time";
   std::optional<double> forecast_s;
   InputFlags input;
   OutputFlags output;

@@ -176,8 +176,9 @@ void run(const DriftCommand& command) {
   report.inputs = command.files;
   report.since_switch_on_s = since_switch_on_s(command.input);
   report.forecast_s = command.forecast_s;
-  const std::vector<RestRecording> recordings =
-      rest_recordings(rest_options(command), report.notes);
+  std::vector<RestRecording> recordings = rest_recordings(rest_options(command), report.notes);
+  if (command.order == "time") put_in_time_order(recordings, report.notes);
+  report.every_run = command.output.verbose;
   std::vector<DriftChannel> channels = drift_channels(recordings);
   expect_kelvin(recordings);
   if (report.forecast_s) expect_future(*report.forecast_s, report.since_switch_on_s, channels);

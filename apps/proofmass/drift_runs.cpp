@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <string_view>
 
 #include "proofmass/characterise/run_set.hpp"
 #include "proofmass/core/in_parallel.hpp"
@@ -66,6 +67,42 @@ RunsOfChannel gathered(const std::vector<const RestChannel*>& channels, std::vec
   return out;
 }
 
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+// The digits from `at` on, less leading zeros; `at` goes behind them.
+std::string_view number_at(std::string_view text, std::size_t& at) {
+  const std::size_t from = at;
+  while (at < text.size() && is_digit(text[at])) ++at;
+  std::string_view digits = text.substr(from, at - from);
+  while (digits.size() > 1 && digits.front() == '0') digits.remove_prefix(1);
+  return digits;
+}
+
+// Numbers in names count by value: "run2" is before "run10".
+bool natural_less(std::string_view a, std::string_view b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const std::string_view x = number_at(a, i), y = number_at(b, j);
+      if (x.size() != y.size()) return x.size() < y.size();
+      if (x != y) return x < y;
+      continue;
+    }
+    if (a[i] != b[j]) return a[i] < b[j];
+    ++i;
+    ++j;
+  }
+  return a.size() - i < b.size() - j;
+}
+
+// Since 1970, and not since a power-up or nothing at all.
+bool is_epoch(const RestRecording& recording) {
+  constexpr std::int64_t least_ns = 100'000'000'000'000'000;  // 1973
+  return recording.start_ns.value_or(0) > least_ns;
+}
+
 void compare(RunsOfChannel& of_channel, const characterise::DriftOptions& options) {
   if (!of_channel.shown.refused.empty()) return;
   Result<characterise::RunSet> found = characterise::compare_runs(of_channel.runs, options);
@@ -76,6 +113,25 @@ void compare(RunsOfChannel& of_channel, const characterise::DriftOptions& option
 }
 
 }  // namespace
+
+void put_in_time_order(std::vector<RestRecording>& recordings, std::vector<Note>& notes) {
+  if (recordings.size() < fewest_runs) return;
+  const bool dated = std::ranges::all_of(recordings, is_epoch);
+  const auto before = [&](const RestRecording& a, const RestRecording& b) {
+    if (dated && a.start_ns != b.start_ns) return *a.start_ns < *b.start_ns;
+    return natural_less(a.channels.front().file, b.channels.front().file);
+  };
+  if (std::ranges::is_sorted(recordings, before)) return;
+  std::ranges::stable_sort(recordings, before);
+  notes.push_back(
+      {Severity::info,
+       fmt::format(
+           "the files are taken by {}, from {} to {}, not in the order given; --order given "
+           "keeps that",
+           dated ? "their time stamps" : "the numbers in their names",
+           report::file_name(recordings.front().channels.front().file),
+           report::file_name(recordings.back().channels.front().file))});
+}
 
 std::vector<report::ChannelRuns> compare_recordings(const std::vector<RestRecording>& recordings,
                                                     double since_switch_on_s,

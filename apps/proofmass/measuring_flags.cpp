@@ -138,6 +138,11 @@ void add_flags(CLI::App& app, DriftCommand& command) {
   add("--temperature", command.temperature, "NAME",
       "fit the bias against this channel (default: the only one in a unit of temperature); none: "
       "do not");
+  add("--order", command.order, "ORDER",
+      "of three files or more: time (default: by their absolute time stamps, else by the numbers "
+      "in "
+      "their names) or given (as on the command line)")
+      ->check(CLI::IsMember({"time", "given"}));
   add("--update-sensor", command.update_sensor, "FILE.toml",
       "write what is identified into this sensor file");
   add_input_flags(verb, command.input);

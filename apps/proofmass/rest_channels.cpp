@@ -179,6 +179,7 @@ RestRecording rest_recording(Recording recording,
   RestRecording out;
   const std::string file = recording.source;
   const std::string prefix = file_prefix(file, options);
+  out.start_ns = recording.time.start_ns;
   Source source;
   source.recording = std::move(recording);
   source.temperature = temperature_in(source.recording, options, notes);

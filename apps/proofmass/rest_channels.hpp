@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -48,6 +49,7 @@ struct RestTemperature {
 struct RestRecording {
   std::vector<RestChannel> channels;
   std::optional<RestTemperature> temperature;
+  std::optional<std::int64_t> start_ns;  ///< of the first sample on the file's own clock
 };
 
 /// Opens one of the files, whole or as a stream where it is larger than --memory. Throws Failure,

@@ -135,6 +135,74 @@ class Drift(CommandTest):
         self.expect_inside(channel, "time_constant_s", 900.0)
         self.assertAlmostEqual(channel["duration_s"], HOURS_2, delta=1.0)
 
+    def runs_that_warm_up(self, count=40):
+        """run1.csv …: means that follow −2 mg (1 − e^(−n/5)) in 0.1 mg of scatter; in the shell's order."""
+        scatter = white(count, 1e-4, 3)
+        for k in range(count):
+            level = -2e-3 * -math.expm1(-k / 5.0) + scatter[k]
+            self.write(f"run{k + 1}.csv", table({"acc_x (g)": total([level] * 300, white(300, 5e-4, 100 + k))}))
+        return sorted(f"run{k + 1}.csv" for k in range(count))
+
+    def test_files_are_taken_by_the_numbers_in_their_names_and_show_the_warm_up_over_the_runs(self):
+        names = self.runs_that_warm_up()
+        document = self.document("drift", *names)
+        runs = document["runs"][0]
+        self.assertEqual([level["name"] for level in runs["levels"]], [f"run{k + 1}.csv" for k in range(40)])
+        self.assertIn("not in the order given", "\n".join(document["notes"]))
+        curve = runs["level_curve"]
+        self.assertEqual(curve["verdict"], "identified", curve["reason"])
+        for key, truth in (("a1", -2e-3 * G), ("a2", 0.0), ("time_constant_runs", 5.0)):
+            self.assertAlmostEqual(curve[key]["value"], truth, delta=4 * curve[key]["std"])
+            lower, upper = curve["interval_95"][key]
+            self.assertLess(lower, upper)
+        self.assertLess(curve["time_constant_runs"]["std"], 1.0)
+        self.assertLess(runs["trend_p"], 1e-3)
+        given = self.document("drift", *names, "--order", "given")
+        self.assertEqual([level["name"] for level in given["runs"][0]["levels"]], names)
+
+    def test_of_many_files_the_summary_comes_first_and_each_run_on_request(self):
+        names = self.runs_that_warm_up(14)
+        text = self.succeed("drift", *names)
+        self.assertTrue(text.startswith("acc_x: 14 runs"), text)
+        self.assertLess(len(text.splitlines()), 15)
+        self.assertIn("-v prints each", text)
+        self.assertIn("run14.csv: acc_x", self.succeed("drift", *names, "-v"))
+
+    def test_a_table_of_means_is_a_record(self):
+        means = total(warm_up(30, 5e-3, 1e-3, 4.0), white(30, 1e-4, 8))
+        self.write("means.csv", table({"acc_x (g)": means}))
+        channel = self.document("drift", "means.csv")["channels"][0]
+        self.assertEqual(channel["verdict"], "identified", channel["reason"])
+        self.expect_inside(channel, "time_constant_s", 4.0)
+        self.write("short.csv", table({"acc_x (g)": means[:11]}))
+        self.assertIn("at least 12", self.document("drift", "short.csv")["channels"][0]["reason"])
+
+    def test_where_another_shape_fits_as_well_none_is_claimed_and_a_forecast_covers_them(self):
+        shape = [5e-3 * math.log1p(k / 60.0) / math.log1p(HOURS_2 / 60.0) for k in range(HOURS_2)]
+        self.write("log.csv", table({"acc_x (g)": total(shape, white(HOURS_2, 1e-3, 9))}))
+        document = self.document("drift", "log.csv", "--forecast", "9000")
+        channel = document["channels"][0]
+        self.assertEqual(channel["verdict"], "not_identified")
+        self.assertEqual(channel["reason_code"], "shape_undetermined")
+        self.assertIn("its shape cannot be determined from this recording", channel["reason"])
+        self.assertIsNone(channel["a1"])
+        self.assertIsNone(channel["time_constant_s"])
+        self.assertIn("logarithm", [item["model"] for item in channel["possible_models"]])
+        lower, upper = channel["forecast"]["interval_95"]
+        truth = 5e-3 * G * math.log1p(9000 / 60.0) / math.log1p(HOURS_2 / 60.0)
+        self.assertLess(lower, truth)
+        self.assertLess(truth, upper)
+        self.assertIn("its shape cannot be determined", self.succeed("drift", "log.csv"))
+
+    def test_the_bias_of_an_axis_that_bears_gravity_is_a_level(self):
+        up = total([1.0] * HOURS_2, warm_up(HOURS_2, 5e-3, 0.0, 900.0), white(HOURS_2, 1e-3, 1))
+        self.write("up.csv", table({"acc_z (g)": up}))
+        text = self.succeed("drift", "up.csv", "--forecast", "10000")
+        self.assertIn("Level at switching on a2", text)
+        self.assertNotIn("ias at switching on", text)
+        self.assertIn("after switching on: level", text)
+        self.assertTrue(self.document("drift", "up.csv")["channels"][0]["bears_gravity"])
+
     def test_power_ups_are_compared_as_a_set(self):
         samples, names = 600, [f"run{k}.csv" for k in range(6)]
         levels = white(6, 5e-3, 7)

@@ -64,7 +64,7 @@ struct DriftAnalysis {
 
 /// Analyses a series sampled evenly at rate_hz, NaN where a sample is missing.
 ///
-/// Errors: invalid_argument (options), too_few_samples (fewer than 64 blocks can be made, or more
+/// Errors: invalid_argument (options), too_few_samples (fewer than 12 blocks can be made, or more
 /// than half of them are missing), not_finite (nothing but missing samples), not_observable (the
 /// samples, or the means over blocks, do not vary), unsupported (means above 1e60, or that vary by
 /// less than 1e-60). Cost: O(N), then some hundred passes over up to 2048 blocks.

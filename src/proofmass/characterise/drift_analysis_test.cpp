@@ -68,7 +68,7 @@ TEST(DriftAnalysis, FindsTheWarmUpOfARecording) {
 
 TEST(DriftAnalysis, FitsMeansOverBlocksOfALongRecording) {
   Series series =
-      test::sum_of({test::warm_up(5.0, 60.0, 8.0, 8 * n), test::white(0.5, 8.0, 8 * n, 2)});
+      test::sum_of({test::warm_up(5.0, 60.0, 8.0, 8 * n), test::white(0.2, 8.0, 8 * n, 2)});
   const DriftAnalysis analysis = analysed(series, {.rate_hz = 8.0});
   // 4800 samples by three: as many of up to 2048 blocks as are whole.
   EXPECT_DOUBLE_EQ(analysis.block_s, 3.0 / 8.0);
@@ -78,6 +78,19 @@ TEST(DriftAnalysis, FitsMeansOverBlocksOfALongRecording) {
                 (series[3 * block] + series[3 * block + 1] + series[3 * block + 2]) / 3.0, 1e-12);
   EXPECT_TRUE(holds(analysis.fit.a1, 5.0));
   EXPECT_TRUE(holds(analysis.fit.time_constant_s, 60.0));
+}
+
+// A table of means, one a power-up: rows instead of samples.
+TEST(DriftAnalysis, TakesATableOfTwelveValuesOrMore) {
+  Series table = test::sum_of({test::warm_up(5.0, 4.0, 1.0, 30), test::white(0.1, 1.0, 30, 3)});
+  const DriftAnalysis analysis = analysed(table, {.rate_hz = 1.0});
+  ASSERT_TRUE(analysis.fit.identified) << analysis.fit.reason;
+  EXPECT_NEAR(analysis.fit.time_constant_s->value, 4.0, 4.0 * analysis.fit.time_constant_s->std);
+  EXPECT_EQ(analysis.block_s, 1.0);
+  table.resize(12);
+  EXPECT_TRUE(analyse_drift(table, {.rate_hz = 1.0}));
+  table.resize(11);
+  EXPECT_EQ(refused(table).code, Errc::too_few_samples);
 }
 
 TEST(DriftAnalysis, LeavesOutWhatIsNoNumber) {
@@ -116,10 +129,10 @@ TEST(DriftAnalysis, RefusesARecordingOfWhichMoreThanHalfIsMissing) {
   EXPECT_EQ(refused(series).code, Errc::too_few_samples);
 }
 
-TEST(DriftAnalysis, RefusesLessThanSixtyFourSamples) {
-  EXPECT_EQ(refused(test::normals(63, 1)).code, Errc::too_few_samples);
+TEST(DriftAnalysis, RefusesLessThanTwelveSamples) {
+  EXPECT_EQ(refused(test::normals(11, 1)).code, Errc::too_few_samples);
   EXPECT_EQ(refused({}).code, Errc::too_few_samples);
-  EXPECT_TRUE(analyse_drift(test::normals(64, 1), {.rate_hz = 1.0}));
+  EXPECT_TRUE(analyse_drift(test::normals(12, 1), {.rate_hz = 1.0}));
 }
 
 TEST(DriftAnalysis, RefusesWhatDoesNotVary) {

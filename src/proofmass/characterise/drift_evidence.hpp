@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "proofmass/characterise/term_spectra.hpp"
@@ -21,12 +22,12 @@ namespace proofmass::characterise {
 /// Statist. Soc. Suppl. 4 (1937) 137, for the device.
 class DriftEvidence {
  public:
-  /// Errors: too_few_samples (fewer than 64 blocks, or more than half of them missing).
+  /// Errors: too_few_samples (fewer than 12 blocks, or more than half of them missing).
   static Result<DriftEvidence> make(View<double> block_means,
                                     const Sampling& sampling,
                                     double start_s);
 
-  static constexpr std::size_t fewest_blocks = 64;
+  static constexpr std::size_t fewest_blocks = 12;
 
   [[nodiscard]] Eigen::Index blocks() const { return n_; }
   [[nodiscard]] double block_s() const { return sampling_.step_s(); }
@@ -48,6 +49,8 @@ class DriftEvidence {
   /// Of 1 − e^(−t/T), and of its derivative by ln T.
   [[nodiscard]] Eigen::VectorXd rise(double time_constant_s) const;
   [[nodiscard]] Eigen::VectorXd rise_by_log_time(double time_constant_s) const;
+  /// Of any curve of the time, as means over blocks: over their samples where these are few.
+  [[nodiscard]] Eigen::VectorXd of(const std::function<double(double)>& curve) const;
   /// Of t / duration.
   [[nodiscard]] const Eigen::VectorXd& line() const { return line_; }
   /// Of a step of height 1 at the beginning of a block.

@@ -146,17 +146,17 @@ TEST(DriftEvidence, KeepsTheSumOfSquaresAsADensity) {
   EXPECT_NEAR(evidence.ordinates().squaredNorm(), squares, 1e-10);
 }
 
-TEST(DriftEvidence, NeedsSixtyFourBlocksAndHalfOfThem) {
-  Series means = test::normals(63, 1);
+TEST(DriftEvidence, NeedsTwelveBlocksAndHalfOfThem) {
+  Series means = test::normals(11, 1);
   EXPECT_EQ(DriftEvidence::make(means, blocks_of_three, 0.0).error().code, Errc::too_few_samples);
   means.push_back(0.0);
   EXPECT_TRUE(DriftEvidence::make(means, blocks_of_three, 0.0));
-  for (std::size_t k = 0; k < 32; ++k) means[k] = missing;
+  for (std::size_t k = 0; k < 6; ++k) means[k] = missing;
   EXPECT_TRUE(DriftEvidence::make(means, blocks_of_three, 0.0));
-  means[32] = missing;
+  means[6] = missing;
   const Error error = DriftEvidence::make(means, blocks_of_three, 0.0).error();
   EXPECT_EQ(error.code, Errc::too_few_samples);
-  EXPECT_NE(error.message.find("33 are missing"), std::string::npos);
+  EXPECT_NE(error.message.find("7 are missing"), std::string::npos);
 }
 
 }  // namespace

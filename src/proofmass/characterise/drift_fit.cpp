@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <limits>
 
 #include "proofmass/characterise/drift_profile.hpp"
+#include "proofmass/characterise/drift_shapes.hpp"
 #include "proofmass/characterise/drift_state.hpp"
 #include "proofmass/characterise/drift_trials.hpp"
 #include "proofmass/core/chi_square.hpp"
@@ -41,6 +43,20 @@ double undetected_below(const DriftEvidence& evidence, const DriftTrial& constan
       evaluate_ordinates(evidence.contrasts(), constant.noise.P, means, constant.fit.strength);
   const Index last = means.fitted.cols() - 1;
   return std::abs(fit.coefficients(last)) + two_sided * std::sqrt(fit.covariance(last, last));
+}
+
+// "logarithm", "square root and logarithm", "square root, logarithm and sine".
+std::string rivals_of(const DriftFit& fit) {
+  std::vector<std::string> names;
+  for (const DriftPossibility& one : fit.possibilities) {
+    if (one.curve.shape == DriftShape::exponential) continue;
+    names.emplace_back(name_of(one.curve.shape));
+    std::ranges::replace(names.back(), '_', ' ');
+  }
+  if (names.size() < 2) return names.empty() ? "" : names.front();
+  const std::string last = std::move(names.back());
+  names.pop_back();
+  return fmt::format("{} and {}", fmt::join(names, ", "), last);
 }
 
 std::string times_of(const DriftFit& fit) {
@@ -89,6 +105,16 @@ std::string reason_for(const DriftFit& fit,
           "a drift with a time constant of {:.3g} s, {:.3g} s after switching on, is no warm-up: "
           "it would have been over long before",
           fit.best_time_constant_s, evidence.start_s());
+    case DriftReason::shape_undetermined:
+      return fmt::format(
+          "a warm-up; its shape cannot be determined from this recording: a curve of another shape "
+          "than the exponential fits as well or better ({})",
+          rivals_of(fit));
+    case DriftReason::swing:
+      return fmt::format(
+          "no warm-up but a slow swing: a sine with a period of {:.3g} s, of the temperature "
+          "perhaps, explains the drift better than any warm-up",
+          fit.curve.time_constant_s);
     case DriftReason::shorter_than_resolved:
       return fmt::format(
           "settled within {:.3g} s, which is too short for blocks of {:.3g} s: "
@@ -121,20 +147,24 @@ class DriftVerdict {
     fit.undetected_below = undetected_below(evidence_, trials_.of(DriftShape::constant));
     fit.why = why(T);
     if (fit.why == DriftReason::shorter_than_resolved) fit.time_constant_below_s = T.upper_95;
-    if (fit.why == DriftReason::identified && !explained(exponential_))
+    const std::vector<const DriftTrial*> as_good = trials_.as_good();
+    const bool open = fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::swing;
+    if ((fit.why == DriftReason::identified && !explained(exponential_)) ||
+        (open && !explained(*as_good.front())))
       fit.why = DriftReason::unexplained;
     fit.identified = fit.why == DriftReason::identified;
-    const DriftTrial& chosen = fit.identified ? exponential_ : other_;
-    const PlacedCurve placed = fit.identified ? warm : place(evidence_, other_);
+    const bool none = !fit.identified && !(open && fit.why != DriftReason::unexplained);
+    const DriftTrial& chosen = none ? other_ : fit.identified ? exponential_ : *as_good.front();
+    const PlacedCurve placed = fit.identified ? warm : place(evidence_, chosen);
     fit.curve = placed.curve;
     fit.end = placed.end;
     fit.noise = noise_of(chosen);
     const double dof = profile_.amplitude_dof();
     fit.a2 = interval(fit.curve.a2, std::sqrt(fit.curve.covariance(0, 0)), dof);
+    if (!none && !fit.identified) allow(as_good, dof);
     if (fit.identified) intervals(T);
-    if (fit.curve.shape == DriftShape::line ||
-        fit.curve.shape == DriftShape::exponential_and_line) {
-      const Index place = fit.identified ? 3 : 1;
+    if (has_line(fit.curve.shape)) {
+      const Index place = fit.curve.shape == DriftShape::line ? 1 : 3;
       fit.slope_per_s =
           interval(fit.curve.slope_per_s, std::sqrt(fit.curve.covariance(place, place)), dof);
     }
@@ -155,6 +185,49 @@ class DriftVerdict {
     fit.line_p = line.p;
   }
 
+  // All that fit as well, and the level at switching on that any of them gives.
+  void allow(const std::vector<const DriftTrial*>& as_good, double dof) {
+    DriftFit& fit = out_.fit;
+    std::vector<Interval95> levels;
+    double sum = 0.0;
+    for (const DriftTrial* trial : as_good) {
+      const PlacedCurve placed = place(evidence_, *trial);
+      const double weight = std::exp(0.5 * (as_good.front()->akaike() - trial->akaike()));
+      sum += weight;
+      fit.possibilities.push_back({placed.curve, noise_of(*trial), placed.end, weight});
+      levels.push_back(interval(placed.curve.a2, std::sqrt(placed.curve.covariance(0, 0)), dof));
+    }
+    for (DriftPossibility& one : fit.possibilities) one.weight /= sum;
+    fit.a2 = covering(levels, fit.possibilities);
+  }
+
+  // Clearly better by both criteria.
+  [[nodiscard]] static bool beats(const DriftTrial& a, const DriftTrial& b) {
+    return std::min(b.akaike() - a.akaike(),
+                    b.candidate.information_criterion - a.candidate.information_criterion) >=
+           DriftTrials::clear_margin;
+  }
+
+  // Whether a shape that is no exponential is clearly better.
+  [[nodiscard]] bool outdone() const {
+    return std::ranges::any_of(
+        trials_.rivals(), [&](const DriftTrial* rival) { return beats(*rival, exponential_); });
+  }
+
+  // What a shape that is no exponential makes of an exponential that all else speaks for. The
+  // exponential has to be clearly better than each by both criteria: by Schwarz's, too, where it
+  // has more parameters, which in a random walk bend with it.
+  [[nodiscard]] DriftReason by_shape() const {
+    const std::vector<const DriftTrial*> rivals = trials_.rivals();
+    const auto beaten = [&](const DriftTrial* rival) { return beats(exponential_, *rival); };
+    if (std::ranges::all_of(rivals, beaten)) return DriftReason::identified;
+    // A sine alone is no warm-up.
+    const std::vector<const DriftTrial*> as_good = trials_.as_good();
+    return as_good.size() == 1 && as_good.front()->at.shape == DriftShape::sine
+               ? DriftReason::swing
+               : DriftReason::shape_undetermined;
+  }
+
   // The exponential beside a line has to be needed beside it.
   [[nodiscard]] bool significant() const {
     if (exponential_.at.shape == DriftShape::exponential_and_line)
@@ -164,23 +237,28 @@ class DriftVerdict {
 
   [[nodiscard]] DriftReason why(const Interval95& T) const {
     const DriftFit& fit = out_.fit;
-    const bool best =
-        exponential_.candidate.information_criterion < other_.candidate.information_criterion;
+    double least = exponential_.candidate.information_criterion;
+    for (const DriftTrial* trial : trials_.rivals())
+      least = std::min(least, trial->candidate.information_criterion);
+    const bool best = least < other_.candidate.information_criterion;
     if (!best && other_.at.shape == DriftShape::steps) return DriftReason::steps;
     if (!best && other_.at.shape == DriftShape::line) return DriftReason::line;
     if (!significant())
       return trials_.plain_test(trials_.of(DriftShape::exponential)).p < DriftTrials::level
                  ? DriftReason::hidden_by_noise
                  : DriftReason::no_warm_up;
-    // What spans fewer is a few odd blocks at the beginning.
-    constexpr double fewest_blocks = 10.0, line_level = 0.05;
+    // What spans fewer is a few odd blocks at the beginning; of a short table fewer are no oddity.
+    constexpr double most_blocks = 10.0, share = 1.0 / 24.0, line_level = 0.05;
     constexpr double longest_ago = 10.0;  // of e^-10 of its amplitude no recording shows anything
+    const double fewest = std::min(most_blocks, share * static_cast<double>(evidence_.blocks()));
     if (evidence_.start_s() > longest_ago * T.value) return DriftReason::begun_later;
-    if (!T.lower_95 || T.value < fewest_blocks * evidence_.block_s())
+    if (!T.lower_95 || T.value < fewest * evidence_.block_s())
       return DriftReason::shorter_than_resolved;
     if (!T.upper_95 || *T.upper_95 > evidence_.duration_s() || T.value > evidence_.duration_s())
-      return fit.line_p > line_level ? DriftReason::line : DriftReason::longer_than_record;
-    return best ? DriftReason::identified : DriftReason::hidden_by_noise;
+      return fit.line_p > line_level ? DriftReason::line
+             : outdone()             ? by_shape()
+                                     : DriftReason::longer_than_record;
+    return best ? by_shape() : DriftReason::hidden_by_noise;
   }
 
   void intervals(const Interval95& T) {

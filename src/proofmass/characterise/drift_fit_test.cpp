@@ -1,6 +1,7 @@
 #include "proofmass/characterise/drift_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -227,7 +228,7 @@ TEST(DriftFit, DoesNotMindGravity) {
 TEST(DriftFit, CountsTimeFromSwitchingOn) {
   // The same warm-up, seen from 200 s on.
   const Series late = test::warm_up(40.0, 100.0, 0.25, n + 50);
-  const DriftFit fit = fitted(with_white(Series(late.begin() + 50, late.end()), 3), 200.0);
+  const DriftFit fit = fitted(with_white(Series(late.begin() + 50, late.end()), 3, 0.2), 200.0);
   ASSERT_TRUE(fit.identified) << fit.reason;
   EXPECT_TRUE(holds(*fit.a1, 40.0));
   EXPECT_TRUE(holds(*fit.time_constant_s, 100.0));
@@ -244,6 +245,79 @@ TEST(DriftFit, GoesAcrossMissingBlocks) {
   EXPECT_TRUE(holds(*found.fit.a1, 5.0));
   EXPECT_TRUE(holds(*found.fit.time_constant_s, 100.0));
   for (std::size_t k = 0; k < n; ++k) EXPECT_EQ(std::isnan(found.whitened[k]), k >= 50 && k < 70);
+}
+
+// --- other shapes --------------------------------------------------------------------------------
+
+/// Values of a curve at the middle of each block.
+Series sampled(double (*curve)(double t_s)) {
+  Series y(n);
+  for (std::size_t k = 0; k < n; ++k) y[k] = curve(h * (static_cast<double>(k) + 0.5));
+  return y;
+}
+
+bool allows(const DriftFit& fit, DriftShape shape) {
+  return std::ranges::any_of(fit.possibilities,
+                             [&](const DriftPossibility& one) { return one.curve.shape == shape; });
+}
+
+struct OtherShape {
+  DriftShape shape;
+  double (*curve)(double t_s);
+};
+
+// Each goes up by some 5 in the record, in white noise of 0.15 a block.
+constexpr std::array<OtherShape, 4> other_shapes{
+    {{DriftShape::square_root, [](double t) { return 0.16 * std::sqrt(t); }},
+     {DriftShape::logarithm, [](double t) { return 1.6 * std::log(1.0 + t / 45.0); }},
+     {DriftShape::hyperbola, [](double t) { return 6.0 - 6.0 / (1.0 + t / 120.0); }},
+     {DriftShape::stretched_exponential,
+      [](double t) { return 6.0 * (1.0 - std::exp(-std::sqrt(t / 120.0))); }}}};
+
+TEST(DriftFit, DoesNotCallAnExponentialWhatIsAnotherShape) {
+  for (const OtherShape& other : other_shapes) {
+    SCOPED_TRACE(name_of(other.shape));
+    int allowed = 0;
+    for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+      const DriftFit fit = fitted(with_white(sampled(other.curve), seed, 0.3));
+      expect_not_identified(fit, DriftReason::shape_undetermined);
+      EXPECT_NE(fit.reason.find("its shape cannot be determined"), std::string::npos);
+      allowed += allows(fit, other.shape) ? 1 : 0;
+      const DriftForecast later = forecast(fit, 1.2 * record_s).value();
+      EXPECT_TRUE(holds(later.bias, other.curve(1.2 * record_s))) << seed;
+    }
+    EXPECT_GE(allowed, 3);
+  }
+}
+
+TEST(DriftFit, DoesNotCallASwingOfTheTemperatureAWarmUp) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    const DriftFit whole = fitted(with_white(
+        sampled([](double t) { return 3.0 * std::sin(6.2831853 * t / record_s); }), seed, 1.0));
+    EXPECT_FALSE(whole.identified) << whole.reason;
+    const DriftFit half = fitted(with_white(
+        sampled([](double t) { return 5.0 * std::sin(3.1415927 * t / record_s); }), seed, 1.0));
+    EXPECT_FALSE(half.identified) << half.reason;
+    const DriftFit quarter = fitted(with_white(
+        sampled([](double t) { return 5.0 * std::sin(1.5707963 * t / record_s); }), seed, 1.0));
+    EXPECT_FALSE(quarter.identified) << quarter.reason;
+  }
+}
+
+// A curve by its definition, its block means by a fine sum: second way to the columns of the fit.
+TEST(DriftFit, FindsTheScaleOfALogarithmWithinItsStd) {
+  Series y(n, 0.0);
+  constexpr int parts = 200;
+  for (std::size_t k = 0; k < n; ++k)
+    for (int j = 0; j < parts; ++j)
+      y[k] += 2.0 * std::log(1.0 + h * (static_cast<double>(k) + (j + 0.5) / parts) / 30.0) / parts;
+  const DriftFit fit = fitted(with_white(y, 1, 0.02));
+  ASSERT_EQ(fit.why, DriftReason::shape_undetermined) << fit.reason;
+  ASSERT_EQ(fit.curve.shape, DriftShape::logarithm);
+  const double std_of_log = std::sqrt(fit.curve.covariance(2, 2));
+  EXPECT_NEAR(std::log(fit.curve.time_constant_s / 30.0), 0.0, 3.0 * std_of_log);
+  EXPECT_NEAR(fit.curve.a1, 2.0, 3.0 * std::sqrt(fit.curve.covariance(1, 1)));
+  EXPECT_LT(std_of_log, 0.05);
 }
 
 // The whitened residual of a model that fits has variance 1, as its density times the block is.

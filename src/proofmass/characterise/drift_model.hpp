@@ -8,6 +8,7 @@
 
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/core/result.hpp"
+#include "proofmass/core/view.hpp"
 
 // What the bias of a sensor at rest can do, and what was found of it.
 namespace proofmass::characterise {
@@ -15,16 +16,25 @@ namespace proofmass::characterise {
 /// The deterministic part, t since switching on:
 ///
 ///     y(t) = a2 + a1 (1 − e^(−t/T)) + a1' (1 − e^(−t/T')) + a3 t + Σ s_j [t ≥ t_j]
+///
+/// or, where another shape than the exponential is as likely, a2 + a1 g(t/T) of drift_shapes.hpp;
+/// of the sine T is the period and a1' the amplitude of the cosine.
 enum class DriftShape {
-  constant,              ///< a2
-  line,                  ///< a2, a3
-  steps,                 ///< a2, s_j
-  exponential,           ///< a2, a1, T
-  exponential_and_line,  ///< a2, a1, T, a3
-  two_exponentials,      ///< a2, a1, T, a1', T'; T is that of the larger amplitude
+  constant,               ///< a2
+  line,                   ///< a2, a3
+  steps,                  ///< a2, s_j
+  exponential,            ///< a2, a1, T
+  exponential_and_line,   ///< a2, a1, T, a3
+  two_exponentials,       ///< a2, a1, T, a1', T'; T is that of the larger amplitude
+  square_root,            ///< a2, a1
+  logarithm,              ///< a2, a1, T
+  hyperbola,              ///< a2, a1, T
+  stretched_exponential,  ///< a2, a1, T
+  sine,                   ///< a2, a1, a1', T
 };
 
-/// "constant", "line", "steps", "exponential", "exponential_and_line", "two_exponentials".
+/// "constant", "line", "steps", "exponential", "exponential_and_line", "two_exponentials",
+/// "square_root", "logarithm", "hyperbola", "stretched_exponential", "sine".
 [[nodiscard]] std::string_view name_of(DriftShape shape);
 
 [[nodiscard]] constexpr bool has_line(DriftShape shape) {
@@ -78,7 +88,8 @@ struct DriftCurve {
   double second_a1 = 0.0, second_time_constant_s = 0.0;
   double slope_per_s = 0.0;
   std::vector<DriftStep> steps;
-  /// Of [a2; a1; ln T; a1'; ln T'; a3; s_1 …], those that the shape has, in this order.
+  /// Of [a2; a1; ln T; a1'; ln T'; a3; s_1 …], those that the shape has, in this order; of the sine
+  /// [a2; a1; a1'; ln T].
   Eigen::MatrixXd covariance;
 
   [[nodiscard]] double value(double t_s) const;
@@ -95,6 +106,15 @@ struct DriftState {
   Eigen::MatrixXd covariance;  ///< of the entries of DriftCurve::covariance, then of the wander
 };
 
+/// A curve that the recording allows, with what wanders beside it; `weight` by Akaike's criterion,
+/// of all that it allows 1.
+struct DriftPossibility {
+  DriftCurve curve;
+  DriftNoise noise;
+  DriftState end;
+  double weight = 1.0;
+};
+
 /// Why there is no time constant.
 enum class DriftReason {
   identified,
@@ -105,11 +125,13 @@ enum class DriftReason {
   longer_than_record,     ///< T is not bounded within the record
   shorter_than_resolved,  ///< T at or below what the blocks resolve
   begun_later,            ///< an exponential that would be long over, had it begun at switching on
+  shape_undetermined,     ///< a warm-up, but another shape fits it as well as the exponential
+  swing,                  ///< a slow sine explains it better than any warm-up
   unexplained             ///< what is left is no noise: something else moves the bias
 };
 
 /// What was found. Where no exponential is identified, the curve is the best of the shapes without
-/// one, and has neither a1 nor T.
+/// one, or of all where the shape is not determined, and a1 and T are missing.
 struct DriftFit {
   DriftCurve curve;
   DriftNoise noise;
@@ -117,7 +139,10 @@ struct DriftFit {
   DriftReason why = DriftReason::no_warm_up;
   std::string reason;  ///< a sentence for people, without unit: figures are in the fields
 
-  Interval95 a2;                              ///< bias at switching on
+  /// Where the shape is not determined, all that fit as well, the likeliest first.
+  std::vector<DriftPossibility> possibilities;
+
+  Interval95 a2;                              ///< bias at switching on, over all possibilities
   std::optional<Interval95> a1;               ///< where identified
   std::optional<Interval95> time_constant_s;  ///< where identified
   std::optional<Interval95> second_a1, second_time_constant_s, slope_per_s;
@@ -140,6 +165,10 @@ struct DriftFit {
   double block_s = 0.0;  ///< of the means that the fit is of
 };
 
+/// Mean and standard deviation over the possibilities, one interval each, and the interval that
+/// holds all of theirs.
+[[nodiscard]] Interval95 covering(View<Interval95> intervals, View<DriftPossibility> possibilities);
+
 /// The bias at a later time.
 struct DriftForecast {
   double t_s = 0.0;
@@ -147,8 +176,9 @@ struct DriftForecast {
   Interval95 change;  ///< since the end of the recording
 };
 
-/// y(t) and the 95 % band that curve, wander so far and the wander until then leave.
-/// Errors: not_observable (the warm-up is not identified; the message says why), invalid_argument
+/// y(t) and the 95 % band that curve, wander so far and the wander until then leave. Where the
+/// shape is not determined: the mean over the possibilities, and a band that holds the bands of
+/// all. Errors: not_observable (no warm-up is identified; the message says why), invalid_argument
 /// (t_s is before the recording's end).
 [[nodiscard]] Result<DriftForecast> forecast(const DriftFit& fit, double t_s);
 

@@ -53,6 +53,9 @@ NoiseChoice::NoiseChoice(const DriftEvidence& evidence) : evidence_(evidence) {
   flicker_ = column(Term::flicker);
   // From where a block still shows it to where the record shows it but six times.
   const double shortest_s = 2.0 * evidence.block_s(), longest_s = evidence.duration_s() / 6.0;
+  // Of a few dozen values none can be told from a random walk.
+  constexpr Index fewest_values = 64;
+  if (evidence.blocks() < fewest_values) return;
   for (int k = 0; k < markov_times; ++k) {
     const double share = static_cast<double>(k) / (markov_times - 1);
     markov_times_s_.push_back(shortest_s * std::pow(longest_s / shortest_s, share));

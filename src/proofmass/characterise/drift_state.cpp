@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "proofmass/characterise/drift_shapes.hpp"
 #include "proofmass/core/linalg.hpp"
 
 namespace proofmass::characterise {
@@ -35,10 +36,24 @@ MatrixXd wander_densities(const DriftEvidence& evidence, const DriftTrial& trial
   return S;
 }
 
+// As curve_jacobian: [amplitudes; ln τ], then the missing blocks.
+MatrixXd rival_jacobian(const DriftEvidence& evidence,
+                        const DriftTrial& trial,
+                        const MatrixXd& columns) {
+  if (trial.at.log_times.empty()) return columns;
+  const auto own = static_cast<Index>(amplitudes_of(trial.at.shape));
+  MatrixXd J(evidence.blocks(), columns.cols() + 1);
+  J << columns.leftCols(own),
+      rival_by_log_scale(evidence, trial.at, trial.fit.coefficients.head(own)),
+      columns.rightCols(columns.cols() - own);
+  return J;
+}
+
 // Derivatives of the mean's ordinates, k = 0 first, by what the curve's covariance is of, the level
 // apart, and then by the missing blocks.
 MatrixXd curve_jacobian(const DriftEvidence& evidence, const DriftTrial& trial) {
   const MatrixXd columns = whole_columns(evidence, trial.at);
+  if (is_rival(trial.at.shape)) return rival_jacobian(evidence, trial, columns);
   const auto exponentials = static_cast<Index>(trial.at.log_times.size());
   MatrixXd J(evidence.blocks(), columns.cols() + exponentials);
   for (Index k = 0; k < exponentials; ++k) {
@@ -121,15 +136,12 @@ void fill_curve(const DriftEvidence& evidence,
   const VectorXd& b = trial.fit.coefficients;
   const std::vector<double>& log_times = trial.at.log_times;
   curve.shape = trial.at.shape;
-  if (!log_times.empty()) {
-    curve.a1 = b(0);
-    curve.time_constant_s = std::exp(log_times[0]);
-  }
-  if (log_times.size() > 1) {
-    curve.second_a1 = b(1);
-    curve.second_time_constant_s = std::exp(log_times[1]);
-  }
-  auto place = static_cast<Index>(log_times.size());
+  const auto varying = static_cast<Index>(amplitudes_of(curve.shape));
+  if (varying > 0) curve.a1 = b(0);
+  if (varying > 1) curve.second_a1 = b(1);
+  if (!log_times.empty()) curve.time_constant_s = std::exp(log_times[0]);
+  if (log_times.size() > 1) curve.second_time_constant_s = std::exp(log_times[1]);
+  Index place = varying;
   if (curve.shape == DriftShape::line || curve.shape == DriftShape::exponential_and_line)
     curve.slope_per_s = b(place++) / evidence.duration_s();
   Index entry = covariance.rows() - static_cast<Index>(trial.at.step_blocks.size());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "proofmass/characterise/drift_shapes.hpp"
 #include "proofmass/characterise/step_search.hpp"
 #include "proofmass/fit/variable_projection.hpp"
 
@@ -18,9 +19,28 @@ constexpr int most_rounds = 12;
 constexpr double settled = 1e-3;  // in ln T: a tenth of what any recording can tell
 constexpr std::size_t most_steps = 32;
 
-std::size_t exponentials_of(DriftShape shape) {
-  if (shape == DriftShape::two_exponentials) return 2;
-  return shape == DriftShape::exponential || shape == DriftShape::exponential_and_line ? 1 : 0;
+// Where a scale is looked for: a logarithm with a τ below a block is ln t, and a sine of more than
+// two periods in the record looks like no warm-up.
+TimeRange scale_range(const DriftEvidence& evidence, DriftShape shape) {
+  if (is_exponential(shape)) return time_range(evidence);
+  const double record_s = evidence.duration_s();
+  if (shape == DriftShape::sine) return {0.5 * record_s, 8.0 * record_s};
+  return {0.25 * evidence.block_s(), 10.0 * record_s};
+}
+
+// Columns that the scales move, at these scales.
+MatrixXd varying_columns(const DriftEvidence& evidence, DriftShape shape, View<double> log_times) {
+  MatrixXd columns(evidence.blocks(), static_cast<Index>(amplitudes_of(shape)));
+  for (std::size_t k = 0; k < amplitudes_of(shape); ++k) {
+    const auto column = static_cast<Index>(k);
+    if (is_exponential(shape)) {
+      columns.col(column) = evidence.rise(std::exp(log_times[k]));
+      continue;
+    }
+    const RivalColumn rival{shape, k, log_times.empty() ? 1.0 : std::exp(log_times.front())};
+    columns.col(column) = evidence.of([&](double t_s) { return rival.at(t_s); });
+  }
+  return columns;
 }
 
 // Linear columns that no time constant moves.
@@ -51,14 +71,12 @@ std::vector<double> best_times(const DriftEvidence& evidence,
   const Index rows = evidence.blocks() - 1;
   const VectorXd root = S.cwiseSqrt().cwiseInverse();
   const VectorXd y = root.cwiseProduct(evidence.contrasts());
-  const TimeRange range = time_range(evidence);
+  const TimeRange range = scale_range(evidence, at.shape);
   fit::SeparableProblem problem;
   problem.basis = [&](View<double> log_times, Eigen::Ref<MatrixXd> columns) {
-    for (std::size_t k = 0; k < log_times.size(); ++k)
-      columns.col(static_cast<Index>(k)) =
-          root.cwiseProduct(evidence.rise(std::exp(log_times[k])).tail(rows));
+    columns = root.asDiagonal() * varying_columns(evidence, at.shape, log_times).bottomRows(rows);
   };
-  problem.varying_columns = static_cast<Index>(at.log_times.size());
+  problem.varying_columns = static_cast<Index>(amplitudes_of(at.shape));
   problem.start = at.log_times;
   problem.lower.assign(at.log_times.size(), std::log(range.lower_s));
   problem.upper.assign(at.log_times.size(), std::log(range.upper_s));
@@ -86,10 +104,12 @@ OrdinateFit settle(const DriftEvidence& evidence, ShapeAt& at, const MatrixXd& P
 
 // The most likely of a grid of time constants; of two, the second beside the best single one.
 void start_times(const DriftEvidence& evidence, const MatrixXd& P, ShapeAt& at) {
-  const std::size_t wanted = exponentials_of(at.shape);
+  const std::size_t wanted = scales_of(at.shape);
   constexpr std::size_t points = 14;
-  const TimeRange range = time_range(evidence);
-  const double low = std::log(2.0 * range.lower_s), high = std::log(0.3 * range.upper_s);
+  const TimeRange range = scale_range(evidence, at.shape);
+  const bool rival = is_rival(at.shape);
+  const double low = std::log((rival ? 1.0 : 2.0) * range.lower_s);
+  const double high = std::log((rival ? 1.0 : 0.3) * range.upper_s);
   while (at.log_times.size() < wanted) {
     double best = -std::numeric_limits<double>::infinity(), best_time = low;
     VectorXd strength;
@@ -131,8 +151,9 @@ DriftCandidate candidate_of(const DriftEvidence& evidence,
   candidate.steps = trial.at.step_blocks.size();
   if (!trial.at.log_times.empty()) candidate.time_constant_s = std::exp(trial.at.log_times.front());
   // Of a step its place counts too.
-  const int of_shape = 1 + static_cast<int>(2 * trial.at.log_times.size() + 2 * candidate.steps) +
-                       (has_line(trial.at.shape) ? 1 : 0);
+  const std::size_t varying = amplitudes_of(trial.at.shape) + trial.at.log_times.size();
+  const int of_shape =
+      1 + static_cast<int>(varying + 2 * candidate.steps) + (has_line(trial.at.shape) ? 1 : 0);
   const double cost = std::log(static_cast<double>(evidence.blocks()) -
                                static_cast<double>(evidence.missing().size()));
   const OrdinateMeans means{linear_columns(evidence, trial.at), {}};
@@ -151,7 +172,7 @@ DriftCandidate candidate_of(const DriftEvidence& evidence,
 
 // The larger of two exponentials comes first.
 void put_in_order(DriftTrial& trial) {
-  if (trial.at.log_times.size() < 2) return;
+  if (trial.at.shape != DriftShape::two_exponentials) return;
   VectorXd& b = trial.fit.coefficients;
   if (std::abs(b(0)) >= std::abs(b(1))) return;
   std::swap(trial.at.log_times[0], trial.at.log_times[1]);
@@ -163,14 +184,14 @@ void put_in_order(DriftTrial& trial) {
 }  // namespace
 
 TimeRange time_range(const DriftEvidence& evidence) {
-  return {2.0 * evidence.block_s(), 10.0 * evidence.duration_s()};
+  // Of a short table each value counts: a half of it may be settled.
+  constexpr double most_blocks = 2.0, share = 1.0 / 30.0;
+  const double blocks = std::min(most_blocks, share * static_cast<double>(evidence.blocks()));
+  return {blocks * evidence.block_s(), 10.0 * evidence.duration_s()};
 }
 
 MatrixXd whole_columns(const DriftEvidence& evidence, const ShapeAt& at) {
-  MatrixXd exponentials(evidence.blocks(), static_cast<Index>(at.log_times.size()));
-  for (std::size_t k = 0; k < at.log_times.size(); ++k)
-    exponentials.col(static_cast<Index>(k)) = evidence.rise(std::exp(at.log_times[k]));
-  return beside(exponentials, fixed_columns(evidence, at));
+  return beside(varying_columns(evidence, at.shape, at.log_times), fixed_columns(evidence, at));
 }
 
 MatrixXd linear_columns(const DriftEvidence& evidence, const ShapeAt& at) {
@@ -179,11 +200,30 @@ MatrixXd linear_columns(const DriftEvidence& evidence, const ShapeAt& at) {
 
 MatrixXd tangent_columns(const DriftEvidence& evidence, const ShapeAt& at) {
   const Index rows = evidence.blocks() - 1;
-  MatrixXd tangents(rows, static_cast<Index>(at.log_times.size()));
-  for (std::size_t k = 0; k < at.log_times.size(); ++k)
-    tangents.col(static_cast<Index>(k)) =
-        evidence.rise_by_log_time(std::exp(at.log_times[k])).tail(rows);
+  const std::size_t scales = scales_of(at.shape), amplitudes = amplitudes_of(at.shape);
+  MatrixXd tangents(rows, static_cast<Index>(scales > 0 ? amplitudes : 0));
+  for (std::size_t k = 0; k < amplitudes && scales > 0; ++k) {
+    const VectorXd tangent = is_exponential(at.shape)
+                                 ? evidence.rise_by_log_time(std::exp(at.log_times[k]))
+                                 : rival_by_log_scale(evidence, at,
+                                                      VectorXd::Unit(static_cast<Index>(amplitudes),
+                                                                     static_cast<Index>(k)));
+    tangents.col(static_cast<Index>(k)) = tangent.tail(rows);
+  }
   return beside(linear_columns(evidence, at), tangents);
+}
+
+VectorXd rival_by_log_scale(const DriftEvidence& evidence,
+                            const ShapeAt& at,
+                            const VectorXd& amplitudes) {
+  const double scale_s = std::exp(at.log_times.front());
+  return evidence.of([&](double t_s) {
+    double slope = 0.0;
+    for (Index k = 0; k < amplitudes.size(); ++k)
+      slope += amplitudes(k) *
+               RivalColumn{at.shape, static_cast<std::size_t>(k), scale_s}.by_log_scale(t_s);
+    return slope;
+  });
 }
 
 DriftTrial try_shape(const DriftEvidence& evidence, const NoiseChoice& choice, DriftShape shape) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "proofmass/characterise/drift_shapes.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/linalg.hpp"
@@ -25,7 +26,7 @@ constexpr std::array<DriftShape, 2> further_shapes{DriftShape::exponential_and_l
                                                    DriftShape::two_exponentials};
 
 bool has_exponential(const DriftTrial& trial) {
-  return !trial.at.log_times.empty();
+  return is_exponential(trial.at.shape);
 }
 
 // How far the whitened exponential travels over the unit sphere, what is fitted anyway projected
@@ -76,10 +77,11 @@ double criterion(const DriftTrial& trial) {
 }  // namespace
 
 DriftTrials::DriftTrials(const DriftEvidence& evidence) : evidence_(evidence), choice_(evidence) {
-  trials_.reserve(first_shapes.size() + further_shapes.size());
+  trials_.reserve(first_shapes.size() + further_shapes.size() + rival_shapes.size());
   for (const DriftShape shape : first_shapes) add(shape);
   if (test(of(DriftShape::exponential), DriftShape::constant).p >= level) return;
   for (const DriftShape shape : further_shapes) add(shape);
+  for (const DriftShape shape : rival_shapes) add(shape);
 }
 
 void DriftTrials::add(DriftShape shape) {
@@ -103,10 +105,30 @@ const DriftTrial& DriftTrials::best(bool exponential) const {
   constexpr double strong = 6.0;
   const DriftTrial* best = nullptr;
   for (const DriftTrial& trial : trials_) {
-    if (has_exponential(trial) != exponential) continue;
+    if (has_exponential(trial) != exponential || is_rival(trial.at.shape)) continue;
     if (best == nullptr || criterion(trial) < criterion(*best) - strong) best = &trial;
   }
   return *best;
+}
+
+std::vector<const DriftTrial*> DriftTrials::rivals() const {
+  std::vector<const DriftTrial*> found;
+  for (const DriftTrial& trial : trials_)
+    if (is_rival(trial.at.shape)) found.push_back(&trial);
+  return found;
+}
+
+std::vector<const DriftTrial*> DriftTrials::as_good() const {
+  std::vector<const DriftTrial*> found;
+  for (const DriftTrial& trial : trials_)
+    if (trial.at.shape != DriftShape::constant && trial.at.shape != DriftShape::steps)
+      found.push_back(&trial);
+  std::ranges::sort(found, {}, &DriftTrial::akaike);
+  const double akaike = found.front()->akaike(), schwarz = criterion(*found.front());
+  std::erase_if(found, [&](const DriftTrial* trial) {
+    return std::min(trial->akaike() - akaike, criterion(*trial) - schwarz) > clear_margin;
+  });
+  return found;
 }
 
 GainTest DriftTrials::test(const DriftTrial& trial, DriftShape without) const {

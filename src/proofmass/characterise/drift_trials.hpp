@@ -16,8 +16,8 @@ struct GainTest {
 };
 
 /// All shapes, fitted, each with its own noise: constant, line, steps where there are any, an
-/// exponential, and one with a line and two of them where the one explains anything. The evidence
-/// has to outlive it.
+/// exponential, and where the one explains anything, one with a line, two of them, and their rivals
+/// (drift_shapes.hpp). The evidence has to outlive it.
 class DriftTrials {
  public:
   explicit DriftTrials(const DriftEvidence& evidence);
@@ -28,10 +28,19 @@ class DriftTrials {
   /// Constant, line or exponential, which there always are.
   [[nodiscard]] const DriftTrial& of(DriftShape shape) const;
 
-  /// The best of those with an exponential, or of those without. A shape that asks for more than
-  /// those before it has to show strong evidence of it: a criterion lower by 6 (R. E. Kass, A. E.
-  /// Raftery, J. Amer. Statist. Assoc. 90 (1995) 773).
+  /// The best of those with an exponential, or of constant, line and steps. A shape that asks for
+  /// more than those before it has to show strong evidence of it: a criterion lower by 6 (R. E.
+  /// Kass, A. E. Raftery, J. Amer. Statist. Assoc. 90 (1995) 773).
   [[nodiscard]] const DriftTrial& best(bool exponential) const;
+
+  /// Those that are no exponential but may look like one; none where there is no drift at all.
+  [[nodiscard]] std::vector<const DriftTrial*> rivals() const;
+
+  /// Exponentials, rivals and the line that fit as well as the best of them, the best first: within
+  /// 4 by Akaike's criterion, e² in likelihood, or by Schwarz's.
+  [[nodiscard]] std::vector<const DriftTrial*> as_good() const;
+
+  static constexpr double clear_margin = 4.0;
 
   /// The exponential of a trial against the constant or line that is left without it, under the
   /// best of three noises: that of the trial, that which suits the shape without, and white noise

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "proofmass/characterise/drift_evidence.hpp"
+#include "proofmass/characterise/drift_fit.hpp"
 #include "proofmass/characterise/run_blocks.hpp"
 #include "proofmass/characterise/run_noise.hpp"
 #include "proofmass/characterise/run_scatter.hpp"
@@ -124,6 +126,16 @@ void add_trend(RunSet& set) {
   }
 }
 
+// The means as a record of their own, one value a run.
+void add_level_curve(RunSet& set) {
+  const std::vector<double> means = means_of(set);
+  const Moments m = moments(means);
+  if (means.size() < DriftEvidence::fewest_blocks || !(m.std() > 0.0)) return;
+  constexpr double first_run = -0.5;  // a mean stands in the middle of its block
+  const auto evidence = DriftEvidence::make(means, {.rate_hz = 1.0, .block = 1}, first_run);
+  if (evidence) set.level_curve = fit_drift(*evidence).fit;
+}
+
 Result<DriftAnalysis> common_warm_up(const RunBlocks& blocks, const DriftOptions& options) {
   DriftOptions of_mean = options;
   of_mean.rate_hz = 1.0 / blocks.block_s;
@@ -157,6 +169,7 @@ Result<RunSet> compare_runs(View<Run> runs, const DriftOptions& options) {
   set.level = scatter_of(set.runs, &RunLevel::mean, noise.allan_variance(set.duration_s));
   set.change = scatter_of(set.runs, &RunLevel::change, noise.change_variance(set.window_s));
   add_trend(set);
+  add_level_curve(set);
   add_lengths(set, runs);
   add_missing(set, runs);
   add_outliers(set);

@@ -47,12 +47,15 @@ struct RunSet {
   RunScatter change;        ///< of how far the runs went; its mean is that of the common warm-up
   std::optional<Uncertain> trend_per_run;  ///< of the means against the number of the run
   double trend_p = 1.0;
+  /// Warm-up of the means from run to run, a2 + a1 (1 − e^(−n/T)) with n = 0 for the first: times
+  /// in runs. Of 12 runs or more.
+  std::optional<DriftFit> level_curve;
   DriftAnalysis warm_up;  ///< of the mean over all runs, each less its own level
   std::vector<std::string> notes;
 };
 
-/// Compares three or more runs from switch-on over the length of the shortest, on a time grid that
-/// they share: their rates may differ. Block b of run i is
+/// Compares three or more runs, in their order, from switch-on over the length of the shortest, on
+/// a time grid that they share: their rates may differ. Block b of run i is
 ///
 ///     y_ib = m_i + c_b + e_ib,     Σ c_b = 0,
 ///

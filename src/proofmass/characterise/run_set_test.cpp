@@ -42,8 +42,8 @@ TEST(RunSet, HasTheMeansThatTheSamplesHave) {
 }
 
 TEST(RunSet, FindsTheWarmUpThatNoSingleRunShows) {
-  test::MadeRuns made = test::made_of({.runs = 40, .samples = 2400, .rate_hz = 8.0, .seed = 7});
-  warm_up(made, 0.6, 40.0, 8.0);
+  test::MadeRuns made = test::made_of({.runs = 60, .samples = 2400, .rate_hz = 8.0, .seed = 7});
+  warm_up(made, 2.4, 40.0, 8.0);
   const RunSet set = compare_runs(made.runs, {}).value();
   ASSERT_TRUE(set.warm_up.fit.identified) << set.warm_up.fit.reason;
   EXPECT_LE(*set.warm_up.fit.time_constant_s->lower_95, 40.0);
@@ -108,6 +108,41 @@ TEST(RunSet, TellsATrendFromRunToRun) {
   EXPECT_NEAR(set.trend_per_run->value, 0.3, 4.0 * set.trend_per_run->std);
   EXPECT_LT(set.trend_p, 1e-4);
   EXPECT_TRUE(says(set, "rises from run to run"));
+}
+
+// 60 power-ups whose means follow −2.4 (1 − e^(−n/5.2)), beside a scatter of 0.14 from run to run.
+TEST(RunSet, FindsTheWarmUpThatGoesOnFromRunToRun) {
+  int held = 0;
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    test::MadeRuns made = test::made_of({.runs = 60, .between_std = 0.1, .seed = seed});
+    for (std::size_t i = 0; i < 60; ++i)
+      for (double& y : made.series[i]) y -= 2.4 * (1.0 - std::exp(-static_cast<double>(i) / 5.2));
+    const RunSet set = compare_runs(made.runs, {}).value();
+    ASSERT_TRUE(set.level_curve);
+    if (!set.level_curve->identified) continue;
+    const Interval95& T = *set.level_curve->time_constant_s;
+    EXPECT_NEAR(T.value, 5.2, 4.0 * T.std);
+    EXPECT_LT(T.std, 0.8);
+    EXPECT_NEAR(set.level_curve->a1->value, -2.4, 4.0 * set.level_curve->a1->std);
+    EXPECT_NEAR(set.level_curve->a2.value, 0.0, 4.0 * set.level_curve->a2.std);
+    held += *T.lower_95 <= 5.2 && 5.2 <= *T.upper_95 ? 1 : 0;
+  }
+  EXPECT_GE(held, 2);
+}
+
+TEST(RunSet, FindsNoWarmUpOverRunsThatOnlyScatter) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    const test::MadeRuns made = test::made_of({.runs = 30, .between_std = 0.3, .seed = seed});
+    const RunSet set = compare_runs(made.runs, {}).value();
+    ASSERT_TRUE(set.level_curve);
+    EXPECT_FALSE(set.level_curve->identified);
+    EXPECT_FALSE(set.level_curve->reason.empty());
+  }
+}
+
+TEST(RunSet, OfFewerThanTwelveRunsHasNoCurveOverThem) {
+  const test::MadeRuns made = test::made_of({.runs = 11, .between_std = 0.3});
+  EXPECT_FALSE(compare_runs(made.runs, {}).value().level_curve);
 }
 
 TEST(RunSet, ComparesOverTheShortestRunAndSaysWhich) {

@@ -73,6 +73,15 @@ std::string curve_words(const DriftFit& fit) {
       return "steps; no exponential is identified";
     case DriftShape::line:
       return "straight line; no exponential is identified";
+    case DriftShape::square_root:
+    case DriftShape::logarithm:
+    case DriftShape::hyperbola:
+    case DriftShape::stretched_exponential:
+    case DriftShape::sine:
+    case DriftShape::exponential:
+    case DriftShape::exponential_and_line:
+    case DriftShape::two_exponentials:
+      return shape_words(fit.curve.shape) + ", one of the shapes that fit";
     default:
       return "level; no exponential is identified";
   }

@@ -107,9 +107,32 @@ void add_outlook(const ChannelDrift& channel, Sentences& sentences) {
   }
   const characterise::DriftForecast& later = *channel.outlook->forecast;
   sentences.push_back(fmt::format(
-      "{} after switching on: bias {} (95 %: {}), {} since the end of the recording.",
-      duration_words(later.t_s), bias_words(later.bias, channel.unit),
-      bias_interval_words(later.bias, channel.unit), bias_words(later.change, channel.unit)));
+      "{} after switching on: {} {} (95 %: {}), {} since the end of the recording.",
+      duration_words(later.t_s), holds_gravity(later.bias) ? "level" : "bias",
+      bias_words(later.bias, channel.unit), bias_interval_words(later.bias, channel.unit),
+      bias_words(later.change, channel.unit)));
+}
+
+// The warm-up over the runs, times in runs.
+void add_level_curve(const ChannelRuns& runs, Sentences& sentences) {
+  const RunSet& set = *runs.set;
+  if (!set.level_curve) return;
+  const DriftFit& fit = *set.level_curve;
+  if (fit.identified) {
+    sentences.push_back(fmt::format(
+        "The level warms up over the runs: {} with a time constant of {} (95 %: {}), from {} in "
+        "the "
+        "first run.",
+        bias_words(*fit.a1, runs.unit),
+        with_std(Uncertain{fit.time_constant_s->value, fit.time_constant_s->std}, "runs"),
+        runs_interval_words(*fit.time_constant_s), bias_words(fit.a2, runs.unit)));
+    return;
+  }
+  if (fit.why == characterise::DriftReason::shape_undetermined)
+    sentences.push_back(
+        fmt::format("The level warms up over the runs, by {} from the first to the last; the shape "
+                    "of that curve cannot be determined from these runs.",
+                    bias_words(fit.curve.value(fit.end.t_s) - fit.curve.value(0.0), runs.unit)));
 }
 
 void add_trend(const ChannelRuns& runs, Sentences& sentences) {
@@ -173,6 +196,7 @@ std::vector<std::string> run_findings(const ChannelRuns& runs) {
   sentences.push_back(
       fmt::format("Scatter of the runs' levels: {}.", scatter_words(set.level, runs.unit)));
   add_trend(runs, sentences);
+  add_level_curve(runs, sentences);
   ChannelDrift common;
   common.unit = runs.unit;
   common.analysis = set.warm_up;

@@ -82,7 +82,9 @@ void add_all(const ChannelDrift& channel, const std::string& label, Section& sec
     section.tables.push_back(temperature_table(channel));
   }
   section.figures.push_back(readings_figure(channel, label));
-  if (!analysis.fit.profile.empty()) section.figures.push_back(profile_figure(channel, label));
+  // Of a time constant that is not identified a profile says little.
+  if (analysis.fit.identified && !analysis.fit.profile.empty())
+    section.figures.push_back(profile_figure(channel, label));
   append(section.figures, residual_figures(channel, label));
   append(section.figures, autocorrelation_figures(channel, label));
   if (channel.temperature && channel.temperature->model) {
@@ -103,7 +105,7 @@ Section channel_section(const ChannelDrift& channel, const std::string& label, D
 }
 
 Section overview_section(const DriftReport& report) {
-  Table table{"What each comes to", {"Channel", "Verdict", "Bias at switching on"}, {}};
+  Table table{"What each comes to", {"Channel", "Verdict", "Bias or level at switching on"}, {}};
   for (const ChannelDrift& channel : report.channels) {
     table.rows.push_back(
         {channel_label(report, channel), drift_verdict(channel),

@@ -58,6 +58,16 @@ Array candidates(const DriftFit& fit) {
   return items;
 }
 
+// What fits as well where the shape is not determined.
+Array possible_models(const DriftFit& fit) {
+  Array items;
+  for (const characterise::DriftPossibility& one : fit.possibilities) {
+    items.emplace_back(
+        Object{{"model", characterise::name_of(one.curve.shape)}, {"weight", one.weight}});
+  }
+  return items;
+}
+
 Array profile(const DriftFit& fit) {
   Array items;
   for (const characterise::ProfilePoint& point : fit.profile) {
@@ -132,6 +142,8 @@ void add_fit_keys(const DriftAnalysis& analysis, const Unit& unit, Object& item)
   add("a1", interval_quantity(fit.a1, level));
   add("a2", interval_quantity(fit.a2, level));
   add("time_constant_s", interval_quantity(fit.time_constant_s, "s"));
+  add("bears_gravity", costs_position(unit) && holds_gravity(fit.a2));
+  add("possible_models", possible_models(fit));
   add("interval_95", intervals(fit));
   add("residual_rms", analysis.residual_rms);
   add("tests", Object{{"constant_deviance", fit.constant_deviance},

@@ -109,6 +109,24 @@ Array levels(const RunSet& set, const std::string& unit) {
   return items;
 }
 
+// The warm-up from run to run; null of fewer runs than can show one.
+Value level_curve(const ChannelRuns& runs, const std::string& unit) {
+  const auto& curve = runs.set->level_curve;
+  if (!curve) return nullptr;
+  const characterise::DriftFit& fit = *curve;
+  return Object{
+      {"verdict", fit.identified ? "identified" : "not_identified"},
+      {"reason", fit.reason},
+      {"reason_code", reason_code(fit.why)},
+      {"model", characterise::name_of(fit.curve.shape)},
+      {"a1", interval_quantity(fit.a1, unit)},
+      {"a2", interval_quantity(fit.a2, unit)},
+      {"time_constant_runs", interval_quantity(fit.time_constant_s, "1")},
+      {"interval_95", Object{{"a1", interval_value(fit.a1)},
+                             {"a2", interval_value(fit.a2)},
+                             {"time_constant_runs", interval_value(fit.time_constant_s)}}}};
+}
+
 }  // namespace
 
 Value temperature_value(const DriftTemperature& found, const Unit& unit) {
@@ -176,6 +194,7 @@ Object runs_object(const ChannelRuns& runs) {
   add("level", scatter(set.level, unit));
   add("trend_per_run", quantity(set.trend_per_run, unit));
   add("trend_p", set.trend_p);
+  add("level_curve", level_curve(runs, unit));
   add("levels", levels(set, unit));
   add("warm_up", drift_object(common));
   return item;

@@ -115,6 +115,12 @@ std::vector<std::string> null_reasons(const ChannelRuns& runs) {
   explain_scatter("turn_on", runs.set->turn_on, say);
   explain_scatter("level", runs.set->level, say);
   if (!runs.set->trend_per_run) say("trend_per_run: null: too few runs for a trend");
+  if (!runs.set->level_curve) {
+    say("level_curve: null: too few runs for a curve over them, or they do not differ");
+  } else if (!runs.set->level_curve->identified) {
+    say("level_curve: null for a1, time_constant_runs and their interval_95: " +
+        runs.set->level_curve->reason);
+  }
   ChannelDrift common;
   common.unit = runs.unit;
   common.analysis = runs.set->warm_up;

@@ -14,6 +14,8 @@ inline constexpr std::array drift_keys{"model",
                                        "a1",
                                        "a2",
                                        "time_constant_s",
+                                       "bears_gravity",
+                                       "possible_models",
                                        "interval_95",
                                        "residual_rms",
                                        "tests",
@@ -27,8 +29,8 @@ inline constexpr std::array drift_keys{"model",
                                        "block_s",
                                        "undetected_below",
                                        "best_time_constant_s"};
-inline constexpr std::array run_set_keys{"window_s",      "duration_s", "turn_on", "level",
-                                         "trend_per_run", "trend_p",    "warm_up"};
+inline constexpr std::array run_set_keys{"window_s",      "duration_s", "turn_on",     "level",
+                                         "trend_per_run", "trend_p",    "level_curve", "warm_up"};
 
 /// A sentence, with the channel's name, for each group of nulls in its part of the document.
 [[nodiscard]] std::vector<std::string> null_reasons(const DriftReport& report,

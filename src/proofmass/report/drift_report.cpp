@@ -44,7 +44,7 @@ Rows parameter_rows(const ChannelDrift& channel) {
         {name, with_std(Uncertain{figure->value, figure->std}, "s"), time_interval_words(*figure)});
   };
   rows.push_back({"", shape_words(fit.curve.shape), "95 % interval"});
-  add_bias("Bias at switching on a2", fit.a2);
+  add_bias(level_words(channel).c_str(), fit.a2);
   add_bias("Warm-up a1", fit.a1);
   add_time("Time constant T", fit.time_constant_s);
   add_bias("Second warm-up", fit.second_a1);
@@ -202,6 +202,8 @@ std::vector<Note> drift_notes(const DriftReport& report) {
 std::string drift_text(const DriftReport& report) {
   std::string text;
   for (const ChannelRuns& runs : report.runs) text += (text.empty() ? "" : "\n") + runs_text(runs);
+  if (!report.runs.empty() && !report.every_run)
+    return text + fmt::format("\nRun by run: {} -v prints each.\n", counted_conclusion(report));
   for (const ChannelDrift& channel : report.channels) {
     text += (text.empty() ? "" : "\n") + channel_text(report, channel);
   }

@@ -52,6 +52,7 @@ struct DriftReport {
   std::vector<Note> notes;        ///< of reading and preparing; those of the analyses are added
   double since_switch_on_s = 0.0;
   std::optional<double> forecast_s;
+  bool every_run = false;  ///< the text goes on from a set of runs to each of them
 };
 
 /// The document of `drift`: docs/schema/drift.schema.json.

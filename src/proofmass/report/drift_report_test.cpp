@@ -321,8 +321,8 @@ TEST(DriftHtml, ShowsLessOfEachTheMoreChannelsThereAre) {
   DriftReport report = fake_drift_report();
   report.runs = {fake_runs("acc_x")};
   // Two of the runs; drift, readings, profile, 3 scales twice and temperature of x; the same less
-  // one of y.
-  EXPECT_EQ(count_of(drift_html(report), "</svg>"), 2U + 10U + 9U);
+  // one of y and its profile.
+  EXPECT_EQ(count_of(drift_html(report), "</svg>"), 2U + 10U + 8U);
   report.channels.assign(10, fake_steps("y"));
   EXPECT_EQ(count_of(drift_html(report), "</svg>"), 2U + 10U);
   report.channels.assign(30, fake_steps("y"));

@@ -72,7 +72,7 @@ Table parameters_table(const ChannelDrift& channel) {
     if (!figure) return table.rows.push_back({name, "not identified", "", ""});
     table.rows.push_back({name, time_words(*figure), time_interval_words(*figure), ""});
   };
-  add_bias("Bias at switching on a2", fit.a2);
+  add_bias(level_words(channel).c_str(), fit.a2);
   add_bias("Warm-up a1", fit.a1);
   add_time("Time constant T", fit.time_constant_s);
   if (fit.second_a1) add_bias("Second warm-up", fit.second_a1);

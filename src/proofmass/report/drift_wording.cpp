@@ -77,6 +77,8 @@ std::string why_not(const DriftFit& fit, const Unit& unit) {
              duration_words(fit.best_time_constant_s);
     case DriftReason::unexplained:
       return "something moves the bias that is neither noise nor an exponential";
+    case DriftReason::shape_undetermined:
+    case DriftReason::swing:
     case DriftReason::no_warm_up:
     case DriftReason::identified:
       break;
@@ -106,6 +108,10 @@ std::string bias_interval_words(const Interval95& interval, const Unit& unit) {
 
 std::string time_interval_words(const Interval95& interval) {
   return interval_words(interval, 1.0, "s");
+}
+
+std::string runs_interval_words(const Interval95& interval) {
+  return interval_words(interval, 1.0, "runs");
 }
 
 std::string bias_words(const Uncertain& figure, const Unit& unit) {
@@ -157,6 +163,10 @@ std::string reason_code(DriftReason reason) {
       return "shorter_than_resolved";
     case DriftReason::begun_later:
       return "begun_later";
+    case DriftReason::shape_undetermined:
+      return "shape_undetermined";
+    case DriftReason::swing:
+      return "swing";
     case DriftReason::unexplained:
       return "unexplained";
     case DriftReason::no_warm_up:
@@ -168,6 +178,8 @@ std::string reason_code(DriftReason reason) {
 std::string drift_verdict(const ChannelDrift& channel) {
   if (!channel.analysis) return "not analysed: " + channel.refused;
   const DriftFit& fit = channel.analysis->fit;
+  if (fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::swing)
+    return fit.reason;
   if (!fit.identified || !fit.a1 || !fit.time_constant_s) {
     return "no warm-up can be told: " + why_not(fit, channel.unit);
   }
@@ -193,6 +205,12 @@ std::string scatter_words(const characterise::RunScatter& scatter, const Unit& u
   if (!between.upper_95) return "none beyond the noise within the runs";
   return fmt::format("none beyond the noise within the runs, below {} with 95 % confidence",
                      bias_words(*between.upper_95, unit));
+}
+
+std::string level_words(const ChannelDrift& channel) {
+  const bool level =
+      channel.analysis && costs_position(channel.unit) && holds_gravity(channel.analysis->fit.a2);
+  return level ? "Level at switching on a2" : "Bias at switching on a2";
 }
 
 bool costs_position(const Unit& unit) {

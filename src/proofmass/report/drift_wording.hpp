@@ -23,6 +23,9 @@ namespace proofmass::report {
 /// The same of a time: "862 … 941 s".
 [[nodiscard]] std::string time_interval_words(const characterise::Interval95& interval);
 
+/// The same of a number of runs: "4.5 … 6.1 runs".
+[[nodiscard]] std::string runs_interval_words(const characterise::Interval95& interval);
+
 /// "5.00 ± 0.10 mg"
 [[nodiscard]] std::string bias_words(const Uncertain& figure, const Unit& unit);
 [[nodiscard]] std::string bias_words(const characterise::Interval95& figure, const Unit& unit);
@@ -57,6 +60,9 @@ namespace proofmass::report {
 
 /// "turn-on repeatability 2.10 ± 0.30 mg"; no full stop.
 [[nodiscard]] std::string scatter_words(const characterise::RunScatter& scatter, const Unit& unit);
+
+/// "Bias at switching on a2", or of an axis that bears gravity "Level at switching on a2".
+[[nodiscard]] std::string level_words(const ChannelDrift& channel);
 
 /// Whether ½ b t² of this series is a position, in metres.
 [[nodiscard]] bool costs_position(const Unit& unit);
