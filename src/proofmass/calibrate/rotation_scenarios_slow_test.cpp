@@ -174,7 +174,6 @@ INSTANTIATE_TEST_SUITE_P(
         Scenario{.name = "no ripple"},
         Scenario{.name = "0.1 to 0.3 % at 1, 2, 3", .ripple = {little, little, little}},
         Scenario{.name = "0.6 to 2 % at 1, 2, 3", .ripple = {much, much, much}},
-        Scenario{.name = "the same, two speeds", .ripple = {much, much, much}, .speeds = 2},
         Scenario{
             .name = "the same, on the axle", .ripple = {much, much, much}, .radius_m = {0.0, 0.0}},
         Scenario{.name = "the same, encoder", .ripple = {much, much, much}, .encoder = true},
@@ -182,16 +181,11 @@ INSTANTIATE_TEST_SUITE_P(
         Scenario{
             .name = "2 % once, on the axle", .ripple = {two, none, none}, .radius_m = {0.0, 0.0}},
         Scenario{.name = "2 % once", .ripple = {two, none, none}},
-        Scenario{.name = "no ripple, two speeds", .speeds = 2},
         Scenario{.name = "no ripple, one axis", .axes = 1},
         Scenario{.name = "encoder", .axes = 1, .encoder = true},
         Scenario{.name = "encoder, 50 Hz pole", .encoder = true, .pole_hz = 50.0},
         Scenario{
-            .name = "encoder, 50 Hz pole, one axis", .axes = 1, .encoder = true, .pole_hz = 50.0},
-        Scenario{.name = "encoder, 10 Hz pole, two speeds",
-                 .speeds = 2,
-                 .encoder = true,
-                 .pole_hz = 10.0}));
+            .name = "encoder, 50 Hz pole, one axis", .axes = 1, .encoder = true, .pole_hz = 50.0}));
 
 }  // namespace
 }  // namespace proofmass::calibrate::rotation_scenarios_slow_test
