@@ -113,22 +113,44 @@ double sum_of(View<double> samples) {
 }
 
 void append_ordinates(View<double> means,
-                      double step_s,
+                      const CosineVector& first,
                       bool whole_band,
                       std::vector<CosineOrdinate>& ordinates) {
   double share = 1.0;
   std::vector<double> values = filled(means, share);
   const std::size_t n = values.size(), last = whole_band ? n - 1 : n / 2;
   const std::vector<double> amplitudes = signal::cosine_transform(values);
-  const double to_density = std::sqrt(step_s / share);
+  const double step_s = first.step_s, to_density = std::sqrt(step_s / share);
   ordinates.reserve(ordinates.size() + last);
   for (std::size_t k = 1; k <= last; ++k) {
     ordinates.push_back({static_cast<double>(k) / (2.0 * static_cast<double>(n) * step_s),
-                         amplitudes[k] * to_density, ramp_amplitude(k, n, step_s)});
+                         amplitudes[k] * to_density, ramp_amplitude(k, n, step_s),
+                         {k, n, first.start_s, step_s}});
   }
 }
 
 }  // namespace
+
+double SlowWave::at(double time_s) const {
+  const double phase = 2.0 * std::numbers::pi * frequency_hz * time_s;
+  return cosine * std::cos(phase) + sine * std::sin(phase);
+}
+
+// √(2 step/n) Σ exp(iω(start + (j + ½) step)) cos(π k (j + ½)/n), the product being half the sum of
+// two waves of θ = ω step ± π k/n, and Σ exp(iθ(j + ½)) = exp(iθn/2) sin(θn/2) / sin(θ/2).
+std::complex<double> CosineVector::of_wave(double frequency_hz) const {
+  const auto blocks = static_cast<double>(n);
+  const double omega = 2.0 * std::numbers::pi * frequency_hz;
+  const auto sum = [&](double theta) {
+    const double half = 0.5 * theta, below = std::sin(half);
+    const double size = std::abs(below) > 1e-12 ? std::sin(half * blocks) / below : blocks;
+    return std::polar(1.0, half * blocks) * size;
+  };
+  const double of_vector = std::numbers::pi * static_cast<double>(k) / blocks;
+  const std::complex<double> both =
+      sum(omega * step_s + of_vector) + sum(omega * step_s - of_vector);
+  return 0.5 * std::sqrt(2.0 * step_s / blocks) * std::polar(1.0, omega * start_s) * both;
+}
 
 void BlockMeans::add(View<double> samples) {
   std::size_t k = 0;
@@ -180,16 +202,19 @@ std::vector<double> BlockMeans::means() const {
   return means;
 }
 
-std::vector<CosineOrdinate> BlockMeans::ordinates() const {
-  const std::vector<double> all = means();
+std::vector<CosineOrdinate> BlockMeans::ordinates(const SlowWave& wave) const {
+  std::vector<double> all = means();
   const double step_s = static_cast<double>(block_) / rate_hz_;
+  for (std::size_t k = 0; k < all.size() && wave.frequency_hz > 0.0; ++k)
+    all[k] -= wave.at((static_cast<double>(k) + 0.5) * step_s);
   std::vector<CosineOrdinate> ordinates;
   for (const Stretch& part : stretches(all)) {
     const std::size_t length = part.end - part.first;
     const bool worth_cutting = length > transform_any_length_below;
     const auto means_of_part =
         View<double>(all).subspan(part.first, worth_cutting ? smooth_length(length) : length);
-    append_ordinates(means_of_part, step_s, block_ == 1, ordinates);
+    const CosineVector first{0, 0, static_cast<double>(part.first) * step_s, step_s};
+    append_ordinates(means_of_part, first, block_ == 1, ordinates);
   }
   return ordinates;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -8,11 +9,29 @@
 
 namespace proofmass::characterise {
 
+/// A deterministic slow change a cos(2π f t) + b sin(2π f t), t from the first sample on.
+struct SlowWave {
+  double frequency_hz = 0.0, cosine = 0.0, sine = 0.0;
+  [[nodiscard]] double at(double time_s) const;
+};
+
+/// The vector that a coefficient of the cosine transform belongs to: number k of a stretch of n
+/// blocks.
+struct CosineVector {
+  std::size_t k = 0, n = 0;  ///< k = 0: none
+  double start_s = 0.0, step_s = 0.0;
+
+  /// The coefficients of cos(2π f t), as real part, and of sin(2π f t), as imaginary part; f far
+  /// below 1/step_s.
+  [[nodiscard]] std::complex<double> of_wave(double frequency_hz) const;
+};
+
 /// One coefficient of a cosine transform: a normal variable whose variance is the density there.
 struct CosineOrdinate {
   double frequency_hz = 0.0;
   double amplitude = 0.0;  ///< its square is a two-sided density, unit²/Hz
   double of_ramp = 0.0;    ///< amplitude that a ramp of 1 unit/s has
+  CosineVector vector = {};
 };
 
 /// The slow part of a series as means over blocks, gathered in one pass: blocks of one sample while
@@ -43,8 +62,8 @@ class BlockMeans {
   /// that the stretch holds.
   /// Source: G. Strang, The discrete cosine transform, SIAM Review 41 (1999) 135; N. Ahmed,
   /// T. Natarajan, K. R. Rao, IEEE Trans. Computers C-23 (1974) 90, on the Markov-1 process.
-  /// Cost: O(N log N) in the blocks.
-  [[nodiscard]] std::vector<CosineOrdinate> ordinates() const;
+  /// `wave` is taken out before. Cost: O(N log N) in the blocks.
+  [[nodiscard]] std::vector<CosineOrdinate> ordinates(const SlowWave& wave = {}) const;
 
   static constexpr std::size_t longest_block = 128;
 

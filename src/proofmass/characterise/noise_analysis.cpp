@@ -9,6 +9,7 @@
 #include "proofmass/characterise/noise_accumulator.hpp"
 #include "proofmass/characterise/noise_checks.hpp"
 #include "proofmass/characterise/noise_notes.hpp"
+#include "proofmass/characterise/noise_parts.hpp"
 #include "proofmass/characterise/record_overview.hpp"
 
 namespace proofmass::characterise {
@@ -79,6 +80,11 @@ Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& opt
   NoiseAccumulator accumulator(options, series.size());
   accumulator.add(used);
   NoiseAnalysis analysis = accumulator.finish_spectrum();
+  analysis.stationarity = test_stationarity(used, options.rate_hz, analysis.lines.lines);
+  if (!analysis.stationarity.stationary) {
+    analysis.parts = noise_of_parts(used, options);
+    widen_to_parts(analysis.parts, analysis.model);
+  }
   analysis.samples = series.size();
   analysis.duration_s = static_cast<double>(series.size()) / options.rate_hz;
   const CurveVariances variances = is_difference(options.statistic)
@@ -92,6 +98,7 @@ Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& opt
   analysis.mean = kept.mean();
   analysis.missing = kept.missing() - (used.size() - series.size());
   analysis.events = std::move(events);
+  note_stationarity(analysis);
   note_missing(analysis, variances.left_out);
   note_events(analysis, options.exclude_events);
   note_resolution(analysis, raw.short_term_std());

@@ -8,6 +8,7 @@
 #include "proofmass/characterise/averaging_times.hpp"
 #include "proofmass/characterise/deviation.hpp"
 #include "proofmass/characterise/noise_model.hpp"
+#include "proofmass/characterise/stationarity.hpp"
 #include "proofmass/core/progress.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
@@ -46,6 +47,12 @@ struct NoiseOptions {
   Progress progress = {};
 };
 
+/// What an equal part of a recording is found to be made of by itself.
+struct NoisePart {
+  double start_s = 0.0, end_s = 0.0;
+  NoiseModelFit model;
+};
+
 /// Everything about one channel at rest, in the channel's own unit.
 struct NoiseAnalysis {
   double rate_hz = 0.0;
@@ -54,8 +61,10 @@ struct NoiseAnalysis {
   double duration_s = 0.0;
   double mean = 0.0;
   DeviationCurve deviation;
-  NoiseModelFit model;        ///< without ordinates, where the record is too short for one
-  signal::Spectrum spectrum;  ///< without bins, where it is too short for one
+  Stationarity stationarity;
+  std::vector<NoisePart> parts;  ///< in order; only where the noise is not stationary
+  NoiseModelFit model;           ///< without ordinates, where the record is too short for one
+  signal::Spectrum spectrum;     ///< without bins, where it is too short for one
   signal::LineReport lines;
   std::vector<signal::Event> events;  ///< found, whether dropped or not
   std::optional<double> lsb;
@@ -69,7 +78,8 @@ struct NoiseAnalysis {
 /// with the share of terms left. Statistics that need the whole record at once are of its longest
 /// stretch without a gap of more than eight samples. Beyond a million samples terms start at every
 /// sixteenth of τ (difference_variance.hpp). The coefficients come from the spectrum
-/// (noise_fit.hpp), in which lines are left out.
+/// (noise_fit.hpp), in which lines are left out. Where the noise is not stationary, the figures are
+/// averages over the recording, and their intervals span those of its parts.
 ///
 /// Errors: invalid_argument (options), too_few_samples (fewer than 3), not_finite (nothing but
 /// missing samples), not_observable (the samples do not vary, or vary by less than half a step of

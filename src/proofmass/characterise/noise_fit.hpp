@@ -15,6 +15,7 @@ struct NoiseEvidence {
   const signal::Spectrum& spectrum;
   const signal::LineReport& lines;
   double duration_s;
+  SlowWave slow_wave = {};  ///< taken out of the slow part
 };
 
 /// The noise model of a series at rest.

@@ -351,6 +351,70 @@ TEST(FitNoiseModel, WhatIsNotSeenNeedsALongerRecordThanThis) {
   EXPECT_LT(*model.white.record_needed_s, 1.0);
 }
 
+// Temperature: neither a piece of a sine nor a parabola is a random walk.
+TEST(FitNoiseModel, ASlowDeterministicChangeIsNoRandomWalkWithoutDoubt) {
+  constexpr std::size_t n = 30'000;
+  int surely_walks = 0, taken_out = 0;
+  for (const double periods : {0.5, 0.8, 1.3, 2.4, 4.6}) {
+    for (unsigned seed = 0; seed < 4; ++seed) {
+      const double frequency_hz = periods * rate_hz / static_cast<double>(n);
+      const NoiseModelFit model = model_of(
+          sum_of({test::white(1e-3, rate_hz, n, 60 + seed),
+                  test::sine(seed < 2 ? 2e-3 : 2e-2, frequency_hz, rate_hz, n)}));
+      for (const Coefficient* slow : {&model.flicker, &model.random_walk})
+        surely_walks += slow->lower_95 > 0.0 ? 1 : 0;
+      if (!model.slow_change || !model.slow_change->taken_out) continue;
+      ++taken_out;
+      EXPECT_LT(model.random_walk.value, 1e-4);
+    }
+  }
+  EXPECT_EQ(surely_walks, 0);
+  EXPECT_GE(taken_out, 15);
+}
+
+TEST(FitNoiseModel, ARandomWalkIsNotDoubtedWhereManyFrequenciesShowIt) {
+  int doubted = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const NoiseModelFit model =
+        model_of(sum_of({test::white(1e-3, rate_hz, 60'000, 80 + seed),
+                         test::random_walk(1e-3, rate_hz, 60'000, 180 + seed)}));
+    EXPECT_EQ(model.random_walk.verdict, Verdict::identified);
+    doubted += model.slow_change || model.random_walk.lower_95 == 0.0 ? 1 : 0;
+  }
+  EXPECT_LE(doubted, 1);
+}
+
+// A recording of the length that an earlier release promised (359 s) shows this ramp never.
+TEST(FitNoiseModel, TheRecordThatARampNeedsShowsIt) {
+  constexpr double slow_hz = 10.0, slope = 2e-6;
+  const auto of_length = [&](std::size_t samples, unsigned seed) {
+    return fit(sum_of({test::white(1e-3, slow_hz, samples, seed),
+                       test::ramp(slope, slow_hz, samples)}),
+               slow_hz, 512)
+        .value();
+  };
+  const NoiseModelFit known = of_length(20'000, 70);
+  ASSERT_EQ(known.ramp.verdict, Verdict::identified);
+  ASSERT_TRUE(known.ramp.record_needed_s.has_value());
+  const auto samples = static_cast<std::size_t>(*known.ramp.record_needed_s * slow_hz);
+  int seen = 0;
+  for (unsigned seed = 0; seed < 30; ++seed)
+    seen += of_length(samples, 700 + seed).ramp.verdict == Verdict::identified ? 1 : 0;
+  EXPECT_GE(seen, 25);
+}
+
+// The printed ± is that of the interval, of whichever side is longer.
+TEST(FitNoiseModel, StandardDeviationsOfSlowTermsAreThoseOfTheirIntervals) {
+  const NoiseModelFit model = model_of(sum_of({test::white(1e-3, rate_hz, 60'000, 90),
+                                               test::random_walk(3e-4, rate_hz, 60'000, 91)}));
+  const Coefficient& walk = model.random_walk;
+  ASSERT_EQ(walk.verdict, Verdict::identified);
+  EXPECT_LE(walk.value - 1.96 * walk.std, walk.lower_95 * 1.001);
+  EXPECT_GE(walk.value + 1.96 * walk.std, walk.upper_two_sided_95 * 0.999);
+  EXPECT_NEAR(model.white.std * 2.0 * 1.96, model.white.upper_two_sided_95 - model.white.lower_95,
+              1e-3 * model.white.std);
+}
+
 TEST(FitNoiseModel, SaysThatARecordIsTooShort) {
   EXPECT_TRUE(fit(test::normals(400, 1), 1.0, 16).has_value());
   BlockMeans slow(1.0);

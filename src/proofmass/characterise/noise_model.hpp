@@ -28,7 +28,9 @@ enum class Verdict {
 /// One coefficient: what the recording says of it.
 struct Coefficient {
   double value = 0.0;  ///< 0 where not observable
-  double std = 0.0;    ///< one standard deviation; where not observable upper_95 / 1.645
+  /// That of the 95 % interval: half of it over 1.96, of flicker noise, random walk and Markov noise
+  /// its longer side over 1.96. Where not observable upper_95 / 1.645.
+  double std = 0.0;
   /// Central 95 % interval, by likelihood ratio. It reaches 0 for an identified coefficient too,
   /// where another term might stand in for it: flicker for a random walk seen in too short a
   /// record.
@@ -47,6 +49,16 @@ struct MarkovNoise {
   [[nodiscard]] double std_of_process() const;  ///< q √(T/2) in u
 };
 
+/// A slow deterministic change, as temperature makes it: a sine of a few periods in the recording or
+/// a piece of one. A random walk looks alike in so far as it rests on the slowest coefficients.
+struct SlowChange {
+  double period_s = 0.0;
+  double peak_to_peak = 0.0;  ///< within the recording, with the ramp
+  /// Whether it explains the recording better than noise does and was taken out of it; else it
+  /// explains it as well as those terms whose interval reaches 0 for it.
+  bool taken_out = false;
+};
+
 /// What was found, in the unit u of the series.
 struct NoiseModelFit {
   double rate_hz = 0.0;
@@ -54,6 +66,7 @@ struct NoiseModelFit {
   Coefficient quantisation, white, flicker, random_walk, ramp;  ///< ramp: |R| in u/s
   double slope_per_s = 0.0;  ///< R with its sign, as fitted, also where not observable
   std::optional<MarkovNoise> markov;
+  std::optional<SlowChange> slow_change;
   std::optional<Uncertain> bandwidth_hz;  ///< −3 dB of a one-pole filter on the white term, where
                                           ///< the spectrum rolls off below half the rate
   /// Root mean square by which the spectrum departs from the model beyond its own scatter, as a

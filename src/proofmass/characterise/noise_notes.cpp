@@ -28,6 +28,20 @@ void note_resolution(NoiseAnalysis& analysis, double spread) {
   analysis.notes.push_back({coarse ? Severity::warning : Severity::info, std::move(text)});
 }
 
+void note_stationarity(NoiseAnalysis& analysis) {
+  const Stationarity& found = analysis.stationarity;
+  if (found.stationary) return;
+  const auto [least, most] = std::ranges::minmax(found.relative_level);
+  const std::string what =
+      found.line_hz ? fmt::format("the line at {:.4g} Hz", *found.line_hz)
+                    : fmt::format("the noise at averaging times near {:.2g} s", found.averaging_s);
+  analysis.notes.push_back(
+      {Severity::warning,
+       fmt::format("not stationary: {} changes by a factor of {:.3g} over the recording (p = "
+                   "{:.1g}): all figures are averages over it",
+                   what, most / least, found.p)});
+}
+
 void note_events(NoiseAnalysis& analysis, bool excluded) {
   if (analysis.events.empty()) return;
   const auto steps = static_cast<std::size_t>(
@@ -74,6 +88,18 @@ void note_model(NoiseAnalysis& analysis) {
         {Severity::info, fmt::format("the spectrum departs from the model by {:.0f} % beyond its "
                                      "scatter; standard deviations are widened for it",
                                      100.0 * model.misfit)});
+  if (model.slow_change) {
+    analysis.notes.push_back(
+        {Severity::warning,
+         fmt::format("a slow change like a sine of {:.3g} s, of {:.3g} of its period within the "
+                     "recording, {}",
+                     model.slow_change->period_s, model.duration_s / model.slow_change->period_s,
+                     model.slow_change->taken_out
+                         ? "was taken out: it is no noise; temperature makes such"
+                         : "explains the recording as well as slow noise does: the intervals of "
+                           "flicker noise and random walk reach down to zero for it")});
+    if (!model.slow_change->taken_out) return;
+  }
   const auto ambiguous = [](const Coefficient& c) {
     return c.verdict == Verdict::identified && c.lower_95 == 0.0;
   };

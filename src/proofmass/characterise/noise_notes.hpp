@@ -11,6 +11,8 @@ namespace proofmass::characterise {
 void note_missing(NoiseAnalysis& analysis, std::size_t left_out);
 
 /// Of the events that were found.
+void note_stationarity(NoiseAnalysis& analysis);
+
 void note_events(NoiseAnalysis& analysis, bool excluded);
 
 /// Of the converter's step beside the readings' spread.

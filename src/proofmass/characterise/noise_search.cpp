@@ -16,9 +16,6 @@ using Eigen::VectorXd;
 constexpr std::array linear_terms{Term::quantisation, Term::white, Term::flicker,
                                   Term::random_walk};
 
-// χ² of one degree of freedom at 98.6 %: of the three terms that white noise does not have, one is
-// then taken in by chance in about one recording in fifty (the boundary halves it).
-constexpr double needed_gain = 6.0;
 constexpr double shape_gain = 16.0;
 
 // How much more the densities scatter about the model than they should: Σ ν/2 (p/S − 1)² has mean 1

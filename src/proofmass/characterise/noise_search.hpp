@@ -16,6 +16,19 @@ inline constexpr int column_of_quantisation = static_cast<int>(Term::quantisatio
 inline constexpr int column_of_white = static_cast<int>(Term::white);
 inline constexpr int column_of_markov = static_cast<int>(Term::markov);
 
+/// Flicker noise, random walk, Markov noise.
+[[nodiscard]] constexpr bool is_slow(int column) {
+  return column != column_of_quantisation && column != column_of_white;
+}
+
+/// Twice the log-likelihood that a term has to gain: χ² of one degree of freedom at 98.6 %. Of the
+/// three terms that white noise does not have, one is then taken in by chance in about one
+/// recording in fifty (the boundary halves it).
+inline constexpr double needed_gain = 6.0;
+/// The same of a ramp: a slope depends on so few frequencies that its ratio is larger by chance than
+/// the theory of many says.
+inline constexpr double needed_gain_of_ramp = 9.0;
+
 /// A fit in progress: the likelihood, with the shapes chosen so far, and the terms still in.
 struct Search {
   GroupedEvidence evidence;

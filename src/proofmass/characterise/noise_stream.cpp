@@ -93,8 +93,9 @@ Result<NoiseAnalysis> NoiseStream::finish(const StreamEnd& end) {
   analysis.missing = overview_.missing();
   note_missing(analysis, variances.left_out);
   analysis.notes.push_back({Severity::warning,
-                            "knocks and steps were not looked for: the recording was analysed in "
-                            "pieces (cut it with --from and --to to find them)"});
+                            "knocks and steps were not looked for, and whether the noise is "
+                            "stationary was not tested: the recording was analysed in pieces (cut "
+                            "it with --from and --to for both)"});
   note_resolution(analysis, overview_.short_term_std());
   note_model(analysis);
   return analysis;

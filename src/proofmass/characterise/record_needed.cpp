@@ -4,16 +4,29 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
+#include "proofmass/characterise/noise_search.hpp"
+#include "proofmass/characterise/whittle.hpp"
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/core/statistics.hpp"
 
 namespace proofmass::characterise {
 namespace {
 
-constexpr double needed_ratio = 1.959964 + 1.644854;
+// c²/std(c²) at which a term is identified with 95 % probability: the root of the gain that the fit
+// asks for (noise_search.hpp) and the quantile. The gain of a slow term is skew, being that of few
+// coefficients, and by simulation less is enough.
+const double needed_ratio_of_fast = std::sqrt(needed_gain) + 1.644854;
+constexpr double needed_ratio_of_slow = 1.959964 + 1.644854;
+// By how much the root of a ramp's gain has to be expected above the root of what it needs: by
+// simulation.
+constexpr double ramp_margin = 0.6;
 constexpr double longest = 1e4;  // times the recording
 constexpr double step = 1.06;    // between the lengths that are tried
+constexpr std::size_t single_ordinates = 48;
+constexpr double width_of_group = 0.06;
 
 struct Shapes {
   std::vector<double> frequency_hz;  ///< descending by `step`
@@ -68,6 +81,8 @@ std::optional<double> length_for(const Shapes& shapes,
     rate[static_cast<std::size_t>(row)] = sum;
   }
   const auto length_s = [&](std::size_t row) { return 0.5 / shapes.frequency_hz[row]; };
+  const double needed_ratio =
+      is_slow(static_cast<int>(which)) ? needed_ratio_of_slow : needed_ratio_of_fast;
   const auto tells = [&](std::size_t row) {
     const double variance = positive_inverse(length_s(row) * rate[row])(place, place);
     return strength >= needed_ratio * std::sqrt(variance);
@@ -82,19 +97,66 @@ std::optional<double> length_for(const Shapes& shapes,
   return length_s(enough);
 }
 
-std::optional<double> length_for_ramp(const NoiseModelFit& model, double slope) {
-  constexpr int terms = 200;
-  for (double T = 32.0 / model.rate_hz; T < longest * model.duration_s; T *= step) {
-    double sum = 0.0;
-    for (int k = 1; k < terms; k += 2) {
-      const double f = k / (2.0 * T);
-      if (f > 0.5 * model.rate_hz) break;
-      sum += 1.0 / (std::pow(k, 4) * model.density(f));
-    }
-    const double information = 8.0 * T * T * T / std::pow(std::numbers::pi, 4) * sum;
-    if (slope * std::sqrt(information) >= needed_ratio) return T;
+// The groups of a recording of some length, their densities not yet known: the first coefficients
+// one by one, the others in groups.
+std::vector<SpectralGroup> groups_of(double length_s, double rate_hz) {
+  std::vector<SpectralGroup> groups;
+  const double spacing_hz = 0.5 / length_s, last_hz = 0.5 * rate_hz;
+  for (std::size_t k = 1; k <= single_ordinates; ++k) {
+    const double f = static_cast<double>(k) * spacing_hz;
+    if (f < last_hz) groups.push_back({.frequency_hz = f, .density = 0.0, .dof = 1.0});
   }
-  return std::nullopt;
+  for (double f = (static_cast<double>(single_ordinates) + 0.5) * spacing_hz; f < last_hz; f *= 1.0 + width_of_group) {
+    const double width_hz = std::min(width_of_group * f, last_hz - f);
+    groups.push_back(
+        {.frequency_hz = f + 0.5 * width_hz, .density = 0.0, .dof = width_hz / spacing_hz});
+  }
+  return groups;
+}
+
+// Twice the log-likelihood that the fit is expected to lose by doing without a ramp in a recording
+// of length T: the densities being what they are expected to be, R² 8 T³/(π k)⁴ the ramp's at every
+// odd ordinate, the strengths of all terms are free to explain them.
+double loss_without_ramp(const NoiseModelFit& model,
+                         std::size_t count,
+                         double slope,
+                         double length_s) {
+  std::vector<SpectralGroup> groups = groups_of(length_s, model.rate_hz);
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(groups.size()),
+                          static_cast<Eigen::Index>(count));
+  double top = 0.0;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const double f = groups[g].frequency_hz, S = model.density(f);
+    for (std::size_t k = 0; k < count; ++k)
+      columns(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(k)) =
+          model.shape(static_cast<Term>(k), f);
+    groups[g].density = S;
+    if (g % 2 == 0 && g < single_ordinates)
+      groups[g].density += 8.0 * square(slope) * std::pow(length_s, 3) /
+                           std::pow(std::numbers::pi * static_cast<double>(g + 1), 4);
+    top -= 0.5 * groups[g].dof * (std::log(S) + 1.0);
+  }
+  std::vector<int> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  const WhittleLikelihood likelihood(std::move(groups), columns);
+  return 2.0 * (top - likelihood.maximise(all).log_likelihood);
+}
+
+// The shortest length at which that is enough, by bisection.
+std::optional<double> length_for_ramp(const NoiseModelFit& model, std::size_t count, double slope) {
+  const double enough = square(std::sqrt(needed_gain_of_ramp) + ramp_margin);
+  const auto shows = [&](double length_s) {
+    return loss_without_ramp(model, count, slope, length_s) >= enough;
+  };
+  constexpr double fewest_samples = 100.0;
+  double low = fewest_samples / model.rate_hz, high = longest * model.duration_s;
+  if (!(high > low) || !shows(high)) return std::nullopt;
+  if (shows(low)) return low;
+  while (high > 1.02 * low) {
+    const double middle = std::sqrt(low * high);
+    (shows(middle) ? high : low) = middle;
+  }
+  return high;
 }
 
 double size_of(const Coefficient& coefficient) {
@@ -122,7 +184,7 @@ void set_records_needed(NoiseModelFit& model) {
     note_length(*all[k], length_for(shapes, in, static_cast<Eigen::Index>(k), size * size),
                 model.duration_s);
   }
-  note_length(model.ramp, length_for_ramp(model, size_of(model.ramp)), model.duration_s);
+  note_length(model.ramp, length_for_ramp(model, all.size(), size_of(model.ramp)), model.duration_s);
 }
 
 }  // namespace proofmass::characterise

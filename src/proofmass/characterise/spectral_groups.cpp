@@ -64,7 +64,7 @@ double rough_slope(const std::vector<CosineOrdinate>& ordinates) {
 }
 
 void group_transform(const NoiseEvidence& evidence, double below_hz, GroupedEvidence& grouped) {
-  const std::vector<CosineOrdinate> ordinates = evidence.slow.ordinates();
+  const std::vector<CosineOrdinate> ordinates = evidence.slow.ordinates(evidence.slow_wave);
   const double slope = rough_slope(ordinates);
   const double margin_hz = 0.5 * grouped.bin_hz;
   std::vector<SpectralGroup> rest;
@@ -81,7 +81,7 @@ void group_transform(const NoiseEvidence& evidence, double below_hz, GroupedEvid
     ++k;
     if (f >= below_hz || in_any(evidence.lines.lines, f, margin_hz)) continue;
     if (k <= single) {
-      grouped.groups.push_back({f, p, 1.0, ordinate.amplitude, ordinate.of_ramp});
+      grouped.groups.push_back({f, p, 1.0, ordinate.amplitude, ordinate.of_ramp, ordinate.vector});
     } else {
       const double level = ordinate.amplitude - slope * ordinate.of_ramp;
       grouping.add(f, level * level, 1.0, relative_width * f);

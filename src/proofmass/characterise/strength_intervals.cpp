@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/core/statistics.hpp"
 
 namespace proofmass::characterise {
 namespace {
@@ -16,7 +17,7 @@ constexpr double quantile_95_one_sided = 2.705543454095404;  // the square of 1.
 constexpr double normal_95 = 1.6448536269514722, normal_975 = 1.9599639845400545;
 // A slope hangs on so few frequencies that its ratio is larger by chance than the theory of many
 // says: the squares of Student's t with 8 degrees of freedom for those of the normal quantiles.
-constexpr double ramp_gain = 9.0, ramp_two_sided = 5.318, ramp_one_sided = 3.458;
+constexpr double ramp_two_sided = 5.318, ramp_one_sided = 3.458;
 
 // So that a search for the end of an interval ends itself, whatever the data.
 constexpr int most_doublings = 200;
@@ -184,6 +185,15 @@ class SlopeProfile {
 
 }  // namespace
 
+void set_std_of_longer_side(Coefficient& found) {
+  if (found.verdict != Verdict::identified) {
+    found.std = found.upper_95 / normal_95;
+    return;
+  }
+  found.std =
+      std::max(found.upper_two_sided_95 - found.value, found.value - found.lower_95) / normal_975;
+}
+
 Coefficient strength_coefficient(const Search& search, int column) {
   const Profile profile(search, column);
   const bool in =
@@ -197,7 +207,8 @@ Coefficient strength_coefficient(const Search& search, int column) {
   if (in && strength > 0.0) {
     found.verdict = Verdict::identified;
     found.value = std::sqrt(strength);
-    found.std = std::sqrt(variance_of(search, column)) / (2.0 * found.value);
+    found.std = 0.5 * (found.upper_two_sided_95 - found.lower_95) / normal_975;
+    if (is_slow(column)) set_std_of_longer_side(found);
   } else {
     found.std = found.upper_95 / normal_95;
   }
@@ -213,11 +224,29 @@ Coefficient ramp_coefficient(const Search& search) {
   found.upper_two_sided_95 = std::abs(profile.end(direction, ramp_two_sided));
   const double lower = direction * profile.end(-direction, ramp_two_sided);
   found.lower_95 = std::max(0.0, lower);
-  if (profile.loss(0.0) > ramp_gain) {
+  if (profile.loss(0.0) > needed_gain_of_ramp) {
     found.verdict = Verdict::identified;
     found.value = std::abs(slope);
-    found.std = (found.upper_two_sided_95 - lower) / (2.0 * normal_975);
+    found.std = std::max(found.upper_two_sided_95 - found.value, found.value - lower) / normal_975;
   } else {
+    found.std = found.upper_95 / normal_95;
+  }
+  return found;
+}
+
+Coefficient ramp_coefficient(const Uncertain& slope_per_s) {
+  const double size = std::abs(slope_per_s.value);
+  const double reach = std::sqrt(ramp_two_sided) * slope_per_s.std;
+  Coefficient found;
+  found.upper_95 = size + std::sqrt(ramp_one_sided) * slope_per_s.std;
+  found.upper_two_sided_95 = size + reach;
+  found.lower_95 = std::max(0.0, size - reach);
+  if (square(size) > needed_gain_of_ramp * square(slope_per_s.std)) {
+    found.verdict = Verdict::identified;
+    found.value = size;
+    found.std = reach / normal_975;
+  } else {
+    found.lower_95 = 0.0;
     found.std = found.upper_95 / normal_95;
   }
   return found;

@@ -6,6 +6,7 @@
 #include "proofmass/characterise/fisher_scoring.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/core/statistics.hpp"
 
 namespace proofmass::characterise {
 namespace {
@@ -164,6 +165,18 @@ WhittleLikelihood WhittleLikelihood::at_slope(double slope) const {
   other.raw_ = densities({.strength = {}, .density = {}, .slope = slope});
   other.of_ramp_.setZero();
   other.ramp_rows_ = 0;
+  return other;
+}
+
+WhittleLikelihood WhittleLikelihood::without_wave(const SlowWave& wave) const {
+  WhittleLikelihood other = *this;
+  const std::complex<double> size(wave.cosine, -wave.sine);
+  for (Index g = 0; g < raw_.size(); ++g) {
+    const CosineVector& vector = groups_[static_cast<std::size_t>(g)].vector;
+    if (vector.k == 0) continue;
+    other.amplitude_(g) -= (size * vector.of_wave(wave.frequency_hz)).real();
+    other.raw_(g) = square(other.amplitude_(g));
+  }
   return other;
 }
 

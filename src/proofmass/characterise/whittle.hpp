@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "proofmass/characterise/low_band.hpp"
+
 namespace proofmass::characterise {
 
 /// Neighbouring values of a spectrum taken together, small enough that the density is even in it.
@@ -14,6 +16,7 @@ struct SpectralGroup {
   /// Of a group of one cosine coefficient: it, and what a ramp of 1 unit/s adds to it; its density
   /// is then amplitude². of_ramp = 0 where a ramp does not reach.
   double amplitude = 0.0, of_ramp = 0.0;
+  CosineVector vector = {};  ///< of a group of one cosine coefficient
 };
 
 /// What maximises the likelihood, and what it is worth.
@@ -53,6 +56,9 @@ class WhittleLikelihood {
 
   /// The same evidence with a ramp of known slope taken out of it, and none left to be told.
   [[nodiscard]] WhittleLikelihood at_slope(double slope) const;
+
+  /// The same evidence with what a wave adds to each single coefficient taken out of it.
+  [[nodiscard]] WhittleLikelihood without_wave(const SlowWave& wave) const;
 
   /// Fisher information of the active strengths at S: ½ Σ ν X Xᵀ / S².
   [[nodiscard]] Eigen::MatrixXd information(const WhittleFit& fit,
