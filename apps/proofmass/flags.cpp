@@ -36,8 +36,9 @@ void add_input_flags(CLI::App& verb, InputFlags& flags) {
   };
   add("--rate", flags.rate_hz, "HZ", "sample rate, where the file has no time column")
       ->check(positive());
-  add("--unit", flags.unit, "UNIT", "of the accelerometer channels: g, mg, m/s2, V, mV or counts")
-      ->check(CLI::IsMember({"g", "mg", "m/s2", "V", "mV", "counts"}));
+  add("--unit", flags.unit, "UNIT",
+      "of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s")
+      ->check(CLI::IsMember({"g", "mg", "m/s2", "V", "mV", "counts", "deg/s", "rad/s"}));
   add("--channel", flags.channels, "NAME", "use this channel; may be repeated (default: all)")
       ->allow_extra_args(false);
   add("--dataset,--variable", flags.variables, "NAME",

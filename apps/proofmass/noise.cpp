@@ -134,6 +134,7 @@ std::vector<NoiseChannel> noise_channels(RestRecording recording, std::vector<No
     channel.shown.name = channel.rest.title;
     channel.shown.unit = channel.rest.unit;
     channel.shown.refused = channel.rest.refused;
+    channel.shown.rest = channel.rest.rest;
     if (recording.temperature) take_temperature_out(*recording.temperature, channel, notes);
   }
   return channels;

@@ -13,6 +13,7 @@
 #include "proofmass/report/wording.hpp"
 #include "proofmass/signal/audit.hpp"
 #include "proofmass/signal/even_grid.hpp"
+#include "proofmass/signal/rests.hpp"
 #include "rest_choice.hpp"
 
 namespace proofmass::app {
@@ -145,6 +146,56 @@ void calibrate_chosen(Source& source, const InputFlags& flags, std::vector<Note>
   source.recording = std::move(one.front());
 }
 
+bool shows_motion(const RestChannel& channel) {
+  const Quantity quantity = channel.unit.quantity;
+  return !channel.series.empty() &&
+         (quantity == Quantity::acceleration || quantity == Quantity::angular_rate ||
+          quantity == Quantity::voltage || quantity == Quantity::counts);
+}
+
+report::RestShare share_of(const signal::RestSearch& search,
+                           std::size_t samples,
+                           double rate_hz,
+                           double start_s) {
+  report::RestShare found;
+  std::size_t resting = 0, longest = 0;
+  for (const signal::Rest& rest : search.rests) {
+    const std::size_t length = rest.last - rest.first + 1;
+    resting += length;
+    if (length <= longest) continue;
+    longest = length;
+    found.longest_start_s = start_s + static_cast<double>(rest.first) / rate_hz;
+    found.longest_end_s = start_s + static_cast<double>(rest.last) / rate_hz;
+  }
+  found.share = static_cast<double>(resting) / static_cast<double>(samples);
+  return found;
+}
+
+// Channels of one quantity are looked at together, three at a time: a sensor that moves along one
+// axis is not at rest along the others.
+void find_share_at_rest(double start_s, std::vector<RestChannel>& channels) {
+  constexpr std::size_t most_axes = 3;
+  // Fewer than the search can learn the noise of a sensor at rest from.
+  constexpr std::size_t fewest_samples = 500;
+  for (std::size_t k = 0; k < channels.size();) {
+    std::vector<View<double>> axes;
+    std::vector<RestChannel*> group;
+    for (; k < channels.size() && group.size() < most_axes; ++k) {
+      RestChannel& channel = channels[k];
+      if (!shows_motion(channel) || channel.series.size() < fewest_samples) continue;
+      if (!group.empty() && channel.unit.quantity != group.front()->unit.quantity) break;
+      axes.emplace_back(channel.series);
+      group.push_back(&channel);
+    }
+    if (group.empty()) continue;
+    const double rate_hz = group.front()->rate_hz;
+    const signal::RestSearch search = signal::find_rests(axes, {.rate_hz = rate_hz});
+    if (search.window == 0) continue;
+    for (RestChannel* channel : group)
+      channel->rest = share_of(search, axes.front().size(), rate_hz, start_s);
+  }
+}
+
 }  // namespace
 
 void expect_axis(const RestChannel& channel) {
@@ -198,6 +249,8 @@ RestRecording rest_recording(Recording recording,
     if (options.for_sensor_file) expect_axis(channel);
     out.channels.push_back(std::move(channel));
   }
+  if (!options.is_phase)
+    find_share_at_rest(std::max(0.0, options.input.from_s.value_or(0.0)), out.channels);
   if (source.temperature) out.temperature = prepared_temperature(source);
   return out;
 }

@@ -11,6 +11,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/io/recording_stream.hpp"
+#include "proofmass/report/noise_report.hpp"
 
 // From recordings at rest to the evenly sampled series that the analyses of them take.
 namespace proofmass::app {
@@ -36,6 +37,8 @@ struct RestChannel {
   double rate_hz = 0.0;
   std::optional<double> lsb;        ///< step of the converter, in the series' unit
   std::optional<std::size_t> axis;  ///< 0, 1, 2 for x, y, z of the only accelerometer
+  /// How much of the recording is at rest; absent where its quantity says nothing of motion.
+  std::optional<report::RestShare> rest;
 };
 
 /// The temperature beside the channels, on their grid.

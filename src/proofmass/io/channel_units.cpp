@@ -70,13 +70,23 @@ bool is_accelerometer(const Channel& channel) {
           is_accelerometer_name(channel.name));
 }
 
+bool is_gyroscope(const Channel& channel) {
+  const std::string name = bare_name(channel.name);
+  return channel.unit.quantity == Quantity::angular_rate ||
+         (channel.unit.quantity != Quantity::acceleration &&
+          (name.starts_with("gyr") || name.starts_with("omega") || name == "gx" || name == "gy" ||
+           name == "gz" || name == "wx" || name == "wy" || name == "wz"));
+}
+
 void apply_given_unit(Recording& recording, const ReadOptions& options) {
   std::string names;
-  const bool any = std::ranges::any_of(recording.channels, is_accelerometer);
+  const auto is_meant =
+      options.unit->quantity == Quantity::angular_rate ? is_gyroscope : is_accelerometer;
+  const bool any = std::ranges::any_of(recording.channels, is_meant);
   for (Channel& channel : recording.channels) {
     const bool named = std::ranges::any_of(
         options.channels, [&](const std::string& n) { return lower(n) == lower(channel.name); });
-    const bool meant = any ? is_accelerometer(channel) : is_unknown(channel);
+    const bool meant = any ? is_meant(channel) : is_unknown(channel);
     if (!(options.channels.empty() ? meant : named)) continue;
     channel.unit = *options.unit;
     names += (names.empty() ? "" : ", ") + channel.name;

@@ -222,6 +222,32 @@ Figure deviation_figure(const ChannelNoise& channel) {
   return figure;
 }
 
+Figure parts_figure(const ChannelNoise& channel) {
+  const auto& parts = channel.analysis->parts;
+  Curve level{"white noise of each part", {}, {}};
+  Band band{.label = "95 % interval", .x = {}, .lower = {}, .upper = {}};
+  for (const characterise::NoisePart& part : parts) {
+    const characterise::Coefficient& white = part.model.white;
+    for (const double at_s : {part.start_s, part.end_s}) {
+      level.x.push_back(at_s);
+      level.y.push_back(white.value);
+      band.lower.push_back(white.lower_95);
+      band.upper.push_back(white.upper_two_sided_95);
+    }
+  }
+  const ShownUnit shown = shown_unit(channel.unit, NoiseScale::density, middle(level.y));
+  for (auto* values : {&level.y, &band.lower, &band.upper}) {
+    for (double& value : *values) value *= shown.per_si;
+  }
+  band.x = level.x;
+  return {.title = channel.name + ": white noise over time",
+          .description = "N of each part of the recording by itself, with its 95 % interval.",
+          .x = {.label = "Time (s)"},
+          .y = {.label = "N (" + shown.symbol + ")"},
+          .bands = {std::move(band)},
+          .curves = {std::move(level)}};
+}
+
 Figure spectrum_figure(const ChannelNoise& channel) {
   const NoiseAnalysis& analysis = *channel.analysis;
   const signal::Spectrum& spectrum = analysis.spectrum;

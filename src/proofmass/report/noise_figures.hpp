@@ -14,6 +14,8 @@ namespace proofmass::report {
 
 /// One-sided density against frequency, with the fitted density, the floor and the lines' names.
 /// The channel has an analysis.
+[[nodiscard]] Figure parts_figure(const ChannelNoise& channel);
+
 [[nodiscard]] Figure spectrum_figure(const ChannelNoise& channel);
 
 }  // namespace proofmass::report

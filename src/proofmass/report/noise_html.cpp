@@ -74,6 +74,37 @@ Table coefficients_table(const ChannelNoise& channel) {
   return table;
 }
 
+// How the coefficients of noise that is not stationary move.
+Table parts_table(const ChannelNoise& channel) {
+  Table table{"Not stationary: each part of the recording by itself", {"Part"}, {}};
+  for (const NamedCoefficient& term : named_coefficients) table.head.push_back(term.name);
+  for (const characterise::NoisePart& part : channel.analysis->parts) {
+    std::vector<std::string> row{duration_words(part.start_s) + " … " +
+                                 duration_words(part.end_s)};
+    for (const NamedCoefficient& term : named_coefficients)
+      row.push_back(coefficient_words(part.model.*term.figure, channel.unit, term.scale));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table readings_table(const ChannelNoise& channel) {
+  const characterise::DeviationCurve& curve = channel.analysis->deviation;
+  Table table{"The deviation as data sheets quote it",
+              {"At", "Value", compact(100.0 * curve.confidence, 3) + " % limits"},
+              {}};
+  for (const CurveReading& reading : curve_readings(curve)) {
+    const NoiseScale scale = curve_scale(curve.statistic);
+    const ShownUnit shown = shown_unit(channel.unit, scale, reading.point.value);
+    const auto words = [&](double value) { return significant(value * shown.per_si, 3); };
+    const std::string at = duration_words(reading.point.tau_s);
+    table.rows.push_back({reading.is_minimum ? at + " (minimum)" : at,
+                          words(reading.point.value) + ' ' + shown.symbol,
+                          words(reading.point.lower) + " … " + words(reading.point.upper)});
+  }
+  return table;
+}
+
 Table lines_table(const ChannelNoise& channel) {
   Table table{"Lines: power that stands out of the spectrum in a narrow band",
               {"Frequency", "Amplitude of the same sine", "Above the background", "Band",
@@ -124,7 +155,13 @@ Section channel_section(const ChannelNoise& channel, bool events_excluded) {
                              compact(analysis.rate_hz, 6)),
       .points = noise_findings(channel),
       .figures = {deviation_figure(channel)}};
+  if (!analysis.parts.empty()) {
+    section.tables.push_back(parts_table(channel));
+    section.figures.push_back(parts_figure(channel));
+  }
   if (has_coefficients(channel)) section.tables.push_back(coefficients_table(channel));
+  if (Table readings = readings_table(channel); !readings.rows.empty())
+    section.tables.push_back(std::move(readings));
   if (analysis.spectrum.frequency_hz.size() > 1) {
     section.figures.push_back(spectrum_figure(channel));
   }
@@ -145,6 +182,11 @@ Section method_section(const NoiseReport& report) {
       "for noise of the sensor. A coefficient that the recording can be explained without is "
       "reported as 0, with the bound that the recording puts on it; no slope is forced on the "
       "curve.",
+      "Whether the noise is stationary is tested at every octave of averaging times and for every "
+      "line, by an analysis of variance of the parts of the recording (after H. Levene, 1960), all "
+      "tests together at 0.5 %. Value ± 1.96 of the standard deviation is about the 95 % interval, "
+      "on the longer side of it for flicker noise and random walk. A slow change that a sine of a "
+      "few periods explains better than noise does is taken out of the coefficients.",
       "N is two-sided, so that it is the deviation at 1 s where all noise is white; the density of "
       "a data sheet is one-sided, √2 N. B is 1/0.664 of the curve's flat part. A minimum of the "
       "curve alone is no bias instability: white noise that meets a random walk has one too."};

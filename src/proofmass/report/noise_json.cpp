@@ -24,6 +24,20 @@ Value optional(const std::optional<double>& figure) {
   return figure ? Value(*figure) : Value();
 }
 
+Value reading_of(const DeviationPoint& point) {
+  return Object{{"tau_s", point.tau_s},
+                {"value", point.value},
+                {"lower", point.lower},
+                {"upper", point.upper}};
+}
+
+// Within the curve; one at its end is no minimum of the deviation.
+Value minimum(const DeviationCurve& curve) {
+  for (const CurveReading& reading : curve_readings(curve))
+    if (reading.is_minimum) return reading_of(reading.point);
+  return nullptr;
+}
+
 Value deviation(const DeviationCurve& curve, const Unit& unit) {
   const bool lag1 = knows_lag1(curve);
   Array points;
@@ -36,10 +50,15 @@ Value deviation(const DeviationCurve& curve, const Unit& unit) {
     item.push_back({"uncorrected", point.uncorrected});
     points.emplace_back(std::move(item));
   }
+  Array at;
+  for (const CurveReading& reading : curve_readings(curve))
+    if (!reading.is_minimum) at.push_back(reading_of(reading.point));
   return Object{{"statistic", characterise::name_of(curve.statistic)},
                 {"unit", noise_unit(unit, curve_scale(curve.statistic))},
                 {"confidence", curve.confidence},
                 {"bias_correction", curve.bias_correction},
+                {"minimum", minimum(curve)},
+                {"at", std::move(at)},
                 {"points", std::move(points)}};
 }
 
@@ -189,14 +208,51 @@ Value temperature(const ChannelNoise& channel) {
                                noise_unit(channel.unit, NoiseScale::level) + "/" + effect.per)}};
 }
 
+Value slow_change(const NoiseModelFit& model, const Unit& unit) {
+  if (!model.slow_change) return nullptr;
+  return Object{{"period_s", model.slow_change->period_s},
+                {"peak_to_peak", model.slow_change->peak_to_peak},
+                {"unit", noise_unit(unit, NoiseScale::level)},
+                {"taken_out", model.slow_change->taken_out}};
+}
+
 void add_coefficients(const ChannelNoise& found, Object& item) {
   const NoiseModelFit& model = found.analysis->model;
   item.push_back({"parameters", parameters(model, found.unit)});
+  item.push_back({"slow_change", slow_change(model, found.unit)});
   item.push_back({"bandwidth_hz", quantity(model.bandwidth_hz, "Hz")});
   item.push_back({"misfit", Object{{"share_of_density", model.misfit},
                                    {"p", model.misfit_p},
                                    {"groups", model.ordinates}}});
   item.push_back({"filter", filter(*found.analysis, found.unit)});
+}
+
+Value rest(const std::optional<RestShare>& found) {
+  if (!found) return nullptr;
+  const bool any = found->longest_end_s > found->longest_start_s;
+  return Object{{"share", found->share},
+                {"at_rest", found->is_at_rest()},
+                {"longest", any ? Value(Object{{"start_s", found->longest_start_s},
+                                               {"end_s", found->longest_end_s}})
+                                : Value()}};
+}
+
+Value stationarity(const ChannelNoise& found) {
+  const characterise::Stationarity& test = found.analysis->stationarity;
+  if (!test.tested) return nullptr;
+  Array levels, parts;
+  for (const double level : test.relative_level) levels.emplace_back(level);
+  for (const characterise::NoisePart& part : found.analysis->parts) {
+    parts.push_back(Object{{"start_s", part.start_s},
+                           {"end_s", part.end_s},
+                           {"parameters", parameters(part.model, found.unit)}});
+  }
+  return Object{{"verdict", test.stationary ? "stationary" : "not_stationary"},
+                {"p", test.p},
+                {"averaging_s", test.line_hz ? Value() : Value(test.averaging_s)},
+                {"line_hz", optional(test.line_hz)},
+                {"relative_level", std::move(levels)},
+                {"parts", std::move(parts)}};
 }
 
 void add_spectrum(const ChannelNoise& found, Object& item) {
@@ -215,6 +271,8 @@ Value channel(const ChannelNoise& found) {
   const auto add_nulls = [&](const auto& keys) {
     for (const char* key : keys) add(key, nullptr);
   };
+  add("rest", rest(found.rest));
+  add("stationarity", found.analysis ? stationarity(found) : Value());
   add("deviation", found.analysis ? deviation(found.analysis->deviation, found.unit) : Value());
   if (has_coefficients(found))
     add_coefficients(found, item);

@@ -41,6 +41,7 @@ void explain_coefficients(const NoiseAnalysis& analysis, const Say& say) {
     say("record_needed_s: null for " + endless +
         ": not even ten thousand times this recording would do");
   }
+  if (!model.slow_change) say("slow_change: null: nothing but noise is needed to explain it");
   if (!model.bandwidth_hz) {
     say("bandwidth_hz: null: the spectrum does not roll off below half the rate");
   }
@@ -63,13 +64,25 @@ bool is_bounded(const DeviationPoint& point) {
 void explain_nulls(const ChannelNoise& found, const Say& say) {
   std::string lacking;
   if (!found.analysis) {
-    lacking = "deviation";
+    lacking = "rest, stationarity, deviation";
     add_names(coefficient_keys, lacking);
     add_names(spectrum_keys, lacking);
     add_names(record_keys, lacking);
     return say("null for " + lacking + ", because it was not analysed: " + found.refused);
   }
   const NoiseAnalysis& analysis = *found.analysis;
+  if (!found.rest)
+    say("rest: null: a quantity that shows no motion, too short, or analysed in pieces");
+  else if (!(found.rest->longest_end_s > found.rest->longest_start_s))
+    say("rest: longest: null: the recording is not at rest at any time");
+  if (!analysis.stationarity.tested)
+    say("stationarity: null: not tested: too short, or analysed in pieces");
+  else if (!analysis.stationarity.line_hz)
+    say("stationarity: line_hz: null: not a line departs most, but the band at averaging_s");
+  else
+    say("stationarity: averaging_s: null: the line at line_hz departs most");
+  if (std::ranges::none_of(curve_readings(analysis.deviation), &CurveReading::is_minimum))
+    say("deviation: minimum: null: the curve has none but at its ends");
   if (has_coefficients(found)) {
     explain_coefficients(analysis, say);
   } else {

@@ -11,7 +11,8 @@
 namespace proofmass::report {
 
 // Keys that are null together: without coefficients, without a spectrum, without an analysis.
-inline constexpr std::array coefficient_keys{"parameters", "bandwidth_hz", "misfit", "filter"};
+inline constexpr std::array coefficient_keys{"parameters", "slow_change", "bandwidth_hz", "misfit",
+                                             "filter"};
 inline constexpr std::array spectrum_keys{"spectrum_floor", "spectrum_floor_two_sided", "spectrum"};
 inline constexpr std::array record_keys{"samples",    "missing", "rate_hz",
                                         "duration_s", "mean",    "lsb"};

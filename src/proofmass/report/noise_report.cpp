@@ -45,6 +45,46 @@ Rows coefficient_rows(const ChannelNoise& channel) {
   return rows;
 }
 
+// How the coefficients of noise that is not stationary move.
+Rows part_rows(const ChannelNoise& channel) {
+  const auto& parts = channel.analysis->parts;
+  Rows rows;
+  if (parts.empty()) return rows;
+  rows.push_back({"Part of the recording", "N", "B", "K"});
+  for (const characterise::NoisePart& part : parts) {
+    std::vector<std::string> row{duration_words(part.start_s) + " … " +
+                                 duration_words(part.end_s)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const NamedCoefficient& term = named_coefficients[k];
+      row.push_back(coefficient_words(part.model.*term.figure, channel.unit, term.scale));
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+// The deviation at 1, 10 and 100 s and its minimum, as data sheets give them.
+Rows reading_rows(const ChannelNoise& channel) {
+  const DeviationCurve& curve = channel.analysis->deviation;
+  const NoiseScale scale = curve_scale(curve.statistic);
+  Rows rows;
+  const auto add = [&](const std::string& name, const DeviationPoint& point) {
+    const ShownUnit shown = shown_unit(channel.unit, scale, point.value);
+    const auto words = [&](double value) { return significant(value * shown.per_si, 3); };
+    rows.push_back({name, words(point.value) + ' ' + shown.symbol,
+                    fmt::format("{} % limits {} … {}", compact(100.0 * curve.confidence, 3),
+                                words(point.lower), words(point.upper))});
+  };
+  for (const CurveReading& reading : curve_readings(curve)) {
+    if (reading.is_minimum)
+      add(fmt::format("Minimum of the curve, at {}", duration_words(reading.point.tau_s)),
+          reading.point);
+    else
+      add(fmt::format("Deviation at {}", duration_words(reading.point.tau_s)), reading.point);
+  }
+  return rows;
+}
+
 Rows line_rows(const ChannelNoise& channel) {
   Rows rows;
   for (const signal::SpectralLine& line : channel.analysis->lines.lines) {
@@ -94,12 +134,16 @@ std::string channel_text(const ChannelNoise& channel) {
   if (!channel.analysis)
     return fmt::format("{}: not analysed: {}\n", channel.name, channel.refused);
   std::string text = heading(channel);
+  for (const std::string& sentence : doubts_of(channel)) text += "  " + sentence + '\n';
   for (const Rows& rows :
-       {coefficient_rows(channel), point_rows(channel), line_rows(channel), event_rows(channel)}) {
+       {coefficient_rows(channel), part_rows(channel), reading_rows(channel), point_rows(channel),
+        line_rows(channel), event_rows(channel)}) {
     if (!rows.empty()) text += '\n' + aligned(rows);
   }
   text += '\n';
-  for (const std::string& sentence : noise_findings(channel)) text += "  " + sentence + '\n';
+  const std::vector<std::string> sentences = noise_findings(channel);
+  for (std::size_t k = doubts_of(channel).size(); k < sentences.size(); ++k)
+    text += "  " + sentences[k] + '\n';
   return text;
 }
 
@@ -128,6 +172,9 @@ void add_columns(const ChannelNoise& channel, const std::vector<double>& taus, R
 
 std::string noise_conclusion(const NoiseReport& report) {
   std::string text;
+  if (report.channels.size() > 1) {
+    for (const std::string& sentence : common_doubts(report)) text += sentence + ' ';
+  }
   if (report.channels.size() == 1) {
     const std::vector<std::string> sentences = noise_findings(report.channels.front());
     for (std::size_t k = 0; k < std::min<std::size_t>(3, sentences.size()); ++k) {
@@ -136,7 +183,7 @@ std::string noise_conclusion(const NoiseReport& report) {
     return text;
   }
   for (const ChannelNoise& channel : report.channels) {
-    text += (text.empty() ? "White noise: " : "; ") + channel.name + ' ';
+    text += (&channel == &report.channels.front() ? "White noise: " : "; ") + channel.name + ' ';
     text += has_coefficients(channel) ? coefficient_words(channel.analysis->model.white,
                                                           channel.unit, NoiseScale::density)
             : channel.analysis        ? "not determined"
@@ -152,6 +199,8 @@ std::vector<Note> noise_notes(const NoiseReport& report) {
       notes.push_back({Severity::bad, channel.name + ": not analysed: " + channel.refused});
       continue;
     }
+    if (const std::string moving = motion_sentence(channel); !moving.empty())
+      notes.push_back({Severity::bad, channel.name + ": " + moving});
     for (const Note& note : channel.analysis->notes) {
       notes.push_back({note.severity, channel.name + ": " + note.text});
     }

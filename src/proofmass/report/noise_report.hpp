@@ -18,6 +18,15 @@ struct TemperatureEffect {
   std::string per = "K";  ///< unit of the temperature channel; "1" if unknown
 };
 
+/// How much of a recording is at rest, and its longest rest.
+struct RestShare {
+  double share = 0.0;
+  double longest_start_s = 0.0, longest_end_s = 0.0;  ///< on the recording's clock; equal if none
+
+  /// What is left out by a knock or next to the ends is no motion.
+  [[nodiscard]] bool is_at_rest() const { return share >= 0.9; }
+};
+
 /// One channel at rest: its analysis, or why there is none.
 struct ChannelNoise {
   std::string name;
@@ -25,6 +34,7 @@ struct ChannelNoise {
   std::optional<characterise::NoiseAnalysis> analysis;
   std::string refused;  ///< the reason, where there is no analysis
   std::optional<TemperatureEffect> temperature;
+  std::optional<RestShare> rest;  ///< absent where it was not looked for
 };
 
 /// The noise of a recording and what it was computed from.

@@ -50,6 +50,25 @@ std::string_view per_what(NoiseScale scale) {
   return "";
 }
 
+// Gyroscope makers give N as angle random walk in °/√h, 1 °/s/√Hz being 60 °/√h, and B in °/h; K,
+// the rate random walk, in °/h/√h.
+Base base_of_rate(NoiseScale scale) {
+  constexpr double s_per_h = 3600.0, root = 60.0;
+  switch (scale) {
+    case NoiseScale::density:
+      return {root * deg_per_rad, "°/√h", "", false};
+    case NoiseScale::walk:
+      return {s_per_h * root * deg_per_rad, "°/h/√h", "", false};
+    case NoiseScale::slope:
+      return {s_per_h * s_per_h * deg_per_rad, "°/h²", "", false};
+    case NoiseScale::integral:
+      return {deg_per_rad, "°", "", false};
+    case NoiseScale::level:
+      break;
+  }
+  return {s_per_h * deg_per_rad, "°/h", "", false};
+}
+
 Base base_of(const Unit& unit, NoiseScale scale) {
   const bool integral = scale == NoiseScale::integral;
   const std::string behind(per_what(scale));
@@ -61,10 +80,7 @@ Base base_of(const Unit& unit, NoiseScale scale) {
     if (integral) return {1.0, "m/s", "", true};
     return {1.0 / standard_gravity_mps2, "g", behind, true};
   }
-  if (is_angular_rate(unit)) {
-    if (integral) return {1.0 / rad_per_deg, "°", "", false};
-    return {1.0 / rad_per_deg, "°/s", behind, false};
-  }
+  if (is_angular_rate(unit)) return base_of_rate(scale);
   const bool takes_prefix = unit.quantity == Quantity::voltage && unit.to_si == 1.0;
   return {1.0, print_unit(unit.symbol), behind, takes_prefix};
 }
@@ -97,7 +113,10 @@ std::string flicker_sentence(const ChannelNoise& channel, const Coefficient& fli
 
 std::string walk_sentence(const ChannelNoise& channel, const Coefficient& walk) {
   if (is_identified(walk)) {
-    return fmt::format("Random walk {}.", coefficient_words(walk, channel.unit, NoiseScale::walk));
+    const bool doubtful = walk.lower_95 == 0.0 && channel.analysis->model.slow_change;
+    return fmt::format("Random walk {}{}.",
+                       coefficient_words(walk, channel.unit, NoiseScale::walk),
+                       doubtful ? ", or a slow change: this recording cannot tell which" : "");
   }
   return fmt::format("No random walk seen: below {} with 95 % confidence{}.",
                      noise_words(walk.upper_95, channel.unit, NoiseScale::walk),
@@ -108,6 +127,13 @@ std::string walk_sentence(const ChannelNoise& channel, const Coefficient& walk) 
 void add_rarer_terms(const ChannelNoise& channel, std::vector<std::string>& sentences) {
   const NoiseModelFit& model = channel.analysis->model;
   const Unit& unit = channel.unit;
+  if (model.slow_change && model.slow_change->taken_out) {
+    sentences.push_back(fmt::format(
+        "A slow change of {} peak to peak, like a sine of {}, is not noise and was taken out of the "
+        "coefficients: temperature, perhaps (--temperature).",
+        noise_words(model.slow_change->peak_to_peak, unit, NoiseScale::level),
+        duration_words(model.slow_change->period_s)));
+  }
   if (is_identified(model.quantisation)) {
     sentences.push_back(
         fmt::format("Quantisation noise {}.",
@@ -303,16 +329,91 @@ LineEffect line_effect(const NoiseAnalysis& analysis, const signal::SpectralLine
   return {tau_s, std::sqrt(1.0 + added / noise) - 1.0};
 }
 
+std::vector<CurveReading> curve_readings(const characterise::DeviationCurve& curve) {
+  constexpr double near = 0.03;
+  const auto& points = curve.points;
+  std::vector<CurveReading> readings;
+  if (points.size() < 3) return readings;
+  for (const double tau_s : {1.0, 10.0, 100.0}) {
+    const auto nearest = std::ranges::min_element(
+        points, {}, [=](const auto& point) { return std::abs(point.tau_s - tau_s); });
+    if (std::abs(nearest->tau_s / tau_s - 1.0) < near) readings.push_back({*nearest, false});
+  }
+  const auto lowest =
+      std::ranges::min_element(points, {}, &characterise::DeviationPoint::value);
+  if (lowest != points.begin() && lowest != points.end() - 1) readings.push_back({*lowest, true});
+  return readings;
+}
+
+std::string motion_sentence(const ChannelNoise& channel) {
+  if (!channel.rest || channel.rest->is_at_rest()) return {};
+  const RestShare& rest = *channel.rest;
+  if (!(rest.longest_end_s > rest.longest_start_s)) {
+    return "Not at rest at any time in this recording: the figures are of the motion, not of the "
+           "sensor's noise.";
+  }
+  return fmt::format(
+      "Not at rest: {} % of this recording is. The figures are of the motion, not of the sensor's "
+      "noise; its longest rest is --from {} --to {}.",
+      significant(100.0 * rest.share, 2), fixed(rest.longest_start_s, 2),
+      fixed(rest.longest_end_s, 2));
+}
+
+std::vector<std::string> doubts_of(const ChannelNoise& channel) {
+  std::vector<std::string> sentences;
+  if (!channel.analysis) return sentences;
+  if (std::string moving = motion_sentence(channel); !moving.empty())
+    sentences.push_back(std::move(moving));
+  const NoiseAnalysis& analysis = *channel.analysis;
+  const characterise::Stationarity& found = analysis.stationarity;
+  if (found.stationary) return sentences;
+  const auto [least, most] = std::ranges::minmax(found.relative_level);
+  std::string text = fmt::format(
+      "Not stationary (p = {}): {} changes by a factor of {} over the recording",
+      significant(found.p, 1),
+      found.line_hz ? "the line at " + compact(*found.line_hz, 4) + " Hz"
+                    : "the noise at averaging times near " + duration_words(found.averaging_s),
+      significant(most / least, 3));
+  if (!analysis.parts.empty()) {
+    const auto white = [](const characterise::NoisePart& part) { return part.model.white.value; };
+    const auto [low, high] = std::ranges::minmax(analysis.parts, {}, white);
+    text += fmt::format(", white noise from {} to {} in its parts",
+                        noise_words(white(low), channel.unit, NoiseScale::density),
+                        noise_words(white(high), channel.unit, NoiseScale::density));
+  }
+  sentences.push_back(text + ". The figures are averages over it.");
+  return sentences;
+}
+
+std::vector<std::string> common_doubts(const NoiseReport& report) {
+  std::string moving, changing;
+  const auto add = [](std::string& names, const std::string& name) {
+    names += (names.empty() ? "" : ", ") + name;
+  };
+  for (const ChannelNoise& channel : report.channels) {
+    if (!channel.analysis) continue;
+    if (!motion_sentence(channel).empty()) add(moving, channel.name);
+    if (!channel.analysis->stationarity.stationary) add(changing, channel.name);
+  }
+  std::vector<std::string> sentences;
+  if (!moving.empty())
+    sentences.push_back("Not at rest (" + moving + "): the figures are of the motion.");
+  if (!changing.empty())
+    sentences.push_back("Not stationary (" + changing + "): the figures are averages.");
+  return sentences;
+}
+
 std::vector<std::string> noise_findings(const ChannelNoise& channel) {
   if (!channel.analysis) return {"Not analysed: " + channel.refused + "."};
-  std::vector<std::string> sentences;
+  std::vector<std::string> sentences = doubts_of(channel);
   if (has_coefficients(channel)) {
     const NoiseModelFit& model = channel.analysis->model;
-    sentences = {white_sentence(channel, model.white), flicker_sentence(channel, model.flicker),
-                 walk_sentence(channel, model.random_walk)};
+    sentences.push_back(white_sentence(channel, model.white));
+    sentences.push_back(flicker_sentence(channel, model.flicker));
+    sentences.push_back(walk_sentence(channel, model.random_walk));
     add_rarer_terms(channel, sentences);
   } else {
-    sentences = {"Too short for coefficients: only the deviation is given."};
+    sentences.push_back("Too short for coefficients: only the deviation is given.");
   }
   add_lines(*channel.analysis, sentences);
   add_judgement(*channel.analysis, sentences);

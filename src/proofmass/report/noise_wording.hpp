@@ -83,6 +83,26 @@ struct LineEffect {
 [[nodiscard]] LineEffect line_effect(const characterise::NoiseAnalysis& analysis,
                                      const signal::SpectralLine& line);
 
+/// A point of the curve that is quoted for itself.
+struct CurveReading {
+  characterise::DeviationPoint point;
+  bool is_minimum = false;
+};
+
+/// The points at 1, 10 and 100 s, the nearest within 3 %, where the curve has them, and its minimum
+/// where it lies within the curve and not at an end.
+[[nodiscard]] std::vector<CurveReading> curve_readings(const characterise::DeviationCurve& curve);
+
+/// "Not at rest: …", or empty.
+[[nodiscard]] std::string motion_sentence(const ChannelNoise& channel);
+
+/// What has to be said before any figure: that the sensor was not at rest, that its noise was not
+/// stationary. The first sentences of noise_findings().
+[[nodiscard]] std::vector<std::string> doubts_of(const ChannelNoise& channel);
+
+/// Those of all channels together, each once with the channels' names.
+[[nodiscard]] std::vector<std::string> common_doubts(const NoiseReport& report);
+
 /// What the analysis comes to, sentence by sentence, the most important first; of a refused channel
 /// why.
 [[nodiscard]] std::vector<std::string> noise_findings(const ChannelNoise& channel);
