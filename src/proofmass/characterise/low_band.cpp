@@ -124,7 +124,8 @@ void append_ordinates(View<double> means,
   ordinates.reserve(ordinates.size() + last);
   for (std::size_t k = 1; k <= last; ++k) {
     ordinates.push_back({static_cast<double>(k) / (2.0 * static_cast<double>(n) * step_s),
-                         amplitudes[k] * to_density, ramp_amplitude(k, n, step_s),
+                         amplitudes[k] * to_density,
+                         ramp_amplitude(k, n, step_s),
                          {k, n, first.start_s, step_s}});
   }
 }

@@ -48,8 +48,8 @@ double gain_of_wave(const Fitted& plain, const Fitted& with_wave, const SlowWave
   const double with = plain.search.likelihood.without_wave(wave)
                           .maximise(active, {}, plain.search.fit.strength)
                           .log_likelihood;
-  const double fewer = static_cast<double>(plain.search.active.size()) -
-                       static_cast<double>(active.size());
+  const double fewer =
+      static_cast<double>(plain.search.active.size()) - static_cast<double>(active.size());
   return 2.0 * (with - plain.search.fit.log_likelihood) + needed_gain * fewer;
 }
 
@@ -90,8 +90,7 @@ void doubt_slow_terms(const Fitted& found, NoiseModelFit& model) {
     coefficient.lower_95 = 0.0;
     set_std_of_longer_side(coefficient);
     if (!model.slow_change)
-      model.slow_change =
-          described(*wave, found.search.fit.slope, model.duration_s, false);
+      model.slow_change = described(*wave, found.search.fit.slope, model.duration_s, false);
   };
   doubt(static_cast<int>(Term::flicker), model.flicker);
   doubt(static_cast<int>(Term::random_walk), model.random_walk);

@@ -358,9 +358,9 @@ TEST(FitNoiseModel, ASlowDeterministicChangeIsNoRandomWalkWithoutDoubt) {
   for (const double periods : {0.5, 0.8, 1.3, 2.4, 4.6}) {
     for (unsigned seed = 0; seed < 4; ++seed) {
       const double frequency_hz = periods * rate_hz / static_cast<double>(n);
-      const NoiseModelFit model = model_of(
-          sum_of({test::white(1e-3, rate_hz, n, 60 + seed),
-                  test::sine(seed < 2 ? 2e-3 : 2e-2, frequency_hz, rate_hz, n)}));
+      const NoiseModelFit model =
+          model_of(sum_of({test::white(1e-3, rate_hz, n, 60 + seed),
+                           test::sine(seed < 2 ? 2e-3 : 2e-2, frequency_hz, rate_hz, n)}));
       for (const Coefficient* slow : {&model.flicker, &model.random_walk})
         surely_walks += slow->lower_95 > 0.0 ? 1 : 0;
       if (!model.slow_change || !model.slow_change->taken_out) continue;
@@ -405,8 +405,8 @@ TEST(FitNoiseModel, TheRecordThatARampNeedsShowsIt) {
 
 // The printed ± is that of the interval, of whichever side is longer.
 TEST(FitNoiseModel, StandardDeviationsOfSlowTermsAreThoseOfTheirIntervals) {
-  const NoiseModelFit model = model_of(sum_of({test::white(1e-3, rate_hz, 60'000, 90),
-                                               test::random_walk(3e-4, rate_hz, 60'000, 91)}));
+  const NoiseModelFit model = model_of(sum_of(
+      {test::white(1e-3, rate_hz, 60'000, 90), test::random_walk(3e-4, rate_hz, 60'000, 91)}));
   const Coefficient& walk = model.random_walk;
   ASSERT_EQ(walk.verdict, Verdict::identified);
   EXPECT_LE(walk.value - 1.96 * walk.std, walk.lower_95 * 1.001);

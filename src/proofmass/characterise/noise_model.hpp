@@ -28,8 +28,8 @@ enum class Verdict {
 /// One coefficient: what the recording says of it.
 struct Coefficient {
   double value = 0.0;  ///< 0 where not observable
-  /// That of the 95 % interval: half of it over 1.96, of flicker noise, random walk and Markov noise
-  /// its longer side over 1.96. Where not observable upper_95 / 1.645.
+  /// That of the 95 % interval: half of it over 1.96, of flicker noise, random walk and Markov
+  /// noise its longer side over 1.96. Where not observable upper_95 / 1.645.
   double std = 0.0;
   /// Central 95 % interval, by likelihood ratio. It reaches 0 for an identified coefficient too,
   /// where another term might stand in for it: flicker for a random walk seen in too short a
@@ -49,8 +49,8 @@ struct MarkovNoise {
   [[nodiscard]] double std_of_process() const;  ///< q √(T/2) in u
 };
 
-/// A slow deterministic change, as temperature makes it: a sine of a few periods in the recording or
-/// a piece of one. A random walk looks alike in so far as it rests on the slowest coefficients.
+/// A slow deterministic change, as temperature makes it: a sine of a few periods in the recording
+/// or a piece of one. A random walk looks alike in so far as it rests on the slowest coefficients.
 struct SlowChange {
   double period_s = 0.0;
   double peak_to_peak = 0.0;  ///< within the recording, with the ramp

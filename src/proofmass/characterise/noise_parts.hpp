@@ -8,8 +8,8 @@
 // How the figures of noise that is not stationary move within a recording.
 namespace proofmass::characterise {
 
-/// The model of each of eight equal parts, of four where an eighth is too short for one; empty where
-/// a quarter is.
+/// The model of each of eight equal parts, of four where an eighth is too short for one; empty
+/// where a quarter is.
 [[nodiscard]] std::vector<NoisePart> noise_of_parts(View<double> series,
                                                     const NoiseOptions& options);
 

@@ -15,7 +15,8 @@
 #include "proofmass/characterise/noise_test_support.hpp"
 
 // The table of docs/methods/noise.md: recordings of random length and random composition, and how
-// often interval and value ± 1.96 std hold the truth, in each scenario. White noise is 1 throughout.
+// often interval and value ± 1.96 std hold the truth, in each scenario. White noise is 1
+// throughout.
 namespace proofmass::characterise::noise_scenarios_slow_test {
 namespace {
 
@@ -96,8 +97,8 @@ Outcome analysed(int records, const std::function<Drawn(Dice&, unsigned)>& draw)
     const auto seed = static_cast<unsigned>(record);
     Dice dice(77 * seed + 5);
     const Drawn drawn = draw(dice, 1000 * seed + 13);
-    const auto analysis = analyse_noise(
-        drawn.series, {.rate_hz = rate_hz, .taus = {.kind = TauGrid::Kind::decade}});
+    const auto analysis =
+        analyse_noise(drawn.series, {.rate_hz = rate_hz, .taus = {.kind = TauGrid::Kind::decade}});
     if (!analysis) continue;
     ++outcome.records;
     outcome.not_stationary += analysis->stationarity.stationary ? 0 : 1;
@@ -198,9 +199,8 @@ TEST(NoiseScenarios, ASlowSineOrABendIsNoRandomWalkWithoutDoubt) {
   const auto sine = [](Dice& d, unsigned s) {
     Drawn drawn = mixture({0, 1, 0, 0, 0}, d.samples(), s);
     const double periods = 1.0 / d.between(0.2, 2.0), phase = d.between(1.0, 6.28);
-    add_shape(drawn, d.between(0.3, 10.0), [=](double x) {
-      return std::sin(2.0 * std::numbers::pi * periods * x + phase);
-    });
+    add_shape(drawn, d.between(0.3, 10.0),
+              [=](double x) { return std::sin(2.0 * std::numbers::pi * periods * x + phase); });
     return drawn;
   };
   const auto bend = [](Dice& d, unsigned s) {
@@ -235,9 +235,9 @@ TEST(NoiseScenarios, NoiseThatChangesIsNotCalledStationary) {
           1.0 + 0.6 * std::sin(2.0 * std::numbers::pi * periods * static_cast<double>(k) / n);
     return drawn;
   };
-  for (const auto& [name, outcome] : {std::pair{"1.3 … 4 times louder half way",
-                                                analysed(records, louder)},
-                                      {"60 % slower modulation", analysed(records, swelling)}}) {
+  for (const auto& [name, outcome] :
+       {std::pair{"1.3 … 4 times louder half way", analysed(records, louder)},
+        {"60 % slower modulation", analysed(records, swelling)}}) {
     SCOPED_TRACE(name);
     print(name, outcome);
     EXPECT_GE(outcome.not_stationary, outcome.records - 3);

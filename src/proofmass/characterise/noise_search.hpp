@@ -25,8 +25,8 @@ inline constexpr int column_of_markov = static_cast<int>(Term::markov);
 /// three terms that white noise does not have, one is then taken in by chance in about one
 /// recording in fifty (the boundary halves it).
 inline constexpr double needed_gain = 6.0;
-/// The same of a ramp: a slope depends on so few frequencies that its ratio is larger by chance than
-/// the theory of many says.
+/// The same of a ramp: a slope depends on so few frequencies that its ratio is larger by chance
+/// than the theory of many says.
 inline constexpr double needed_gain_of_ramp = 9.0;
 
 /// A fit in progress: the likelihood, with the shapes chosen so far, and the terms still in.

@@ -106,7 +106,8 @@ std::vector<SpectralGroup> groups_of(double length_s, double rate_hz) {
     const double f = static_cast<double>(k) * spacing_hz;
     if (f < last_hz) groups.push_back({.frequency_hz = f, .density = 0.0, .dof = 1.0});
   }
-  for (double f = (static_cast<double>(single_ordinates) + 0.5) * spacing_hz; f < last_hz; f *= 1.0 + width_of_group) {
+  for (double f = (static_cast<double>(single_ordinates) + 0.5) * spacing_hz; f < last_hz;
+       f *= 1.0 + width_of_group) {
     const double width_hz = std::min(width_of_group * f, last_hz - f);
     groups.push_back(
         {.frequency_hz = f + 0.5 * width_hz, .density = 0.0, .dof = width_hz / spacing_hz});
@@ -184,7 +185,8 @@ void set_records_needed(NoiseModelFit& model) {
     note_length(*all[k], length_for(shapes, in, static_cast<Eigen::Index>(k), size * size),
                 model.duration_s);
   }
-  note_length(model.ramp, length_for_ramp(model, all.size(), size_of(model.ramp)), model.duration_s);
+  note_length(model.ramp, length_for_ramp(model, all.size(), size_of(model.ramp)),
+              model.duration_s);
 }
 
 }  // namespace proofmass::characterise

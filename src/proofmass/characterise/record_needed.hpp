@@ -14,9 +14,9 @@ namespace proofmass::characterise {
 ///
 /// Ramp: the shortest T at which the fit is expected to lose (3 + margin)² in twice the
 /// log-likelihood by doing without it, with all strengths free to explain it as in the fit. None
-/// beyond ten thousand times the recording. Probabilities by simulation: record_needed_slow_test.cpp.
-/// Source: P. Whittle (1953), the likelihood's information; A. Wald, Trans. Amer. Math. Soc. 54
-/// (1943) 426, for the ratio away from the hypothesis.
+/// beyond ten thousand times the recording. Probabilities by simulation:
+/// record_needed_slow_test.cpp. Source: P. Whittle (1953), the likelihood's information; A. Wald,
+/// Trans. Amer. Math. Soc. 54 (1943) 426, for the ratio away from the hypothesis.
 void set_records_needed(NoiseModelFit& model);
 
 }  // namespace proofmass::characterise

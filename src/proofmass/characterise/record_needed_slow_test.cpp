@@ -1,5 +1,3 @@
-#include "proofmass/characterise/record_needed.hpp"
-
 #include <cstddef>
 #include <gtest/gtest.h>
 #include <string>
@@ -7,6 +5,7 @@
 
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/characterise/noise_test_support.hpp"
+#include "proofmass/characterise/record_needed.hpp"
 
 // How often a term is identified in recordings as long as record_needed_s says: 95 % are promised.
 namespace proofmass::characterise::record_needed_slow_test {
@@ -64,9 +63,9 @@ TEST(RecordNeeded, IdentifiesEachTermWithTheProbabilityItPromises) {
     const auto n = static_cast<std::size_t>(*needed_s * of.rate_hz);
     int seen = 0;
     for (unsigned record = 0; record < records; ++record) {
-      const auto found = analyse_noise(
-          drawn(of, n, 10 * record),
-          {.rate_hz = of.rate_hz, .taus = {.kind = TauGrid::Kind::decade}});
+      const auto found =
+          analyse_noise(drawn(of, n, 10 * record),
+                        {.rate_hz = of.rate_hz, .taus = {.kind = TauGrid::Kind::decade}});
       ASSERT_TRUE(found.has_value());
       seen += (found->model.*of.asked).verdict == Verdict::identified ? 1 : 0;
     }

@@ -21,9 +21,7 @@ struct RampAndWave {
 };
 
 // Ramp, cosine and sine by least squares over the single coefficients, weighted by a density.
-RampAndWave fitted_wave(const Search& search,
-                        const Eigen::VectorXd& density,
-                        double frequency_hz) {
+RampAndWave fitted_wave(const Search& search, const Eigen::VectorXd& density, double frequency_hz) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d score = Eigen::Vector3d::Zero();
   for (std::size_t g = 0; g < search.evidence.groups.size(); ++g) {
@@ -38,7 +36,8 @@ RampAndWave fitted_wave(const Search& search,
   // The ramp's column and the others are of different units.
   const Eigen::Vector3d scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::Matrix3d even = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::Matrix3d covariance = scale.asDiagonal() * positive_inverse(even) * scale.asDiagonal();
+  const Eigen::Matrix3d covariance =
+      scale.asDiagonal() * positive_inverse(even) * scale.asDiagonal();
   const Eigen::Vector3d found = covariance * score;
   return {{found(0), std::sqrt(covariance(0, 0))}, {frequency_hz, found(1), found(2)}};
 }

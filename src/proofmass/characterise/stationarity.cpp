@@ -169,7 +169,8 @@ Stationarity test_stationarity(View<double> series,
                                const std::vector<signal::SpectralLine>& lines) {
   std::vector<Band> bands = difference_bands(series, rate_hz, lines);
   for (const signal::SpectralLine& line : lines)
-    if (auto band = line_band(series, rate_hz, line.frequency_hz)) bands.push_back(std::move(*band));
+    if (auto band = line_band(series, rate_hz, line.frequency_hz))
+      bands.push_back(std::move(*band));
   Stationarity result;
   double tests = 0.0, change = 0.0;
   for (const Band& band : bands) {

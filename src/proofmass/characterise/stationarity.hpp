@@ -28,12 +28,12 @@ inline constexpr double relevant_change = 0.01;
 ///
 /// With d_k the differences of neighbouring means over m samples, not overlapping, m = 1, 2, 4 …
 /// (Haar wavelet coefficients: independent of one another in white noise and in a random walk,
-/// nearly so between) where lines have no part in them, and the Fourier coefficients of blocks at the frequency of each line, the
-/// roots √|d_k| are nearly normal. They are averaged over up to 128 equal spans of the recording,
-/// fewer where neighbouring spans correlate, and an analysis of variance compares 2, 4, 8, 16 and
-/// 32 equal parts of it. The scatter of the spans within the parts is the yardstick: heavy tails,
-/// rounding and correlation are in it. All probabilities are multiplied by the number of tests
-/// (Bonferroni); below 0.005 the noise is not stationary.
+/// nearly so between) where lines have no part in them, and the Fourier coefficients of blocks at
+/// the frequency of each line, the roots √|d_k| are nearly normal. They are averaged over up to 128
+/// equal spans of the recording, fewer where neighbouring spans correlate, and an analysis of
+/// variance compares 2, 4, 8, 16 and 32 equal parts of it. The scatter of the spans within the
+/// parts is the yardstick: heavy tails, rounding and correlation are in it. All probabilities are
+/// multiplied by the number of tests (Bonferroni); below 0.005 the noise is not stationary.
 ///
 /// Source: D. B. Percival, A. T. Walden, Wavelet Methods for Time Series Analysis (2000), sections
 /// 8.6 and 9.6 (wavelet variance, homogeneity of variance); H. Levene, Robust tests for equality of

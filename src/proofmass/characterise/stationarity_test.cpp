@@ -26,8 +26,7 @@ int alarms(unsigned records, const std::function<Series(unsigned)>& draw) {
 
 Series modulated(Series series, const std::function<double(double)>& level) {
   const auto n = static_cast<double>(series.size());
-  for (std::size_t k = 0; k < series.size(); ++k)
-    series[k] *= level(static_cast<double>(k) / n);
+  for (std::size_t k = 0; k < series.size(); ++k) series[k] *= level(static_cast<double>(k) / n);
   return series;
 }
 
@@ -56,7 +55,8 @@ TEST(Stationarity, IsNotDoubtedForRoundingOrHeavyTails) {
   EXPECT_LE(alarms(30,
                    [](unsigned s) {  // Student's t with three degrees of freedom
                      Series y = test::normals(samples, s);
-                     const Series a = test::normals(samples, s + 1), b = test::normals(samples, s + 2),
+                     const Series a = test::normals(samples, s + 1),
+                                  b = test::normals(samples, s + 2),
                                   c = test::normals(samples, s + 3);
                      for (std::size_t k = 0; k < y.size(); ++k)
                        y[k] /= std::sqrt((a[k] * a[k] + b[k] * b[k] + c[k] * c[k]) / 3.0);

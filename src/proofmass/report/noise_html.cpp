@@ -79,8 +79,7 @@ Table parts_table(const ChannelNoise& channel) {
   Table table{"Not stationary: each part of the recording by itself", {"Part"}, {}};
   for (const NamedCoefficient& term : named_coefficients) table.head.push_back(term.name);
   for (const characterise::NoisePart& part : channel.analysis->parts) {
-    std::vector<std::string> row{duration_words(part.start_s) + " … " +
-                                 duration_words(part.end_s)};
+    std::vector<std::string> row{duration_words(part.start_s) + " … " + duration_words(part.end_s)};
     for (const NamedCoefficient& term : named_coefficients)
       row.push_back(coefficient_words(part.model.*term.figure, channel.unit, term.scale));
     table.rows.push_back(std::move(row));

@@ -52,8 +52,7 @@ Rows part_rows(const ChannelNoise& channel) {
   if (parts.empty()) return rows;
   rows.push_back({"Part of the recording", "N", "B", "K"});
   for (const characterise::NoisePart& part : parts) {
-    std::vector<std::string> row{duration_words(part.start_s) + " … " +
-                                 duration_words(part.end_s)};
+    std::vector<std::string> row{duration_words(part.start_s) + " … " + duration_words(part.end_s)};
     for (std::size_t k = 0; k < 3; ++k) {
       const NamedCoefficient& term = named_coefficients[k];
       row.push_back(coefficient_words(part.model.*term.figure, channel.unit, term.scale));
@@ -135,9 +134,8 @@ std::string channel_text(const ChannelNoise& channel) {
     return fmt::format("{}: not analysed: {}\n", channel.name, channel.refused);
   std::string text = heading(channel);
   for (const std::string& sentence : doubts_of(channel)) text += "  " + sentence + '\n';
-  for (const Rows& rows :
-       {coefficient_rows(channel), part_rows(channel), reading_rows(channel), point_rows(channel),
-        line_rows(channel), event_rows(channel)}) {
+  for (const Rows& rows : {coefficient_rows(channel), part_rows(channel), reading_rows(channel),
+                           point_rows(channel), line_rows(channel), event_rows(channel)}) {
     if (!rows.empty()) text += '\n' + aligned(rows);
   }
   text += '\n';

@@ -114,8 +114,7 @@ std::string flicker_sentence(const ChannelNoise& channel, const Coefficient& fli
 std::string walk_sentence(const ChannelNoise& channel, const Coefficient& walk) {
   if (is_identified(walk)) {
     const bool doubtful = walk.lower_95 == 0.0 && channel.analysis->model.slow_change;
-    return fmt::format("Random walk {}{}.",
-                       coefficient_words(walk, channel.unit, NoiseScale::walk),
+    return fmt::format("Random walk {}{}.", coefficient_words(walk, channel.unit, NoiseScale::walk),
                        doubtful ? ", or a slow change: this recording cannot tell which" : "");
   }
   return fmt::format("No random walk seen: below {} with 95 % confidence{}.",
@@ -128,11 +127,12 @@ void add_rarer_terms(const ChannelNoise& channel, std::vector<std::string>& sent
   const NoiseModelFit& model = channel.analysis->model;
   const Unit& unit = channel.unit;
   if (model.slow_change && model.slow_change->taken_out) {
-    sentences.push_back(fmt::format(
-        "A slow change of {} peak to peak, like a sine of {}, is not noise and was taken out of the "
-        "coefficients: temperature, perhaps (--temperature).",
-        noise_words(model.slow_change->peak_to_peak, unit, NoiseScale::level),
-        duration_words(model.slow_change->period_s)));
+    sentences.push_back(
+        fmt::format("A slow change of {} peak to peak, like a sine of {}, is not noise and was "
+                    "taken out of the "
+                    "coefficients: temperature, perhaps (--temperature).",
+                    noise_words(model.slow_change->peak_to_peak, unit, NoiseScale::level),
+                    duration_words(model.slow_change->period_s)));
   }
   if (is_identified(model.quantisation)) {
     sentences.push_back(
@@ -339,8 +339,7 @@ std::vector<CurveReading> curve_readings(const characterise::DeviationCurve& cur
         points, {}, [=](const auto& point) { return std::abs(point.tau_s - tau_s); });
     if (std::abs(nearest->tau_s / tau_s - 1.0) < near) readings.push_back({*nearest, false});
   }
-  const auto lowest =
-      std::ranges::min_element(points, {}, &characterise::DeviationPoint::value);
+  const auto lowest = std::ranges::min_element(points, {}, &characterise::DeviationPoint::value);
   if (lowest != points.begin() && lowest != points.end() - 1) readings.push_back({*lowest, true});
   return readings;
 }
