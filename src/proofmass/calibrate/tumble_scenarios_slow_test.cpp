@@ -158,8 +158,9 @@ void expect_honest(const Scenario& scenario, std::map<Q, Tally>& tallies, const 
     EXPECT_GT(share, 0.91 - 3.0 * std::sqrt(0.05 * 0.95 / tally.given))
         << scenario.name << ": " << name_of(quantity);
     // Student's t of one or two degrees of freedom has longer tails.
-    if (scenario.noise_stated)
+    if (scenario.noise_stated) {
       EXPECT_LT(tally.largest_z, 8.0) << scenario.name << ": " << name_of(quantity);
+    }
   }
 }
 
@@ -224,7 +225,9 @@ TEST_P(TumbleScenarios, HoldTheTruth) {
   }
   expect_honest(scenario, tallies, names);
   // A step or a walk of ten times the noise between two positions is like a wrong reading.
-  if (!scenario.drift) EXPECT_LT(names.wrong, tests / 30) << scenario.name;
+  if (!scenario.drift) {
+    EXPECT_LT(names.wrong, tests / 30) << scenario.name;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Tables, TumbleScenarios, testing::ValuesIn(scenarios()));
