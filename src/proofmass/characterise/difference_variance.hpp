@@ -21,7 +21,7 @@ namespace proofmass::characterise {
 /// θ and Θ decimate exactly, so a factor m = q·2^k, q odd or in 16 … 31, is served from every
 /// 2^k-th of them: terms then start every 2^k samples, 16 or more to a τ, which leaves 99 % of the
 /// degrees of freedom of a start at every sample; every term is itself exact. Source: W. J. Riley,
-/// NIST SP 1065 (2008), sections 5.2.2–5.2.8; C. A. Greenhall, W. Riley, Uncertainty of stability
+/// NIST SP 1065 (2008), sections 5.2.2–5.2.9; C. A. Greenhall, W. Riley, Uncertainty of stability
 /// variances based on finite differences, PTTI 2003, for the free stride.
 ///
 /// A missing sample (NaN) stands on the straight line between its neighbours, and a term is counted

@@ -39,7 +39,7 @@ namespace proofmass::characterise {
 /// the phase and their mean second differences divided by 6 in the place of 2 τ². At m = 1, where
 /// three rates less their slope are no longer a measure of the drift, it is the overlapping
 /// Hadamard variance, as in NIST's own tables, and then without bias.
-/// Source: W. J. Riley, NIST SP 1065 (2008), section 5.2.13.
+/// Source: W. J. Riley, NIST SP 1065 (2008), section 5.2.14.
 /// 3m from 3 to N − 1; the terms are the stretches used, of N − 3m, with the same stride
 /// (which costs degrees of freedom with white phase only).
 /// Cost: as the modified total variance, and N doubles more.

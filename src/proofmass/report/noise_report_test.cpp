@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "proofmass/report/document.hpp"
 #include "proofmass/report/noise_fake.hpp"
 #include "proofmass/report/noise_figures.hpp"
 #include "proofmass/report/noise_wording.hpp"
@@ -198,7 +199,7 @@ TEST(NoiseReports, OfARecordTooShortForCoefficientsGiveTheDeviationAlone) {
   EXPECT_TRUE(json["channels"][0]["parameters"].is_null());
   EXPECT_TRUE(json["channels"][0]["spectrum"].is_null());
   EXPECT_EQ(json["channels"][0]["deviation"]["points"].size(), 3U);
-  EXPECT_TRUE(warns(json, "null for parameters, bandwidth_hz, misfit, filter"));
+  EXPECT_TRUE(warns(json, "null for parameters, slow_change, bandwidth_hz, misfit, filter"));
   const std::string text = noise_text(report);
   EXPECT_NE(text.find("Too short for coefficients"), std::string::npos);
   EXPECT_NE(text.find("68.3 % limits"), std::string::npos);
@@ -270,6 +271,38 @@ TEST(NoiseHtml, HasTwoFiguresForEachChannelAndNoneForARefusedOne) {
   }
   EXPECT_EQ(figures, 2U);
   EXPECT_NE(page.find("rest &lt;1&gt;.csv"), std::string::npos);
+}
+
+TEST(NoiseReports, SayFirstThatTheSensorMoved) {
+  NoiseReport report = fake_noise_report();
+  report.channels.front().rest =
+      RestShare{.share = 0.12, .longest_start_s = 3.0, .longest_end_s = 8.5};
+  EXPECT_EQ(noise_conclusion(report).find("Not at rest: 12 %"), 0U);
+  EXPECT_LT(noise_text(report).find("Not at rest"), noise_text(report).find("White noise N"));
+  EXPECT_NE(noise_text(report).find("--from 3.00 --to 8.50"), std::string::npos);
+  EXPECT_FALSE(texts(noise_notes(report), Severity::bad).empty());
+}
+
+TEST(NoiseReports, SayFirstThatTheNoiseChanges) {
+  NoiseReport report = fake_noise_report();
+  characterise::NoiseAnalysis& analysis = *report.channels.front().analysis;
+  analysis.stationarity = {.tested = true,
+                           .stationary = false,
+                           .p = 1e-9,
+                           .averaging_s = 0.01,
+                           .line_hz = std::nullopt,
+                           .relative_level = {0.7, 1.4}};
+  analysis.parts = {{0.0, 5000.0, analysis.model}, {5000.0, 10'000.0, analysis.model}};
+  EXPECT_EQ(noise_conclusion(report).find("Not stationary"), 0U);
+  EXPECT_NE(noise_html(report).find("white noise over time"), std::string::npos);
+  EXPECT_NE(noise_json(report).find("\"verdict\": \"not_stationary\""), std::string::npos);
+}
+
+TEST(NoiseReports, GiveAGyroscopesNoiseInTheUnitsOfItsMakers) {
+  const Unit rate = *parse_unit("rad/s");
+  const double deg = rad_per_deg;
+  EXPECT_EQ(noise_words(0.005 * deg, rate, NoiseScale::density), "0.300 °/√h");
+  EXPECT_EQ(noise_words(deg / 3600.0 * 7.0, rate, NoiseScale::level), "7.00 °/h");
 }
 
 }  // namespace
