@@ -167,7 +167,7 @@ TEST(CalibrationOfImuTk, OfHalfTheRestsHoldsOnTheOtherHalf) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
   const PoseMeans means = at_rest(read(file, {.unit = parse_unit("counts").value()}));
   for (const std::size_t first : {std::size_t{0}, std::size_t{1}}) {
-    PoseMeans half{.poses = {}, .noise_dof = means.noise_dof};
+    PoseMeans half{.poses = {}, .noise_dof = means.noise_dof, .session = {}};
     std::vector<Pose> others;
     for (std::size_t k = 0; k < means.poses.size(); ++k)
       (k % 2 == first ? half.poses : others).push_back(means.poses[k]);
