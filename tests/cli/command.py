@@ -69,6 +69,11 @@ class CommandTest(unittest.TestCase):
         self.check_document(verb, document)
         return document
 
+    @staticmethod
+    def without_provenance(document) -> dict:
+        """What was found, without how it was asked for and when."""
+        return {key: value for key, value in document.items() if key != "provenance"}
+
     def refused_document(self, verb, *arguments) -> dict:
         """The document of a run that could analyse no channel: it ends with BAD_INPUT, and says why."""
         ran = self.run_command(verb, *arguments, "--json", "-")

@@ -57,7 +57,7 @@ class TheProgram(CompletionTest):
         self.assertNotIn("--latitude", self.words("proofmass noise --gravity=9.8 -"))
 
     def test_offers_the_values_of_a_flag(self):
-        units = ["g", "mg", "m/s2", "V", "mV", "counts"]
+        units = ["g", "mg", "m/s2", "V", "mV", "counts", "deg/s", "rad/s"]
         self.assertEqual(self.words("proofmass noise --unit "), units)
         self.assertEqual(self.words("proofmass noise --unit=m"), ["--unit=mg", "--unit=m/s2", "--unit=mV"])
         self.assertEqual(self.words("proofmass sensor "), ["show", "diff", "export"])

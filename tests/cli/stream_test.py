@@ -22,7 +22,8 @@ class Streams(CommandTest):
     def test_are_judged_as_when_read_whole(self):
         self.write("a.csv", noisy_csv(120_000))
         whole = self.document("inspect", "a.csv")
-        self.assertEqual(self.document("inspect", "a.csv", "--memory", "0"), whole)
+        self.assertEqual(self.without_provenance(self.document("inspect", "a.csv", "--memory", "0")),
+                         self.without_provenance(whole))
         self.assertEqual(self.document("inspect", "a.csv", "--from", "100", "--to", "900")["samples"],
                          self.document("inspect", "a.csv", "--from", "100", "--to", "900", "--memory",
                                        "0")["samples"])
@@ -35,7 +36,8 @@ class Streams(CommandTest):
         whole = self.document("inspect", "a.csv")
         self.assertEqual(whole["timing"]["mended"], 3)
         self.assertEqual(whole["timing"]["backwards"], 1)
-        self.assertEqual(self.document("inspect", "a.csv", "--memory", "0"), whole)
+        self.assertEqual(self.without_provenance(self.document("inspect", "a.csv", "--memory", "0")),
+                         self.without_provenance(whole))
 
     def test_are_converted_to_the_same_bytes(self):
         self.write("a.csv", noisy_csv(120_000))

@@ -101,8 +101,9 @@ class Thesis(CommandTest):
             self.assertAlmostEqual(error / right, 1.0, places=9)
 
     def test_the_same_seed_gives_the_same_document(self):
-        shared = (self.shared / "t.json").read_text()
-        self.assertEqual(self.succeed("thesis", *QUICK, "--seed", "1", "--json", "-"), shared)
+        shared = self.without_provenance(parse_json((self.shared / "t.json").read_text()))
+        again = parse_json(self.succeed("thesis", *QUICK, "--seed", "1", "--json", "-"))
+        self.assertEqual(self.without_provenance(again), shared)
         other = self.document("thesis", *QUICK, "--seed", "2")
         self.assertNotEqual(other["items"], parse_json(shared)["items"])
 

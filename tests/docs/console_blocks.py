@@ -5,6 +5,7 @@ behind a backslash. "$ cat FILE" shows a file that the reader writes: it is writ
 run one after the other in one folder, so that one may use the other's files. A command on an .xz file uses a recording
 of others, which lies beside the project and not in it.
 """
+import difflib
 import os
 import re
 import shlex
@@ -67,6 +68,26 @@ def pattern_of(lines: list) -> re.Pattern:
         else:
             parts.append(".*?".join(re.escape(piece) for piece in line.rstrip().split("…")) + r"\n")
     return re.compile("".join(parts))
+
+
+def with_elisions(written: list, printed: list) -> list:
+    """The printed lines, with "…" for what the written ones leave out between lines that are alike."""
+    def place(line: str, first: int) -> int | None:
+        alike = [(difflib.SequenceMatcher(None, line, one).ratio(), -k) for k, one in enumerate(printed) if k >= first]
+        best = max(alike, default=(0.0, 0))
+        return -best[1] if best[0] > 0.6 else None
+
+    out, done = [], 0
+    for k, line in enumerate(written):
+        if line.strip() != "…":
+            continue
+        before = place(written[k - 1], done) if k > 0 else done - 1
+        after = place(written[k + 1], done) if k + 1 < len(written) else len(printed)
+        if before is None or after is None or after <= before + 1:
+            continue
+        out += [*printed[done : before + 1], line]
+        done = after
+    return out + printed[done:]
 
 
 def agrees(written: list, printed: list) -> bool:

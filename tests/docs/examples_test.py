@@ -9,7 +9,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from console_blocks import BLOCK, DOCS, agrees, blocks_of, published, run
+from console_blocks import BLOCK, DOCS, agrees, blocks_of, published, run, with_elisions
 
 PROGRAM = os.path.abspath(os.environ["PROOFMASS"])
 PAGES = [page for page in sorted(DOCS.rglob("*.md")) if BLOCK.search(page.read_text())]
@@ -70,7 +70,7 @@ def write_outputs():
                     printed = run(command, Path(folder), PROGRAM)
                     old = "".join(line + "\n" for line in [f"$ {command.text}", *command.output])
                     if not agrees(command.output, printed):
-                        text = text.replace(old, "".join(line + "\n" for line in [f"$ {command.text}", *printed]), 1)
+                        text = text.replace(old, "".join(line + "\n" for line in [f"$ {command.text}", *with_elisions(command.output, printed)]), 1)
                         print(f"{page.name}: {command.text}")
             page.write_text(text)
 

@@ -243,9 +243,10 @@ Status check_given_unit(const Recording& recording, const Unit& given) {
       return Error{
           Errc::invalid_argument,
           fmt::format("--unit {} contradicts the header's {} of {}: in the quietest second "
-                      "the axes add up to {}, which is gravity in {}",
+                      "the axes add up to {}, which is gravity in {}: leave it out, or give "
+                      "--unit {}",
                       given.symbol, unit.symbol, axes.front()->name, in_words(quiet.norm),
-                      unit.symbol)};
+                      unit.symbol, unit.symbol == "m/s^2" ? "m/s2" : unit.symbol)};
   }
   return Done{};
 }

@@ -184,7 +184,7 @@ class Hdf5Writer final : public RecordingWriter {
 
   [[nodiscard]] Error failed() const {
     const std::string& part = output_->part_path();
-    return {Errc::unreadable, fmt::format("{}: cannot be written: {}",
+    return {Errc::unwritable, fmt::format("{}: cannot be written: {}",
                                           part.substr(0, part.rfind(".part")), reason())};
   }
 

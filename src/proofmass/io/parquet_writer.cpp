@@ -162,7 +162,7 @@ class ParquetWriter final : public RecordingWriter {
     return part.substr(0, part.rfind(".part"));
   }
   [[nodiscard]] Error failed(const Error& error) const {
-    return Error{Errc::unreadable, "cannot be written: " + error.message}.at(path());
+    return Error{Errc::unwritable, "cannot be written: " + error.message}.at(path());
   }
 
   std::unique_ptr<OutputFile> output_;

@@ -76,7 +76,9 @@ void add_pose_reasons(const CalibrateReport& report, Reasons& reasons) {
     reasons.add("positions[].start_s, end_s", "the file tells no times, or no rate is known");
   if (any([](const PoseResidual& pose) { return pose.predicted_std_mps2 == 0.0; }))
     reasons.add("positions[].predicted_std", "the noise of the means is not known");
-  if (any([](const PoseResidual& pose) { return !pose.leave_one_out_mps2 || !pose.studentised; })) {
+  if (any([](const PoseResidual& pose) {
+        return !pose.leave_one_out_mps2 || !pose.studentised || !pose.detectable_mps2;
+      })) {
     reasons.add("positions[].leave_one_out, studentised, detectable",
                 free_directions(report) ? "the other positions alone do not carry the parameters"
                                         : "this model does not compute it");

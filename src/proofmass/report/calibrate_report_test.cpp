@@ -74,9 +74,10 @@ TEST(CalibrateReport, NamesThePositionThatContradictsTheOthersAndWhatToDo) {
 TEST(CalibrateReport, SaysThatOneOfSomeIsBadWhereItCannotTellWhich) {
   CalibrateReport report = fake_calibrate_report();
   report.fit.doubtful = {2, 7};
-  expect_words(calibrate_conclusion(report),
-               {"One of positions 3 (10.0–13.0 s) and 8 (35.0–38.0 s) is bad, which one the rest "
-                "cannot tell"});
+  expect_words(
+      calibrate_conclusion(report),
+      {"One of positions 3 (10.0–13.0 s) and 8 (35.0–38.0 s) is bad, and the others do not "
+       "show which"});
   EXPECT_EQ(document_of(report)["doubtful"], json({3, 8}));
 }
 

@@ -193,7 +193,7 @@ TEST(StaticTest, RefusesARecordInWhichNoAxisCanBeAnalysed) {
   ASSERT_FALSE(constant);
   EXPECT_EQ(constant.error().message.rfind("still.csv: x: ", 0), 0U) << constant.error().message;
   const auto brief = analyse_static(
-      static_record("still.csv", 40.0, 0.0, {{.name = "x", .accel_mps2 = white(20, 3)}}), {});
+      static_record("still.csv", 40.0, 0.0, {{.name = "x", .accel_mps2 = white(8, 3)}}), {});
   ASSERT_FALSE(brief);
   EXPECT_EQ(brief.error().code, Errc::too_few_samples);
   EXPECT_FALSE(analyse_static(static_record("still.csv", 40.0, 0.0, {}), {}));
