@@ -81,11 +81,14 @@ def with_elisions(written: list, printed: list) -> list:
     for k, line in enumerate(written):
         if line.strip() != "…":
             continue
-        before = place(written[k - 1], done) if k > 0 else done - 1
-        after = place(written[k + 1], done) if k + 1 < len(written) else len(printed)
+        above = next((one for one in reversed(written[:k]) if one.strip()), None)
+        below = next((one for one in written[k + 1 :] if one.strip()), None)
+        before = place(above, done) if above is not None else done - 1
+        after = place(below, done) if below is not None else len(printed)
         if before is None or after is None or after <= before + 1:
             continue
-        out += [*printed[done : before + 1], line]
+        blank = [""] if k > 0 and not written[k - 1].strip() else []
+        out += [*printed[done : before + 1], *blank, line]
         done = after
     return out + printed[done:]
 
