@@ -1,8 +1,11 @@
 #include "flags.hpp"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <string_view>
+#include <utility>
 
 namespace proofmass::app {
 
@@ -30,6 +33,30 @@ CLI::Validator latitude() {
   return number("degrees from -90 to 90", [](double x) { return std::abs(x) <= 90.0; });
 }
 
+CLI::Validator unit_spelling() {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 13> same{{
+      {"m/s^2", "m/s2"},
+      {"m/s\u00b2", "m/s2"},
+      {"m/s**2", "m/s2"},
+      {"m/s/s", "m/s2"},
+      {"ms-2", "m/s2"},
+      {"ms^-2", "m/s2"},
+      {"m*s^-2", "m/s2"},
+      {"mps2", "m/s2"},
+      {"count", "counts"},
+      {"LSB", "counts"},
+      {"\u00b0/s", "deg/s"},
+      {"dps", "deg/s"},
+      {"rad*s^-1", "rad/s"},
+  }};
+  const auto spell = [same](std::string& text) -> std::string {
+    for (const auto& [other, ours] : same)
+      if (text == other) text = ours;
+    return {};
+  };
+  return CLI::Validator(spell, "");
+}
+
 void add_input_flags(CLI::App& verb, InputFlags& flags) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->group("Input");
@@ -38,7 +65,8 @@ void add_input_flags(CLI::App& verb, InputFlags& flags) {
       ->check(positive());
   add("--unit", flags.unit, "UNIT",
       "of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s")
-      ->check(CLI::IsMember({"g", "mg", "m/s2", "V", "mV", "counts", "deg/s", "rad/s"}));
+      ->check(CLI::IsMember({"g", "mg", "m/s2", "V", "mV", "counts", "deg/s", "rad/s"}))
+      ->transform(unit_spelling());
   add("--channel", flags.channels, "NAME", "use this channel; may be repeated (default: all)")
       ->allow_extra_args(false);
   add("--dataset,--variable", flags.variables, "NAME",

@@ -14,6 +14,8 @@ namespace proofmass::app {
 [[nodiscard]] CLI::Validator finite();
 [[nodiscard]] CLI::Validator not_negative();
 [[nodiscard]] CLI::Validator latitude();
+/// Takes a unit in every spelling that the program and others print: m/s^2, m/s², counts as LSB.
+[[nodiscard]] CLI::Validator unit_spelling();
 
 void add_input_flags(CLI::App& verb, InputFlags& flags);
 /// Of these the sensor file, its supply and gravity, of verbs that read no file.

@@ -96,7 +96,9 @@ void add_flags(CLI::App& app, NoiseCommand& command) {
   };
   add("--statistic", command.statistic, "NAME",
       "oadev (default), adev, mdev, tdev, hdev, ohdev, totdev, mtotdev, ttotdev, htotdev, theo1 or "
-      "pdev");
+      "pdev")
+      ->check(CLI::IsMember({"oadev", "adev", "mdev", "tdev", "hdev", "ohdev", "totdev", "mtotdev",
+                             "ttotdev", "htotdev", "theo1", "pdev"}));
   add("--taus", command.taus, "LIST",
       "octave, decade, all, N-per-decade (default 16) or seconds \"1,2,10\"");
   add("--stop-ratio", command.stop_ratio, "X",

@@ -82,12 +82,7 @@ TauGrid parse_taus(const std::string& text, double stop_ratio) {
 
 NoiseOptions options_of(const NoiseCommand& command) {
   NoiseOptions options;
-  const auto statistic = characterise::parse_statistic(command.statistic);
-  if (!statistic) {
-    throw Failure(
-        usage, "--statistic: there is no '" + command.statistic + "': see proofmass noise --help");
-  }
-  options.statistic = *statistic;
+  options.statistic = characterise::parse_statistic(command.statistic).value();
   options.taus = parse_taus(command.taus, command.stop_ratio.value_or(0.0));
   options.confidence = command.confidence;
   options.exclude_events = command.exclude_events;

@@ -89,7 +89,8 @@ void add_live_input_flags(CLI::App& verb, InputFlags& flags) {
       ->check(positive());
   add("--unit", flags.unit, "UNIT",
       "of channels whose unit the source does not know: g, mg, m/s2, V, mV or counts")
-      ->check(CLI::IsMember({"g", "mg", "m/s2", "V", "mV", "counts"}));
+      ->check(CLI::IsMember({"g", "mg", "m/s2", "V", "mV", "counts"}))
+      ->transform(unit_spelling());
   add("--channel", flags.channels, "NAME",
       "of the estimate and the procedure; may be repeated (default: all accelerometers). All "
       "channels are recorded")

@@ -40,6 +40,18 @@ class Usage(CommandTest):
         for arguments in (("convert", "a.csv", "b.csv"), ("convert", "a.csv", "b.csv", "-q")):
             self.assertIn("-o b.csv", self.expect_failure(USAGE, *arguments))
 
+    def test_a_value_that_is_not_there_is_answered_with_those_that_are(self):
+        line = self.expect_failure(USAGE, "noise", "a.csv", "--statistic", "oadve")
+        for statistic in ("adev", "theo1", "pdev", "did you mean oadev?"):
+            self.assertIn(statistic, line)
+        self.assertIn("did you mean g?", self.expect_failure(USAGE, "noise", "a.csv", "--unit", "G"))
+
+    def test_units_are_understood_as_the_program_prints_them(self):
+        self.write("a.csv", turning_csv(seconds=2).replace(" (m/s^2)", ""))
+        for unit in ("m/s2", "m/s^2", "m/s\u00b2", "ms-2"):
+            channels = self.document("inspect", "a.csv", "--unit", unit)["channels"]
+            self.assertEqual({channel["unit"] for channel in channels}, {"m/s^2"}, unit)
+
     def test_a_list_may_be_given_in_words_or_with_commas(self):
         self.assertEqual(self.succeed("budget", "--times", "1", "2", "3"),
                          self.succeed("budget", "--times", "1,2,3"))
