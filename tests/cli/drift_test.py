@@ -177,6 +177,14 @@ class Drift(CommandTest):
         self.write("short.csv", table({"acc_x (g)": means[:11]}))
         self.assertIn("at least 12", self.refused_document("drift", "short.csv")["channels"][0]["reason"])
 
+    def test_one_period_of_a_sine_is_a_swing_and_no_warm_up(self):
+        for seed in range(3):
+            sine = [5e-3 * math.sin(2.0 * math.pi * k / 3600) for k in range(3600)]
+            self.write("sine.csv", table({"acc_x (g)": total(sine, white(3600, 3e-4, seed))}))
+            channel = self.document("drift", "sine.csv")["channels"][0]
+            self.assertEqual((channel["verdict"], channel["reason_code"]), ("not_identified", "swing"))
+            self.assertIsNone(channel["a1"])
+
     def test_where_another_shape_fits_as_well_none_is_claimed_and_a_forecast_covers_them(self):
         shape = [5e-3 * math.log1p(k / 60.0) / math.log1p(HOURS_2 / 60.0) for k in range(HOURS_2)]
         self.write("log.csv", table({"acc_x (g)": total(shape, white(HOURS_2, 1e-3, 9))}))
