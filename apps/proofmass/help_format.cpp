@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t name_width = 30;
 
-// Words into lines of at most so many bytes.
+// Breaks text into lines of at most `width` bytes.
 std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
   std::vector<std::string> lines;
   std::istringstream words(text);

@@ -33,7 +33,7 @@ class HelpFormat : public CLI::Formatter {
   bool shows_input_;
 };
 
-/// Columns of the terminal on standard output, 100 at most; 80 where there is none.
+/// Width of the terminal on standard output, limited to 50 … 100 columns; 80 without a terminal.
 [[nodiscard]] std::size_t help_width();
 
 /// The values that an option takes, where they are listed.

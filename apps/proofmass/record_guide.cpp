@@ -10,6 +10,7 @@
 
 #include "exit_status.hpp"
 #include "output.hpp"
+#include "provenance.hpp"
 #include "verbs.hpp"
 
 namespace proofmass::app {
@@ -170,6 +171,12 @@ void RecordGuide::run_verb(const std::string& file) const {
   input.channels = command_.input.channels;
   OutputFlags output = command_.output;
   output.output.clear();
+  // What it was computed from is the recording, not the source.
+  if (output.invocation) {
+    const report::Provenance& asked = output.invocation->provenance();
+    output.invocation = std::make_shared<Invocation>(
+        asked.command, asked.options, std::vector<std::string>{file, rests_path(file)});
+  }
   const auto fill = [&](auto command) {
     command.files = {file};
     command.input = input;

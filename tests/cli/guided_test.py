@@ -13,7 +13,10 @@ class Guided(CommandTest):
                                "--json", "-")
         said = ran.stderr.decode()
         self.assertEqual(ran.returncode, 0, said)
-        return parse_json(ran.stdout.decode()), said
+        document = parse_json(ran.stdout.decode())
+        paths = [one["path"] for one in document["provenance"]["inputs"]]
+        self.assertTrue(paths and all((self.folder / path).is_file() for path in paths), paths)
+        return document, said
 
     def rests(self):
         return list(csv.DictReader((self.folder / "run.rests.csv").read_text().splitlines()))
