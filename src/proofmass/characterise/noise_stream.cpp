@@ -74,6 +74,7 @@ Result<NoiseStream> NoiseStream::start(const NoiseOptions& options, std::size_t 
 void NoiseStream::add(View<double> samples) {
   overview_.add(samples);
   accumulator_.add(samples);
+  stationarity_.add(samples);
 }
 
 Result<NoiseAnalysis> NoiseStream::finish(const StreamEnd& end) {
@@ -91,11 +92,13 @@ Result<NoiseAnalysis> NoiseStream::finish(const StreamEnd& end) {
   analysis.lsb = end.lsb;
   analysis.mean = overview_.mean();
   analysis.missing = overview_.missing();
+  analysis.stationarity = stationarity_.finish(options.rate_hz, analysis.lines.lines);
+  note_stationarity(analysis);
   note_missing(analysis, variances.left_out);
   analysis.notes.push_back({Severity::warning,
-                            "knocks and steps were not looked for, and whether the noise is "
-                            "stationary was not tested: the recording was analysed in pieces (cut "
-                            "it with --from and --to for both)"});
+                            "knocks and steps were not looked for, and whether lines are steady "
+                            "was not tested: the recording was analysed in pieces (cut it with "
+                            "--from and --to for both)"});
   note_resolution(analysis, overview_.short_term_std());
   note_model(analysis);
   return analysis;

@@ -6,6 +6,7 @@
 #include "proofmass/characterise/noise_accumulator.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/characterise/record_overview.hpp"
+#include "proofmass/characterise/stationarity.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
 
@@ -18,7 +19,9 @@ struct StreamEnd {
 };
 
 /// analyse_noise of a series that does not fit into memory, in one pass: the same figures, notes
-/// and refusals, but that knocks and steps are not looked for, which a note says. Where the length
+/// and refusals, but that knocks and steps are not looked for and lines not tested for being
+/// steady, which a note says, and that noise which is not stationary is not analysed by parts.
+/// Where the length
 /// is not known beforehand, segments and overlap are those of a long record. Memory: ten bytes for
 /// every 128 samples, and some megabytes.
 class NoiseStream {
@@ -42,6 +45,7 @@ class NoiseStream {
   NoiseOptions options_;
   NoiseAccumulator accumulator_;
   RecordOverview overview_;
+  StationarityTest stationarity_;
 };
 
 }  // namespace proofmass::characterise

@@ -11,12 +11,12 @@
 #include "proofmass/characterise/noise_model.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/signal/whiteness.hpp"
 
 namespace proofmass::characterise {
 namespace {
 
-constexpr std::size_t most_spans = 128;
-constexpr std::size_t fewest_coefficients = 32, fewest_spans_of_part = 4;
+constexpr std::size_t fewest_coefficients = 32, fewest_spans_of_part = 4, fewest_line_blocks = 64;
 constexpr std::array<std::size_t, 5> partitions{2, 4, 8, 16, 32};
 constexpr std::size_t longest_line_block = 4096;
 constexpr double significant_p = 0.005;
@@ -33,38 +33,39 @@ double neighbour_correlation(const std::vector<double>& spans) {
   return squares > 0.0 ? products / squares : 0.0;
 }
 
-// Means over equal spans of time of coefficients in order, NaN where one has none.
-std::vector<double> means_over(std::size_t spans, const std::vector<double>& coefficients) {
-  std::vector<double> sums(spans, 0.0), counts(spans, 0.0);
-  for (std::size_t k = 0; k < coefficients.size(); ++k) {
-    if (std::isnan(coefficients[k])) continue;
-    const std::size_t span = k * spans / coefficients.size();
-    sums[span] += coefficients[k];
-    counts[span] += 1.0;
-  }
-  for (std::size_t s = 0; s < spans; ++s) sums[s] /= counts[s];
-  return sums;
+// 2 Σ ρ² over the lags: by how much the variance of a mean of squares exceeds that of independent
+// ones, so that of n coefficients n/(1 + this) are independent. Up to twice the first lag at which
+// no correlation is seen, since one that oscillates passes through zero.
+// Source: M. S. Bartlett, Suppl. J. Roy. Statist. Soc. 8 (1946) 27.
+double excess_correlation(const std::vector<double>& differences) {
+  const auto n = static_cast<double>(differences.size());
+  const std::vector<double> correlation =
+      signal::autocorrelation(differences, differences.size() / 16);
+  const double seen = 2.0 / std::sqrt(n);
+  std::size_t last = 1;
+  while (last < correlation.size() && std::abs(correlation[last]) >= seen) ++last;
+  last = last == 1 ? 0 : std::min(2 * last, correlation.size() - 1);
+  double sum = 0.0;
+  for (std::size_t lag = 1; lag <= last; ++lag)
+    sum += std::max(0.0, square(correlation[lag]) - 1.0 / n);
+  return 2.0 * sum;
 }
 
-// As many spans as are independent: noise far slower than the samples, behind a filter of several
-// poles, is correlated from one short span to the next.
-std::vector<double> span_means(const std::vector<double>& coefficients) {
-  constexpr double uncorrelated = 0.0;
-  std::size_t spans = std::min(most_spans, coefficients.size());
-  std::vector<double> means = means_over(spans, coefficients);
-  while (spans > 2 * fewest_spans_of_part && neighbour_correlation(means) > uncorrelated) {
-    spans /= 2;
-    means = means_over(spans, coefficients);
+// As long spans as are independent of one another: noise far slower than the differences, behind a
+// filter of several poles, is correlated from one short span to the next.
+std::vector<double> independent_means(EqualSpans spans, double excess_correlation) {
+  constexpr double lengths_of_correlation = 8.0, uncorrelated = 0.0;
+  const double shortest = lengths_of_correlation * excess_correlation;
+  while (static_cast<double>(spans.length()) < shortest && spans.count() > 1) spans.halve();
+  std::vector<double> means = spans.means();
+  while (means.size() > 2 * fewest_spans_of_part && neighbour_correlation(means) > uncorrelated) {
+    spans.halve();
+    means = spans.means();
   }
   return means;
 }
 
-// One level over the recording.
-struct Band {
-  double averaging_s = 0.0;
-  std::optional<double> line_hz;
-  std::vector<double> spans;
-};
+using Band = StationarityTest::Band;
 
 struct Parts {
   double p = 1.0;
@@ -100,13 +101,6 @@ std::optional<Parts> compare_parts(const std::vector<double>& spans, std::size_t
   return found;
 }
 
-// Half the mean square of the differences that these are the roots of: their Allan variance.
-double allan_variance_of(const std::vector<double>& roots) {
-  Moments squares;
-  for (const double root : roots) squares.add(square(square(root)));
-  return 0.5 * squares.mean;
-}
-
 // A sine beats with the differences' own steps: where lines have a good part in the variance, they
 // are tested in its place.
 bool belongs_to_lines(double tau_s,
@@ -119,30 +113,10 @@ bool belongs_to_lines(double tau_s,
   return of_lines > good_part * allan_variance;
 }
 
-// The roots of neighbouring means' differences; the means of m are those of m/2 in pairs.
-std::vector<Band> difference_bands(View<double> series,
-                                   double rate_hz,
-                                   const std::vector<signal::SpectralLine>& lines) {
-  std::vector<Band> bands;
-  std::vector<double> means(series.begin(), series.end());
-  for (double m = 1.0; means.size() / 2 >= fewest_coefficients; m *= 2.0) {
-    std::vector<double> roots(means.size() / 2);
-    for (std::size_t k = 0; k < roots.size(); ++k) {
-      const double one = means[2 * k], other = means[2 * k + 1];
-      roots[k] = std::sqrt(std::abs(other - one));
-      means[k] = 0.5 * (one + other);
-    }
-    means.resize(roots.size());
-    if (!belongs_to_lines(m / rate_hz, allan_variance_of(roots), lines))
-      bands.push_back({m / rate_hz, std::nullopt, span_means(roots)});
-  }
-  return bands;
-}
-
 // The root of the Hann-windowed Fourier coefficient of each block at the line's frequency.
 std::optional<Band> line_band(View<double> series, double rate_hz, double line_hz) {
   constexpr double fewest_cycles = 4.0;
-  const std::size_t length = std::min(longest_line_block, series.size() / (most_spans / 2));
+  const std::size_t length = std::min(longest_line_block, series.size() / fewest_line_blocks);
   const auto n = static_cast<double>(length);
   if (line_hz * n / rate_hz < fewest_cycles) return std::nullopt;
   std::vector<std::complex<double>> wave(length);
@@ -151,26 +125,18 @@ std::optional<Band> line_band(View<double> series, double rate_hz, double line_h
     const double window = square(std::sin(std::numbers::pi * at / n));
     wave[k] = std::polar(window, -2.0 * std::numbers::pi * line_hz / rate_hz * at);
   }
-  std::vector<double> roots;
+  EqualSpans roots;
   for (std::size_t from = 0; from + length <= series.size(); from += length) {
     const View<double> block = series.subspan(from, length);
     const Moments moments = proofmass::moments(block);
     std::complex<double> sum = 0.0;
     for (std::size_t k = 0; k < length; ++k) sum += wave[k] * (block[k] - moments.mean);
-    roots.push_back(moments.nonfinite > 0 ? no_value : std::sqrt(std::abs(sum)));
+    roots.add(moments.nonfinite > 0 ? no_value : std::sqrt(std::abs(sum)));
   }
-  return Band{0.0, line_hz, span_means(roots)};
+  return Band{0.0, line_hz, independent_means(std::move(roots), 0.0)};
 }
 
-}  // namespace
-
-Stationarity test_stationarity(View<double> series,
-                               double rate_hz,
-                               const std::vector<signal::SpectralLine>& lines) {
-  std::vector<Band> bands = difference_bands(series, rate_hz, lines);
-  for (const signal::SpectralLine& line : lines)
-    if (auto band = line_band(series, rate_hz, line.frequency_hz))
-      bands.push_back(std::move(*band));
+Stationarity judged(const std::vector<Band>& bands) {
   Stationarity result;
   double tests = 0.0, change = 0.0;
   for (const Band& band : bands) {
@@ -186,6 +152,104 @@ Stationarity test_stationarity(View<double> series,
   result.p = std::min(1.0, tests * result.p);
   result.stationary = result.p >= significant_p || change < relevant_change;
   return result;
+}
+
+}  // namespace
+
+void EqualSpans::add(double value) {
+  if (taken_ == 0) {
+    if (sums_.size() == most) halve();
+    sums_.push_back(0.0);
+    counts_.push_back(0.0);
+  }
+  if (!std::isnan(value)) {
+    sums_.back() += value;
+    counts_.back() += 1.0;
+  }
+  taken_ = (taken_ + 1) % length_;
+}
+
+// Where a last span has no other to be taken together with, it is begun.
+void EqualSpans::halve() {
+  const std::size_t pairs = sums_.size() / 2;
+  const bool odd = sums_.size() % 2 == 1;
+  for (std::size_t k = 0; k < pairs; ++k) {
+    sums_[k] = sums_[2 * k] + sums_[2 * k + 1];
+    counts_[k] = counts_[2 * k] + counts_[2 * k + 1];
+  }
+  if (odd) {
+    sums_[pairs] = sums_.back();
+    counts_[pairs] = counts_.back();
+    if (taken_ == 0) taken_ = length_;
+  } else if (taken_ > 0) {
+    taken_ += length_;
+  }
+  sums_.resize(pairs + (odd ? 1 : 0));
+  counts_.resize(sums_.size());
+  length_ *= 2;
+}
+
+std::vector<double> EqualSpans::means() const {
+  std::vector<double> means(taken_ == 0 ? sums_.size() : sums_.size() - 1);
+  for (std::size_t k = 0; k < means.size(); ++k) means[k] = sums_[k] / counts_[k];
+  return means;
+}
+
+// The mean of the pair, where this value completes one.
+std::optional<double> StationarityTest::Octave::add(double value) {
+  if (!first_of_pair) {
+    first_of_pair = value;
+    return std::nullopt;
+  }
+  const double difference = value - *first_of_pair, mean = 0.5 * (value + *first_of_pair);
+  first_of_pair.reset();
+  ++coefficients;
+  roots.add(std::sqrt(std::abs(difference)));
+  squares.add(square(difference));
+  constexpr std::size_t enough_for_correlation = 8192;
+  if (beginning.size() < enough_for_correlation) beginning.push_back(difference);
+  return mean;
+}
+
+void StationarityTest::add(View<double> samples) {
+  for (const double sample : samples) {
+    std::optional<double> mean = sample;
+    for (std::size_t k = 0; mean; ++k) {
+      if (k == octaves_.size()) octaves_.emplace_back();
+      mean = octaves_[k].add(*mean);
+    }
+  }
+}
+
+std::vector<StationarityTest::Band> StationarityTest::bands(
+    double rate_hz, const std::vector<signal::SpectralLine>& lines) const {
+  std::vector<Band> bands;
+  double averaging_s = 1.0 / rate_hz;
+  for (const Octave& octave : octaves_) {
+    if (octave.coefficients < fewest_coefficients) break;
+    if (!belongs_to_lines(averaging_s, 0.5 * octave.squares.mean, lines))
+      bands.push_back({averaging_s, std::nullopt,
+                       independent_means(octave.roots, excess_correlation(octave.beginning))});
+    averaging_s *= 2.0;
+  }
+  return bands;
+}
+
+Stationarity StationarityTest::finish(double rate_hz,
+                                      const std::vector<signal::SpectralLine>& lines) const {
+  return judged(bands(rate_hz, lines));
+}
+
+Stationarity test_stationarity(View<double> series,
+                               double rate_hz,
+                               const std::vector<signal::SpectralLine>& lines) {
+  StationarityTest differences;
+  differences.add(series);
+  std::vector<Band> bands = differences.bands(rate_hz, lines);
+  for (const signal::SpectralLine& line : lines)
+    if (auto band = line_band(series, rate_hz, line.frequency_hz))
+      bands.push_back(std::move(*band));
+  return judged(bands);
 }
 
 }  // namespace proofmass::characterise

@@ -1,5 +1,6 @@
 #include "proofmass/characterise/stationarity.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -42,6 +43,56 @@ TEST(Stationarity, IsNotDoubtedOfStationaryNoiseOfAnyColour) {
   EXPECT_LE(alarms(30, [](unsigned s) { return test::flicker(1.0, samples, s); }), 2);
   EXPECT_LE(alarms(30, [](unsigned s) { return test::markov(1.0, 3.0, rate_hz, samples, s); }), 2);
   EXPECT_LE(alarms(30, [](unsigned s) { return test::quantisation(1.0, rate_hz, samples, s); }), 2);
+}
+
+// White noise behind poles far below the rate: of 100 such records the test used to doubt 42.
+Series behind_poles(int poles, double time_constant_s, unsigned seed) {
+  const std::size_t past = 10'000;
+  Series y = test::normals(samples + past, seed);
+  const double decay = std::exp(-1.0 / (time_constant_s * rate_hz));
+  for (int pole = 0; pole < poles; ++pole)
+    for (std::size_t k = 1; k < y.size(); ++k) y[k] += decay * y[k - 1];
+  return {y.begin() + past, y.end()};
+}
+
+TEST(Stationarity, IsNotDoubtedBehindAFilterOfSeveralSlowPoles) {
+  EXPECT_LE(alarms(60, [](unsigned s) { return behind_poles(3, 3.0, s); }), 6);
+  EXPECT_LE(alarms(60, [](unsigned s) { return behind_poles(4, 1.0, s); }), 6);
+  EXPECT_LE(alarms(60, [](unsigned s) { return behind_poles(4, 3.0, s); }), 6);
+}
+
+TEST(Stationarity, InPiecesIsThatOfTheWhole) {
+  const Series y = louder_half(1.3, 3);
+  StationarityTest pieces;
+  for (std::size_t from = 0, size = 1; from < y.size(); from += size, size = size * 7 % 4093 + 1)
+    pieces.add(View<double>(y).subspan(from, std::min(size, y.size() - from)));
+  const Stationarity found = pieces.finish(rate_hz, {}), whole = test_stationarity(y, rate_hz, {});
+  EXPECT_FALSE(found.stationary);
+  EXPECT_EQ(found.p, whole.p);
+  EXPECT_EQ(found.relative_level, whole.relative_level);
+}
+
+TEST(EqualSpans, AreMeansOfAsManyValuesEachHoweverLongTheSeries) {
+  for (const std::size_t n : {100U, 256U, 257U, 1000U, 5000U}) {
+    EqualSpans spans;
+    for (std::size_t k = 0; k < n; ++k) spans.add(static_cast<double>(k));
+    const std::vector<double> means = spans.means();
+    ASSERT_EQ(means.size(), n / spans.length());
+    ASSERT_LE(means.size(), 256U);
+    ASSERT_GE(means.size(), std::min<std::size_t>(n, 128));
+    for (std::size_t k = 0; k < means.size(); ++k)
+      EXPECT_EQ(means[k],
+                static_cast<double>(spans.length()) * (static_cast<double>(k) + 0.5) - 0.5);
+  }
+}
+
+TEST(EqualSpans, TakenTogetherGoOnWhereTheyAre) {
+  EqualSpans spans;
+  for (int k = 0; k < 3; ++k) spans.add(k);
+  spans.halve();
+  EXPECT_EQ(spans.means(), Series{0.5});
+  spans.add(std::nan(""));
+  EXPECT_EQ(spans.means(), (Series{0.5, 2.0}));
 }
 
 TEST(Stationarity, IsNotDoubtedForRoundingOrHeavyTails) {
