@@ -55,6 +55,7 @@ std::vector<DriftChannel> drift_channels(const std::vector<RestRecording>& recor
       channel.shown.file = rest.file;
       channel.shown.unit = rest.unit;
       channel.shown.refused = rest.refused;
+      channel.shown.rest = rest.rest;
     }
   }
   return channels;

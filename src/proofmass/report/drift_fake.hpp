@@ -96,6 +96,7 @@ inline ChannelDrift fake_channel_of(const std::string& name) {
   channel.name = name;
   channel.file = "rest <1>.csv";
   channel.unit = *parse_unit("m/s^2");
+  channel.rest = RestShare{.share = 1.0, .longest_start_s = 0.0, .longest_end_s = 7200.0};
   return channel;
 }
 

@@ -175,7 +175,10 @@ std::string whiteness_sentence(const DriftAnalysis& analysis) {
 
 std::vector<std::string> drift_findings(const ChannelDrift& channel) {
   if (!channel.analysis) return {"Not analysed: " + channel.refused + "."};
-  Sentences sentences{sentence(drift_verdict(channel))};
+  Sentences sentences;
+  if (std::string moving = motion_sentence(channel.rest, "drift"); !moving.empty())
+    sentences.push_back(std::move(moving));
+  sentences.push_back(sentence(drift_verdict(channel)));
   add_tests(channel, sentences);
   sentences.push_back(whiteness_sentence(*channel.analysis));
   add_noise(channel, sentences);

@@ -206,6 +206,7 @@ Object drift_object(const ChannelDrift& channel) {
       add(key, Array{});
     }
   }
+  add("rest", rest_value(channel.rest));
   if (channel.temperature)
     add("temperature", temperature_value(*channel.temperature, channel.unit));
   if (channel.outlook) add("forecast", forecast_value(*channel.outlook, channel.unit));

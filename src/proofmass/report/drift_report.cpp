@@ -68,18 +68,20 @@ Rows step_rows(const ChannelDrift& channel) {
   return rows;
 }
 
-// The first sentence stands above the table already.
+// The verdict, and that the sensor moved, stand above the table.
 std::string channel_text(const DriftReport& report, const ChannelDrift& channel) {
   if (!channel.analysis) {
     return fmt::format("{}: {}\n", channel_label(report, channel), drift_verdict(channel));
   }
   const std::vector<std::string> sentences = drift_findings(channel);
-  std::string text = heading(report, channel) + "  " + sentences.front() + "\n\n" +
-                     aligned(parameter_rows(channel));
+  const std::size_t above = motion_sentence(channel.rest, "drift").empty() ? 1 : 2;
+  std::string text = heading(report, channel);
+  for (std::size_t k = 0; k < above; ++k) text += "  " + sentences[k] + '\n';
+  text += '\n' + aligned(parameter_rows(channel));
   const Rows steps = step_rows(channel);
   if (!steps.empty()) text += '\n' + aligned(steps);
   text += '\n';
-  for (std::size_t k = 1; k < sentences.size(); ++k) text += "  " + sentences[k] + '\n';
+  for (std::size_t k = above; k < sentences.size(); ++k) text += "  " + sentences[k] + '\n';
   return text;
 }
 
@@ -110,6 +112,8 @@ void add_notes(const ChannelDrift& channel, const std::string& label, std::vecto
     notes.push_back({Severity::bad, label + "not analysed: " + channel.refused});
     return;
   }
+  if (const std::string moving = motion_sentence(channel.rest, "drift"); !moving.empty())
+    notes.push_back({Severity::bad, label + moving});
   for (const Note& note : channel.analysis->notes) {
     notes.push_back({note.severity, label + note.text});
   }
@@ -131,6 +135,15 @@ void add_notes(const ChannelRuns& runs, std::vector<Note>& notes) {
   for (const Note& note : runs.set->warm_up.notes) {
     notes.push_back({note.severity, label + "mean of all: " + note.text});
   }
+}
+
+std::string names_of_moving(const DriftReport& report) {
+  std::string names;
+  for (const ChannelDrift& channel : report.channels) {
+    if (motion_sentence(channel.rest, "drift").empty()) continue;
+    names += (names.empty() ? "" : ", ") + channel_label(report, channel);
+  }
+  return names;
 }
 
 struct Block {
@@ -173,8 +186,10 @@ void add_columns(const std::string& name,
 std::string drift_conclusion(const DriftReport& report) {
   constexpr std::size_t most_told = 3;
   std::string text;
+  if (const std::string moving = names_of_moving(report); !moving.empty())
+    text = motion_sentence_of_channels(moving);
   if (report.channels.size() > most_told) {
-    text = counted_conclusion(report);
+    text += (text.empty() ? "" : " ") + counted_conclusion(report);
   } else {
     for (const ChannelDrift& channel : report.channels) {
       text += (text.empty() ? "" : " ") + channel_label(report, channel) + ": " +

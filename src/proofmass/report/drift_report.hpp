@@ -9,6 +9,7 @@
 #include "proofmass/characterise/temperature_model.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/units.hpp"
+#include "proofmass/report/rest_share.hpp"
 
 namespace proofmass::report {
 
@@ -34,6 +35,7 @@ struct ChannelDrift {
   std::string refused;
   std::optional<DriftOutlook> outlook;          ///< where a forecast was asked for
   std::optional<DriftTemperature> temperature;  ///< where there is a temperature channel
+  std::optional<RestShare> rest;                ///< absent where it was not looked for
 };
 
 /// One channel over several power-ups.

@@ -195,6 +195,27 @@ TEST(DriftJson, SaysWhyForEveryNull) {
   EXPECT_TRUE(nulls.empty()) << nulls.front();
 }
 
+TEST(DriftReports, SayFirstThatTheSensorMoved) {
+  ChannelDrift channel = fake_warm_up("x");
+  channel.rest = RestShare{.share = 0.12, .longest_start_s = 3.0, .longest_end_s = 8.5};
+  const DriftReport report = report_of(std::move(channel));
+  EXPECT_EQ(drift_conclusion(report).find("Not at rest (x)"), 0U);
+  const std::string text = drift_text(report);
+  EXPECT_LT(text.find("Not at rest: 12 %"), text.find("Warm-up of"));
+  EXPECT_LT(text.find("Warm-up of"), text.find("Warm-up a1"));
+  EXPECT_TRUE(contains(text, "--from 3.00 --to 8.50"));
+  EXPECT_FALSE(texts(drift_notes(report), Severity::bad).empty());
+  EXPECT_EQ(parsed(report)["channels"][0]["rest"]["at_rest"], false);
+}
+
+TEST(DriftJson, SaysWhyItDoesNotKnowWhetherTheSensorMoved) {
+  ChannelDrift channel = fake_warm_up("x");
+  channel.rest.reset();
+  const Json document = parsed(report_of(std::move(channel)));
+  EXPECT_TRUE(document["channels"][0]["rest"].is_null());
+  EXPECT_TRUE(warns(document, "x: rest: null"));
+}
+
 TEST(DriftJson, LeavesOpenEndsOfIntervalsOpenAndSaysSo) {
   ChannelDrift channel = fake_warm_up("x");
   channel.analysis->fit.time_constant_s->upper_95.reset();

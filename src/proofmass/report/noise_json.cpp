@@ -227,16 +227,6 @@ void add_coefficients(const ChannelNoise& found, Object& item) {
   item.push_back({"filter", filter(*found.analysis, found.unit)});
 }
 
-Value rest(const std::optional<RestShare>& found) {
-  if (!found) return nullptr;
-  const bool any = found->longest_end_s > found->longest_start_s;
-  return Object{{"share", found->share},
-                {"at_rest", found->is_at_rest()},
-                {"longest", any ? Value(Object{{"start_s", found->longest_start_s},
-                                               {"end_s", found->longest_end_s}})
-                                : Value()}};
-}
-
 Value stationarity(const ChannelNoise& found) {
   const characterise::Stationarity& test = found.analysis->stationarity;
   if (!test.tested) return nullptr;
@@ -271,7 +261,7 @@ Value channel(const ChannelNoise& found) {
   const auto add_nulls = [&](const auto& keys) {
     for (const char* key : keys) add(key, nullptr);
   };
-  add("rest", rest(found.rest));
+  add("rest", rest_value(found.rest));
   add("stationarity", found.analysis ? stationarity(found) : Value());
   add("deviation", found.analysis ? deviation(found.analysis->deviation, found.unit) : Value());
   if (has_coefficients(found))

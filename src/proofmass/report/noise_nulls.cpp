@@ -71,12 +71,9 @@ void explain_nulls(const ChannelNoise& found, const Say& say) {
     return say("null for " + lacking + ", because it was not analysed: " + found.refused);
   }
   const NoiseAnalysis& analysis = *found.analysis;
-  if (!found.rest)
-    say("rest: null: a quantity that shows no motion, too short, or analysed in pieces");
-  else if (!(found.rest->longest_end_s > found.rest->longest_start_s))
-    say("rest: longest: null: the recording is not at rest at any time");
+  if (const std::string reason = rest_null_reason(found.rest); !reason.empty()) say(reason);
   if (!analysis.stationarity.tested)
-    say("stationarity: null: not tested: too short, or analysed in pieces");
+    say("stationarity: null: not tested: too short");
   else if (!analysis.stationarity.line_hz)
     say("stationarity: line_hz: null: not a line departs most, but the band at averaging_s");
   else

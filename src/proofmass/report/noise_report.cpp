@@ -197,7 +197,7 @@ std::vector<Note> noise_notes(const NoiseReport& report) {
       notes.push_back({Severity::bad, channel.name + ": not analysed: " + channel.refused});
       continue;
     }
-    if (const std::string moving = motion_sentence(channel); !moving.empty())
+    if (const std::string moving = motion_sentence(channel.rest, "noise"); !moving.empty())
       notes.push_back({Severity::bad, channel.name + ": " + moving});
     for (const Note& note : channel.analysis->notes) {
       notes.push_back({note.severity, channel.name + ": " + note.text});

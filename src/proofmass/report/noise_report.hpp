@@ -8,6 +8,7 @@
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/units.hpp"
+#include "proofmass/report/rest_share.hpp"
 
 namespace proofmass::report {
 
@@ -16,15 +17,6 @@ struct TemperatureEffect {
   std::string channel;    ///< that holds the temperature
   Uncertain coefficient;  ///< unit of the series per `per`
   std::string per = "K";  ///< unit of the temperature channel; "1" if unknown
-};
-
-/// How much of a recording is at rest, and its longest rest.
-struct RestShare {
-  double share = 0.0;
-  double longest_start_s = 0.0, longest_end_s = 0.0;  ///< on the recording's clock; equal if none
-
-  /// What is left out by a knock or next to the ends is no motion.
-  [[nodiscard]] bool is_at_rest() const { return share >= 0.9; }
 };
 
 /// One channel at rest: its analysis, or why there is none.

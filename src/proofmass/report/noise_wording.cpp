@@ -344,24 +344,10 @@ std::vector<CurveReading> curve_readings(const characterise::DeviationCurve& cur
   return readings;
 }
 
-std::string motion_sentence(const ChannelNoise& channel) {
-  if (!channel.rest || channel.rest->is_at_rest()) return {};
-  const RestShare& rest = *channel.rest;
-  if (!(rest.longest_end_s > rest.longest_start_s)) {
-    return "Not at rest at any time in this recording: the figures are of the motion, not of the "
-           "sensor's noise.";
-  }
-  return fmt::format(
-      "Not at rest: {} % of this recording is. The figures are of the motion, not of the sensor's "
-      "noise; its longest rest is --from {} --to {}.",
-      significant(100.0 * rest.share, 2), fixed(rest.longest_start_s, 2),
-      fixed(rest.longest_end_s, 2));
-}
-
 std::vector<std::string> doubts_of(const ChannelNoise& channel) {
   std::vector<std::string> sentences;
   if (!channel.analysis) return sentences;
-  if (std::string moving = motion_sentence(channel); !moving.empty())
+  if (std::string moving = motion_sentence(channel.rest, "noise"); !moving.empty())
     sentences.push_back(std::move(moving));
   const NoiseAnalysis& analysis = *channel.analysis;
   const characterise::Stationarity& found = analysis.stationarity;
@@ -391,12 +377,11 @@ std::vector<std::string> common_doubts(const NoiseReport& report) {
   };
   for (const ChannelNoise& channel : report.channels) {
     if (!channel.analysis) continue;
-    if (!motion_sentence(channel).empty()) add(moving, channel.name);
+    if (!motion_sentence(channel.rest, "noise").empty()) add(moving, channel.name);
     if (!channel.analysis->stationarity.stationary) add(changing, channel.name);
   }
   std::vector<std::string> sentences;
-  if (!moving.empty())
-    sentences.push_back("Not at rest (" + moving + "): the figures are of the motion.");
+  if (!moving.empty()) sentences.push_back(motion_sentence_of_channels(moving));
   if (!changing.empty())
     sentences.push_back("Not stationary (" + changing + "): the figures are averages.");
   return sentences;

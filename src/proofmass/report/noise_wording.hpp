@@ -93,9 +93,6 @@ struct CurveReading {
 /// where it lies within the curve and not at an end.
 [[nodiscard]] std::vector<CurveReading> curve_readings(const characterise::DeviationCurve& curve);
 
-/// "Not at rest: …", or empty.
-[[nodiscard]] std::string motion_sentence(const ChannelNoise& channel);
-
 /// What has to be said before any figure: that the sensor was not at rest, that its noise was not
 /// stationary. The first sentences of noise_findings().
 [[nodiscard]] std::vector<std::string> doubts_of(const ChannelNoise& channel);
