@@ -11,10 +11,16 @@ namespace proofmass::characterise {
 /// f^α; divide an estimate by it:
 ///
 ///     totdev            1 − a τ/T          a = 0, 1/(3 ln 2), 3/4  of α = 0, −1, −2
+///                       1 + b τ/T          b = 4/3, 0.87           of α = 2, 1
 ///     mtotdev ttotdev   0.94, 0.83, 0.73, 0.70, 0.69               of α = 2, 1, 0, −1, −2
 ///     htotdev           0.995, 0.851, 0.771, 0.717, 0.679          of α = 0, −1, −2, −3, −4; m > 1
+///                       1.385 − 0.28/m, 1.25 − 0.25/m              of α = 2, 1; m > 1
 ///     theo1             1 / (a + b/m^c)                            1 for α = 0
+///                       1/m + Σ 1/k, k = 1 … m/2                   of α = 2
 ///
+/// Those of totdev, htotdev and theo1 of α = 2, and of totdev and htotdev of α = 1, are not
+/// published: of α = 2 they are the exact expectations in white phase noise (of htotdev a fit to
+/// them, for even m), of α = 1 fits to the expectations in flicker phase noise, within 0.06.
 /// with τ/T = m/(N − 1), N the number of phase points. 1 for all others, and for the laws that a
 /// table lacks; the true variance of theo1 is the Allan variance at 0.75 m τ0.
 /// Source: W. J. Riley, NIST SP 1065 (2008), sections 5.2.11–5.2.15 and 5.4; D. A. Howe, Total
