@@ -49,6 +49,7 @@ Series drawn(const Case& of, std::size_t n, unsigned seed) {
 TEST(RecordNeeded, IdentifiesEachTermWithTheProbabilityItPromises) {
   const std::vector<Case> cases{
       {"quantisation", 0.02, 0.0, 0.0, 0.0, 100.0, &NoiseModelFit::quantisation},
+      {"quantisation, seconds", 0.04, 0.0, 0.0, 0.0, 100.0, &NoiseModelFit::quantisation},
       {"flicker", 0.0, 0.5, 0.0, 0.0, 100.0, &NoiseModelFit::flicker},
       {"random walk", 0.0, 0.0, 0.1, 0.0, 20.0, &NoiseModelFit::random_walk},
       {"ramp in white noise", 0.0, 0.0, 0.0, 2e-3, 10.0, &NoiseModelFit::ramp},

@@ -15,6 +15,9 @@ constexpr double relative_width = 0.03;
 constexpr double first_bin = 8.0;
 // Below, its bins have too few degrees of freedom to be worth more than the transform's.
 constexpr std::size_t least_averaged = 12;
+// Of shorter segments the last bins, which are not used, and the ends of the record, which the
+// window lowers, are too large a share: quantisation noise shows most in the highest frequencies.
+constexpr std::size_t shortest_averaged = 512;
 // Neighbouring bins of a Hann window correlate by 4/9, next ones by 1/36: a bin's share of
 // independent degrees of freedom. Source: Percival & Walden (1993), section 6.10.
 constexpr double bin_share = 1.0 / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0));
@@ -117,7 +120,10 @@ GroupedEvidence group_evidence(const NoiseEvidence& evidence) {
   grouped.slow_sampling = {spectrum.rate_hz, evidence.slow.block()};
   grouped.fast_sampling = {spectrum.rate_hz, 1};
   grouped.bin_hz = spectrum.rate_hz / static_cast<double>(spectrum.segment);
-  const bool averaged = spectrum.averaged >= least_averaged;
+  // The transform reaches half the rate where its blocks are samples.
+  const bool transform_reaches_all = evidence.slow.block() == 1;
+  const bool averaged = spectrum.averaged >= least_averaged &&
+                        (spectrum.segment >= shortest_averaged || !transform_reaches_all);
   const double seam_hz =
       averaged ? first_bin * grouped.bin_hz : std::numeric_limits<double>::infinity();
   group_transform(evidence, seam_hz, grouped);
