@@ -237,7 +237,7 @@ Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
   iterate(state, fit);
   refer_to_fitted_speed(state, fit);
   if (!state.angle_given)
-    fit_ripples(state);
+    fit.converged = fit_ripples(state) && fit.converged;
   else
     fit_with_measured_ripples(state, fit);
   const RotationNormal normal = normal_equations(state);
@@ -247,16 +247,16 @@ Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
     estimate.harmonics.segment<harmonic_count>(harmonic_count * static_cast<Eigen::Index>(axis)) =
         state.harmonics[axis];
   }
-  estimate.blocks = block_scores(state, make_solver(state, normal));
+  const RotationSolver solver = make_solver(state, normal);
+  estimate.blocks = block_scores(state, solver);
   fit.blocks = static_cast<std::size_t>(estimate.blocks.scores.cols());
-  estimate.constraints = state.speed_told ? 2 : 1;
   fit.dof = estimate.dof();
   if (state.axes == 2) fit.direction = state.direction > 0.0 ? 1 : -1;
   if (fit.angle_given) {
     allow_for_delay(state, options, estimate, fit);
     allow_for_radius(state, options, estimate);
   } else {
-    separate_ripples(state, options, estimate, fit);
+    separate_ripples(state, solver, options, estimate, fit);
   }
   fill_rotation(state, estimate, options, fit);
   fold_turns(state, fit);

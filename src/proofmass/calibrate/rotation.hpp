@@ -147,10 +147,11 @@ struct RotationFit {
 /// Standard deviations come from the scatter of the fit's gradient between blocks of whole turns
 /// (up to 24, at least 4 turns where there are enough),
 ///
-///     cov = H⁻¹ (Σ_b g_b g_bᵀ) H⁻¹ · B/(B − c),   c = 1 or, with a radius, 2,
+///     var = Σ_s B_s/(B_s − 1) Σ_b z_b²,   z_b = gradient · H⁻¹ g_b, B_s blocks of section s,
 ///
-/// and so hold for noise of any colour whose memory is shorter than a block; figures that hang on
-/// the mean of the readings (K0, radius) use blocks up to three times as long. Where neighbouring
+/// with Welch's degrees of freedom, and so hold for noise of any colour whose memory is shorter
+/// than a block; figures that hang on the mean of the readings (K0, radius) use blocks up to three
+/// times as long. Where neighbouring
 /// blocks agree more than chance, standard deviations are widened and a note says so.
 ///
 /// Only stretches of at least 8 turns count in which no turn's duration differs from its

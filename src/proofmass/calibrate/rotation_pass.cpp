@@ -1,6 +1,7 @@
 #include "proofmass/calibrate/rotation_pass.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/units.hpp"
@@ -43,7 +44,7 @@ Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& A) {
 
 // Blocks of whole turns: how many in each section.
 std::vector<std::size_t> blocks_per_section(const RotationState& state, double& turns_per_block) {
-  constexpr double wanted = 24.0, least_turns = 4.0, at_least = 12.0;
+  constexpr double wanted = 24.0, least_turns = 4.0, at_least = 12.0, in_each = 2.0;
   std::size_t turns = 0;
   for (const SteadyTurns& one : state.sections) turns += one.turn_s.size() - 1;
   const auto all = static_cast<double>(turns);
@@ -53,7 +54,7 @@ std::vector<std::size_t> blocks_per_section(const RotationState& state, double& 
   for (const SteadyTurns& one : state.sections) {
     const auto in_section = static_cast<double>(one.turn_s.size() - 1);
     blocks.push_back(
-        static_cast<std::size_t>(std::max(1.0, std::floor(in_section / turns_per_block))));
+        static_cast<std::size_t>(std::max(in_each, std::floor(in_section / turns_per_block))));
   }
   return blocks;
 }
@@ -66,13 +67,25 @@ void place(const RotationState& state, const RotationRecording& recording, Rotat
   sample.theta = state.angle_given ? recording.angle_rad[sample.k] : even;
   const RippleAt ripple =
       ripple_at(state.ripples[sample.section], state.offset[0] + state.direction * sample.theta);
+  // An encoder's ripple is a function of the angle itself, else one of the even phase.
+  const double stretch = state.angle_given ? 1.0 / (1.0 - ripple.slope) : 1.0;
   if (!state.angle_given) sample.theta += state.direction * ripple.value;
-  const double speed = even_speed * (1.0 + ripple.slope), mean = state.mean_square_speed;
+  const double speed = state.angle_given ? even_speed * stretch : even_speed * (1.0 + ripple.slope);
+  const double mean = state.mean_square_speed;
   sample.speed_squared = speed * speed;
   if (mean <= 0.0) return;  // before it is known
-  sample.relative_acceleration = even_speed * even_speed * ripple.curvature / mean;
+  sample.relative_acceleration =
+      even_speed * even_speed * ripple.curvature * stretch * stretch * stretch / mean;
   if (state.angle_given)
     sample.relative_speed = state.direction * state.sense[sample.section] * speed / std::sqrt(mean);
+}
+
+double tangential_distance(const RotationState& state, std::size_t axis) {
+  if (!state.speed_told || state.axes < 2) return 0.0;
+  const Harmonics &own = state.harmonics[axis], &other = state.harmonics[1 - axis];
+  if (own(1) == 0.0 || other(1) == 0.0) return 0.0;
+  const double distance = own(1) * other(square_speed_column) / other(1);
+  return axis == 0 ? distance : -distance;
 }
 
 AxisAt axis_at(const RotationState& state,
@@ -85,12 +98,7 @@ AxisAt axis_at(const RotationState& state,
                            .relative_speed = sample.relative_speed});
   at.residual = reading - at.columns.dot(state.harmonics[axis]);
   at.slope = state.direction * slope_at(at.columns, state.harmonics[axis]);
-  if (!state.speed_told || state.axes < 2) return at;
-  // r φ̈: along the first axis that of the second's distance from the axle, with its sign turned.
-  const Harmonics &own = state.harmonics[axis], &other = state.harmonics[1 - axis];
-  if (own(1) == 0.0 || other(1) == 0.0) return at;
-  const double distance = own(1) * other(square_speed_column) / other(1);
-  at.residual += (axis == 0 ? distance : -distance) * sample.relative_acceleration;
+  at.residual += tangential_distance(state, axis) * sample.relative_acceleration;
   return at;
 }
 
@@ -173,26 +181,27 @@ BlockScores block_scores(const RotationState& state, const RotationSolver& solve
     first.push_back(first.back() + static_cast<Index>(blocks[s]));
     result.section.insert(result.section.end(), blocks[s], s);
   }
-  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(state.size(), first.back());
+  Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(state.size(), first.back());
   for_each_sample(state, [&](const RotationRecording& recording, const RotationSample& sample) {
     const SteadyTurns& section = state.sections[sample.section];
     const auto after = std::ranges::upper_bound(section.turn_s, recording.time_s[sample.k]);
-    const double turn = static_cast<double>(after - section.turn_s.begin()) - 1.0;
-    const Index in_section = std::min(static_cast<Index>(turn / result.turns_per_block),
-                                      static_cast<Index>(blocks[sample.section]) - 1);
-    auto score = scores.col(first[sample.section] + in_section);
+    const auto turn = static_cast<std::size_t>(after - section.turn_s.begin()) - 1;
+    const std::size_t turns = section.turn_s.size() - 1, count = blocks[sample.section];
+    const auto in_section = static_cast<Index>(std::min(turn * count / turns, count - 1));
+    auto gradient = gradients.col(first[sample.section] + in_section);
     for (std::size_t axis = 0; axis < state.axes; ++axis) {
       const AxisAt at = axis_at(state, axis, sample, recording.axes[axis][sample.k]);
       if (!std::isfinite(at.residual)) continue;
       const double weighted = at.residual / state.variance[axis];
-      score.segment<harmonic_count>(harmonic_count * static_cast<Index>(axis)) +=
+      gradient.segment<harmonic_count>(harmonic_count * static_cast<Index>(axis)) +=
           weighted * at.columns;
       if (state.angle_given) continue;
-      score -= solver.elimination[sample.section].middleCols<4>(sample.local.first) *
-               (weighted * at.slope * sample.local.value);
+      gradient -= solver.elimination[sample.section].middleCols<4>(sample.local.first) *
+                  (weighted * at.slope * sample.local.value);
     }
   });
-  result.scores = solver.inverse * scores;
+  result.scores = solver.inverse * gradients;
+  result.gradients = std::move(gradients);
   return result;
 }
 

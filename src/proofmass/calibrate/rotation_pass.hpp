@@ -74,6 +74,10 @@ void for_each_sample(const RotationState& state, F&& f) {
   }
 }
 
+/// Distance from the axle that r φ̈ acts on along an axis, in the unit of its term in ω²: along the
+/// first axis that of the second, with its sign turned. 0 where it is not determined.
+[[nodiscard]] double tangential_distance(const RotationState& state, std::size_t axis);
+
 /// An axis's columns, its residual and ∂E/∂θ at a sample; no number in the residual where the
 /// reading is none.
 struct AxisAt {
@@ -115,6 +119,7 @@ double step(RotationState& state, bool move_phase);
 /// The gradient of each block of turns with the spline eliminated, times S⁻¹: one column a block.
 struct BlockScores {
   Eigen::MatrixXd scores;            ///< harmonics × blocks
+  Eigen::MatrixXd gradients;         ///< the same before S⁻¹
   std::vector<std::size_t> section;  ///< of each block
   double turns_per_block = 0.0;
 };

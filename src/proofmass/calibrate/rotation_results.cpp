@@ -124,13 +124,14 @@ double half_width(double std, double dof) {
   return std * student_t_quantile(0.975, dof);
 }
 
-// Of two slow figures, their correlation that of the blocks.
+// Of two slow figures, the bounds in it; their correlation that of the blocks.
 Eigen::Matrix2d slow_covariance(const Eigen::MatrixXd& J, const RotationEstimate& estimate) {
-  const Eigen::Matrix2d blocks = J * estimate.covariance() * J.transpose();
+  const Eigen::Matrix2d blocks = estimate.covariance_of(J * estimate.blocks.scores);
   Eigen::Vector2d factor;
   for (Index k = 0; k < 2; ++k) {
     const RotationSpread spread = estimate.spread_of(J.row(k).transpose(), true);
-    const double std = half_width(spread.std, spread.dof) / normal_factor;
+    const double scatter = half_width(spread.std, spread.dof);
+    const double std = estimate.half_width(J.row(k).transpose(), scatter) / normal_factor;
     factor(k) = blocks(k, k) > 0.0 ? std / std::sqrt(blocks(k, k)) : 0.0;
   }
   return factor.asDiagonal() * blocks * factor.asDiagonal();

@@ -18,7 +18,6 @@ struct RotationSpread {
 struct RotationEstimate {
   Eigen::VectorXd harmonics;
   BlockScores blocks;
-  std::size_t constraints = 1;  ///< that the scores of one harmonic obey: 2 with a term in ω²
   /// Errors that the scatter of the blocks does not show: each moves the harmonics along its vector
   /// by no more than ± 1 in 95 % of tests.
   std::vector<Eigen::VectorXd> bounds;
@@ -27,17 +26,19 @@ struct RotationEstimate {
 
   /// Of gradient · harmonics, by the blocks alone,
   ///
-  ///     var = B/(B − c) Σ_b z_b²,   z_b = gradient · score_b, c constraints,
+  ///     var = Σ_s B_s/(B_s − 1) Σ_b z_b²,   z_b = gradient · score_b, B_s blocks of section s,
   ///
-  /// at least (1 + ρ)/(1 − ρ) times that where the z of neighbouring blocks have a correlation ρ
+  /// with Welch's degrees of freedom: radius, ripple and delay take a mean from every section. At
+  /// least (1 + ρ)/(1 − ρ) times that where the z of neighbouring blocks have a correlation ρ
   /// beyond chance (one-sided 5 %). A `slow` figure hangs on the mean of the readings, in which
-  /// noise remembers longest: its blocks are joined, up to three to one, at least six being left.
+  /// noise remembers longest: its blocks are joined, up to three to one, at least six being left
+  /// and four of each section.
   [[nodiscard]] RotationSpread spread_of(const Eigen::VectorXd& gradient, bool slow) const;
   /// Half the width of a 95 % interval of gradient · harmonics, that of the scatter being
   /// `by_scatter`.
   [[nodiscard]] double half_width(const Eigen::VectorXd& gradient, double by_scatter) const;
   [[nodiscard]] double dof() const;
-  [[nodiscard]] Eigen::MatrixXd covariance() const;
+  [[nodiscard]] Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& scores) const;
 };
 
 /// Fills in the coefficients of all axes, the radius, and the notes on what was widened.

@@ -20,6 +20,7 @@ constexpr Index parts = 2 * highest_ripple;
 // Those that the sensor's terms are confounded with: once a turn cos and sin, twice a turn sin.
 constexpr std::array<Index, 3> shared{0, 1, 3};
 constexpr double normal_95 = 1.959964;
+constexpr double inexact = 1.05;  // the model of first order holds to a few per cent
 
 // Adds a cos nφ + b sin nφ, φ the phase of the first axis, to an axis's harmonics.
 void add_harmonic(std::size_t axis, int n, Eigen::Vector2d ab, Eigen::Ref<Eigen::VectorXd> into) {
@@ -42,25 +43,6 @@ void keep_phase(Eigen::Ref<Eigen::VectorXd> moved) {
   for (Index from = 0; from < moved.size(); from += harmonic_count) moved(from + 2) -= by;
 }
 
-// E₁ = sin φ, E₂ = cos φ: what ε = cos nφ (part 0) or sin nφ (part 1) adds to them.
-Eigen::VectorXd moved_by(std::size_t axes, int n, int part) {
-  Eigen::VectorXd moved = Eigen::VectorXd::Zero(harmonic_count * static_cast<Index>(axes));
-  const auto half = [part](double sign) {
-    return part == 0 ? Eigen::Vector2d(0.5 * sign, 0.0) : Eigen::Vector2d(0.0, 0.5 * sign);
-  };
-  // cos φ cos nφ = ½ (cos (n+1)φ + cos (n−1)φ), cos φ sin nφ the same with sines.
-  add_harmonic(0, n + 1, half(1.0), moved);
-  add_harmonic(0, n - 1, half(1.0), moved);
-  if (axes == 2) {
-    // −sin φ cos nφ = ½ (sin (n−1)φ − sin (n+1)φ), −sin φ sin nφ = ½ (cos (n+1)φ − cos (n−1)φ).
-    const double sign = part == 0 ? 1.0 : -1.0;
-    add_harmonic(1, n - 1, half(sign).reverse(), moved);
-    add_harmonic(1, n + 1, -half(sign).reverse(), moved);
-  }
-  keep_phase(moved);
-  return moved;
-}
-
 // The sensor's terms that a ripple does not imitate: q₁ − p₂, p₁ + q₂, t₁ + t₂ of 1.
 Eigen::MatrixXd sensor_terms() {
   Eigen::MatrixXd terms = Eigen::MatrixXd::Zero(2 * harmonic_count, 3);
@@ -81,16 +63,32 @@ double chance_of(const Eigen::VectorXd& v, const Eigen::MatrixXd& C, double dof)
   return fisher_f_p(std::max(squared, 0.0) * below / (dimensions * dof), dimensions, below);
 }
 
-// Mean over the sections, by their turns.
-Ripple mean_ripple(const RotationState& state) {
-  Ripple sum = Ripple::Zero();
+// Share of each section in the turns.
+std::vector<double> shares(const RotationState& state) {
   double turns = 0.0;
-  for (std::size_t s = 0; s < state.sections.size(); ++s) {
-    const auto n = static_cast<double>(state.sections[s].turn_s.size());
-    sum += n * state.ripples[s];
-    turns += n;
+  std::vector<double> share;
+  for (const SteadyTurns& one : state.sections) {
+    share.push_back(static_cast<double>(one.turn_s.size() - 1));
+    turns += share.back();
   }
-  return sum / turns;
+  for (double& one : share) one /= turns;
+  return share;
+}
+
+struct RippleMoments {
+  Ripple mean = Ripple::Zero(), rms = Ripple::Zero();
+};
+
+// Over the sections, by their turns.
+RippleMoments ripple_moments(const RotationState& state) {
+  RippleMoments out;
+  const std::vector<double> share = shares(state);
+  for (std::size_t s = 0; s < share.size(); ++s) {
+    out.mean += share[s] * state.ripples[s];
+    out.rms += share[s] * state.ripples[s].cwiseAbs2();
+  }
+  out.rms = out.rms.cwiseSqrt();
+  return out;
 }
 
 // All axes' harmonics, one behind the other.
@@ -101,30 +99,100 @@ Eigen::VectorXd stacked(const RotationState& state) {
   return all;
 }
 
-// What the residuals of each section add to the common harmonics.
-std::vector<Eigen::VectorXd> section_harmonics(const RotationState& state) {
+// S1 of each axis, as often as it has harmonics.
+Eigen::VectorXd scale_of(const Eigen::VectorXd& harmonics) {
+  Eigen::VectorXd scale(harmonics.size());
+  for (Index from = 0; from < harmonics.size(); from += harmonic_count)
+    scale.segment<harmonic_count>(from).setConstant(harmonics(from + 1));
+  return scale;
+}
+
+// ∂E/∂(a_n, b_n) of an axis at a sample: by the phase, and by r ω² and r ω̇ where r is known.
+Ripple ripple_columns(const RotationState& state,
+                      std::size_t axis,
+                      const RotationSample& sample,
+                      const AxisAt& at) {
+  const PhaseSpline& spline = state.splines[sample.section];
+  const double phase = state.offset[0] + state.direction * spline.value(sample.local);
+  const double even = spline.slope_per_s(sample.local), mean = state.mean_square_speed;
+  const double by_phase = state.direction * at.slope;
+  const double by_slope = -2.0 * state.harmonics[axis](square_speed_column) * even *
+                          std::sqrt(sample.speed_squared) / mean;
+  const double by_curvature = -tangential_distance(state, axis) * even * even / mean;
+  Ripple columns;
+  for (int n = 1; n <= highest_ripple; ++n) {
+    const double c = std::cos(n * phase), s = std::sin(n * phase);
+    columns(2 * n - 2) = (by_phase - n * n * by_curvature) * c - n * by_slope * s;
+    columns(2 * n - 1) = (by_phase - n * n * by_curvature) * s + n * by_slope * c;
+  }
+  return columns;
+}
+
+// Normal equations of one section alone, with those of its ripple.
+struct SectionNormal {
+  Eigen::MatrixXd H, G;             // by the harmonics; by the ripple
+  Eigen::MatrixXd cross, H_s, G_s;  // the same of the spline
+  Eigen::VectorXd g, g_s;
+};
+
+void eliminate_spline(SectionNormal& one) {
+  const Eigen::MatrixXd elimination = one.cross * positive_inverse(one.H_s);
+  one.H -= elimination * one.cross.transpose();
+  one.G -= elimination * one.G_s;
+  one.g -= elimination * one.g_s;
+}
+
+std::vector<SectionNormal> section_normals(const RotationState& state) {
   const Index size = state.size();
-  std::vector<Eigen::VectorXd> found(state.sections.size(), stacked(state));
-  if (found.size() == 1) return found;
-  std::vector<Eigen::MatrixXd> H(found.size(), Eigen::MatrixXd::Zero(size, size));
-  std::vector<Eigen::VectorXd> g(found.size(), Eigen::VectorXd::Zero(size));
+  std::vector<SectionNormal> all;
+  for (const PhaseSpline& spline : state.splines) {
+    const Index knots = spline.c.size();
+    all.push_back({Eigen::MatrixXd::Zero(size, size), Eigen::MatrixXd::Zero(size, parts),
+                   Eigen::MatrixXd::Zero(size, knots), Eigen::MatrixXd::Zero(knots, knots),
+                   Eigen::MatrixXd::Zero(knots, parts), Eigen::VectorXd::Zero(size),
+                   Eigen::VectorXd::Zero(knots)});
+  }
   for_each_sample(state, [&](const RotationRecording& recording, const RotationSample& sample) {
+    SectionNormal& one = all[sample.section];
+    const Index knot = sample.local.first;
     for (std::size_t axis = 0; axis < state.axes; ++axis) {
-      AxisAt at = axis_at(state, axis, sample, recording.axes[axis][sample.k]);
+      const AxisAt at = axis_at(state, axis, sample, recording.axes[axis][sample.k]);
       if (!std::isfinite(at.residual)) continue;
-      at.columns(square_speed_column) = at.columns(delay_column) = 0.0;
+      const double weight = 1.0 / state.variance[axis];
       const Index from = harmonic_count * static_cast<Index>(axis);
-      H[sample.section].block<harmonic_count, harmonic_count>(from, from) +=
-          at.columns * at.columns.transpose();
-      g[sample.section].segment<harmonic_count>(from) += at.residual * at.columns;
+      const Ripple ripple = weight * ripple_columns(state, axis, sample, at);
+      const Harmonics columns = weight * at.columns;
+      const Eigen::Vector4d basis = at.slope * sample.local.value;
+      one.H.block<harmonic_count, harmonic_count>(from, from) += columns * at.columns.transpose();
+      one.G.middleRows<harmonic_count>(from) += at.columns * ripple.transpose();
+      one.g.segment<harmonic_count>(from) += at.residual * columns;
+      one.cross.block<harmonic_count, 4>(from, knot) += columns * basis.transpose();
+      one.H_s.block<4, 4>(knot, knot) += weight * basis * basis.transpose();
+      one.G_s.middleRows<4>(knot) += basis * ripple.transpose();
+      one.g_s.segment<4>(knot) += weight * at.residual * basis;
     }
   });
-  for (std::size_t s = 0; s < found.size(); ++s) {
-    for (Index k = 0; k < size; ++k)
-      if (H[s](k, k) == 0.0) H[s](k, k) = 1.0;
-    found[s] += positive_inverse(H[s]) * g[s];
+  for (SectionNormal& one : all) eliminate_spline(one);
+  return all;
+}
+
+// H⁻¹ with zeros for what the section alone does not determine: the first axis's C1, the terms in
+// the speed, and harmonics without a reading.
+Eigen::MatrixXd section_inverse(Eigen::MatrixXd H) {
+  std::vector<Index> out;
+  for (Index k = 0; k < H.rows(); ++k) {
+    const Index column = k % harmonic_count;
+    if (k == 2 || column == square_speed_column || column == delay_column || !(H(k, k) > 0.0))
+      out.push_back(k);
   }
-  return found;
+  for (const Index k : out) {
+    H.row(k).setZero();
+    H.col(k).setZero();
+    H(k, k) = 1.0;
+  }
+  Eigen::MatrixXd inverse = positive_inverse(H);
+  for (const Index k : out) inverse(k, k) = 0.0;
+  return inverse;
 }
 
 // What is known of a ripple n times a turn beside its size.
@@ -177,48 +245,26 @@ void add_radius_bounds(const Eigen::MatrixXd& by_radius, RotationEstimate& estim
 
 }  // namespace
 
-RippleSplit::RippleSplit(std::size_t axes) : axes_(axes) {
-  const Index size = harmonic_count * static_cast<Index>(axes);
-  moved_ = Eigen::MatrixXd::Zero(size, parts);
-  for (int n = 1; n <= highest_ripple; ++n)
-    for (int part = 0; part < 2; ++part) moved_.col(2 * n - 2 + part) = moved_by(axes, n, part);
-  Eigen::MatrixXd model(size, axes == 2 ? parts + 3 : parts);
-  model.leftCols(parts) = moved_;
-  if (axes == 2) model.rightCols(3) = sensor_terms();
+std::vector<RippleSplit> split_ripples(const RotationState& state) {
+  std::vector<RippleSplit> splits;
+  const Eigen::VectorXd common = stacked(state), scale = scale_of(common);
   // Harmonics 0 and 1 are the sensor's, whatever the ripple.
-  Eigen::VectorXd judging = Eigen::VectorXd::Zero(size);
-  for (Index from = 0; from < size; from += harmonic_count)
-    for (int n = 2; n <= highest_harmonic; ++n) judging.segment<2>(from + sine_column(n)).setOnes();
-  model = judging.asDiagonal() * model;
-  rows_ = positive_inverse(model.transpose() * model) * model.transpose();
-}
-
-Eigen::VectorXd RippleSplit::scale(const Eigen::VectorXd& harmonics) const {
-  Eigen::VectorXd scale(harmonics.size());
-  for (Index from = 0; from < harmonics.size(); from += harmonic_count)
-    scale.segment<harmonic_count>(from).setConstant(harmonics(from + 1));
-  return scale;
-}
-
-Eigen::MatrixXd RippleSplit::ripple_rows(const Eigen::VectorXd& harmonics) const {
-  return rows_.topRows(parts) * scale(harmonics).cwiseInverse().asDiagonal();
-}
-
-Eigen::MatrixXd RippleSplit::sensor_rows(const Eigen::VectorXd& harmonics) const {
-  if (axes_ < 2) return Eigen::MatrixXd::Zero(3, harmonics.size());
-  return rows_.bottomRows(3) * scale(harmonics).cwiseInverse().asDiagonal();
-}
-
-Ripple RippleSplit::ripple(const Eigen::VectorXd& harmonics) const {
-  return ripple_rows(harmonics) * harmonics;
-}
-
-Eigen::Vector3d RippleSplit::sensor(const Eigen::VectorXd& harmonics) const {
-  return sensor_rows(harmonics) * harmonics;
-}
-
-Eigen::MatrixXd RippleSplit::moved(const Eigen::VectorXd& harmonics) const {
-  return scale(harmonics).asDiagonal() * moved_;
+  Eigen::VectorXd judging = Eigen::VectorXd::Zero(common.size());
+  for (Index from = 0; from < common.size(); from += harmonic_count)
+    for (int n = 2; n <= highest_harmonic; ++n)
+      judging.segment<2>(from + sine_column(n)).setConstant(1.0 / scale(from));
+  for (const SectionNormal& one : section_normals(state)) {
+    const Eigen::MatrixXd inverse = section_inverse(one.H);
+    Eigen::MatrixXd model(common.size(), state.axes == 2 ? parts + 3 : parts);
+    model.leftCols(parts) = inverse * one.G;
+    if (state.axes == 2) model.rightCols(3) = scale.asDiagonal() * sensor_terms();
+    model = judging.asDiagonal() * model;
+    const Eigen::MatrixXd rows =
+        positive_inverse(model.transpose() * model) * model.transpose() * judging.asDiagonal();
+    splits.push_back({common + inverse * one.g, rows.topRows(parts),
+                      rows.bottomRows(rows.rows() - parts), rows.topRows(parts) * inverse, one.G});
+  }
+  return splits;
 }
 
 Eigen::MatrixXd ripple_by_radius(const RotationState& state,
@@ -267,46 +313,78 @@ void measure_ripples(RotationState& state) {
     state.ripples[s] = (positive_inverse(H[s]) * g[s]).head<parts>();
 }
 
-void fit_ripples(RotationState& state) {
-  constexpr int most = 12, passes = 3;
+bool fit_ripples(RotationState& state) {
+  constexpr int most = 30, passes = 2;
   constexpr double still = 1e-9;
-  const RippleSplit split(state.axes);
   for (int round = 0; round < most; ++round) {
-    const std::vector<Eigen::VectorXd> harmonics = section_harmonics(state);
+    const std::vector<RippleSplit> splits = split_ripples(state);
     double largest = 0.0;
-    for (std::size_t s = 0; s < harmonics.size(); ++s) {
-      const Ripple more = split.ripple(harmonics[s]);
-      if (!more.allFinite()) return;
+    for (std::size_t s = 0; s < splits.size(); ++s) {
+      const Ripple more = splits[s].ripple_rows * splits[s].harmonics;
+      if (!more.allFinite()) return false;
       state.ripples[s] += more;
       largest = std::max(largest, more.cwiseAbs().maxCoeff());
     }
     for (int k = 0; k < passes; ++k) step(state, true);
-    if (largest < still) return;
+    if (largest < still) return true;
   }
+  return false;
 }
 
+namespace {
+
+// The sections' splits as one, for the harmonics that they have in common.
+struct CommonSplit {
+  Eigen::MatrixXd ripple_rows;    // by the common harmonics
+  Eigen::MatrixXd moved;          // what a ripple of all sections does to them
+  Eigen::MatrixXd ripple_scores;  // of the mean ripple
+  Eigen::VectorXd sensor;
+};
+
+// Takes the ripples' part out of the blocks' scores.
+CommonSplit common_split(const RotationState& state,
+                         const RotationSolver& solver,
+                         RotationEstimate& estimate) {
+  const std::vector<RippleSplit> splits = split_ripples(state);
+  const std::vector<double> share = shares(state);
+  BlockScores& blocks = estimate.blocks;
+  CommonSplit common;
+  const Index size = state.size();
+  common.ripple_rows = Eigen::MatrixXd::Zero(parts, size);
+  common.moved = Eigen::MatrixXd::Zero(size, parts);
+  common.ripple_scores = Eigen::MatrixXd::Zero(parts, blocks.scores.cols());
+  common.sensor = Eigen::VectorXd::Zero(splits.front().sensor_rows.rows());
+  for (std::size_t s = 0; s < splits.size(); ++s) {
+    common.ripple_rows += share[s] * splits[s].ripple_rows;
+    common.moved += solver.inverse * splits[s].effect;
+    common.sensor += share[s] * splits[s].sensor_rows * splits[s].harmonics;
+  }
+  for (Index b = 0; b < blocks.scores.cols(); ++b) {
+    const std::size_t s = blocks.section[static_cast<std::size_t>(b)];
+    const Eigen::VectorXd ripple = splits[s].by_gradient * blocks.gradients.col(b);
+    blocks.scores.col(b) -= solver.inverse * (splits[s].effect * ripple);
+    common.ripple_scores.col(b) = share[s] * ripple;
+  }
+  return common;
+}
+
+}  // namespace
+
 void separate_ripples(const RotationState& state,
+                      const RotationSolver& solver,
                       const RotationOptions& options,
                       RotationEstimate& estimate,
                       RotationFit& fit) {
-  const RippleSplit split(state.axes);
-  const Eigen::VectorXd h = estimate.harmonics;
-  const Eigen::MatrixXd P = split.ripple_rows(h), M = split.moved(h), S = split.sensor_rows(h);
-  const Ripple ripple = mean_ripple(state) + split.ripple(h);
-  const Eigen::MatrixXd covariance = P * estimate.covariance() * P.transpose();
-  const Eigen::Vector3d sensor = S * h;
-  const double dof = estimate.dof();
-  const Eigen::MatrixXd L = Eigen::MatrixXd::Identity(h.size(), h.size()) - M * P;
-  const Eigen::MatrixXd ripple_scores = P * estimate.blocks.scores;
-  estimate.harmonics = L * h;
-  estimate.blocks.scores = L * estimate.blocks.scores;
-  constexpr double inexact = 1.05;  // the model of first order holds to a few per cent
+  const CommonSplit split = common_split(state, solver, estimate);
+  const Eigen::MatrixXd& M = split.moved;
+  const RippleMoments ripple = ripple_moments(state);
+  const Eigen::MatrixXd covariance = estimate.covariance_of(split.ripple_scores);
   double left_square = 0.0;
   for (int n = 1; n <= highest_ripple; ++n) {
     Eigen::VectorXd seen;
-    if (state.axes == 2 && n == 1) seen = sensor.head<2>();
-    if (state.axes == 2 && n == 2) seen = sensor.tail<1>();
-    const RippleVerdict verdict = judge(n, ripple, covariance, seen, dof);
+    if (state.axes == 2 && n == 1) seen = split.sensor.head<2>();
+    if (state.axes == 2 && n == 2) seen = split.sensor.tail<1>();
+    const RippleVerdict verdict = judge(n, ripple.mean, covariance, seen, estimate.dof());
     fit.ripples.push_back(verdict.ripple);
     for (const Index part : shared) {
       if (part / 2 != n - 1) continue;
@@ -315,26 +393,29 @@ void separate_ripples(const RotationState& state,
         continue;
       }
       // Left with the sensor, though it may be the ripple's.
-      estimate.harmonics += ripple(part) * M.col(part);
-      estimate.blocks.scores += M.col(part) * ripple_scores.row(part);
+      estimate.harmonics += ripple.mean(part) * M.col(part);
+      estimate.blocks.scores += M.col(part) * split.ripple_scores.row(part);
       // What noise makes of it is in the scatter already: a third of its standard deviation is
       // what an interval can spare and still be one of 95 %.
       const double noise = 0.35 * std::sqrt(covariance(part, part));
-      estimate.shared.push_back(std::max(inexact * std::abs(ripple(part)) - noise, 0.0) *
-                                M.col(part));
-      left_square += ripple(part) * ripple(part);
+      estimate.shared.push_back(std::max(inexact * ripple.rms(part) - noise, 0.0) * M.col(part));
+      left_square += ripple.rms(part) * ripple.rms(part);
     }
   }
   add_second_order(left_square, state, estimate);
-  if (state.speed_told) return;
-  add_radius_bounds(L * ripple_by_radius(state, ripple, options.gravity_mps2), estimate);
+  if (state.speed_told && state.axes == 2) return;
+  const Eigen::MatrixXd by_radius = ripple_by_radius(state, ripple.rms, options.gravity_mps2);
+  const Eigen::MatrixXd felt = by_radius - M * (split.ripple_rows * by_radius);
+  // Two speeds determine the distance along the axis, not the one across it.
+  add_radius_bounds(state.speed_told ? felt.rightCols(1) : felt, estimate);
 }
 
 void allow_for_radius(const RotationState& state,
                       const RotationOptions& options,
                       RotationEstimate& estimate) {
   if (state.speed_told) return;
-  add_radius_bounds(ripple_by_radius(state, mean_ripple(state), options.gravity_mps2), estimate);
+  add_radius_bounds(ripple_by_radius(state, ripple_moments(state).mean, options.gravity_mps2),
+                    estimate);
 }
 
 }  // namespace proofmass::calibrate

@@ -1,14 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "proofmass/calibrate/rotation_results.hpp"
 
 // A speed that varies within the turn, where no encoder gives the angle.
 namespace proofmass::calibrate {
 
-/// The harmonics 2 to 6 of one axis, or of two, divided between a ripple of the speed and the
-/// sensor, relative to S1.
+/// The harmonics 2 to 6 of one section, of one axis or of two, divided between a ripple of the
+/// speed and the sensor.
 ///
 /// A phase error ε moves E = S1 sin φ by S1 cos φ ε, so that its n-th harmonic moves the harmonics
 /// n ± 1. On two axes square to each other it moves the tangential part of the readings, cos φ E₁ −
@@ -18,29 +19,18 @@ namespace proofmass::calibrate {
 ///     q₁ − p₂,   p₁ + q₂,   t₁ + t₂,
 ///
 /// while q₁ + p₂, p₁ − q₂ and t₁ − t₂ look like a ripple once a turn (cos, sin) and twice a turn
-/// (sin). The split puts these down to the ripple; of one axis, all of its harmonics.
-class RippleSplit {
- public:
-  explicit RippleSplit(std::size_t axes);
-
-  /// The ripple in these harmonics, least squares.
-  [[nodiscard]] Ripple ripple(const Eigen::VectorXd& harmonics) const;
-  /// q₁ − p₂, p₁ + q₂, t₁ + t₂; zero of one axis.
-  [[nodiscard]] Eigen::Vector3d sensor(const Eigen::VectorXd& harmonics) const;
-  /// Their derivatives by the harmonics; both as rows.
-  [[nodiscard]] Eigen::MatrixXd ripple_rows(const Eigen::VectorXd& harmonics) const;
-  [[nodiscard]] Eigen::MatrixXd sensor_rows(const Eigen::VectorXd& harmonics) const;
-  /// What each part of a ripple adds to the harmonics, first order, with the first axis's C1 kept
-  /// at zero by its phase: one column each.
-  [[nodiscard]] Eigen::MatrixXd moved(const Eigen::VectorXd& harmonics) const;
-
- private:
-  [[nodiscard]] Eigen::VectorXd scale(const Eigen::VectorXd& harmonics) const;
-
-  std::size_t axes_;
-  Eigen::MatrixXd moved_;  ///< relative to S1
-  Eigen::MatrixXd rows_;   ///< (ripple, sensor) × harmonics relative to S1
+/// (sin). The split puts these down to the ripple; of one axis, all of its harmonics. Where the
+/// radius is determined, a ripple moves −r ω² and r ω̇ too, the n-th by n and n² times r ω²/g.
+struct RippleSplit {
+  Eigen::VectorXd harmonics;    ///< of the section: the common ones and what its residuals add
+  Eigen::MatrixXd ripple_rows;  ///< the ripple, by these; least squares
+  Eigen::MatrixXd sensor_rows;  ///< q₁ − p₂, p₁ + q₂, t₁ + t₂; of one axis none
+  Eigen::MatrixXd by_gradient;  ///< the ripple, by the gradient of the section's readings
+  Eigen::MatrixXd effect;       ///< of the ripple on that gradient, with its sign turned
 };
+
+/// Of each section, as the fit stands.
+[[nodiscard]] std::vector<RippleSplit> split_ripples(const RotationState& state);
 
 /// What a distance of 1 m from the axle along the first axis, and along the second, adds to the
 /// harmonics by −r ω² and r ω̇ of a ripple: two columns.
@@ -57,13 +47,16 @@ void allow_for_radius(const RotationState& state,
                       RotationEstimate& estimate);
 
 /// Fits each section's ripple: the phase takes it up until the harmonics hold no more of it.
-void fit_ripples(RotationState& state);
+/// Whether that came to an end.
+[[nodiscard]] bool fit_ripples(RotationState& state);
 
 /// Divides the harmonics between ripple and sensor, see RippleSplit. A part that could be either is
-/// left with the sensor, with a bound of its whole size; where it is beyond chance and the sensor's
-/// determined terms of that order are far smaller, it is put down to the ripple, with the bound
-/// that Student's t gives from those terms.
+/// left with the sensor, with a bound of its whole size, the rms over the sections; where it is
+/// beyond chance and the sensor's determined terms of that order are far smaller, it is put down to
+/// the ripple, with the bound that Student's t gives from those terms. What the noise of each
+/// section's ripple adds to the common harmonics is in the blocks' scores afterwards.
 void separate_ripples(const RotationState& state,
+                      const RotationSolver& solver,
                       const RotationOptions& options,
                       RotationEstimate& estimate,
                       RotationFit& fit);

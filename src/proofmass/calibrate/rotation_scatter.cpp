@@ -9,65 +9,107 @@ namespace {
 
 using Eigen::Index;
 
-// Sums of so many neighbours of one section; what is left over goes to the last of its section.
-std::vector<double> joined_blocks(const Eigen::VectorXd& z,
-                                  const std::vector<std::size_t>& section,
-                                  std::size_t to_one) {
-  std::vector<double> joined;
-  for (std::size_t begin = 0; begin < section.size();) {
-    std::size_t end = begin;
+// The scores of one figure, block by block.
+struct Blocks {
+  std::vector<double> z;
+  std::vector<std::size_t> section;
+};
+
+// Calls f(first, last) for the blocks of each section.
+template <class F>
+void for_each_section(const std::vector<std::size_t>& section, F&& f) {
+  for (std::size_t begin = 0, end = 0; begin < section.size(); begin = end) {
     while (end < section.size() && section[end] == section[begin]) ++end;
-    const std::size_t whole = std::max<std::size_t>((end - begin) / to_one, 1);
-    const std::size_t first = joined.size();
-    joined.resize(first + whole, 0.0);
-    for (std::size_t b = begin; b < end; ++b) {
-      joined[first + std::min((b - begin) / to_one, whole - 1)] += z(static_cast<Index>(b));
-    }
-    begin = end;
+    f(begin, end);
   }
-  return joined;
+}
+
+// Sums of so many neighbours of one section; what is left over goes to the last of its section.
+Blocks joined(const Blocks& blocks, std::size_t to_one) {
+  Blocks out;
+  for_each_section(blocks.section, [&](std::size_t begin, std::size_t end) {
+    const std::size_t whole = std::max<std::size_t>((end - begin) / to_one, 1);
+    const std::size_t first = out.z.size();
+    out.z.resize(first + whole, 0.0);
+    out.section.resize(first + whole, blocks.section[begin]);
+    for (std::size_t b = begin; b < end; ++b)
+      out.z[first + std::min((b - begin) / to_one, whole - 1)] += blocks.z[b];
+  });
+  return out;
+}
+
+// How many neighbours may be joined: three, six blocks being left and four of each section.
+std::size_t most_to_one(const Blocks& blocks) {
+  constexpr std::size_t most = 3, of_all = 6, of_each = 4;
+  std::size_t to_one = std::min(most, blocks.z.size() / of_all);
+  for_each_section(blocks.section, [&](std::size_t begin, std::size_t end) {
+    if (end - begin < blocks.z.size()) to_one = std::min(to_one, (end - begin) / of_each);
+  });
+  return std::max<std::size_t>(to_one, 1);
+}
+
+struct Variance {
+  double value = 0.0, dof = 1.0;
+};
+
+// Each section has a mean of its own. Degrees of freedom: B. L. Welch, Biometrika 34 (1947) 28.
+Variance variance_of(const Blocks& blocks) {
+  double sum = 0.0, squares_over_dof = 0.0, all = 0.0;
+  for_each_section(blocks.section, [&](std::size_t begin, std::size_t end) {
+    const auto count = static_cast<double>(end - begin), left = std::max(count - 1.0, 1.0);
+    double squares = 0.0;
+    for (std::size_t b = begin; b < end; ++b) squares += blocks.z[b] * blocks.z[b];
+    const double variance = squares * count / left;
+    sum += variance;
+    squares_over_dof += variance * variance / left;
+    all += left;
+  });
+  return {sum, squares_over_dof > 0.0 ? sum * sum / squares_over_dof : all};
+}
+
+// Correlation of neighbours, less what independent blocks about their means are expected to have.
+double neighbours_correlation(const Blocks& blocks) {
+  double squares = 0.0, products = 0.0, sections = 0.0;
+  for_each_section(blocks.section, [&](std::size_t begin, std::size_t end) {
+    sections += 1.0;
+    for (std::size_t b = begin; b < end; ++b) {
+      squares += blocks.z[b] * blocks.z[b];
+      if (b + 1 < end) products += blocks.z[b] * blocks.z[b + 1];
+    }
+  });
+  return squares > 0.0 ? products / squares + sections / static_cast<double>(blocks.z.size()) : 0.0;
 }
 
 }  // namespace
 
 RotationSpread RotationEstimate::spread_of(const Eigen::VectorXd& gradient, bool slow) const {
-  constexpr double least_joined = 6.0, most_to_one = 3.0, one_sided_95 = 1.645;
+  constexpr double one_sided_95 = 1.645;
   const Eigen::VectorXd z = blocks.scores.transpose() * gradient;
-  const auto count = static_cast<double>(z.size());
-  const double squares = z.squaredNorm();
-  double products = 0.0;
-  for (Index b = 0; b + 1 < z.size(); ++b) {
-    const auto at = static_cast<std::size_t>(b);
-    if (blocks.section[at] == blocks.section[at + 1]) products += z(b) * z(b + 1);
+  const Blocks single{{z.begin(), z.end()}, blocks.section};
+  Variance variance = variance_of(single);
+  const double rho = neighbours_correlation(single);
+  RotationSpread spread;
+  spread.widened = rho * std::sqrt(static_cast<double>(z.size())) > one_sided_95;
+  if (spread.widened) variance.value *= (1.0 + std::min(rho, 0.9)) / (1.0 - std::min(rho, 0.9));
+  const std::size_t to_one = slow ? most_to_one(single) : 1;
+  if (to_one > 1) {
+    const Variance of_joined = variance_of(joined(single, to_one));
+    variance.dof = of_joined.dof;
+    variance.value = std::max(spread.widened ? variance.value : 0.0, of_joined.value);
   }
-  // Expected of independent blocks about their mean: −1/B.
-  const double rho = squares > 0.0 ? products / squares + 1.0 / count : 0.0;
-  RotationSpread spread{0.0, dof(), rho * std::sqrt(count) > one_sided_95};
-  const auto lost = static_cast<double>(constraints);
-  double variance = squares * count / (count - lost);
-  if (spread.widened) variance *= (1.0 + std::min(rho, 0.9)) / (1.0 - std::min(rho, 0.9));
-  const auto to_one =
-      static_cast<std::size_t>(std::clamp(std::floor(count / least_joined), 1.0, most_to_one));
-  if (slow && to_one > 1) {
-    const std::vector<double> joined = joined_blocks(z, blocks.section, to_one);
-    double sum = 0.0;
-    for (const double x : joined) sum += x * x;
-    const auto left = static_cast<double>(joined.size());
-    spread.dof = left - lost;
-    variance = std::max(spread.widened ? variance : 0.0, sum * left / (left - lost));
-  }
-  spread.std = std::sqrt(variance);
+  spread.dof = variance.dof;
+  spread.std = std::sqrt(variance.value);
   return spread;
 }
 
 double RotationEstimate::dof() const {
-  return static_cast<double>(blocks.scores.cols()) - static_cast<double>(constraints);
+  double sections = 0.0;
+  for_each_section(blocks.section, [&](std::size_t, std::size_t) { sections += 1.0; });
+  return static_cast<double>(blocks.scores.cols()) - sections;
 }
 
-Eigen::MatrixXd RotationEstimate::covariance() const {
-  const auto count = static_cast<double>(blocks.scores.cols());
-  return blocks.scores * blocks.scores.transpose() *
-         (count / (count - static_cast<double>(constraints)));
+Eigen::MatrixXd RotationEstimate::covariance_of(const Eigen::MatrixXd& scores) const {
+  return scores * scores.transpose() * (static_cast<double>(scores.cols()) / dof());
 }
 
 double RotationEstimate::half_width(const Eigen::VectorXd& gradient, double by_scatter) const {

@@ -29,6 +29,7 @@ struct Scenario {
   Range radius_m{0.02, 0.2};
   std::size_t axes = 2, speeds = 1;
   bool encoder = false;
+  double wander = 0.0;   ///< of the speed, relative amplitude of a slow sine
   double pole_hz = 0.0;  ///< of the sensor's filter; 0: none
 };
 
@@ -66,8 +67,11 @@ RotationRecording recording(const Scenario& scenario,
     size[n] = scenario.ripple[n].draw(random);
     phase[n] = Range{0.0, rad_per_turn}.draw(random);
   }
+  const double swing_phase = Range{0.0, rad_per_turn}.draw(random);
+  const double swing = rad_per_turn / Range{40.0, 150.0}.draw(random);
   wheel.angle = [=](double t) {
     double theta = speed * t + 0.7;
+    theta += scenario.wander * speed / swing * std::sin(swing * t + swing_phase);
     for (int n = 1; n <= 3; ++n) {
       const auto k = static_cast<std::size_t>(n - 1);
       theta += size[k] / n * std::sin(n * speed * t + phase[k]);
@@ -181,6 +185,17 @@ INSTANTIATE_TEST_SUITE_P(
         Scenario{
             .name = "2 % once, on the axle", .ripple = {two, none, none}, .radius_m = {0.0, 0.0}},
         Scenario{.name = "2 % once", .ripple = {two, none, none}},
+        Scenario{.name = "two speeds", .speeds = 2},
+        Scenario{
+            .name = "two speeds, 0.1 to 0.3 %", .ripple = {little, little, little}, .speeds = 2},
+        Scenario{.name = "two speeds, 0.6 to 2 %", .ripple = {much, much, much}, .speeds = 2},
+        Scenario{.name = "two speeds, 2 % once", .ripple = {two, none, none}, .speeds = 2},
+        Scenario{.name = "two speeds that wander by 0.2 %", .speeds = 2, .wander = 0.002},
+        Scenario{.name = "two speeds, encoder",
+                 .ripple = {much, much, much},
+                 .speeds = 2,
+                 .encoder = true},
+        Scenario{.name = "two speeds, one axis", .axes = 1, .speeds = 2},
         Scenario{.name = "no ripple, one axis", .axes = 1},
         Scenario{.name = "encoder", .axes = 1, .encoder = true},
         Scenario{.name = "encoder, 50 Hz pole", .encoder = true, .pole_hz = 50.0},

@@ -219,6 +219,57 @@ TEST(Rotation, TakesOutWhatARippleMakesOfTheCentripetalAcceleration) {
   }
 }
 
+// Two speeds, each with ripples of its own once to three times a turn.
+std::vector<RotationRecording> rippling_pair(double radius_m,
+                                             bool encoder,
+                                             double white,
+                                             unsigned seed) {
+  std::vector<RotationRecording> pair;
+  for (const double speed : {1.3, 2.7}) {
+    PlainWheel wheel;
+    wheel.equations = {{.K1 = 1.0, .K0 = 0.1}, {.K1 = 1.02, .K0 = -0.2, .delta_o = 0.01}};
+    wheel.radius_m = radius_m;
+    wheel.mounting_rad = encoder ? 0.0 : 0.6;
+    wheel.give_angle = encoder;
+    wheel.duration_s = 100.0;
+    wheel.white = white;
+    wheel.seed = seed++;
+    wheel.angle = [=](double t) {
+      const double even = speed * t;
+      return even + 0.02 * std::sin(even + speed) + 0.005 * std::sin(2.0 * even + 3.0 * speed) +
+             0.004 * std::cos(3.0 * even - speed);
+    };
+    pair.push_back(turned(wheel));
+  }
+  return pair;
+}
+
+// r ω̇ of the n-th ripple goes with n² r ω²/g, which is above 1 from the third on here.
+TEST(Rotation, FindsALargeRadiusFromTwoSpeedsThatRipple) {
+  const RotationFit fit = fit_of(rippling_pair(0.19, false, 0.0, 1));
+  EXPECT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.radius.value.value().value, 0.19, 5e-5);
+}
+
+// The mean of ω² holds the square of the ripple.
+TEST(Rotation, FindsTheRadiusOfAWheelThatRipplesBesideAnEncoder) {
+  const RotationFit fit = fit_of(rippling_pair(0.1, true, 0.0, 1));
+  EXPECT_NEAR(fit.radius.value.value().value, 0.1, 5e-6);
+}
+
+// Of each speed's ripple the noise is in its bias, and so in what the two speeds say of the radius.
+TEST(Rotation, StatesARadiusNoSurerThanTheRipplesOfBothSpeedsAre) {
+  constexpr unsigned wheels = 30;
+  double squares = 0.0;
+  for (unsigned k = 0; k < wheels; ++k) {
+    const Uncertain radius =
+        fit_of(rippling_pair(0.1, false, 0.02, 2 * k + 1)).radius.value.value();
+    squares += std::pow((radius.value - 0.1) / radius.std, 2.0);
+  }
+  EXPECT_LT(squares / wheels, 1.0 + 2.0 * std::sqrt(2.0 / wheels));
+  EXPECT_GT(squares / wheels, 0.3);
+}
+
 TEST(Rotation, DoesNotTakeASensorsNonlinearityForARipple) {
   PlainWheel wheel;
   wheel.equations = {{.K1 = 1.0, .K2 = 1e-3}, {.K1 = 1.0, .K2 = 1e-3}};
