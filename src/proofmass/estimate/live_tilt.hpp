@@ -32,12 +32,12 @@ struct LiveTiltOptions {
 ///                                            the axes: 1 where the filter's model is true
 ///
 /// The filter is estimate_tilt()'s of a moving base, without its knowledge of later rests: the
-/// base's acceleration is read off the scatter of the force as it goes, and its time constant off
-/// how long the scatter hangs together. At rest that leaves 2 mg of acceleration possible, so that
-/// the bands are cautious there. Without gyroscope how strong the base turns is told by two filters
-/// beside that take it for √10 times more and less: where one has predicted the last two seconds
-/// better, all three move. A base that speeds up on the level cannot then be told from one that
-/// tilts.
+/// base's acceleration is read off the scatter of the force over the last 6 or 30 s, whichever
+/// shows more, and its time constant off how long the scatter hangs together; before that 1 m/s² is
+/// taken to be possible. At rest 2 mg of acceleration are left possible, so that the bands are
+/// cautious there. Without gyroscope how strong the base turns is told by two filters beside that
+/// take it for √10 times more and less: where one has predicted the last five seconds better, all
+/// three move. A base that speeds up on the level cannot then be told from one that tilts.
 ///
 /// Cost: some 10 µs a sample, without gyroscope three times that; nothing is allocated for one once
 /// started. Errors: invalid_argument.

@@ -11,18 +11,21 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Over how long a time the force tells what the base does at present.
-constexpr double memory_s = 6.0;
+/// Over how long times the force tells what the base does at present: the stronger of the two
+/// counts, so that a slow acceleration is not forgotten while it passes through zero.
+constexpr double memory_s = 6.0, long_memory_s = 30.0;
+/// What the base may do before the force has told, in m/s², and how fast that is forgotten.
+constexpr double unknown_accel_mps2 = 1.0, unknown_fade_s = 2.0;
 /// Over how long a time the force is averaged that it departs from, with and without gyroscope.
 constexpr double mean_memory_s = 2.0, free_mean_memory_s = 20.0;
 /// What no base is quieter than, relative to gravity, and no longer in one state than.
-constexpr double least_accel = 2e-3, least_time_s = 0.05, longest_time_s = 1.0;
+constexpr double least_accel = 2e-3, least_time_s = 0.05, longest_time_s = 2.0;
 /// Degrees of freedom of the scatter: as of base_accel().
 constexpr double effective_dof = 10.0;
 /// Angular acceleration of a base without gyroscope at first, rad/s²/√Hz: that of a hand.
 constexpr double free_drive = 1.0;
 /// Over how long a time filters that take it for another are compared.
-constexpr double predicted_s = 2.0;
+constexpr double predicted_s = 5.0;
 constexpr double apart_s = 0.1;
 
 Mat<3, 3> least_cov(double gravity_mps2) {
@@ -80,6 +83,7 @@ LiveTiltFilter::LiveTiltFilter(const std::vector<LiveInstant>& first,
     : gyroscope_(options.gyroscope.has_value()),
       usual_step_s_(step_of(first)),
       scatter_(memory_s, gyroscope_ ? mean_memory_s : free_mean_memory_s, gyroscope_),
+      long_scatter_(long_memory_s, gyroscope_ ? mean_memory_s : free_mean_memory_s, gyroscope_),
       correlation_(instants_in(apart_s, usual_step_s_)),
       apart_s_(static_cast<double>(instants_in(apart_s, usual_step_s_)) * usual_step_s_),
       window_(instants_in(options.lag_s, usual_step_s_)),
@@ -118,18 +122,25 @@ void LiveTiltFilter::read(const LiveInstant& instant) {
 /// What the base does, by the force up to now.
 void LiveTiltFilter::follow_motion() {
   const Mat<3> bias = gyroscope_ ? Mat<3>(state_.x.mean.tail<3>()) : Mat<3>::Zero();
-  scatter_.turn(now_.step_s[1], gyroscope_ ? Mat<3>(now_.rate_radps[1] - bias) : bias);
+  const Mat<3> rate = gyroscope_ ? Mat<3>(now_.rate_radps[1] - bias) : bias;
+  scatter_.turn(now_.step_s[1], rate);
+  long_scatter_.turn(now_.step_s[1], rate);
+  unknown_ *= std::exp(-now_.step_s[1] / unknown_fade_s);
   const Mat<3>& f = now_.force_mps2[1];
   if (!f.allFinite()) return;
   const auto departure = scatter_.add(f, known_.gravity_mps2);
+  long_scatter_.add(f, known_.gravity_mps2);
   correlation_.add(departure.mps2, usual_step_s_ / memory_s);
   double time_s = std::clamp(correlation_.time() * apart_s_, least_time_s, longest_time_s);
   // As in base_accel(): what so few times leave open, and what the running mean has taken.
   const double taken = 1.0 + time_s / (gyroscope_ ? mean_memory_s : free_mean_memory_s);
   const double wider = student_t_quantile(0.975, effective_dof) / 1.959964;
   motion_.accel_time_s = time_s * taken;
+  const Mat<3, 3> late = scatter_.covariance(known_.gravity_mps2, known_.norm_std_mps2),
+                  long_ago = long_scatter_.covariance(known_.gravity_mps2, known_.norm_std_mps2);
   now_.accel_cov_m2ps4[1] =
-      wider * wider * taken * scatter_.covariance(known_.gravity_mps2, known_.norm_std_mps2) +
+      wider * wider * taken * (late.trace() > long_ago.trace() ? late : long_ago) +
+      square(unknown_accel_mps2) * unknown_ * Mat<3, 3>::Identity() +
       least_cov(known_.gravity_mps2);
 }
 
@@ -173,7 +184,7 @@ void LiveTiltBank::step(const LiveInstant& instant) {
 }
 
 void LiveTiltBank::choose() {
-  constexpr double clear = 1.0, least = 0.02, most = 200.0;
+  constexpr double clear = 1.0, least = 0.02, most = 5.0;
   const auto gain = [this](std::size_t k) {
     return filters_[k]->predicted() - filters_[0]->predicted();
   };

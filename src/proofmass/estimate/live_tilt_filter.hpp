@@ -61,7 +61,8 @@ class LiveTiltFilter {
   TiltInstants now_;  ///< two instants: 0 the first, 1 any later
   TiltKnown known_;
   TiltMotion motion_;
-  BaseScatter scatter_;
+  BaseScatter scatter_, long_scatter_;
+  double unknown_ = 1.0;  ///< share that is left of what the base may do before the force has told
   RunningCorrelation correlation_;
   double apart_s_ = 0.1;
   FilterState<9> state_;

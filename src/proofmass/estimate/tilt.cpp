@@ -3,6 +3,7 @@
 #include "proofmass/estimate/tilt_instants.hpp"
 #include "proofmass/estimate/tilt_motion.hpp"
 #include "proofmass/estimate/tilt_record.hpp"
+#include "proofmass/estimate/tilt_rest_search.hpp"
 #include "proofmass/estimate/tilt_still.hpp"
 
 namespace proofmass::estimate {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "proofmass/core/statistics.hpp"
@@ -11,25 +12,26 @@
 namespace proofmass::estimate {
 namespace {
 
-constexpr double prior_of_change = 0.5;
-constexpr double usual_change_mps2 = 3e-3 * standard_gravity_mps2, log_spread = 1.2;
+// Where no stability is stated: as good as never does a bias return to where it was.
+constexpr double prior_of_none = 0.1, prior_of_stated = 0.9;
+constexpr double least_change_mps2 = 0.2e-3 * standard_gravity_mps2;
+constexpr double most_change_mps2 = 60e-3 * standard_gravity_mps2;
 constexpr std::size_t most_rests = 16;
 
-// Sizes of the change with what they weigh: none, then a grid of ± 3 standard deviations.
+// Sizes of the change with what they weigh: the usual one, then a grid even in the logarithm.
 struct Size {
   double std_mps2, weight;
 };
 
-std::array<Size, 32> prior_sizes() {
+std::array<Size, 32> prior_sizes(std::optional<double> stability_mps2) {
   std::array<Size, 32> sizes{};
-  sizes[0] = {0.0, 1.0 - prior_of_change};
-  double sum = 0.0;
-  for (std::size_t k = 1; k < sizes.size(); ++k) {
-    const double z = -3.0 + 0.2 * static_cast<double>(k - 1);
-    sizes[k] = {usual_change_mps2 * std::exp(log_spread * z), std::exp(-0.5 * z * z)};
-    sum += sizes[k].weight;
-  }
-  for (std::size_t k = 1; k < sizes.size(); ++k) sizes[k].weight *= prior_of_change / sum;
+  const double usual = stability_mps2 ? prior_of_stated : prior_of_none;
+  sizes[0] = {stability_mps2.value_or(0.0), usual};
+  const auto others = static_cast<double>(sizes.size() - 1);
+  const double apart = std::log(most_change_mps2 / least_change_mps2) / (others - 1.0);
+  for (std::size_t k = 1; k < sizes.size(); ++k)
+    sizes[k] = {least_change_mps2 * std::exp(apart * static_cast<double>(k - 1)),
+                (1.0 - usual) / others};
   return sizes;
 }
 
@@ -71,8 +73,10 @@ double half_width(const std::array<Size, 32>& sizes, double known_variance) {
 
 BiasChange bias_change(const std::vector<TiltRest>& rests,
                        const ForceSpread& spread,
-                       const Uncertain& gravity_mps2) {
-  std::array<Size, 32> sizes = prior_sizes();
+                       const Uncertain& gravity_mps2,
+                       std::optional<double> stability_mps2) {
+  std::array<Size, 32> sizes = prior_sizes(stability_mps2);
+  const double odds_before = (1.0 - sizes[0].weight) / sizes[0].weight;
   const std::vector<const TiltRest*> some = some_of(rests);
   const auto count = static_cast<Eigen::Index>(some.size());
   Eigen::MatrixXd up(count, 3), noise = Eigen::MatrixXd::Zero(count, count);
@@ -102,7 +106,9 @@ BiasChange bias_change(const std::vector<TiltRest>& rests,
   }
   const double one_axis = calibration.trace() / 3.0;
   const double wanted = square(half_width(sizes, one_axis) / 1.959964);
-  return {1.0 - sizes[0].weight, std::sqrt(std::max(0.0, wanted - one_axis))};
+  const double other = 1.0 - sizes[0].weight;
+  return {other / (other + odds_before * sizes[0].weight),
+          std::sqrt(std::max(0.0, wanted - one_axis))};
 }
 
 }  // namespace proofmass::estimate

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/statistics.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -42,6 +43,18 @@ std::optional<CalibrationSpread> CalibrationSpread::of(const sensor::Calibration
     out.cov_ *= wider * wider;
   }
   return out;
+}
+
+std::optional<double> stability_mps2(const sensor::Calibration& calibration) {
+  double squares = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!calibration.stability[i]) continue;
+    const double scale = calibration.scale[i] ? calibration.scale[i]->si() : 1.0;
+    squares += square(calibration.stability[i]->si() / scale);
+    count += 1.0;
+  }
+  if (count == 0.0 || !std::isfinite(squares)) return std::nullopt;
+  return std::sqrt(squares / count);
 }
 
 Mat<3, 3> CalibrationSpread::at(const Mat<3>& force) const {

@@ -29,4 +29,8 @@ class CalibrationSpread {
   Mat<9, 9> cov_ = Mat<9, 9>::Zero();
 };
 
+/// Standard deviation of the bias from one session to another, rms of the axes that state it;
+/// nullopt where none does.
+[[nodiscard]] std::optional<double> stability_mps2(const sensor::Calibration& calibration);
+
 }  // namespace proofmass::estimate

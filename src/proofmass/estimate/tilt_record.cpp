@@ -4,16 +4,14 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <optional>
 
-#include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
 
 namespace proofmass::estimate {
 namespace {
 
 constexpr double still_share = 0.9;
-constexpr std::size_t fewest_moving = 50, fewest_to_fit = 16;
+constexpr std::size_t fewest_moving = 50;
 
 Status check_lengths(const TiltRecord& record, std::size_t& samples) {
   const auto& axes = record.accel_mps2;
@@ -61,54 +59,7 @@ void note_unusable(TiltSolution& solution) {
                                                    " samples lack a reading on some axis"});
 }
 
-// Legendre's polynomials up to the fourth, which are orthogonal on [−1, 1].
-Mat<5> legendre(double t) {
-  const double s = t * t;
-  return (Mat<5>() << 1.0, t, 1.5 * s - 0.5, (2.5 * s - 1.5) * t, (4.375 * s - 3.75) * s + 0.375)
-      .finished();
-}
-
-// Mean square of what a polynomial of fourth degree leaves of one axis, over half as much again at
-// either end.
-double left_of_polynomial(View<double> axis, const signal::Rest& rest) {
-  const std::size_t half = (rest.last - rest.first + 1) / 2;
-  const std::size_t from = rest.first - std::min(rest.first, half),
-                    to = std::min(rest.last + half, axis.size() - 1);
-  const auto at = [&](std::size_t k) {
-    return legendre(2.0 * static_cast<double>(k - from) / static_cast<double>(to - from) - 1.0);
-  };
-  Mat<5, 5> normal = Mat<5, 5>::Zero();
-  Mat<5> sums = Mat<5>::Zero();
-  std::optional<double> offset;  // keeps the squares from losing digits
-  double count = 0.0, squares = 0.0;
-  for (std::size_t k = from; k <= to; ++k)
-    if (std::isfinite(axis[k])) {
-      if (!offset) offset = axis[k];
-      const double value = axis[k] - *offset;
-      const Mat<5> shape = at(k);
-      normal += shape * shape.transpose();
-      sums += value * shape;
-      squares += value * value;
-      count += 1.0;
-    }
-  if (count < static_cast<double>(fewest_to_fit)) return std::numeric_limits<double>::infinity();
-  return std::max(0.0, squares - sums.dot(positive_inverse(normal) * sums)) / count;
-}
-
 }  // namespace
-
-void drop_smooth_rests(const TiltRecord& record, signal::RestSearch& found) {
-  constexpr double edge = 1.5;  // times the noise
-  std::erase_if(found.rests, [&](const signal::Rest& rest) {
-    std::size_t row = 0;
-    for (const auto& axis : record.accel_mps2) {
-      if (axis.empty()) continue;
-      const double noise = found.noise_std[row++];
-      if (left_of_polynomial(axis, rest) > square(edge * noise)) return false;
-    }
-    return true;
-  });
-}
 
 std::string decimal(double value, int decimals) {
   char text[32];
@@ -139,21 +90,6 @@ Status check_record(const TiltRecord& record, const TiltOptions& options, TiltSo
   if (Status force = check_force(record, options, solution); !force) return force;
   note_unusable(solution);
   return Done{};
-}
-
-signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options) {
-  std::vector<View<double>> axes;
-  for (const auto& axis : record.accel_mps2)
-    if (!axis.empty()) axes.emplace_back(axis);
-  double rate_hz = 0.0;
-  if (record.time_s.size() > 1) {
-    std::vector<double> steps;
-    for (std::size_t k = 1; k < record.time_s.size(); ++k)
-      steps.push_back(record.time_s[k] - record.time_s[k - 1]);
-    const double step = median(steps).value_or(0.0);
-    if (step > 0.0) rate_hz = 1.0 / step;
-  }
-  return signal::find_rests(axes, {.rate_hz = rate_hz, .shortest_s = options.shortest_rest_s});
 }
 
 Result<bool> is_moving(const TiltRecord& record,

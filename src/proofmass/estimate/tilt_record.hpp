@@ -24,13 +24,6 @@ namespace proofmass::estimate {
                                   const TiltOptions& options,
                                   TiltSolution& solution);
 
-/// The stretches in which the accelerometer lay still.
-[[nodiscard]] signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options);
-
-/// Of a moving base: leaves out quiet stretches that go over smoothly into what is before and after
-/// them, as the crest of a slow acceleration does. A rest begins or ends at an edge.
-void drop_smooth_rests(const TiltRecord& record, signal::RestSearch& found);
-
 /// Whether the base moves. Errors: not_observable, too_few_samples where it does and cannot be
 /// followed.
 [[nodiscard]] Result<bool> is_moving(const TiltRecord& record,

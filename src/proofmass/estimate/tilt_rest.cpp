@@ -16,6 +16,49 @@ namespace {
 
 constexpr std::size_t batches = 40;
 
+// What moves readings across the codes of a converter.
+struct Dither {
+  double noise = 0.0;  ///< variance of its Gaussian part, steps²
+  double sine = 0.0;   ///< amplitude of a sine beside it, in steps
+};
+
+// By variance and fourth moment, less what rounding adds to them (Sheppard): a sine of amplitude A
+// has the fourth cumulant −3 A⁴/8, noise none. A sine counts where it is beyond chance.
+Dither dither_of(const std::vector<double>& values, double step) {
+  const Moments all = moments(values);
+  const double raw = square(all.std() / step), variance = std::max(0.0, raw - 1.0 / 12.0);
+  double fourth = 0.0;
+  for (const double value : values) fourth += square(square((value - all.mean) / step));
+  const auto count = static_cast<double>(all.count);
+  const double cumulant = fourth / count - raw / 2.0 + 7.0 / 240.0 - 3.0 * square(variance);
+  Dither out{.noise = variance};
+  if (cumulant > -2.0 * std::sqrt(24.0 / count) * square(variance)) return out;
+  out.sine = std::pow(-8.0 / 3.0 * cumulant, 0.25);
+  out.noise = std::max(0.0, variance - square(out.sine) / 2.0);
+  return out;
+}
+
+// By what factor the variance of a mean exceeds that of independent values: 1 + 2 Σ ρ_k over the
+// pairs of lags that come out positive, where the first is beyond chance.
+double correlated(const std::vector<double>& means) {
+  const Moments all = moments(means);
+  const auto count = static_cast<double>(means.size());
+  const auto rho = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (std::size_t k = lag; k < means.size(); ++k)
+      sum += (means[k] - all.mean) * (means[k - lag] - all.mean);
+    return sum / all.squares;
+  };
+  if (!(all.squares > 0.0) || rho(1) < 2.0 / std::sqrt(count)) return 1.0;
+  double sum = 0.0;
+  for (std::size_t lag = 0; lag + 1 < means.size(); lag += 2) {
+    const double pair = rho(lag) + rho(lag + 1);
+    if (pair <= 0.0) break;
+    sum += pair;
+  }
+  return std::max(1.0, 2.0 * sum - 1.0);
+}
+
 double span_s(const TiltRecord& record, const signal::Rest& samples) {
   if (record.time_s.empty()) return 0.0;
   return record.time_s[samples.last] - record.time_s[samples.first];
@@ -26,8 +69,7 @@ double span_s(const TiltRecord& record, const signal::Rest& samples) {
 double rounding_variance(std::vector<double> values, double step) {
   if (!(step > 0.0) || values.empty()) return 0.0;
   const double hidden = step * step / 12.0;
-  const double variance = square(moments(values).std() / step) - 1.0 / 12.0;
-  if (variance > 1.0) return 0.0;
+  const Dither dither = dither_of(values, step);
   std::ranges::sort(values);
   // Where nearly all are of two codes, noise far below the step may swing across their border.
   constexpr double nearly_all = 0.998;
@@ -38,9 +80,10 @@ double rounding_variance(std::vector<double> values, double step) {
   }
   const bool two_codes =
       static_cast<double>(most) >= nearly_all * static_cast<double>(values.size());
-  if (two_codes || variance <= 0.0) return hidden;
+  if (two_codes || dither.noise + dither.sine <= 0.0) return hidden;
   constexpr double pi = std::numbers::pi;
-  return std::min(hidden, square(step / pi) / 2.0 * std::exp(-4.0 * pi * pi * variance));
+  const double left = std::min(1.0, 1.0 / (pi * pi * dither.sine));
+  return std::min(hidden, square(step / pi) / 2.0 * left * std::exp(-4.0 * pi * pi * dither.noise));
 }
 
 StretchMean stretch_mean(View<double> values, double step) {
@@ -54,13 +97,13 @@ StretchMean stretch_mean(View<double> values, double step) {
   const Moments all = moments(finite);
   out.mean = all.mean;
   const std::size_t length = finite.size() < 4 * batches ? 1 : finite.size() / batches;
-  Moments means;
+  std::vector<double> means;
   for (std::size_t first = 0; first + length <= finite.size(); first += length)
-    means.add(moments(View<double>(finite).subspan(first, length)).mean);
-  if (means.count > 1) {
-    const auto count = static_cast<double>(means.count);
+    means.push_back(moments(View<double>(finite).subspan(first, length)).mean);
+  if (means.size() > 1) {
+    const auto count = static_cast<double>(means.size());
     const double wider = student_t_quantile(0.975, count - 1.0) / 1.959964;
-    out.variance = square(wider * means.std()) / count;
+    out.variance = square(wider * moments(means).std()) / count * correlated(means);
   }
   out.scatter = square(all.std());
   out.rounding = rounding_variance(std::move(finite), step);

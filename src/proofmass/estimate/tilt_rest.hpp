@@ -21,16 +21,17 @@ struct StretchMean {
 };
 
 /// The mean of the finite values, and its variance by the scatter of the means of 40 batches (of
-/// single values where there are fewer than 160), widened to Student's t: correlation within a
-/// batch is counted, what wanders more slowly is not.
-/// Source: C. J. Geyer, Statist. Sci. 7 (1992) 473, section 3.2, for batch means.
+/// single values where there are fewer than 160), widened to Student's t. Correlation from batch to
+/// batch, where it is beyond chance, is counted by the initial positive sequence; what wanders as
+/// slowly as the stretch lasts shows in part.
+/// Source: C. J. Geyer, Statist. Sci. 7 (1992) 473, sections 3.2 and 3.3.
 [[nodiscard]] StretchMean stretch_mean(View<double> values, double step);
 
-/// Variance of the error that rounding to multiples of a step leaves in the mean of readings with
-/// Gaussian noise σ: step²/12 without noise; with noise the error is (step/π) e^(−2π²(σ/step)²) at
-/// most and a sine of where the mean lies, the noise acting as dither. σ² is the scatter less
-/// step²/12; step²/12 where all but 2 in 1000 are of two codes.
-/// Source: B. Widrow, I. Kollár, Quantization Noise (2008), chapter 5.
+/// Variance of the error that rounding to multiples of a step leaves in the mean of readings:
+/// step²/12 without noise; Gaussian noise σ leaves (step/π) e^(−2π²(σ/step)²) at most and a sine of
+/// where the mean lies, a sine of amplitude A beside it |J₀(2πA/step)| ≤ (1/π) √(step/A) of that,
+/// both acting as dither. step²/12 where all but 2 in 1000 are of two codes. Source: B. Widrow, I.
+/// Kollár, Quantization Noise (2008), chapter 5 and appendix G.
 [[nodiscard]] double rounding_variance(std::vector<double> values, double step);
 
 /// Steps of the converter behind each axis, 0 where it looks continuous: those that the record

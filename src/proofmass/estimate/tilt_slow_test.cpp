@@ -79,10 +79,9 @@ TEST(TiltCoverage, AtRestWithACoarseConverterIsAtLeastNinetyThreePercent) {
   }
 }
 
-// A sensor whose biases moved after its calibration, in one attitude: by nothing in half of the
-// recordings and else as the prior has it, then by up to a fixed size. One norm shows one of three
-// components, so that bands cannot hold for every size alike.
-TEST(TiltCoverage, WithASensorFileOfAnotherSessionIsAtLeastNinetyThreePercent) {
+// A sensor whose biases moved after its calibration by up to a size, in one attitude. The norm
+// shows one of three components: where gravity is uncertain by as much, a large one may hide.
+TEST(TiltCoverage, WithASensorFileOfAnotherSessionIsAtLeastNinetyThreePercentWhereGravityIsKnown) {
   constexpr double mg = 1e-3 * standard_gravity_mps2;
   Random random(8, "moved");
   const auto held_by = [&](double gravity_std_mps2, const auto& draw_change) {
@@ -102,17 +101,14 @@ TEST(TiltCoverage, WithASensorFileOfAnotherSessionIsAtLeastNinetyThreePercent) {
     return held.share();
   };
   for (const double gravity_std_mps2 : {1e-4, 0.018}) {
-    const double by_prior = held_by(gravity_std_mps2, [&] {
-      const double size = random.unit() < 0.5 ? 0.0 : 3.0 * mg * std::exp(1.2 * random.normal());
-      return Mat<3>(size * random.normal(), size * random.normal(), size * random.normal());
-    });
-    EXPECT_GE(by_prior, 0.93) << gravity_std_mps2;
-    std::printf("| gravity ± %.4f m/s² | %.0f %%", gravity_std_mps2, 100.0 * by_prior);
-    for (const double most : {0.0, 1.0 * mg, 5.0 * mg, 20.0 * mg})
-      std::printf(" | %.0f %%", 100.0 * held_by(gravity_std_mps2, [&] {
-                                  return Mat<3>(most * random.uniform(), most * random.uniform(),
-                                                most * random.uniform());
-                                }));
+    std::printf("| gravity ± %.4f m/s²", gravity_std_mps2);
+    for (const double most : {0.0, 1.0 * mg, 5.0 * mg, 20.0 * mg}) {
+      const double share = held_by(gravity_std_mps2, [&] {
+        return Mat<3>(most * random.uniform(), most * random.uniform(), most * random.uniform());
+      });
+      std::printf(" | %.0f %%", 100.0 * share);
+      EXPECT_GE(share, gravity_std_mps2 > 1e-3 ? 0.85 : 0.93) << most;
+    }
     std::printf(" |\n");
   }
 }
@@ -201,10 +197,10 @@ INSTANTIATE_TEST_SUITE_P(
         Sway{"gyroscope, 3 m/s², 0.02–0.2 Hz", swayed(3.0, 0.02, 0.2, true, 0.0), 0.93},
         Sway{"gyroscope, 3 m/s², 0.02–0.2 Hz, rests", swayed(3.0, 0.02, 0.2, true, 3.0), 0.93},
         Sway{"gyroscope, 1 m/s², 0.5–3 Hz", swayed(1.0, 0.5, 3.0, true, 0.0), 0.93},
-        Sway{"no gyroscope, 3 m/s², 0.02–0.2 Hz", swayed(3.0, 0.02, 0.2, false, 0.0), 0.85},
-        Sway{"no gyroscope, 1 m/s², 0.02–0.2 Hz, rests", swayed(1.0, 0.02, 0.2, false, 3.0), 0.75},
+        Sway{"no gyroscope, 3 m/s², 0.02–0.2 Hz", swayed(3.0, 0.02, 0.2, false, 0.0), 0.88},
+        Sway{"no gyroscope, 1 m/s², 0.02–0.2 Hz, rests", swayed(1.0, 0.02, 0.2, false, 3.0), 0.93},
         Sway{"no gyroscope, 1 m/s², 0.1–0.5 Hz, rests", swayed(1.0, 0.1, 0.5, false, 3.0), 0.93},
-        Sway{"no gyroscope, 0.3 m/s², 0.02–0.2 Hz", swayed(0.3, 0.02, 0.2, false, 0.0), 0.90},
+        Sway{"no gyroscope, 0.3 m/s², 0.02–0.2 Hz", swayed(0.3, 0.02, 0.2, false, 0.0), 0.93},
         Sway{"no gyroscope, 1 m/s², 0.5–3 Hz, rests", swayed(1.0, 0.5, 3.0, false, 3.0), 0.93}));
 
 }  // namespace

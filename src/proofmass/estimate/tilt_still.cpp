@@ -66,7 +66,8 @@ bool judge_norm(TiltOptions& options, TiltSolution& solution) {
   }
   const double off = count > 0.0 ? std::sqrt(squares / count) : 0.0;
   if (spread.knows_calibration()) {
-    const BiasChange change = bias_change(solution.rests, spread, options.gravity_mps2);
+    const BiasChange change = bias_change(solution.rests, spread, options.gravity_mps2,
+                                          stability_mps2(*options.calibration));
     options.bias_std_mps2 = change.std_mps2;
     solution.notes.push_back(change_note(change, off));
   } else if (off > 2.0 * options.gravity_mps2.std) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/tilt_model.hpp"
 #include "proofmass/estimate/tilt_rest.hpp"
 #include "proofmass/estimate/tilt_test_support.hpp"
@@ -48,6 +49,86 @@ TEST(Tilt, AtRestCountsCorrelatedNoise) {
   const StretchMean mean = stretch_mean(values, 0.0);
   // The variance of the mean of an autoregression is σ²/(1 − φ)²/N.
   EXPECT_NEAR(std::sqrt(mean.variance), 20.0 / std::sqrt(20000.0), 0.3 * 20.0 / std::sqrt(20000.0));
+}
+
+// Forty batches of values that hang together over a fifth of the stretch.
+TEST(Tilt, AtRestCountsWhatWandersFromBatchToBatch) {
+  Random random(31, "wander");
+  double squares = 0.0, variances = 0.0;
+  for (int run = 0; run < 200; ++run) {
+    std::vector<double> values;
+    double wander = 10.0 * random.normal();
+    const double phi = std::exp(-1.0 / 100.0);
+    for (int k = 0; k < 2000; ++k) {
+      wander = phi * wander + 10.0 * std::sqrt(1.0 - phi * phi) * random.normal();
+      values.push_back(wander + random.normal());
+    }
+    const StretchMean mean = stretch_mean(values, 0.0);
+    squares += square(mean.mean) / 200.0;
+    variances += mean.variance / 200.0;
+  }
+  EXPECT_GT(variances, 0.7 * squares);
+  EXPECT_LT(variances, 2.0 * squares);
+}
+
+// A hum of 1.5 steps leaves more of the rounding than Gaussian noise of its variance would.
+TEST(Tilt, AHumDithersTheRoundingAwayOnlyInPart) {
+  double squares = 0.0, variances = 0.0;
+  constexpr int levels = 50;
+  for (int level = 0; level < levels; ++level) {
+    std::vector<double> values;
+    const double truth = static_cast<double>(level) / levels;
+    for (int k = 0; k < 1000; ++k) values.push_back(std::round(truth + 1.5 * std::sin(0.7 * k)));
+    const StretchMean mean = stretch_mean(values, 1.0);
+    squares += square(mean.mean - truth) / levels;
+    variances += mean.rounding / levels;
+  }
+  EXPECT_GT(squares, 1e-4);
+  EXPECT_GT(variances, 0.5 * squares);
+  EXPECT_LT(variances, 1.0 / 12.0);
+}
+
+TEST(Tilt, AStretchThatIsQuietAgainstTheVibrationIsNoRestWhereItsLevelMoves) {
+  // 0.3 m/s² of vibration, and beneath it a sway of 2 m/s² that takes ten seconds.
+  const MovingBase base = moving_base({.samples = 6000,
+                                       .accel_std_mps2 = 0.0,
+                                       .sway_mps2 = 2.0,
+                                       .slowest_sway_hz = 0.1,
+                                       .fastest_sway_hz = 0.1,
+                                       .turning = 0.0,
+                                       .reading_std_mps2 = 0.3,
+                                       .gyroscope = false},
+                                      32);
+  const TiltSolution solution = estimate_tilt(base.record, exact).value();
+  EXPECT_TRUE(solution.moving);
+  double within = 0.0;
+  for (std::size_t k = 0; k < base.pitch_rad.size(); ++k)
+    within += std::abs(solution.series.pitch_rad[k] - base.pitch_rad[k]) <
+                      1.96 * solution.series.pitch_std_rad[k]
+                  ? 1.0
+                  : 0.0;
+  EXPECT_GT(within, 0.9 * static_cast<double>(base.pitch_rad.size()));
+}
+
+TEST(Tilt, ARestKeepsWhatAWarmSensorWanders) {
+  TiltRecord record = still_record(force_at(0.1, 0.2), 0.02, 6000, 33);
+  for (std::size_t k = 0; k < 6000; ++k)
+    record.accel_mps2[0][k] += 0.01 * static_cast<double>(k) / 6000.0;
+  const TiltSolution solution = estimate_tilt(record, exact).value();
+  EXPECT_FALSE(solution.moving);
+  EXPECT_EQ(solution.rests.size(), 1U);
+}
+
+TEST(Tilt, CountsTheStabilityOfTheBiasThatTheSensorFileStates) {
+  TiltOptions options = exact;
+  options.calibration.emplace();
+  options.calibration->bias = sensor::make_axis_figures({0.0, 0.0, 0.0}, "m/s^2", "test");
+  for (auto& bias : options.calibration->bias) bias->std = 1e-4;
+  options.calibration->stability = sensor::make_axis_figures({0.03, 0.03, 0.03}, "m/s^2", "test");
+  const TiltRecord record =
+      still_record(force_at(0.0, 0.0) + Mat<3>(0.0, 0.0, 0.02), 0.01, 500, 34);
+  const TiltSolution solution = estimate_tilt(record, options).value();
+  EXPECT_NEAR(solution.final.pitch_rad->std, 0.03 / 9.80665, 0.3 * 0.03 / 9.80665);
 }
 
 TEST(Tilt, CountsTheCalibrationOfTheSensorFile) {
