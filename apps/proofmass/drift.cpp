@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "console.hpp"
@@ -35,7 +36,8 @@ RestOptions rest_options(const DriftCommand& command) {
           .output = command.output,
           .temperature = left ? "" : command.temperature,
           .find_temperature = command.temperature.empty(),
-          .for_sensor_file = !command.update_sensor.empty()};
+          .for_sensor_file = !command.update_sensor.empty(),
+          .may_drift = true};
 }
 
 // How long the sensor had been on at the first sample that is analysed.
@@ -55,7 +57,6 @@ std::vector<DriftChannel> drift_channels(const std::vector<RestRecording>& recor
       channel.shown.file = rest.file;
       channel.shown.unit = rest.unit;
       channel.shown.refused = rest.refused;
-      channel.shown.rest = rest.rest;
     }
   }
   return channels;
@@ -125,6 +126,26 @@ void analyse(DriftChannel& channel, DriftOptions options, std::optional<double> 
     channel.shown.temperature = against_temperature(rest, *channel.temperature);
 }
 
+// Whether the sensor moved beside its drift: the beginning of a strong warm-up would pass for
+// motion by itself. Takes the curve out of the series, which nothing else needs any more.
+void find_motion(double start_s,
+                 std::vector<RestRecording>& recordings,
+                 std::vector<DriftChannel>& channels) {
+  auto channel = channels.begin();
+  for (RestRecording& recording : recordings) {
+    const auto first = channel;
+    for (RestChannel& rest : recording.channels) {
+      const auto& analysis = (channel++)->shown.analysis;
+      for (std::size_t k = 0; analysis && k < rest.series.size(); ++k) {
+        const double t_s = analysis->start_s + static_cast<double>(k) / rest.rate_hz;
+        rest.series[k] -= analysis->fit.curve.value(t_s);
+      }
+    }
+    find_share_at_rest(start_s, recording.channels);
+    for (auto found = first; found != channel; ++found) found->shown.rest = found->rest->rest;
+  }
+}
+
 Uncertain uncertain(const characterise::Interval95& figure) {
   return {figure.value, figure.std};
 }
@@ -190,6 +211,7 @@ void run(const DriftCommand& command) {
   });
   report.runs = compare_recordings(recordings, report.since_switch_on_s,
                                    progress_bar(command.output), report.notes);
+  find_motion(std::max(0.0, command.input.from_s.value_or(0.0)), recordings, channels);
   if (!command.update_sensor.empty()) {
     without_interruption([&] { update_drift(command.update_sensor, channels, report.notes); });
   }

@@ -171,8 +171,8 @@ report::RestShare share_of(const signal::RestSearch& search,
   return found;
 }
 
-// Channels of one quantity are looked at together, three at a time: a sensor that moves along one
-// axis is not at rest along the others.
+}  // namespace
+
 void find_share_at_rest(double start_s, std::vector<RestChannel>& channels) {
   constexpr std::size_t most_axes = 3;
   // Fewer than the search can learn the noise of a sensor at rest from.
@@ -195,8 +195,6 @@ void find_share_at_rest(double start_s, std::vector<RestChannel>& channels) {
       channel->rest = share_of(search, axes.front().size(), rate_hz, start_s);
   }
 }
-
-}  // namespace
 
 void expect_axis(const RestChannel& channel) {
   if (channel.axis && channel.unit.symbol == "m/s^2") return;
@@ -249,7 +247,7 @@ RestRecording rest_recording(Recording recording,
     if (options.for_sensor_file) expect_axis(channel);
     out.channels.push_back(std::move(channel));
   }
-  if (!options.is_phase)
+  if (!options.is_phase && !options.may_drift)
     find_share_at_rest(std::max(0.0, options.input.from_s.value_or(0.0)), out.channels);
   if (source.temperature) out.temperature = prepared_temperature(source);
   return out;

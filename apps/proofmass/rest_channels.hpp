@@ -24,6 +24,7 @@ struct RestOptions {
   bool find_temperature = false;  ///< where none is named, the only channel with a temperature
   bool for_sensor_file = false;   ///< refuse what a sensor file cannot take (--update-sensor)
   bool is_phase = false;          ///< the channels hold the integral of the quantity over time
+  bool may_drift = false;  ///< rest is looked for beside the drift, once that is known: not here
 };
 
 /// One channel, in SI where its unit is known, or why it cannot be analysed.
@@ -54,6 +55,11 @@ struct RestRecording {
   std::optional<RestTemperature> temperature;
   std::optional<std::int64_t> start_ns;  ///< of the first sample on the file's own clock
 };
+
+/// How much of each channel is at rest. Channels of one quantity are looked at together, three at a
+/// time: a sensor that moves along one axis is not at rest along the others. start_s is the first
+/// sample's on the recording's clock.
+void find_share_at_rest(double start_s, std::vector<RestChannel>& channels);
 
 /// Opens one of the files, whole or as a stream where it is larger than --memory. Throws Failure,
 /// also where there is no time base.

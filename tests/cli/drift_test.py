@@ -59,6 +59,23 @@ class Drift(CommandTest):
         self.assertLess(truth, upper)
         self.assertAlmostEqual(channel[key]["value"], truth, delta=4 * channel[key]["std"])
 
+    def test_a_sensor_that_moves_is_said_before_any_figure(self):
+        swing = [0.2 * math.sin(0.8 * k) if k > 2000 else 0.0 for k in range(6000)]
+        self.write("swing.csv", table({"acc_x (g)": total(swing, white(6000, 1e-3, 2))}, rate_hz=10.0))
+        text = self.succeed("drift", "swing.csv")
+        self.assertLess(text.index("Not at rest"), text.index("a2"))
+        self.assertEqual(self.run_command("drift", "swing.csv", "--strict").returncode, BAD_DATA)
+        rest = self.document("drift", "swing.csv")["channels"][0]["rest"]
+        self.assertFalse(rest["at_rest"])
+        self.assertAlmostEqual(rest["longest"]["end_s"], 200.0, delta=2.0)
+
+    def test_a_strong_warm_up_is_no_motion(self):
+        x = total(warm_up(6000, 0.05, 0.0, 60.0, rate_hz=10.0), white(6000, 3e-4, 3))
+        self.write("strong.csv", table({"acc_x (g)": x}, rate_hz=10.0))
+        channel = self.document("drift", "strong.csv")["channels"][0]
+        self.assertEqual(channel["verdict"], "identified")
+        self.assertTrue(channel["rest"]["at_rest"])
+
     def test_a_warm_up_is_identified_in_si_with_the_truth_inside_the_intervals(self):
         self.warming()
         channel = self.document("drift", "warm.csv")["channels"][0]
