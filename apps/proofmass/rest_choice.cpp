@@ -4,6 +4,8 @@
 #include <array>
 #include <fmt/format.h>
 #include <numeric>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "proofmass/report/wording.hpp"
@@ -103,11 +105,15 @@ std::string clipping(const signal::ChannelAudit& audit, std::size_t samples) {
   constexpr double share = 1e-4;
   const auto clipped = static_cast<double>(audit.clipped);
   if (audit.clipped < fewest || clipped <= share * static_cast<double>(samples)) return {};
+  const auto limit = [](std::optional<double> level) {
+    return level ? report::significant(*level, 5) : std::string();
+  };
+  const char* between = audit.limit_low && audit.limit_high ? " or " : "";
   return fmt::format(
-      "{} of {} stand at the rails ({} or {} {}): what is cut off there is not in the figures",
+      "{} of {} stand at the limits of the range ({}{}{} {}): what is cut off there is not in the "
+      "figures",
       report::grouped(audit.clipped), report::count_words(samples, "sample"),
-      report::significant(audit.moments.min, 5), report::significant(audit.moments.max, 5),
-      audit.unit.symbol);
+      limit(audit.limit_low), between, limit(audit.limit_high), audit.unit.symbol);
 }
 
 void tell_grid(const signal::EvenGrid& grid,

@@ -44,6 +44,8 @@ Table timing_table(const RecordingAudit& audit) {
       {"Samples", std::to_string(audit.samples)},
       {"Time column", timing.channel.empty() ? "none" : timing.channel},
       {"Rate", timing.rate_hz > 0.0 ? compact(timing.rate_hz, 7) + " Hz" : "unknown"},
+      {"Standard deviation of the rate",
+       timing.rate_std_hz ? compact(*timing.rate_std_hz, 2) + " Hz" : "unknown"},
       {"Jitter of the steps", jitter_words(timing)},
       {"Gaps", std::to_string(timing.gap_count)},
       {"Stamps that go backwards", std::to_string(timing.backwards)},

@@ -28,6 +28,22 @@ const char* word(TimeSource source) {
   return "none";
 }
 
+const char* word(signal::Clipping clipping) {
+  switch (clipping) {
+    case signal::Clipping::rail:
+      return "rail";
+    case signal::Clipping::before_noise:
+      return "before_noise";
+    case signal::Clipping::soft:
+      return "soft";
+    case signal::Clipping::undetermined:
+      return "undetermined";
+    case signal::Clipping::none:
+      break;
+  }
+  return "none";
+}
+
 Value optional(const std::optional<double>& figure) {
   return figure ? Value(*figure) : Value();
 }
@@ -48,7 +64,10 @@ Value channel_value(const ChannelAudit& channel) {
                 {"max", of_any(moments, moments.max)},
                 {"lsb", optional(channel.lsb)},
                 {"nonfinite", channel.nonfinite},
+                {"clipping", word(channel.clipping)},
                 {"clipped", channel.clipped},
+                {"limit_low", optional(channel.limit_low)},
+                {"limit_high", optional(channel.limit_high)},
                 {"absurd", channel.absurd},
                 {"denormal", channel.denormal},
                 {"longest_stuck", channel.longest_stuck},
@@ -94,6 +113,7 @@ Object file_members(const InspectedFile& file) {
           {"samples", audit.samples},
           {"duration_s", has_rate(audit) ? Value(audit.duration_s) : Value()},
           {"rate_hz", has_rate(audit) ? Value(audit.timing.rate_hz) : Value()},
+          {"rate_std_hz", optional(audit.timing.rate_std_hz)},
           {"channels", std::move(channels)},
           {"labels", labels_value(file.recording)},
           {"timing", timing_value(audit.timing)},
@@ -108,6 +128,10 @@ std::vector<std::string> reasons(const RecordingAudit& audit) {
   if (!has_rate(audit)) {
     all.emplace_back("rate_hz, duration_s: null: no time column and no --rate");
   }
+  if (!audit.timing.rate_std_hz)
+    all.emplace_back(audit.timing.source == TimeSource::stamps
+                         ? "rate_std_hz: null: the stamps are even to the last digit, or too few"
+                         : "rate_std_hz: null: without stamps there is none");
   if (!audit.timing.long_run_hz) {
     all.emplace_back("timing.rate_long_run_hz: null: without stamps there is none");
   }
@@ -123,6 +147,12 @@ std::vector<std::string> reasons(const RecordingAudit& audit) {
     if (channel.moments.count == 0) {
       all.push_back(channel.name + ": mean, std, min, max: null: no plausible value");
     }
+    if (!channel.limit_low || !channel.limit_high)
+      all.push_back(channel.name +
+                    ": limit_low, limit_high: null: no limit of the range is seen on " +
+                    (channel.limit_low    ? "the upper side"
+                     : channel.limit_high ? "the lower side"
+                                          : "either side"));
     if (!channel.lsb) all.push_back(channel.name + ": lsb: null: no step that the values share");
   }
   return all;

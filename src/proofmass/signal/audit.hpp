@@ -17,6 +17,16 @@ inline constexpr double absurd_magnitude = 1e15;
 /// A list of places ends here; its count does not.
 inline constexpr std::size_t most_listed = 1'000'000;
 
+/// How the range of a channel cuts it off.
+enum class Clipping {
+  none,
+  rail,          ///< at the exact lowest or highest value
+  before_noise,  ///< at a level that noise was added to behind it
+  soft,          ///< bent towards a level
+  undetermined,  ///< crests flatter than an oscillation's and all alike: soft, or the motion's
+                 ///< shape
+};
+
 /// What one channel's figures look like. Moments, LSB and clipping are over the plausible values:
 /// the finite ones that are below absurd_magnitude and not denormal.
 struct ChannelAudit {
@@ -28,7 +38,11 @@ struct ChannelAudit {
   std::size_t infinite = 0;
   std::size_t absurd = 0;    ///< |x| > absurd_magnitude
   std::size_t denormal = 0;  ///< 0 < |x| < 1.2e-38, a float's smallest normal: bytes misread
-  std::size_t clipped = 0;   ///< samples in runs of three or more at the lowest or highest value
+  Clipping clipping = Clipping::none;
+  /// Samples at the limits: in runs of three or more at the lowest or highest value; within the
+  /// noise of the level; on crests that are bent.
+  std::size_t clipped = 0;
+  std::optional<double> limit_low, limit_high;  ///< or where the crests begin to be bent
   std::size_t longest_stuck = 0;  ///< samples of the longest run of one and the same value
   double longest_stuck_start_s = 0.0;
 };
@@ -45,6 +59,9 @@ struct TimingAudit {
   TimeSource source = TimeSource::none;
   std::string channel;   ///< column behind the time base; empty if none
   double rate_hz = 0.0;  ///< 0 if unknown
+  /// Standard deviation of rate_hz as a measure of the samples a second of the stamps' own clock,
+  /// by RateLine; none without stamps, or where they are even to the last digit.
+  std::optional<double> rate_std_hz;
   /// Samples, missing ones counted, over the duration; rate_hz itself where that is off by more
   /// than 2 % or time runs backwards. None without stamps.
   std::optional<double> long_run_hz;
@@ -82,10 +99,10 @@ struct RecordingAudit {
 /// one another. Values count as clipped where the exact extreme is read three times running or
 /// more, and more often than the fiftieth of the range next to it; only channels that a converter's
 /// range can clip. Where the LSB is known, the signal has to run into the rail, too: a crest in
-/// coarse steps, or a position at rest, reads its extreme for long as well. A rail that noise was
-/// added to behind it, and one that the signal bends to, are not found. Of LSB and clipping see
-/// running_audit.hpp for recordings of more than a quarter of a million samples. Cost: one pass,
-/// and a sort of at most a quarter of a million values of each channel.
+/// coarse steps, or a position at rest, reads its extreme for long as well. Where no
+/// rail is found, range_limit.hpp says how a limit with noise behind it and a soft one are told. Of
+/// LSB and clipping see running_audit.hpp for recordings of more than 131 072 samples. Cost: one
+/// pass, and a sort of at most a quarter of a million values of each channel.
 [[nodiscard]] RecordingAudit audit(const Recording& recording);
 
 }  // namespace proofmass::signal

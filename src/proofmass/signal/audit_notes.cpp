@@ -27,6 +27,40 @@ std::string counted(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
+/// "-2 or 2 g"
+std::string limits_of(const ChannelAudit& channel, int digits) {
+  std::string out;
+  if (channel.limit_low) out = compact(*channel.limit_low, digits);
+  if (channel.limit_high) out += (out.empty() ? "" : " or ") + compact(*channel.limit_high, digits);
+  return channel.unit.symbol.empty() ? out : out + " " + channel.unit.symbol;
+}
+
+Note note_on_clipping(const ChannelAudit& channel) {
+  const double share =
+      100.0 * static_cast<double>(channel.clipped) / static_cast<double>(channel.moments.count);
+  const std::string samples =
+      fmt::format("{} ({} %)", counted(channel.clipped, "sample"), compact(share, 2));
+  switch (channel.clipping) {
+    case Clipping::before_noise:
+      return {Severity::bad,
+              fmt::format("{}: {} at a limit of {} with noise added behind it: clipped before the "
+                          "converter or a filter",
+                          channel.name, samples, limits_of(channel, 4))};
+    case Clipping::soft:
+      return {Severity::bad, fmt::format("{}: crests beyond {} are flattened, {}: soft clipping",
+                                         channel.name, limits_of(channel, 3), samples)};
+    case Clipping::undetermined:
+      return {Severity::warning,
+              fmt::format("{}: crests beyond {} are flatter than those of an oscillation, and all "
+                          "alike: soft clipping or the shape of the motion, which one recording of "
+                          "one strength cannot tell",
+                          channel.name, limits_of(channel, 3))};
+    default:
+      return {Severity::bad, fmt::format("{}: {} at the rails ({}): it may be clipped",
+                                         channel.name, samples, limits_of(channel, 6))};
+  }
+}
+
 }  // namespace
 
 void tell_values(const std::string& name,
@@ -49,12 +83,7 @@ void tell_channel(const ChannelAudit& channel, double rate_hz, std::vector<Note>
   if (channel.absurd + channel.denormal > 0)
     notes.push_back({Severity::info, fmt::format("{}: mean, std, min and max leave {} out",
                                                  channel.name, counted(set_aside, "such value"))});
-  if (channel.clipped > 0)
-    notes.push_back(
-        {Severity::bad,
-         fmt::format("{}: {} at the rails ({} or {} {}): it may be clipped", channel.name,
-                     counted(channel.clipped, "sample"), compact(channel.moments.min, 6),
-                     compact(channel.moments.max, 6), channel.unit.symbol)});
+  if (channel.clipping != Clipping::none) notes.push_back(note_on_clipping(channel));
   const double taken_hz = rate_hz > 0.0 ? rate_hz : 100.0;
   const bool moves = channel.moments.max > channel.moments.min;
   const bool measures = channel.unit.quantity == Quantity::acceleration ||

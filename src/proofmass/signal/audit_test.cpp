@@ -7,6 +7,7 @@
 #include <random>
 
 #include "proofmass/signal/channel_audit.hpp"
+#include "proofmass/signal/value_excerpts.hpp"
 
 namespace proofmass::signal::audit_test {
 namespace {
@@ -167,6 +168,101 @@ TEST(Clipping, IsNotSeenInAValueThatIsHeldForOnce) {
   EXPECT_EQ(audit(recording_of(values)).channels[0].clipped, 0u);
 }
 
+/// A motion of three strengths that follow one another again and again.
+std::vector<double> uneven_motion(double strength) {
+  std::vector<double> out;
+  for (int k = 0; k < 20'000; ++k) {
+    const double t = 0.03 * k;
+    out.push_back(strength * (1.0 + 0.6 * std::sin(0.07 * t)) *
+                  (std::sin(t) + 0.5 * std::sin(2.3 * t + 1.0)));
+  }
+  return out;
+}
+
+TEST(Clipping, IsSeenBelowNoiseThatWasAddedBehindIt) {
+  const std::vector<double> errors = noise(20'000, 0.005);
+  std::vector<double> values = uneven_motion(3.0);
+  std::size_t at_limit = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::abs(values[k]) >= 2.0) ++at_limit;
+    values[k] = std::clamp(values[k], -2.0, 2.0) + errors[k];
+  }
+  const RecordingAudit found = audit(recording_of(values));
+  EXPECT_EQ(found.channels[0].clipping, Clipping::before_noise);
+  EXPECT_NEAR(found.channels[0].limit_high.value(), 2.0, 0.001);
+  EXPECT_NEAR(found.channels[0].limit_low.value(), -2.0, 0.001);
+  EXPECT_NEAR(static_cast<double>(found.channels[0].clipped), static_cast<double>(at_limit),
+              0.02 * static_cast<double>(at_limit));
+  EXPECT_TRUE(found.is_bad());
+  EXPECT_NE(notes_of(found).find("with noise added behind it"), std::string::npos);
+}
+
+TEST(Clipping, IsSeenWhereTheRangeBendsTheSignal) {
+  const std::vector<double> errors = noise(20'000, 0.002);
+  std::vector<double> values = uneven_motion(3.0);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    values[k] = 2.0 * std::tanh(values[k] / 2.0) + errors[k];
+  const RecordingAudit found = audit(recording_of(values));
+  EXPECT_EQ(found.channels[0].clipping, Clipping::soft);
+  EXPECT_GT(found.channels[0].limit_high.value(), 0.8);
+  EXPECT_LT(found.channels[0].limit_high.value(), 2.0);
+  EXPECT_NE(notes_of(found).find("soft clipping"), std::string::npos);
+  std::vector<double> free = uneven_motion(3.0);
+  for (std::size_t k = 0; k < free.size(); ++k) free[k] += errors[k];
+  EXPECT_EQ(audit(recording_of(free)).channels[0].clipping, Clipping::none);
+}
+
+TEST(Clipping, IsNotToldFromFlatCrestsThatAreAllAlike) {
+  const std::vector<double> errors = noise(20'000, 0.002);
+  std::vector<double> values;
+  for (std::size_t k = 0; k < errors.size(); ++k)
+    values.push_back(std::tanh(2.0 * std::sin(0.03 * static_cast<double>(k))) + errors[k]);
+  const RecordingAudit found = audit(recording_of(values));
+  EXPECT_EQ(found.channels[0].clipping, Clipping::undetermined);
+  EXPECT_EQ(found.channels[0].clipped, 0u);
+  EXPECT_FALSE(found.is_bad());
+}
+
+TEST(Clipping, IsNotSeenInStrokesAtALimitedAcceleration) {
+  std::vector<double> values;
+  for (const double top : {1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0})
+    for (int k = 0; k < 700; ++k) {
+      const auto pulse = [](int t) { return std::clamp(std::min(t, 120 - t) / 10.0, 0.0, 1.0); };
+      values.push_back(top * (pulse(k) - pulse(k - 200)));
+    }
+  const std::vector<double> errors = noise(values.size(), 0.001);
+  std::vector<double> coarse = values;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    values[k] += errors[k];
+    coarse[k] = std::round(100.0 * values[k]) / 100.0;
+  }
+  EXPECT_EQ(audit(recording_of(values)).channels[0].clipping, Clipping::none);
+  EXPECT_EQ(audit(recording_of(coarse)).channels[0].clipping, Clipping::none);
+}
+
+TEST(Excerpts, AreAllOfAShortSeriesAndStretchesOfALongOne) {
+  ValueExcerpts excerpts(16 * ValueExcerpts::piece);
+  std::vector<double> piece(ValueExcerpts::piece);
+  for (int n = 0; n < 16; ++n) {
+    std::ranges::fill(piece, n);
+    excerpts.add(piece);
+  }
+  EXPECT_EQ(excerpts.values().size(), 16 * ValueExcerpts::piece);
+  EXPECT_EQ(excerpts.share(), 1.0);
+  for (int n = 16; n < 40; ++n) {
+    std::ranges::fill(piece, n);
+    excerpts.add(piece);
+  }
+  const std::vector<double> kept = excerpts.values();
+  EXPECT_EQ(excerpts.share(), 4.0);
+  for (std::size_t k = 0; k < 10; ++k) {
+    const std::size_t from = k * (ValueExcerpts::piece + 1);
+    EXPECT_EQ(kept.at(from), 4.0 * static_cast<double>(k));
+    EXPECT_EQ(kept.at(from + ValueExcerpts::piece - 1), 4.0 * static_cast<double>(k));
+    EXPECT_TRUE(k == 9 || std::isnan(kept.at(from + ValueExcerpts::piece)));
+  }
+}
+
 TEST(Audit, NoticesAChannelThatIsStuck) {
   std::vector<double> values = noise(2000, 1.0);
   for (std::size_t k = 500; k < 900; ++k) values[k] = 0.25;
@@ -217,6 +313,21 @@ TEST(Timing, JitterIsTheSpreadOfTheStepsWithoutTheGaps) {
   const RecordingAudit found = audit(stamped(stamps_s, 100.0));
   EXPECT_NEAR(found.timing.jitter_s.value(), 1e-4, 2e-6);
   EXPECT_EQ(found.timing.gaps.size(), 4u);
+}
+
+TEST(Timing, TheRateIsAsUncertainAsTheLineThroughTheStamps) {
+  const std::vector<double> errors_s = noise(4000, 1e-3);
+  std::vector<double> stamps_s;
+  for (std::size_t k = 0; k < errors_s.size(); ++k)
+    stamps_s.push_back(0.01 * static_cast<double>(k) + errors_s[k]);
+  // Of a straight line: the noise of a stamp times the root of 12 / n^3, a second as a share.
+  const double expected_hz = 1e-3 / 0.01 * 100.0 * std::sqrt(12.0 / std::pow(4000.0, 3.0));
+  // The true rate is off from the line by a few of these, which counts as well.
+  const double std_hz = audit(stamped(stamps_s, 100.0)).timing.rate_std_hz.value();
+  EXPECT_GT(std_hz, 0.5 * expected_hz);
+  EXPECT_LT(std_hz, 3.0 * expected_hz);
+  EXPECT_NEAR(audit(stamped(stamps_s, 100.1)).timing.rate_std_hz.value(), 0.1, 0.001)
+      << "a rate that is not the line's is off by the difference";
 }
 
 TEST(Timing, OfAUniformBaseHasNoJitter) {

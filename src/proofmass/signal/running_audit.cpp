@@ -9,13 +9,14 @@
 #include "proofmass/signal/counter.hpp"
 #include "proofmass/signal/running_channel.hpp"
 #include "proofmass/signal/timing_audit.hpp"
+#include "proofmass/signal/value_excerpts.hpp"
 
 namespace proofmass::signal {
 namespace {
 
 // Everything is done in chunks that begin at multiples of this, lest it matter how the recording is
 // cut. Short enough that a chunk stays in the first cache while it is looked at.
-constexpr std::size_t chunk = 1024;
+constexpr std::size_t chunk = ValueExcerpts::piece;
 
 std::size_t sample_capacity(std::size_t channels) {
   constexpr std::size_t channels_in_full = 32, least = std::size_t{1} << 13;

@@ -13,9 +13,10 @@ namespace proofmass::signal {
 ///
 /// All that RecordingAudit counts is counted exactly. The LSB is told by a ThinnedSample of 2^18
 /// plausible values of a channel (fewer beyond 32 channels): up to there by all of them. So is how
-/// much lies beside a rail, where that is more than the 2^13 values of a ValueTail.
+/// much lies beside a rail, where that is more than the 2^13 values of a ValueTail. Limits with
+/// noise behind them and soft ones are told by ValueExcerpts of 2^17 values.
 ///
-/// Memory: 2.3 MiB a channel at most, 74 MiB in all up to 1024 channels; the lists of gaps and of
+/// Memory: 3.3 MiB a channel at most, 106 MiB in all up to 1024 channels; the lists of gaps and of
 /// rows of zeros end at most_listed. Cost: about 1.5 ns a value.
 class RunningAudit {
  public:

@@ -111,7 +111,10 @@ void expect_same(const ChannelAudit& a, const ChannelAudit& b) {
   EXPECT_EQ(a.infinite, b.infinite);
   EXPECT_EQ(a.absurd, b.absurd);
   EXPECT_EQ(a.denormal, b.denormal);
+  EXPECT_EQ(a.clipping, b.clipping);
   EXPECT_EQ(a.clipped, b.clipped);
+  EXPECT_EQ(a.limit_low, b.limit_low);
+  EXPECT_EQ(a.limit_high, b.limit_high);
   EXPECT_EQ(a.longest_stuck, b.longest_stuck);
   EXPECT_EQ(a.longest_stuck_start_s, b.longest_stuck_start_s);
 }

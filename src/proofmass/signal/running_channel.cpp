@@ -4,7 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/signal/channel_audit.hpp"
+#include "proofmass/signal/range_limit.hpp"
 
 namespace proofmass::signal {
 namespace {
@@ -25,21 +27,95 @@ std::size_t count_clipped(const RailRuns& at,
   return is_rail && at.rail != 0.0 && static_cast<double>(at.samples) > beside ? at.samples : 0;
 }
 
+/// Stretches of eight samples or more that stay within one step of a converter.
+struct Stays {
+  std::vector<double> at_rails;  ///< their lengths
+  std::vector<double> elsewhere;
+};
+
+Stays stays_of(View<double> series, double low, double high, double lsb) {
+  constexpr double shortest = 8.0;
+  Stays out;
+  for (std::size_t from = 0, end = 0; from < series.size(); from = end) {
+    double least = series[from], most = series[from];
+    for (end = from + 1; end < series.size(); ++end) {
+      const double next_least = std::min(least, series[end]),
+                   next_most = std::max(most, series[end]);
+      if (!(next_most - next_least <= 1.01 * lsb) || std::isnan(series[end])) break;
+      least = next_least;
+      most = next_most;
+    }
+    const auto length = static_cast<double>(end - from);
+    if (length < shortest) continue;
+    const bool is_at_rail = least < low + 0.5 * lsb || most > high - 0.5 * lsb;
+    (is_at_rail ? out.at_rails : out.elsewhere).push_back(length);
+  }
+  return out;
+}
+
+/// Whether the channel stays at other values, too, for as long as at its extremes, and a third as
+/// often: then it is the motion that holds them.
+bool holds_other_values(View<double> series, double low, double high, double lsb) {
+  const Stays stays = stays_of(series, low, high, lsb);
+  const double usual = median(stays.at_rails).value_or(0.0);
+  const auto as_long = std::ranges::count_if(
+      stays.elsewhere, [usual](double length) { return length >= 0.5 * usual; });
+  return static_cast<std::size_t>(as_long) * 3 > stays.at_rails.size();
+}
+
+Clipping clipping_of(RangeLimit::Kind kind) {
+  switch (kind) {
+    case RangeLimit::Kind::hard:
+      return Clipping::before_noise;
+    case RangeLimit::Kind::soft:
+      return Clipping::soft;
+    case RangeLimit::Kind::flat:
+      break;
+  }
+  return Clipping::undetermined;
+}
+
+/// Limits that are not read as one value; where the two sides differ, the plainer one is told.
+void judge_crests(ChannelAudit& audit, const ValueExcerpts& excerpts) {
+  std::vector<double> series = excerpts.values();
+  const auto high = find_upper_limit(series);
+  for (double& value : series) value = -value;
+  const auto low = find_upper_limit(series);
+  if (!high && !low) return;
+  const auto kind = std::min(high ? high->kind : RangeLimit::Kind::flat,
+                             low ? low->kind : RangeLimit::Kind::flat);
+  audit.clipping = clipping_of(kind);
+  std::size_t samples = 0;
+  if (high && high->kind == kind) {
+    audit.limit_high = high->level;
+    samples += high->samples;
+  }
+  if (low && low->kind == kind) {
+    audit.limit_low = -low->level;
+    samples += low->samples;
+  }
+  if (audit.clipping == Clipping::undetermined) return;
+  audit.clipped =
+      static_cast<std::size_t>(std::round(static_cast<double>(samples) * excerpts.share()));
+}
+
 }  // namespace
 
 RunningChannel::RunningChannel(std::size_t sample_capacity)
     : sample_(sample_capacity),
       lowest_(ValueTail::Side::lowest, sample_capacity / 32),
-      highest_(ValueTail::Side::highest, sample_capacity / 32) {}
+      highest_(ValueTail::Side::highest, sample_capacity / 32),
+      excerpts_(sample_capacity / 2) {}
 
 void RunningChannel::add(View<double> values, const SampleTimes& times) {
   last_ = chunk_figures(values);
   if (!last_.plausible) return add_odd(values, times);
   add_plausible(values);
+  excerpts_.add(values);
   runs_.add(values, times.first, times, last_.min, last_.max);
 }
 
-// All but the runs.
+// All but the runs and the excerpts.
 void RunningChannel::add_plausible(View<double> values) {
   add_chunk(moments_, last_, values);
   sample_.add(values);
@@ -58,6 +134,9 @@ void RunningChannel::add_odd(View<double> values, const SampleTimes& times) {
   plausible_.resize(count);
   last_ = plausible_.empty() ? ChunkFigures{.min = 1.0} : chunk_figures(plausible_);
   if (!plausible_.empty()) add_plausible(plausible_);
+  plausible_.resize(values.size());
+  std::ranges::transform(values, plausible_.begin(), plausible_or_nan);
+  excerpts_.add(plausible_);
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (!is_plausible(values[k])) {
       take_odd(values[k], times.at(times.first + k));
@@ -95,21 +174,33 @@ ChannelAudit RunningChannel::finish(const Channel& channel) {
   out.longest_stuck_start_s = runs_.longest_start().s;
   const View<double> sample = sample_.values();
   out.lsb = find_lsb_of_plausible({sample.begin(), sample.end()});
-  out.clipped = clipped(out, channel.unit.quantity);
+  judge_range(out);
   return out;
 }
 
-std::size_t RunningChannel::clipped(const ChannelAudit& audit, Quantity quantity) const {
+void RunningChannel::judge_range(ChannelAudit& audit) const {
   const double range = moments_.max - moments_.min;
-  if (!has_range(quantity) || !(range > 0.0)) return 0;
+  if (!has_range(audit.unit.quantity) || !(range > 0.0)) return;
   // Of a handful of levels the outermost are no rails, only the ends of the noise.
   constexpr double fewest_levels = 32.0;
-  if (audit.lsb && range < fewest_levels * *audit.lsb) return 0;
-  const double nearby = range / 50.0;
-  return count_clipped(runs_.high(), runs_.longest_but_high(), highest_.beside(nearby, sample_),
-                       audit.lsb) +
-         count_clipped(runs_.low(), runs_.longest_but_low(), lowest_.beside(nearby, sample_),
-                       audit.lsb);
+  if (audit.lsb && range < fewest_levels * *audit.lsb) return;
+  judge_rails(audit);
+  if (audit.clipping == Clipping::none) judge_crests(audit, excerpts_);
+}
+
+void RunningChannel::judge_rails(ChannelAudit& audit) const {
+  const double nearby = (moments_.max - moments_.min) / 50.0;
+  const std::size_t above = count_clipped(runs_.high(), runs_.longest_but_high(),
+                                          highest_.beside(nearby, sample_), audit.lsb);
+  const std::size_t below = count_clipped(runs_.low(), runs_.longest_but_low(),
+                                          lowest_.beside(nearby, sample_), audit.lsb);
+  if (above + below == 0) return;
+  if (audit.lsb && holds_other_values(excerpts_.values(), moments_.min, moments_.max, *audit.lsb))
+    return;
+  audit.clipping = Clipping::rail;
+  audit.clipped = above + below;
+  if (above > 0) audit.limit_high = runs_.high().rail;
+  if (below > 0) audit.limit_low = runs_.low().rail;
 }
 
 }  // namespace proofmass::signal

@@ -9,6 +9,7 @@
 #include "proofmass/signal/chunk_figures.hpp"
 #include "proofmass/signal/sample_times.hpp"
 #include "proofmass/signal/thinned_sample.hpp"
+#include "proofmass/signal/value_excerpts.hpp"
 #include "proofmass/signal/value_runs.hpp"
 #include "proofmass/signal/value_tail.hpp"
 
@@ -48,13 +49,15 @@ class RunningChannel {
   void add_plausible(View<double> values);
   void add_odd(View<double> values, const SampleTimes& times);
   void take_odd(double value, Place place);
-  [[nodiscard]] std::size_t clipped(const ChannelAudit& audit, Quantity quantity) const;
+  void judge_range(ChannelAudit& audit) const;
+  void judge_rails(ChannelAudit& audit) const;
 
   Moments moments_;
   ChunkFigures last_;
   ValueRuns runs_;
   ThinnedSample sample_;
   ValueTail lowest_, highest_;
+  ValueExcerpts excerpts_;
   OddValues nan_, infinite_, absurd_, denormal_;
   std::vector<double> plausible_;  ///< of a chunk with odd values, those that are not
 };

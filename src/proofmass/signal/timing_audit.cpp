@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/signal/chunk_figures.hpp"
 
 namespace proofmass::signal {
@@ -12,7 +13,9 @@ void RunningTiming::add(View<double> stamps_s) {
   if (rate_hz_ > 0.0) {
     if (stamps_ > 0) add_step(last_s_, stamps_s[0] - last_s_);
     const StepFigures steps = step_figures(stamps_s, 1.0 / rate_hz_);
+    const double noticed = square(1e-3 / rate_hz_) * static_cast<double>(stamps_s.size());
     if (steps.regular) {
+      in_whole_steps_ = in_whole_steps_ && steps.squares <= noticed;
       squares_ += steps.squares;
       regular_ += stamps_s.size() - 1;
     } else {
@@ -23,7 +26,7 @@ void RunningTiming::add(View<double> stamps_s) {
   stamps_ += stamps_s.size();
   last_s_ = stamps_s.back();
   if (rate_hz_ > 0.0) {
-    if (band_s_ > 0.0) recent_.insert(recent_.end(), stamps_s.begin(), stamps_s.end());
+    recent_.insert(recent_.end(), stamps_s.begin(), stamps_s.end());
     holes_.add(stamps_s, fresh_);
     take_holes();
   }
@@ -35,9 +38,41 @@ void RunningTiming::take_holes() {
   if (band_s_ > 0.0)
     for (const Hole& hole : fresh_)
       add_gap({recent_[hole.before - 1 - first], static_cast<double>(hole.missing + 1) / rate_hz_});
+  take_numbers();
   fresh_.clear();
   const std::size_t kept = std::min(recent_.size(), HoleFinder::most_undecided + 1);
   recent_.erase(recent_.begin(), recent_.end() - static_cast<std::ptrdiff_t>(kept));
+}
+
+// The samples of which it is known by now what is missing before them.
+void RunningTiming::take_numbers() {
+  const std::size_t first = stamps_ - recent_.size();
+  auto hole = fresh_.begin();
+  for (; numbered_ < holes_.decided(); ++numbered_) {
+    if (hole != fresh_.end() && hole->before == numbered_) {
+      next_number_ += static_cast<double>(hole++->missing);
+      unbroken_ = 0;
+    }
+    line_.add(next_number_, recent_[numbered_ - first]);
+    next_number_ += 1.0;
+    longest_unbroken_ = std::max(longest_unbroken_, ++unbroken_);
+  }
+}
+
+// That of a line through the stamps, and what the usual step is off from it. Where all steps are
+// whole numbers of nominal ones and some rows are missing by them, the stamps may as well be
+// rounded to a step: then up to one row in the longest stretch without a hole is none that is
+// missing, and the rate that much lower.
+std::optional<double> RunningTiming::rate_std_hz() const {
+  const auto line = line_.rate();
+  if (!line) return std::nullopt;
+  double variance = square(line->std_hz) + square(line->hz - rate_hz_);
+  if (band_s_ == 0.0 && in_whole_steps_ && holes_.hole_count() > 0)
+    variance += square(rate_hz_ / static_cast<double>(longest_unbroken_)) / 3.0;
+  const double std_hz = std::sqrt(variance);
+  // Below this it is the rounding of doubles.
+  if (std_hz < 1e-12 * rate_hz_) return std::nullopt;
+  return std_hz;
 }
 
 void RunningTiming::add_gap(const Gap& gap) {
@@ -49,6 +84,7 @@ void RunningTiming::add_gap(const Gap& gap) {
 void RunningTiming::add_step(double before_s, double step_s) {
   const double nominal_s = 1.0 / rate_hz_;
   const double deviation_s = step_s - nominal_s;
+  if (std::abs(std::remainder(step_s, nominal_s)) > 1e-3 * nominal_s) in_whole_steps_ = false;
   if (step_s < 0.0) ++found_.backwards;
   if (step_s == 0.0) ++found_.repeated;
   if (step_s > 1.5 * nominal_s && band_s_ == 0.0) add_gap({before_s, step_s});
@@ -62,6 +98,7 @@ TimingAudit RunningTiming::finish(const TimeBase& time) {
     holes_.finish(fresh_);
     take_holes();
     found_.long_run_hz = holes_.grid().rate_hz;
+    found_.rate_std_hz = rate_std_hz();
   } else if (stamps_ == 0 && time.source == TimeSource::stamps && time.rate_hz > 0.0) {
     found_.long_run_hz = time.rate_hz;  // each stamp is k / rate
   }
