@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
@@ -92,6 +93,36 @@ double step_of_best_band(View<double> stamps, double tick, double about, double 
   return best;
 }
 
+/// A straight line through stamps against their sample numbers.
+struct StampLine {
+  double step = 0.0;
+  double scatter = 0.0;  ///< root mean square about it
+  double width = 0.0;    ///< from the lowest to the highest about it
+};
+
+StampLine line_through(View<double> stamps, View<double> numbers) {
+  const double middle = numbers.back() / 2.0, origin = stamps[stamps.size() / 2];
+  const auto count = static_cast<double>(stamps.size());
+  double mean = 0.0, mean_number = 0.0;
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    mean_number += (numbers[k] - middle) / count;
+    mean += (stamps[k] - origin) / count;
+  }
+  double weight = 0.0, sum = 0.0;
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    const double number = numbers[k] - middle - mean_number;
+    weight += number * number;
+    sum += number * (stamps[k] - origin - mean);
+  }
+  StampLine out{.step = sum / weight};
+  Moments off;
+  for (std::size_t k = 0; k < stamps.size(); ++k)
+    off.add(stamps[k] - origin - mean - (numbers[k] - middle - mean_number) * out.step);
+  out.scatter = off.std();
+  out.width = off.max - off.min;
+  return out;
+}
+
 }  // namespace
 
 std::optional<CoarseStamps> find_coarse_stamps(View<double> stamps,
@@ -131,25 +162,25 @@ double band_of_bursts(View<double> stamps, double step) {
   return ranges.size() < 2 ? 0.0 : margin * quantile(ranges, 0.9).value_or(0.0);
 }
 
+std::optional<BurstLine> line_without_holes(View<double> stamps, double step, double band) {
+  const View<double> some = beginning(stamps);
+  if (some.size() < 32 || !std::ranges::all_of(some, is_stamp)) return std::nullopt;
+  const std::vector<double> holed = signal::numbers_in_band(some, step, band);
+  if (holed.back() == static_cast<double>(some.size() - 1)) return std::nullopt;
+  std::vector<double> whole(some.size());
+  std::iota(whole.begin(), whole.end(), 0.0);
+  const StampLine without = line_through(some, whole);
+  constexpr double as_little = 1.3, margin = 1.05;
+  if (without.scatter > as_little * line_through(some, holed).scatter) return std::nullopt;
+  return BurstLine{without.step, margin * without.width};
+}
+
 double step_by_line(View<double> stamps, double step, double band) {
   const View<double> some = beginning(stamps);
   if (some.size() < 3 || !std::ranges::all_of(some, is_stamp)) return step;
   const std::vector<double> numbers =
       band > 0.0 ? signal::numbers_in_band(some, step, band) : numbers_by_step(some, step);
-  const double middle = numbers.back() / 2.0;
-  const double origin = some[some.size() / 2];
-  double weight = 0.0, mean = 0.0, mean_number = 0.0;
-  for (std::size_t k = 0; k < some.size(); ++k) {
-    mean_number += (numbers[k] - middle) / static_cast<double>(some.size());
-    mean += (some[k] - origin) / static_cast<double>(some.size());
-  }
-  double sum = 0.0;
-  for (std::size_t k = 0; k < some.size(); ++k) {
-    const double number = numbers[k] - middle - mean_number;
-    weight += number * number;
-    sum += number * (some[k] - origin - mean);
-  }
-  const double fitted = sum / weight;
+  const double fitted = line_through(some, numbers).step;
   return std::abs(fitted / step - 1.0) < 0.02 ? fitted : step;
 }
 

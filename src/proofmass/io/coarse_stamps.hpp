@@ -31,6 +31,18 @@ struct CoarseStamps {
 /// wide as what nine in ten stretches of rows stay within. 0 for fewer than 32 rows.
 [[nodiscard]] double band_of_bursts(View<double> stamps, double step);
 
+/// A line through bursts of rows, and the band about it that they fill.
+struct BurstLine {
+  double step = 0.0, band = 0.0;
+};
+
+/// The line on which no row is missing, where a band of this width has holes in it that the stamps
+/// do not need: about that line they scatter as little (within 30 %). A computer that was busy for
+/// longer than usual and then caught up looks like a hole and what makes up for it.
+[[nodiscard]] std::optional<BurstLine> line_without_holes(View<double> stamps,
+                                                          double step,
+                                                          double band);
+
 /// The step by a straight line through the stamps against their sample numbers, missing ones
 /// counted: by signal::StampBand, or by single steps where `band` is 0. `step` itself where that is
 /// off by more than 2 %.

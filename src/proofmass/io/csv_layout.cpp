@@ -455,6 +455,16 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
   }
 }
 
+bool leaves_quote_open(std::string_view line, char separator) {
+  for (std::size_t begin = 0; begin < line.size();) {
+    const std::size_t first = line.find_first_not_of(" \t", begin);
+    if (first == std::string_view::npos) return false;
+    if (line[first] == '"' && line.find('"', first + 1) == std::string_view::npos) return true;
+    begin = end_of_field(line, begin, separator) + 1;
+  }
+  return false;
+}
+
 bool is_remark(std::string_view line, char separator) {
   const auto first = line.find_first_not_of(" \t");
   if (first == std::string_view::npos) return false;

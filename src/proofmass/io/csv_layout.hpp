@@ -55,6 +55,9 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
 /// Whether a line is a remark: '#', '%', "//", or ';' where that is not the separator.
 [[nodiscard]] bool is_remark(std::string_view line, char separator);
 
+/// Whether a field begins with a quote that this line does not close: its text goes on below.
+[[nodiscard]] bool leaves_quote_open(std::string_view line, char separator);
+
 /// Finds separator, decimal mark, columns and the first row of numbers from the beginning of a
 /// text: the separator and mark under which most fields of equally wide rows are numbers.
 /// Errors: too_few_samples (no row of numbers, though a header), corrupt (no table; binary).

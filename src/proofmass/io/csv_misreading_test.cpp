@@ -218,5 +218,23 @@ TEST(CsvMisreading, OfSixteenBitTextIsNoneHoweverShort) {
   EXPECT_EQ(read->channels[0].values, (std::vector<double>{2}));
 }
 
+TEST(CsvMisreading, AQuotedTextOfSeveralLinesIsOneField) {
+  std::string text = "t,a,note\n";
+  for (int k = 0; k < 8; ++k)
+    text += std::to_string(k) + "," + std::to_string(10 + k) +
+            (k % 3 == 1 ? ",\"seen:\n5,6,7\nand 8\"\n" : ",still\n");
+  const auto read = read_text(text);
+  ASSERT_TRUE(read.has_value());
+  ASSERT_EQ(read->samples(), 8U);
+  for (std::size_t k = 0; k < 8; ++k)
+    EXPECT_EQ(read->channels[0].values[k], 10.0 + static_cast<double>(k));
+}
+
+TEST(CsvMisreading, AQuoteThatNothingClosesIsAMarkLikeAnyOther) {
+  const auto read = read_text("t,a,note\n0,1,\"5 in\n1,2,x\n2,3,x\n3,4,x\n");
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ(read->samples(), 4U);
+}
+
 }  // namespace
 }  // namespace proofmass::io::csv_misreading_test

@@ -154,6 +154,27 @@ const char* CsvRows::parse_plain(const char* p) {
   }
 }
 
+/// Where the row that begins here ends: with its line, or where a quoted text goes on over more
+/// lines with the one that closes it. A quote that none of the next lines closes is a mark like any
+/// other.
+const char* CsvRows::end_of_row(const char* begin, const char* end) {
+  const char* line_end = std::find(begin, end, layout_.line_end);
+  const std::string_view line(begin, static_cast<std::size_t>(line_end - begin));
+  if (!leaves_quote_open(line, layout_.separator)) return line_end;
+  constexpr std::size_t most_lines = 64;
+  const char* close = line_end;
+  for (std::size_t lines = 1; lines <= most_lines && close < end; ++lines) {
+    const char* next = std::find(close + 1, end, layout_.line_end);
+    const bool closes = std::find(close + 1, next, '"') != next;
+    close = next;
+    if (!closes || close == end) continue;
+    line_ += lines;
+    faults_.out_of_step = true;
+    return close;
+  }
+  return line_end;
+}
+
 template <bool BlankSeparated>
 void CsvRows::parse_lines(const char* begin, const char* end) {
   while (begin < end) {
@@ -161,7 +182,7 @@ void CsvRows::parse_lines(const char* begin, const char* end) {
     if (next != nullptr) {
       commit();
     } else {
-      const char* line_end = std::find(begin, end, layout_.line_end);
+      const char* line_end = end_of_row(begin, end);
       parse_any({begin, static_cast<std::size_t>(line_end - begin)}, false);
       next = line_end + 1;
     }

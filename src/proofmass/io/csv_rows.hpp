@@ -80,6 +80,7 @@ class CsvRows {
   const char* parse_plain(const char* p);
   template <bool BlankSeparated>
   void parse_lines(const char* begin, const char* end);
+  const char* end_of_row(const char* begin, const char* end);
   void parse_any(std::string_view line, bool is_cut);
   void parse_fields(std::string_view line, bool is_cut);
   const char* parse_words(const char* begin, std::size_t column);

@@ -20,7 +20,7 @@ Hdf5Source source_of(const LibraryFile& file) {
 ChildLimits limits_for(const LibraryFile& file, std::uint64_t bytes) {
   constexpr std::uint64_t bytes_a_second = 8'000'000;
   constexpr std::uint64_t longest_s = 360'000;
-  ChildLimits limits;
+  ChildLimits limits{.cpu_s = 5};
   limits.cpu_s += static_cast<unsigned>(std::min(bytes / bytes_a_second, longest_s));
   if (file.is_nameless()) limits.memory_bytes += file.size();
   return limits;

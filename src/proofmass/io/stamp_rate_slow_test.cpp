@@ -62,6 +62,7 @@ Drawn draw(const Kind& kind, unsigned seed) {
 
 struct Wrong {
   int rate = 0, gaps = 0;
+  int outside = 0;  ///< of the interval of 95 % about the rate
 };
 
 Wrong count_wrong(const Kind& kind, int recordings) {
@@ -81,9 +82,13 @@ Wrong count_wrong(const Kind& kind, int recordings) {
     recording.time = time;
     recording.channels.push_back(
         {"a", *parse_unit("m/s^2"), std::vector<double>(drawn.stamps_s.size(), 1.0)});
-    if (kind.lost == 0.0 && signal::audit(recording).timing.gap_count > 0) ++wrong.gaps;
+    const signal::TimingAudit timing = signal::audit(recording).timing;
+    if (kind.lost == 0.0 && timing.gap_count > 0) ++wrong.gaps;
+    const double std_hz = timing.rate_std_hz.value_or(0.0);
+    if (std::abs(time.rate_hz - drawn.rate_hz) > 1.96 * std_hz) ++wrong.outside;
   }
-  std::cout << "| " << kind.name << " | " << wrong.rate << " of " << recordings << " | ";
+  std::cout << "| " << kind.name << " | " << wrong.rate << " of " << recordings << " | "
+            << wrong.outside << " | ";
   if (kind.lost == 0.0)
     std::cout << wrong.gaps << " of " << recordings << " |\n";
   else
@@ -107,6 +112,8 @@ TEST_P(StampRate, AndGapsAreRight) {
   const Wrong wrong = count_wrong(GetParam(), 200);
   EXPECT_EQ(wrong.rate, 0);
   EXPECT_EQ(wrong.gaps, 0);
+  // 5 % of 200, and two standard deviations more.
+  EXPECT_LE(wrong.outside, 16);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -117,6 +124,16 @@ INSTANTIATE_TEST_SUITE_P(
         whole_ms("whole ms, 1020–2000 Hz", 1020.0, 2000.0, 1e-4),
         whole_ms("whole ms, 100–660 Hz", 100.0, 660.0, 1e-3),
         whole_ms("whole ms and 0.2 % lost, 667–950 Hz", 667.0, 950.0, 2e-3, 0.002),
+        whole_ms("whole ms and 2 % lost, 667–950 Hz", 667.0, 950.0, 0.1, 0.02),
+        whole_ms("whole ms and 2 % lost, 980–1020 Hz", 980.0, 1020.0, 0.1, 0.02),
+        Kind{.name = "whole ms and 8 % jitter, 980–1020 Hz, 1 % lost",
+             .lowest_hz = 980.0,
+             .highest_hz = 1020.0,
+             .tick_s = 1e-3,
+             .jitter = 0.08,
+             .lost = 0.01,
+             .tolerance = 0.1},
+        Kind{.name = "8 % jitter", .jitter = 0.08, .tolerance = 2e-3},
         Kind{.name = "8 % jitter, 10 % lost", .jitter = 0.08, .lost = 0.1, .tolerance = 2e-3},
         Kind{.name = "8 % jitter, 20 % lost", .jitter = 0.08, .lost = 0.2, .tolerance = 2e-3},
         Kind{.name = "2 % jitter, 10 % lost", .jitter = 0.02, .lost = 0.1, .tolerance = 2e-3},

@@ -154,7 +154,13 @@ StampSteps measure_steps(View<double> stamps) {
   out.in_bursts = out.coarse == 0.0 && come_in_bursts(out, all);
   if (out.in_bursts) {
     out.band = band_of_bursts(stamps, out.long_run);
-    if (out.band > 0.0) out.long_run = step_by_line(stamps, out.long_run, out.band);
+    if (out.band > 0.0) {
+      out.long_run = step_by_line(stamps, out.long_run, out.band);
+      if (const auto whole = line_without_holes(stamps, out.long_run, out.band)) {
+        out.long_run = whole->step;
+        out.band = whole->band;
+      }
+    }
   } else if (out.rounding == 0.0) {
     if (const double line = step_by_jittered_line(stamps, up, out.single); line > 0.0)
       out.single = line;

@@ -91,7 +91,7 @@ struct OpenZip {
 class EntrySource final : public ByteSource {
  public:
   EntrySource(std::shared_ptr<OpenZip> zip, zip_file_t* file, const zip_stat_t& stat)
-      : zip_(std::move(zip)), file_(file), claimed_(stat.size) {
+      : zip_(std::move(zip)), file_(file), claimed_(stat.size), packed_(stat.comp_size) {
     // Only bytes that lie in the archive as they are can be counted on.
     if (stat.comp_method == ZIP_CM_STORE) size_ = std::min(stat.size, stat.comp_size);
   }
@@ -99,6 +99,13 @@ class EntrySource final : public ByteSource {
 
   Result<std::size_t> read(std::span<char> into) override {
     if (ended_ || into.empty()) return std::size_t{0};
+    // Figures in text take a tenth when packed; a hundredth where most of them repeat.
+    constexpr std::uint64_t large = std::uint64_t{1} << 30, most_packed = 250;
+    if (position_ > large && position_ / most_packed > packed_)
+      return Error{Errc::unsupported,
+                   fmt::format("unpacks to more than {} times its size: made to fill a disk, or "
+                               "nearly empty; unpack it by hand",
+                               most_packed)};
     const zip_int64_t count = zip_fread(file_, into.data(), into.size());
     if (count > 0) {
       position_ += static_cast<std::uint64_t>(count);
@@ -134,6 +141,7 @@ class EntrySource final : public ByteSource {
   std::shared_ptr<OpenZip> zip_;
   zip_file_t* file_;
   std::uint64_t claimed_;
+  std::uint64_t packed_;
   std::optional<std::uint64_t> size_;
   std::uint64_t position_ = 0;
   bool ended_ = false;
