@@ -53,10 +53,13 @@ class Output(CommandTest):
         self.assertIn(hashlib.sha256((self.folder / "a.csv").read_bytes()).hexdigest(), page)
         self.assertIn("1970-01-02T00:00:00Z", page)
 
-    def test_what_comes_on_standard_input_has_a_reason_for_a_sum(self):
-        document = self.document("inspect", "-", stdin=(self.folder / "a.csv").read_bytes())
-        self.assertEqual(document["provenance"]["inputs"],
-                         [{"path": "-", "reason": "standard input is read once"}])
+    def test_what_comes_on_standard_input_is_summed_while_it_is_read(self):
+        content = (self.folder / "a.csv").read_bytes()
+        long = content + b"".join(b"%d,1,2,3\n" % k for k in range(100, 200_000))
+        for given in (content, long):
+            document = self.document("inspect", "-", stdin=given)
+            self.assertEqual(document["provenance"]["inputs"],
+                             [{"path": "-", "bytes": len(given), "sha256": hashlib.sha256(given).hexdigest()}])
 
     def test_figures_are_written_as_other_programs_read_them(self):
         self.succeed("simulate", "--rpm", "30", "--duration", "60", "--seed", "1", "-o", "rig.csv")
