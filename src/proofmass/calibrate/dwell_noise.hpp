@@ -15,7 +15,7 @@ struct DwellNoise {
   double flicker = 0.0;      ///< its part that does not hang on m
   double random_walk = 0.0;  ///< its part ∝ m
   double dof = 0.0;          ///< of the variance at the median dwell; 0: there is no noise to see
-  double rounding = 0.0;     ///< lsb²/12, where the noise is too small to average the steps out
+  double rounding = 0.0;     ///< what the noise does not average out of the steps: lsb²/12 of none
 
   /// Of the mean over `samples`, in the reading's unit squared.
   [[nodiscard]] double variance_of_mean(std::size_t samples) const;
@@ -31,7 +31,9 @@ struct DwellNoise {
 /// which each further term costs 3.84. Of a mean over the dwell the uncertainty is σ at the dwell:
 /// by what two rests of that length would differ, over √2. `rests` are the samples of one axis,
 /// rest by rest; NaN, infinities and spikes must have been taken out. `lsb` is the converter's
-/// step, 0 if it has none. Source: D. W. Allan, Proc. IEEE 54 (1966) 221; D. B. Percival, P.
+/// step, 0 if it has none. Noise of ρ steps, normal, leaves of rounding a variance of lsb² ½ Σ_k
+/// (exp(−2π²k²ρ²)/(πk))² in every mean. Source: B. Widrow, I. Kollár, Quantization Noise (2008),
+/// for rounding; D. W. Allan, Proc. IEEE 54 (1966) 221; D. B. Percival, P.
 /// Guttorp, Long-memory processes, the Allan variance and wavelets (1994), for Haar's; S. T.
 /// Buckland, K. P. Burnham, N. H. Augustin, Biometrics 53 (1997) 603, for the weights. Cost: O(N).
 [[nodiscard]] DwellNoise fit_dwell_noise(const std::vector<std::span<const double>>& rests,

@@ -21,6 +21,7 @@ using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
 constexpr double suspect_p = 0.01;   // after Bonferroni's correction
 constexpr double rounding_g = 1e-9;  // less than this contradicts nobody
+constexpr std::ptrdiff_t fewest_given = 5;
 
 struct GivenPose {
   NormalisedPose pose;
@@ -78,19 +79,35 @@ GivenTerm given_term(const State& state, const GivenPose& given) {
   return term;
 }
 
+// Σ (d, 1)(d, 1)ᵀ over the directions of those used.
+Eigen::Matrix4d spread_of(const std::vector<GivenPose>& poses) {
+  Eigen::Matrix4d N = Eigen::Matrix4d::Zero();
+  for (const GivenPose& given : poses) {
+    if (!given.used) continue;
+    const Eigen::Vector4d row = given.up.homogeneous();
+    N += row * row.transpose();
+  }
+  return N;
+}
+
+// Whether those used are enough and do not lie in a plane.
+bool carry_parameters(const std::vector<GivenPose>& poses) {
+  const auto used = std::ranges::count_if(poses, [](const GivenPose& pose) { return pose.used; });
+  return used >= fewest_given &&
+         symmetric_eigen(spread_of(poses)).values(0) >= 1e-4 * static_cast<double>(used);
+}
+
 // u = A d + b by least squares, then A⁻¹ = Rᵀ M.
 Result<State> linear_start(const std::vector<GivenPose>& poses) {
-  Eigen::Matrix4d N = Eigen::Matrix4d::Zero();
+  if (!carry_parameters(poses)) {
+    return Error{Errc::not_observable,
+                 "the directions given lie in a plane or nearly: add positions across it"};
+  }
+  const Eigen::Matrix4d N = spread_of(poses);
   Eigen::Matrix<double, 4, 3> right = Eigen::Matrix<double, 4, 3>::Zero();
   for (const GivenPose& given : poses) {
     const Eigen::Vector4d row = given.up.homogeneous();
-    N += row * row.transpose();
     right += row * given.pose.u.transpose();
-  }
-  const double n = static_cast<double>(poses.size());
-  if (symmetric_eigen(N).values(0) < 1e-4 * n) {
-    return Error{Errc::not_observable,
-                 "the directions given lie in a plane or nearly: add positions across it"};
   }
   const Eigen::Matrix<double, 4, 3> X = N.inverse() * right;
   const Eigen::Matrix3d A = X.topRows<3>().transpose();
@@ -226,9 +243,10 @@ std::optional<std::size_t> suspect_of(const std::vector<GivenPose>& poses, const
 }
 
 Result<std::vector<GivenPose>> given_poses(View<Pose> poses, const ReadingScale& scale) {
-  if (poses.size() < 5) {
-    return Error{Errc::too_few_samples,
-                 fmt::format("{} positions: given directions need at least 5", poses.size())};
+  if (std::ssize(poses) < fewest_given) {
+    return Error{
+        Errc::too_few_samples,
+        fmt::format("{} positions: given directions need at least {}", poses.size(), fewest_given)};
   }
   const std::vector<NormalisedPose> normalised = normalise(poses, scale);
   std::vector<GivenPose> out;
@@ -282,6 +300,18 @@ MultiPosition assembled(const std::vector<GivenPose>& poses,
   return out;
 }
 
+bool is_finite(const GivenFit& fit) {
+  return fit.cofactor.allFinite() && fit.state.p.allFinite() &&
+         fit.state.R_sensor_fixture.allFinite();
+}
+
+Error contradicted(const std::vector<GivenPose>& poses) {
+  return {Errc::not_observable,
+          fmt::format("the {} positions contradict each other, and those that agree do not carry "
+                      "the parameters: check the directions given, and add positions",
+                      poses.size())};
+}
+
 }  // namespace
 
 Result<MultiPosition> calibrate_given(View<Pose> poses,
@@ -294,9 +324,12 @@ Result<MultiPosition> calibrate_given(View<Pose> poses,
   const Result<State> start = linear_start(all);
   if (!start) return start.error();
   GivenFit fit = fit_given(all, *start, noise_dof);
+  if (!is_finite(fit)) return contradicted(*given);
   while (const std::optional<std::size_t> suspect = suspect_of(all, fit)) {
     all[*suspect].used = false;
+    if (!carry_parameters(all)) return contradicted(*given);
     fit = fit_given(all, fit.state, noise_dof);
+    if (!is_finite(fit)) return contradicted(*given);
   }
   if (options.keep_suspects) {
     std::vector<GivenPose> kept = *given;

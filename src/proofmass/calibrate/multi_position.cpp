@@ -149,17 +149,45 @@ Eigen::Matrix<double, 9, 3> sensitivity_to_angles(const PoseSelection& selection
   return out;
 }
 
+// What the converter's steps make of the parameters' covariance.
+Eigen::MatrixXd by_resolution(const NormCalibration& norm,
+                              std::vector<Pose> poses,
+                              const ReadingScale& scale) {
+  const PoseSelection& selection = norm.selection;
+  const auto n = static_cast<Eigen::Index>(poses.size()), count = selection.fit.cofactor.rows();
+  for (Pose& pose : poses) pose.mean_covariance = pose.rounding_variance.asDiagonal();
+  const std::vector<NormalisedPose> steps = normalise(poses, scale);
+  Eigen::MatrixXd J(n, count);
+  Eigen::VectorXd variance(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    J.row(k) = selection.fit.terms[place].gradient.head(count);
+    variance(k) = norm_term(selection.fit.p, steps[place]).variance;
+  }
+  const Eigen::MatrixXd gain = selection.fit.cofactor * selection.weights.times(J).transpose();
+  return std::min(selection.scatter.factor, 1.0) * gain * variance.asDiagonal() * gain.transpose();
+}
+
 std::vector<UncertaintyShare> shares_of(const NormCalibration& norm,
+                                        const Weighable& weighed,
                                         const ReadingScale& scale,
                                         const MultiPositionOptions& options) {
+  constexpr double told = 1e-4;  // of the variance: less is not worth a line
   const PoseSelection& selection = norm.selection;
   const ParameterMatrix slope = scale.slope().asDiagonal();
   ParameterMatrix noise = ParameterMatrix::Zero();
   const auto count = static_cast<Eigen::Index>(norm.free);
   noise.topLeftCorner(count, count) = selection.scatter.factor * selection.fit.cofactor;
+  ParameterMatrix steps = ParameterMatrix::Zero();
+  if (weighed.noise_dof > 0.0)
+    steps.topLeftCorner(count, count) = by_resolution(norm, weighed.poses, scale);
   std::vector<UncertaintyShare> shares;
+  const bool resolved = steps.trace() < told * noise.trace();
+  if (!resolved) noise -= steps;
   if (selection.scatter.dof > 0.0)
     shares.push_back({"noise of the means", true, slope * noise * slope, selection.scatter.dof});
+  if (!resolved)
+    shares.push_back({"resolution of the readings", false, slope * steps * slope, 0.0});
   if (selection.by_choice.size() > 0) {
     ParameterMatrix choice = ParameterMatrix::Zero();
     choice.topLeftCorner(count, count) = selection.by_choice;
@@ -228,17 +256,17 @@ void add_notes(const NormCalibration& norm,
 }
 
 MultiPosition assembled(const NormCalibration& norm,
+                        const Weighable& weighed,
                         const ReadingScale& scale,
-                        double noise_dof,
                         const MultiPositionOptions& options) {
   const PoseSelection& selection = norm.selection;
   MultiPosition out;
   out.model = norm.free == NormParameters::nine ? PoseModel::norm_9 : PoseModel::norm_6;
-  out.shares = shares_of(norm, scale, options);
+  out.shares = shares_of(norm, weighed, scale, options);
   set_estimate(scale.to_reading(selection.fit.p), norm.free == NormParameters::nine, out);
   out.dof = selection.scatter.dof;
   out.gravity_mps2 = options.gravity_mps2;
-  out.poses = residuals_of(selection, noise_dof > 0.0, options.gravity_mps2);
+  out.poses = residuals_of(selection, weighed.noise_dof > 0.0, options.gravity_mps2);
   set_residual_sums(out);
   out.lack_of_fit = selection.lack_of_fit;
   out.doubtful = selection.alike;
@@ -288,7 +316,7 @@ Result<MultiPosition> calibrate_positions(View<Pose> poses, const MultiPositionO
   const Result<NormCalibration> norm =
       choose(norm_data(weighed, *scale, options), weighed.noise_dof, options);
   if (!norm) return norm.error();
-  return assembled(*norm, *scale, weighed.noise_dof, options);
+  return assembled(*norm, weighed, *scale, options);
 }
 
 }  // namespace proofmass::calibrate

@@ -73,7 +73,7 @@ struct NextPose {
 /// Where the uncertainty comes from: a share of the covariance, in the order of
 /// MultiPosition::covariance.
 struct UncertaintyShare {
-  std::string source;  ///< "noise of the means", "gravity", "orthogonality of the axes"
+  std::string source;  ///< "noise of the means", "resolution of the readings", "gravity" …
   bool type_a = true;
   Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
   double dof = 0.0;  ///< 0: known for certain (infinitely many)

@@ -21,6 +21,11 @@ std::string unit_of(std::size_t k, std::string_view reading_unit) {
   return reading_unit == "m/s^2" ? "1" : fmt::format("{}/(m/s^2)", reading_unit);
 }
 
+// Every scale is measured against gravity: u(g) is a line of its budget even where it is 0.
+bool is_scale_by_gravity(const UncertaintyShare& share, std::size_t k) {
+  return share.source == "gravity" && k >= 3 && k < 6;
+}
+
 // A share that is a single input's: its own standard uncertainty and the sensitivity to it.
 BudgetLine line_of_share(const UncertaintyShare& share,
                          const MultiPosition& fit,
@@ -33,7 +38,7 @@ BudgetLine line_of_share(const UncertaintyShare& share,
                   .unit = unit,
                   .sensitivity = 1.0,
                   .dof = share.dof};
-  if (share.source == "gravity" && k >= 3 && k < 6) {
+  if (is_scale_by_gravity(share, k)) {
     line.sensitivity = -fit.estimate[k] / fit.gravity_mps2;
     line.std /= std::abs(line.sensitivity);
     line.unit = "m/s^2";
@@ -47,7 +52,8 @@ Result<UncertaintyBudget> budget_of_one(const MultiPosition& fit,
                                         const std::string& unit) {
   std::vector<BudgetLine> lines;
   for (const UncertaintyShare& share : fit.shares)
-    if (share.covariance(static_cast<Index>(k), static_cast<Index>(k)) > 0.0)
+    if (share.covariance(static_cast<Index>(k), static_cast<Index>(k)) > 0.0 ||
+        is_scale_by_gravity(share, k))
       lines.push_back(line_of_share(share, fit, k, unit));
   for (const TypeBEffect& effect : effects) {
     BudgetLine line = effect.line;

@@ -56,6 +56,33 @@ TEST(BudgetOf, StatesGravityByItsOwnUncertaintyAndSensitivity) {
   EXPECT_NEAR(scale_x.lines[1].sensitivity, -it.fit.estimate[3] / g, 1e-12);
 }
 
+TEST(BudgetOf, HasALineOfGravityEvenWhereItIsTakenForExact) {
+  const auto budgets = budget_of(calibrated(0.0).fit, {}, "V").value();
+  ASSERT_EQ(budgets[3].lines.size(), 2U);
+  EXPECT_EQ(budgets[3].lines[1].source, "gravity");
+  EXPECT_EQ(budgets[3].lines[1].std, 0.0);
+  EXPECT_EQ(budgets[0].lines.size(), 1U);
+}
+
+// Where all of a mean's variance is that of rounding, no noise is left, and the sum is the same.
+TEST(BudgetOf, TakesTheResolutionOutOfTheNoiseOfTheMeans) {
+  Calibrated it = calibrated();
+  const auto plain = budget_of(it.fit, {}, "V").value();
+  for (const double part : {0.4, 1.0}) {
+    for (Pose& pose : it.poses) pose.rounding_variance = part * pose.mean_covariance.diagonal();
+    const MultiPosition fit = calibrate_positions(it.poses, it.options).value();
+    const auto budgets = budget_of(fit, {}, "V").value();
+    EXPECT_EQ(fit.shares[1].source, "resolution of the readings");
+    EXPECT_FALSE(fit.shares[1].type_a);
+    for (std::size_t k = 0; k < 9; ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      EXPECT_NEAR(budgets[k].combined_std, plain[k].combined_std, 1e-9 * plain[k].combined_std);
+      const double noise = it.fit.shares[0].covariance(i, i);
+      EXPECT_NEAR(fit.shares[1].covariance(i, i) / noise, part, 0.2 * part);
+    }
+  }
+}
+
 TEST(AddTypeB, IsTheSameAsTheBudgetWithItsLines) {
   Calibrated it = calibrated();
   const auto lines =

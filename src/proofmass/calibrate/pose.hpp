@@ -15,6 +15,8 @@ struct Pose {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< reading of x, y, z: m/s^2, V or counts
   /// Of the mean, by noise alone, in the reading's unit squared; zero where nobody knows it.
   Eigen::Matrix3d mean_covariance = Eigen::Matrix3d::Zero();
+  /// The part of its diagonal that the converter's steps make, in every mean however long.
+  Eigen::Vector3d rounding_variance = Eigen::Vector3d::Zero();
   /// Unit vector along the force (upwards) in the frame of the fixture, where it is given.
   std::optional<Eigen::Vector3d> up;
 };

@@ -92,6 +92,7 @@ Result<PoseMeans> pose_means(const std::array<View<double>, 3>& axes,
       Pose& pose = out.poses[k];
       pose.mean(row) = one->mean[k];
       pose.mean_covariance(row, row) = one->variance[k];
+      pose.rounding_variance(row) = one->rounding;
       pose.samples = axis == 0 ? one->samples[k] : std::min(pose.samples, one->samples[k]);
       pose.label = rests[k].label;
       pose.up = rests[k].up;

@@ -142,14 +142,39 @@ TEST(DwellNoise, KnowsHowWellItIsKnown) {
   EXPECT_LT(claimed / spread, 3.5);
 }
 
-TEST(DwellNoise, CountsStepsThatTheNoiseDoesNotAverageOut) {
-  const auto rounded = [](double std) {
-    std::vector<double> samples = white(20 * dwell, std, 9, 0.3);
-    for (double& value : samples) value = std::round(value);
-    return samples;
-  };
-  EXPECT_EQ(noise_of(rounded(1.0), dwell, 1.0).rounding, 0.0);
-  EXPECT_DOUBLE_EQ(noise_of(rounded(0.2), dwell, 1.0).rounding, 1.0 / 12.0);
+// Rests anywhere between two steps: what their means err by, beside the noise that averages out.
+TEST(DwellNoise, CountsWhatTheNoiseDoesNotAverageOutOfSteps) {
+  constexpr std::size_t rests = 1000, each = 400;
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> between;
+  for (const double std : {0.0, 0.1, 0.2, 0.3, 1.0}) {
+    std::vector<double> samples;
+    double squares = 0.0;
+    for (std::size_t k = 0; k < rests; ++k) {
+      const double level = between(random);
+      double sum = 0.0, noise_sum = 0.0;
+      for (std::size_t i = 0; i < each; ++i) {
+        const double noise = std * normal(random);
+        samples.push_back(std::round(level + noise));
+        sum += samples.back() - level;
+        noise_sum += noise;
+      }
+      squares += sum * sum - noise_sum * noise_sum;
+    }
+    const double left = squares / (rests * each * each);
+    const double rounding = noise_of(samples, each, 1.0).rounding;
+    if (std == 1.0) {
+      EXPECT_LT(rounding, 1e-12);
+      continue;
+    }
+    EXPECT_NEAR(rounding / left, 1.0, 0.25) << std;
+  }
+}
+
+TEST(DwellNoise, CountsAWholeStepOfSamplesThatNeverChange) {
+  EXPECT_NEAR(noise_of(std::vector<double>(4 * dwell, 7.0), dwell, 1.0).rounding, 1.0 / 12.0,
+              1e-15);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ enum class Distribution { normal, uniform, triangular, arcsine, student_t };
 
 /// Standard deviation of what lies within ± half_width: over √3 uniform, √6 triangular, √2 arcsine.
 /// Of normal and student_t, which have no width, half_width is taken for the standard deviation.
-/// Source: GUM, 4.3.7 and 4.3.9.
+/// Source: GUM, 4.3.7 and 4.3.9; of the arcsine distribution JCGM 101, 6.4.6.
 [[nodiscard]] double std_of_half_width(double half_width, Distribution distribution);
 
 /// One input x of a result y.
