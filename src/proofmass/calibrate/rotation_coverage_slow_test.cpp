@@ -125,7 +125,8 @@ TEST(RotationCoverageOfRadius, AndBiasAtTwoSpeedsIsNinetyFivePerCent) {
   }
   std::printf("  radius %.3f\n", inside / static_cast<double>(runs));
   EXPECT_NEAR(inside / static_cast<double>(runs), 0.95, 0.02 + 0.018);
-  expect_coverage(tally, runs, 0.97);
+  // A ripple that may be the sensor's is in the bias of one axis with all of its size.
+  expect_coverage(tally, runs, 1.0);
 }
 
 }  // namespace
