@@ -11,7 +11,6 @@
 #include "gyroscope.hpp"
 #include "input.hpp"
 #include "output.hpp"
-#include "proofmass/estimate/fusion.hpp"
 #include "proofmass/io/instant_list.hpp"
 #include "proofmass/io/interval_list.hpp"
 #include "proofmass/report/document.hpp"

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -109,19 +108,14 @@ Result<State> linear_start(const std::vector<GivenPose>& poses) {
     const Eigen::Vector4d row = given.up.homogeneous();
     right += row * given.pose.u.transpose();
   }
-  const Eigen::Matrix<double, 4, 3> X = N.inverse() * right;
+  const Eigen::Matrix<double, 4, 3> X = positive_inverse(N) * right;
   const Eigen::Matrix3d A = X.topRows<3>().transpose();
   if (!(A.determinant() > 0.0)) {
     return Error{Errc::invalid_argument,
                  "the directions given are the mirror image of the readings, or an axis does not "
                  "follow them: is the sign of an axis wrong?"};
   }
-  const Eigen::HouseholderQR<Eigen::Matrix3d> qr(A.inverse());
-  Eigen::Matrix3d Q = qr.householderQ();
-  Eigen::Matrix3d M = qr.matrixQR().triangularView<Eigen::Upper>();
-  const Eigen::Vector3d sign = M.diagonal().cwiseSign();
-  Q = Q * sign.asDiagonal();
-  M = sign.asDiagonal() * M;
+  const auto [Q, M] = positive_qr(A.inverse());
   State state;
   state.p << X.row(3).transpose(), M.diagonal().cwiseInverse(), -M(0, 1) / M(1, 1),
       M(0, 2) / M(2, 2), -M(1, 2) / M(2, 2);

@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -105,6 +107,20 @@ PositiveInverse invert_positive(const Eigen::MatrixXd& A) {
 
 Eigen::MatrixXd positive_inverse(const Eigen::MatrixXd& A) {
   return invert_positive(A).inverse;
+}
+
+Eigen::MatrixXd solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  PM_EXPECTS(A.rows() == A.cols() && A.rows() == B.rows());
+  return Eigen::PartialPivLU<Eigen::MatrixXd>(A).solve(B);
+}
+
+PositiveQr positive_qr(const Eigen::Matrix3d& A) {
+  const Eigen::HouseholderQR<Eigen::Matrix3d> qr(A);
+  PositiveQr out{qr.householderQ(), qr.matrixQR().triangularView<Eigen::Upper>()};
+  const Eigen::Vector3d sign = out.U.diagonal().cwiseSign();
+  out.Q = out.Q * sign.asDiagonal();
+  out.U = sign.asDiagonal() * out.U;
+  return out;
 }
 
 }  // namespace proofmass

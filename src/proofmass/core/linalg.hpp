@@ -34,4 +34,14 @@ struct PositiveInverse {
 /// Its inverse alone.
 [[nodiscard]] Eigen::MatrixXd positive_inverse(const Eigen::MatrixXd& A);
 
+/// The X of A X = B, by LU with partial pivoting; A square and regular. Cost: O(n³).
+[[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+/// A = Q U with Q orthogonal and U upper triangular, the diagonal of U positive: unique for a
+/// regular A.
+struct PositiveQr {
+  Eigen::Matrix3d Q, U;
+};
+[[nodiscard]] PositiveQr positive_qr(const Eigen::Matrix3d& A);
+
 }  // namespace proofmass

@@ -1,8 +1,25 @@
 #include "proofmass/estimate/dense_kernels.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "proofmass/core/contract.hpp"
 #include "proofmass/core/vector_clones.hpp"
 
 namespace proofmass::estimate {
+namespace {
+
+/// y ← (I − K hᵀ) y, by its rows. `from` is y as it was.
+void keep_rest(const double* K, const double* h, const double* from, double* y, int n) {
+  for (int i = 0; i < n; ++i) {
+    double sum = 0.0;
+    for (int k = 0; k < n; ++k) sum += ((i == k ? 1.0 : 0.0) - K[i] * h[k]) * from[k];
+    y[i] = sum;
+  }
+}
+
+}  // namespace
 
 PM_VECTOR_CLONES void symmetric_times(const double* __restrict A,
                                       const double* __restrict x,
@@ -43,6 +60,27 @@ PM_VECTOR_CLONES void subtract_symmetric_pair(double* __restrict A,
     const double aj = a[j], bj = b[j];
     for (int i = 0; i < n; ++i) column[i] -= a[i] * bj + b[i] * aj;
   }
+}
+
+void joseph_update(double* P, const double* h, const double* K, double R, SquareExtent extent) {
+  const int n = extent.n, stride = extent.stride;
+  PM_EXPECTS(n <= most_states);
+  std::array<double, most_states> from, kept;
+  for (int j = 0; j < n; ++j) {  // (I − K hᵀ) P, column by column
+    std::copy_n(P + j * stride, n, from.data());
+    keep_rest(K, h, from.data(), P + j * stride, n);
+  }
+  for (int i = 0; i < n; ++i) {  // times (I − K hᵀ)ᵀ, row by row
+    for (int j = 0; j < n; ++j) from[static_cast<std::size_t>(j)] = P[j * stride + i];
+    keep_rest(K, h, from.data(), kept.data(), n);
+    for (int j = 0; j < n; ++j)
+      P[j * stride + i] = kept[static_cast<std::size_t>(j)] + R * K[i] * K[j];
+  }
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < j; ++i) {
+      double &above = P[j * stride + i], &below = P[i * stride + j];
+      above = below = 0.5 * (above + below);
+    }
 }
 
 }  // namespace proofmass::estimate

@@ -20,4 +20,10 @@ void subtract_square(double* A, const double* w, SquareExtent extent);
 /// A ← A − (a bᵀ + b aᵀ), all n² entries, so that A stays symmetric to the last bit.
 void subtract_symmetric_pair(double* A, const double* a, const double* b, SquareExtent extent);
 
+/// P ← (I − K hᵀ) P (I − K hᵀ)ᵀ + R K Kᵀ: Joseph's form of a scalar update with I − K hᵀ written
+/// out, for a prior so much wider than the reading that differences of P's entries have no correct
+/// digit. n ≤ most_states. Cost: 4 n³ multiplications.
+inline constexpr int most_states = 64;
+void joseph_update(double* P, const double* h, const double* K, double R, SquareExtent extent);
+
 }  // namespace proofmass::estimate

@@ -113,20 +113,11 @@ void predict(Gaussian<N>& x, const Transition<N, D>& step) {
   }
 }
 
-/// Joseph's form with I − K h written out, in O(N³): for a prior so much wider than the reading
-/// that differences of its entries hold nothing of the answer.
-template <int N>
-[[gnu::noinline]] void correct_diffuse(Mat<N, N>& P, const Mat<N>& h, const Mat<N>& K, double R) {
-  const Mat<N, N> I_Kh = Mat<N, N>::Identity() - K * h.transpose();
-  const Mat<N, N> reduced = I_Kh * P * I_Kh.transpose() + R * K * K.transpose();
-  P = 0.5 * (reduced + reduced.transpose());
-}
-
 /// x̂ given one more reading: Kalman's gain, and P ← P − (P hᵀ)(P hᵀ)ᵀ / S, of which an entry and
-/// its mirror round alike; Joseph's form instead where the start is diffuse. Cost: O(N²).
-/// `predicted` is h(x̂) at the state as it stands. States from `active` on are held: their variances
-/// and covariances are zero, and are not touched. Source: G. J. Bierman, Factorization Methods for
-/// Discrete Sequential Estimation (1977), section II.
+/// its mirror round alike; Joseph's form instead, in O(N³), where the start is diffuse. Cost:
+/// O(N²). `predicted` is h(x̂) at the state as it stands. States from `active` on are held: their
+/// variances and covariances are zero, and are not touched. Source: G. J. Bierman, Factorization
+/// Methods for Discrete Sequential Estimation (1977), section II.
 template <int N>
 [[nodiscard]] Update<N> correct(Gaussian<N>& x,
                                 const Reading<N>& reading,
@@ -151,7 +142,7 @@ template <int N>
   x.mean += update.gain * update.innovation;
   if (const double noise = reading.variance + (update.variance - update.expected);
       hPh > 1e8 * noise) {
-    correct_diffuse(x.cov, reading.h, update.gain, noise);
+    joseph_update(x.cov.data(), reading.h.data(), update.gain.data(), noise, {N, N});
   } else {
     const Mat<N> w = Ph * std::sqrt(weight);
     subtract_square(x.cov.data(), w.data(), {active, N});

@@ -1,9 +1,10 @@
 #include "proofmass/estimate/steady_state.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "proofmass/core/linalg.hpp"
 
 namespace proofmass::estimate::detail {
 namespace {
@@ -104,11 +105,15 @@ double slowest_steps(MatrixXd A) {
 
 /// Riccati's limit P⁻ of an observed pair, by doubling.
 MatrixXd riccati_limit(const Dense& m) {
-  const MatrixXd I = MatrixXd::Identity(m.F.rows(), m.F.rows());
-  MatrixXd A = m.F.transpose(), G = m.H.transpose() * m.R.inverse() * m.H, P = m.Q;
+  const Eigen::Index n = m.F.rows();
+  const MatrixXd I = MatrixXd::Identity(n, n);
+  MatrixXd A = m.F.transpose(), P = m.Q;
+  MatrixXd G = m.H.transpose() * m.R.diagonal().cwiseInverse().asDiagonal() * m.H;
   for (int j = 0; j < most_doublings; ++j) {
-    const Eigen::PartialPivLU<MatrixXd> W(I + G * P);
-    const MatrixXd WA = W.solve(A), WG = W.solve(G), before = P;
+    MatrixXd both(n, 2 * n);
+    both << A, G;
+    both = solve(I + G * P, both);
+    const MatrixXd WA = both.leftCols(n), WG = both.rightCols(n), before = P;
     P = symmetrised(P + A.transpose() * P * WA);
     G = symmetrised(G + A * WG * A.transpose());
     A = (A * WA).eval();
@@ -189,7 +194,7 @@ Result<SteadyParts> steady_parts(const MatrixXd& F,
 
   const MatrixXd P_dd = riccati_limit(s.d);
   SteadyParts parts;
-  const MatrixXd S = s.d.H * P_dd * s.d.H.transpose() + m.R, S_inverse = S.inverse();
+  const MatrixXd S = s.d.H * P_dd * s.d.H.transpose() + m.R, S_inverse = positive_inverse(S);
   MatrixXd K(n, H.rows());
   K.topRows(d) = P_dd * s.d.H.transpose() * S_inverse;
   const MatrixXd keep = MatrixXd::Identity(d, d) - K.topRows(d) * s.d.H;

@@ -24,6 +24,9 @@ struct AccelFigures {
   std::array<std::optional<double>, 3> warm_up_time_s{};
 };
 
+/// Accelerometers with parallel axes that `fused` takes, the first included.
+inline constexpr std::size_t most_fused_sensors = 4;
+
 /// A further accelerometer on the same body, its axes parallel to those of the first, read at the
 /// same times.
 struct ParallelAccelerometer {

@@ -8,7 +8,6 @@
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"
-#include "proofmass/estimate/fusion.hpp"
 #include "proofmass/signal/channel_audit.hpp"
 
 namespace proofmass::estimate {

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "proofmass/estimate/fusion.hpp"
 #include "proofmass/estimate/track_along.hpp"
 #include "proofmass/estimate/track_jerk.hpp"
 #include "proofmass/estimate/track_pva_pass.hpp"

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "proofmass/estimate/fusion.hpp"
 #include "proofmass/estimate/pva_axis.hpp"
 #include "proofmass/estimate/track.hpp"
 

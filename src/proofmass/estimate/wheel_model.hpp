@@ -354,4 +354,18 @@ struct WheelModel {
   }
 };
 
+// One instant of the filter and of the smoother, compiled once, in wheel_model.cpp.
+extern template void advance(const WheelModel<1>&,
+                             std::size_t,
+                             const Gate&,
+                             FilterState<wheel::states(1)>&,
+                             StepOf<WheelModel<1>>&);
+extern template void advance(const WheelModel<2>&,
+                             std::size_t,
+                             const Gate&,
+                             FilterState<wheel::states(2)>&,
+                             StepOf<WheelModel<2>>&);
+extern template void look_back(Hindsight<wheel::states(1)>&, const StepOf<WheelModel<1>>&);
+extern template void look_back(Hindsight<wheel::states(2)>&, const StepOf<WheelModel<2>>&);
+
 }  // namespace proofmass::estimate

@@ -1,11 +1,13 @@
 #include "proofmass/simulate/sensor_twin.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 
+#include "proofmass/core/linalg.hpp"
 #include "proofmass/sensor/noise_conversions.hpp"
 #include "proofmass/simulate/converter.hpp"
 
@@ -38,20 +40,6 @@ Eigen::Matrix3d error_matrix(const RigSensor& sensor) {
   cross << 1.0, xy, xz, yx, 1.0, yz, zx, zy, 1.0;
   T << 1.0, -a_yz, a_zy, 0.0, 1.0, -a_zx, 0.0, 0.0, 1.0;
   return cross * Eigen::Vector3d(sensor.scale.data()).asDiagonal() * T.inverse();
-}
-
-/// M⁻¹ = R U with R a rotation and U upper triangular with a positive diagonal: U is what a
-/// calibration against gravity finds, R what it cannot see.
-struct Split {
-  Eigen::Matrix3d R, U;
-};
-Split split(const Eigen::Matrix3d& M) {
-  const Eigen::HouseholderQR<Eigen::Matrix3d> qr(M.inverse());
-  Split parts{qr.householderQ(), qr.matrixQR().triangularView<Eigen::Upper>()};
-  const Eigen::Matrix3d signs = parts.U.diagonal().cwiseSign().asDiagonal();
-  parts.R = parts.R * signs;
-  parts.U = signs * parts.U;
-  return parts;
 }
 
 double rotation_angle(const Eigen::Matrix3d& R) {
@@ -148,7 +136,8 @@ void AxisTwin::step_walk() {
 }
 
 sensor::Calibration calibration_of(const Eigen::Matrix3d& M, const Axes& bias_mps2) {
-  const Eigen::Matrix3d U = split(M).U;
+  // M⁻¹ = Q U: a calibration against gravity finds U, the rotation Q it cannot see.
+  const Eigen::Matrix3d U = positive_qr(M.inverse()).U;
   const Eigen::Vector3d scale = U.diagonal().cwiseInverse();
   sensor::Calibration calibration;
   calibration.bias = sensor::make_axis_figures(bias_mps2, "m/s^2", origin);
@@ -159,7 +148,7 @@ sensor::Calibration calibration_of(const Eigen::Matrix3d& M, const Axes& bias_mp
 }
 
 double unseen_turn_rad(const Eigen::Matrix3d& M) {
-  return rotation_angle(split(M).R);
+  return rotation_angle(positive_qr(M.inverse()).Q);
 }
 
 OnePole::OnePole(double bandwidth_hz) : tau_s_(1.0 / (2.0 * std::numbers::pi * bandwidth_hz)) {}
