@@ -42,6 +42,8 @@ struct InertialEpoch {
 struct InertialNoise {
   double white_m2ps3 = 0.0;        ///< N², two-sided
   double motion_lean_m2ps3 = 0.0;  ///< L
+  /// What L would be if all that shakes more in motion than at rest were aliased, and so white.
+  double shaking_m2ps3 = 0.0;
   double motion_walk_m2ps5 = 0.0;  ///< q while it moves
   double motion_jump_m2ps4 = 0.0;  ///< J
   double rest_walk_m2ps5 = 0.0;    ///< q while it rests

@@ -26,6 +26,33 @@ std::optional<double> density_along(const std::array<std::optional<double>, 3>& 
   return std::sqrt(sum);
 }
 
+namespace {
+
+// Of one reading by white noise, from third differences, which smooth motion hardly enters; half of
+// them may be anything. 0 where there are few.
+double sample_std(View<double> accel, const std::vector<unsigned char>& wanted) {
+  constexpr std::size_t few = 50;
+  std::vector<double> differences;
+  for (std::size_t k = 3; k < accel.size(); ++k)
+    if (wanted[k] && wanted[k - 1] && wanted[k - 2] && wanted[k - 3])
+      differences.push_back(accel[k] - 3.0 * (accel[k - 1] - accel[k - 2]) - accel[k - 3]);
+  if (differences.size() < few) return 0.0;
+  return robust_std(differences).value_or(0.0) / std::sqrt(20.0);
+}
+
+// Two-sided density of what shakes in motion alone, if it is white.
+double shaking_density(View<double> accel, const std::vector<signal::Rest>& rests, double rate_hz) {
+  constexpr double clear = 1.1;  // beyond what chance makes of the two
+  std::vector<unsigned char> resting(accel.size(), 0), moving(accel.size(), 1);
+  for (const signal::Rest& rest : rests)
+    for (std::size_t k = rest.first; k <= rest.last; ++k) resting[k] = 1, moving[k] = 0;
+  const double at_rest = sample_std(accel, resting), in_motion = sample_std(accel, moving);
+  if (!(at_rest > 0.0) || in_motion < clear * at_rest) return 0.0;
+  return (in_motion * in_motion - at_rest * at_rest) / rate_hz;
+}
+
+}  // namespace
+
 AxisRun prepare_axis(const TrackSignal& signal,
                      View<double> accel,
                      const TrackReadings& readings,
@@ -38,6 +65,7 @@ AxisRun prepare_axis(const TrackSignal& signal,
   const double white = known.white_mps2_rthz.value_or(0.0);
   const double walk = known.walk_mps2_rts.value_or(0.0);
   run.noise = {.white_m2ps3 = std::max(white * white, run.level.white_m2ps3()),
+               .shaking_m2ps3 = shaking_density(accel, readings.rests, signal.rate_hz),
                .rest_walk_m2ps5 = std::max(walk * walk, run.level.walk_m2ps5),
                .rest_speed_std_mps = readings.rest_speed_std_mps};
   run.start.speed_std_mps = speed_at_start_mps;

@@ -62,6 +62,20 @@ TEST(TrackRides, StrokesShorterThanHalfASecondAreKept) {
   EXPECT_LT(held.rms_m(), 0.01);
 }
 
+TEST(TrackRides, SlowStrokesBetweenShortRestsAreNoRests) {
+  const auto held = rides::held_by(rides::slow_strokes, 1, 12);
+  expect_held(held);
+  EXPECT_LT(held.rms_m(), 0.03);
+}
+
+// What shakes in motion alone may be aliased, and then it is in what the readings integrate to.
+TEST(TrackRides, WhatShakesInMotionAloneIsInTheBand) {
+  const auto held = rides::held_by([](Draw& draw) { return rides::lift(draw, 1, 6.0); }, 1, 12);
+  EXPECT_EQ(held.given, 12);
+  EXPECT_GE(held.held, 10);
+  EXPECT_EQ(held.wrong, 0);
+}
+
 TEST(TrackRides, OnRequestOnlyTheEndsAreRests) {
   Draw draw(5);
   const rides::RideRecord made = rides::record(rides::lift(draw, 1, 0.0), draw);

@@ -186,6 +186,22 @@ inline Ride strokes(Draw& draw, double stroke_s) {
   return ride;
 }
 
+/// Eight strokes of 0.4 m there and back, each in 1 to 4 s, with rests of 1.2 s between: most of
+/// the recording is as quiet as rest.
+inline Ride slow_strokes(Draw& draw) {
+  Ride ride;
+  ride.axis = 0;
+  ride.noise_mps2 = draw.between(0.01, 0.05);
+  ride.legs.push_back({3.0, 0.0});
+  for (int i = 0; i < 8; ++i) {
+    const double half_s = 0.5 * draw.between(1.0, 4.0);
+    ride.legs.push_back({half_s, (i % 2 == 0 ? 0.4 : -0.4) / half_s, 1.0});
+    ride.legs.push_back({half_s, 0.0, 1.0});
+    ride.legs.push_back({i < 7 ? 1.2 : 3.0, 0.0});
+  }
+  return ride;
+}
+
 /// How the intervals of many recordings hold the truth.
 struct Held {
   int recordings = 0, given = 0, held = 0, wrong = 0;  ///< wrong: off by more than 5 std

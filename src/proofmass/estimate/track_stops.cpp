@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
 
 namespace proofmass::estimate {
@@ -57,7 +58,170 @@ std::vector<signal::Rest> united(std::vector<signal::Rest> rests) {
   return out;
 }
 
+// Means of the axes over blocks of a quarter of a second of each rest, and how far such means
+// scatter where the sensor is at rest.
+struct RestMeans {
+  std::size_t length = 0;  // of a block, in samples
+  std::vector<std::vector<std::array<double, 3>>> of_rest;
+  std::array<double, 3> std{};
+};
+
+constexpr double far_level = 5.0;         // standard deviations of a block's mean
+constexpr std::size_t spread_blocks = 8;  // over which a scatter is taken
+
+// Standard deviation of the means of each run of spread_blocks blocks, one axis.
+void add_spreads(const std::vector<std::array<double, 3>>& means,
+                 std::size_t axis,
+                 std::vector<double>& spreads) {
+  for (std::size_t i = 0; i + spread_blocks <= means.size(); ++i) {
+    Moments spread;
+    for (std::size_t k = i; k < i + spread_blocks; ++k) spread.add(means[k][axis]);
+    if (spread.count == spread_blocks) spreads.push_back(spread.std());
+  }
+}
+
+// Of a block's mean, by white noise alone: from differences, which a slow motion leaves as they
+// are.
+double white_std(View<double> axis, const std::vector<signal::Rest>& rests, std::size_t length) {
+  Moments squares;
+  for (const signal::Rest& rest : rests)
+    for (std::size_t k = rest.first + 1; k <= rest.last; ++k)
+      squares.add(0.5 * (axis[k] - axis[k - 1]) * (axis[k] - axis[k - 1]));
+  return std::sqrt(squares.mean / static_cast<double>(length));
+}
+
+RestMeans rest_means(View<View<double>> axes,
+                     const std::vector<signal::Rest>& rests,
+                     double rate_hz) {
+  RestMeans out;
+  out.length = std::max<std::size_t>(4, static_cast<std::size_t>(std::lround(0.25 * rate_hz)));
+  for (const signal::Rest& rest : rests) {
+    auto& means = out.of_rest.emplace_back();
+    for (std::size_t k = rest.first; k + out.length <= rest.last + 1; k += out.length) {
+      auto& mean = means.emplace_back();
+      for (std::size_t a = 0; a < axes.size(); ++a)
+        mean[a] = moments(axes[a].subspan(k, out.length)).mean;
+    }
+  }
+  // The fiftieth part that scatters least is at rest, if anything is; it scatters by less than all
+  // that rests would.
+  constexpr double share = 0.02, dof = spread_blocks - 1.0;
+  const double least = std::sqrt(chi_square_quantile(share, dof) / dof);
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    std::vector<double> spreads;
+    for (const auto& means : out.of_rest) add_spreads(means, a, spreads);
+    out.std[a] = std::max(quantile(spreads, share).value_or(0.0) / least,
+                          white_std(axes[a], rests, out.length));
+  }
+  return out;
+}
+
+// Runs of blocks whose means stay near the mean of those just before, as [first, end).
+std::vector<std::array<std::size_t, 2>> steady_runs(const std::vector<std::array<double, 3>>& means,
+                                                    const std::array<double, 3>& std) {
+  constexpr std::size_t reach = 8;  // blocks; a level may drift from two seconds to the next
+  std::vector<std::array<std::size_t, 2>> runs;
+  std::size_t first = 0;
+  for (std::size_t k = 1; k <= means.size(); ++k) {
+    bool departs = k == means.size();
+    const std::size_t from = std::max(first, k - std::min(k, reach));
+    for (std::size_t a = 0; a < 3 && !departs; ++a) {
+      double before = 0.0;
+      for (std::size_t i = from; i < k; ++i) before += means[i][a];
+      const auto count = static_cast<double>(k - from);
+      departs = std::abs(means[k][a] - before / count) >
+                far_level * std[a] * std::sqrt(1.0 + 1.0 / count);
+    }
+    if (!departs) continue;
+    runs.push_back({first, k});
+    first = k;
+  }
+  return runs;
+}
+
+// A stretch of a rest whose level stays.
+struct SteadyPart {
+  std::size_t rest = 0;            // of which it is a part
+  std::size_t first = 0, end = 0;  // blocks of it
+  std::array<double, 3> level{};
+  [[nodiscard]] std::size_t size() const { return end - first; }
+};
+
+std::vector<SteadyPart> parts_of(const RestMeans& found, std::size_t rest) {
+  std::vector<SteadyPart> parts;
+  const auto& means = found.of_rest[rest];
+  const auto runs = steady_runs(means, found.std);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    // Beside a departure a block may hold the motion's beginning or end.
+    SteadyPart part{rest, runs[r][0] + (r == 0 ? 0 : 1),
+                    runs[r][1] - (r + 1 == runs.size() ? 0 : 1)};
+    if (part.end <= part.first) continue;
+    for (std::size_t k = part.first; k < part.end; ++k)
+      for (std::size_t a = 0; a < 3; ++a)
+        part.level[a] += means[k][a] / static_cast<double>(part.size());
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+bool same_level(const SteadyPart& one, const SteadyPart& other, const std::array<double, 3>& std) {
+  for (std::size_t a = 0; a < 3; ++a)
+    if (std::abs(one.level[a] - other.level[a]) > far_level * std[a]) return false;
+  return true;
+}
+
+// Of the parts of one rest those at the level that most blocks of all rests have: the others are
+// motion at an acceleration that stays for a while.
+void keep_usual_level(const std::vector<SteadyPart>& all,
+                      const std::array<double, 3>& std,
+                      std::vector<SteadyPart>& parts) {
+  const SteadyPart* usual = nullptr;
+  std::size_t most = 0;
+  for (const SteadyPart& part : parts) {
+    std::size_t blocks = 0;
+    for (const SteadyPart& other : all)
+      if (same_level(part, other, std)) blocks += other.size();
+    if (blocks > most) usual = &part;
+    most = std::max(most, blocks);
+  }
+  if (usual == nullptr) return;
+  std::erase_if(parts, [level = *usual, &std](const SteadyPart& part) {
+    return !same_level(part, level, std);
+  });
+}
+
 }  // namespace
+
+std::vector<signal::Rest> steady_parts(View<View<double>> axes,
+                                       const std::vector<signal::Rest>& rests,
+                                       double rate_hz,
+                                       double shortest_s) {
+  const RestMeans found = rest_means(axes, rests, rate_hz);
+  std::vector<std::vector<SteadyPart>> of_rest;
+  std::vector<SteadyPart> all;
+  for (std::size_t i = 0; i < rests.size(); ++i) {
+    of_rest.push_back(parts_of(found, i));
+    all.insert(all.end(), of_rest.back().begin(), of_rest.back().end());
+  }
+  std::vector<signal::Rest> steady;
+  for (std::size_t i = 0; i < rests.size(); ++i) {
+    const std::size_t blocks = found.of_rest[i].size();
+    if (blocks == 0 || (of_rest[i].size() == 1 && of_rest[i].front().size() == blocks)) {
+      steady.push_back(rests[i]);
+      continue;
+    }
+    keep_usual_level(all, found.std, of_rest[i]);
+    for (const SteadyPart& part : of_rest[i]) {
+      const std::size_t first = rests[i].first;
+      const signal::Rest kept{
+          first + part.first * found.length,
+          part.end == blocks ? rests[i].last : first + part.end * found.length - 1};
+      if (static_cast<double>(kept.last - kept.first + 1) >= shortest_s * rate_hz)
+        steady.push_back(kept);
+    }
+  }
+  return steady;
+}
 
 std::vector<signal::Rest> quiet_stretches(View<View<double>> axes,
                                           double rate_hz,
@@ -100,9 +264,11 @@ Stops find_stops(View<View<double>> axes,
   }
   signal::RestSearch search =
       signal::find_rests(axes, {.rate_hz = rate_hz, .shortest_s = options.shortest_rest_s});
-  Stops stops{std::move(search.rests), false, std::move(search.why_none)};
+  const double shortest_s = options.shortest_rest_s.value_or(0.5);
+  Stops stops{steady_parts(axes, search.rests, rate_hz, shortest_s), false,
+              std::move(search.why_none)};
   if (stops.rests.empty()) {
-    stops.rests = quiet_stretches(axes, rate_hz, options.shortest_rest_s.value_or(0.5));
+    stops.rests = quiet_stretches(axes, rate_hz, shortest_s);
     stops.by_quietness = !stops.rests.empty();
   }
   if (options.only_end_rests && stops.rests.size() > 2)

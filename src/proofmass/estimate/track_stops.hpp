@@ -25,6 +25,17 @@ struct Stops {
                                double rate_hz,
                                const TrackOptions& options);
 
+/// The parts of rests whose level stays. signal::find_rests() measures how a level wanders at rest
+/// by what most of the quiet stretches do; where most of them are slow motion, that is the motion's
+/// acceleration. Here the level may wander between blocks of a quarter of a second by five times
+/// what the steadiest fiftieth of all rests does, or white noise makes of it; of the parts of one
+/// rest those count that have the level of most. A level that wanders by itself costs a rest, never
+/// a motion.
+[[nodiscard]] std::vector<signal::Rest> steady_parts(View<View<double>> axes,
+                                                     const std::vector<signal::Rest>& rests,
+                                                     double rate_hz,
+                                                     double shortest_s);
+
 /// Stretches of windows of half a second whose readings scatter by less than four times what the
 /// quietest tenth does and whose means stay within that; none unless the record is five times as
 /// loud elsewhere.

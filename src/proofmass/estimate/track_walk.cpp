@@ -55,6 +55,16 @@ std::vector<GridPoint> grid(double step) {
   return points;
 }
 
+// Of the rocking; three quarters of the weight of nothing are on what shakes being white.
+std::vector<GridPoint> lean_grid(double step, double shaking_m2ps3) {
+  std::vector<GridPoint> points = grid(step);
+  if (shaking_m2ps3 <= 0.0) return points;
+  constexpr double white = 0.75;
+  points.push_back({shaking_m2ps3, points.back().log_weight + std::log(white)});
+  points[points.size() - 2].log_weight += std::log(1.0 - white);
+  return points;
+}
+
 double outside(double x) {
   return std::erfc(x / std::numbers::sqrt2);
 }
@@ -107,9 +117,10 @@ GridScores scores_on_grid(View<InertialEpoch> knots,
                           double step) {
   GridScores scores;
   const std::vector<GridPoint> points = grid(step);
+  const std::vector<GridPoint> leans = lean_grid(step, noise.shaking_m2ps3);
   for (const GridPoint& walk : points)
     for (const GridPoint& jump : points)
-      for (const GridPoint& lean : points) {
+      for (const GridPoint& lean : leans) {
         scores.at.push_back({walk.variance, jump.variance, lean.variance});
         noise.motion_walk_m2ps5 = std::max(walk.variance, noise.rest_walk_m2ps5);
         noise.motion_jump_m2ps4 = jump.variance;
