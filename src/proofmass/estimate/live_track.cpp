@@ -118,11 +118,15 @@ class LiveTrack final : public LiveAnalysis {
     if (filter_) return filter(reading, out);
     if (reading.resting) {
       if (!gathered_.empty()) return end_gathered(reading, out);
+      if (!level_) say_what_was_left_out(reading.time_s);
       level_ = reading;
       look_at_level();
       return give_still(reading.time_s, out);
     }
-    if (!level_) return ask_for_rest(reading.time_s);
+    if (!level_) {
+      if (!unplaced_from_s_) unplaced_from_s_ = reading.time_s;
+      return ask_for_rest(reading.time_s);
+    }
     if (axis_) {
       begin();
       return filter(reading, out);
@@ -145,6 +149,16 @@ class LiveTrack final : public LiveAnalysis {
     say(options_.sensor.name +
         ": no rest yet, and no displacement without one: keep it still for three seconds before "
         "the motion");
+  }
+
+  /// A rest too short to be taken for one leaves what follows it without a place to count from.
+  void say_what_was_left_out(double time_s) {
+    constexpr double worth_saying_s = 1.0;
+    if (unplaced_from_s_ && time_s - *unplaced_from_s_ > worth_saying_s)
+      say("the position counts from 0 at the rest at " + at_second(time_s) +
+          " s: before it the sensor was not still for three seconds, and what it did since " +
+          at_second(*unplaced_from_s_) + " s is left out");
+    unplaced_from_s_.reset();
   }
 
   void look_at_level() {
@@ -285,7 +299,8 @@ class LiveTrack final : public LiveAnalysis {
   std::vector<Channel> columns_ = track_columns();
   std::optional<double> began_s_;
   bool asked_ = false;
-  double last_s_ = 0.0;  ///< of the readings that were followed
+  std::optional<double> unplaced_from_s_;  ///< since when readings have had no rest before them
+  double last_s_ = 0.0;                    ///< of the readings that were followed
 
   std::optional<Mat<3>> axis_;
   std::optional<LiveReading> level_;  ///< of the last rest, at its last instant until it moves

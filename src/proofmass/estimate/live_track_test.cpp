@@ -129,6 +129,19 @@ TEST(LiveTrack, AsksForARestWhereThereIsNone) {
   EXPECT_TRUE(run.says("keep it still"));
 }
 
+TEST(LiveTrack, AFirstRestThatIsTooShortIsSaidWithWhatIsLeftOut) {
+  CarriageRecord made = record(carriage());  // rests of 3.5 s
+  const std::size_t cut = sample_at(made.sensor, 1.5);
+  made.sensor.time_s.erase(made.sensor.time_s.begin(),
+                           made.sensor.time_s.begin() + static_cast<std::ptrdiff_t>(cut));
+  for (auto& axis : made.sensor.accel_mps2)
+    axis.erase(axis.begin(), axis.begin() + static_cast<std::ptrdiff_t>(cut));
+  const LiveTrackRun run = run_live(made.sensor, along_x());
+  EXPECT_TRUE(run.says("counts from 0 at the rest"));
+  EXPECT_TRUE(run.says("is left out"));
+  EXPECT_GT(run.rows.stamps_s.front(), 4.9);  // the end of the first stroke
+}
+
 TEST(LiveTrack, AGapInTheMotionIsSaidAndWidensTheBand) {
   CarriageRecord made = record(carriage());
   const LiveTrackRun whole = run_live(made.sensor, along_x());
