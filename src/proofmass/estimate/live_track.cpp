@@ -153,7 +153,7 @@ class LiveTrack final : public LiveAnalysis {
 
   /// A rest too short to be taken for one leaves what follows it without a place to count from.
   void say_what_was_left_out(double time_s) {
-    constexpr double worth_saying_s = 1.0;
+    constexpr double worth_saying_s = 4.0;  // a rest is known as one after three
     if (unplaced_from_s_ && time_s - *unplaced_from_s_ > worth_saying_s)
       say("the position counts from 0 at the rest at " + at_second(time_s) +
           " s: before it the sensor was not still for three seconds, and what it did since " +

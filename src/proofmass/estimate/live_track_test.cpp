@@ -47,7 +47,7 @@ TEST(LiveTrack, FollowsStrokesAndKnowsTheirStops) {
   const CarriageRecord made = record(carriage());
   const LiveTrackRun run = run_live(made.sensor, along_x());
   ASSERT_GT(run.rows.rows(), 1000u);
-  EXPECT_TRUE(run.notes.empty());
+  EXPECT_TRUE(run.notes.empty()) << run.notes.front().text;
   std::size_t stops = 0;
   for (std::size_t k = 1; k < run.rows.rows(); ++k) {
     const auto at = [&](LiveTrackColumn column) { return run.rows.channels[column][k]; };

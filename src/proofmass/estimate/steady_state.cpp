@@ -194,7 +194,8 @@ Result<SteadyParts> steady_parts(const MatrixXd& F,
 
   const MatrixXd P_dd = riccati_limit(s.d);
   SteadyParts parts;
-  const MatrixXd S = s.d.H * P_dd * s.d.H.transpose() + m.R, S_inverse = positive_inverse(S);
+  const MatrixXd S = s.d.H * P_dd * s.d.H.transpose() + m.R,
+                 S_inverse = solve(S, MatrixXd::Identity(S.rows(), S.rows()));
   MatrixXd K(n, H.rows());
   K.topRows(d) = P_dd * s.d.H.transpose() * S_inverse;
   const MatrixXd keep = MatrixXd::Identity(d, d) - K.topRows(d) * s.d.H;

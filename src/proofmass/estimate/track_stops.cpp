@@ -190,6 +190,44 @@ void keep_usual_level(const std::vector<SteadyPart>& all,
   });
 }
 
+// Whether the block at one end of a rest departs from the two seconds beside it.
+bool end_departs(View<View<double>> axes,
+                 const RestMeans& found,
+                 const signal::Rest& end,
+                 const signal::Rest& beside) {
+  constexpr double far = 2.5;
+  const auto count = static_cast<double>(beside.last - beside.first + 1);
+  const double share = static_cast<double>(found.length) / count;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const auto mean = [&](const signal::Rest& part) {
+      return moments(axes[a].subspan(part.first, part.last - part.first + 1)).mean;
+    };
+    if (std::abs(mean(end) - mean(beside)) > far * found.std[a] * std::sqrt(1.0 + share))
+      return true;
+  }
+  return false;
+}
+
+// Next to motion a rest ends where the motion begins to show, a block at a time: a velocity that is
+// not 0 there is that of the whole motion.
+signal::Rest without_onset(View<View<double>> axes, const RestMeans& found, signal::Rest rest) {
+  const std::size_t length = found.length, reach = spread_blocks * length;
+  const auto is_long = [&] { return rest.last - rest.first + 1 >= 4 * length; };
+  while (rest.last + 1 < axes[0].size() && is_long()) {
+    const std::size_t from = rest.last + 1 - length;
+    const signal::Rest beside{std::max(rest.first, from - std::min(from, reach)), from - 1};
+    if (!end_departs(axes, found, {from, rest.last}, beside)) break;
+    rest.last = from - 1;
+  }
+  while (rest.first > 0 && is_long()) {
+    const std::size_t to = rest.first + length;
+    const signal::Rest beside{to, std::min(rest.last, to + reach - 1)};
+    if (!end_departs(axes, found, {rest.first, to - 1}, beside)) break;
+    rest.first = to;
+  }
+  return rest;
+}
+
 }  // namespace
 
 std::vector<signal::Rest> steady_parts(View<View<double>> axes,
@@ -207,7 +245,7 @@ std::vector<signal::Rest> steady_parts(View<View<double>> axes,
   for (std::size_t i = 0; i < rests.size(); ++i) {
     const std::size_t blocks = found.of_rest[i].size();
     if (blocks == 0 || (of_rest[i].size() == 1 && of_rest[i].front().size() == blocks)) {
-      steady.push_back(rests[i]);
+      steady.push_back(without_onset(axes, found, rests[i]));
       continue;
     }
     keep_usual_level(all, found.std, of_rest[i]);
@@ -217,7 +255,7 @@ std::vector<signal::Rest> steady_parts(View<View<double>> axes,
           first + part.first * found.length,
           part.end == blocks ? rests[i].last : first + part.end * found.length - 1};
       if (static_cast<double>(kept.last - kept.first + 1) >= shortest_s * rate_hz)
-        steady.push_back(kept);
+        steady.push_back(without_onset(axes, found, kept));
     }
   }
   return steady;

@@ -55,11 +55,11 @@ std::vector<GridPoint> grid(double step) {
   return points;
 }
 
-// Of the rocking; three quarters of the weight of nothing are on what shakes being white.
+// Of the rocking; nine tenths of the weight of nothing are on what shakes being white.
 std::vector<GridPoint> lean_grid(double step, double shaking_m2ps3) {
   std::vector<GridPoint> points = grid(step);
   if (shaking_m2ps3 <= 0.0) return points;
-  constexpr double white = 0.75;
+  constexpr double white = 0.9;
   points.push_back({shaking_m2ps3, points.back().log_weight + std::log(white)});
   points[points.size() - 2].log_weight += std::log(1.0 - white);
   return points;
