@@ -206,7 +206,6 @@ Object drift_object(const ChannelDrift& channel) {
       add(key, Array{});
     }
   }
-  add("rest", rest_value(channel.rest));
   if (channel.temperature)
     add("temperature", temperature_value(*channel.temperature, channel.unit));
   if (channel.outlook) add("forecast", forecast_value(*channel.outlook, channel.unit));
@@ -221,7 +220,9 @@ std::string drift_json(const DriftReport& report) {
   };
   Array channels, runs;
   for (const ChannelDrift& channel : report.channels) {
-    channels.emplace_back(drift_object(channel));
+    Object item = drift_object(channel);
+    item.push_back({"rest", rest_value(channel.rest)});
+    channels.emplace_back(std::move(item));
     warn(null_reasons(report, channel));
   }
   for (const ChannelRuns& found : report.runs) {

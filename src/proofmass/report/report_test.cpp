@@ -162,7 +162,8 @@ TEST(InspectJson, HasNullAndAReasonForAChannelWithoutAValue) {
   signal::RecordingAudit audit;
   audit.format = "CSV";
   audit.samples = 2;
-  audit.channels = {{.name = "a", .unit = {}, .moments = {}, .lsb = {}}};
+  audit.channels.resize(1);
+  audit.channels[0].name = "a";
   audit.channels[0].nonfinite = 2;
   const Json json = Json::parse(inspect_json({{"f.csv", recording, audit}}));
   EXPECT_TRUE(json["channels"][0]["mean"].is_null());
