@@ -236,6 +236,10 @@ class SensorServer(socketserver.StreamRequestHandler):
             sent = count
             if count >= options.drop_at:
                 return self.close(4004, "Server stopped")
+            if count >= options.nonsense_at:
+                # A frame of a kind that there is not; what the other side makes of it is not answered.
+                self.send(frame(3, b"x"))
+                return time.sleep(30)
             time.sleep(0.005)
 
     def message(self, row, one, named):
@@ -273,7 +277,8 @@ def main():
     parser.add_argument("--garbage-every", type=int, default=0, metavar="N", help="each Nth answer or message is cut off")
     parser.add_argument("--until-stdin-ends", action="store_true", help="go with whoever holds the other end of a pipe")
     for fault, meaning in {"jump": "the clock goes back by --jump-by", "restart": "the experiment is opened anew",
-                           "silence": "no more rows", "drop": "the connection breaks"}.items():
+                           "silence": "no more rows", "nonsense": "what is no WebSocket frame, then nothing (SensorServer)",
+                           "drop": "the connection breaks"}.items():
         parser.add_argument(f"--{fault}-at", type=int, default=ALL, metavar="ROW", help=meaning)
     parser.add_argument("--jump-by", type=float, default=5.0, metavar="SECONDS")
     options = parser.parse_args()

@@ -75,6 +75,7 @@ bool RowQueue::count(View<double> fields) {
                     plan_.counter->name, count),
         notes_);
   pending_lost_ += step.lost;
+  count_ = count;
   return true;
 }
 
@@ -83,8 +84,9 @@ void RowQueue::join_group(std::int64_t host_ns) {
   const std::uint64_t lost = std::exchange(pending_lost_, 0);
   lost_ += lost;
   const bool joins = !empty() && lost == 0 && host_ns - groups_.back().first_host_ns <= longest_ns;
-  if (!joins) groups_.push_back({channels_.front().size(), lost, host_ns, host_ns});
+  if (!joins) groups_.push_back({channels_.front().size(), lost, host_ns, host_ns, count_, count_});
   groups_.back().host_ns = host_ns;
+  groups_.back().last_count = count_;
 }
 
 bool RowQueue::hand_out(Arrival& arrival) {
@@ -100,6 +102,10 @@ bool RowQueue::hand_out(Arrival& arrival) {
   for (std::size_t c = 0; c < channels_.size(); ++c) copy(channels_[c], arrival.channels[c]);
   if (clock_) copy(device_ns_, arrival.device_ns);
   arrival.lost_before = group.lost_before;
+  if (counter_) {
+    arrival.first_count = group.first_count;
+    arrival.last_count = group.last_count;
+  }
   arrival.host_ns = group.host_ns;
   if (!empty()) return true;
   for (std::vector<double>& channel : channels_) channel.clear();

@@ -81,6 +81,7 @@ class RowQueue {
     std::size_t first = 0;
     std::uint64_t lost_before = 0;
     std::int64_t first_host_ns = 0, host_ns = 0;
+    double first_count = 0.0, last_count = 0.0;  ///< where rows are counted
   };
   /// False: the row is to be passed over.
   bool count(View<double> fields);
@@ -99,6 +100,7 @@ class RowQueue {
   RepeatedNote restart_notes_{"times that the count jumped"};
   RepeatedNote untimed_notes_{"rows without a reading of the clock"};
   std::uint64_t pending_lost_ = 0;
+  double count_ = 0.0;  ///< of the row that came last
   std::uint64_t rows_ = 0, lost_ = 0, late_ = 0, untimed_ = 0;
   std::optional<std::int64_t> first_device_ns_;
 };

@@ -22,6 +22,8 @@ struct Incoming {
   Kind kind = Kind::rows;
   Arrival arrival{};
   std::uint64_t overrun = 0;  ///< rows in front of it that found no room
+  /// After a reopening: the device's count went on, and lost_before is by it.
+  bool is_counted = false;
   double silence_s = 0.0;
   std::string reason{};
   std::shared_ptr<const SourceHead> head{};

@@ -235,6 +235,27 @@ TEST(Recorder, OpensASourceAgainThatIsGone) {
   EXPECT_EQ(summary->events[1].kind, EventKind::reconnected);
 }
 
+TEST(Recorder, CountsOnWhereASourceIsOpenedAgain) {
+  const TestFolder folder;
+  // The host's clock makes some 1100 rows of the break; the count, which went on, says 50.
+  const auto host_ns = [](std::uint64_t row) {
+    return static_cast<std::int64_t>(row) * 10'000'000 + (row >= 100 ? 11'000'000'000 : 0);
+  };
+  Script first{.acts = arrivals(10),
+               .has_device_clock = false,
+               .counts_rows = true,
+               .rate_hz = 0.0,
+               .host_ns = host_ns};
+  Script second = first;
+  first.acts.push_back({.kind = Act::Kind::fail});
+  second.acts.front().uncounted = 50;
+  const auto summary =
+      record(open_scripts({first, second}), {.path = folder.file("run.mcap"), .reconnect = true});
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(read_back(folder.file("run.mcap")).samples(), 200u);
+  EXPECT_EQ(summary->lost, 50u);
+}
+
 TEST(Recorder, BeginsANewFileWhereTheChannelsAreOthers) {
   const TestFolder folder;
   Script first{.acts = arrivals(10)};

@@ -21,7 +21,8 @@ struct Act {
   enum class Kind { rows, nothing, fail, end } kind = Kind::rows;
   std::size_t rows = 10;
   std::uint64_t lost_before = 0;
-  double wait_s = 0.0;  ///< before it, really
+  std::uint64_t uncounted = 0;  ///< rows in front of it that the source knows nothing of
+  double wait_s = 0.0;          ///< before it, really
   std::vector<Note> notes{};
 };
 
@@ -30,6 +31,7 @@ struct Script {
   std::vector<Act> acts{};
   bool has_device_clock = true;
   bool is_paced = false;
+  bool counts_rows = false;
   double rate_hz = 100.0;
   std::size_t channels = 2;
   std::function<double(std::uint64_t row, std::size_t channel)> value{};
@@ -80,8 +82,11 @@ class ScriptedSource final : public Source {
     if (act.kind == Act::Kind::nothing) return Arrived::nothing;
     arrival.lost_before = act.lost_before;
     *row_ += act.lost_before;
+    if (script_.counts_rows) arrival.first_count = static_cast<double>(*row_ + act.uncounted);
+    *row_ += act.uncounted;
     for (std::size_t i = 0; i < act.rows; ++i) add_row(arrival);
     arrival.host_ns = host_ns(*row_ - 1);
+    if (script_.counts_rows) arrival.last_count = static_cast<double>(*row_ - 1);
     return Arrived::rows;
   }
 

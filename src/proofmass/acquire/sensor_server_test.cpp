@@ -70,6 +70,12 @@ TEST_F(SensorServerSource, EndsWithTheReasonOfTheOtherSide) {
   EXPECT_EQ(taken.channels[0].back(), 199.0) << "what came before the end is handed out";
 }
 
+TEST_F(SensorServerSource, EndsWithTheReasonWhereTheOtherSideBreaksTheProtocol) {
+  OPEN(source, {"--rate", "500", "--nonsense-at", "100"});
+  const Taken taken = take_rows(**source, 100'000);
+  EXPECT_TRUE(says(taken.error, "breaks the WebSocket protocol")) << taken.error;
+}
+
 TEST_F(SensorServerSource, IsToldWhichSensorThePhoneLacks) {
   const auto none = open({}, "?type=thermometer");
   ASSERT_FALSE(none);

@@ -19,6 +19,8 @@ void Arrival::clear(std::size_t channel_count) {
   for (std::vector<double>& channel : channels) channel.clear();
   device_ns.clear();
   lost_before = 0;
+  first_count.reset();
+  last_count.reset();
   host_ns = 0;
   notes.clear();
 }

@@ -43,6 +43,8 @@ struct Arrival {
   /// Rows that the device or the protocol knows to be missing in front of the first: a counter's
   /// step, an overrun. What only the clocks betray is not in it.
   std::uint64_t lost_before = 0;
+  /// The device's own count of rows at the first and the last, where it counts them.
+  std::optional<double> first_count{}, last_count{};
   std::int64_t host_ns = 0;  ///< host_now_ns() when the last row was there
   /// What happened since the last reading: "passed over 17 bytes up to the next frame".
   std::vector<Note> notes{};

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "proofmass/acquire/framing_clock.hpp"
 #include "proofmass/core/contract.hpp"
 
 namespace proofmass::acquire {
@@ -68,6 +69,7 @@ void SourceReader::hand_on_rows(std::size_t channels) {
   PM_EXPECTS(arrival.channels.size() == channels && arrival.rows() > 0);
   rows_ns_ = host_now_ns();
   is_stalled_ = false;
+  count_on(arrival);
   const std::uint64_t rows = arrival.rows();
   const std::uint64_t lost = arrival.lost_before;
   item_.kind = Incoming::Kind::rows;
@@ -85,6 +87,19 @@ void SourceReader::hand_on_rows(std::size_t channels) {
   item_.arrival.clear(channels);
   item_.arrival.notes = std::exchange(dropped_notes_, {});
   hand_on(Incoming::Kind::notes);
+}
+
+/// A source that was opened anew knows nothing of the count that it had before.
+void SourceReader::count_on(Arrival& arrival) {
+  item_.is_counted = false;
+  if (std::exchange(is_reopened_, false) && last_count_ && arrival.first_count) {
+    RowCounter counter(0, false);
+    static_cast<void>(counter.add(*last_count_));
+    const CounterStep step = counter.add(*arrival.first_count);
+    item_.is_counted = !step.restarted;
+    if (item_.is_counted) arrival.lost_before = step.lost;
+  }
+  last_count_ = arrival.last_count;
 }
 
 void SourceReader::hand_on(Incoming::Kind kind, std::string reason) {
@@ -132,6 +147,7 @@ bool SourceReader::reopen() {
     if (opened) {
       source_ = std::move(opened).value();
       item_ = Incoming{};
+      is_reopened_ = true;
       hand_on(Incoming::Kind::reopened);
       return true;
     }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -35,6 +36,7 @@ class SourceReader {
   [[nodiscard]] bool read_to_the_end();
   [[nodiscard]] bool reopen();
   void hand_on_rows(std::size_t channels);
+  void count_on(Arrival& arrival);
   void hand_on(Incoming::Kind kind, std::string reason = {});
   void keep_notes();
   void watch_silence();
@@ -51,7 +53,9 @@ class SourceReader {
   std::vector<Note> dropped_notes_;
   std::int64_t rows_ns_ = 0;  ///< when the last rows came
   bool is_stalled_ = false;
-  std::string end_;  ///< why the silence ends the reading
+  bool is_reopened_ = false;          ///< and no rows have come since
+  std::optional<double> last_count_;  ///< of the device, at the row that came last
+  std::string end_;                   ///< why the silence ends the reading
   std::thread thread_;
 };
 

@@ -92,9 +92,11 @@ std::uint64_t TimeLine::tell_gap(double hole_s, double open_s) {
   const double rows = usual_s > 0.0 ? std::round(open_s / usual_s) - 1.0 : 0.0;
   constexpr double most_rows = 1e15;
   const auto count = static_cast<std::uint64_t>(std::clamp(rows, 0.0, most_rows));
+  const std::string missing =
+      count > 0 ? fmt::format(": about {} rows are missing", count) : std::string();
   tell(EventKind::gap, hole_s, count,
-       fmt::format("nothing for {:.6g} s by the {} clock: about {} rows are missing", hole_s,
-                   clock_ == Clock::device ? "device's" : "host's", count));
+       fmt::format("nothing for {:.6g} s by the {} clock{}", hole_s,
+                   clock_ == Clock::device ? "device's" : "host's", missing));
   return count;
 }
 
@@ -109,7 +111,8 @@ void TimeLine::tell_missing(const Incoming& item, View<double> stamps_s) {
     const bool is_hole = clock_ == Clock::device && step_.is_hole(open_s);
     const bool breaks_off = i == 0 && is_gap_;
     if (missing == 0 && !is_first && !breaks_off) step_.add(hole_s);
-    if (is_hole || breaks_off) missing += tell_gap(hole_s, open_s);
+    if (is_hole || breaks_off)
+      missing += tell_gap(hole_s, item.is_counted && breaks_off ? 0.0 : open_s);
     rows_ += std::exchange(missing, 0);
     last_s_ = stamps_s[i];
   }

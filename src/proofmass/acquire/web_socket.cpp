@@ -1,6 +1,7 @@
 #include "proofmass/acquire/web_socket.hpp"
 
 #include <boost/asio/connect.hpp>
+#include <boost/asio/error.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -60,6 +61,13 @@ struct WebSocket::Connection {
           "the other side closed it ({}{}{})", static_cast<unsigned>(stream.reason().code),
           stream.reason().reason.empty() ? "" : ": ",
           std::string_view(stream.reason().reason.data(), stream.reason().reason.size()));
+    // Where a peer breaks the protocol, Beast closes its own end; if the peer does not answer the
+    // close frame, that is all it reports.
+    if (failed == asio::error::bad_descriptor)
+      why = fmt::format(
+          "the connection was closed: it sent what breaks the WebSocket protocol, or a message of "
+          "more than {} bytes",
+          limits.message_bytes);
     problem = Error{Errc::device, fmt::format("{}: {}", what, why)};
   }
 
