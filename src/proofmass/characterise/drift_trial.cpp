@@ -91,7 +91,9 @@ std::vector<double> best_times(const DriftEvidence& evidence,
 OrdinateFit settle(const DriftEvidence& evidence, ShapeAt& at, const MatrixXd& P, OrdinateFit fit) {
   for (int round = 0; round < most_rounds; ++round) {
     fit = fit_ordinates(evidence.contrasts(), P, restricted(evidence, at), fit.strength);
-    if (at.log_times.empty()) break;
+    // A shape that is a line to within the rounding of doubles leaves no density to weigh by.
+    const bool is_fitted = fit.density.allFinite() && fit.density.minCoeff() > 0.0;
+    if (at.log_times.empty() || !is_fitted) break;
     const std::vector<double> times = best_times(evidence, at, fit.density);
     double moved = 0.0;
     for (std::size_t k = 0; k < times.size(); ++k)

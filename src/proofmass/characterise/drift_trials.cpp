@@ -91,6 +91,8 @@ void DriftTrials::add(DriftShape shape) {
   if (shape == DriftShape::two_exponentials &&
       std::abs(trial.at.log_times[0] - trial.at.log_times[1]) < std::log(least_ratio))
     return;
+  // Long after switching on a rival may differ from a line by less than the rounding of doubles.
+  if (is_rival(shape) && !std::isfinite(criterion(trial))) return;
   trials_.push_back(std::move(trial));
 }
 
