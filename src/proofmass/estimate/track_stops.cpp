@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <span>
 #include <utility>
 
 #include "proofmass/core/chi_square.hpp"
@@ -58,8 +60,8 @@ std::vector<signal::Rest> united(std::vector<signal::Rest> rests) {
   return out;
 }
 
-// Means of the axes over blocks of a quarter of a second of each rest, and how far such means
-// scatter where the sensor is at rest.
+// Means of the axes over blocks of a quarter of a second of each rest, NaN where a block has no
+// reading, and how far such means scatter where the sensor is at rest.
 struct RestMeans {
   std::size_t length = 0;  // of a block, in samples
   std::vector<std::vector<std::array<double, 3>>> of_rest;
@@ -68,6 +70,11 @@ struct RestMeans {
 
 constexpr double far_level = 5.0;         // standard deviations of a block's mean
 constexpr std::size_t spread_blocks = 8;  // over which a scatter is taken
+
+double mean_of(View<double> part) {
+  const Moments found = moments(part);
+  return found.count > 0 ? found.mean : std::numeric_limits<double>::quiet_NaN();
+}
 
 // Standard deviation of the means of each run of spread_blocks blocks, one axis.
 void add_spreads(const std::vector<std::array<double, 3>>& means,
@@ -100,7 +107,7 @@ RestMeans rest_means(View<View<double>> axes,
     for (std::size_t k = rest.first; k + out.length <= rest.last + 1; k += out.length) {
       auto& mean = means.emplace_back();
       for (std::size_t a = 0; a < axes.size(); ++a)
-        mean[a] = moments(axes[a].subspan(k, out.length)).mean;
+        mean[a] = mean_of(axes[a].subspan(k, out.length));
     }
   }
   // The fiftieth part that scatters least is at rest, if anything is; it scatters by less than all
@@ -126,11 +133,11 @@ std::vector<std::array<std::size_t, 2>> steady_runs(const std::vector<std::array
     bool departs = k == means.size();
     const std::size_t from = std::max(first, k - std::min(k, reach));
     for (std::size_t a = 0; a < 3 && !departs; ++a) {
-      double before = 0.0;
-      for (std::size_t i = from; i < k; ++i) before += means[i][a];
-      const auto count = static_cast<double>(k - from);
-      departs = std::abs(means[k][a] - before / count) >
-                far_level * std[a] * std::sqrt(1.0 + 1.0 / count);
+      Moments before;
+      for (std::size_t i = from; i < k; ++i) before.add(means[i][a]);
+      const auto count = static_cast<double>(before.count);
+      departs = before.count > 0 && std::abs(means[k][a] - before.mean) >
+                                        far_level * std[a] * std::sqrt(1.0 + 1.0 / count);
     }
     if (!departs) continue;
     runs.push_back({first, k});
@@ -156,9 +163,11 @@ std::vector<SteadyPart> parts_of(const RestMeans& found, std::size_t rest) {
     SteadyPart part{rest, runs[r][0] + (r == 0 ? 0 : 1),
                     runs[r][1] - (r + 1 == runs.size() ? 0 : 1)};
     if (part.end <= part.first) continue;
-    for (std::size_t k = part.first; k < part.end; ++k)
-      for (std::size_t a = 0; a < 3; ++a)
-        part.level[a] += means[k][a] / static_cast<double>(part.size());
+    for (std::size_t a = 0; a < 3; ++a) {
+      Moments level;
+      for (std::size_t k = part.first; k < part.end; ++k) level.add(means[k][a]);
+      part.level[a] = level.mean;
+    }
     parts.push_back(part);
   }
   return parts;
@@ -170,16 +179,16 @@ bool same_level(const SteadyPart& one, const SteadyPart& other, const std::array
   return true;
 }
 
-// Of the parts of one rest those at the level that most blocks of all rests have: the others are
-// motion at an acceleration that stays for a while.
-void keep_usual_level(const std::vector<SteadyPart>& all,
+// Of the parts of one rest those at the level that most blocks of `near`, the rests around it,
+// have: the others are motion at an acceleration that stays for a while.
+void keep_usual_level(std::span<const SteadyPart> near,
                       const std::array<double, 3>& std,
                       std::vector<SteadyPart>& parts) {
   const SteadyPart* usual = nullptr;
   std::size_t most = 0;
   for (const SteadyPart& part : parts) {
     std::size_t blocks = 0;
-    for (const SteadyPart& other : all)
+    for (const SteadyPart& other : near)
       if (same_level(part, other, std)) blocks += other.size();
     if (blocks > most) usual = &part;
     most = std::max(most, blocks);
@@ -200,7 +209,7 @@ bool end_departs(View<View<double>> axes,
   const double share = static_cast<double>(found.length) / count;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const auto mean = [&](const signal::Rest& part) {
-      return moments(axes[a].subspan(part.first, part.last - part.first + 1)).mean;
+      return mean_of(axes[a].subspan(part.first, part.last - part.first + 1));
     };
     if (std::abs(mean(end) - mean(beside)) > far * found.std[a] * std::sqrt(1.0 + share))
       return true;
@@ -241,14 +250,19 @@ std::vector<signal::Rest> steady_parts(View<View<double>> axes,
     of_rest.push_back(parts_of(found, i));
     all.insert(all.end(), of_rest.back().begin(), of_rest.back().end());
   }
+  constexpr std::size_t reach = 1000;  // parts before and after, so that time grows with the rests
   std::vector<signal::Rest> steady;
+  std::size_t next = 0;  // of `all`, the first part of the rest
   for (std::size_t i = 0; i < rests.size(); ++i) {
+    const std::size_t from = next - std::min(next, reach);
+    next += of_rest[i].size();
     const std::size_t blocks = found.of_rest[i].size();
     if (blocks == 0 || (of_rest[i].size() == 1 && of_rest[i].front().size() == blocks)) {
       steady.push_back(without_onset(axes, found, rests[i]));
       continue;
     }
-    keep_usual_level(all, found.std, of_rest[i]);
+    keep_usual_level(std::span(all).subspan(from, std::min(next + reach, all.size()) - from),
+                     found.std, of_rest[i]);
     for (const SteadyPart& part : of_rest[i]) {
       const std::size_t first = rests[i].first;
       const signal::Rest kept{
