@@ -16,11 +16,15 @@ double length_s(const TrackSignal& signal, const signal::Rest& rest) {
   return signal.time_s[rest.last] - signal.time_s[rest.first];
 }
 
+bool is_rest(QuietStretch stretch) {
+  return stretch == QuietStretch::rest;
+}
+
 std::vector<signal::Rest> stops_of(const std::vector<signal::Rest>& stops,
                                    const StopHypothesis& hypothesis) {
   std::vector<signal::Rest> rests;
   for (std::size_t i = 0; i < stops.size(); ++i)
-    if (hypothesis.stretches[i] == QuietStretch::rest) rests.push_back(stops[i]);
+    if (is_rest(hypothesis.stretches[i])) rests.push_back(stops[i]);
   return rests;
 }
 
@@ -52,7 +56,7 @@ std::vector<TrackAlternative> alternatives_of(TrackSignal signal,
     TrackAlternative& alternative = alternatives.emplace_back();
     alternative.probability = hypothesis.probability;
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (hypothesis.stretches[i] != QuietStretch::rest)
+      if (!is_rest(hypothesis.stretches[i]))
         alternative.no_rests.push_back({signal.time_s[all[i].first], signal.time_s[all[i].last]});
     const Gaussian<3>& end = solved->pass.smoothed.back();
     alternative.displacement_m = {end.mean(inertial_axis::position_m), std::sqrt(end.cov(0, 0))};
@@ -60,11 +64,15 @@ std::vector<TrackAlternative> alternatives_of(TrackSignal signal,
   return alternatives;
 }
 
-// Whether the readings look like jerk with the loud ones of the stops left out; then they are.
+// Whether the readings look like jerk with the loud and the short ones of the stops left out; then
+// they are.
 bool leaves_jerk(TrackSignal& signal, const TrackOptions& options, Result<AlongAxis>& solved) {
-  if (options.take_as_acceleration) return false;
+  if (options.take_as_acceleration || signal.gravity == GravityContent::present) return false;
   TrackSignal quiet = signal;
   quiet.stops.rests = quiet_rests(signal);
+  std::erase_if(quiet.stops.rests, [&](const signal::Rest& rest) {
+    return length_s(signal, rest) < long_rest_s;  // may be quiet by chance
+  });
   quiet.stops.cruises = signal.stops.rests.size() - quiet.stops.rests.size();
   auto found = solve(quiet, options);
   if (!found) return false;
@@ -141,7 +149,9 @@ std::vector<TrackAlternative> settle_stops(TrackSignal& signal,
     return alternatives;
   }
   const StopHypothesis& likeliest = hypotheses.front();
-  if (hypotheses.size() > 1 && leaves_jerk(signal, options, solved)) return alternatives;
+  const bool all_rest = hypotheses.size() == 1 && std::ranges::all_of(likeliest.stretches, is_rest);
+  const bool some_are_loud = quiet_rests(signal).size() < signal.stops.rests.size();
+  if ((!all_rest || some_are_loud) && leaves_jerk(signal, options, solved)) return alternatives;
   if (likeliest.probability < clear) {
     alternatives = alternatives_of(signal, hypotheses, options);
     if (alternatives.empty() || probability_of_first(alternatives) >= clear) alternatives.clear();

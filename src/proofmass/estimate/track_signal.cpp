@@ -221,12 +221,39 @@ struct Window {
   Moments accel, velocity, position;
 };
 
-Window window_of(const TrackSeries& series, std::size_t first, std::size_t length) {
+Window window_of(const TrackSeries& series,
+                 const std::vector<double>& position,
+                 std::size_t first,
+                 std::size_t length) {
   const auto part = [&](const std::vector<double>& values) {
     return moments(View<double>(values).subspan(first, length));
   };
   return {series.time_s[first + length - 1] - series.time_s[first], part(series.accel_mps2),
-          part(series.velocity_mps), part(series.position_m)};
+          part(series.velocity_mps), part(position)};
+}
+
+// The position with every rest put to 0 that lies there within three standard deviations: where no
+// stop checks the velocity for long, an error of the level that nobody sees carries it away by the
+// cubic that leaves the velocity at both ends as it is.
+std::vector<double> closed_at_rests(const TrackSignal& signal, const TrackSeries& series) {
+  constexpr double within = 3.0;
+  std::vector<double> position = series.position_m;
+  double before = 0.0, before_s = series.time_s.front();  // of the rest before: taken off, its end
+  std::size_t done = 0;
+  for (const signal::Rest& rest : signal.stops.rests) {
+    const double here = series.position_m[rest.first];
+    const double off = std::abs(here) <= within * series.position_std_m[rest.first] ? here : 0.0;
+    const double length_s = series.time_s[rest.first] - before_s;
+    for (; done <= rest.last; ++done) {
+      const double s = std::clamp((series.time_s[done] - before_s) / length_s, 0.0, 1.0);
+      const double share = done >= rest.first ? 1.0 : s * s * (3.0 - 2.0 * s);
+      position[done] -= std::lerp(before, off, share);
+    }
+    before = off;
+    before_s = series.time_s[rest.last];
+  }
+  for (; done < position.size(); ++done) position[done] -= before;
+  return position;
 }
 
 double largest(const std::vector<double>& values) {
@@ -241,14 +268,15 @@ JerkSuspicion suspect_jerk(const TrackSignal& signal, const TrackSeries& series)
   JerkSuspicion found;
   const std::size_t n = series.time_s.size();
   if (signal.gravity == GravityContent::present || signal.stops.rests.empty()) return found;
-  const double far = largest(series.position_m), fastest = largest(series.velocity_mps);
+  const std::vector<double> position = closed_at_rests(signal, series);
+  const double far = largest(position), fastest = largest(series.velocity_mps);
   std::vector<unsigned char> resting(n, 0);
   double at_rests = 0.0;
   Moments still;
   for (const signal::Rest& rest : quiet_rests(signal))
     for (std::size_t k = rest.first; k <= rest.last; ++k) {
       resting[k] = 1;
-      at_rests = std::max(at_rests, std::abs(series.position_m[k]));
+      at_rests = std::max(at_rests, std::abs(position[k]));
       still.add(series.accel_mps2[k]);
     }
   double cruising_far = 0.0;
@@ -258,7 +286,7 @@ JerkSuspicion suspect_jerk(const TrackSignal& signal, const TrackSeries& series)
     if (std::find(begin, begin + static_cast<std::ptrdiff_t>(length), 1) !=
         begin + static_cast<std::ptrdiff_t>(length))
       continue;
-    const Window window = window_of(series, first, length);
+    const Window window = window_of(series, position, first, length);
     const bool cruising = std::abs(window.velocity.mean) < 0.15 * fastest &&
                           window.velocity.std() < 0.05 * fastest &&
                           window.accel.std() > 1.25 * still.std();

@@ -96,7 +96,7 @@ TEST(Track, CountsThereAndBackWithoutARestBetweenAsOneStroke) {
 
 // Where a harmonic motion turns, its acceleration stands still for a moment.
 TEST(Track, TakesNoTurningPointForARest) {
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Carriage carriage{.strokes_m = {0.5, -0.5, 0.5, -0.5},
                       .stroke_s = 2.5,
                       .dwell_s = 4.0,
@@ -205,9 +205,9 @@ TEST(Track, TheBandHoldsTheTruthAcrossMissingReadings) {
 }
 
 // A lift: it pushes off, cruises shaking, brakes. `derivative` gives jerk for acceleration.
-CarriageRecord lift(bool derivative) {
+CarriageRecord lift(bool derivative, std::uint64_t seed = 3) {
   CarriageRecord made;
-  std::mt19937_64 engine(3);
+  std::mt19937_64 engine(seed);
   std::normal_distribution<double> noise(0.0, 1.0);
   const auto accel = [](double t) {
     const auto push = [&](double begin, double sign) {
@@ -242,6 +242,14 @@ TEST(Track, NoticesAColumnThatIsJerkAndGivesNoFigure) {
   TrackOptions options = exact_scale();
   options.take_as_acceleration = true;
   EXPECT_TRUE(track(lift(true), options).smoother);
+}
+
+// How far an error of the level carries the position between two rests is no sign of either.
+TEST(Track, TellsJerkFromAccelerationWhateverTheNoise) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    EXPECT_TRUE(track(lift(true, seed)).suspected_jerk) << seed;
+    EXPECT_FALSE(track(lift(false, seed)).suspected_jerk) << seed;
+  }
 }
 
 TEST(Track, TakesNoCruiseForARest) {
