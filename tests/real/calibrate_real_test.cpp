@@ -10,6 +10,7 @@
 
 #include "proofmass/calibrate/multi_position.hpp"
 #include "proofmass/calibrate/pose_means.hpp"
+#include "proofmass/calibrate/session_noise.hpp"
 #include "proofmass/calibrate/validation.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/io/direction_label.hpp"
@@ -80,6 +81,15 @@ PoseMeans as_labelled(const Accelerometer& sensor) {
 MultiPosition fitted(const PoseMeans& means, MultiPositionOptions options) {
   options.noise_dof = means.noise_dof;
   return calibrate_positions(means.poses, options).value();
+}
+
+// With the wander of the biases from one position to the next, as the program allows for it.
+MultiPosition fitted_with_wander(const PoseMeans& means, MultiPositionOptions options) {
+  options.noise_dof = means.noise_dof;
+  const auto wander = calibrate::session_noise(means.poses, {&means.session, 1}, options);
+  if (!wander) return calibrate_positions(means.poses, options).value();
+  options.between = wander->between;
+  return calibrate_positions(wander->poses, options).value();
 }
 
 // --- imu_tk: an Xsens turned by hand, raw counts
@@ -283,7 +293,7 @@ TEST(CalibrationOfAPhone, WithoutTimeHasTheNormOfGravityAfterwards) {
   const PoseMeans means = at_rest(read(file, {.unit = parse_unit("m/s2").value()}));
   EXPECT_GE(means.poses.size(), 28U);
   EXPECT_LE(means.poses.size(), 36U);
-  const MultiPosition fit = fitted(means, {.gravity_mps2 = 9.81});
+  const MultiPosition fit = fitted_with_wander(means, {.gravity_mps2 = 9.81});
   EXPECT_EQ(fit.model, PoseModel::norm_9);
   double raw = 0.0, upright = 0.0, norm = 0.0;
   for (std::size_t k = 0; k < means.poses.size(); ++k) {
@@ -297,7 +307,7 @@ TEST(CalibrationOfAPhone, WithoutTimeHasTheNormOfGravityAfterwards) {
   const auto n = static_cast<double>(means.poses.size());
   EXPECT_NEAR(norm / n, 9.81, 0.01);
   EXPECT_GT(std::sqrt(raw / n), 0.2);
-  EXPECT_LT(fit.residual_rms_mps2, 0.035);
+  EXPECT_LT(fit.residual_rms_mps2, 0.04);
   EXPECT_NEAR(upright, 9.35, 0.05);
 }
 
