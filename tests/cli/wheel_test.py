@@ -74,7 +74,8 @@ class Wheel(CommandTest):
         self.succeed("simulate", "speeds.toml", "-o", "speeds.csv", "--rate", "100")
         ran = self.run_command("wheel", "speeds.csv", "--radius", "0.15", "--radius-std", "0.001", "--strict")
         self.assertEqual(ran.returncode, BAD_DATA, ran.stderr)
-        self.assertIn("--radius 150 mm +- 1 mm contradicts the recording, which says 100 mm", ran.stderr.decode())
+        self.assertRegex(ran.stderr.decode(),
+                         r"--radius 150 mm \+- 1 mm contradicts the recording, which says (99|100|101) mm")
         self.succeed("wheel", "speeds.csv", "--radius", "0.1", "--strict")
 
     def test_the_spin_axis_given_turned_round_turns_the_sign(self):

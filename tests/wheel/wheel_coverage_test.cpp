@@ -20,7 +20,7 @@ double least_coverage(std::size_t given) {
 
 class WheelCoverage : public testing::TestWithParam<Scenario> {};
 
-TEST_P(WheelCoverage, OfTurnsAndFinalAngleIsAsStated) {
+TEST_P(WheelCoverage, IsAsStated) {
   constexpr int recordings = 24;
   const Coverage found = wheel_world::coverage_of(GetParam(), 1000, recordings);
   EXPECT_LE(found.refused, 4U);
@@ -28,6 +28,13 @@ TEST_P(WheelCoverage, OfTurnsAndFinalAngleIsAsStated) {
     ASSERT_GT(tally->given(), 18U);
     EXPECT_GE(tally->coverage_95(), least_coverage(tally->given()));
     EXPECT_LT(tally->largest(), 5.0);
+  }
+  // Pushes by hand and a speed that ripples by 1 % are known to leave the constants a little too
+  // sure (docs/methods/wheel.md); a band that holds half of the time is no band.
+  for (const Tally* tally : {&found.radius, &found.bias, &found.scale, &found.skew}) {
+    if (tally->given() == 0) continue;
+    EXPECT_GE(tally->coverage_95(), least_coverage(tally->given()) - 0.1);
+    EXPECT_LT(tally->largest(), 8.0);
   }
 }
 

@@ -59,7 +59,7 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelStart& start,
       window_time_s_(lag_instants + 1),
       window_places_(lag_instants + 1) {
   now_.gravity_mps2 = start.gravity_mps2;
-  now_.rolling_radius_m = start.rolling_radius_m;
+  now_.rolling_radius_m.value = start.rolling_radius_m;
   now_.phase_rad = start.phase_rad;
   now_.delay_s = start.delay_s;
   now_.instants.assign(2, {0.0, {0, S == 2 ? 0 : WheelInstant::no_row}});
@@ -71,10 +71,27 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelStart& start,
   model_.noise.bias_walk_psd = std::max(model_.noise.bias_walk_psd, least_bias_walk_psd);
   main_ = prior_state<S>(start.prior);
   main_.x.mean.template tail<wheel::standing(S)>() = start.constants;
+  if (start.constants_cov.size() > 0) narrow_constants(start.constants_cov);
   places_cov_ = start.places_cov;
   for (int i = 0; i < places; ++i) seat(i);
   rivals_[0] = {rival_factor, main_};
   rivals_[1] = {1.0 / rival_factor, main_};
+}
+
+/// Not as the prior leaves the constants, which would let them swallow the first motion, but twice
+/// as uncertain as they were found: the filter meets the same readings once more. Nor more than
+/// that prior, and the places stay held.
+template <int S>
+void LiveWheelFilter<S>::narrow_constants(const Eigen::MatrixXd& found_cov) {
+  constexpr int first = wheel::first_of(0), count = wheel::standing(S) - places;
+  const Mat<count> prior_std = main_.x.cov.diagonal().template segment<count>(first).cwiseSqrt();
+  Mat<count> by;
+  for (int i = 0; i < count; ++i) {
+    const double found_std = std::sqrt(found_cov(i, i));
+    by(i) = found_std > 0.0 ? std::min(2.0, prior_std(i) / found_std) : 0.0;
+  }
+  main_.x.cov.template block<count, count>(first, first) =
+      by.asDiagonal() * found_cov.topLeftCorner<count, count>() * by.asDiagonal();
 }
 
 template <int S>

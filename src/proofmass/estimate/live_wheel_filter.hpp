@@ -66,6 +66,7 @@ class LiveWheelFilter {
     double innovation2 = 0.0, explained = 0.0, readings = 0.0;
   };
 
+  void narrow_constants(const Eigen::MatrixXd& found_cov);
   void seat(int place);
   void read(const LiveInstant& instant);
   void set_variance();

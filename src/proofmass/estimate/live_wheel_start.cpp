@@ -80,7 +80,7 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveInstant>& instants,
   LiveWheelStart start;
   for (const Single& single : pair.singles) start.planes.push_back(single.prepared.plane);
   start.gravity_mps2 = joint.readings.gravity_mps2;
-  start.rolling_radius_m = joint.readings.rolling_radius_m;
+  start.rolling_radius_m = joint.readings.rolling_radius_m.value;
   start.phase_rad = joint.readings.phase_rad;
   start.delay_s = joint.readings.delay_s;
   start.noise = joint.fit.track.noise;
@@ -88,6 +88,7 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveInstant>& instants,
     start.variance_m2ps4[s] =
         static_cast<double>(each) * *median(joint.readings.sensors[s].variance_m2ps4);
   start.constants = joint.fit.constants;
+  if (!carries_a_vehicle(joint.readings)) start.constants_cov = joint.fit.constants_cov;
   const auto places = static_cast<Eigen::Index>(2 * count);
   start.places_cov = joint.fit.constants_cov.bottomRightCorner(places, places);
   start.whole_turn = std::abs(joint.fit.turns.value) >= 1.0;

@@ -20,7 +20,9 @@ struct LiveWheelStart {
   WheelNoise noise;
   std::array<double, 2> variance_m2ps4{};  ///< of a reading of each sensor, at the instants' rate
   WheelPrior prior;                        ///< of the state at the first instant
-  Eigen::VectorXd constants;               ///< where to make the readings linear about at first
+  /// The places' in it; empty where the hub shakes, for the first seconds of a road tell little.
+  Eigen::MatrixXd constants_cov;
+  Eigen::VectorXd constants;  ///< where to make the readings linear about at first
   Eigen::MatrixXd places_cov;
   bool whole_turn = false;  ///< else the constants are believed more than shown
   std::vector<Note> notes;

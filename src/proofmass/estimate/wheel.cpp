@@ -220,24 +220,24 @@ void judge_turns(const WheelFit& fit, const std::string& where, WheelSolution& s
            "cannot be distinguished"});
 }
 
-/// A wheel that shakes more when it turns is most likely under a vehicle, whose speeding up leans
-/// on the apparent gravity.
-void note_travel(const WheelReadings& readings,
-                 const WheelOptions& options,
-                 WheelSolution& solution) {
-  if (options.rolling_radius_m || !carries_a_vehicle(readings)) return;
+/// A wheel that shakes is most likely under a vehicle, whose speeding up leans on the apparent
+/// gravity.
+void note_travel(const WheelReadings& readings, WheelSolution& solution) {
+  if (readings.given_rolling_radius_m || !carries_a_vehicle(readings)) return;
   double strongest = 0.0;
   for (const double accel : solution.series.accel_radps2)
     strongest = std::max(strongest, std::abs(accel));
-  const double lean_deg = vehicle_rolling_radius_m * strongest / options.gravity_mps2 / rad_per_deg;
-  solution.notes.push_back({Severity::info,
-                            "the wheel shakes as if it carried a vehicle: while that speeds up or "
-                            "brakes, the angle leans by "
-                            "rolling radius x acceleration / g, at most " +
-                                std::to_string(static_cast<int>(std::ceil(lean_deg))) +
-                                " degrees here for 0.3 m, and comes back; --rolling-radius takes "
-                                "it out. The turns between "
-                                "two rests do not change"});
+  const Uncertain& rolling = readings.rolling_radius_m;
+  const double lean_deg = rolling.std * strongest / readings.gravity_mps2 / rad_per_deg;
+  solution.notes.push_back(
+      {Severity::info,
+       "the wheel shakes as if it carried a vehicle, whose speeding up and braking shift the "
+       "apparent gravity by rolling radius x angular acceleration / g: the rolling radius is taken "
+       "as " +
+           std::to_string(std::lround(rolling.value * 1e3)) + " mm +- " +
+           std::to_string(std::lround(rolling.std * 1e3)) + " mm, which leaves up to " +
+           std::to_string(static_cast<int>(std::ceil(lean_deg))) +
+           " degrees of the angle open meanwhile; --rolling-radius narrows it (0 for a bench)"});
 }
 
 /// Errors: invalid_argument (a radius so far from the recording's that its unit must be another).
@@ -287,7 +287,7 @@ Result<WheelSolution> conclude(const WheelReadings& readings,
     solution.consistency.channels[i].name = solution.sensors[i / each].name + names[i % each];
   solution.not_observable = say_not_observable(fit, solution.sensors);
   add_gated(solution);
-  note_travel(readings, options, solution);
+  note_travel(readings, solution);
   if (const Status radius = check_radius(fit, options, solution); !radius) return radius.error();
   judge_turns(fit, doubtful, solution);
   return solution;

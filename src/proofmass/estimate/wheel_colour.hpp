@@ -33,43 +33,50 @@ class BlockVariance {
   double sum_ = 0.0, own_ = 0.0, blocks_ = 0.0;
 };
 
-/// Inflation of the standard deviations of all constant states (from wheel::first_of(0) on), from
-/// blocks of a fortieth of the recording, at least one second.
+/// The scores of the constants (all that stands, from wheel::first_of(0) on) summed over blocks: of
+/// a reading z at the smoothed state, h (z − ẑ)/R. The smoothed residual over R is Σ⁻¹ times the
+/// whole misfit, Σ the covariance of readings with the motion integrated out, so that these are the
+/// scores of the marginal likelihood. Source: S. J. Koopman, Biometrika 80 (1993) 117.
 template <int S>
-class StandingColour {
+class ScoreBlocks {
  public:
-  explicit StandingColour(const std::vector<double>& time_s)
-      : time_s_(time_s), block_s_(std::max(1.0, (time_s.back() - time_s.front()) / 40.0)) {}
+  static constexpr int count = wheel::standing(S);
 
-  void add(std::size_t k, const StepOf<WheelModel<S>>& step) {
-    if (time_s_[k] - time_s_.front() >= end_s_) {
-      for (BlockVariance& of_state : states_) of_state.end_block();
-      end_s_ = time_s_[k] - time_s_.front() + block_s_;
+  explicit ScoreBlocks(double block_s) : block_s_(block_s) {}
+
+  /// Readings at the smoothed state, of an instant no later than the last added.
+  void add(double time_s, const Readings<wheel::states(S), WheelModel<S>::channels>& readings) {
+    if (time_s < end_s_) {
+      end_block();
+      end_s_ = time_s - block_s_;
     }
-    for (int i = 0; i < step.count; ++i) {
-      const auto& u = step.updates[static_cast<std::size_t>(i)];
-      if (!u.used) continue;
-      const double pull = u.innovation / u.variance;
-      for (int j = 0; j < wheel::standing(S); ++j)
-        states_[static_cast<std::size_t>(j)].add(u.h(wheel::first_of(0) + j) * pull);
+    for (int i = 0; i < readings.count; ++i) {
+      const auto& row = readings.rows[static_cast<std::size_t>(i)];
+      const double most = wheel_gate.huber * std::sqrt(row.variance);
+      sum_ += std::clamp(row.value - row.predicted, -most, most) / row.variance *
+              row.h.template tail<count>();
     }
   }
 
-  /// By which each standard deviation grows.
-  [[nodiscard]] Eigen::VectorXd factors() {
-    Eigen::VectorXd factors(wheel::standing(S));
-    for (int j = 0; j < wheel::standing(S); ++j) {
-      BlockVariance& of_state = states_[static_cast<std::size_t>(j)];
-      of_state.end_block();
-      factors(j) = std::sqrt(of_state.ratio());
-    }
-    return factors;
+  /// Covariance of the scores' sum.
+  [[nodiscard]] Eigen::MatrixXd covariance() {
+    end_block();
+    const double n = std::max(blocks_, 2);
+    return n / (n - 1.0) * squares_;
   }
 
  private:
-  const std::vector<double>& time_s_;
-  double block_s_, end_s_ = 0.0;
-  std::array<BlockVariance, static_cast<std::size_t>(wheel::standing(S))> states_{};
+  void end_block() {
+    if (sum_.isZero()) return;
+    squares_ += sum_ * sum_.transpose();
+    sum_.setZero();
+    ++blocks_;
+  }
+
+  double block_s_, end_s_ = std::numeric_limits<double>::infinity();
+  int blocks_ = 0;
+  Mat<count> sum_ = Mat<count>::Zero();
+  Mat<count, count> squares_ = Mat<count, count>::Zero();
 };
 
 /// Inflation of the angle's standard deviation, from blocks as long as the smoother's effective

@@ -144,6 +144,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
                           .rate_hz = readings.rate_hz(),
                           .gate = wheel_gate.limit});
   AngleColour<S> colour;
+  LostShare lost(readings.gravity_mps2);
   const auto tell = [&](std::string_view stage, std::size_t done) {
     if (progress && done % 65536 == 0)
       progress(stage, static_cast<double>(done) / static_cast<double>(size));
@@ -161,6 +162,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
         }
         end = step.filtered;
         colour.add(step);
+        lost.add(step);
         note_forward(model, k, step, check, fit);
         tell("filter", k);
       },
@@ -170,6 +172,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
         tell("smoother", size - k);
       });
   filter_calibrated(model, settled.prior, {first_mean, end.cov}, fit.series);
+  fit.track.lost = lost.share();
   fit.consistency = check.judge();
   constexpr int count = wheel::standing(S);
   fit.constants = end.mean.template tail<count>();
@@ -192,19 +195,17 @@ void add_in_square(double& std, double more) {
   std = std::hypot(std, more);
 }
 
-/// What a run with an outer figure a little way off makes of the results.
-struct MovedRun {
+/// The smoothed motion and the constants of one run.
+struct Run {
   std::vector<double> angle_rad, speed_radps, accel_radps2;
   Eigen::VectorXd constants{};
   double turns = 0.0;
-  bool slipped = false;  ///< its angle went another way than the fit's
 };
 
 template <int S>
-MovedRun run_moved(const WheelModel<S>& model, const WheelPrior& prior, const WheelFit& fit) {
-  constexpr double slip_rad = 0.5;
+Run run_at(const WheelModel<S>& model, const WheelPrior& prior) {
   const std::size_t size = model.size();
-  MovedRun run{std::vector<double>(size), std::vector<double>(size), std::vector<double>(size)};
+  Run run{std::vector<double>(size), std::vector<double>(size), std::vector<double>(size)};
   Gaussian<wheel::states(S)> end = prior_state<S>(prior).x;
   smooth(
       model, prior_state<S>(prior), wheel_gate,
@@ -214,85 +215,107 @@ MovedRun run_moved(const WheelModel<S>& model, const WheelPrior& prior, const Wh
         run.angle_rad[k] = now.angle;
         run.speed_radps[k] = now.speed;
         run.accel_radps2[k] = now.accel;
-        run.slipped = run.slipped || !(std::abs(now.angle - fit.series.angle_rad[k]) < slip_rad);
       });
-  run.constants = end.mean.tail(fit.constants.size());
+  run.constants = end.mean.template tail<wheel::standing(S)>();
   run.turns = turns_in(model, end).value;
   return run;
 }
 
-/// Adds what one outer figure's uncertainty makes of everything else: the whole smoothed again with
-/// the figure a share of its standard deviation off, and the differences drawn out to one. A run
-/// that slips is tried again with a smaller share.
-template <class Run>
-void add_moved(const Run& run_at, double share, WheelFit& fit) {
-  MovedRun run = run_at(share);
-  for (int again = 0; run.slipped && again < 3; ++again) run = run_at(share *= 0.1);
-  if (run.slipped) return;
-  const double reach = 1.0 / share;
-  WheelSeries& series = fit.series;
-  for (std::size_t k = 0; k < run.angle_rad.size(); ++k) {
-    const double angle = reach * (run.angle_rad[k] - series.angle_rad[k]);
-    add_in_square(series.angle_std_rad[k], angle);
-    add_in_square(series.filtered_angle_std_rad[k], angle);
-    add_in_square(series.speed_std_radps[k], reach * (run.speed_radps[k] - series.speed_radps[k]));
-    add_in_square(series.accel_std_radps2[k],
-                  reach * (run.accel_radps2[k] - series.accel_radps2[k]));
-  }
-  const Eigen::VectorXd change = reach * (run.constants - fit.constants);
-  fit.constants_cov += change * change.transpose();
-  add_in_square(fit.turns.std, reach * (run.turns - fit.turns.value));
-}
-
-/// Along each principal direction of the places' covariance, not a standard deviation at once:
-/// where the recording hardly tells the places, that is no small step.
+/// What the figures leave open that the passes hold: the places, the delay of the sensors' filters
+/// and the radius that the wheel rolls on, of which the last two show reliably in no likelihood.
+/// The whole is smoothed again with the figure a share of its standard deviation off, and the
+/// differences are drawn out to one. On the averaged readings, since differences are smooth.
 template <int S>
-void add_places_uncertainty(const WheelReadings& readings,
-                            const Settled<S>& settled,
-                            const WheelPath& about,
-                            WheelFit& fit) {
-  constexpr double longest_step_m = 2e-3;
-  const SymmetricEigen axes = symmetric_eigen(settled.places_cov);
-  for (Eigen::Index i = 0; i < axes.values.size(); ++i) {
-    const double std_m = std::sqrt(std::max(axes.values(i), 1e-16));
-    const auto run_at = [&](double share) {
-      WheelPrior moved = settled.prior;
-      *moved.places += share * std_m * axes.vectors.col(i);
-      return run_moved(held_model<S>(readings, settled.noise, about), moved, fit);
+class HeldFigures {
+ public:
+  HeldFigures(const WheelReadings& readings, const Settled<S>& settled, const WheelPath& about)
+      : readings_(readings),
+        settled_(settled),
+        about_(about),
+        levers_(levers_of(about, readings)),
+        base_(run_at(model(), settled.prior)),
+        base_places_(places_of(model())) {}
+
+  /// Along each principal direction of their covariance, not a standard deviation at once: where
+  /// the recording hardly shows the places, that is no small step.
+  void add_places(WheelFit& fit) const {
+    constexpr double longest_step_m = 2e-3;
+    const SymmetricEigen axes = symmetric_eigen(settled_.places_cov);
+    for (Eigen::Index i = 0; i < axes.values.size(); ++i) {
+      const double std_m = std::sqrt(std::max(axes.values(i), 1e-16));
+      const auto moved = [&](double share) {
+        WheelPrior prior = settled_.prior;
+        *prior.places += share * std_m * axes.vectors.col(i);
+        return run_at(model(), prior);
+      };
+      add(moved, std::min(1.0, longest_step_m / std_m), fit);
+    }
+  }
+
+  /// The places are found anew under the other figure.
+  void add(double WheelModel<S>::* figure, double std, WheelFit& fit) const {
+    if (!(std > 0.0)) return;
+    const auto moved = [&](double share) {
+      auto other = model();
+      other.*figure += share * std;
+      WheelPrior prior = settled_.prior;
+      *prior.places += places_of(other) - base_places_;
+      return run_at(other, prior);
     };
-    add_moved(run_at, std::min(1.0, longest_step_m / std_m), fit);
+    add(moved, 1.0, fit);
   }
-}
 
-/// The delay of the sensors' filters shows in nothing but this.
-template <int S>
-void add_delay_uncertainty(const WheelReadings& readings,
-                           const Settled<S>& settled,
-                           const WheelPath& about,
-                           WheelFit& fit) {
-  if (!(readings.delay_s.std > 0.0)) return;
-  const auto run_at = [&](double share) {
-    auto model = held_model<S>(readings, settled.noise, about);
-    model.delay_s += share * readings.delay_s.std;
-    return run_moved(model, settled.prior, fit);
-  };
-  add_moved(run_at, 1.0, fit);
-}
+ private:
+  [[nodiscard]] WheelModel<S> model() const {
+    return held_model<S>(readings_, settled_.noise, about_);
+  }
+  [[nodiscard]] Places places_of(const WheelModel<S>& model) const {
+    return places_by_levers(model, levers_, settled_.prior, settled_.belief).mean;
+  }
 
-/// A wheel that rolls and speeds up leans the apparent gravity, and makes it stronger.
-template <int S>
-void add_rolling_uncertainty(const WheelReadings& readings,
-                             const Settled<S>& settled,
-                             const WheelPath& about,
-                             WheelFit& fit) {
-  if (readings.rolling_radius_m > 0.0 || !carries_a_vehicle(readings)) return;
-  const auto run_at = [&](double share) {
-    auto model = held_model<S>(readings, settled.noise, about);
-    model.rolling_radius_m = share * vehicle_rolling_radius_m;
-    return run_moved(model, settled.prior, fit);
-  };
-  add_moved(run_at, 1.0, fit);
-}
+  /// Whether the run's angle goes another way.
+  [[nodiscard]] bool slips(const Run& run) const {
+    constexpr double slip_rad = 0.5;
+    return !std::ranges::equal(run.angle_rad, base_.angle_rad,
+                               [](double a, double b) { return std::abs(a - b) < slip_rad; });
+  }
+
+  /// A run that slips is tried again with a smaller share.
+  template <class RunAt>
+  void add(const RunAt& moved, double share, WheelFit& fit) const {
+    Run run = moved(share);
+    for (int again = 0; slips(run) && again < 3; ++again) run = moved(share *= 0.1);
+    if (slips(run)) return;
+    const double reach = 1.0 / share;
+    WheelSeries& series = fit.series;
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < series.time_s.size(); ++k) {
+      const auto& times = readings_.time_s;
+      while (at + 2 < times.size() && times[at + 1] <= series.time_s[k]) ++at;
+      const double part =
+          std::clamp((series.time_s[k] - times[at]) / (times[at + 1] - times[at]), 0.0, 1.0);
+      const auto off = [&](std::vector<double> Run::* of) {
+        return reach * std::lerp((run.*of)[at] - (base_.*of)[at],
+                                 (run.*of)[at + 1] - (base_.*of)[at + 1], part);
+      };
+      const double angle = off(&Run::angle_rad);
+      add_in_square(series.angle_std_rad[k], angle);
+      add_in_square(series.filtered_angle_std_rad[k], angle);
+      add_in_square(series.speed_std_radps[k], off(&Run::speed_radps));
+      add_in_square(series.accel_std_radps2[k], off(&Run::accel_radps2));
+    }
+    const Eigen::VectorXd change = reach * (run.constants - base_.constants);
+    fit.constants_cov += change * change.transpose();
+    add_in_square(fit.turns.std, reach * (run.turns - base_.turns));
+  }
+
+  const WheelReadings& readings_;
+  const Settled<S>& settled_;
+  const WheelPath& about_;
+  WheelLevers levers_;
+  Run base_;
+  Places base_places_;
+};
 
 /// Gravity is what scales and places are measured with: were it larger by a part, the scales would
 /// be smaller and the places larger by that part, the angle the same. `believed` is the share of
@@ -357,6 +380,7 @@ template <int S>
 WheelFit fit_sensors(WheelReadings& readings,
                      WheelTrack track,
                      const PlacesPrior& belief,
+                     FitDepth depth,
                      const Progress& progress) {
   constexpr int ripple_at = wheel::ripple(S) - wheel::first_of(0);
   if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
@@ -364,26 +388,28 @@ WheelFit fit_sensors(WheelReadings& readings,
   const std::size_t each = readings_to_average(readings, track);
   WheelReadings coarse = averaged(readings, each);
   WheelTrack coarse_track = spread_track(track, readings, coarse);
-  Settled<S> settled = settle_rounds<S>(coarse, coarse_track, belief, S == 1 ? 4 : 2, progress);
-  track = spread_track(coarse_track, coarse, readings);
+  const int rounds = S == 1 && depth == FitDepth::whole ? 4 : 2;
+  Settled<S> settled = settle_rounds<S>(coarse, coarse_track, belief, rounds, progress);
   // A warm-up is no random walk: it drifts fastest at the start, where the turns begin to be
   // counted.
   settled.noise.bias_walk_psd *= 3.0;
-  track.noise = settled.noise;
-  const auto model = held_model<S>(readings, settled.noise, track.path);
+  improve(coarse, settled, coarse_track);
+  settled.prior.beginning = coarse_track.beginning;
   spread_variance(coarse, each, readings);
-  settle_variance(model, settled.prior, readings);
-  improve(readings, settled, track);
-  settled.prior.beginning = track.beginning;
-  settle_variance(model, settled.prior, readings);
+  readings.rolling_radius_m = coarse.rolling_radius_m;
+  if (depth == FitDepth::track)
+    return smooth_at_places(coarse, settled, coarse_track.path, progress);
+  track = spread_track(coarse_track, coarse, readings);
+  settle_variance(held_model<S>(readings, settled.noise, track.path), settled.prior, readings);
   WheelFit fit = smooth_at_places(readings, settled, track.path, progress);
   constexpr int count = wheel::standing(S);
   fit.constants_prior_cov =
       prior_state<S>(settled.prior).x.cov.template bottomRightCorner<count, count>();
   fit.constants_prior_cov.template bottomRightCorner<2 * S, 2 * S>() = belief.cov;
-  add_places_uncertainty(readings, settled, track.path, fit);
-  add_delay_uncertainty(readings, settled, track.path, fit);
-  add_rolling_uncertainty(readings, settled, track.path, fit);
+  const HeldFigures<S> held(coarse, settled, coarse_track.path);
+  held.add_places(fit);
+  held.add(&WheelModel<S>::delay_s, readings.delay_s.std, fit);
+  held.add(&WheelModel<S>::rolling_radius_m, readings.rolling_radius_m.std, fit);
   add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
   fit.turns_candidates = turns_candidates(fit);
   return fit;
@@ -392,20 +418,34 @@ WheelFit fit_sensors(WheelReadings& readings,
 }  // namespace
 
 bool carries_a_vehicle(const WheelReadings& readings) {
+  constexpr double shaking_density = 1e-4;  // (m/s²)²/Hz: no sensor's noise is above 1 mg/√Hz
   const auto& variance = readings.sensors.front().variance_m2ps4;
   const auto loud = quantile(variance, 0.9), quiet = quantile(variance, 0.05);
-  return loud && *loud >= 4.0 * *quiet;
+  return loud && (*loud >= 4.0 * *quiet || 2.0 * *loud > shaking_density * readings.rate_hz());
+}
+
+void assume_rolling_radius(WheelReadings& readings) {
+  constexpr double of_given = 0.03, vehicle_m = 0.4, smooth_m = 0.05;
+  if (readings.given_rolling_radius_m) {
+    const double given_m = *readings.given_rolling_radius_m;
+    readings.rolling_radius_m = {given_m, of_given * given_m};
+  } else if (carries_a_vehicle(readings)) {
+    readings.rolling_radius_m = {vehicle_m / 2.0, vehicle_m / std::numbers::sqrt3 / 2.0};
+  } else {
+    readings.rolling_radius_m = {0.0, smooth_m};
+  }
 }
 
 WheelFit fit_wheel(WheelReadings& readings,
                    WheelTrack track,
                    const PlacesPrior& places_prior,
+                   FitDepth depth,
                    const Progress& progress) {
   PM_EXPECTS(!readings.sensors.empty() && readings.sensors.size() <= 2);
   PM_EXPECTS(readings.instants.size() >= 2 && track.path.moving.size() == readings.instants.size());
   if (readings.sensors.size() == 1)
-    return fit_sensors<1>(readings, std::move(track), places_prior, progress);
-  return fit_sensors<2>(readings, std::move(track), places_prior, progress);
+    return fit_sensors<1>(readings, std::move(track), places_prior, depth, progress);
+  return fit_sensors<2>(readings, std::move(track), places_prior, depth, progress);
 }
 
 }  // namespace proofmass::estimate

@@ -17,9 +17,10 @@ namespace proofmass::estimate {
 struct WheelReadings {
   double gravity_mps2 = standard_gravity_mps2;  ///< its component in the plane of the wheel
   double gravity_std_mps2 = 0.0;                ///< of that, for want of knowing the axle's tilt
-  double rolling_radius_m = 0.0;
-  Uncertain delay_s{};     ///< of the sensors' filters
-  double phase_rad = 0.0;  ///< of the second sensor against the first, as known so far
+  std::optional<double> given_rolling_radius_m;
+  Uncertain rolling_radius_m{};  ///< as assume_rolling_radius() sets it
+  Uncertain delay_s{};           ///< of the sensors' filters
+  double phase_rad = 0.0;        ///< of the second sensor against the first, as known so far
   RippleOrders orders = first_orders;
   std::vector<double> time_s;
   std::vector<WheelInstant> instants;
@@ -44,10 +45,12 @@ struct ConstantsPrior {
 /// circle, on which bias, scale and angle stand for each other, so more has to be believed.
 inline constexpr ConstantsPrior short_way_prior{0.2, 0.01, 0.01, 0.5, 0.1};
 
-/// Whether the wheel shakes more when it turns, as one does that carries a vehicle.
+/// Whether the wheel shakes more than a sensor's noise, or more when it turns, as one does that
+/// carries a vehicle.
 [[nodiscard]] bool carries_a_vehicle(const WheelReadings& readings);
-/// What such a wheel may roll on, one standard deviation about a bench's 0.
-inline constexpr double vehicle_rolling_radius_m = 0.3;
+/// What the wheel rolls on, by how it shakes, where that is not given: that of a vehicle between 0
+/// and 0.4 m, each as likely; else a bench's 0, to what something small and smooth may have.
+void assume_rolling_radius(WheelReadings& readings);
 
 /// How the motion begins, for a filter that has seen nothing yet.
 struct Beginning {
@@ -109,10 +112,18 @@ struct PlacesPrior {
 /// The angle is anybody's guess where its prediction is less sure than this: a turn may be lost.
 inline constexpr double lost_prediction_rad = 0.8;
 
-/// Settles noise, places and constants about the track, then smooths.
+/// How far a fit goes.
+enum class FitDepth {
+  whole,
+  track,  ///< motion and noise on averaged readings, for a sensor whose fit with another follows
+};
+
+/// Settles noise, places and constants about the track, then smooths. A fit to FitDepth::track has
+/// series on the averages' time line, and no more bands than the smoother's own.
 [[nodiscard]] WheelFit fit_wheel(WheelReadings& readings,
                                  WheelTrack track,
                                  const PlacesPrior& places_prior,
+                                 FitDepth depth,
                                  const Progress& progress);
 
 }  // namespace proofmass::estimate

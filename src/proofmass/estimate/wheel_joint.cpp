@@ -41,7 +41,7 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
                        options.gravity_mps2, options.axle_tilt_std_rad);
   readings.gravity_mps2 = gravity.value;
   readings.gravity_std_mps2 = gravity.std;
-  readings.rolling_radius_m = options.rolling_radius_m.value_or(0.0);
+  readings.given_rolling_radius_m = options.rolling_radius_m;
   for (std::size_t s = 0; s < sensors.size(); ++s)
     readings.sensors.push_back(project(*sensors[s], prepared[s]->screened, prepared[s]->plane));
   std::array<std::size_t, 2> next{};
@@ -112,14 +112,15 @@ Uncertain radius_in(const WheelFit& fit, std::size_t sensors, std::size_t sensor
 /// Fits once without the radius and, where one is given, again with it.
 WheelFit fit_with_radius(WheelReadings& readings,
                          const WheelTrack& track,
+                         FitDepth depth,
                          const WheelOptions& options) {
   const std::size_t sensors = readings.sensors.size();
-  WheelFit free =
-      fit_wheel(readings, track, anywhere(sensors, ConstantsPrior{}.place_m), options.progress);
-  if (!options.radius_m) return free;
+  WheelFit free = fit_wheel(readings, track, anywhere(sensors, ConstantsPrior{}.place_m), depth,
+                            options.progress);
+  if (!options.radius_m || depth == FitDepth::track) return free;
   const Uncertain radius_m{*options.radius_m, radius_std_m(options)};
   WheelFit held =
-      fit_wheel(readings, free.track, on_circles(free, sensors, radius_m), options.progress);
+      fit_wheel(readings, free.track, on_circles(free, sensors, radius_m), depth, options.progress);
   held.given_radius_m = radius_m;
   for (std::size_t s = 0; s < sensors; ++s)
     held.free_radius_m.push_back(radius_in(free, sensors, s));
@@ -132,8 +133,15 @@ double top_speed_radps(const WheelFit& fit) {
   return top;
 }
 
+/// Whether the settled fit explains much less than the track that it began with: a variance that
+/// grows with the misfit can talk a filter out of following the wheel.
+bool has_lost(const WheelFit& fit, const WheelTrack& begun) {
+  return fit.track.lost > 0.1 + 1.5 * begun.lost;
+}
+
 Result<Single> fit_single(const WheelSensor& sensor,
                           Prepared prepared,
+                          FitDepth depth,
                           const WheelOptions& options) {
   Single single{std::move(prepared), {}, {}};
   single.readings = merge({&sensor}, {&single.prepared}, 0.0, options);
@@ -148,8 +156,8 @@ Result<Single> fit_single(const WheelSensor& sensor,
     const WheelTrack track = find_track(single.readings, seek);
     if (track.lost > not_a_wheel) break;
     followed = true;
-    single.fit = fit_with_radius(single.readings, track, options);
-    if (top_speed_radps(single.fit) > fastest) continue;
+    single.fit = fit_with_radius(single.readings, track, depth, options);
+    if (top_speed_radps(single.fit) > fastest || has_lost(single.fit, track)) continue;
     if (single.fit.doubts.empty()) return single;
     if (!unsure) unsure = single;
   }
@@ -166,12 +174,12 @@ Result<Single> fit_single(const WheelSensor& sensor,
                    "readings not in m/s^2, or not a wheel); check --unit and --spin-axis"};
 }
 
-Result<Single> fit_single(const WheelSensor& sensor, const WheelOptions& options) {
+Result<Single> fit_single(const WheelSensor& sensor, FitDepth depth, const WheelOptions& options) {
   Prepared prepared{screen_rows(sensor), {}};
   const auto plane = find_plane(sensor, prepared.screened, options.spin_axis);
   if (!plane) return plane.error();
   prepared.plane = *plane;
-  return fit_single(sensor, std::move(prepared), options);
+  return fit_single(sensor, std::move(prepared), depth, options);
 }
 
 WheelMotion motion_of(const WheelFit& fit) {
@@ -186,7 +194,7 @@ Status check_wheel(std::size_t sensors, const WheelOptions& options) {
                  "a wheel takes one or two sensors, not " + std::to_string(sensors)};
   const bool positive =
       options.gravity_mps2 > 0.0 && options.radius_m.value_or(0.0) >= 0.0 &&
-      options.rim_radius_m.value_or(1.0) > 0.0 && options.rolling_radius_m.value_or(1.0) > 0.0 &&
+      options.rim_radius_m.value_or(1.0) > 0.0 && options.rolling_radius_m.value_or(0.0) >= 0.0 &&
       options.alignment_std_rad >= 0.0 && options.radius_std_m.value_or(0.0) >= 0.0 &&
       options.bandwidth_hz.value_or(1.0) > 0.0 && options.axle_tilt_std_rad >= 0.0;
   if (!positive)
@@ -206,8 +214,9 @@ Eigen::VectorXd places_in(const WheelFit& fit, std::size_t sensors) {
 
 Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOptions& options) {
   Pair pair;
+  const FitDepth depth = sensors.size() == 1 ? FitDepth::whole : FitDepth::track;
   for (const WheelSensor& sensor : sensors) {
-    auto single = fit_single(sensor, options);
+    auto single = fit_single(sensor, depth, options);
     if (!single) return single.error();
     pair.singles.push_back(std::move(single).value());
   }
@@ -217,7 +226,7 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
   if (way < -1e-4 && !options.spin_axis) {
     Prepared other = pair.singles[1].prepared;
     other.plane = turned_over(other.plane);
-    auto again = fit_single(sensors[1], std::move(other), options);
+    auto again = fit_single(sensors[1], std::move(other), depth, options);
     if (!again) return again.error();
     pair.singles[1] = std::move(again).value();
   }
@@ -264,7 +273,7 @@ Joint fit_jointly(const std::vector<WheelSensor>& sensors,
   track.path.standing << first.head<5>(), second.head<5>(), 0.0, first.segment<between>(ripple),
       first.segment<2>(gyro), second.segment<2>(gyro), first.tail<2>(), second.tail<2>();
   track.beginning.angle_rad = track.path.moving.front()(wheel::angle);
-  joint.fit = fit_with_radius(joint.readings, track, options);
+  joint.fit = fit_with_radius(joint.readings, track, FitDepth::whole, options);
   return joint;
 }
 

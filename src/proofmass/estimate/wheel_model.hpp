@@ -104,9 +104,10 @@ struct PlanarReadings {
 };
 
 /// What an earlier pass found. The readings are made linear about its constants; about its motion
-/// only where the filter's own prediction is half a radian away, which is a filter that slips. The
-/// prediction owes nothing to the reading it meets; a smoothed motion does, and columns of the
-/// Jacobian that share their noise with the readings bias what is fitted to them.
+/// only during the first turn and where the filter's own prediction is half a radian away, which is
+/// a filter that slips. The prediction owes nothing to the reading it meets; a smoothed motion
+/// does, and columns of the Jacobian that share their noise with the readings bias what is fitted
+/// to them.
 struct WheelPath {
   std::vector<Mat<wheel::moving>> moving;
   Eigen::VectorXd standing;  ///< in the state's order from wheel::first_of(0) on
@@ -143,12 +144,19 @@ struct WheelModel {
   std::array<const PlanarReadings*, 2> readings{};
   const WheelPath* about = nullptr;  ///< nullptr: the plain extended filter
 
+  /// Instants, from the first, at which the readings are linear about the path: until gravity has
+  /// gone round once, angle, biases and scales stand for each other, and slopes at a prediction
+  /// that is a tenth of a radian off would make the filter certain of what no later reading can
+  /// undo.
+  std::size_t first_turn = 0;
+
   const WheelLevers* levers = nullptr;  ///< for places that are not held, with `about`
 
   bool places_held = false;            ///< they have no variance and learn nothing
   bool with_ripple = false;            ///< otherwise there is none
   RippleOrders orders = first_orders;  ///< of the ripple, cycles a turn
   bool with_gyro = false;
+  bool constants_stand = false;  ///< biases, ripple and gyroscopes do not walk
 
   [[nodiscard]] std::size_t size() const { return instants->size(); }
   [[nodiscard]] int active() const {
@@ -216,6 +224,7 @@ struct WheelModel {
     step.Q.template topLeftCorner<3, 3>() += noise.jerk_psd * rough;
     step.mean = step.F * x.template head<moving>();
     step.walk.setZero();
+    if (constants_stand) return step;
     for (int s = 0; s < Sensors; ++s)
       step.walk.template segment<2>(wheel::first_of(s)).setConstant(noise.bias_walk_psd * t);
     if (with_ripple)
@@ -289,7 +298,7 @@ struct WheelModel {
     State at = x;
     const bool slips = std::abs(x(wheel::angle) - about->moving[k](wheel::angle)) > 0.5;
     // Places that are not held would at first outweigh gravity, and turn the angle.
-    if (slips || levers != nullptr) at.template head<moving>() = about->moving[k];
+    if (k < first_turn || slips || levers != nullptr) at.template head<moving>() = about->moving[k];
     at.template tail<wheel::standing(Sensors)>() = about->standing;
     if (places_held) at.template tail<2 * Sensors>() = x.template tail<2 * Sensors>();
     return at;

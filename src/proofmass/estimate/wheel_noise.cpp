@@ -94,6 +94,28 @@ void gather(const WheelReadings& readings,
   }
 }
 
+/// The variance of white noise in the readings by their third differences, which a wheel that turns
+/// little from reading to reading hardly shows in; 0 where it turns more than a tenth of a radian.
+/// Innovations alone would let a filter that follows every reading find no noise at all, and then
+/// believe each of them. A third difference of white noise has 1 + 9 + 9 + 1 times its variance.
+double least_variance(const PlanarReadings& sensor, double rate_hz, const WheelPath& path) {
+  constexpr double smooth_rad = 0.1, gain = 20.0;
+  for (const Mat<wheel::moving>& at : path.moving)
+    if (!(std::abs(at(wheel::speed)) < smooth_rad * rate_hz)) return 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>* axis : {&sensor.u_mps2, &sensor.v_mps2}) {
+    std::vector<double> differences;
+    for (std::size_t k = 3; k < axis->size(); ++k) {
+      const double third =
+          (*axis)[k] - 3.0 * (*axis)[k - 1] + 3.0 * (*axis)[k - 2] - (*axis)[k - 3];
+      if (!std::isnan(third)) differences.push_back(third);
+    }
+    const auto std = robust_std(differences);
+    least = std::min(least, std ? square(*std) / gain : 0.0);
+  }
+  return least;
+}
+
 /// Between these the motion's noise is looked for. A bias that walked faster could stand for
 /// gravity.
 constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e5, 1e8, 1e-4};
@@ -117,11 +139,14 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
     if (gyros[s].readings > 20.0) readings.sensors[s].speed_variance = gyros[s].variance();
     const VarianceProfile profile(stretches[s], length_s);
     if (profile.empty()) continue;
+    const double least = model.about == nullptr ? 0.0
+                                                : least_variance(readings.sensors[s],
+                                                                 readings.rate_hz(), *model.about);
     for (std::size_t k = 0; k < readings.instants.size(); ++k) {
       const std::int64_t row = readings.instants[k].row[s];
       if (row != WheelInstant::no_row)
         readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] =
-            profile.at(readings.time_s[k] - start_s);
+            std::max(profile.at(readings.time_s[k] - start_s), least);
     }
   }
 }

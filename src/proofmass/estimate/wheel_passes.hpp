@@ -29,7 +29,7 @@ template <int S>
 WheelModel<S> wheel_model(const WheelReadings& readings, const WheelNoise& noise) {
   WheelModel<S> model;
   model.gravity_mps2 = readings.gravity_mps2;
-  model.rolling_radius_m = readings.rolling_radius_m;
+  model.rolling_radius_m = readings.rolling_radius_m.value;
   model.phase_rad = readings.phase_rad;
   model.delay_s = readings.delay_s.value;
   model.orders = readings.orders;
@@ -91,13 +91,34 @@ FilterState<wheel::states(S)> prior_state(const WheelPrior& prior) {
   return state;
 }
 
-/// How well a forward run predicts. `lost` judges runs of different noise figures alike: mean of
-/// min(y²/c², 1) over the innovations y, c = 0.3 g, g gravity in the plane of the wheel. A run that
-/// has the wheel's phase scores near 0, one that has lost it above a half.
+/// How well a forward run predicts. `lost`, of LostShare, judges runs of different noise figures
+/// alike: a run that has the wheel's phase scores near 0, one that has lost it above a half.
 struct WheelScore {
   double lost = 0.0;
   double log_likelihood = 0.0;
-  std::size_t readings = 0;
+};
+
+/// Mean of min(y²/c², 1) over the innovations y, c = 0.3 g.
+class LostShare {
+ public:
+  explicit LostShare(double gravity_mps2) : c2_(std::pow(0.3 * gravity_mps2, 2)) {}
+
+  template <class Step>
+  void add(const Step& step) {
+    for (int i = 0; i < step.count; ++i) {
+      const double y = step.updates[static_cast<std::size_t>(i)].innovation;
+      sum_ += y * y < c2_ ? y * y / c2_ : 1.0;
+      ++readings_;
+    }
+  }
+  /// 1 where there were no readings.
+  [[nodiscard]] double share() const {
+    return readings_ > 0 ? sum_ / static_cast<double>(readings_) : 1.0;
+  }
+
+ private:
+  double c2_, sum_ = 0.0;
+  std::size_t readings_ = 0;
 };
 
 /// Huber's ρ of ν standard deviations, with what is gated no dearer than the gate's limit.
@@ -112,20 +133,19 @@ WheelScore score_run(const WheelModel<S>& model,
                      FilterState<wheel::states(S)> state,
                      std::size_t first,
                      std::size_t last) {
-  const double c2 = std::pow(0.3 * model.gravity_mps2, 2);
+  LostShare lost(model.gravity_mps2);
   WheelScore score;
   filter(model, first, last, wheel_gate, state, [&](std::size_t, const auto& step) {
+    lost.add(step);
     for (int i = 0; i < step.count; ++i) {
       const auto& u = step.updates[static_cast<std::size_t>(i)];
-      ++score.readings;
-      score.lost += std::min(u.innovation * u.innovation / c2, 1.0);
       score.log_likelihood -=
           0.5 * (std::log(2.0 * std::numbers::pi * u.expected) + surprise(std::sqrt(u.nis())));
     }
   });
-  if (score.readings > 0) score.lost /= static_cast<double>(score.readings);
+  score.lost = lost.share();
   if (std::isfinite(score.log_likelihood)) return score;
-  return {1.0, -std::numeric_limits<double>::infinity(), score.readings};
+  return {1.0, -std::numeric_limits<double>::infinity()};
 }
 
 /// Smooths and keeps the trajectory; returns the state after the last instant.
@@ -174,13 +194,12 @@ template <int S>
                                     const Excerpt<S>& excerpt,
                                     double first_factor);
 
-/// The levers of a path, on the time line of its instants.
-[[nodiscard]] WheelLevers levers_of(const WheelPath& path, const std::vector<double>& time_s);
+/// The levers of a path on the readings' time line.
+[[nodiscard]] WheelLevers levers_of(const WheelPath& path, const WheelReadings& readings);
 
 struct FoundPlaces {
   Places mean;
   Eigen::MatrixXd cov;
-  Eigen::VectorXd widened{};  ///< of all that stands: what colour does to its standard deviation
   double log_likelihood = 0.0;
 };
 
@@ -198,8 +217,17 @@ template <int S>
 template <int S>
 [[nodiscard]] FoundPlaces places_by_levers(WheelModel<S> model,
                                            const WheelLevers& levers,
-                                           const std::vector<double>& time_s,
                                            WheelPrior prior,
                                            const PlacesPrior& belief);
+
+/// By which the standard deviations of all that stands grow where the innovations are coloured:
+/// P⁻¹-weighted scores in blocks of a fortieth, a twentieth and a tenth of the recording, the
+/// shortest of a second at least; the most of these. At least 1.
+template <int S>
+[[nodiscard]] Eigen::VectorXd widening(WheelModel<S> model,
+                                       const WheelLevers& levers,
+                                       const std::vector<double>& time_s,
+                                       WheelPrior prior,
+                                       const PlacesPrior& belief);
 
 }  // namespace proofmass::estimate

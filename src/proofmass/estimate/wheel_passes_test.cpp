@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "proofmass/estimate/wheel_colour.hpp"
+#include "proofmass/estimate/wheel_settle.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 
 namespace proofmass::estimate::wheel_passes_test {
@@ -36,21 +37,23 @@ TEST(BlockVariance, OfWhatCancelsIsNoGain) {
 /// A path that speeds up evenly from `from_radps` to `to_radps` within ten seconds, at 100 Hz.
 struct Ramp {
   WheelPath path;
-  std::vector<double> time_s;
+  WheelReadings readings;  ///< their times; two rows, for the noise
   double accel_radps2;
 
   Ramp(double from_radps, double to_radps) : accel_radps2((to_radps - from_radps) / 10.0) {
     for (int k = 0; k <= 1000; ++k) {
       const double t = 0.01 * k;
-      time_s.push_back(t);
+      readings.time_s.push_back(t);
       path.moving.emplace_back(0.0, from_radps + accel_radps2 * t, accel_radps2, 0.0);
+      readings.instants.push_back({k == 0 ? 0.0 : 0.01, {k, WheelInstant::no_row}});
     }
+    readings.sensors.push_back({.u_mps2 = {}, .v_mps2 = {}, .variance_m2ps4 = {1e-4, 1e-4}});
   }
 };
 
 TEST(WheelLevers, OfASteadyWheelAreItsSquaredSpeedAndNoAcceleration) {
   const Ramp steady(20.0, 20.0);
-  for (const Mat<2>& lever : levers_of(steady.path, steady.time_s)) {
+  for (const Mat<2>& lever : levers_of(steady.path, steady.readings)) {
     EXPECT_DOUBLE_EQ(lever(0), 400.0);
     EXPECT_EQ(lever(1), 0.0);
   }
@@ -60,7 +63,7 @@ TEST(WheelLevers, OfASteadyWheelAreItsSquaredSpeedAndNoAcceleration) {
 // row more on one side it moves by ω α times a step.
 TEST(WheelLevers, OfARampAreMeansOverTheTurnAboutEachInstant) {
   const Ramp ramp(10.0, 30.0);
-  const WheelLevers levers = levers_of(ramp.path, ramp.time_s);
+  const WheelLevers levers = levers_of(ramp.path, ramp.readings);
   for (std::size_t k = 0; k < levers.size(); ++k) {
     const double w = ramp.path.moving[k](wheel::speed);
     const double half_s = 0.5 * rad_per_turn / w + 0.01;
@@ -69,6 +72,85 @@ TEST(WheelLevers, OfARampAreMeansOverTheTurnAboutEachInstant) {
     EXPECT_NEAR(levers[k](0), w * w, bound);
     EXPECT_NEAR(levers[k](1), ramp.accel_radps2, 1e-9);
   }
+}
+
+// A hub that shakes by 1 m/s² may be a vehicle's: three seconds, whatever the speed.
+TEST(WheelLevers, OfAWheelThatShakesAreMeansOverThreeSeconds) {
+  Ramp ramp(10.0, 30.0);
+  ramp.readings.sensors[0].variance_m2ps4 = {1.0, 1.0};
+  const double t = 5.0, w = 10.0 + ramp.accel_radps2 * t;
+  EXPECT_NEAR(levers_of(ramp.path, ramp.readings)[500](0),
+              w * w + std::pow(ramp.accel_radps2 * 1.5, 2) / 3.0, 0.1);
+}
+
+/// Variance of the sum of scores, over the sum of their variances, of readings whose misfit is an
+/// AR(1) sequence of unit variance.
+double score_ratio(double coefficient) {
+  constexpr int count = 40'000;
+  constexpr double rate_hz = 100.0, block_s = 2.0;
+  test::Normal normal(5);
+  ScoreBlocks<1> blocks(block_s);
+  Readings<wheel::states(1), WheelModel<1>::channels> readings;
+  readings.count = 1;
+  auto& row = readings.rows[0];
+  row.h.setZero();
+  row.h(wheel::first_of(0)) = 2.0;
+  row.predicted = 0.0;
+  row.variance = 4.0;  // so that Huber's limit is out of reach
+  double misfit = 0.0;
+  for (int k = count; k-- > 0;) {
+    misfit = coefficient * misfit + std::sqrt(1.0 - coefficient * coefficient) * normal();
+    row.value = misfit;
+    blocks.add(k / rate_hz, readings);
+  }
+  return blocks.covariance()(0, 0) / (count * std::pow(2.0 / 4.0, 2));
+}
+
+// 200 blocks: one standard deviation of the ratio is 10 %.
+TEST(ScoreBlocks, GiveTheVarianceOfASumOfWhiteAndOfColouredScores) {
+  EXPECT_NEAR(score_ratio(0.0), 1.0, 0.35);
+  EXPECT_NEAR(score_ratio(0.8), 9.0, 3.0);
+}
+
+/// Readings of a sensor on the axle of a wheel at 1.5 rad/s, at 40 Hz for a minute.
+struct SlowWheel {
+  static constexpr double rate_hz = 40.0, speed_radps = 1.5, noise_mps2 = 0.01;
+  WheelReadings readings;
+  WheelPath path;
+
+  SlowWheel() {
+    readings.sensors.resize(1);
+    test::Normal normal(2);
+    PlanarReadings& sensor = readings.sensors[0];
+    for (int k = 0; k < 2400; ++k) {
+      const double t = k / rate_hz, angle = speed_radps * t;
+      readings.time_s.push_back(t);
+      readings.instants.push_back({k == 0 ? 0.0 : 1.0 / rate_hz, {k, WheelInstant::no_row}});
+      sensor.u_mps2.push_back(readings.gravity_mps2 * std::sin(angle) + noise_mps2 * normal());
+      sensor.v_mps2.push_back(readings.gravity_mps2 * std::cos(angle) + noise_mps2 * normal());
+      sensor.variance_m2ps4.push_back(1.0);
+      path.moving.emplace_back(angle, speed_radps, 0.0, 0.0);
+    }
+    path.standing = Eigen::VectorXd::Zero(wheel::standing(1));
+  }
+};
+
+// A filter that is told of a motion much livelier than the wheel's follows every reading. It must
+// not conclude that the readings have no noise: an hour's wheel at 14 rpm was lost by that.
+TEST(SettleVariance, OfAFilterThatFollowsEveryReadingIsStillTheReadings) {
+  SlowWheel slow;
+  const auto model = held_model<1>(slow.readings, {.jerk_psd = 1e4}, slow.path);
+  const WheelPrior prior{{0.0, 0.2, SlowWheel::speed_radps, 1.0}, {}, Places::Zero(2)};
+  settle_variance(model, prior, slow.readings);
+  EXPECT_NEAR(std::sqrt(slow.readings.sensors[0].variance_m2ps4[1200]), SlowWheel::noise_mps2,
+              0.2 * SlowWheel::noise_mps2);
+}
+
+TEST(HeldModel, IsLinearAboutThePathForOneTurn) {
+  const SlowWheel slow;
+  const double turn_s = rad_per_turn / SlowWheel::speed_radps;
+  EXPECT_EQ(held_model<1>(slow.readings, {}, slow.path).first_turn,
+            static_cast<std::size_t>(std::floor(turn_s * SlowWheel::rate_hz)) + 1);
 }
 
 }  // namespace

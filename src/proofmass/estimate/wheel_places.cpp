@@ -114,8 +114,12 @@ FoundPlaces likeliest_places(const WheelModel<S>& model,
   return found;
 }
 
-WheelLevers levers_of(const WheelPath& path, const std::vector<double>& time_s) {
-  constexpr double longest_s = 1.0;  // of a slow wheel, whose speed may change within a turn
+WheelLevers levers_of(const WheelPath& path, const WheelReadings& readings) {
+  const std::vector<double>& time_s = readings.time_s;
+  // Of a slow wheel, whose speed may change within a turn, no more than a second. A hub that sways
+  // looks like a speed that changes, for which three seconds are long enough to cancel.
+  const double longest_s = carries_a_vehicle(readings) ? 3.0 : 1.0;
+  const double shortest_s = carries_a_vehicle(readings) ? 3.0 : 0.0;
   const std::size_t size = path.moving.size();
   WheelLevers sums(size + 1, Mat<2>::Zero());
   for (std::size_t k = 0; k < size; ++k) {
@@ -126,8 +130,8 @@ WheelLevers levers_of(const WheelPath& path, const std::vector<double>& time_s) 
   for (std::size_t k = 0; k < size; ++k) {
     const double turn_s = rad_per_turn / std::abs(path.moving[k](wheel::speed));
     // As much before as behind, also near the ends.
-    const double half_s = std::min(
-        {0.5 * turn_s, 0.5 * longest_s, time_s[k] - time_s.front(), time_s.back() - time_s[k]});
+    const double half_s = std::min({0.5 * std::clamp(turn_s, shortest_s, longest_s),
+                                    time_s[k] - time_s.front(), time_s.back() - time_s[k]});
     const auto from = static_cast<std::size_t>(
         std::ranges::lower_bound(time_s, time_s[k] - half_s) - time_s.begin());
     const auto to = static_cast<std::size_t>(std::ranges::upper_bound(time_s, time_s[k] + half_s) -
@@ -137,26 +141,74 @@ WheelLevers levers_of(const WheelPath& path, const std::vector<double>& time_s) 
   return levers;
 }
 
+namespace {
+
+/// For a pass that has the places as states beside everything else.
 template <int S>
-FoundPlaces places_by_levers(WheelModel<S> model,
-                             const WheelLevers& levers,
-                             const std::vector<double>& time_s,
-                             WheelPrior prior,
-                             const PlacesPrior& belief) {
+FilterState<wheel::states(S)> free_places(WheelModel<S>& model,
+                                          const WheelLevers& levers,
+                                          WheelPrior prior,
+                                          const PlacesPrior& belief) {
   model.places_held = false;
   model.levers = &levers;
   prior.places.reset();
   prior.belief = belief;
-  auto state = prior_state<S>(prior);
-  FoundPlaces found;
-  StandingColour<S> colour(time_s);
-  filter(model, 0, model.size(), wheel_gate, state,
-         [&](std::size_t k, const auto& step) { colour.add(k, step); });
-  found.widened = colour.factors();
-  const auto by = found.widened.template tail<2 * S>().asDiagonal();
-  found.mean = state.x.mean.template tail<2 * S>();
-  found.cov = by * state.x.cov.template bottomRightCorner<2 * S, 2 * S>() * by;
-  return found;
+  return prior_state<S>(prior);
+}
+
+}  // namespace
+
+template <int S>
+FoundPlaces places_by_levers(WheelModel<S> model,
+                             const WheelLevers& levers,
+                             WheelPrior prior,
+                             const PlacesPrior& belief) {
+  auto state = free_places(model, levers, std::move(prior), belief);
+  filter(model, 0, model.size(), wheel_gate, state, [](std::size_t, const auto&) {});
+  return {state.x.mean.template tail<2 * S>(),
+          state.x.cov.template bottomRightCorner<2 * S, 2 * S>()};
+}
+
+template <int S>
+Eigen::VectorXd widening(WheelModel<S> model,
+                         const WheelLevers& levers,
+                         const std::vector<double>& time_s,
+                         WheelPrior prior,
+                         const PlacesPrior& belief) {
+  constexpr int count = wheel::standing(S);
+  using Standing = Mat<count, count>;
+  const auto state = free_places(model, levers, std::move(prior), belief);
+  const Standing before = state.x.cov.template bottomRightCorner<count, count>();
+  // The scores are those of constants; what walks is known for the while of its memory only.
+  auto standing = model;
+  standing.constants_stand = true;
+  auto last = state;
+  filter(standing, 0, model.size(), wheel_gate, last, [](std::size_t, const auto&) {});
+  const Standing after = last.x.cov.template bottomRightCorner<count, count>();
+  const double block_s = std::max(1.0, (time_s.back() - time_s.front()) / 40.0);
+  std::array lengths{ScoreBlocks<S>(block_s), ScoreBlocks<S>(2.0 * block_s),
+                     ScoreBlocks<S>(4.0 * block_s)};
+  Readings<wheel::states(S), WheelModel<S>::channels> readings;
+  smooth(
+      model, state, wheel_gate, [](std::size_t, const auto&) {},
+      [&](std::size_t k, const auto& step, const auto& later) {
+        model.measure(later.mean(step.filtered), k, readings);
+        for (auto& blocks : lengths) blocks.add(time_s[k], readings);
+      });
+  const Eigen::VectorXd variance = after.diagonal();
+  Eigen::VectorXd widened = Eigen::VectorXd::Ones(count);
+  // What was believed has its part of the variance, P P₀⁻¹ P; nothing is believed of what has none.
+  Eigen::VectorXd believed(count);
+  const Eigen::VectorXd own = before.diagonal();
+  for (int i = 0; i < count; ++i) believed(i) = own(i) > 0.0 ? 1.0 / own(i) : 0.0;
+  const Eigen::VectorXd by_belief = (after * believed.asDiagonal() * after).diagonal();
+  for (auto& blocks : lengths) {
+    const Eigen::VectorXd by_scores = (after * blocks.covariance() * after).diagonal();
+    for (int i = 0; i < count; ++i)
+      if (variance(i) > 0.0)
+        widened(i) = std::max(widened(i), std::sqrt((by_scores(i) + by_belief(i)) / variance(i)));
+  }
+  return widened;
 }
 
 template FoundPlaces likeliest_places(const WheelModel<1>&,
@@ -167,9 +219,17 @@ template FoundPlaces likeliest_places(const WheelModel<2>&,
                                       const Excerpt<2>&,
                                       WheelPrior,
                                       const PlacesPrior&);
-template FoundPlaces places_by_levers(
+template FoundPlaces places_by_levers(WheelModel<1>,
+                                      const WheelLevers&,
+                                      WheelPrior,
+                                      const PlacesPrior&);
+template FoundPlaces places_by_levers(WheelModel<2>,
+                                      const WheelLevers&,
+                                      WheelPrior,
+                                      const PlacesPrior&);
+template Eigen::VectorXd widening(
     WheelModel<1>, const WheelLevers&, const std::vector<double>&, WheelPrior, const PlacesPrior&);
-template FoundPlaces places_by_levers(
+template Eigen::VectorXd widening(
     WheelModel<2>, const WheelLevers&, const std::vector<double>&, WheelPrior, const PlacesPrior&);
 
 }  // namespace proofmass::estimate

@@ -43,20 +43,29 @@ Settled<S> settle(WheelReadings& readings,
   const Places places = track.path.standing.tail<2 * S>();
   WheelPrior prior{track.beginning, prior_for(track.path), places};
   settle_variance(model, prior, readings);
+  assume_rolling_radius(readings);
+  model.rolling_radius_m = readings.rolling_radius_m.value;
   const Excerpt<S> excerpt = liveliest(model, prior);
   model.noise = tune_noise(model, excerpt, tuning_factor).noise;
   const FoundPlaces likeliest = likeliest_places(model, excerpt, prior, belief);
   WheelPath about = track.path;
   about.standing.tail<2 * S>() = likeliest.mean;
   model.about = &about;
-  const FoundPlaces found =
-      places_by_levers(model, levers_of(track.path, readings.time_s), readings.time_s, prior,
-                       moved_where_open(belief, likeliest.mean));
+  PlacesPrior moved = moved_where_open(belief, likeliest.mean);
+  const FoundPlaces found = places_by_levers(model, levers_of(track.path, readings), prior, moved);
   prior.places = found.mean;
-  return {model.noise, prior, found.cov, found.widened, likeliest.log_likelihood};
+  return {model.noise, prior, found.cov, {}, std::move(moved), likeliest.log_likelihood};
 }
 
 }  // namespace
+
+std::size_t instants_of_first_turn(const WheelPath& path) {
+  const double start_rad = path.moving.front()(wheel::angle);
+  const auto away = std::ranges::find_if(path.moving, [&](const Mat<wheel::moving>& at) {
+    return std::abs(at(wheel::angle) - start_rad) > rad_per_turn;
+  });
+  return static_cast<std::size_t>(away - path.moving.begin());
+}
 
 RippleOrders orders_in(const WheelPath& path) {
   std::array<std::complex<double>, highest_order + 1> sums{};
@@ -103,6 +112,11 @@ Settled<S> settle_rounds(WheelReadings& readings,
     settled = settle<S>(readings, track, belief, tuning_factor);
     if (round > 1 && std::abs(settled.log_likelihood - before) < 1.0) break;
   }
+  settled.widened =
+      widening(held_model<S>(readings, settled.noise, track.path), levers_of(track.path, readings),
+               readings.time_s, settled.prior, settled.belief);
+  const auto by = settled.widened.template tail<2 * S>().asDiagonal();
+  settled.places_cov = by * settled.places_cov * by;
   return settled;
 }
 

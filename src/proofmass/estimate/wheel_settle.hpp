@@ -12,17 +12,22 @@ struct Settled {
   WheelNoise noise;
   WheelPrior prior;
   Eigen::MatrixXd places_cov;
-  Eigen::VectorXd widened;  ///< FoundPlaces::widened
+  Eigen::VectorXd widened;  ///< of all that stands, see widening()
+  PlacesPrior belief;       ///< of the places, about where they are likeliest
   double log_likelihood = 0.0;
 };
 
+/// How many instants a path has before it is a turn away from its start.
+[[nodiscard]] std::size_t instants_of_first_turn(const WheelPath& path);
+
 /// The model of the settled passes: linear about a path, the places held.
 template <int S>
-WheelModel<S> held_model(const WheelReadings& readings,
-                         const WheelNoise& noise,
-                         const WheelPath& about) {
+[[nodiscard]] WheelModel<S> held_model(const WheelReadings& readings,
+                                       const WheelNoise& noise,
+                                       const WheelPath& about) {
   auto model = wheel_model<S>(readings, noise);
   model.about = &about;
+  model.first_turn = instants_of_first_turn(about);
   model.places_held = true;
   model.with_ripple = true;
   return model;

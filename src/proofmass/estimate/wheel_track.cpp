@@ -93,6 +93,7 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
   PM_EXPECTS(each >= 1);
   WheelReadings out{readings.gravity_mps2,
                     readings.gravity_std_mps2,
+                    readings.given_rolling_radius_m,
                     readings.rolling_radius_m,
                     readings.delay_s,
                     readings.phase_rad,
@@ -155,6 +156,8 @@ WheelTrack find_track(WheelReadings& readings, std::size_t first) {
     best_lost = lost;
     best = {beginning, seek.noise, {}, lost};
     (void)trace_path(model, prior, best.path);
+    best.beginning = {best.path.moving.front()(wheel::angle), 0.2,
+                      best.path.moving.front()(wheel::speed), beginning.speed_std_radps};
     if (lost < 0.3) break;
   }
   return best;
