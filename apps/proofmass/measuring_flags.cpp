@@ -66,11 +66,12 @@ void add_flags(CLI::App& app, WheelCommand& command) {
                   "of the gyroscope, where its heading has none: rad/s (default) or deg/s")
       ->type_name("UNIT")
       ->check(CLI::IsMember({"rad/s", "deg/s"}));
-  verb.add_option(
-          "--rolling-radius", command.rolling_radius_m,
-          "on which the wheel rolls under a vehicle: takes its speeding up out of the angle")
+  verb.add_option("--rolling-radius", command.rolling_radius_m,
+                  "on which the wheel rolls under a vehicle (0: on a bench): takes its speeding up "
+                  "out of the "
+                  "angle")
       ->type_name("M")
-      ->check(positive());
+      ->check(not_negative());
   verb.add_option("--rim-radius", command.rim_radius_m, "of the rim, whose path is the distance")
       ->type_name("M")
       ->check(positive());

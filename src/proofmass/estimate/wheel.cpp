@@ -56,8 +56,9 @@ void add_distance(const WheelOptions& options, WheelSolution& solution) {
   const double path_rad = angular_path_rad(solution.series);
   const double path_std_rad = solution.turns->std * rad_per_turn;
   std::optional<Uncertain> radius;
-  if (options.rim_radius_m || options.rolling_radius_m) {
-    radius = Uncertain{options.rim_radius_m.value_or(options.rolling_radius_m.value_or(0.0)), 0.0};
+  const double rim_m = options.rim_radius_m.value_or(options.rolling_radius_m.value_or(0.0));
+  if (rim_m > 0.0) {
+    radius = Uncertain{rim_m, 0.0};
     solution.distance_of = "rim";
   } else {
     radius = solution.sensors.front().radius_m;

@@ -36,8 +36,9 @@ struct WheelOptions {
   std::optional<double> radius_m;      ///< distance of each sensor from the axle, where known
   std::optional<double> radius_std_m;  ///< of that; not given: 2 %, at least 0.2 mm
   std::optional<double> rim_radius_m;  ///< of the circle whose path is the distance travelled
-  /// Radius on which the wheel rolls, where it carries a vehicle and this is known: its speeding up
-  /// and braking then no longer lean on the angle.
+  /// Radius on which the wheel rolls, where it carries a vehicle and this is known, to 3 %; 0 for a
+  /// bench. Its speeding up and braking then no longer lean on the angle. If not given, it is taken
+  /// for 0.2 ± 0.12 m where the hub shakes, else for 0 ± 0.05 m.
   std::optional<double> rolling_radius_m;
   /// −3 dB bandwidth of the sensors' one-pole filter, which delays the measured gravity vector. If
   /// not given, the corner is taken to lie between 6 Hz (0.06 of the rate, where that is lower) and
