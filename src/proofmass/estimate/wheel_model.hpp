@@ -156,7 +156,7 @@ struct WheelModel {
   bool with_ripple = false;            ///< otherwise there is none
   RippleOrders orders = first_orders;  ///< of the ripple, cycles a turn
   bool with_gyro = false;
-  bool constants_stand = false;  ///< biases, ripple and gyroscopes do not walk
+  bool sensors_stand = false;  ///< biases and gyroscopes do not walk
 
   [[nodiscard]] std::size_t size() const { return instants->size(); }
   [[nodiscard]] int active() const {
@@ -224,12 +224,12 @@ struct WheelModel {
     step.Q.template topLeftCorner<3, 3>() += noise.jerk_psd * rough;
     step.mean = step.F * x.template head<moving>();
     step.walk.setZero();
-    if (constants_stand) return step;
-    for (int s = 0; s < Sensors; ++s)
-      step.walk.template segment<2>(wheel::first_of(s)).setConstant(noise.bias_walk_psd * t);
     if (with_ripple)
       step.walk.template segment<2 * wheel::ripple_orders>(wheel::ripple(Sensors))
           .setConstant(ripple_walk_psd * t);
+    if (sensors_stand) return step;
+    for (int s = 0; s < Sensors; ++s)
+      step.walk.template segment<2>(wheel::first_of(s)).setConstant(noise.bias_walk_psd * t);
     if (with_gyro)
       for (int s = 0; s < Sensors; ++s)
         step.walk.template segment<2>(wheel::gyro(Sensors) + 2 * s) << gyro_bias_walk_psd * t,

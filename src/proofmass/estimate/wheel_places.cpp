@@ -181,7 +181,7 @@ Eigen::VectorXd widening(WheelModel<S> model,
   const Standing before = state.x.cov.template bottomRightCorner<count, count>();
   // The scores are those of constants; what walks is known for the while of its memory only.
   auto standing = model;
-  standing.constants_stand = true;
+  standing.sensors_stand = true;
   auto last = state;
   filter(standing, 0, model.size(), wheel_gate, last, [](std::size_t, const auto&) {});
   const Standing after = last.x.cov.template bottomRightCorner<count, count>();
