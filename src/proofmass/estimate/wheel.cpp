@@ -144,11 +144,6 @@ void add_sensor(const WheelSensor& sensor,
   fit.samples = sensor.time_s.size();
   note_gyroscope(single.readings.sensors.front(), fit, solution);
   fit.unusable = single.prepared.screened.unusable;
-  std::vector<double> variance;
-  for (std::size_t row = 0; row < sensor.time_s.size(); ++row)
-    if (single.prepared.screened.usable[row])
-      variance.push_back(single.readings.sensors.front().variance_m2ps4[row]);
-  fit.noise_mps2 = std::sqrt(*quantile(variance, 0.05));
   solution.rejected_samples += fit.unusable;
   for (Stretch stretch : single.prepared.screened.rejected) {
     stretch.reason = sensor.name + ": " + stretch.reason;
@@ -264,11 +259,22 @@ Status check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolut
   return Done{};
 }
 
+/// Per sample and axis, at rest or at the quietest.
+double noise_mps2(const WheelReadings& readings, std::size_t sensor) {
+  std::vector<double> variance;
+  for (const WheelInstant& instant : readings.instants)
+    if (const std::int64_t row = instant.row[sensor]; row != WheelInstant::no_row)
+      variance.push_back(readings.sensors[sensor].variance_m2ps4[static_cast<std::size_t>(row)]);
+  return std::sqrt(*quantile(variance, 0.05));
+}
+
 Result<WheelSolution> conclude(const WheelReadings& readings,
                                WheelFit fit,
                                const WheelOptions& options,
                                WheelSolution solution) {
   describe_sensors(fit, readings.phase_rad, solution.sensors);
+  for (std::size_t s = 0; s < solution.sensors.size(); ++s)
+    solution.sensors[s].noise_mps2 = noise_mps2(readings, s);
   const std::string doubtful = stretches_of(fit);
   solution.series = std::move(fit.series);
   solution.turns = fit.turns;
