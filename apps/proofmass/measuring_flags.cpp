@@ -68,8 +68,7 @@ void add_flags(CLI::App& app, WheelCommand& command) {
       ->check(CLI::IsMember({"rad/s", "deg/s"}));
   verb.add_option("--rolling-radius", command.rolling_radius_m,
                   "on which the wheel rolls under a vehicle (0: on a bench): takes its speeding up "
-                  "out of the "
-                  "angle")
+                  "out of the angle")
       ->type_name("M")
       ->check(not_negative());
   verb.add_option("--rim-radius", command.rim_radius_m, "of the rim, whose path is the distance")

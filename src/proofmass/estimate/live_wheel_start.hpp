@@ -20,7 +20,8 @@ struct LiveWheelStart {
   WheelNoise noise;
   std::array<double, 2> variance_m2ps4{};  ///< of a reading of each sensor, at the instants' rate
   WheelPrior prior;                        ///< of the state at the first instant
-  /// The places' in it; empty where the hub shakes, for the first seconds of a road tell little.
+  /// Covariance of `constants`, the places included; empty where the hub vibrates: vibration biases
+  /// constants that were fitted to a few seconds.
   Eigen::MatrixXd constants_cov;
   Eigen::VectorXd constants;  ///< where to make the readings linear about at first
   Eigen::MatrixXd places_cov;

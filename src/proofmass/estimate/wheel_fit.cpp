@@ -340,7 +340,7 @@ std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack&
   double fastest = 0.0;
   for (const Mat<wheel::moving>& at : track.path.moving)
     fastest = std::max(fastest, std::abs(at(wheel::speed)));
-  // Of a short recording no fewer than 50 averages are left.
+  // A short recording keeps at least 50 averages.
   const double most = std::clamp(static_cast<double>(readings.instants.size()) / 50.0, 1.0, 64.0);
   return static_cast<std::size_t>(std::clamp(0.05 * readings.rate_hz() / fastest, 1.0, most));
 }

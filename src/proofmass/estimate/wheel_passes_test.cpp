@@ -135,9 +135,10 @@ struct SlowWheel {
   }
 };
 
-// A filter that is told of a motion much livelier than the wheel's follows every reading. It must
-// not conclude that the readings have no noise: an hour's wheel at 14 rpm was lost by that.
-TEST(SettleVariance, OfAFilterThatFollowsEveryReadingIsStillTheReadings) {
+// With process noise far above the wheel's, the filter follows every reading and its innovations
+// show no measurement noise. The variance must not fall below the readings' own: this lost a wheel
+// at 14 rpm within an hour.
+TEST(SettleVariance, IsNotUnderestimatedUnderLargeProcessNoise) {
   SlowWheel slow;
   const auto model = held_model<1>(slow.readings, {.jerk_psd = 1e4}, slow.path);
   const WheelPrior prior{{0.0, 0.2, SlowWheel::speed_radps, 1.0}, {}, Places::Zero(2)};

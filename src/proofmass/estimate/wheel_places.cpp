@@ -116,8 +116,8 @@ FoundPlaces likeliest_places(const WheelModel<S>& model,
 
 WheelLevers levers_of(const WheelPath& path, const WheelReadings& readings) {
   const std::vector<double>& time_s = readings.time_s;
-  // Of a slow wheel, whose speed may change within a turn, no more than a second. A hub that sways
-  // looks like a speed that changes, for which three seconds are long enough to cancel.
+  // One turn, at most 1 s: the speed of a slow wheel may change within a turn. Hub vibration
+  // appears as changes of speed, which average out over 3 s.
   const double longest_s = carries_a_vehicle(readings) ? 3.0 : 1.0;
   const double shortest_s = carries_a_vehicle(readings) ? 3.0 : 0.0;
   const std::size_t size = path.moving.size();
@@ -179,7 +179,8 @@ Eigen::VectorXd widening(WheelModel<S> model,
   using Standing = Mat<count, count>;
   const auto state = free_places(model, levers, std::move(prior), belief);
   const Standing before = state.x.cov.template bottomRightCorner<count, count>();
-  // The scores are those of constants; what walks is known for the while of its memory only.
+  // P of constants without random walk: the scores are summed over the whole recording, but a state
+  // that walks is determined only by the latest part of it.
   auto standing = model;
   standing.sensors_stand = true;
   auto last = state;
