@@ -148,8 +148,7 @@ TEST(SettleVariance, IsNotUnderestimatedUnderLargeProcessNoise) {
 }
 
 TEST(HeldModel, IsLinearAboutThePathForOneTurn) {
-  SlowWheel slow;
-  slow.readings.sensors[0].variance_m2ps4.assign(2400, 1e-4);
+  const SlowWheel slow;
   const double turn_s = rad_per_turn / SlowWheel::speed_radps;
   EXPECT_EQ(held_model<1>(slow.readings, {}, slow.path).first_turn,
             static_cast<std::size_t>(std::floor(turn_s * SlowWheel::rate_hz)) + 1);

@@ -27,8 +27,7 @@ template <int S>
                                        const WheelPath& about) {
   auto model = wheel_model<S>(readings, noise);
   model.about = &about;
-  // A path through vibration shares its noise with the readings, which biases the constants.
-  model.first_turn = carries_a_vehicle(readings) ? 0 : instants_of_first_turn(about);
+  model.first_turn = instants_of_first_turn(about);
   model.places_held = true;
   model.with_ripple = true;
   return model;
