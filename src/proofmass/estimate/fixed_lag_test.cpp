@@ -125,7 +125,7 @@ struct Gauge {
                    Mat<4>(1.0 + x(2), 0.0, x(0), 1.0)};
     out.rows[1] = {std::cos(t), x(1), 0.09, Mat<4>(0, 1, 0, 0)};
   }
-  void reopen(Gaussian<4>&) const {}
+  void reopen(Gaussian<4>&, std::size_t) const {}
 };
 
 TEST(FixedPoint, IsTheExtendedSmootherOfAModelThatIsNotLinear) {

@@ -60,7 +60,7 @@ struct InertialAxis {
   [[nodiscard]] std::size_t size() const { return epochs.size(); }
   [[nodiscard]] Transition<3, 3> transition(const Mat<3>& x, std::size_t k) const;
   void measure(const Mat<3>& x, std::size_t k, Readings<3, 3>& out) const;
-  void reopen(Gaussian<3>&) const {}
+  void reopen(Gaussian<3>&, std::size_t) const {}
 };
 
 /// At the first epoch: p = 0, v within `speed_std_mps`, b within `bias_std_mps2` of `bias_mps2`.

@@ -35,7 +35,7 @@ struct Pendulum {
     out.rows[0] = {z[k], gravity_mps2 * std::sin(x(0)), variance,
                    Mat<2>(gravity_mps2 * std::cos(x(0)), 0.0)};
   }
-  void reopen(Gaussian<2>&) const {}
+  void reopen(Gaussian<2>&, std::size_t) const {}
 };
 
 FilterState<2> pendulum_start() {
@@ -184,7 +184,7 @@ struct Level {
     out.rows[0] = {std::sin(t), x(0) + x(1), 0.1, Mat<2>(1.0, 1.0)};
     out.rows[1] = {std::cos(3.0 * t), x(1), 0.3, Mat<2>(0.0, 1.0)};
   }
-  void reopen(Gaussian<2>&) const {}
+  void reopen(Gaussian<2>&, std::size_t) const {}
 };
 
 TEST(Objective, IsLeastAtTheSmoothedPathOfALinearModel) {
@@ -216,7 +216,7 @@ struct Arc {
     out.count = 1;
     out.rows[0] = {0.0, std::atan(x(0)), 1e-8, Mat<1>(1.0 / (1.0 + x(0) * x(0)))};
   }
-  void reopen(Gaussian<1>&) const {}
+  void reopen(Gaussian<1>&, std::size_t) const {}
 };
 
 TEST(IteratedFilter, HalvesStepsThatLeadAway) {
@@ -266,7 +266,7 @@ struct Walker {
       out.rows[static_cast<std::size_t>(out.count++)] = {ranges[k](i), away.norm(), 1e-4, h};
     }
   }
-  void reopen(Gaussian<4>&) const {}
+  void reopen(Gaussian<4>&, std::size_t) const {}
 };
 
 // Newton's method with a dense Hessian by differences of the exact gradient, from a grid's best.

@@ -43,6 +43,7 @@ template <int N, int M>
 struct Readings {
   std::array<Reading<N>, static_cast<std::size_t>(M)> rows;
   int count = 0;
+  int constraints = 0;  ///< the last of them, which do not show that the filter has the state
 };
 
 /// What a model offers: sizes, the step that leads to instant k, and the readings of instant k.
@@ -55,7 +56,7 @@ concept StateSpaceModel = requires(const Model& model,
   { model.size() } -> std::convertible_to<std::size_t>;
   { model.transition(x, k) } -> std::same_as<Transition<Model::states, Model::moving>>;
   model.measure(x, k, readings);
-  model.reopen(lost);
+  model.reopen(lost, k);
 };
 
 /// How many of a model's states the filter runs on: all, unless the model says by active() that
@@ -178,7 +179,7 @@ void advance(const Model& model,
     step.F.setIdentity();
   }
   if (state.instants_gated >= gate.patience) {
-    model.reopen(state.x);
+    model.reopen(state.x, k);
     state.instants_gated = 0;
   }
   Readings<N, Model::channels> readings;
@@ -190,7 +191,7 @@ void advance(const Model& model,
     reading.predicted += reading.h.dot(state.x.mean - linearised_at);
     const Update<N>& update = step.updates[static_cast<std::size_t>(i)] =
         correct(state.x, reading, gate, active_states(model));
-    any_used = any_used || update.used;
+    any_used = any_used || (update.used && i < readings.count - readings.constraints);
   }
   if (readings.count > 0) state.instants_gated = any_used ? 0 : state.instants_gated + 1;
   step.count = readings.count;

@@ -43,7 +43,7 @@ struct Gauge {
       out.rows[static_cast<std::size_t>(out.count++)] = {std::cos(0.1 * n), x(1), 0.09,
                                                          Mat<4>(0, 1, 0, 0)};
   }
-  void reopen(Gaussian<4>& x) const {
+  void reopen(Gaussian<4>& x, std::size_t) const {
     x.cov.topRows<2>().setZero();
     x.cov.leftCols<2>().setZero();
     x.cov.topLeftCorner<2, 2>().diagonal().setConstant(1e6);
@@ -246,7 +246,7 @@ struct JumpingLevel {
     out.count = std::isnan(z[k]) ? 0 : 1;
     out.rows[0] = {z[k], x(0), 0.01, Mat<1>(1.0)};
   }
-  void reopen(Gaussian<1>& x) const { x.cov << 1e6; }
+  void reopen(Gaussian<1>& x, std::size_t) const { x.cov << 1e6; }
 };
 
 TEST(Gate, AfterItsPatienceTheFilterReopensAndFindsTheSignalAgain) {

@@ -111,7 +111,7 @@ class LinearSeries {
     return channel;
   }
 
-  void reopen(Gaussian<N>& x) const { x.cov = reopened_; }
+  void reopen(Gaussian<N>& x, std::size_t) const { x.cov = reopened_; }
 
  private:
   explicit LinearSeries(std::vector<Epoch<M, U>> epochs)

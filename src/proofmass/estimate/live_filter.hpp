@@ -91,7 +91,7 @@ class LiveFilter {
                                                            model.R(i), model.H.row(i).transpose()};
       }
     }
-    void reopen(Gaussian<N>& x) const { x.cov = reopened; }
+    void reopen(Gaussian<N>& x, std::size_t) const { x.cov = reopened; }
   };
 
   void none() {

@@ -88,7 +88,7 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveInstant>& instants,
     start.variance_m2ps4[s] =
         static_cast<double>(each) * *median(joint.readings.sensors[s].variance_m2ps4);
   start.constants = joint.fit.constants;
-  if (!carries_a_vehicle(joint.readings)) start.constants_cov = joint.fit.constants_cov;
+  if (!joint.readings.shakes) start.constants_cov = joint.fit.constants_cov;
   const auto places = static_cast<Eigen::Index>(2 * count);
   start.places_cov = joint.fit.constants_cov.bottomRightCorner(places, places);
   start.whole_turn = std::abs(joint.fit.turns.value) >= 1.0;

@@ -132,7 +132,7 @@ class PvaAxis {
     return samples_[k].velocity_std_mps > 0.0 && i == 0 ? velocity_channel : position_channel;
   }
 
-  void reopen(Gaussian<states>&) const {}
+  void reopen(Gaussian<states>&, std::size_t) const {}
 
   /// At the first sample: p = 0, all else hardly known; c is counted from there.
   [[nodiscard]] FilterState<states> start(double speed_std_mps) const {

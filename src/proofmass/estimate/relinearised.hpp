@@ -57,7 +57,7 @@ struct ReadAbout {
     out.count = 0;
     if (at != nullptr) measure_about(model, *at, x, k, out);
   }
-  void reopen(Gaussian<states>& x) const { model.reopen(x); }
+  void reopen(Gaussian<states>& x, std::size_t k) const { model.reopen(x, k); }
 };
 
 /// A model made linear about a path, which has a state for each instant.
@@ -78,7 +78,7 @@ struct LinearAbout {
   void measure(const Mat<states>& x, std::size_t k, ReadingsOf<Model>& out) const {
     measure_about(model, path[k], x, k, out);
   }
-  void reopen(Gaussian<states>& x) const { model.reopen(x); }
+  void reopen(Gaussian<states>& x, std::size_t k) const { model.reopen(x, k); }
 };
 
 /// Σ (z − h(x))² / R at instant k.

@@ -27,7 +27,7 @@ class AxisTiltModel {
   [[nodiscard]] std::size_t size() const { return instants_.step_s.size(); }
   [[nodiscard]] Transition<3, 3> transition(const Mat<3>& x, std::size_t k) const;
   void measure(const Mat<3>& x, std::size_t k, Readings<3, 1>& out) const;
-  void reopen(Gaussian<3>& x) const { x.cov = start().x.cov; }
+  void reopen(Gaussian<3>& x, std::size_t) const { x.cov = start().x.cov; }
   [[nodiscard]] FilterState<3> start() const;
 
  private:

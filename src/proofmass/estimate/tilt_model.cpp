@@ -140,7 +140,7 @@ FilterState<9> TiltModel::start_about(const Mat<3>& g) const {
   return state;
 }
 
-void TiltModel::reopen(Gaussian<9>& x) const {
+void TiltModel::reopen(Gaussian<9>& x, std::size_t) const {
   const Gaussian<9> fresh = start().x;
   const Mat<3> g = x.mean.head<3>();
   x.cov = fresh.cov;

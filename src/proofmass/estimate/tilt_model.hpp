@@ -55,7 +55,7 @@ class TiltModel {
   [[nodiscard]] std::size_t size() const { return instants_.step_s.size(); }
   [[nodiscard]] Transition<9, 9> transition(const Mat<9>& x, std::size_t k) const;
   void measure(const Mat<9>& x, std::size_t k, Readings<9, 6>& out) const;
-  void reopen(Gaussian<9>& x) const;
+  void reopen(Gaussian<9>& x, std::size_t) const;
 
   /// What is known before the first reading, made linear about the direction of the first, or about
   /// another.

@@ -219,7 +219,7 @@ void judge_turns(const WheelFit& fit, const std::string& where, WheelSolution& s
 /// A wheel that shakes is most likely under a vehicle, whose speeding up leans on the apparent
 /// gravity.
 void note_travel(const WheelReadings& readings, WheelSolution& solution) {
-  if (readings.given_rolling_radius_m || !carries_a_vehicle(readings)) return;
+  if (readings.given_rolling_radius_m || !readings.shakes) return;
   double strongest = 0.0;
   for (const double accel : solution.series.accel_radps2)
     strongest = std::max(strongest, std::abs(accel));

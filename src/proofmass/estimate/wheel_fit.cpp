@@ -224,7 +224,7 @@ Run run_at(const WheelModel<S>& model, const WheelPrior& prior) {
 /// What the figures leave open that the passes hold: the places, the delay of the sensors' filters
 /// and the radius that the wheel rolls on, of which the last two show reliably in no likelihood.
 /// The whole is smoothed again with the figure a share of its standard deviation off, and the
-/// differences are drawn out to one. On the averaged readings, since differences are smooth.
+/// differences are drawn out to one.
 template <int S>
 class HeldFigures {
  public:
@@ -236,9 +236,17 @@ class HeldFigures {
         base_(run_at(model(), settled.prior)),
         base_places_(places_of(model())) {}
 
+  /// False where a run's angle goes another way than the fit's, however small the step: the
+  /// differences mean nothing then, and the fit is spoilt.
+  [[nodiscard]] bool add_to(WheelFit& fit) const {
+    return add_places(fit) && add(&WheelModel<S>::delay_s, readings_.delay_s.std, fit) &&
+           add(&WheelModel<S>::rolling_radius_m, readings_.rolling_radius_m.std, fit);
+  }
+
+ private:
   /// Along each principal direction of their covariance, not a standard deviation at once: where
   /// the recording hardly shows the places, that is no small step.
-  void add_places(WheelFit& fit) const {
+  [[nodiscard]] bool add_places(WheelFit& fit) const {
     constexpr double longest_step_m = 2e-3;
     const SymmetricEigen axes = symmetric_eigen(settled_.places_cov);
     for (Eigen::Index i = 0; i < axes.values.size(); ++i) {
@@ -248,13 +256,14 @@ class HeldFigures {
         *prior.places += share * std_m * axes.vectors.col(i);
         return run_at(model(), prior);
       };
-      add(moved, std::min(1.0, longest_step_m / std_m), fit);
+      if (!add(moved, std::min(1.0, longest_step_m / std_m), fit)) return false;
     }
+    return true;
   }
 
   /// The places are found anew under the other figure.
-  void add(double WheelModel<S>::* figure, double std, WheelFit& fit) const {
-    if (!(std > 0.0)) return;
+  [[nodiscard]] bool add(double WheelModel<S>::* figure, double std, WheelFit& fit) const {
+    if (!(std > 0.0)) return true;
     const auto moved = [&](double share) {
       auto other = model();
       other.*figure += share * std;
@@ -262,10 +271,9 @@ class HeldFigures {
       *prior.places += places_of(other) - base_places_;
       return run_at(other, prior);
     };
-    add(moved, 1.0, fit);
+    return add(moved, 1.0, fit);
   }
 
- private:
   [[nodiscard]] WheelModel<S> model() const {
     return held_model<S>(readings_, settled_.noise, about_);
   }
@@ -282,10 +290,10 @@ class HeldFigures {
 
   /// A run that slips is tried again with a smaller share.
   template <class RunAt>
-  void add(const RunAt& moved, double share, WheelFit& fit) const {
+  [[nodiscard]] bool add(const RunAt& moved, double share, WheelFit& fit) const {
     Run run = moved(share);
     for (int again = 0; slips(run) && again < 3; ++again) run = moved(share *= 0.1);
-    if (slips(run)) return;
+    if (slips(run)) return false;
     const double reach = 1.0 / share;
     WheelSeries& series = fit.series;
     std::size_t at = 0;
@@ -307,6 +315,7 @@ class HeldFigures {
     const Eigen::VectorXd change = reach * (run.constants - base_.constants);
     fit.constants_cov += change * change.transpose();
     add_in_square(fit.turns.std, reach * (run.turns - base_.turns));
+    return true;
   }
 
   const WheelReadings& readings_;
@@ -316,6 +325,37 @@ class HeldFigures {
   Run base_;
   Places base_places_;
 };
+
+/// Adds what the held figures leave open, from runs on the averaged readings, since differences are
+/// smooth, or on all of them where those slip. Where these slip too the recording has shown nothing
+/// of the constants, and the angle is as late as the delay is uncertain.
+template <int S>
+void add_held_figures(const Settled<S>& settled,
+                      const WheelReadings& averaged,
+                      const WheelPath& averaged_path,
+                      const WheelReadings& readings,
+                      const WheelPath& path,
+                      WheelFit& fit) {
+  WheelFit with = fit;
+  bool added = HeldFigures<S>(averaged, settled, averaged_path).add_to(with);
+  if (!added && averaged.instants.size() < readings.instants.size()) {
+    with = fit;
+    added = HeldFigures<S>(readings, settled, path).add_to(with);
+  }
+  if (!added) {
+    with = std::move(fit);
+    with.constants_cov += with.constants_prior_cov;
+    const std::vector<double>& speed_radps = with.series.speed_radps;
+    const double late_s = readings.delay_s.std;
+    for (std::size_t k = 0; k < speed_radps.size(); ++k) {
+      add_in_square(with.series.angle_std_rad[k], late_s * speed_radps[k]);
+      add_in_square(with.series.filtered_angle_std_rad[k], late_s * speed_radps[k]);
+    }
+    add_in_square(with.turns.std,
+                  late_s * (speed_radps.back() - speed_radps.front()) / rad_per_turn);
+  }
+  fit = std::move(with);
+}
 
 /// Gravity is what scales and places are measured with: were it larger by a part, the scales would
 /// be smaller and the places larger by that part, the angle the same. `believed` is the share of
@@ -386,7 +426,7 @@ WheelFit fit_sensors(WheelReadings& readings,
                      const Progress& progress) {
   constexpr int ripple_at = wheel::ripple(S) - wheel::first_of(0);
   if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
-    readings.orders = orders_in(track.path);
+    readings.orders = orders_in<S>(readings, track.path);
   const std::size_t each = readings_to_average(readings, track);
   WheelReadings coarse = averaged(readings, each);
   WheelTrack coarse_track = spread_track(track, readings, coarse);
@@ -399,6 +439,7 @@ WheelFit fit_sensors(WheelReadings& readings,
   settled.prior.beginning = coarse_track.beginning;
   spread_variance(coarse, each, readings);
   readings.rolling_radius_m = coarse.rolling_radius_m;
+  readings.shakes = coarse.shakes;
   if (depth == FitDepth::track)
     return smooth_at_places(coarse, settled, coarse_track.path, progress);
   track = spread_track(coarse_track, coarse, readings);
@@ -408,10 +449,7 @@ WheelFit fit_sensors(WheelReadings& readings,
   fit.constants_prior_cov =
       prior_state<S>(settled.prior).x.cov.template bottomRightCorner<count, count>();
   fit.constants_prior_cov.template bottomRightCorner<2 * S, 2 * S>() = belief.cov;
-  const HeldFigures<S> held(coarse, settled, coarse_track.path);
-  held.add_places(fit);
-  held.add(&WheelModel<S>::delay_s, readings.delay_s.std, fit);
-  held.add(&WheelModel<S>::rolling_radius_m, readings.rolling_radius_m.std, fit);
+  add_held_figures(settled, coarse, coarse_track.path, readings, track.path, fit);
   add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
   fit.turns_candidates = turns_candidates(fit);
   return fit;
@@ -419,19 +457,12 @@ WheelFit fit_sensors(WheelReadings& readings,
 
 }  // namespace
 
-bool carries_a_vehicle(const WheelReadings& readings) {
-  constexpr double shaking_density = 1e-4;  // (m/s²)²/Hz: no sensor's noise is above 1 mg/√Hz
-  const auto& variance = readings.sensors.front().variance_m2ps4;
-  const auto loud = quantile(variance, 0.9), quiet = quantile(variance, 0.05);
-  return loud && (*loud >= 4.0 * *quiet || 2.0 * *loud > shaking_density * readings.rate_hz());
-}
-
 void assume_rolling_radius(WheelReadings& readings) {
   constexpr double of_given = 0.03, vehicle_m = 0.4, smooth_m = 0.05;
   if (readings.given_rolling_radius_m) {
     const double given_m = *readings.given_rolling_radius_m;
     readings.rolling_radius_m = {given_m, of_given * given_m};
-  } else if (carries_a_vehicle(readings)) {
+  } else if (readings.shakes) {
     readings.rolling_radius_m = {vehicle_m / 2.0, vehicle_m / std::numbers::sqrt3 / 2.0};
   } else {
     readings.rolling_radius_m = {0.0, smooth_m};

@@ -22,11 +22,14 @@ struct WheelReadings {
   Uncertain delay_s{};           ///< of the sensors' filters
   double phase_rad = 0.0;        ///< of the second sensor against the first, as known so far
   RippleOrders orders = first_orders;
+  /// More than a sensor's noise, or more in motion than at rest, as a wheel that carries a vehicle
+  /// does; set by settle_variance().
+  bool shakes = false;
   std::vector<double> time_s;
   std::vector<WheelInstant> instants;
   std::vector<PlanarReadings> sensors;
 
-  /// 1 / median step; 0 if there is none.
+  /// 1 / mean step, without gaps; 0 if there is no step.
   [[nodiscard]] double rate_hz() const;
 };
 
@@ -45,9 +48,6 @@ struct ConstantsPrior {
 /// circle, on which bias, scale and angle stand for each other, so more has to be believed.
 inline constexpr ConstantsPrior short_way_prior{0.2, 0.01, 0.01, 0.5, 0.1};
 
-/// Whether the wheel shakes more than a sensor's noise, or more when it turns, as one does that
-/// carries a vehicle.
-[[nodiscard]] bool carries_a_vehicle(const WheelReadings& readings);
 /// What the wheel rolls on, by how it shakes, where that is not given: that of a vehicle between 0
 /// and 0.4 m, each as likely; else a bench's 0, to what something small and smooth may have.
 void assume_rolling_radius(WheelReadings& readings);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/estimate/wheel_rests.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -55,7 +56,7 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
   for (;;) {
     std::array<bool, 2> has{};
     for (std::size_t s = 0; s < sensors.size(); ++s) has[s] = skip_unusable(s);
-    if (!has[0] && !has[1]) return readings;
+    if (!has[0] && !has[1]) break;
     const double t = has[0] && has[1] ? std::min(time_of(0), time_of(1)) : time_of(has[0] ? 0 : 1);
     WheelInstant instant;
     instant.dt_s = readings.time_s.empty() ? 0.0 : t - readings.time_s.back();
@@ -65,6 +66,8 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
     readings.time_s.push_back(t);
     readings.instants.push_back(instant);
   }
+  if (!readings.instants.empty()) mark_standing(readings);
+  return readings;
 }
 
 /// Nothing is believed of the places but their size.
@@ -158,8 +161,12 @@ Result<Single> fit_single(const WheelSensor& sensor,
     followed = true;
     single.fit = fit_with_radius(single.readings, track, depth, options);
     if (top_speed_radps(single.fit) > fastest || has_lost(single.fit, track)) continue;
-    if (single.fit.doubts.empty()) return single;
-    if (!unsure) unsure = single;
+    // A fit that explains more but is unsure of its turns outweighs a sure one.
+    const bool explains_less = unsure && unsure->fit.track.lost < single.fit.track.lost;
+    if (single.fit.doubts.empty() &&
+        !(explains_less && std::abs(unsure->fit.turns.value - single.fit.turns.value) > 0.5))
+      return single;
+    if (!explains_less) unsure = single;
   }
   if (unsure) return *std::move(unsure);
   if (followed)

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/kalman.hpp"
 
 // The state-space model of accelerometers on a wheel that turns about a level axle.
@@ -31,8 +32,9 @@
 // A ripple once a turn looks like a scale error or a skew, by ω² r: without it as a nuisance the
 // readings would seem to tell those, and the place, at one speed.
 //
-// A sensor's filter delays what turns about it, gravity and hub, by δ = atan(ω τ), and weakens it
-// by cos δ (one pole). Its gyroscope, where it has one, reads (1 + s_g) ω + b_g about the axle.
+// A sensor's filter shows the motion of τ earlier. What turns about the sensor, gravity and hub, it
+// delays by atan(ω τ) instead of ω τ and weakens by the cosine of that (one pole). Its gyroscope,
+// where it has one, reads (1 + s_g) ω + b_g about the axle, as late.
 namespace proofmass::estimate {
 
 /// Where each quantity sits in the state; what belongs to a sensor counts from first_of(sensor).
@@ -125,14 +127,20 @@ struct WheelInstant {
   static constexpr std::int64_t no_row = -1;
   double dt_s = 0.0;  ///< since the instant before
   std::array<std::int64_t, 2> row{no_row, no_row};
+  bool stands = false;  ///< the readings around keep their values, see mark_standing()
 };
+
+/// A wheel whose readings keep their values for this long stands: its speed is 0 with this standard
+/// deviation. On a wheel that rolls, an angle that runs away from rest ever faster leaves the
+/// direction of the readings as it is, gravity's turn being made up by the hub's acceleration.
+inline constexpr double standing_stretch_s = 0.5, standing_speed_radps = 0.05;
 
 template <int Sensors>
 struct WheelModel {
   static constexpr int sensors_used = Sensors;
   static constexpr int states = wheel::states(Sensors);
   static constexpr int moving = wheel::moving;
-  static constexpr int channels = 3 * Sensors;
+  static constexpr int channels = 3 * Sensors + 1;
   using State = Mat<states>;
 
   double gravity_mps2 = 0.0;      ///< its component in the plane of the wheel
@@ -202,6 +210,18 @@ struct WheelModel {
     return now;
   }
 
+  /// The motion of τ earlier, which the sensors show. Speed and places would otherwise be out of
+  /// step with gravity, whose phase shows the ripple; once a turn that looks like a skew.
+  [[nodiscard]] Motion motion_shown(const State& x) const {
+    State earlier = x;
+    for (const int i : {wheel::angle, wheel::speed, wheel::accel}) earlier(i) -= delay_s * x(i + 1);
+    Motion shown = motion(earlier);
+    for (State* slope : {&shown.by_angle, &shown.by_speed, &shown.by_accel})
+      for (const int i : {wheel::jerk, wheel::accel, wheel::speed})
+        (*slope)(i) -= delay_s * (*slope)(i - 1);
+    return shown;
+  }
+
   [[nodiscard]] Transition<states, moving> transition(const State& x, std::size_t k) const {
     const double t = (*instants)[k].dt_s, t2 = t * t, t3 = t2 * t, t4 = t2 * t2, t5 = t4 * t;
     const double t6 = t3 * t3, t7 = t4 * t3;
@@ -251,9 +271,9 @@ struct WheelModel {
   }
 
   void measure(const State& x, std::size_t k, Readings<states, channels>& out) const {
-    out.count = 0;
+    out.count = out.constraints = 0;
     const State at_state = about == nullptr ? x : state_about(x, k);
-    const Motion now = motion(at_state);
+    const Motion now = motion_shown(at_state);
     for (int s = 0; s < Sensors; ++s) {
       const auto index = static_cast<std::size_t>(s);
       if (!has_readings(index, k)) continue;
@@ -280,11 +300,13 @@ struct WheelModel {
         row.predicted += row.h.dot(x - at_state);
       }
     }
+    if ((*instants)[k].stands && (*instants)[k].dt_s > 0.0) read_standing(x, k, out);
   }
 
   /// Gives up what is believed of the motion, not of the sensors: called when the gate has shut
-  /// everything out for a while.
-  void reopen(Gaussian<states>& x) const {
+  /// everything out for a while. Begins again from the path where there is one.
+  void reopen(Gaussian<states>& x, std::size_t k) const {
+    if (about != nullptr) x.mean.template head<moving>() = about->moving[k];
     const Mat<moving> open(1.0, 100.0, 100.0, 100.0);  // (1 rad)², (10 rad/s)², …
     for (int i = 0; i < moving; ++i) {
       x.cov.row(i).setZero();
@@ -304,6 +326,18 @@ struct WheelModel {
     return at;
   }
 
+  /// One measurement of no speed in each standing_stretch_s, shared out by time.
+  void read_standing(const State& x, std::size_t k, Readings<states, channels>& out) const {
+    out.constraints = 1;
+    auto& row = out.rows[static_cast<std::size_t>(out.count++)];
+    row.h.setZero();
+    row.h(wheel::speed) = 1.0;
+    row.predicted = x(wheel::speed);
+    row.value = 0.0;
+    row.variance =
+        square(standing_speed_radps) * std::max(1.0, standing_stretch_s / (*instants)[k].dt_s);
+  }
+
   void read_gyro(const State& x, const Motion& now, int s, Readings<states, channels>& out) const {
     const int at = wheel::gyro(Sensors) + 2 * s;
     auto& row = out.rows[static_cast<std::size_t>(out.count++)];
@@ -321,7 +355,8 @@ struct WheelModel {
     const int at = wheel::first_of(s);
     const double w = now.speed, al = now.accel, late = w * delay_s;
     const double weaker2 = 1.0 / (1.0 + late * late), weaker = std::sqrt(weaker2);
-    const double phi = now.angle + (s > 0 ? phase_rad + x(wheel::phase) : 0.0) - std::atan(late);
+    const double phi =
+        now.angle + (s > 0 ? phase_rad + x(wheel::phase) : 0.0) + late - std::atan(late);
     const double sin_phi = std::sin(phi), cos_phi = std::cos(phi);
     const int place = wheel::places(Sensors) + 2 * s;
     const double ru = x(place), rv = x(place + 1);
@@ -331,10 +366,10 @@ struct WheelModel {
     const double turn_v = -g * sin_phi - hub * cos_phi;  // ∂f_v/∂φ
     const double fu = -turn_v - w * w * ru - al * rv;
     const double fv = turn_u - w * w * rv + al * ru;
-    // By the speed: through the centripetal force, and through what turns, later and weaker.
-    const double later = delay_s * weaker2, fade = late * later;
-    const double by_w_u = -2.0 * w * ru - later * turn_u + fade * turn_v;
-    const double by_w_v = -2.0 * w * rv - later * turn_v - fade * turn_u;
+    // By the speed: through the centripetal force, and through what turns, less late and weaker.
+    const double sooner = delay_s * (1.0 - weaker2), fade = late * delay_s * weaker2;
+    const double by_w_u = -2.0 * w * ru + sooner * turn_u + fade * turn_v;
+    const double by_w_v = -2.0 * w * rv + sooner * turn_v - fade * turn_u;
     const double by_al_u = -rv - weaker * rolling_radius_m * cos_phi;
     const double by_al_v = ru + weaker * rolling_radius_m * sin_phi;
     Mat<states> du = turn_u * now.by_angle + by_w_u * now.by_speed + by_al_u * now.by_accel;

@@ -281,13 +281,64 @@ TEST(WheelModel, AboutAPathTheConstantsEnterLinearly) {
   }
 }
 
+// A filter shows what was τ earlier: readings of a rippling wheel through a delay are, but for the
+// weakening of what turns, those of the undelayed wheel τ before.
+TEST(WheelModel, ADelayShowsTheMotionOfEarlier) {
+  Normal normal(6);
+  OneInstant<1> instant(0.0, 0.0);
+  instant.model.with_ripple = true;
+  State<1> x = any_state<1>(normal);
+  x(wheel::speed) = 4.0;
+  x(wheel::accel) = x(wheel::jerk) = 0.0;
+  x.segment<8>(wheel::ripple(1)).setConstant(0.01);
+  constexpr double late_s = 1e-3;
+  State<1> earlier = x;
+  earlier(wheel::angle) -= late_s * x(wheel::speed);
+  const auto undelayed = instant.at(earlier);
+  instant.model.delay_s = late_s;
+  const auto delayed = instant.at(x);
+  for (std::size_t i = 0; i < 2; ++i)
+    // g (ω τ)² / 2 of weakening, and nothing in proportion to τ.
+    EXPECT_NEAR(delayed.rows[i].predicted, undelayed.rows[i].predicted, 1.5e-4);
+}
+
+// That a wheel stands does not show whether the filter has its angle.
+TEST(WheelModel, StandingIsAConstraintOfTheSpeed) {
+  OneInstant<1> instant(0.0, 0.0);
+  State<1> x = State<1>::Zero();
+  x(wheel::speed) = 0.2;
+  EXPECT_EQ(instant.at(x).constraints, 0);
+  instant.instants[0].stands = true;
+  const auto out = instant.at(x);
+  ASSERT_EQ(out.count, 3);
+  EXPECT_EQ(out.constraints, 1);
+  EXPECT_EQ(out.rows[2].value, 0.0);
+  EXPECT_EQ(out.rows[2].predicted, 0.2);
+  EXPECT_EQ(out.rows[2].h, State<1>::Unit(wheel::speed));
+  // 0.01 s of half a second: fifty times the variance.
+  EXPECT_NEAR(out.rows[2].variance, 50.0 * square(standing_speed_radps), 1e-12);
+}
+
+TEST(WheelModel, ReopeningBeginsAgainFromThePath) {
+  WheelModel<1> model;
+  WheelPath path;
+  path.moving.assign(3, Mat<wheel::moving>(1.0, 2.0, 3.0, 4.0));
+  path.standing = Eigen::VectorXd::Zero(wheel::standing(1));
+  model.about = &path;
+  Gaussian<wheel::states(1)> x;
+  x.mean.setConstant(100.0);
+  model.reopen(x, 2);
+  EXPECT_EQ((x.mean.head<wheel::moving>()), path.moving[2]);
+  EXPECT_EQ(x.mean(wheel::start), 100.0);
+}
+
 TEST(WheelModel, ReopeningForgetsTheMotionAndKeepsTheConstants) {
   const WheelModel<1> model;
   Gaussian<wheel::states(1)> x;
   x.cov.setConstant(0.1);
   x.cov.diagonal().array() += 1.0;
   const auto before = x.cov;
-  model.reopen(x);
+  model.reopen(x, 0);
   constexpr int moving = wheel::moving, rest = wheel::states(1) - wheel::moving;
   EXPECT_EQ((x.cov.bottomRightCorner<rest, rest>()), (before.bottomRightCorner<rest, rest>()));
   EXPECT_TRUE((x.cov.topRightCorner<moving, rest>().isZero()));

@@ -4,12 +4,15 @@
 namespace proofmass::estimate {
 namespace {
 
+constexpr double fewest_readings = 20.0;
+
 /// Sums over one stretch of a sensor's readings: squared innovations, and the part of them that the
-/// state's own uncertainty explains. What is left is the noise of the readings there.
+/// state's own uncertainty explains. What is left is the noise of the readings there, at least
+/// `least`.
 struct NoiseStretch {
-  double innovation2 = 0.0, explained = 0.0, readings = 0.0;
+  double innovation2 = 0.0, explained = 0.0, readings = 0.0, least = 0.0;
   [[nodiscard]] double variance() const {
-    return std::max(innovation2 - explained, 0.2 * innovation2) / readings;
+    return std::max(std::max(innovation2 - explained, 0.2 * innovation2) / readings, least);
   }
 };
 
@@ -21,7 +24,7 @@ class VarianceProfile {
     double count = 0.0;
     for (std::size_t i = 0; i < stretches.size(); ++i) {
       const NoiseStretch& stretch = stretches[i];
-      if (stretch.readings < 20.0) continue;
+      if (stretch.readings < fewest_readings) continue;
       middle_s_.push_back((static_cast<double>(i) + 0.5) * length_s);
       log_variance_.push_back(std::log(stretch.variance()));
       overall_ += stretch.variance() * stretch.readings;
@@ -116,6 +119,82 @@ double least_variance(const PlanarReadings& sensor, double rate_hz, const WheelP
   return least;
 }
 
+/// What a path leaves of the readings of a sensor's two axes, and the direction across gravity.
+struct Misfit {
+  double u, v, across_u, across_v;
+};
+
+/// Variance of what is left along gravity, from the median of its size; each axis' mean is taken
+/// off first, since biases walk. nullopt where there are few.
+std::optional<double> variance_along_gravity(const std::vector<Misfit>& misfits) {
+  if (2.0 * static_cast<double>(misfits.size()) < fewest_readings) return std::nullopt;
+  Moments u, v;
+  for (const Misfit& of : misfits) u.add(of.u), v.add(of.v);
+  std::vector<double> sizes;
+  for (const Misfit& of : misfits)
+    sizes.push_back(std::abs(of.across_v * (of.u - u.mean) - of.across_u * (of.v - v.mean)) /
+                    std::hypot(of.across_u, of.across_v));
+  constexpr double of_normal = 1.4826;
+  return square(of_normal * *median(sizes));
+}
+
+/// What the model's path leaves of a sensor's readings, by stretches of length_s.
+template <int S>
+std::vector<std::vector<Misfit>> misfits_of(const WheelModel<S>& model,
+                                            const WheelReadings& readings,
+                                            std::size_t sensor,
+                                            double length_s,
+                                            std::size_t count) {
+  using Model = WheelModel<S>;
+  std::vector<std::vector<Misfit>> misfits(count);
+  auto x = Model::State::Zero().eval();
+  x.template tail<wheel::standing(S)>() = model.about->standing;
+  Readings<Model::states, Model::channels> out;
+  for (std::size_t k = 0; k < model.size(); ++k) {
+    if (!model.has_readings(sensor, k)) continue;
+    x.template head<wheel::moving>() = model.about->moving[k];
+    model.measure(x, k, out);
+    const std::size_t first = sensor == 0 || !model.has_readings(0, k) ? 0
+                              : model.has_speed(0, k)                  ? 3
+                                                                       : 2;
+    const auto &u = out.rows[first], &v = out.rows[first + 1];
+    const double since_s = readings.time_s[k] - readings.time_s.front();
+    misfits[static_cast<std::size_t>(since_s / length_s)].push_back(
+        {u.value - u.predicted, v.value - v.predicted, u.h(wheel::angle), v.h(wheel::angle)});
+  }
+  return misfits;
+}
+
+bool shows_shaking(const std::vector<double>& variance_m2ps4, double rate_hz) {
+  constexpr double shaking_density = 1e-4;  // (m/s²)²/Hz: no sensor's noise is above 1 mg/√Hz
+  constexpr double loud_ratio = 4.0, loud_mps2 = 0.05;
+  const auto loud = quantile(variance_m2ps4, 0.9), quiet = quantile(variance_m2ps4, 0.05);
+  return loud && ((*loud >= loud_ratio * *quiet && *loud > square(loud_mps2)) ||
+                  2.0 * *loud > shaking_density * rate_hz);
+}
+
+/// Sets the least variance of a sensor's stretches from what the path leaves of the readings along
+/// gravity. No motion of the wheel explains that: a turn moves the readings across gravity. Returns
+/// whether the wheel shakes.
+template <int S>
+bool set_least(const WheelModel<S>& model,
+               const WheelReadings& readings,
+               std::size_t sensor,
+               double length_s,
+               std::vector<NoiseStretch>& stretches) {
+  const auto misfits = misfits_of(model, readings, sensor, length_s, stretches.size());
+  std::vector<double> all;
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    const auto variance = variance_along_gravity(misfits[i]);
+    if (!variance) continue;
+    all.push_back(*variance);
+    // Less one standard deviation of a variance from a median: its efficiency is 37 %.
+    const double scatter = std::sqrt(2.0 / (0.37 * static_cast<double>(misfits[i].size())));
+    stretches[i].least = *variance * std::max(0.0, 1.0 - scatter);
+  }
+  return shows_shaking(all, readings.rate_hz());
+}
+
 /// Between these the motion's noise is looked for. A bias that walked faster could stand for
 /// gravity.
 constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e5, 1e8, 1e-4};
@@ -129,6 +208,10 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
   const auto count = static_cast<std::size_t>((readings.time_s.back() - start_s) / length_s) + 1;
   std::array<std::vector<NoiseStretch>, 2> stretches;
   for (auto& of_sensor : stretches) of_sensor.resize(count);
+  for (std::size_t s = 0; model.about != nullptr && s < readings.sensors.size(); ++s) {
+    const bool shakes = set_least(model, readings, s, length_s, stretches[s]);
+    if (s == 0) readings.shakes = shakes;
+  }
   std::array<NoiseStretch, 2> gyros;
   auto state = prior_state<S>(prior);
   filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t k, const auto& step) {

@@ -1,8 +1,10 @@
 #include "proofmass/estimate/wheel_passes.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "proofmass/estimate/wheel_colour.hpp"
+#include "proofmass/estimate/wheel_rests.hpp"
 #include "proofmass/estimate/wheel_settle.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 
@@ -74,10 +76,10 @@ TEST(WheelLevers, OfARampAreMeansOverTheTurnAboutEachInstant) {
   }
 }
 
-// A hub that shakes by 1 m/s² may be a vehicle's: three seconds, whatever the speed.
+// A hub that shakes may be a vehicle's: three seconds, whatever the speed.
 TEST(WheelLevers, OfAWheelThatShakesAreMeansOverThreeSeconds) {
   Ramp ramp(10.0, 30.0);
-  ramp.readings.sensors[0].variance_m2ps4 = {1.0, 1.0};
+  ramp.readings.shakes = true;
   const double t = 5.0, w = 10.0 + ramp.accel_radps2 * t;
   EXPECT_NEAR(levers_of(ramp.path, ramp.readings)[500](0),
               w * w + std::pow(ramp.accel_radps2 * 1.5, 2) / 3.0, 0.1);
@@ -145,6 +147,100 @@ TEST(SettleVariance, IsNotUnderestimatedUnderLargeProcessNoise) {
   settle_variance(model, prior, slow.readings);
   EXPECT_NEAR(std::sqrt(slow.readings.sensors[0].variance_m2ps4[1200]), SlowWheel::noise_mps2,
               0.2 * SlowWheel::noise_mps2);
+}
+
+// No motion of the wheel changes the readings along gravity, so those show a hub that shakes
+// however closely the filter follows.
+TEST(SettleVariance, SeesAHubThatShakes) {
+  SlowWheel slow;
+  const WheelPrior prior{{0.0, 0.2, SlowWheel::speed_radps, 1.0}, {}, Places::Zero(2)};
+  const WheelNoise follows_all{.jerk_psd = 1e4};
+  settle_variance(held_model<1>(slow.readings, follows_all, slow.path), prior, slow.readings);
+  EXPECT_FALSE(slow.readings.shakes);
+  test::Normal normal(3);
+  constexpr double shaking_mps2 = 0.3;
+  PlanarReadings& sensor = slow.readings.sensors[0];
+  for (std::size_t k = 1200; k < 2400; ++k) {
+    sensor.u_mps2[k] += shaking_mps2 * normal();
+    sensor.v_mps2[k] += shaking_mps2 * normal();
+  }
+  settle_variance(held_model<1>(slow.readings, follows_all, slow.path), prior, slow.readings);
+  EXPECT_TRUE(slow.readings.shakes);
+  EXPECT_GT(sensor.variance_m2ps4[1800], 0.4 * square(shaking_mps2));
+}
+
+TEST(MarkStanding, IsAWheelWhoseReadingsKeepTheirValues) {
+  SlowWheel slow;
+  PlanarReadings& sensor = slow.readings.sensors[0];
+  test::Normal normal(4);
+  for (std::size_t k = 1000; k < 2400; ++k) {
+    sensor.u_mps2[k] = 3.0 + SlowWheel::noise_mps2 * normal();
+    sensor.v_mps2[k] = 9.0 + SlowWheel::noise_mps2 * normal();
+  }
+  mark_standing(slow.readings);
+  const auto& instants = slow.readings.instants;
+  EXPECT_TRUE(std::none_of(instants.begin(), instants.begin() + 1000,
+                           [](const WheelInstant& instant) { return instant.stands; }));
+  // The stretch in which it stops is none, nor is one in twenty by chance.
+  EXPECT_GE(std::ranges::count(instants, true, &WheelInstant::stands), 1260);
+}
+
+// At 0.1 rad/s, a turn in a minute, a wheel moves.
+TEST(MarkStanding, IsNoSlowWheel) {
+  SlowWheel slow;
+  PlanarReadings& sensor = slow.readings.sensors[0];
+  test::Normal normal(4);
+  for (std::size_t k = 0; k < 2400; ++k) {
+    const double angle = 0.1 * static_cast<double>(k) / SlowWheel::rate_hz;
+    sensor.u_mps2[k] = 9.8 * std::sin(angle) + SlowWheel::noise_mps2 * normal();
+    sensor.v_mps2[k] = 9.8 * std::cos(angle) + SlowWheel::noise_mps2 * normal();
+  }
+  mark_standing(slow.readings);
+  EXPECT_TRUE(std::ranges::none_of(slow.readings.instants, &WheelInstant::stands));
+}
+
+TEST(WheelReadings, RateIsThatOfRowsWhichArriveInPackets) {
+  WheelReadings readings;
+  for (int k = 0; k < 2000; ++k)
+    // Ten rows every 25 ms, ten microseconds apart; once a gap of a minute.
+    readings.instants.push_back({k % 10 > 0 ? 1e-5 : k == 1000 ? 60.0 : 0.025 - 9e-5});
+  EXPECT_NEAR(readings.rate_hz(), 400.0, 4.0);
+}
+
+/// A wheel at 6 rad/s whose speed ripples by 1 % in an order, about a path that does not know it.
+struct RipplingWheel {
+  static constexpr double rate_hz = 200.0, speed_radps = 6.0, share = 0.01, radius_m = 0.1;
+  WheelReadings readings;
+  WheelPath path;
+
+  explicit RipplingWheel(int order) {
+    readings.sensors.resize(1);
+    test::Normal normal(2);
+    PlanarReadings& sensor = readings.sensors[0];
+    for (int k = 0; k < 4000; ++k) {
+      const double even = speed_radps * k / rate_hz, phase = order * even;
+      const double angle = even + share * std::sin(phase) / order;
+      const double speed = speed_radps * (1.0 + share * std::cos(phase));
+      const double accel = -square(speed_radps) * share * order * std::sin(phase);
+      readings.time_s.push_back(k / rate_hz);
+      readings.instants.push_back({k == 0 ? 0.0 : 1.0 / rate_hz, {k, WheelInstant::no_row}});
+      sensor.u_mps2.push_back(readings.gravity_mps2 * std::sin(angle) - square(speed) * radius_m +
+                              0.03 * normal());
+      sensor.v_mps2.push_back(readings.gravity_mps2 * std::cos(angle) + accel * radius_m +
+                              0.03 * normal());
+      sensor.variance_m2ps4.push_back(1e-3);
+      path.moving.emplace_back(even, speed_radps, 0.0, 0.0);
+    }
+    path.standing = Eigen::VectorXd::Zero(wheel::standing(1));
+    path.standing(wheel::standing(1) - 2) = radius_m;
+  }
+};
+
+TEST(RippleOrders, AreThoseThatExplainTheReadings) {
+  for (const int order : {3, 7, 12}) {
+    const RipplingWheel rippling(order);
+    EXPECT_EQ(orders_in<1>(rippling.readings, rippling.path)[2], order);
+  }
 }
 
 TEST(HeldModel, IsLinearAboutThePathForOneTurn) {

@@ -118,8 +118,8 @@ WheelLevers levers_of(const WheelPath& path, const WheelReadings& readings) {
   const std::vector<double>& time_s = readings.time_s;
   // One turn, at most 1 s: the speed of a slow wheel may change within a turn. Hub vibration
   // appears as changes of speed, which average out over 3 s.
-  const double longest_s = carries_a_vehicle(readings) ? 3.0 : 1.0;
-  const double shortest_s = carries_a_vehicle(readings) ? 3.0 : 0.0;
+  const double longest_s = readings.shakes ? 3.0 : 1.0;
+  const double shortest_s = readings.shakes ? 3.0 : 0.0;
   const std::size_t size = path.moving.size();
   WheelLevers sums(size + 1, Mat<2>::Zero());
   for (std::size_t k = 0; k < size; ++k) {

@@ -1,6 +1,6 @@
 #include "proofmass/estimate/wheel_settle.hpp"
 
-#include <complex>
+#include <numbers>
 #include <numeric>
 
 #include "proofmass/core/linalg.hpp"
@@ -32,6 +32,25 @@ PlacesPrior moved_where_open(const PlacesPrior& belief, const Places& to) {
   return moved;
 }
 
+/// Least squares of one order's (c, s) on what a path leaves of the readings.
+struct RippleFit {
+  Mat<2, 2> information = Mat<2, 2>::Zero();
+  Mat<2> score = Mat<2>::Zero();
+
+  void add(const Mat<2>& h, double residual) {
+    information += h * h.transpose();
+    score += h * residual;
+  }
+  /// By how much it lowers the sum of squares.
+  [[nodiscard]] double explained() const {
+    const double cc = information(0, 0), cs = information(0, 1), ss = information(1, 1);
+    const double determinant = cc * ss - cs * cs;
+    if (!(determinant > 1e-12 * square(cc + ss))) return 0.0;
+    return (ss * square(score(0)) - 2.0 * cs * score(0) * score(1) + cc * square(score(1))) /
+           determinant;
+  }
+};
+
 /// One round: the readings' variance, the motion's noise and the sensors' places, all about the
 /// path found so far.
 template <int S>
@@ -43,6 +62,11 @@ Settled<S> settle(WheelReadings& readings,
   const Places places = track.path.standing.tail<2 * S>();
   WheelPrior prior{track.beginning, prior_for(track.path), places};
   settle_variance(model, prior, readings);
+  // Ripple that no pass has fitted yet looks like shaking, and a hub taken for a vehicle's would
+  // never let it be fitted.
+  const int ripple_at = wheel::ripple(S) - wheel::first_of(0);
+  if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
+    readings.shakes = false;
   assume_rolling_radius(readings);
   model.rolling_radius_m = readings.rolling_radius_m.value;
   const Excerpt<S> excerpt = liveliest(model, prior);
@@ -67,21 +91,36 @@ std::size_t instants_of_first_turn(const WheelPath& path) {
   return static_cast<std::size_t>(away - path.moving.begin());
 }
 
-RippleOrders orders_in(const WheelPath& path) {
-  std::array<std::complex<double>, highest_order + 1> sums{};
-  for (const Mat<wheel::moving>& at : path.moving) {
-    const std::complex<double> turn = std::polar(1.0, -at(wheel::angle));
-    std::complex<double> power = turn * turn;
-    for (std::size_t n = 3; n < sums.size(); ++n) sums[n] += at(wheel::accel) * (power *= turn);
+template <int S>
+RippleOrders orders_in(const WheelReadings& readings, const WheelPath& path) {
+  using Model = WheelModel<S>;
+  constexpr int at = wheel::ripple(S);
+  Model model = held_model<S>(readings, {}, path);
+  std::array<RippleFit, highest_order + 1> fits{};
+  auto x = Model::State::Zero().eval();
+  x.template tail<wheel::standing(S)>() = path.standing;
+  Readings<Model::states, Model::channels> out;
+  for (const RippleOrders& tried : {RippleOrders{3, 4, 5, 6}, {7, 8, 9, 10}, {9, 10, 11, 12}}) {
+    model.orders = tried;
+    for (const int n : tried) fits[static_cast<std::size_t>(n)] = {};
+    for (std::size_t k = 0; k < model.size(); ++k) {
+      x.template head<wheel::moving>() = path.moving[k];
+      model.measure(x, k, out);
+      const double turned = std::abs(path.moving[k](wheel::speed)) * readings.instants[k].dt_s;
+      for (int i = 0; i < out.count - out.constraints; ++i) {
+        const auto& row = out.rows[static_cast<std::size_t>(i)];
+        for (std::size_t o = 0; o < tried.size(); ++o)
+          // Beyond half a cycle from reading to reading an order looks like another.
+          if (tried[o] * turned < std::numbers::pi)
+            fits[static_cast<std::size_t>(tried[o])].add(
+                row.h.template segment<2>(at + 2 * static_cast<int>(o)), row.value - row.predicted);
+      }
+    }
   }
   std::array<int, highest_order - 2> others{};
   std::iota(others.begin(), others.end(), 3);
-  const auto is_stronger = [&](int one, int other) {
-    const double a = std::norm(sums[static_cast<std::size_t>(one)]);
-    const double b = std::norm(sums[static_cast<std::size_t>(other)]);
-    return a > b || (a == b && one < other);
-  };
-  std::ranges::sort(others, is_stronger);
+  const auto explained = [&](int n) { return fits[static_cast<std::size_t>(n)].explained(); };
+  std::ranges::stable_sort(others, std::ranges::greater{}, explained);
   return {1, 2, others[0], others[1]};
 }
 
@@ -120,6 +159,8 @@ Settled<S> settle_rounds(WheelReadings& readings,
   return settled;
 }
 
+template RippleOrders orders_in<1>(const WheelReadings&, const WheelPath&);
+template RippleOrders orders_in<2>(const WheelReadings&, const WheelPath&);
 template void improve(const WheelReadings&, const Settled<1>&, WheelTrack&);
 template void improve(const WheelReadings&, const Settled<2>&, WheelTrack&);
 template Settled<1> settle_rounds(

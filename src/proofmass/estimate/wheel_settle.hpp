@@ -33,9 +33,10 @@ template <int S>
   return model;
 }
 
-/// Orders 1 and 2 and the two strongest others, up to highest_order, in the acceleration of a path
-/// that was found without ripple.
-[[nodiscard]] RippleOrders orders_in(const WheelPath& path);
+/// Orders 1 and 2 and the two others, up to highest_order, that explain most of what a path
+/// without ripple leaves of the readings.
+template <int S>
+[[nodiscard]] RippleOrders orders_in(const WheelReadings& readings, const WheelPath& path);
 
 /// Moves the track to the smoother's under the settled figures.
 template <int S>

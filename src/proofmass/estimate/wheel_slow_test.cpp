@@ -30,7 +30,7 @@ struct ReadPosition {
     const double offset = k % 2 == 0 ? 0.0 : 1.0;
     out.rows[0] = {0.0, x(0) + offset * x(3), 1e-6, Mat<4>(1, 0, 0, offset)};
   }
-  void reopen(Gaussian<4>&) const {}
+  void reopen(Gaussian<4>&, std::size_t) const {}
 };
 
 TEST(Filter, CovarianceStaysSymmetricAndPositiveDefiniteOverAMillionSteps) {

@@ -1,6 +1,7 @@
 #include <limits>
 
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel_passes.hpp"
 
 namespace proofmass::estimate {
@@ -79,14 +80,22 @@ Beginning seek_beginning(const WheelReadings& readings, const WheelNoise& noise)
 }  // namespace
 
 double WheelReadings::rate_hz() const {
+  // The mean step, not the median: rows that arrive in packets bear nearly equal stamps. Gaps are
+  // left out.
+  constexpr double gap_share = 0.01, gap_factor = 5.0;
   std::vector<double> steps;
   steps.reserve(instants.size());
   for (const WheelInstant& instant : instants)
     if (instant.dt_s > 0.0) steps.push_back(instant.dt_s);
   if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  return 1.0 / *middle;
+  const double gap_s = gap_factor * *quantile(steps, 1.0 - gap_share);
+  double sum_s = 0.0, count = 0.0;
+  for (const double step : steps) {
+    if (step > gap_s) continue;
+    sum_s += step;
+    count += 1.0;
+  }
+  return count / sum_s;
 }
 
 WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
@@ -98,6 +107,7 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
                     readings.delay_s,
                     readings.phase_rad,
                     readings.orders,
+                    readings.shakes,
                     {},
                     {},
                     {}};
@@ -105,9 +115,12 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
   for (std::size_t first = 0; first < readings.instants.size(); first += each) {
     const std::size_t last = std::min(first + each, readings.instants.size());
     WheelInstant instant;
+    instant.stands = true;
     double time_s = 0.0;
-    for (std::size_t k = first; k < last; ++k)
+    for (std::size_t k = first; k < last; ++k) {
       time_s += readings.time_s[k] / static_cast<double>(last - first);
+      instant.stands = instant.stands && readings.instants[k].stands;
+    }
     for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
       const PlanarReadings& sensor = readings.sensors[s];
       double u = 0.0, v = 0.0, variance = 0.0, count = 0.0, speed = 0.0, speeds = 0.0;
