@@ -42,7 +42,7 @@ struct RigSensor {
   Axes noise_rms_mps2{0.0184, 0.0184, 0.0184};  ///< independent from sample to sample
   Axes noise_density_mps2_rthz{};  ///< one-sided, white before the filter; adds to the above
   double bandwidth_hz = 100.0;     ///< −3 dB of the one-pole RC filter
-  bool filter_signal = false;      ///< the filter delays the signal too, not the noise alone
+  bool filter_signal = true;       ///< the filter delays the signal too, not the noise alone
   Axes bias_walk_mps2_rts{};       ///< random walk of the bias, growth in 1 s
   double sensitivity_v_per_mps2 = 0.330 / standard_gravity_mps2;  ///< at the nominal supply
   double zero_g_fraction = 0.5;                                   ///< of the supply
@@ -53,7 +53,7 @@ struct RigWheel {
   double start_angle_rad = 0.0;  ///< of the mark on the wheel; 0 = horizontal
   std::vector<SpeedSegment> profile{{.duration_s = 60.0, .speed_radps = 11.0 * radps_per_rpm}};
   SpeedRipple ripple{.fraction = 0.02};
-  double axle_tilt_rad = 0.0;  ///< of the spin axis above the horizontal
+  double axle_tilt_rad = 2.0 * rad_per_deg;  ///< of the spin axis above the horizontal
   /// The wheel rolls on the ground below it without slip, and its hub accelerates with it: by
   /// −rolling_radius · α along the horizontal that the angle is counted from. 0 = hub at rest.
   double rolling_radius_m = 0.0;
@@ -86,8 +86,8 @@ enum class RigOutput {
 /// The same card, with 16 bits over the supply where it has none: counts are steps of something.
 [[nodiscard]] RigDaq with_steps(const RigDaq& daq, double supply_v);
 
-/// The defaults are the thesis's wheel at 11 rpm, 200 Hz, 60 s, with the errors of
-/// docs/methods/wheel.md: noise, bias, warm-up and ripple, and no others.
+/// The defaults are the thesis's wheel at 11 rpm, 200 Hz, 60 s, its axle 2° off level, with
+/// sensors that have noise, bias, warm-up and the delay of their filters, and a speed that ripples.
 struct RigOptions {
   std::uint64_t seed = 1;
   double rate_hz = 200.0;

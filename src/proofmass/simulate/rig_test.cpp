@@ -213,6 +213,7 @@ TEST(Rig, SameSeedSameNumbers) {
 TEST(Rig, OneEffectLeavesTheNumbersOfTheOthersAlone) {
   RigOptions options;
   options.wheel.profile[0].duration_s = 1.0;
+  options.sensors[0].filter_signal = false;  // which the walk would pass too
   const RigResult before = simulated(options);
   options.sensors[0].bias_walk_mps2_rts = {0.1, 0.1, 0.1};
   const RigResult after = simulated(options);

@@ -6,7 +6,8 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/simulate/rig.hpp"
 
-// What the tests of docs/errata.md share: the thesis's wheel with sensors that have no errors.
+// What the tests of docs/errata.md share: the thesis's wheel, its axle level, with sensors that
+// have neither errors nor delay.
 namespace proofmass::thesis::errata {
 
 inline constexpr double g = standard_gravity_mps2;
@@ -21,7 +22,9 @@ inline simulate::RigOptions wheel(double speed_radps, double start_angle_rad = 0
   options.wheel.start_angle_rad = start_angle_rad;
   options.wheel.profile = {{.duration_s = 6.0, .speed_radps = speed_radps}};
   options.wheel.ripple = {};
+  options.wheel.axle_tilt_rad = 0.0;
   for (simulate::RigSensor& sensor : options.sensors) {
+    sensor.filter_signal = false;
     sensor.warm_up_mps2 = {};
     sensor.noise_rms_mps2 = {};
   }

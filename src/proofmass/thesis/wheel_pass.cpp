@@ -128,6 +128,7 @@ WheelPass wheel_pass(const RigRun& run, const WheelRecord& record) {
   Model model;
   model.gravity_mps2 = run.gravity_mps2;
   model.phase_rad = std::numbers::pi;
+  model.delay_s = 1.0 / (rad_per_turn * rig_bandwidth_hz);
   model.noise = noise_of(run, record);
   model.instants = &readings.instants;
   model.readings = {&readings.sensors[0], &readings.sensors[1]};

@@ -12,8 +12,9 @@ namespace proofmass::thesis {
 /// that the wheel starts at rest and nothing of its sensors' errors: what estimate_wheel() finds
 /// after many passes, in three. The noise, which it would find too, is taken from the rig:
 /// readings by the datasheet, jerk by the two ends of the ramp, snap by the ripple, the biases'
-/// walk by the warm-up. The filter is the live one: each instant knows only what came before it.
-/// Readings are averaged two by two. Expects a record of simulate_wheel(run).
+/// walk by the warm-up; so is the delay of the sensors' filters. The filter is the live one: each
+/// instant knows only what came before it. Readings are averaged two by two. Expects a record of
+/// simulate_wheel(run).
 struct WheelPass {
   std::vector<double> time_s;
   AngleEstimate filtered, smoothed;
