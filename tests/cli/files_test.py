@@ -7,8 +7,9 @@ import subprocess
 import threading
 import time
 import unittest
+import zipfile
 
-from command import DONE, PROGRAM, USAGE, CommandTest, parse_json, rest_csv, turning_csv
+from command import BAD_INPUT, DONE, PROGRAM, USAGE, CommandTest, parse_json, rest_csv, turning_csv
 
 # How many instants each command is killed at: a few in the usual run, many in the long one.
 INSTANTS = int(os.environ.get("PROOFMASS_KILLS", "6"))
@@ -151,6 +152,20 @@ class Killed(CommandTest):
         self.write("rest.csv", rest_csv(seconds=30))
         self.write("imu.toml", '[sensor]\nname = "imu"\nserial = "7"\n')
         self.check(["rest.csv", "imu.toml"], "imu.toml", "noise", "rest.csv", "--update-sensor", "imu.toml", "-q")
+
+
+class Packed(CommandTest):
+    @unittest.skipUnless("PROOFMASS_KILLS" in os.environ, "half a minute; in the long run")
+    def test_a_zip_that_unpacks_to_a_thousand_times_its_size_is_refused(self):
+        rows = b"0,0\n" * (1 << 20)
+        with zipfile.ZipFile(self.folder / "a.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+            with archive.open("a.csv", "w", force_zip64=True) as member:
+                member.write(b"time (s),acc_x (m/s^2)\n")
+                for _ in range(300):
+                    member.write(rows)
+        ran = self.run_command("inspect", "a.zip")
+        self.assertEqual(ran.returncode, BAD_INPUT)
+        self.assertIn("unpacks to more than 250 times its size", ran.stderr.decode())
 
 
 if __name__ == "__main__":

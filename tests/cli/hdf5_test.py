@@ -4,7 +4,7 @@ import unittest
 import h5py
 import numpy as np
 
-from command import CommandTest
+from command import BAD_INPUT, CommandTest
 
 
 class Hdf5(CommandTest):
@@ -53,6 +53,13 @@ class Hdf5(CommandTest):
             f.attrs["fs"] = 100.0
         self.succeed("convert", "a.h5", "-o", "b.npy")
         np.testing.assert_array_equal(np.load(self.folder / "b.npy")[:, 1:], values.T.astype("f8"))
+
+    def test_a_claim_that_no_compression_could_hold_is_refused_before_it_is_unpacked(self):
+        with h5py.File(self.folder / "empty.h5", "w") as f:
+            f.create_dataset("acc_x", shape=(2 * 10**9,), dtype="f8", chunks=(10**6,), compression="gzip")
+        ran = self.run_command("inspect", "empty.h5")
+        self.assertEqual(ran.returncode, BAD_INPUT)
+        self.assertIn("claims 2000000000 figures", ran.stderr.decode())
 
 
 if __name__ == "__main__":
