@@ -144,6 +144,13 @@ class Verbs(CommandTest):
             document = self.document("drift", "rest.csv", "--since-switch-on", since)
             self.assertEqual({channel["verdict"] for channel in document["channels"]}, {"not_identified"})
 
+    def test_of_noise_with_many_samples_missing_and_of_tilt_with_one_of_1e300(self):
+        for seed in (3596, 4738):
+            recording = OddRecording(seed)
+            self.write("r.csv", recording.text())
+            verb, arguments = recording.command("r.csv")
+            self.document(verb, *arguments)
+
     def test_of_motion_take_stamps_that_repeat(self):
         rows = [(0.01 * (k - (k in (50, 120))), k) for k in range(300)]
         self.write("r.csv", "t (s),ax (m/s^2),ay (m/s^2),az (m/s^2)\n"

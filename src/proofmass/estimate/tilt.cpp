@@ -37,8 +37,10 @@ void follow(const TiltRecord& record, const TiltOptions& options, TiltSolution& 
 
 }  // namespace
 
-Result<TiltSolution> estimate_tilt(const TiltRecord& record, const TiltOptions& given) {
+Result<TiltSolution> estimate_tilt(const TiltRecord& all, const TiltOptions& given) {
   TiltSolution solution;
+  const std::optional<TiltRecord> believable = without_unbelievable(all, solution.notes);
+  const TiltRecord& record = believable ? *believable : all;
   TiltOptions options = given;
   if (const Status fits = check_record(record, options, solution); !fits) return fits.error();
   signal::RestSearch found = rests_of(record, options);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel_plane.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -59,7 +60,35 @@ void note_unusable(TiltSolution& solution) {
                                                    " samples lack a reading on some axis"});
 }
 
+std::size_t count_beyond(double most, const std::array<std::vector<double>, 3>& axes) {
+  std::ptrdiff_t count = 0;
+  for (const std::vector<double>& axis : axes)
+    count += std::ranges::count_if(axis, [most](double value) { return std::abs(value) > most; });
+  return static_cast<std::size_t>(count);
+}
+
+void drop_beyond(double most, std::array<std::vector<double>, 3>& axes) {
+  for (std::vector<double>& axis : axes)
+    for (double& value : axis)
+      if (std::abs(value) > most) value = no_value;
+}
+
 }  // namespace
+
+std::optional<TiltRecord> without_unbelievable(const TiltRecord& record, std::vector<Note>& notes) {
+  const std::size_t forces = count_beyond(beyond_belief_mps2, record.accel_mps2);
+  const std::size_t count = forces + count_beyond(beyond_belief_radps, record.rate_radps);
+  // Where most are, the unit is another.
+  const bool most = 2 * forces > record.accel_mps2[0].size();
+  if (count == 0 || most) return std::nullopt;
+  TiltRecord out = record;
+  drop_beyond(beyond_belief_mps2, out.accel_mps2);
+  drop_beyond(beyond_belief_radps, out.rate_radps);
+  notes.push_back({Severity::warning, std::to_string(count) +
+                                          (count == 1 ? " reading is" : " readings are") +
+                                          " beyond 1000 g or 10000 rad/s and not used"});
+  return out;
+}
 
 std::string decimal(double value, int decimals) {
   char text[32];

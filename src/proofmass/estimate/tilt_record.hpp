@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,11 @@ namespace proofmass::estimate {
 
 /// Three axes at one sample; NaN where an axis is not there or not finite.
 [[nodiscard]] Mat<3> vector_at(const std::array<std::vector<double>, 3>& axes, std::size_t k);
+
+/// The record without readings beyond what any sensor gives, with a note of how many; nullopt where
+/// there are none, or so many that the unit is another.
+[[nodiscard]] std::optional<TiltRecord> without_unbelievable(const TiltRecord& record,
+                                                             std::vector<Note>& notes);
 
 /// Sets samples, axes and unusable, and notes the latter.
 /// Errors: as of estimate_tilt; not_observable where the median force cannot be gravity's.

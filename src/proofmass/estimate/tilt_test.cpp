@@ -308,6 +308,25 @@ TEST(Tilt, CountsAReadingThatALoggerRepeatsOnce) {
   }));
 }
 
+// One reading of 1e300 in a recording of a moving base ended the filter.
+TEST(Tilt, LeavesOutWhatNoSensorReads) {
+  for (const TiltBase moves : {TiltBase::still, TiltBase::moving}) {
+    TiltRecord record = still_record(force_at(0.1, 0.2), 0.02, 400, 17);
+    TiltOptions options = exact;
+    options.base = moves;
+    const auto clean = estimate_tilt(record, options);
+    record.accel_mps2[0][150] = 1e300;
+    record.accel_mps2[2][151] = -1e12;
+    const auto spoilt = estimate_tilt(record, options);
+    ASSERT_TRUE(clean && spoilt && spoilt->final.roll_rad && spoilt->final.pitch_rad);
+    EXPECT_NEAR(spoilt->final.roll_rad->value, clean->final.roll_rad->value,
+                spoilt->final.roll_rad->std);
+    EXPECT_TRUE(std::ranges::any_of(spoilt->notes, [](const Note& note) {
+      return note.text.starts_with("2 readings are beyond");
+    }));
+  }
+}
+
 TEST(Tilt, SaysWhyItCannot) {
   const auto message = [](const TiltRecord& record, const TiltOptions& options) {
     const auto solution = estimate_tilt(record, options);

@@ -11,8 +11,6 @@
 namespace proofmass::estimate {
 namespace {
 
-constexpr double beyond_belief_mps2 = 1000.0 * standard_gravity_mps2;
-
 double component(const WheelSensor& sensor, std::size_t axis, std::size_t row) {
   const std::vector<double>& values = sensor.accel_mps2[axis];
   return values.empty() ? 0.0 : values[row];
@@ -160,7 +158,7 @@ void add_speeds(const WheelSensor& sensor,
                 const Screened& screened,
                 const WheelPlane& plane,
                 PlanarReadings& readings) {
-  constexpr double beyond_belief_radps = 1e4, least_variance = 1e-6;
+  constexpr double least_variance = 1e-6;
   const std::size_t size = sensor.time_s.size();
   readings.speed_radps.assign(size, std::numeric_limits<double>::quiet_NaN());
   std::array<std::vector<bool>, 3> at_its_end;

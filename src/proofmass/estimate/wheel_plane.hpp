@@ -21,6 +21,10 @@ struct Screened {
   std::size_t unusable = 0;
 };
 
+/// No accelerometer, and no gyroscope, reads more.
+inline constexpr double beyond_belief_mps2 = 1000.0 * standard_gravity_mps2;
+inline constexpr double beyond_belief_radps = 1e4;
+
 /// Why no accelerometer can have meant this: not finite, beyond 1000 g, denormal (below 1e-30 and
 /// not 0: bits that were no number), all axes exactly 0. nullptr if one can.
 [[nodiscard]] const char* why_unbelievable(const Axis& accel_mps2);

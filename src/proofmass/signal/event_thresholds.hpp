@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "proofmass/core/view.hpp"
@@ -26,7 +27,11 @@ struct Bar {
   [[nodiscard]] double scale_at(std::size_t block) const {
     return scale[std::min(block / group, scale.size() - 1)];
   }
-  [[nodiscard]] double at(std::size_t block) const { return sigmas * scale_at(block); }
+  /// Infinite where the scale is 0: too few outputs to know one by.
+  [[nodiscard]] double at(std::size_t block) const {
+    const double here = scale_at(block);
+    return here > 0.0 ? sigmas * here : std::numeric_limits<double>::infinity();
+  }
 };
 
 /// Blocks that share a scale: those of half a minute, 16 at least.
