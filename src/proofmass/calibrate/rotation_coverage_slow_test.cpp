@@ -55,7 +55,7 @@ PlainWheel noisy_wheel(unsigned seed) {
   return wheel;
 }
 
-constexpr int runs = 400;
+constexpr int runs = 200;
 // Noise that remembers half a block makes the intervals too wide, if anything.
 constexpr double long_memory_s = 5.0;
 
@@ -66,7 +66,9 @@ double most_for(double memory_s) {
 class RotationCoverage : public testing::TestWithParam<double> {};
 
 // Markov noise as large as the white one, with a memory from a tenth of a second to two turns.
-TEST_P(RotationCoverage, OfOneAxisWithoutAnEncoderIsNinetyFivePerCent) {
+// Without an encoder a ripple of the speed may be there, which the intervals hold; these wheels have
+// none.
+TEST_P(RotationCoverage, OfOneAxisWithoutAnEncoderIsNinetyFivePerCentOrMore) {
   Tally tally;
   for (unsigned run = 0; run < runs; ++run) {
     PlainWheel wheel = noisy_wheel(run + 1);
@@ -74,7 +76,7 @@ TEST_P(RotationCoverage, OfOneAxisWithoutAnEncoderIsNinetyFivePerCent) {
     wheel.memory_s = std::max(GetParam(), 0.01);
     count(fit_of({turned(wheel)}).axes[0], wheel.equations[0], tally);
   }
-  expect_coverage(tally, runs, most_for(GetParam()));
+  expect_coverage(tally, runs, 1.0);
 }
 
 TEST_P(RotationCoverage, WithAnEncoderIsNinetyFivePerCent) {
@@ -90,7 +92,7 @@ TEST_P(RotationCoverage, WithAnEncoderIsNinetyFivePerCent) {
   expect_coverage(tally, runs, most_for(GetParam()));
 }
 
-TEST_P(RotationCoverage, OfTwoAxesIsNinetyFivePerCent) {
+TEST_P(RotationCoverage, OfTwoAxesIsNinetyFivePerCentOrMore) {
   Tally first, second;
   for (unsigned run = 0; run < runs; ++run) {
     PlainWheel wheel = noisy_wheel(run + 1);
@@ -101,8 +103,8 @@ TEST_P(RotationCoverage, OfTwoAxesIsNinetyFivePerCent) {
     count(fit.axes[0], wheel.equations[0], first);
     count(fit.axes[1], wheel.equations[1], second);
   }
-  expect_coverage(first, runs, most_for(GetParam()));
-  expect_coverage(second, runs, most_for(GetParam()));
+  expect_coverage(first, runs, 1.0);
+  expect_coverage(second, runs, 1.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Memories, RotationCoverage, testing::Values(0.0, 0.1, 1.0, 10.0));
