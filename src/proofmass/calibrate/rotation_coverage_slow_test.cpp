@@ -66,8 +66,8 @@ double most_for(double memory_s) {
 class RotationCoverage : public testing::TestWithParam<double> {};
 
 // Markov noise as large as the white one, with a memory from a tenth of a second to two turns.
-// Without an encoder a ripple of the speed may be there, which the intervals hold; these wheels have
-// none.
+// Without an encoder a ripple of the speed may be there, which the intervals hold; these wheels
+// have none.
 TEST_P(RotationCoverage, OfOneAxisWithoutAnEncoderIsNinetyFivePerCentOrMore) {
   Tally tally;
   for (unsigned run = 0; run < runs; ++run) {
