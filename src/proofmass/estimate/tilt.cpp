@@ -1,5 +1,7 @@
 #include "proofmass/estimate/tilt.hpp"
 
+#include <string>
+
 #include "proofmass/estimate/tilt_instants.hpp"
 #include "proofmass/estimate/tilt_motion.hpp"
 #include "proofmass/estimate/tilt_record.hpp"
@@ -33,6 +35,11 @@ void follow(const TiltRecord& record, const TiltOptions& options, TiltSolution& 
     if (gyroscope) rate_bias = rate_bias_of(instants, known, *solution.motion);
   }
   run_tilt(instants, known, options, solution);
+  // What the bands do not hold, and no reading shows (docs/methods/tilt.md).
+  solution.notes.push_back(
+      {Severity::info, std::string("a level acceleration that lasts longer than ") +
+                           (gyroscope ? "half a minute" : "10 s") +
+                           " cannot be distinguished from tilt, and is not in the uncertainty"});
 }
 
 }  // namespace

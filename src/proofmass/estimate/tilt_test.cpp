@@ -257,6 +257,16 @@ TEST(Tilt, WithoutAGyroscopeTheBandHoldsWhatALevelAccelerationHides) {
   EXPECT_GE(inside, 0.93 * all);
 }
 
+TEST(Tilt, SaysWhatTheBandOfAMovingBaseDoesNotHold) {
+  TiltOptions options = exact;
+  options.base = TiltBase::moving;
+  const auto solution = estimate_tilt(still_record(force_at(0.1, 0.2), 0.02, 400, 17), options);
+  ASSERT_TRUE(solution);
+  EXPECT_TRUE(std::ranges::any_of(solution->notes, [](const Note& note) {
+    return note.severity == Severity::info && note.text.find("longer than 10 s") != note.text.npos;
+  }));
+}
+
 TEST(Tilt, PassesTheUprightAxisWithoutASingularity) {
   TiltRecord record;
   for (int k = 0; k < 1000; ++k) {
