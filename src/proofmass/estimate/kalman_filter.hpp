@@ -43,7 +43,9 @@ template <int N, int M>
 struct Readings {
   std::array<Reading<N>, static_cast<std::size_t>(M)> rows;
   int count = 0;
-  int constraints = 0;  ///< the last of them, which do not show that the filter has the state
+  /// How many of the last rows are pseudo-measurements: accepting one does not reset the gate's
+  /// count of rejected instants.
+  int constraints = 0;
 };
 
 /// What a model offers: sizes, the step that leads to instant k, and the readings of instant k.

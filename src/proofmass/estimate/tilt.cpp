@@ -35,7 +35,7 @@ void follow(const TiltRecord& record, const TiltOptions& options, TiltSolution& 
     if (gyroscope) rate_bias = rate_bias_of(instants, known, *solution.motion);
   }
   run_tilt(instants, known, options, solution);
-  // What the bands do not hold, and no reading shows (docs/methods/tilt.md).
+  // A limitation that no residual reveals, see docs/methods/tilt.md.
   solution.notes.push_back(
       {Severity::info, std::string("a level acceleration that lasts longer than ") +
                            (gyroscope ? "half a minute" : "10 s") +

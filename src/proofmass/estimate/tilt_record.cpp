@@ -78,7 +78,7 @@ void drop_beyond(double most, std::array<std::vector<double>, 3>& axes) {
 std::optional<TiltRecord> without_unbelievable(const TiltRecord& record, std::vector<Note>& notes) {
   const std::size_t forces = count_beyond(beyond_belief_mps2, record.accel_mps2);
   const std::size_t count = forces + count_beyond(beyond_belief_radps, record.rate_radps);
-  // Where most are, the unit is another.
+  // A majority means a wrong unit.
   const bool most = 2 * forces > record.accel_mps2[0].size();
   if (count == 0 || most) return std::nullopt;
   TiltRecord out = record;

@@ -19,8 +19,9 @@ namespace proofmass::estimate {
 /// Three axes at one sample; NaN where an axis is not there or not finite.
 [[nodiscard]] Mat<3> vector_at(const std::array<std::vector<double>, 3>& axes, std::size_t k);
 
-/// The record without readings beyond what any sensor gives, with a note of how many; nullopt where
-/// there are none, or so many that the unit is another.
+/// A copy of the record in which readings outside any sensor's range are NaN, and a note with their
+/// number. nullopt if there are none, or if they are the majority: then the unit is wrong, which
+/// check_record() reports.
 [[nodiscard]] std::optional<TiltRecord> without_unbelievable(const TiltRecord& record,
                                                              std::vector<Note>& notes);
 

@@ -22,8 +22,8 @@ struct WheelReadings {
   Uncertain delay_s{};           ///< of the sensors' filters
   double phase_rad = 0.0;        ///< of the second sensor against the first, as known so far
   RippleOrders orders = first_orders;
-  /// More than a sensor's noise, or more in motion than at rest, as a wheel that carries a vehicle
-  /// does; set by settle_variance().
+  /// The hub vibrates by more than a sensor's noise, or more in motion than at rest, as under a
+  /// vehicle; set by settle_variance().
   bool shakes = false;
   std::vector<double> time_s;
   std::vector<WheelInstant> instants;

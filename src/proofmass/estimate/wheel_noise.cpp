@@ -119,13 +119,13 @@ double least_variance(const PlanarReadings& sensor, double rate_hz, const WheelP
   return least;
 }
 
-/// What a path leaves of the readings of a sensor's two axes, and the direction across gravity.
+/// Residuals of a sensor's two axes about a path, and the direction perpendicular to gravity.
 struct Misfit {
   double u, v, across_u, across_v;
 };
 
-/// Variance of what is left along gravity, from the median of its size; each axis' mean is taken
-/// off first, since biases walk. nullopt where there are few.
+/// Variance of the residuals along gravity, from their median absolute value. The mean of each axis
+/// is subtracted first, because biases walk. nullopt for fewer than ten residuals.
 std::optional<double> variance_along_gravity(const std::vector<Misfit>& misfits) {
   if (2.0 * static_cast<double>(misfits.size()) < fewest_readings) return std::nullopt;
   Moments u, v;
@@ -138,7 +138,7 @@ std::optional<double> variance_along_gravity(const std::vector<Misfit>& misfits)
   return square(of_normal * *median(sizes));
 }
 
-/// What the model's path leaves of a sensor's readings, by stretches of length_s.
+/// Residuals of a sensor's readings about the model's path, by stretches of length_s.
 template <int S>
 std::vector<std::vector<Misfit>> misfits_of(const WheelModel<S>& model,
                                             const WheelReadings& readings,
@@ -173,9 +173,9 @@ bool shows_shaking(const std::vector<double>& variance_m2ps4, double rate_hz) {
                   2.0 * *loud > shaking_density * rate_hz);
 }
 
-/// Sets the least variance of a sensor's stretches from what the path leaves of the readings along
-/// gravity. No motion of the wheel explains that: a turn moves the readings across gravity. Returns
-/// whether the wheel shakes.
+/// Sets the lower bound of the variance in a sensor's stretches from the residuals along gravity,
+/// which no rotation of the wheel explains: it moves the readings perpendicular to gravity. Returns
+/// whether the hub vibrates.
 template <int S>
 bool set_least(const WheelModel<S>& model,
                const WheelReadings& readings,

@@ -21,7 +21,7 @@ struct Screened {
   std::size_t unusable = 0;
 };
 
-/// No accelerometer, and no gyroscope, reads more.
+/// Beyond the range of any accelerometer and gyroscope.
 inline constexpr double beyond_belief_mps2 = 1000.0 * standard_gravity_mps2;
 inline constexpr double beyond_belief_radps = 1e4;
 

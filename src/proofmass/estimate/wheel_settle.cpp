@@ -62,8 +62,8 @@ Settled<S> settle(WheelReadings& readings,
   const Places places = track.path.standing.tail<2 * S>();
   WheelPrior prior{track.beginning, prior_for(track.path), places};
   settle_variance(model, prior, readings);
-  // Ripple that no pass has fitted yet looks like shaking, and a hub taken for a vehicle's would
-  // never let it be fitted.
+  // Before the ripple is fitted it raises the residuals as vibration does, and with a vehicle's
+  // rolling radius in the model it could not be fitted.
   const int ripple_at = wheel::ripple(S) - wheel::first_of(0);
   if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
     readings.shakes = false;
