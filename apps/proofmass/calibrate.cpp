@@ -15,7 +15,7 @@
 #include "proofmass/calibrate/session_noise.hpp"
 #include "proofmass/calibrate/validation.hpp"
 #include "proofmass/report/calibrate_report.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/calibration_update.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
@@ -30,8 +30,6 @@ using calibrate::PoseModel;
 using calibrate::TypeB;
 
 void expect_sense(const CalibrateCommand& command) {
-  if (command.output.output == "-" && command.output.json == "-")
-    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
   if (command.six_position && command.parameters)
     throw Failure(usage, "--six-position has parameters of its own: leave out --parameters");
   if (!command.update_sensor.empty() && !command.input.sensors.empty()) {

@@ -285,6 +285,9 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
   Command command = chosen(app, commands);
   std::visit(
       [&](auto& verb) {
+        if (verb.output.output == "-" && verb.output.json == "-")
+          throw Failure(usage,
+                        "--output - and --json - cannot both have standard output: name a file");
         if (!verb.output.json.empty() || !verb.output.report.empty())
           verb.output.invocation = invocation(*app.get_subcommands().front(), typed);
       },

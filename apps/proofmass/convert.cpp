@@ -10,7 +10,7 @@
 #include "proofmass/core/version.hpp"
 #include "proofmass/io/write_recording.hpp"
 #include "proofmass/report/convert_report.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "verbs.hpp"
 
 namespace proofmass::app {
@@ -93,9 +93,6 @@ Converted convert(io::RecordingStream stream,
 }  // namespace
 
 void run(const ConvertCommand& command) {
-  if (command.output.output == "-" && command.output.json == "-") {
-    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
-  }
   std::vector<Note> sensor_notes;
   const auto models = load_sensors(command.input, sensor_notes);
   auto opened = open_input(command.file, command.input, progress_bar(command.output));

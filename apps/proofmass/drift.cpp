@@ -9,8 +9,8 @@
 #include "proofmass/characterise/drift_analysis.hpp"
 #include "proofmass/characterise/temperature_model.hpp"
 #include "proofmass/core/in_parallel.hpp"
-#include "proofmass/report/document.hpp"
 #include "proofmass/report/drift_report.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/drift_update.hpp"
 #include "rest_channels.hpp"
@@ -191,9 +191,6 @@ void update_drift(const std::string& path,
 }  // namespace
 
 void run(const DriftCommand& command) {
-  if (command.output.output == "-" && command.output.json == "-") {
-    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
-  }
   report::DriftReport report;
   report.inputs = command.files;
   report.since_switch_on_s = since_switch_on_s(command.input);

@@ -10,7 +10,7 @@
 #include "output.hpp"
 #include "proofmass/calibrate/cross_axis.hpp"
 #include "proofmass/io/names.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/model_equation_report.hpp"
 #include "tumble_modes.hpp"
 

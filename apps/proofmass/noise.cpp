@@ -11,7 +11,7 @@
 #include "output.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/core/in_parallel.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/noise_report.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/noise_update.hpp"
@@ -214,9 +214,6 @@ void update_noise(const std::string& path, const std::vector<NoiseChannel>& chan
 }  // namespace
 
 void run(const NoiseCommand& command) {
-  if (command.output.output == "-" && command.output.json == "-") {
-    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
-  }
   const NoiseOptions options = options_of(command);
   report::NoiseReport report;
   report.inputs = command.files;

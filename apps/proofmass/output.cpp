@@ -36,6 +36,10 @@ std::string clean_lines(const std::string& text) {
   return out;
 }
 
+bool is_bad(const Note& note) {
+  return note.severity >= Severity::bad;
+}
+
 }  // namespace
 
 void write_text(const std::string& path, const std::string& text) {
@@ -67,6 +71,13 @@ void publish(const Results& results, const OutputFlags& flags) {
   print_out(flags.json == "-" ? json() : shown_text(clean_lines(results.text())));
 }
 
+void publish(const report::Document& document, const OutputFlags& flags) {
+  publish({.text = [&] { return report::to_text(document); },
+           .json = [&] { return report::to_json(document); },
+           .html = [&] { return report::to_html(document); }},
+          flags);
+}
+
 void write_series(const Recording& recording,
                   const std::string& path,
                   const io::WriteOptions& options) {
@@ -86,6 +97,15 @@ void hold_to_strict(const OutputFlags& flags, bool bad) {
   if (flags.strict && bad) {
     throw Failure(bad_data, "done, but the data are bad (--strict): see the notes");
   }
+}
+
+void finish(const report::Document& document,
+            const std::function<Recording()>& series,
+            const OutputFlags& flags) {
+  show_notes(document.page.notes, "", flags);
+  if (!flags.output.empty()) write_series(series(), flags.output);
+  publish(document, flags);
+  hold_to_strict(flags, document.bad || std::ranges::any_of(document.page.notes, is_bad));
 }
 
 }  // namespace proofmass::app

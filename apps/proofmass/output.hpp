@@ -6,6 +6,7 @@
 #include "command_line.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/io/recording_writer.hpp"
+#include "proofmass/report/document.hpp"
 
 namespace proofmass::app {
 
@@ -23,6 +24,9 @@ struct Results {
 /// Writes what the flags ask for: with `--json -` the document alone to standard output.
 void publish(const Results& results, const OutputFlags& flags);
 
+/// The same of a document.
+void publish(const report::Document& document, const OutputFlags& flags);
+
 /// io::write_recording, or Failure.
 void write_series(const Recording& recording,
                   const std::string& path,
@@ -30,5 +34,11 @@ void write_series(const Recording& recording,
 
 /// Throws Failure (bad_data) if --strict was given and the data are bad.
 void hold_to_strict(const OutputFlags& flags, bool bad);
+
+/// How a verb ends: notes, the time series if --output asks for it, the document, --strict. Throws
+/// Failure.
+void finish(const report::Document& document,
+            const std::function<Recording()>& series,
+            const OutputFlags& flags);
 
 }  // namespace proofmass::app

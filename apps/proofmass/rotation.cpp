@@ -8,7 +8,7 @@
 #include "exit_status.hpp"
 #include "input.hpp"
 #include "output.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/rotation_report.hpp"
 #include "tumble_modes.hpp"
 

@@ -4,7 +4,7 @@
 #include "console.hpp"
 #include "exit_status.hpp"
 #include "output.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/sensor_report.hpp"
 #include "proofmass/sensor/sensor_comparison.hpp"
 #include "proofmass/sensor/sensor_export.hpp"
@@ -68,8 +68,6 @@ std::string document(const SensorCommand& command,
 }
 
 void run_export(const SensorCommand& command) {
-  if (command.output.output == "-" && command.output.json == "-")
-    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
   const sensor::SensorFile file =
       need(sensor::read_sensor_file(command.files.front()), Stage::reading);
   const std::string text = exported(command, file.model);

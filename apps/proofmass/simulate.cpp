@@ -68,9 +68,6 @@ void run(const SimulateCommand& command) {
     return;
   }
   if (flags.output.empty()) throw Failure(usage, "simulate: no --output: say where to, -o rig.csv");
-  if (flags.output == "-" && flags.json == "-") {
-    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
-  }
   const simulate::RigResult result =
       need(simulate::simulate_rig(options, progress_bar(flags)), Stage::computing);
   show_notes(result.recording.notes, "", flags);

@@ -102,8 +102,6 @@ void run_procedure(const SimulateCommand& command) {
   if (command.print_config) return print_out(simulate::format_procedure_file(options));
   if (flags.output.empty())
     throw Failure(usage, "simulate: no --output: say where to, -o poses.csv");
-  if (flags.output == "-" && flags.json == "-")
-    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
   const simulate::ProcedureResult result =
       need(simulate::simulate_procedure(options, progress_bar(flags)), Stage::computing);
   report::ProcedureReport report{.output = flags.output, .options = options, .result = result};

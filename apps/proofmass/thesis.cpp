@@ -4,7 +4,7 @@
 #include "exit_status.hpp"
 #include "input.hpp"
 #include "output.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/thesis/documents.hpp"
 #include "thesis_recordings.hpp"
 #include "verbs.hpp"

@@ -12,7 +12,6 @@
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/estimate/tilt_axis.hpp"
-#include "proofmass/report/document.hpp"
 #include "proofmass/report/tilt_report.hpp"
 #include "proofmass/signal/channel_audit.hpp"
 #include "verbs.hpp"
@@ -197,8 +196,6 @@ estimate::TiltSolution solve(const TiltCommand& command, report::TiltReport& rep
 }  // namespace
 
 void run(const TiltCommand& command) {
-  if (command.output.output == "-" && command.output.json == "-")
-    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
   report::TiltReport report;
   report.inputs = {command.file};
   report.reads_minus_g = command.reads == "-g";
@@ -206,14 +203,7 @@ void run(const TiltCommand& command) {
     report.axis = solve_axis(command, report.notes);
   else
     report.solution = solve(command, report);
-  show_notes(report::tilt_notes(report), "", command.output);
-  if (!command.output.output.empty())
-    write_series(report::tilt_series(report), command.output.output);
-  publish({.text = [&] { return report::tilt_text(report); },
-           .json = [&] { return report::tilt_json(report); },
-           .html = [&] { return report::tilt_html(report); }},
-          command.output);
-  hold_to_strict(command.output, !report::texts(report::tilt_notes(report), Severity::bad).empty());
+  finish(report::describe(report), [&] { return report::tilt_series(report); }, command.output);
 }
 
 }  // namespace proofmass::app

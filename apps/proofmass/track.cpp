@@ -13,7 +13,6 @@
 #include "output.hpp"
 #include "proofmass/io/instant_list.hpp"
 #include "proofmass/io/interval_list.hpp"
-#include "proofmass/report/document.hpp"
 #include "proofmass/report/track_report.hpp"
 #include "proofmass/sensor/warm_up.hpp"
 #include "verbs.hpp"
@@ -49,8 +48,6 @@ void read_gravity(TrackCommand& command, TrackOptions& options) {
 void expect_sense(const TrackCommand& command) {
   if (command.jerk_psd_m2ps5 && command.model == "inertial")
     throw Failure(usage, "--jerk-psd belongs to --model pva or fused");
-  if (command.output.output == "-" && command.output.json == "-")
-    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
   const bool from_stdin = command.file == "-";
   for (const std::string& list : {command.fixes, command.still, command.turns})
     if (from_stdin && list == "-")
@@ -214,16 +211,7 @@ void run(const TrackCommand& given) {
   const TrackSensor sensor = prepare(command, report.options, report.notes);
   report.solution = solve_track(command.file, sensor, report.options);
   report.options.progress = {};  // which wipes the bar away
-  show_notes(report.notes, "", command.output);
-  show_notes(report.solution.notes, "", command.output);
-  if (!command.output.output.empty())
-    write_series(report::track_series(report), command.output.output);
-  publish({.text = [&] { return report::track_text(report); },
-           .json = [&] { return report::track_json(report); },
-           .html = [&] { return report::track_html(report); }},
-          command.output);
-  hold_to_strict(command.output, !report::texts(report.notes, Severity::bad).empty() ||
-                                     !report::texts(report.solution.notes, Severity::bad).empty());
+  finish(report::describe(report), [&] { return report::track_series(report); }, command.output);
 }
 
 }  // namespace proofmass::app

@@ -9,7 +9,7 @@
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/calibrate/tumble_axes.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/tumble_report.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/calibration_update.hpp"
@@ -140,8 +140,6 @@ void update_sensor(const TumbleCommand& command,
 }
 
 void check(const TumbleCommand& command) {
-  if (command.output.output == "-" && command.output.json == "-")
-    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
   if (!command.angles_deg.empty() && !command.angle_channel.empty())
     throw Failure(usage, "--angles and --angle: give one of them");
   if (command.bandwidth_hz)

@@ -12,7 +12,6 @@
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/core/in_parallel.hpp"
-#include "proofmass/report/document.hpp"
 #include "proofmass/report/tune_report.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/noise_update.hpp"
@@ -307,9 +306,6 @@ void fill(const TuneCommand& command,
 }  // namespace
 
 void run(const TuneCommand& command) {
-  if (command.output.output == "-" && command.output.json == "-") {
-    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
-  }
   report::TuneReport report;
   report.inputs = {command.file};
   const std::vector<RestRecording> recordings =
@@ -330,14 +326,7 @@ void run(const TuneCommand& command) {
   if (!command.update_sensor.empty()) {
     without_interruption([&] { update_sensor(command, report, channels); });
   }
-  show_notes(report.notes, "", command.output);
-  if (!command.output.output.empty())
-    write_series(report::tune_series(report), command.output.output);
-  publish({.text = [&] { return report::tune_text(report); },
-           .json = [&] { return report::tune_json(report); },
-           .html = [&] { return report::tune_html(report); }},
-          command.output);
-  hold_to_strict(command.output, !report::texts(report.notes, Severity::bad).empty());
+  finish(report::describe(report), [&] { return report::tune_series(report); }, command.output);
 }
 
 }  // namespace proofmass::app

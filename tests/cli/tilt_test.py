@@ -122,7 +122,7 @@ class Tilt(CommandTest):
         self.assertAlmostEqual(bias["value"], 0.03, delta=4.0 * bias["std"] + 0.01)
         page = self.succeed("tilt", "swing.dat", "--angle", "3", "--rate-channel", "2",
                             "--report", "page.html")
-        self.assertIn("angle at the end", page)
+        self.assertIn("Angle at the end", page)
 
     def test_the_report_opens_with_the_answer(self):
         self.moving()

@@ -166,7 +166,7 @@ Section supply_section(const CalibrateReport& report) {
     section.paragraphs.emplace_back(
         "A ratiometric output follows its supply: its scale grows as the supply, and its bias is "
         "the same part of it.");
-  section.figures = supply_figures(report);
+  section.figures = plots(supply_figures(report));
   section.tables.push_back(supply_table(report));
   return section;
 }

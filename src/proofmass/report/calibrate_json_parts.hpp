@@ -1,7 +1,7 @@
 #pragma once
 
 #include "proofmass/report/calibrate_report.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 
 // The larger parts of the document of `calibrate`.
 namespace proofmass::report {

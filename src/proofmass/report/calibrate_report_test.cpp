@@ -8,7 +8,7 @@
 #include "proofmass/report/calibrate_fake.hpp"
 #include "proofmass/report/calibrate_figures.hpp"
 #include "proofmass/report/calibrate_wording.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 
 namespace proofmass::report::calibrate_report_test {
 namespace {

@@ -5,18 +5,17 @@
 #include <vector>
 
 #include "proofmass/estimate/consistency.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/fields.hpp"
 #include "proofmass/report/page.hpp"
 
-// Whether a filter errs as far as it says, as every estimating verb tells it.
+// Consistency of a filter, as every estimating verb reports it.
 namespace proofmass::report {
 
-/// What a verb's user calls the figures that the verdict would move; as nouns, or as the keys of a
-/// flag.
+/// Names of the noise figures that the verdict proposes to change; nouns, or parameters of a model.
 struct NoiseNames {
-  std::string measurement = "the noise of the readings";
-  std::string process = "the noise of the motion";
-  std::string slow = "the wander of the bias";
+  std::string measurement = "the measurement noise";
+  std::string process = "the process noise";
+  std::string slow = "the bias random walk";
 };
 
 /// "consistent", "cautious", "coloured", "overconfident" or "undetermined".
@@ -25,7 +24,7 @@ struct NoiseNames {
 /// "measurement_noise", "process_noise", "both_noises", "slow_noise", "outliers" or "none".
 [[nodiscard]] std::string_view name_of(estimate::Remedy remedy);
 
-/// The verdict and what to move: "The innovations scatter 1.6 times as far as the filter says:
+/// The verdict and the remedy: "The innovations have 1.6 times their predicted standard deviation:
 /// raise accel_std and jerk_std by a factor of 1.6."
 [[nodiscard]] std::string consistency_conclusion(const estimate::Consistency& consistency,
                                                  const NoiseNames& names = {});
@@ -33,13 +32,9 @@ struct NoiseNames {
 /// "mean NIS 1.005, expected 0.987 … 1.013 over 48 000 innovations"
 [[nodiscard]] std::string nis_words(const estimate::Consistency& consistency);
 
-/// The object "consistency" of a document: nis, nis_lower, nis_upper and all else that is behind
-/// the verdict: $defs/consistency of the schemas.
-[[nodiscard]] Value consistency_json(const estimate::Consistency& consistency,
-                                     const NoiseNames& names = {});
-
-/// The reason of every null in it.
-[[nodiscard]] std::vector<std::string> consistency_nulls(const estimate::Consistency& consistency);
+/// The entry "consistency" of a document: NIS with its bounds, verdict, remedy, each channel.
+[[nodiscard]] Field consistency_field(const estimate::Consistency& consistency,
+                                      const NoiseNames& names = {});
 
 /// Section of a page: verdict, mean NIS, each channel, sums over stretches.
 [[nodiscard]] Section consistency_section(const estimate::Consistency& consistency,

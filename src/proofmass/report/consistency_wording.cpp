@@ -24,7 +24,7 @@ std::string move_words(const std::string& what, double factor) {
                      significant(factor >= 1.0 ? factor : 1.0 / factor, 2));
 }
 
-/// Of the stretches whose sums go furthest, or least far.
+/// The stretch whose scatter is furthest from 1.
 const StretchScatter* furthest_stretch(const ChannelConsistency& one) {
   if (one.stretches.empty()) return nullptr;
   return &*std::ranges::max_element(one.stretches, {}, [](const StretchScatter& s) {
@@ -33,16 +33,18 @@ const StretchScatter* furthest_stretch(const ChannelConsistency& one) {
 }
 
 std::string scatter_words(const ChannelConsistency& one) {
-  if (!one.std_factor) return "the gate leaves out most of the readings";
-  return fmt::format("the innovations scatter {} times as far as the filter says",
+  if (!one.std_factor) return "the gate rejects most of the measurements";
+  return fmt::format("the innovations have {} times their predicted standard deviation",
                      significant(*one.std_factor, 2));
 }
 
 std::string colour_words(const ChannelConsistency& one) {
   const StretchScatter* stretch = furthest_stretch(one);
-  if (stretch == nullptr) return "the innovations hang together";
-  return fmt::format("over {} the innovations add up {} times as far as independent ones would",
-                     duration_words(stretch->length_s), significant(stretch->factor, 2));
+  if (stretch == nullptr) return "the innovations are correlated";
+  return fmt::format(
+      "the innovations are correlated: their sum over {} has {} times the standard deviation of "
+      "white innovations",
+      duration_words(stretch->length_s), significant(stretch->factor, 2));
 }
 
 std::string remedy_words(const ChannelConsistency& one, const NoiseNames& names) {
@@ -51,16 +53,17 @@ std::string remedy_words(const ChannelConsistency& one, const NoiseNames& names)
     case Remedy::measurement_noise:
       return move_words(names.measurement, factor);
     case Remedy::process_noise:
-      return (factor > 1.0 ? "it follows too slowly; " : "it follows the noise; ") +
+      return (factor > 1.0 ? "the filter responds too slowly; "
+                           : "the filter follows the noise; ") +
              move_words(names.process, factor);
     case Remedy::both_noises:
       return move_words(names.measurement + " and " + names.process, factor);
     case Remedy::slow_noise:
-      return "something slow is not in the model; " + move_words(names.slow, factor) +
-             ", or model what drifts";
+      return "a slow error is not modelled; " + move_words(names.slow, factor) +
+             ", or model the drift";
     case Remedy::outliers:
-      return one.gated > 0 ? "look at what disturbed the readings that were left out"
-                           : "a few readings lie far off; leave them out by a gate";
+      return one.gated > 0 ? "check what disturbed the rejected measurements"
+                           : "a few measurements are outliers; reject them with a gate";
     case Remedy::none:
       break;
   }
@@ -71,19 +74,19 @@ std::string finding(const ChannelConsistency& one, const NoiseNames& names) {
   const std::string remedy = remedy_words(one, names);
   switch (one.verdict) {
     case Verdict::undetermined:
-      return fmt::format("{} are too few to judge the filter by",
+      return fmt::format("{} are too few to judge the consistency of the filter",
                          count_words(one.innovations, "innovation"));
     case Verdict::consistent:
-      return "the filter errs as far as it says";
+      return "the filter is consistent";
     case Verdict::coloured:
-      return colour_words(one) + ": " + remedy;
+      return colour_words(one) + "; " + remedy;
     case Verdict::cautious:
     case Verdict::overconfident:
       break;
   }
   if (one.remedy == Remedy::outliers && one.gated > 0)
-    return fmt::format("{} of {} were left out: {}", grouped(one.gated),
-                       count_words(one.gated + one.innovations, "reading"), remedy);
+    return fmt::format("{} of {} were rejected: {}", grouped(one.gated),
+                       count_words(one.gated + one.innovations, "measurement"), remedy);
   return scatter_words(one) + ": " + remedy;
 }
 
@@ -140,20 +143,18 @@ std::string nis_words(const Consistency& consistency) {
 }
 
 Section consistency_section(const Consistency& consistency, const NoiseNames& names) {
-  Section section{.heading = "Does the filter err as far as it says?"};
-  section.paragraphs = {
-      consistency_conclusion(consistency, names),
-      fmt::format(
-          "Normalised innovations squared: {}, the bounds being those of 95 % of recordings "
-          "if the noise figures were exactly true.",
-          nis_words(consistency))};
+  Section section{.heading = "Consistency of the filter", .on_terminal = true};
+  section.paragraphs = {consistency_conclusion(consistency, names),
+                        fmt::format("Normalised innovations squared: {}; a filter with the true "
+                                    "noise model lies within these "
+                                    "bounds in 95 % of recordings.",
+                                    nis_words(consistency))};
   if (consistency.all.inside_95)
-    section.paragraphs.back() += fmt::format(
-        " Innovations should be independent, and 95 % of them within 1.96 standard deviations: {} "
-        "% are.",
-        fixed(100.0 * *consistency.all.inside_95, 1));
+    section.paragraphs.back() +=
+        fmt::format(" {} % of the innovations are within 1.96 standard deviations (95 % expected).",
+                    fixed(100.0 * *consistency.all.inside_95, 1));
   Table channels{
-      "By channel", {"Channel", "Mean NIS", "95 % bounds", "Within 95 %", "Left out", "Lag 1"}, {}};
+      "By channel", {"Channel", "Mean NIS", "95 % bounds", "Within 95 %", "Rejected", "Lag 1"}, {}};
   const auto add = [&](const std::string& name, const ChannelConsistency& one) {
     channels.rows.push_back(
         {name, fixed(one.nis, 3), fixed(one.nis_lower, 3) + " … " + fixed(one.nis_upper, 3),
@@ -161,12 +162,15 @@ Section consistency_section(const Consistency& consistency, const NoiseNames& na
          one.lag_one ? fixed(*one.lag_one, 3) + " (± " + fixed(one.lag_one_bound, 3) + ")" : ""});
   };
   for (const ChannelConsistency& one : consistency.channels) add(file_name(one.name), one);
-  if (consistency.channels.size() != 1) add("together", consistency.all);
+  if (consistency.channels.size() != 1) add("all", consistency.all);
+  channels.page_only = true;
   section.tables.push_back(std::move(channels));
   if (consistency.all.stretches.empty()) return section;
-  Table stretches{"How far the innovations of a stretch add up, 1 where they are independent",
-                  {"Stretch", "Factor", "95 % of white noise", "Stretches"},
-                  {}};
+  Table stretches{
+      "Standard deviation of the sum of innovations over a stretch, 1 for white innovations",
+      {"Stretch", "Factor", "95 % of white noise", "Stretches"},
+      {}};
+  stretches.page_only = true;
   for (const StretchScatter& one : consistency.all.stretches)
     stretches.rows.push_back({duration_words(one.length_s), fixed(one.factor, 3),
                               fixed(one.lower, 3) + " … " + fixed(one.upper, 3),

@@ -1,91 +1,95 @@
 #include "proofmass/report/document.hpp"
 
-#include <cmath>
-#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <fmt/format.h>
 
-#include "proofmass/core/version.hpp"
+#include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
+constexpr std::size_t most_printed_rows = 20;  // of a long table on a terminal
 
-Json json_of(const Value& value);
+void print(std::string& out, const Table& table) {
+  if (table.page_only || table.rows.empty()) return;
+  std::vector<std::vector<std::string>> rows;
+  if (!table.head.empty()) rows.push_back(table.head);
+  const std::size_t shown =
+      table.long_list ? std::min(table.rows.size(), most_printed_rows) : table.rows.size();
+  rows.insert(rows.end(), table.rows.begin(),
+              table.rows.begin() + static_cast<std::ptrdiff_t>(shown));
+  out += '\n' + (table.caption.empty() ? "" : table.caption + ":\n") + aligned(rows);
+  if (table.rows.size() > shown) out += fmt::format("  and {} more\n", table.rows.size() - shown);
+}
 
-struct JsonOf {
-  Json operator()(std::monostate) const { return nullptr; }
-  Json operator()(const Array& items) const {
-    Json json = Json::array();
-    for (const Value& item : items) json.push_back(json_of(item));
-    return json;
-  }
-  Json operator()(const Object& members) const {
-    Json json = Json::object();
-    for (const Member& member : members) json[member.key] = json_of(member.value);
-    return json;
-  }
-  template <class Plain>
-  Json operator()(const Plain& plain) const {
-    return plain;
-  }
-};
+void print(std::string& out, const Section& section) {
+  if (!section.on_terminal) return;
+  if (!section.paragraphs.empty() || !section.points.empty()) out += '\n' + section.heading + ":\n";
+  for (const std::string& paragraph : section.paragraphs) out += "  " + paragraph + '\n';
+  for (const std::string& point : section.points) out += "  - " + point + '\n';
+  for (const Table& table : section.tables) print(out, table);
+}
 
-Json json_of(const Value& value) {
-  return std::visit(JsonOf{}, value.state());
+// The labelled entries, those in lists among them.
+void collect_labelled(const Fields& fields, std::vector<const Field*>& out) {
+  for (const Field& field : fields) {
+    if (!field.about.label.empty()) out.push_back(&field);
+    if (field.fields && field.shape.kind == Shape::Kind::list) collect_labelled(*field.fields, out);
+  }
 }
 
 }  // namespace
 
-Value::Value() = default;
-Value::Value(std::nullptr_t) {}
-Value::Value(bool value) : state_(value) {}
-Value::Value(int value) : state_(std::int64_t{value}) {}
-Value::Value(std::int64_t value) : state_(value) {}
-Value::Value(std::uint64_t value) : state_(value) {}
-Value::Value(double value) {
-  if (std::isfinite(value)) state_ = value;
-}
-Value::Value(const char* text) : state_(std::string(text)) {}
-Value::Value(std::string text) : state_(std::move(text)) {}
-Value::Value(std::string_view text) : state_(std::string(text)) {}
-Value::Value(Array items) : state_(std::move(items)) {}
-Value::Value(Object members) : state_(std::move(members)) {}
-Value::Value(const Value& other) = default;
-Value::Value(Value&& other) noexcept = default;
-Value& Value::operator=(const Value& other) = default;
-Value& Value::operator=(Value&& other) noexcept = default;
-Value::~Value() = default;
-
-std::string to_json(const DocumentHead& head, const Object& body) {
-  Object document{{"proofmass", version()},
-                  {"verb", head.verb},
-                  {"input", array_of(head.input)},
-                  {"warnings", array_of(head.warnings)}};
-  document.insert(document.end(), body.begin(), body.end());
-  return json_text(document) + '\n';
+Table fields_table(std::string caption, const Fields& fields) {
+  Table table{std::move(caption), {}, {}};
+  std::vector<const Field*> labelled;
+  collect_labelled(fields, labelled);
+  for (const Field* field : labelled)
+    table.rows.push_back({field->about.label, shown_value(*field)});
+  return table;
 }
 
-std::string json_text(const Value& value) {
-  constexpr int indent = 2;
-  return json_of(value).dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
-Value quantity(const std::optional<Uncertain>& figure, std::string_view unit) {
-  if (!figure || !std::isfinite(figure->value) || !std::isfinite(figure->std)) return nullptr;
-  return Object{{"value", figure->value}, {"std", figure->std}, {"unit", unit}};
-}
-
-std::optional<Uncertain> scaled(const std::optional<Uncertain>& figure, double factor) {
-  if (!figure) return std::nullopt;
-  return Uncertain{figure->value * factor, figure->std * std::abs(factor)};
-}
-
-std::vector<std::string> texts(const std::vector<Note>& notes, Severity least) {
-  std::vector<std::string> found;
-  for (const Note& note : notes) {
-    if (note.severity >= least) found.push_back(note.text);
+Table records_table(std::string caption, const Field& records) {
+  Table table{std::move(caption), {""}, {}};
+  for (const Field& record : *records.fields) {
+    std::vector<const Field*> labelled;
+    collect_labelled(*record.fields, labelled);
+    table.rows.resize(labelled.size() - 1);
+    table.head.push_back(file_name(shown_value(*labelled.front())));
+    for (std::size_t k = 1; k < labelled.size(); ++k) {
+      if (table.rows[k - 1].empty()) table.rows[k - 1].push_back(labelled[k]->about.label);
+      table.rows[k - 1].push_back(shown_value(*labelled[k]));
+    }
   }
-  return found;
+  return table;
+}
+
+std::vector<KeyFigure> key_figures(const Fields& fields) {
+  std::vector<KeyFigure> out;
+  for (const Field& field : fields)
+    if (!field.about.label.empty()) out.push_back({field.about.label, shown_value(field)});
+  return out;
+}
+
+std::string to_json(const Document& document) {
+  std::vector<std::string> warnings = texts(document.page.notes, Severity::warning);
+  for (std::string& reason : reasons_for_nulls(document.fields))
+    warnings.push_back(std::move(reason));
+  return to_json({document.page.verb, document.page.inputs, warnings}, json_of(document.fields));
+}
+
+std::string to_html(const Document& document) {
+  return html(document.page);
+}
+
+std::string to_text(const Document& document) {
+  std::string out = document.page.conclusion + '\n';
+  std::vector<std::vector<std::string>> rows;
+  for (const KeyFigure& figure : document.page.key_figures)
+    rows.push_back({figure.label, figure.value});
+  if (!rows.empty()) out += '\n' + aligned(rows);
+  for (const Section& section : document.page.sections) print(out, section);
+  return out;
 }
 
 }  // namespace proofmass::report

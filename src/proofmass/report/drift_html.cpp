@@ -65,7 +65,7 @@ std::vector<std::string> firm(std::vector<std::string> sentences) {
   return sentences;
 }
 
-void append(std::vector<Figure>& figures, std::vector<Figure> more) {
+void append(std::vector<Plot>& figures, std::vector<Figure> more) {
   for (Figure& figure : more) figures.push_back(std::move(figure));
 }
 

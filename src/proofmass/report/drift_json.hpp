@@ -1,7 +1,7 @@
 #pragma once
 
-#include "proofmass/report/document.hpp"
 #include "proofmass/report/drift_report.hpp"
+#include "proofmass/report/json.hpp"
 
 // Parts of the document of `drift`.
 namespace proofmass::report {

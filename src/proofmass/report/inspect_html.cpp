@@ -155,11 +155,10 @@ std::string inspect_html(const std::vector<InspectedFile>& files) {
     page.notes.insert(page.notes.end(), file.audit.notes.begin(), file.audit.notes.end());
     page.sections.push_back({.heading = file_name(file.name),
                              .tables = file_tables(file),
-                             .figures = channel_figures(file)});
+                             .figures = plots(channel_figures(file))});
     if (file.overview_span > 0) continue;
-    for (Figure& figure : step_figures(file.recording)) {
+    for (Figure& figure : step_figures(file.recording))
       page.sections.back().figures.push_back(std::move(figure));
-    }
   }
   page.sections.push_back(
       {.heading = "How it was judged",

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/model_equation_report.hpp"
 
 namespace proofmass::report {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "proofmass/core/units.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/page.hpp"
 #include "proofmass/report/wording.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/noise_nulls.hpp"
 #include "proofmass/report/noise_report.hpp"
 #include "proofmass/report/noise_wording.hpp"

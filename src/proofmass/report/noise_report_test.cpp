@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/noise_fake.hpp"
 #include "proofmass/report/noise_figures.hpp"
 #include "proofmass/report/noise_wording.hpp"

@@ -14,7 +14,8 @@ namespace {
 
 using Out = std::back_insert_iterator<std::string>;
 
-constexpr int top_level = 2;  // of a section's heading
+constexpr int top_level = 2;           // of a section's heading
+constexpr std::size_t most_rows = 40;  // of a table that may be cut
 
 std::string_view word(Severity severity) {
   switch (severity) {
@@ -51,8 +52,12 @@ void write_cells(std::string& text, const std::vector<std::string>& cells, bool 
 void write(std::string& text, const Table& table) {
   fmt::format_to(Out(text), "<div class=\"wide\"><table{}>\n",
                  table.stacks ? " class=\"stacks\"" : "");
+  const bool cut = table.long_list && table.rows.size() > most_rows;
+  const std::string part = cut ? fmt::format(": the first {} of {}; the JSON document has all",
+                                             most_rows, grouped(table.rows.size()))
+                               : "";
   if (!table.caption.empty()) {
-    fmt::format_to(Out(text), "<caption>{}</caption>\n", escaped(table.caption));
+    fmt::format_to(Out(text), "<caption>{}{}</caption>\n", escaped(table.caption), part);
   }
   if (!table.head.empty()) {
     text += "<thead>";
@@ -60,7 +65,8 @@ void write(std::string& text, const Table& table) {
     text += "</thead>";
   }
   text += "<tbody>\n";
-  for (const std::vector<std::string>& cells : table.rows) write_cells(text, cells, false);
+  const std::size_t shown = cut ? most_rows : table.rows.size();
+  for (std::size_t k = 0; k < shown; ++k) write_cells(text, table.rows[k], false);
   text += "</tbody></table></div>\n";
 }
 
@@ -122,7 +128,7 @@ void write(std::string& text, const Section& section, int level, FigureCount& co
   }
   write_points(text, section.points);
   for (const Table& table : section.tables) write(text, table);
-  for (const Figure& figure : section.figures) write(text, figure, count);
+  for (const Plot& plot : section.figures) write(text, plot.draw(), count);
   write_signatures(text, section.signatures);
   for (const Section& part : section.parts) write(text, part, level + 1, count);
   text += "</section>\n";

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <concepts>
+#include <functional>
+#include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "proofmass/core/recording.hpp"
@@ -13,8 +17,30 @@ struct Table {
   std::string caption;
   std::vector<std::string> head;               ///< empty: none
   std::vector<std::vector<std::string>> rows;  ///< plain text; the first cell names the row
-  bool stacks = false;  ///< where it is narrow, that cell stands above the others of its row
+  bool stacks = false;     ///< where it is narrow, that cell stands above the others of its row
+  bool page_only = false;  ///< too wide or too detailed for a terminal
+  bool long_list = false;  ///< may be cut short, as the JSON document has all rows
 };
+
+/// A figure, or what draws it: a result with a million samples is not copied into plots that nobody
+/// asked for. What it refers to must live until then.
+class Plot {
+ public:
+  Plot(Figure figure)  // NOLINT(google-explicit-constructor)
+      : draw_([figure = std::move(figure)] { return figure; }) {}
+  template <std::invocable Draw>
+  Plot(Draw draw)  // NOLINT(google-explicit-constructor)
+      : draw_(std::move(draw)) {}
+
+  [[nodiscard]] Figure draw() const { return draw_(); }
+
+ private:
+  std::function<Figure()> draw_;
+};
+
+[[nodiscard]] inline std::vector<Plot> plots(std::vector<Figure> figures) {
+  return {std::make_move_iterator(figures.begin()), std::make_move_iterator(figures.end())};
+}
 
 /// A short text under a word of its own, beside others.
 struct Side {
@@ -29,9 +55,10 @@ struct Section {
   std::vector<std::string> paragraphs = {};
   std::vector<std::string> points = {};  ///< an unnumbered list
   std::vector<Table> tables = {};
-  std::vector<Figure> figures = {};
+  std::vector<Plot> figures = {};
   std::vector<std::string> signatures = {};  ///< lines to be filled in by hand, with what they are
   bool new_sheet = false;                    ///< printed, it begins on a new sheet
+  bool on_terminal = false;                  ///< text, points and tables are printed there, too
   std::vector<Section> parts = {};           ///< below all this, each under a smaller heading
 };
 

@@ -15,7 +15,7 @@ Page page_with_parts() {
                .gist = "2 of 3",
                .sides = {{"One", "first & last"}, {"Other", "second"}},
                .tables = {{.caption = "", .head = {}, .rows = {{"a", "b"}}, .stacks = true}},
-               .figures = {{.title = "Curve", .description = "It rises.", .x = {}, .y = {}}}};
+               .figures = {Figure{.title = "Curve", .description = "It rises.", .x = {}, .y = {}}}};
   Page page{.verb = "v", .title = "t", .inputs = {}, .conclusion = "c"};
   page.sections = {{.heading = "Chapter", .id = "chapter", .parts = {std::move(part)}},
                    {.heading = "Remarks", .paragraphs = {"None."}}};

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {

@@ -4,7 +4,7 @@
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/version.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/page.hpp"
 #include "proofmass/report/wording.hpp"
 

@@ -4,8 +4,8 @@
 
 #include "proofmass/core/version.hpp"
 #include "proofmass/report/budget_report.hpp"
-#include "proofmass/report/document.hpp"
 #include "proofmass/report/inspect_report.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/wheel_fake.hpp"
 #include "proofmass/report/wheel_figures.hpp"
 
@@ -46,27 +46,27 @@ TEST(Scaled, KeepsAStdPositiveUnderAChangeOfSign) {
 }
 
 TEST(WheelConclusion, SaysTheAnswerInOneSentence) {
-  EXPECT_EQ(wheel_conclusion(fake_report().solution),
+  EXPECT_EQ(describe(fake_report()).page.conclusion,
             "The wheel turned 79.6141 ± 0.0021 times backwards in 100 s; top speed 147 rpm.");
 }
 
 TEST(WheelConclusion, SaysSoWhereThereIsNoAnswer) {
-  estimate::WheelSolution solution = fake_report().solution;
-  solution.turns.reset();
-  solution.peak_speed_radps.reset();
-  EXPECT_EQ(wheel_conclusion(solution),
-            "How far the wheel turned in 100 s cannot be told from this recording.");
+  WheelReport report = fake_report();
+  report.solution.turns.reset();
+  report.solution.peak_speed_radps.reset();
+  EXPECT_EQ(describe(report).page.conclusion,
+            "This recording does not determine how far the wheel turned in 100 s.");
 }
 
 TEST(WheelConclusion, GivesLessThanATurnInDegrees) {
-  estimate::WheelSolution solution = fake_report().solution;
-  solution.turns = Uncertain{0.25, 0.001};
-  EXPECT_EQ(wheel_conclusion(solution).substr(0, 49),
+  WheelReport report = fake_report();
+  report.solution.turns = Uncertain{0.25, 0.001};
+  EXPECT_EQ(describe(report).page.conclusion.substr(0, 49),
             "The wheel turned by 90.0 ± 0.4 degrees forwards ");
 }
 
 TEST(WheelJson, HasSpeedInRpmAndTheRestInSi) {
-  const Json json = Json::parse(wheel_json(fake_report()));
+  const Json json = Json::parse(to_json(describe(fake_report())));
   EXPECT_DOUBLE_EQ(json["peak_speed_rpm"]["value"].get<double>(), -147.0);
   EXPECT_EQ(json["peak_speed_rpm"]["unit"], "rpm");
   EXPECT_DOUBLE_EQ(json["sensors"][0]["radius_m"]["value"].get<double>(), 0.1431);
@@ -76,26 +76,27 @@ TEST(WheelJson, HasSpeedInRpmAndTheRestInSi) {
 
 // Each null of the document has a sentence among the warnings that names it.
 TEST(WheelJson, GivesAReasonForEachNull) {
-  const Json json = Json::parse(wheel_json(fake_report()));
+  const Json json = Json::parse(to_json(describe(fake_report())));
   const std::string warnings = json["warnings"].dump();
   EXPECT_TRUE(json["sensors"][0]["bias"][1].is_null());
   EXPECT_NE(warnings.find("bias[1]"), std::string::npos);
   EXPECT_TRUE(json["sensors"][0]["skew_rad"].is_null());
   EXPECT_NE(warnings.find("skew_rad"), std::string::npos);
   EXPECT_TRUE(json["methods"]["double_integration"]["turns"].is_null());
-  EXPECT_NE(warnings.find("methods.double_integration.turns"), std::string::npos);
+  EXPECT_NE(warnings.find("methods.double_integration: turns, turns_std: null"), std::string::npos);
   EXPECT_TRUE(json["methods"]["atan2"]["turns_std"].is_null());
   EXPECT_NE(warnings.find("methods.atan2.turns_std"), std::string::npos);
 }
 
 TEST(WheelJson, PutsTheFirstSensorAtZeroAgainstItself) {
-  const Json json = Json::parse(wheel_json(fake_report()));
+  const Json json = Json::parse(to_json(describe(fake_report())));
   EXPECT_EQ(json["sensors"][0]["phase_rad"]["value"], 0.0);
   EXPECT_EQ(json["sensors"][0]["clock_offset_s"]["value"], 0.0);
 }
 
 TEST(WheelHtml, ShowsConclusionSensorsAndWhatCannotBeTold) {
-  const std::string text = wheel_html(fake_report());
+  const WheelReport report = fake_report();
+  const std::string text = to_html(describe(report));
   EXPECT_NE(text.find("79.6141 ± 0.0021 times backwards"), std::string::npos);
   EXPECT_NE(text.find("143.1\u00a0±\u00a00.8 mm"), std::string::npos);
   EXPECT_NE(text.find("are one number at one speed"), std::string::npos);
@@ -105,7 +106,7 @@ TEST(WheelHtml, ShowsConclusionSensorsAndWhatCannotBeTold) {
 TEST(WheelHtml, StandsWithoutASingleInstant) {
   WheelReport report = fake_report();
   report.solution.series = {};
-  EXPECT_NE(wheel_html(report).find("</html>"), std::string::npos);
+  EXPECT_NE(to_html(describe(report)).find("</html>"), std::string::npos);
 }
 
 TEST(TurnsFigure, IsNotFlattenedByADivergingIntegral) {

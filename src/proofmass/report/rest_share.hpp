@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 
 // How much of a recording that should be at rest is: what `noise` and `drift` say of it.
 namespace proofmass::report {

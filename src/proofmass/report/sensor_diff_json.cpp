@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "proofmass/core/units.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/sensor_report.hpp"
 
 namespace proofmass::report {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "proofmass/core/units.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/page.hpp"
 #include "proofmass/report/sensor_diff_wording.hpp"
 #include "proofmass/report/sensor_report.hpp"

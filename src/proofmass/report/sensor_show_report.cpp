@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/page.hpp"
 #include "proofmass/report/sensor_report.hpp"
 #include "proofmass/report/wording.hpp"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "proofmass/core/units.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"
@@ -32,9 +31,9 @@ Band band(const char* label,
   return out;
 }
 
-// Where the filter halved a reading's weight or more; none where no reading was.
-Curve told_less(const std::vector<double>& time_s, const std::vector<float>& weight) {
-  Curve out{"reading told less", {}, {}, Ink::red, Mark::ticks};
+// Where the filter down-weighted a measurement by half or more.
+Curve down_weighted(const std::vector<double>& time_s, const std::vector<float>& weight) {
+  Curve out{"down-weighted", {}, {}, Ink::red, Mark::ticks};
   for (std::size_t k = 0; k < weight.size(); ++k)
     if (weight[k] > 0.0F && weight[k] < 0.5F) out.x.push_back(time_s[k]);
   return out;
@@ -78,8 +77,7 @@ Figure angle_figure(const Angle& angle,
                     const std::vector<float>& weight,
                     bool timed) {
   Figure figure{.title = angle.title,
-                .description =
-                    "The angle given all readings, with its 95 % band, and given those up to then.",
+                .description = "Smoothed angle with its 95 % band, and the filter's.",
                 .x = {.label = timed ? "Time (s)" : "Sample"},
                 .y = {.label = angle.label}};
   figure.bands = {band("filter, 95 %", time_s, angle.filtered, angle.filtered_std, Ink::green),
@@ -87,23 +85,25 @@ Figure angle_figure(const Angle& angle,
   figure.curves = {{"filter", time_s, in_degrees(angle.filtered), Ink::green, Mark::thin},
                    {"smoother", time_s, in_degrees(angle.smoothed), Ink::blue}};
   fit_axis(figure);
-  if (Curve ticks = told_less(time_s, weight); !ticks.x.empty())
+  if (Curve ticks = down_weighted(time_s, weight); !ticks.x.empty())
     figure.curves.push_back(std::move(ticks));
   return figure;
 }
 
 }  // namespace
 
-std::vector<Figure> tilt_figures(const estimate::TiltSolution& solution) {
+Figure roll_figure(const estimate::TiltSolution& solution) {
   const estimate::TiltSeries& s = solution.series;
-  const std::vector<double> time_s = times_of(s.time_s, solution.samples);
-  const bool timed = !s.time_s.empty();
-  return {angle_figure({"Roll", "Roll (°)", s.roll_rad, s.roll_std_rad, s.filtered_roll_rad,
-                        s.filtered_roll_std_rad},
-                       time_s, s.weight, timed),
-          angle_figure({"Pitch", "Pitch (°)", s.pitch_rad, s.pitch_std_rad, s.filtered_pitch_rad,
-                        s.filtered_pitch_std_rad},
-                       time_s, s.weight, timed)};
+  return angle_figure({"Roll", "Roll (°)", s.roll_rad, s.roll_std_rad, s.filtered_roll_rad,
+                       s.filtered_roll_std_rad},
+                      times_of(s.time_s, solution.samples), s.weight, !s.time_s.empty());
+}
+
+Figure pitch_figure(const estimate::TiltSolution& solution) {
+  const estimate::TiltSeries& s = solution.series;
+  return angle_figure({"Pitch", "Pitch (°)", s.pitch_rad, s.pitch_std_rad, s.filtered_pitch_rad,
+                       s.filtered_pitch_std_rad},
+                      times_of(s.time_s, solution.samples), s.weight, !s.time_s.empty());
 }
 
 Figure gravity_figure(const estimate::TiltSolution& solution) {
@@ -111,8 +111,8 @@ Figure gravity_figure(const estimate::TiltSolution& solution) {
   const std::vector<double> time_s = times_of(s.time_s, solution.samples);
   Figure figure{.title = "Direction of gravity",
                 .description =
-                    "How far each axis of the sensor points above the horizon, given "
-                    "all readings; defined in every attitude.",
+                    "Elevation of each axis of the sensor above the horizontal, "
+                    "smoothed; defined in every attitude.",
                 .x = {.label = s.time_s.empty() ? "Sample" : "Time (s)"},
                 .y = {.label = "Elevation (°)"}};
   constexpr std::array names{"x", "y", "z"};
@@ -131,7 +131,7 @@ Figure tilt_std_figure(const estimate::TiltSolution& solution) {
   const std::vector<double> time_s = times_of(s.time_s, solution.samples);
   return {
       .title = "Standard deviation",
-      .description = "How sure filter and smoother are of roll and pitch, instant by instant.",
+      .description = "Of roll and pitch, by filter and smoother.",
       .x = {.label = s.time_s.empty() ? "Sample" : "Time (s)"},
       .y = {.label = "Standard deviation (°)", .scale = AxisScale::log},
       .curves = {
@@ -141,19 +141,21 @@ Figure tilt_std_figure(const estimate::TiltSolution& solution) {
           {"pitch, smoother", time_s, in_degrees(s.pitch_std_rad), Ink::blue}}};
 }
 
-std::vector<Figure> axis_tilt_figures(const estimate::AxisTiltSolution& solution) {
+Figure axis_angle_figure(const estimate::AxisTiltSolution& solution) {
   const estimate::AxisTiltSeries& s = solution.series;
-  Figure bias{
-      .title = "Bias of the gyroscope",
-      .description = "Given all readings, with its 95 % band.",
-      .x = {.label = "Time (s)"},
-      .y = {.label = "Bias (°/s)"},
-      .bands = {band("95 %", s.time_s, s.rate_bias_radps, s.rate_bias_std_radps, Ink::blue)},
-      .curves = {{"bias", s.time_s, in_degrees(s.rate_bias_radps), Ink::blue}}};
-  return {angle_figure({"Angle", "Angle (°)", s.angle_rad, s.angle_std_rad, s.filtered_angle_rad,
-                        s.filtered_angle_std_rad},
-                       s.time_s, s.weight, true),
-          std::move(bias)};
+  return angle_figure({"Angle", "Angle (°)", s.angle_rad, s.angle_std_rad, s.filtered_angle_rad,
+                       s.filtered_angle_std_rad},
+                      s.time_s, s.weight, true);
+}
+
+Figure rate_bias_figure(const estimate::AxisTiltSolution& solution) {
+  const estimate::AxisTiltSeries& s = solution.series;
+  return {.title = "Bias of the gyroscope",
+          .description = "Smoothed, with its 95 % band.",
+          .x = {.label = "Time (s)"},
+          .y = {.label = "Bias (°/s)"},
+          .bands = {band("95 %", s.time_s, s.rate_bias_radps, s.rate_bias_std_radps, Ink::blue)},
+          .curves = {{"bias", s.time_s, in_degrees(s.rate_bias_radps), Ink::blue}}};
 }
 
 }  // namespace proofmass::report

@@ -1,23 +1,24 @@
 #pragma once
 
-#include <vector>
-
 #include "proofmass/estimate/tilt.hpp"
 #include "proofmass/estimate/tilt_axis.hpp"
 #include "proofmass/report/figure.hpp"
 
 namespace proofmass::report {
 
-/// Roll, then pitch, with 95 % bands of the smoother and ticks where a reading lost weight.
-[[nodiscard]] std::vector<Figure> tilt_figures(const estimate::TiltSolution& solution);
+// Angles with the 95 % bands of filter and smoother, and ticks where a measurement was
+// down-weighted.
+[[nodiscard]] Figure roll_figure(const estimate::TiltSolution& solution);
+[[nodiscard]] Figure pitch_figure(const estimate::TiltSolution& solution);
+[[nodiscard]] Figure axis_angle_figure(const estimate::AxisTiltSolution& solution);
 
-/// The angle with its bands, and the gyroscope's bias.
-[[nodiscard]] std::vector<Figure> axis_tilt_figures(const estimate::AxisTiltSolution& solution);
+/// Smoothed bias of the gyroscope with its 95 % band.
+[[nodiscard]] Figure rate_bias_figure(const estimate::AxisTiltSolution& solution);
 
-/// Elevation of each axis against time, given all readings.
+/// Smoothed elevation of each axis.
 [[nodiscard]] Figure gravity_figure(const estimate::TiltSolution& solution);
 
-/// Standard deviations of filter and smoother against time.
+/// Standard deviations of filter and smoother.
 [[nodiscard]] Figure tilt_std_figure(const estimate::TiltSolution& solution);
 
 }  // namespace proofmass::report

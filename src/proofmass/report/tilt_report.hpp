@@ -6,6 +6,7 @@
 
 #include "proofmass/estimate/tilt.hpp"
 #include "proofmass/estimate/tilt_axis.hpp"
+#include "proofmass/report/document.hpp"
 
 namespace proofmass::report {
 
@@ -19,20 +20,8 @@ struct TiltReport {
   std::optional<estimate::AxisTiltSolution> axis{};
 };
 
-/// The document of `tilt`: docs/schema/tilt.schema.json.
-[[nodiscard]] std::string tilt_json(const TiltReport& report);
-
-/// The page: conclusion, key figures, notes, angles against time, rests, how it was computed.
-[[nodiscard]] std::string tilt_html(const TiltReport& report);
-
-/// A screenful for a terminal, without colour, closed by a newline.
-[[nodiscard]] std::string tilt_text(const TiltReport& report);
-
-/// "Roll −3.21 ± 0.04°, pitch 0.50 ± 0.04°, over the last of 3 rests."
-[[nodiscard]] std::string tilt_conclusion(const TiltReport& report);
-
-/// "x points down, 3.0 ± 0.8° from the vertical, azimuth −142 ± 15° from y to z".
-[[nodiscard]] std::string inclination_words(const estimate::TiltAngles& angles);
+/// Roll and pitch with their rests and motion, or the angle about one axis.
+[[nodiscard]] Document describe(const TiltReport& report);
 
 /// Angles against time with their standard deviations, filtered and smoothed: what `--output`
 /// writes.

@@ -5,6 +5,7 @@
 
 #include "proofmass/core/recording.hpp"
 #include "proofmass/estimate/track.hpp"
+#include "proofmass/report/document.hpp"
 
 namespace proofmass::report {
 
@@ -16,20 +17,13 @@ struct TrackReport {
   estimate::TrackSolution solution;
 };
 
-/// The document of `track`: docs/schema/track.schema.json.
-[[nodiscard]] std::string track_json(const TrackReport& report);
-
-/// The page: conclusion, key figures, notes, budget, plots, strokes, stops, consistency.
-[[nodiscard]] std::string track_html(const TrackReport& report);
-
-/// A screenful for a terminal, the budget first, without colour, closed by a newline.
-[[nodiscard]] std::string track_text(const TrackReport& report);
-
-/// "It ended 3.1 ± 4.6 mm from where it began; 10 strokes there and back, median 0.441 ± 0.012 m."
-[[nodiscard]] std::string track_conclusion(const estimate::TrackSolution& solution);
+/// Displacement by each method, error budget, strokes, stops, consistency. It refers to the report,
+/// which must outlive it.
+[[nodiscard]] Document describe(const TrackReport& report);
 
 /// The whole time line as a recording with the columns time, position, position_std, velocity, …:
-/// what `--output` writes. Of readings that may be no accelerations it holds the readings alone.
+/// what `--output` writes. Where the data may not be
+/// accelerations it has the data alone.
 [[nodiscard]] Recording track_series(const TrackReport& report);
 
 }  // namespace proofmass::report

@@ -25,7 +25,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 }
 
 TEST(TrackJson, HoldsWhatScriptsRelyOn) {
-  const json document = json::parse(track_json(fake_track()));
+  const json document = json::parse(to_json(describe(fake_track())));
   EXPECT_EQ(document["verb"], "track");
   EXPECT_EQ(document["methods"]["smoother"]["displacement_m"], 0.2);
   EXPECT_EQ(document["methods"]["smoother"]["std_m"], 0.002);
@@ -42,14 +42,14 @@ TEST(TrackJson, HoldsWhatScriptsRelyOn) {
     EXPECT_TRUE(document["consistency"][key].is_number()) << key;
 }
 
-TEST(TrackJson, SaysWhichModelAndWhatEachSensorToldAlone) {
-  const json one = json::parse(track_json(fake_track()));
+TEST(TrackJson, HasTheModelAndEachSensorAlone) {
+  const json one = json::parse(to_json(describe(fake_track())));
   EXPECT_EQ(one["model"], "inertial");
   EXPECT_TRUE(one["jerk_psd"].is_null());
   EXPECT_TRUE(one["fused"].is_null());
   EXPECT_TRUE(tells(one, "jerk_psd: null"));
   EXPECT_TRUE(tells(one, "fused: null"));
-  const json two = json::parse(track_json(fake_fused()));
+  const json two = json::parse(to_json(describe(fake_fused())));
   EXPECT_EQ(two["model"], "fused");
   EXPECT_EQ(two["jerk_psd"], (json{{"value", 12.0}, {"std", 0.5}, {"unit", "m^2/s^5"}}));
   EXPECT_EQ(two["fused"]["variance_gain"], 2.1);
@@ -58,33 +58,31 @@ TEST(TrackJson, SaysWhichModelAndWhatEachSensorToldAlone) {
   EXPECT_EQ(two["fused"]["sensors"][0]["bias_mps2"], 0.02);
 }
 
-TEST(TrackText, TellsTheModelAndEachSensorAlone) {
-  EXPECT_EQ(track_text(fake_track()).find("Model"), std::string::npos);
-  const std::string text = track_text(fake_fused());
-  EXPECT_NE(text.find("Model fused: 2 accelerometers, one motion; white jerk of 12.0"),
-            std::string::npos);
+TEST(TrackText, HasEachFusedSensorAlone) {
+  EXPECT_EQ(to_text(describe(fake_track())).find("alone"), std::string::npos);
+  const std::string text = to_text(describe(fake_fused()));
   EXPECT_NE(text.find("acc alone"), std::string::npos);
   EXPECT_NE(text.find("variance 2.1 times smaller"), std::string::npos);
-  EXPECT_NE(track_html(fake_fused()).find("acc&lt;2&gt; alone"), std::string::npos);
+  EXPECT_NE(to_html(describe(fake_fused())).find("acc&lt;2&gt; alone"), std::string::npos);
 }
 
 TEST(TrackJson, TheIntervalIsThatOfTheMethod) {
   const json interval =
-      json::parse(track_json(fake_track()))["methods"]["smoother"]["interval_95_m"];
+      json::parse(to_json(describe(fake_track())))["methods"]["smoother"]["interval_95_m"];
   EXPECT_NEAR(interval[0].get<double>(), 0.1952, 1e-12);
   EXPECT_NEAR(interval[1].get<double>(), 0.2048, 1e-12);
 }
 
 TEST(TrackJson, AStrokeOneWayHasNoTurnAndAWarningSaysSo) {
-  const json document = json::parse(track_json(fake_track()));
+  const json document = json::parse(to_json(describe(fake_track())));
   EXPECT_EQ(document["strokes"][0]["kind"], "there_and_back");
   EXPECT_EQ(document["strokes"][3]["kind"], "one_way");
   EXPECT_TRUE(document["strokes"][3]["back_m"].is_null());
-  EXPECT_TRUE(tells(document, "turn_s, back_m: null of a stroke that goes one way"));
+  EXPECT_TRUE(tells(document, "strokes[3]: turn_s, back_m: null: a stroke one way does not turn"));
 }
 
 TEST(TrackJson, OfJerkItHasNoFigureAndSaysWhy) {
-  const json document = json::parse(track_json(fake_jerk()));
+  const json document = json::parse(to_json(describe(fake_jerk())));
   for (const char* method : {"double_integration", "kalman", "smoother"})
     for (const auto& figure : document["methods"][method]) EXPECT_TRUE(figure.is_null());
   EXPECT_TRUE(document["suspected_jerk"]);
@@ -93,26 +91,24 @@ TEST(TrackJson, OfJerkItHasNoFigureAndSaysWhy) {
   EXPECT_TRUE(tells(document, "jerk"));
 }
 
-TEST(TrackText, TheBudgetStandsBeforeTheResults) {
-  const std::string text = track_text(fake_track());
-  const auto budget = text.find("What this sensor, this duration and these stops allow");
-  const auto results = text.find("it stood at");
-  EXPECT_EQ(budget, 0U);
-  ASSERT_NE(results, std::string::npos);
-  EXPECT_LT(text.find("900 mm at the end"), results) << text;
+TEST(TrackText, HasTheErrorBudgetAfterTheConclusion) {
+  const std::string text = to_text(describe(fake_track()));
+  EXPECT_EQ(text.find("After 18 s the displacement is"), 0U) << text;
+  EXPECT_NE(text.find("Error of plain double integration 900 mm at the end"), std::string::npos);
   EXPECT_EQ(text.back(), '\n');
 }
 
 TEST(TrackText, OfJerkItGivesNoLength) {
-  const std::string text = track_text(fake_jerk());
-  EXPECT_NE(text.find("cannot be told: the readings behave like"), std::string::npos) << text;
-  EXPECT_EQ(text.find("smoother"), std::string::npos) << text;
+  const std::string text = to_text(describe(fake_jerk()));
+  EXPECT_NE(text.find("is not determined: the data behave like"), std::string::npos) << text;
+  EXPECT_EQ(text.find("Smoother"), std::string::npos) << text;
 }
 
 TEST(TrackConclusion, SaysWhereItEndedAndTheStrokes) {
-  const std::string text = track_conclusion(fake_track().solution);
-  EXPECT_NE(text.find("After 18 s it stood at 0.2000 ± 0.0020 m along (0.000, 0.600, 0.800)"),
-            std::string::npos)
+  const std::string text = describe(fake_track()).page.conclusion;
+  EXPECT_NE(
+      text.find("After 18 s the displacement is 0.2000 ± 0.0020 m along (0.000, 0.600, 0.800)"),
+      std::string::npos)
       << text;
   EXPECT_NE(text.find("3 strokes there and back and 1 one way, median length 0.404 ± 0.004 m"),
             std::string::npos)
@@ -130,7 +126,7 @@ TEST(StrokeSummary, IsTheMedianWithTheMedianStd) {
 }
 
 TEST(TrackHtml, HasItsPlotsAndNoScript) {
-  const std::string page = track_html(fake_track());
+  const std::string page = to_html(describe(fake_track()));
   EXPECT_EQ(count_of(page, "</svg>"), 4U);
   EXPECT_EQ(page.find("<script"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
@@ -139,7 +135,7 @@ TEST(TrackHtml, HasItsPlotsAndNoScript) {
 }
 
 TEST(TrackHtml, OfJerkShowsTheReadingsAlone) {
-  EXPECT_EQ(count_of(track_html(fake_jerk()), "</svg>"), 1U);
+  EXPECT_EQ(count_of(to_html(describe(fake_jerk())), "</svg>"), 1U);
 }
 
 TEST(TrackSeries, HasARowForEachSampleAndOfJerkTheReadingsAlone) {

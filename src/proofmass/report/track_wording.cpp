@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/track_report.hpp"
 #include "proofmass/report/wording.hpp"
 
@@ -64,13 +64,13 @@ std::string_view name_of(GravityContent gravity) {
 std::string_view gravity_words(GravityContent gravity) {
   switch (gravity) {
     case GravityContent::removed:
-      return "not in the readings";
+      return "removed from the data";
     case GravityContent::present:
-      return "in the readings";
+      return "in the data";
     case GravityContent::unknown:
       break;
   }
-  return "in the readings or not: not known";
+  return "in the data or not: unknown";
 }
 
 std::string_view kind_of(const Stroke& stroke) {
@@ -116,7 +116,7 @@ std::string strokes_words(const StrokeSummary& summary) {
                           : grouped(one_way) + " one way");
   }
   if (summary.count == 1) return text + ", " + length_with_std(summary.median_length_m) + " long";
-  return fmt::format("{}, median length {}, scattering by {}", text,
+  return fmt::format("{}, median length {}, scatter {}", text,
                      length_with_std(summary.median_length_m),
                      length_words(summary.spread_m.value_or(0.0)));
 }
@@ -126,17 +126,17 @@ std::vector<std::string> budget_words(const TrackSolution& solution) {
   std::vector<std::string> sentences;
   const std::string walk =
       budget.walk_mps2_rts > 0.0
-          ? fmt::format(", a bias that walks by {} m/s²/√s", significant(budget.walk_mps2_rts, 2))
+          ? fmt::format(", bias random walk {} m/s²/√s", significant(budget.walk_mps2_rts, 2))
           : "";
   sentences.push_back(
-      fmt::format("Noise along the axis {} m/s²/√Hz{}; {} of motion, at most {} from stop to stop.",
+      fmt::format("Noise along the axis {} m/s²/√Hz{}; {} of motion, at most {} between stops.",
                   significant(budget.white_mps2_rthz, 2), walk, duration_words(budget.motion_s),
                   duration_words(budget.longest_motion_s)));
   std::string allowed;
   if (budget.free_m)
-    allowed = "Plain double integration is off by " + length_words(*budget.free_m) + " at the end";
+    allowed = "Error of plain double integration " + length_words(*budget.free_m) + " at the end";
   if (budget.worst_m && budget.end_m) {
-    allowed += fmt::format("{} all stops and fixes it is {} at worst, {} at the end",
+    allowed += fmt::format("{} all stops and fixes {} at worst, {} at the end",
                            allowed.empty() ? "With" : "; with", length_words(*budget.worst_m),
                            length_words(*budget.end_m));
   }
@@ -145,18 +145,17 @@ std::vector<std::string> budget_words(const TrackSolution& solution) {
   if (solution.smoother && budget.end_m &&
       solution.smoother->displacement_m.std > much_wider * *budget.end_m)
     sentences.emplace_back(
-        "That is from its noise at rest; what it errs by in motion, as the stops show it, makes "
-        "the intervals below wider.");
+        "This accounts for the noise at rest; errors in motion, as the stops show, widen the "
+        "intervals below.");
   return sentences;
 }
 
 std::string refusal(const TrackSolution& solution) {
   if (solution.smoother) return {};
   if (!solution.alternatives.empty() || solution.too_many_in_doubt)
-    return "which of the quiet stretches are rests cannot be told";
-  return solution.suspected_jerk
-             ? "the readings behave like the rate of change of an acceleration (jerk)"
-             : "this recording does not determine it";
+    return "which of the quiet intervals are rests is ambiguous";
+  return solution.suspected_jerk ? "the data behave like the derivative of an acceleration (jerk)"
+                                 : "this recording does not determine it";
 }
 
 std::string closures_words(const std::vector<Closure>& closures) {
@@ -167,11 +166,9 @@ std::string closures_words(const std::vector<Closure>& closures) {
     if (std::isfinite(ratio)) normalised += ratio * ratio;
   }
   const auto n = static_cast<double>(std::max<std::size_t>(closures.size(), 1));
-  return fmt::format(
-      "on arrival at {} the velocity was off by {} m/s rms, {} of its standard "
-      "deviation",
-      count_words(closures.size(), "stop"), significant(std::sqrt(squares / n), 2),
-      significant(std::sqrt(normalised / n), 2));
+  return fmt::format("the residual velocity at {} is {} m/s rms, {} of its standard deviation",
+                     count_words(closures.size(), "stop"), significant(std::sqrt(squares / n), 2),
+                     significant(std::sqrt(normalised / n), 2));
 }
 
 std::string_view name_of(estimate::TrackModel model) {
@@ -190,37 +187,10 @@ std::string model_words(const TrackSolution& solution) {
   std::string text = solution.fused ? fmt::format("Model fused: {} accelerometers, one motion",
                                                   solution.fused->sensors.size())
                                     : std::string("Model pva: the acceleration is estimated");
-  if (!solution.jerk_psd_m2ps5) return text + "; the readings do not tell how hard it jerks.";
+  if (!solution.jerk_psd_m2ps5) return text + "; the jerk is not identifiable.";
   const Uncertain& jerk = *solution.jerk_psd_m2ps5;
   return text + fmt::format("; white jerk of {} m²/s⁵{}.", significant(jerk.value, 3),
                             jerk.std > 0.0 ? " by maximum likelihood" : ", as given");
-}
-
-std::vector<std::vector<std::string>> fused_rows(const TrackSolution& solution) {
-  std::vector<std::vector<std::string>> rows{{"sensor", "displacement", "reads at rest"}};
-  if (!solution.fused || !solution.smoother) return rows;
-  for (const estimate::FusedSensor& sensor : solution.fused->sensors)
-    rows.push_back({sensor.name + " alone", length_with_std(sensor.displacement_m),
-                    fixed(sensor.bias_mps2.value, 4) + " m/s²"});
-  rows.push_back({fmt::format("fused: variance {} times smaller",
-                              significant(solution.fused->variance_gain, 2)),
-                  length_with_std(solution.smoother->displacement_m), ""});
-  return rows;
-}
-
-std::string track_conclusion(const TrackSolution& solution) {
-  const std::vector<double>& time_s = solution.series.time_s;
-  const std::string when = time_s.empty() ? "" : duration_words(time_s.back() - time_s.front());
-  if (!solution.smoother) {
-    return fmt::format("How far it moved in {} cannot be told: {}.", when, refusal(solution));
-  }
-  const Uncertain& end = solution.smoother->displacement_m;
-  std::string text =
-      fmt::format("After {} it stood at {} along {}, 95 % interval {}", when, length_with_std(end),
-                  axis_words(solution), interval_words(*solution.smoother));
-  const auto strokes = summary_of(solution.strokes);
-  if (strokes) text += "; " + strokes_words(*strokes);
-  return text + ".";
 }
 
 }  // namespace proofmass::report

@@ -7,7 +7,7 @@
 
 #include "proofmass/estimate/track.hpp"
 
-// What the text and the page of a track say alike.
+// Words for the results of `track`.
 namespace proofmass::report {
 
 /// "0.4412 ± 0.0031 m", or in mm where both are below 0.1 m.
@@ -27,10 +27,6 @@ namespace proofmass::report {
 
 /// Which model it was and with what jerk; empty for the inertial one.
 [[nodiscard]] std::string model_words(const estimate::TrackSolution& solution);
-
-/// A row for each sensor that was fused, alone, and one for all; the first names the columns.
-[[nodiscard]] std::vector<std::vector<std::string>> fused_rows(
-    const estimate::TrackSolution& solution);
 
 /// "removed by whoever recorded the readings", …
 [[nodiscard]] std::string_view gravity_words(estimate::GravityContent gravity);

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/tumble_nulls.hpp"
 #include "proofmass/report/tumble_report.hpp"
 #include "proofmass/report/tumble_wording.hpp"

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <functional>
 
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/tumble_wording.hpp"
 
 namespace proofmass::report {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {

@@ -31,12 +31,14 @@ Figure innovations_figure(const TuneReport& report, std::size_t channel) {
   return figure;
 }
 
-std::vector<Figure> innovation_memory_figures(const TuneReport& report, std::size_t channel) {
-  if (channel >= report.consistency.whiteness.size()) return {};
-  const auto& tests = report.consistency.whiteness[channel];
-  if (tests.empty()) return {};
-  const signal::WhitenessTest& test = tests.front();
-  Figure figure{.title = report.channels[channel].name + ": memory of the innovations",
+bool has_whiteness(const TuneReport& report, std::size_t channel) {
+  return channel < report.consistency.whiteness.size() &&
+         !report.consistency.whiteness[channel].empty();
+}
+
+Figure autocorrelation_figure(const TuneReport& report, std::size_t channel) {
+  const signal::WhitenessTest& test = report.consistency.whiteness[channel].front();
+  Figure figure{.title = report.channels[channel].name + ": autocorrelation of the innovations",
                 .description = fmt::format(
                     "Autocorrelation; of white innovations 95 in 100 values lie between the "
                     "lines: here {} in 100.",
@@ -50,7 +52,7 @@ std::vector<Figure> innovation_memory_figures(const TuneReport& report, std::siz
   }
   figure.curves.push_back(std::move(curve));
   figure.levels = {{"", test.bound}, {"", -test.bound}};
-  return {figure};
+  return figure;
 }
 
 Figure gain_figure(const TuneStudy& study) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <cstddef>
 
 #include "proofmass/report/figure.hpp"
 #include "proofmass/report/tune_report.hpp"
@@ -10,9 +10,11 @@ namespace proofmass::report {
 /// Normalised innovations of a channel against time, with where 95 % of them should lie.
 [[nodiscard]] Figure innovations_figure(const TuneReport& report, std::size_t channel);
 
-/// Autocorrelation of a channel's innovations at the sample; none where it was not tested.
-[[nodiscard]] std::vector<Figure> innovation_memory_figures(const TuneReport& report,
-                                                            std::size_t channel);
+/// Whether the innovations of a channel were tested for whiteness.
+[[nodiscard]] bool has_whiteness(const TuneReport& report, std::size_t channel);
+
+/// Autocorrelation of a channel's innovations at the sample. Precondition: has_whiteness().
+[[nodiscard]] Figure autocorrelation_figure(const TuneReport& report, std::size_t channel);
 
 /// Gain of the acceleration against time, each case with where it has settled.
 [[nodiscard]] Figure gain_figure(const TuneStudy& study);

@@ -7,6 +7,7 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/estimate/gain_study.hpp"
 #include "proofmass/estimate/tune.hpp"
+#include "proofmass/report/document.hpp"
 
 namespace proofmass::report {
 
@@ -40,17 +41,9 @@ struct TuneReport {
   std::vector<TuneStudy> studies;  ///< of channels with two white noises
 };
 
-/// The document of `tune`: docs/schema/tune.schema.json.
-[[nodiscard]] std::string tune_json(const TuneReport& report);
-
-/// The page: conclusion, parameters, innovations, the study of gain and covariance.
-[[nodiscard]] std::string tune_html(const TuneReport& report);
-
-/// For a terminal.
-[[nodiscard]] std::string tune_text(const TuneReport& report);
-
-/// "acc_x: white 0.52 ± 0.01 mg/√Hz …"
-[[nodiscard]] std::string tune_conclusion(const TuneReport& report);
+/// Model, parameters, innovations, study of gain and covariance. It refers to the report, which
+/// must outlive it.
+[[nodiscard]] Document describe(const TuneReport& report);
 
 /// Innovations and the standard deviations that the filter states, against time: what `--output`
 /// writes.

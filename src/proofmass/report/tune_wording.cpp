@@ -91,7 +91,7 @@ std::string value_words(const TuneReport& report, const TunedParameter& paramete
     return fmt::format("below {} {} (95 %)", significant(*parameter.upper_95, 2), unit);
   if (parameter.lower_95)
     return fmt::format("above {} {} (95 %)", significant(*parameter.lower_95, 2), unit);
-  return "not told";
+  return "not determined";
 }
 
 std::string interval_words(const TunedParameter& parameter) {
@@ -103,17 +103,17 @@ std::string reason_words(const TuneReport& report, const TunedParameter& paramet
   std::string text = parameter.reason;
   if (parameter.upper_95 || parameter.lower_95) text += ", " + value_words(report, parameter);
   if (parameter.record_needed_s)
-    text +=
-        fmt::format("; about {} of record would tell", duration_words(*parameter.record_needed_s));
+    text += fmt::format("; about {} of record would identify it",
+                        duration_words(*parameter.record_needed_s));
   return text;
 }
 
 std::string model_words(TuneModel model) {
   switch (model) {
     case TuneModel::rest:
-      return "at rest: white noise on a bias that walks";
+      return "at rest: white noise on a random-walk bias";
     case TuneModel::rest_markov:
-      return "at rest: white noise on a bias that walks and a bias of first-order Markov noise";
+      return "at rest: white noise on a random-walk bias and a bias of first-order Markov noise";
     case TuneModel::pva:
       return "position, velocity, acceleration: white noise on an acceleration driven by white "
              "jerk";
@@ -121,9 +121,9 @@ std::string model_words(TuneModel model) {
       return "white noise on an acceleration driven by white jerk and a bias of first-order Markov "
              "noise";
     case TuneModel::local_level:
-      return "white noise on a level that walks";
+      return "white noise on a random-walk level";
     case TuneModel::local_trend:
-      return "white noise on a level whose slope walks";
+      return "white noise on a level with a random-walk slope";
     case TuneModel::position:
       return "white noise on a position driven by white jerk";
   }

@@ -59,7 +59,7 @@ Section part(const Item& item) {
                   .gist = agreement_words(agreement(item)),
                   .sides = {{"The thesis", item.thesis}, {"Proofmass", item.ours}},
                   .points = reasons(item.findings),
-                  .figures = item.figures};
+                  .figures = report::plots(item.figures)};
   std::ranges::replace(section.id, ' ', '-');
   if (!item.note.empty()) section.sides.push_back({"Why, and what to take", item.note});
   if (!item.findings.empty()) section.tables.push_back(findings_table(item.findings));

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "proofmass/report/document.hpp"
+#include "proofmass/report/json.hpp"
 #include "proofmass/thesis/chapters.hpp"
 #include "proofmass/thesis/comparison.hpp"
 #include "proofmass/thesis/documents.hpp"

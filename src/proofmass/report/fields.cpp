@@ -1,0 +1,223 @@
+#include "proofmass/report/fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "proofmass/report/wording.hpp"
+
+namespace proofmass::report {
+namespace {
+
+using Kind = Shape::Kind;
+
+Field with_number(std::string key, const std::optional<double>& value, Shape shape, About about) {
+  Field field{std::move(key), std::move(shape), std::move(about)};
+  if (value) field.scalar = Value(*value);
+  return field;
+}
+
+Value value_of(const Field& field) {
+  if (field.shape.kind == Kind::quantity) return quantity(field.figure, field.shape.unit);
+  if (!field.fields) return field.scalar;
+  if (field.shape.kind == Kind::object) return json_of(*field.fields);
+  Array items;
+  for (const Field& item : *field.fields) items.push_back(value_of(item));
+  return items;
+}
+
+// Keys that are null for one reason.
+struct NullGroup {
+  std::string reason;
+  std::vector<std::string> keys;
+};
+
+void add_null(std::vector<NullGroup>& groups, const std::string& reason, const std::string& key) {
+  const auto same = std::ranges::find(groups, reason, &NullGroup::reason);
+  if (same == groups.end())
+    groups.push_back({reason, {key}});
+  else
+    same->keys.push_back(key);
+}
+
+// What names an object of a list: its first text that is a name.
+std::string name_in(const Fields& fields) {
+  for (const Field& field : fields)
+    if (field.key == "name" || field.key == "file" || field.key == "channel")
+      if (const auto* name = std::get_if<std::string>(&field.scalar.state())) return *name;
+  return {};
+}
+
+void collect(const Fields& fields, const std::string& path, std::vector<std::string>& out);
+
+// Nulls among the items of a list belong to the object around it; objects in it stand by
+// themselves.
+void look(const Field& field,
+          const std::string& key,
+          const std::string& path,
+          std::vector<NullGroup>& groups,
+          std::vector<std::string>& below) {
+  if (is_absent(field)) return add_null(groups, field.about.why_null, key);
+  if (!field.fields) return;
+  const std::string inner = path.empty() ? key : path + "." + key;
+  if (field.shape.kind == Kind::object) return collect(*field.fields, inner, below);
+  for (std::size_t i = 0; i < field.fields->size(); ++i) {
+    const Field& item = (*field.fields)[i];
+    if (item.about.why_null.empty() && is_absent(item))
+      add_null(groups, field.about.why_null, fmt::format("{}[{}]", key, i));
+    else
+      look(item, fmt::format("{}[{}]", key, i), path, groups, below);
+  }
+}
+
+void collect(const Fields& fields, const std::string& path, std::vector<std::string>& out) {
+  std::vector<NullGroup> groups;
+  std::vector<std::string> below;
+  for (const Field& field : fields) look(field, field.key, path, groups, below);
+  const std::string name = name_in(fields);
+  const std::string place = name.empty() ? path : fmt::format("{} ({})", path, name);
+  for (const NullGroup& group : groups) {
+    const std::string keys = fmt::format("{}", fmt::join(group.keys, ", "));
+    const bool by_path = name.empty() && group.keys.size() == 1;
+    const std::string_view link = path.empty() ? "" : by_path ? "." : ": ";
+    const std::string reason =
+        group.reason.empty() ? "this recording does not determine it" : group.reason;
+    out.push_back(fmt::format("{}{}{}: null: {}", place, link, keys, reason));
+  }
+  out.insert(out.end(), below.begin(), below.end());
+}
+
+struct Shown {
+  std::string operator()(std::monostate) const { return std::string(absent); }
+  std::string operator()(bool value) const { return value ? "yes" : "no"; }
+  std::string operator()(std::int64_t value) const { return std::to_string(value); }
+  std::string operator()(std::uint64_t value) const { return grouped(value); }
+  std::string operator()(double value) const { return significant(value, 4); }
+  std::string operator()(const std::string& value) const { return value; }
+  std::string operator()(const Array&) const { return {}; }
+  std::string operator()(const Object&) const { return {}; }
+};
+
+}  // namespace
+
+namespace field {
+
+Field text(std::string key, std::string_view value, About about) {
+  return {std::move(key), {Kind::text}, std::move(about), Value(value)};
+}
+
+Field choice(std::string key,
+             std::string_view value,
+             std::vector<std::string> choices,
+             About about) {
+  return {std::move(key),
+          {.kind = Kind::choice, .choices = std::move(choices)},
+          std::move(about),
+          Value(value)};
+}
+
+Field flag(std::string key, bool value, About about) {
+  return {std::move(key), {Kind::flag}, std::move(about), Value(value)};
+}
+
+Field count(std::string key, std::size_t value, About about) {
+  return {std::move(key), {Kind::count}, std::move(about), Value(std::uint64_t{value})};
+}
+
+Field number(std::string key, double value, About about) {
+  const bool nullable = !about.why_null.empty();
+  return with_number(std::move(key), value, {.kind = Kind::number, .nullable = nullable},
+                     std::move(about));
+}
+
+Field number(std::string key, const std::optional<double>& value, About about) {
+  return with_number(std::move(key), value, {.kind = Kind::number, .nullable = true},
+                     std::move(about));
+}
+
+Field magnitude(std::string key, const std::optional<double>& value, About about) {
+  const bool nullable = !about.why_null.empty();
+  return with_number(std::move(key), value,
+                     {.kind = Kind::number, .nullable = nullable, .not_negative = true},
+                     std::move(about));
+}
+
+Field measured(std::string key,
+               const std::optional<Uncertain>& value,
+               std::string_view unit,
+               About about) {
+  Field field{std::move(key),
+              {.kind = Kind::quantity, .unit = std::string(unit), .nullable = true},
+              std::move(about)};
+  if (value && std::isfinite(value->value) && std::isfinite(value->std)) field.figure = value;
+  return field;
+}
+
+Field object(std::string key, Fields fields, About about) {
+  Field field{std::move(key), {Kind::object}, std::move(about)};
+  field.fields = std::move(fields);
+  return field;
+}
+
+Field object_or_null(std::string key, std::optional<Fields> fields, About about) {
+  Field field{std::move(key), {.kind = Kind::object, .nullable = true}, std::move(about)};
+  field.fields = std::move(fields);
+  return field;
+}
+
+Field list(std::string key, Fields items, About about) {
+  Field field{std::move(key), {Kind::list}, std::move(about)};
+  field.fields = std::move(items);
+  return field;
+}
+
+Field texts(std::string key, const std::vector<std::string>& items, About about) {
+  Fields all;
+  for (const std::string& item : items) all.push_back(text({}, item));
+  Field field = list(std::move(key), std::move(all), std::move(about));
+  field.shape.of_texts = true;
+  return field;
+}
+
+Field notes(const std::vector<Note>& notes) {
+  return texts("notes", report::texts(notes, Severity::info),
+               {.meaning = "what was found while reading and computing, warnings included"});
+}
+
+}  // namespace field
+
+bool is_absent(const Field& field) {
+  if (field.shape.kind == Kind::quantity) return !field.figure;
+  return !field.fields && field.scalar.is_null();
+}
+
+Object json_of(const Fields& fields) {
+  Object out;
+  for (const Field& field : fields) out.push_back({field.key, value_of(field)});
+  return out;
+}
+
+std::vector<std::string> reasons_for_nulls(const Fields& fields) {
+  std::vector<std::string> out;
+  collect(fields, {}, out);
+  return out;
+}
+
+std::string shown_value(const Field& field) {
+  if (field.shape.kind == Kind::list) {
+    std::vector<std::string> items;
+    for (const Field& item : *field.fields) items.push_back(shown_value(item));
+    return fmt::format("({})", fmt::join(items, ", "));
+  }
+  if (const double* value = std::get_if<double>(&field.scalar.state());
+      value != nullptr && field.about.display)
+    return fmt::format("{} {}", significant(*value * field.about.display->factor, 2),
+                       field.about.display->unit);
+  if (field.shape.kind != Kind::quantity) return std::visit(Shown{}, field.scalar.state());
+  const Display display =
+      field.about.display.value_or(Display{field.shape.unit == "1" ? "" : field.shape.unit});
+  return with_std(scaled(field.figure, display.factor), display.unit, absent);
+}
+
+}  // namespace proofmass::report

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "proofmass/core/quantity.hpp"
+#include "proofmass/core/recording.hpp"
+#include "proofmass/report/json.hpp"
+
+// The entries of a verb's result. Each states its key, its meaning and its value, or the reason why
+// there is none; the JSON document, its schema, the list of reasons and the rows that people read
+// are all made from them.
+namespace proofmass::report {
+
+struct Field;
+using Fields = std::vector<Field>;
+
+/// Unit in which people read a quantity: shown = value · factor.
+struct Display {
+  std::string_view unit = {};
+  double factor = 1.0;
+};
+
+/// What an entry states beside its value.
+struct About {
+  std::string meaning = {};             ///< for the schema: conventions, signs, when it is null
+  std::string label = {};               ///< for people; empty: only in the document
+  std::string why_null = {};            ///< the reason, should there be no value
+  std::optional<Display> display = {};  ///< of a number; absent: as in the document
+};
+
+/// What may stand under a key.
+struct Shape {
+  enum class Kind { text, choice, flag, count, number, quantity, list, object };
+
+  Kind kind = Kind::text;
+  std::string unit = {};                  ///< of a quantity
+  std::vector<std::string> choices = {};  ///< of a choice
+  bool nullable = false;
+  bool not_negative = false;  ///< of a number
+  bool of_texts = false;      ///< of a list
+};
+
+struct Field {
+  std::string key;  ///< empty in a list
+  Shape shape;
+  About about = {};
+  Value scalar = {};                     ///< null where there is no value, and in lists and objects
+  std::optional<Uncertain> figure = {};  ///< of a quantity
+  std::optional<Fields> fields = {};     ///< of a list or an object
+};
+
+// One function for each kind. A number that is not finite is absent.
+namespace field {
+
+[[nodiscard]] Field text(std::string key, std::string_view value, About about = {});
+/// One of a fixed set of words.
+[[nodiscard]] Field choice(std::string key,
+                           std::string_view value,
+                           std::vector<std::string> choices,
+                           About about = {});
+[[nodiscard]] Field flag(std::string key, bool value, About about = {});
+[[nodiscard]] Field count(std::string key, std::size_t value, About about = {});
+[[nodiscard]] Field number(std::string key, double value, About about = {});
+[[nodiscard]] Field number(std::string key, const std::optional<double>& value, About about = {});
+/// A number that cannot be negative: a length, a standard deviation, a probability.
+[[nodiscard]] Field magnitude(std::string key,
+                              const std::optional<double>& value,
+                              About about = {});
+/// {"value", "std", "unit"}.
+[[nodiscard]] Field measured(std::string key,
+                             const std::optional<Uncertain>& value,
+                             std::string_view unit,
+                             About about = {});
+[[nodiscard]] Field object(std::string key, Fields fields, About about = {});
+/// An object that may be absent.
+[[nodiscard]] Field object_or_null(std::string key, std::optional<Fields> fields, About about = {});
+/// The items' keys are left empty.
+[[nodiscard]] Field list(std::string key, Fields items, About about = {});
+
+/// A list of strings.
+[[nodiscard]] Field texts(std::string key, const std::vector<std::string>& items, About about = {});
+
+/// A list with one object for each element: `fields_of(element)`.
+template <class Range, class FieldsOf>
+[[nodiscard]] Field records(std::string key,
+                            const Range& range,
+                            FieldsOf fields_of,
+                            About about = {}) {
+  Fields items;
+  for (const auto& element : range) items.push_back(object({}, fields_of(element)));
+  return list(std::move(key), std::move(items), std::move(about));
+}
+
+/// The texts of all notes, under "notes".
+[[nodiscard]] Field notes(const std::vector<Note>& notes);
+
+}  // namespace field
+
+[[nodiscard]] bool is_absent(const Field& field);
+
+/// The entries as JSON, in their order.
+[[nodiscard]] Object json_of(const Fields& fields);
+
+/// One sentence for each null, those of one object with one reason together:
+/// "sensors[0] (a.csv): radius_m, bias[0]: null: this recording does not determine them".
+[[nodiscard]] std::vector<std::string> reasons_for_nulls(const Fields& fields);
+
+/// The value as people read it, in its display unit, a list in parentheses; "not determined" where
+/// there is none.
+[[nodiscard]] std::string shown_value(const Field& field);
+
+}  // namespace proofmass::report

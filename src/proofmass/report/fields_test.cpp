@@ -1,0 +1,72 @@
+#include "proofmass/report/fields.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace proofmass::report::fields_test {
+namespace {
+
+using Reasons = std::vector<std::string>;
+
+TEST(Fields, AreWrittenInTheirOrder) {
+  const Fields fields{field::count("samples", 3), field::number("rate_hz", 100.0),
+                      field::list("axis", {field::number({}, 0.0), field::number({}, 1.0)}),
+                      field::object("inner", {field::flag("yes", true)})};
+  EXPECT_EQ(json_text(json_of(fields)),
+            "{\n  \"samples\": 3,\n  \"rate_hz\": 100.0,\n  \"axis\": [\n    0.0,\n    1.0\n  ],\n"
+            "  \"inner\": {\n    \"yes\": true\n  }\n}");
+}
+
+TEST(Fields, ANumberThatIsNotFiniteIsAbsent) {
+  EXPECT_TRUE(is_absent(field::number("a", std::nan(""))));
+  EXPECT_TRUE(is_absent(field::measured("a", Uncertain{1.0, INFINITY}, "m")));
+  EXPECT_FALSE(is_absent(field::number("a", 0.0)));
+}
+
+TEST(ReasonsForNulls, NameTheKeyAtTheTop) {
+  EXPECT_EQ(reasons_for_nulls(
+                {field::measured("turns", std::nullopt, "turn", {.why_null = "the angle was lost"}),
+                 field::count("samples", 1)}),
+            Reasons{"turns: null: the angle was lost"});
+}
+
+TEST(ReasonsForNulls, JoinTheKeysOfAnObjectThatHaveOneReason) {
+  const auto absent = [](const char* key, const char* why) {
+    return field::measured(key, std::nullopt, "1", {.why_null = why});
+  };
+  const Field sensors = field::list(
+      "sensors",
+      {field::object({}, {field::text("file", "a.csv"), absent("radius_m", "still"),
+                          field::list("bias", {absent("", "still"),
+                                               field::measured({}, Uncertain{1, 1}, "1")}),
+                          absent("skew_rad", "slow")})});
+  EXPECT_EQ(reasons_for_nulls({sensors}),
+            (Reasons{"sensors[0] (a.csv): radius_m, bias[0]: null: still",
+                     "sensors[0] (a.csv): skew_rad: null: slow"}));
+}
+
+TEST(ReasonsForNulls, GiveTheWholePathOfASingleKey) {
+  EXPECT_EQ(
+      reasons_for_nulls({field::object(
+          "methods", {field::object("atan2", {field::number("turns_std", std::nullopt,
+                                                            {.why_null = "it has none"})})})}),
+      Reasons{"methods.atan2.turns_std: null: it has none"});
+}
+
+TEST(ReasonsForNulls, GiveTheReasonOfAnAbsentObjectOnce) {
+  EXPECT_EQ(reasons_for_nulls(
+                {field::object_or_null("gyroscope", std::nullopt, {.why_null = "there is none"})}),
+            Reasons{"gyroscope: null: there is none"});
+}
+
+TEST(ShownValue, IsInTheDisplayUnit) {
+  const Field angle = field::measured("angle_rad", Uncertain{1.0, 0.01}, "rad",
+                                      {.display = Display{"°", 180.0 / 3.14159265358979}});
+  EXPECT_EQ(shown_value(angle), "57.3 ± 0.6°");
+  EXPECT_EQ(shown_value(field::measured("x", std::nullopt, "m")), "not determined");
+  EXPECT_EQ(shown_value(field::list("axis", {field::number({}, 0.5), field::number({}, 1.0)})),
+            "(0.5000, 1.000)");
+}
+
+}  // namespace
+}  // namespace proofmass::report::fields_test

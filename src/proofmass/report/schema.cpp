@@ -1,0 +1,198 @@
+#include "proofmass/report/schema.hpp"
+
+#include <algorithm>
+
+#include "proofmass/core/contract.hpp"
+
+namespace proofmass::report {
+namespace {
+
+using Kind = Shape::Kind;
+/// The same entry in several samples.
+using Samples = std::vector<const Field*>;
+
+Object schema_of(const Samples& samples);
+
+// "number", or ["number", "null"].
+Value type_of(const char* name, const Samples& samples) {
+  const bool nullable = std::ranges::any_of(
+      samples, [](const Field* field) { return field->shape.nullable || is_absent(*field); });
+  if (!nullable) return name;
+  return Array{name, "null"};
+}
+
+// The entries of objects by key, in the order of their first appearance.
+struct KeySamples {
+  std::string key;
+  Samples samples;
+};
+
+std::vector<KeySamples> by_key(const std::vector<const Fields*>& objects) {
+  std::vector<KeySamples> keys;
+  for (const Fields* fields : objects)
+    for (const Field& field : *fields) {
+      auto at = std::ranges::find(keys, field.key, &KeySamples::key);
+      if (at == keys.end()) at = keys.insert(keys.end(), {field.key, {}});
+      at->samples.push_back(&field);
+    }
+  return keys;
+}
+
+// "properties" and what belongs to them.
+void add_properties(Object& schema, Object properties, const std::vector<const Fields*>& objects) {
+  Array required;
+  for (const Member& given : properties) required.push_back(given.key);
+  for (const KeySamples& one : by_key(objects)) {
+    properties.push_back({one.key, schema_of(one.samples)});
+    if (one.samples.size() == objects.size()) required.push_back(one.key);
+  }
+  schema.push_back({"properties", std::move(properties)});
+  schema.push_back({"required", std::move(required)});
+  schema.push_back({"additionalProperties", false});
+}
+
+void add_items(Object& schema, const Samples& samples) {
+  if (samples.front()->shape.of_texts) {
+    schema.push_back({"items", Object{{"type", "string"}}});
+    return;
+  }
+  Samples items;
+  for (const Field* field : samples)
+    if (field->fields)
+      for (const Field& item : *field->fields) items.push_back(&item);
+  PM_EXPECTS(!items.empty());
+  schema.push_back({"items", schema_of(items)});
+}
+
+std::vector<const Fields*> objects_of(const Samples& samples) {
+  std::vector<const Fields*> objects;
+  for (const Field* field : samples)
+    if (field->fields) objects.push_back(&*field->fields);
+  return objects;
+}
+
+void add_shape(Object& schema, const Samples& samples) {
+  const Shape& shape = samples.front()->shape;
+  switch (shape.kind) {
+    case Kind::text:
+      schema.push_back({"type", type_of("string", samples)});
+      break;
+    case Kind::choice: {
+      Array choices = Array(shape.choices.begin(), shape.choices.end());
+      schema.push_back({"enum", std::move(choices)});
+      break;
+    }
+    case Kind::flag:
+      schema.push_back({"type", type_of("boolean", samples)});
+      break;
+    case Kind::count:
+      schema.push_back({"type", type_of("integer", samples)});
+      schema.push_back({"minimum", 0});
+      break;
+    case Kind::number:
+      schema.push_back({"type", type_of("number", samples)});
+      if (shape.not_negative) schema.push_back({"minimum", 0});
+      break;
+    case Kind::quantity:
+      schema.push_back({"$ref", "#/$defs/quantity"});
+      schema.push_back({"properties", Object{{"unit", Object{{"const", shape.unit}}}}});
+      break;
+    case Kind::list:
+      schema.push_back({"type", type_of("array", samples)});
+      add_items(schema, samples);
+      break;
+    case Kind::object:
+      schema.push_back({"type", type_of("object", samples)});
+      add_properties(schema, {}, objects_of(samples));
+      break;
+  }
+}
+
+Object schema_of(const Samples& samples) {
+  Object schema;
+  const auto meaning = std::ranges::find_if(
+      samples, [](const Field* field) { return !field->about.meaning.empty(); });
+  if (meaning != samples.end()) schema.push_back({"description", (*meaning)->about.meaning});
+  add_shape(schema, samples);
+  return schema;
+}
+
+Object typed(const char* type, const char* description) {
+  return {{"type", type}, {"description", description}};
+}
+
+Object list_of_texts(const char* description) {
+  return {{"type", "array"}, {"items", typed("string", description)}};
+}
+
+// What each document begins with.
+Object head(const std::string& verb) {
+  Object version = typed("string", "version that wrote the document");
+  version.push_back({"pattern", "^\\d+\\.\\d+\\.\\d+"});
+  return {{"proofmass", std::move(version)},
+          {"verb", Object{{"const", verb}}},
+          {"input", list_of_texts("file as the user named it; - is standard input")},
+          {"warnings", list_of_texts("a sentence; the reason of every null is among them")}};
+}
+
+// How the document was made; the program adds it to every document that it writes.
+Object provenance() {
+  Object input{{"type", "object"},
+               {"properties",
+                Object{{"path", Object{{"type", "string"}}},
+                       {"bytes", Object{{"type", "integer"}, {"minimum", 0}}},
+                       {"sha256", Object{{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}}},
+                       {"reason",
+                        typed("string",
+                              "why there is no checksum: standard input, or not a regular file")}}},
+               {"required", Array{"path"}},
+               {"additionalProperties", false}};
+  Object options = typed("object", "flags given, on the command line or by --config");
+  options.push_back({"additionalProperties", Object{{"type", "string"}}});
+  Object properties{{"command", typed("string", "as it was typed")},
+                    {"options", std::move(options)},
+                    {"date", typed("string", "of the evaluation, UTC, ISO 8601")},
+                    {"version", Object{{"type", "string"}}},
+                    {"commit", typed("string", "of the source; empty where it is not known")},
+                    {"host", Object{{"type", "string"}}},
+                    {"inputs", Object{{"type", "array"}, {"items", std::move(input)}}}};
+  Array required;
+  for (const Member& property : properties) required.push_back(property.key);
+  return {{"type", "object"},
+          {"description", "what is needed to repeat the result"},
+          {"properties", std::move(properties)},
+          {"required", std::move(required)},
+          {"additionalProperties", false}};
+}
+
+Object quantity_schema() {
+  Object figure{{"type", "object"},
+                {"properties", Object{{"value", Object{{"type", "number"}}},
+                                      {"std", Object{{"type", "number"}, {"minimum", 0}}},
+                                      {"unit", Object{{"type", "string"}}}}},
+                {"required", Array{"value", "std", "unit"}},
+                {"additionalProperties", false}};
+  return {{"description", "a figure and its standard deviation, or null with a reason in warnings"},
+          {"anyOf", Array{Object{{"type", "null"}}, std::move(figure)}}};
+}
+
+}  // namespace
+
+std::string json_schema(const std::string& description, const std::vector<Document>& samples) {
+  PM_EXPECTS(!samples.empty());
+  const std::string& verb = samples.front().page.verb;
+  std::vector<const Fields*> objects;
+  for (const Document& sample : samples) objects.push_back(&sample.fields);
+  Object schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                {"$id", verb + ".schema.json"},
+                {"title", "proofmass " + verb + " --json"},
+                {"description", description},
+                {"type", "object"}};
+  Object properties = head(verb);
+  properties.push_back({"provenance", provenance()});
+  add_properties(schema, std::move(properties), objects);
+  schema.push_back({"$defs", Object{{"quantity", quantity_schema()}}});
+  return json_text(schema) + '\n';
+}
+
+}  // namespace proofmass::report

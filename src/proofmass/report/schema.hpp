@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "proofmass/report/document.hpp"
+
+namespace proofmass::report {
+
+/// JSON Schema (draft 2020-12) of the documents of one verb, from samples of them: an entry that
+/// every sample has is required, one that some have is optional, none else may be there. The
+/// samples together must have each entry, and an item in each list.
+[[nodiscard]] std::string json_schema(const std::string& description,
+                                      const std::vector<Document>& samples);
+
+}  // namespace proofmass::report

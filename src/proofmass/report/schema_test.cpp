@@ -1,0 +1,114 @@
+#include "proofmass/report/schema.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "proofmass/report/tilt_fake.hpp"
+#include "proofmass/report/track_fake.hpp"
+#include "proofmass/report/tune_fake.hpp"
+#include "proofmass/report/wheel_fake.hpp"
+
+namespace proofmass::report::schema_test {
+namespace {
+
+using nlohmann::json;
+
+Document document_of(Fields fields) {
+  return {.page = {.verb = "v", .title = {}, .inputs = {}, .conclusion = {}},
+          .fields = std::move(fields)};
+}
+
+TEST(JsonSchema, RequiresWhatEverySampleHasAndAllowsWhatOneHas) {
+  const json schema = json::parse(
+      json_schema("d", {document_of({field::count("always", 1), field::text("sometimes", "x")}),
+                        document_of({field::count("always", 2)})}));
+  const json& required = schema["required"];
+  EXPECT_EQ(std::count(required.begin(), required.end(), "always"), 1);
+  EXPECT_EQ(std::count(required.begin(), required.end(), "sometimes"), 0);
+  EXPECT_EQ(schema["properties"]["sometimes"]["type"], "string");
+  EXPECT_EQ(schema["additionalProperties"], false);
+}
+
+TEST(JsonSchema, IsNullableWhereAnEntryMayBeAbsent) {
+  const json schema = json::parse(json_schema(
+      "d", {document_of({field::number("plain", 1.0), field::number("open", std::nullopt),
+                         field::object_or_null("inner", Fields{field::flag("f", true)})})}));
+  EXPECT_EQ(schema["properties"]["plain"]["type"], "number");
+  EXPECT_EQ(schema["properties"]["open"]["type"], (json{"number", "null"}));
+  EXPECT_EQ(schema["properties"]["inner"]["type"], (json{"object", "null"}));
+}
+
+// docs/schema is what json_schema() makes. With PROOFMASS_WRITE_SCHEMAS set the file is written.
+void expect_schema(const std::string& description, const std::vector<Document>& samples) {
+  const std::string schema = json_schema(description, samples);
+  const std::string path = std::string(PROOFMASS_SOURCE_DIR) + "/docs/schema/" +
+                           samples.front().page.verb + ".schema.json";
+  if (std::getenv("PROOFMASS_WRITE_SCHEMAS") != nullptr) std::ofstream(path) << schema;
+  std::stringstream file;
+  file << std::ifstream(path).rdbuf();
+  EXPECT_TRUE(schema == file.str())
+      << path << " differs: PROOFMASS_WRITE_SCHEMAS=1 report_test writes it anew";
+}
+
+// With every entry that a consistency may have.
+estimate::Consistency full_consistency() {
+  estimate::ConsistencyCheck check({.channels = {"x"}, .rate_hz = 100.0});
+  for (int k = 0; k < 3000; ++k) check.add(0, std::sin(k * k), 0.5);
+  estimate::Consistency all = check.judge();
+  all.remedy = all.channels.front().remedy = estimate::Remedy::both_noises;
+  all.worst_channel = 0;
+  all.whiteness = {{signal::WhitenessTest{}}};
+  all.smoothed_readings = all.smoothed_motion = Uncertain{1.0, 0.1};
+  return all;
+}
+
+TEST(Schemas, Wheel) {
+  WheelReport plain = fake_report(), all = fake_report();
+  estimate::WheelSolution& solution = all.solution;
+  solution.turns_candidates = {{{-79.61, 0.002}, 0.6}, {{-78.61, 0.002}, 0.4}};
+  solution.sensors.front().has_gyro = true;
+  solution.consistency = full_consistency();
+  expect_schema("Angle, turns and speed of a wheel. SI, but for peak_speed_rpm.",
+                {describe(plain), describe(all)});
+}
+
+TEST(Schemas, Tilt) {
+  const TiltReport still = fake_tilt(false), axis = fake_axis_tilt();
+  TiltReport untimed = fake_tilt(false), moving = fake_tilt(true), free = fake_tilt(true);
+  untimed.solution->series.time_s.clear();
+  untimed.solution->axes = 2;
+  moving.solution->rests.front().norm_mps2 = Uncertain{9.8, 0.01};
+  moving.solution->rate_bias_radps = std::array<Uncertain, 3>{};
+  moving.solution->final.inclination = estimate::Inclination{};
+  free.solution->motion->gyroscope = false;
+  free.solution->consistency = full_consistency();
+  expect_schema(
+      "Inclination from gravity, at rest and on a moving base, or the angle about one axis. SI.",
+      {describe(still), describe(axis), describe(untimed), describe(moving), describe(free)});
+}
+
+TEST(Schemas, Track) {
+  const TrackReport plain = fake_track(), fused = fake_fused();
+  TrackReport jerk = fake_jerk();
+  jerk.solution.consistency = full_consistency();
+  jerk.solution.alternatives.push_back({.probability = 0.5, .no_rests = {{1.0, 2.0}}});
+  expect_schema("Displacement along the axis of motion. SI.",
+                {describe(plain), describe(fused), describe(jerk)});
+}
+
+TEST(Schemas, Tune) {
+  const TuneReport limited = fake_tuned(0.0);
+  TuneReport found = fake_tuned(0.01);
+  found.consistency = full_consistency();
+  expect_schema(
+      "Noise figures of a filter by maximum likelihood, its consistency, and the study of "
+      "its gain.",
+      {describe(found), describe(limited)});
+}
+
+}  // namespace
+}  // namespace proofmass::report::schema_test
