@@ -137,7 +137,7 @@ Fields motion_fields(const estimate::TiltMotion& motion) {
 
 Field down_weighted_count(std::size_t measurements) {
   return field::count("told_less", measurements,
-                      {.meaning = "measurements down-weighted by half or more", .label = label});
+                      {.meaning = "measurements down-weighted by half or more"});
 }
 
 Field unusable(std::size_t samples) {
