@@ -360,16 +360,18 @@ Section data_section(const TrackReport& report) {
     table.rows.push_back(
         {"Rotation between two rests", fixed(*solution.turned_rad / rad_per_deg, 2) + "° at most"});
   table.rows.push_back({"Samples without a value", grouped(solution.missing)});
-  return {.heading = "The data",
-          .tables = {std::move(table)},
-          .figures = {[&] { return accel_figure(solution); }},
-          .on_terminal = true};
+  Section section{.heading = "The data",
+                  .tables = {std::move(table)},
+                  .figures = {[&] { return accel_figure(solution); }},
+                  .on_terminal = true};
+  if (solution.model != estimate::TrackModel::inertial)
+    section.paragraphs = {model_words(solution)};
+  return section;
 }
 
-Section pva_method_section(const TrackSolution& solution) {
+Section pva_method_section() {
   return {.heading = "How it was computed",
           .paragraphs = {
-              model_words(solution),
               "The states of the Kalman filter are position, velocity, acceleration and a bias for "
               "each accelerometer. The acceleration is driven by white jerk in motion; at rest "
               "velocity and acceleration are 0, and an accelerometer measures its bias. A "
@@ -380,7 +382,7 @@ Section pva_method_section(const TrackSolution& solution) {
 }
 
 Section method_section(const TrackSolution& solution) {
-  if (solution.model != estimate::TrackModel::inertial) return pva_method_section(solution);
+  if (solution.model != estimate::TrackModel::inertial) return pva_method_section();
   return {
       .heading = "How it was computed",
       .paragraphs = {
