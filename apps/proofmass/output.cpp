@@ -103,7 +103,7 @@ void finish(const report::Document& document,
             const std::function<Recording()>& series,
             const OutputFlags& flags) {
   show_notes(document.page.notes, "", flags);
-  if (!flags.output.empty()) write_series(series(), flags.output);
+  if (series && !flags.output.empty()) write_series(series(), flags.output);
   publish(document, flags);
   hold_to_strict(flags, document.bad || std::ranges::any_of(document.page.notes, is_bad));
 }

@@ -35,8 +35,9 @@ void write_series(const Recording& recording,
 /// Throws Failure (bad_data) if --strict was given and the data are bad.
 void hold_to_strict(const OutputFlags& flags, bool bad);
 
-/// How a verb ends: notes, the time series if --output asks for it, the document, --strict. Throws
-/// Failure.
+/// How a verb ends: notes, the time series (where it has one) if --output asks for it, the
+/// document,
+/// --strict. Throws Failure.
 void finish(const report::Document& document,
             const std::function<Recording()>& series,
             const OutputFlags& flags);

@@ -4,8 +4,7 @@
 #include "exit_status.hpp"
 #include "input.hpp"
 #include "output.hpp"
-#include "proofmass/report/json.hpp"
-#include "proofmass/thesis/documents.hpp"
+#include "proofmass/thesis/thesis_report.hpp"
 #include "thesis_recordings.hpp"
 #include "verbs.hpp"
 
@@ -39,12 +38,7 @@ void run(const ThesisCommand& command) {
                                        .gravity_mps2 = gravity_mps2(command.input),
                                        .progress = progress_bar(command.output)}),
            Stage::computing);
-  show_notes(report.notes, "", command.output);
-  publish({.text = [&] { return thesis::thesis_text(report); },
-           .json = [&] { return thesis::thesis_json(report); },
-           .html = [&] { return thesis::thesis_html(report); }},
-          command.output);
-  hold_to_strict(command.output, !report::texts(report.notes, Severity::bad).empty());
+  finish(thesis::describe(report), {}, command.output);
 }
 
 }  // namespace proofmass::app

@@ -28,6 +28,11 @@ void print(std::string& out, const Section& section) {
   for (const std::string& paragraph : section.paragraphs) out += "  " + paragraph + '\n';
   for (const std::string& point : section.points) out += "  - " + point + '\n';
   for (const Table& table : section.tables) print(out, table);
+  if (!section.parts.empty()) out += '\n' + section.heading + '\n';
+  for (const Section& part : section.parts) {
+    out += fmt::format("  {}{}\n", part.heading, part.gist.empty() ? "" : " (" + part.gist + ")");
+    if (!part.digest.empty()) out += "      " + part.digest + '\n';
+  }
 }
 
 // The labelled entries, those in lists among them.

@@ -21,7 +21,7 @@ Field with_number(std::string key, const std::optional<double>& value, Shape sha
 Value value_of(const Field& field) {
   if (field.shape.kind == Kind::quantity) return quantity(field.figure, field.shape.unit);
   if (!field.fields) return field.scalar;
-  if (field.shape.kind == Kind::object) return json_of(*field.fields);
+  if (field.shape.kind != Kind::list) return json_of(*field.fields);
   Array items;
   for (const Field& item : *field.fields) items.push_back(value_of(item));
   return items;
@@ -44,7 +44,7 @@ void add_null(std::vector<NullGroup>& groups, const std::string& reason, const s
 // What names an object of a list: its first text that is a name.
 std::string name_in(const Fields& fields) {
   for (const Field& field : fields)
-    if (field.key == "name" || field.key == "file" || field.key == "channel")
+    if (field.key == "name" || field.key == "file" || field.key == "channel" || field.key == "id")
       if (const auto* name = std::get_if<std::string>(&field.scalar.state())) return *name;
   return {};
 }
@@ -61,7 +61,7 @@ void look(const Field& field,
   if (is_absent(field)) return add_null(groups, field.about.why_null, key);
   if (!field.fields) return;
   const std::string inner = path.empty() ? key : path + "." + key;
-  if (field.shape.kind == Kind::object) return collect(*field.fields, inner, below);
+  if (field.shape.kind != Kind::list) return collect(*field.fields, inner, below);
   for (std::size_t i = 0; i < field.fields->size(); ++i) {
     const Field& item = (*field.fields)[i];
     if (item.about.why_null.empty() && is_absent(item))
@@ -72,14 +72,15 @@ void look(const Field& field,
 }
 
 void collect(const Fields& fields, const std::string& path, std::vector<std::string>& out) {
+  const std::string name = name_in(fields);
+  const std::string place =
+      path.empty() || name.empty() ? path : fmt::format("{} ({})", path, name);
   std::vector<NullGroup> groups;
   std::vector<std::string> below;
-  for (const Field& field : fields) look(field, field.key, path, groups, below);
-  const std::string name = name_in(fields);
-  const std::string place = name.empty() ? path : fmt::format("{} ({})", path, name);
+  for (const Field& field : fields) look(field, field.key, place, groups, below);
   for (const NullGroup& group : groups) {
     const std::string keys = fmt::format("{}", fmt::join(group.keys, ", "));
-    const bool by_path = name.empty() && group.keys.size() == 1;
+    const bool by_path = place == path && group.keys.size() == 1;
     const std::string_view link = path.empty() ? "" : by_path ? "." : ": ";
     const std::string reason =
         group.reason.empty() ? "this recording does not determine it" : group.reason;
@@ -163,6 +164,12 @@ Field object(std::string key, Fields fields, About about) {
 Field object_or_null(std::string key, std::optional<Fields> fields, About about) {
   Field field{std::move(key), {.kind = Kind::object, .nullable = true}, std::move(about)};
   field.fields = std::move(fields);
+  return field;
+}
+
+Field map(std::string key, Fields entries, About about) {
+  Field field{std::move(key), {Kind::map}, std::move(about)};
+  field.fields = std::move(entries);
   return field;
 }
 

@@ -35,7 +35,7 @@ struct About {
 
 /// What may stand under a key.
 struct Shape {
-  enum class Kind { text, choice, flag, count, number, quantity, list, object };
+  enum class Kind { text, choice, flag, count, number, quantity, list, object, map };
 
   Kind kind = Kind::text;
   std::string unit = {};                  ///< of a quantity
@@ -79,6 +79,8 @@ namespace field {
 [[nodiscard]] Field object(std::string key, Fields fields, About about = {});
 /// An object that may be absent.
 [[nodiscard]] Field object_or_null(std::string key, std::optional<Fields> fields, About about = {});
+/// Entries of one kind under keys that are not fixed.
+[[nodiscard]] Field map(std::string key, Fields entries, About about = {});
 /// The items' keys are left empty.
 [[nodiscard]] Field list(std::string key, Fields items, About about = {});
 

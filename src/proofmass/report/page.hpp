@@ -50,7 +50,8 @@ struct Side {
 struct Section {
   std::string heading;
   std::string id = {};           ///< by which the contents and other pages link to it; unique
-  std::string gist = {};         ///< what it comes to, behind its heading in the contents
+  std::string gist = {};         ///< a few words of summary, after its heading in the contents
+  std::string digest = {};       ///< of a part: a line or two, in its place on a terminal
   std::vector<Side> sides = {};  ///< two beside each other, others below them
   std::vector<std::string> paragraphs = {};
   std::vector<std::string> points = {};  ///< an unnumbered list

@@ -51,17 +51,28 @@ void add_properties(Object& schema, Object properties, const std::vector<const F
   schema.push_back({"additionalProperties", false});
 }
 
+bool has_one_unit(const Samples& samples) {
+  return std::ranges::all_of(samples, [&](const Field* field) {
+    return field->shape.unit == samples.front()->shape.unit;
+  });
+}
+
+// What is in the lists or maps, at least one entry.
+Samples entries_of(const Samples& samples) {
+  Samples entries;
+  for (const Field* field : samples)
+    if (field->fields)
+      for (const Field& entry : *field->fields) entries.push_back(&entry);
+  PM_EXPECTS(!entries.empty());
+  return entries;
+}
+
 void add_items(Object& schema, const Samples& samples) {
   if (samples.front()->shape.of_texts) {
     schema.push_back({"items", Object{{"type", "string"}}});
     return;
   }
-  Samples items;
-  for (const Field* field : samples)
-    if (field->fields)
-      for (const Field& item : *field->fields) items.push_back(&item);
-  PM_EXPECTS(!items.empty());
-  schema.push_back({"items", schema_of(items)});
+  schema.push_back({"items", schema_of(entries_of(samples))});
 }
 
 std::vector<const Fields*> objects_of(const Samples& samples) {
@@ -95,11 +106,16 @@ void add_shape(Object& schema, const Samples& samples) {
       break;
     case Kind::quantity:
       schema.push_back({"$ref", "#/$defs/quantity"});
+      if (!has_one_unit(samples)) break;
       schema.push_back({"properties", Object{{"unit", Object{{"const", shape.unit}}}}});
       break;
     case Kind::list:
       schema.push_back({"type", type_of("array", samples)});
       add_items(schema, samples);
+      break;
+    case Kind::map:
+      schema.push_back({"type", "object"});
+      schema.push_back({"additionalProperties", schema_of(entries_of(samples))});
       break;
     case Kind::object:
       schema.push_back({"type", type_of("object", samples)});

@@ -1,12 +1,10 @@
 #include "proofmass/report/schema.hpp"
 
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "proofmass/report/schema_expectation.hpp"
 #include "proofmass/report/tilt_fake.hpp"
 #include "proofmass/report/track_fake.hpp"
 #include "proofmass/report/tune_fake.hpp"
@@ -40,18 +38,6 @@ TEST(JsonSchema, IsNullableWhereAnEntryMayBeAbsent) {
   EXPECT_EQ(schema["properties"]["plain"]["type"], "number");
   EXPECT_EQ(schema["properties"]["open"]["type"], (json{"number", "null"}));
   EXPECT_EQ(schema["properties"]["inner"]["type"], (json{"object", "null"}));
-}
-
-// docs/schema is what json_schema() makes. With PROOFMASS_WRITE_SCHEMAS set the file is written.
-void expect_schema(const std::string& description, const std::vector<Document>& samples) {
-  const std::string schema = json_schema(description, samples);
-  const std::string path = std::string(PROOFMASS_SOURCE_DIR) + "/docs/schema/" +
-                           samples.front().page.verb + ".schema.json";
-  if (std::getenv("PROOFMASS_WRITE_SCHEMAS") != nullptr) std::ofstream(path) << schema;
-  std::stringstream file;
-  file << std::ifstream(path).rdbuf();
-  EXPECT_TRUE(schema == file.str())
-      << path << " differs: PROOFMASS_WRITE_SCHEMAS=1 report_test writes it anew";
 }
 
 // With every entry that a consistency may have.

@@ -81,7 +81,7 @@ Agreement agreement(const std::vector<Item>& items) {
 
 std::string agreement_words(const Agreement& agreement) {
   if (agreement.printed == 0) return {};
-  if (agreement.compared == 0) return "not to be told";
+  if (agreement.compared == 0) return "not determined";
   return fmt::format("{} of {} agree", agreement.agreeing, agreement.compared);
 }
 

@@ -27,7 +27,7 @@ struct Agreement {
 [[nodiscard]] Agreement agreement(const Item& item);
 [[nodiscard]] Agreement agreement(const std::vector<Item>& items);
 
-/// "3 of 4 agree", "not to be told"; empty where nothing is printed.
+/// "3 of 4 agree", "not determined"; empty where nothing is printed.
 [[nodiscard]] std::string agreement_words(const Agreement& agreement);
 
 /// The figures as people read them, in the unit that is shown; empty where there is none.

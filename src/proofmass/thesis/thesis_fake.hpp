@@ -1,6 +1,6 @@
 #pragma once
 
-#include "proofmass/thesis/documents.hpp"
+#include "proofmass/thesis/thesis_report.hpp"
 
 // Made-up items whose every number is known, for the tests of this module.
 namespace proofmass::thesis {

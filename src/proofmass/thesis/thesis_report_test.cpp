@@ -1,23 +1,27 @@
-#include "proofmass/thesis/documents.hpp"
+#include "proofmass/thesis/thesis_report.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "proofmass/report/schema_expectation.hpp"
 #include "proofmass/thesis/thesis_fake.hpp"
 
-namespace proofmass::thesis::documents_test {
+namespace proofmass::thesis::thesis_report_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using report::to_html;
+using report::to_json;
+using report::to_text;
 
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
 TEST(ThesisJson, HasEachNumberUnderItsKeyInSi) {
-  const Json item = Json::parse(thesis_json(fake_report()))["items"][1];
+  const Json item = Json::parse(to_json(describe(fake_report())))["items"][1];
   EXPECT_EQ(item["id"], "figure 5.13");
   EXPECT_EQ(item["chapter"], "5");
   EXPECT_EQ(item["thesis"]["text"], "3.58 m.");
@@ -27,28 +31,29 @@ TEST(ThesisJson, HasEachNumberUnderItsKeyInSi) {
 }
 
 TEST(ThesisJson, HasNothingOfTheThesisWhereItPrintsNothing) {
-  const Json item = Json::parse(thesis_json(fake_report()))["items"][2];
+  const Json item = Json::parse(to_json(describe(fake_report())))["items"][2];
   EXPECT_TRUE(item["thesis"]["values"].empty());
   EXPECT_EQ(item["ours"]["values"].size(), 1U);
 }
 
 TEST(ThesisJson, GivesTheReasonOfANullByItsKey) {
-  const Json json = Json::parse(thesis_json(fake_report()));
+  const Json json = Json::parse(to_json(describe(fake_report())));
   EXPECT_TRUE(json["items"][1]["ours"]["values"]["lost"].is_null());
   EXPECT_EQ(json["warnings"].size(), 2U);
-  EXPECT_EQ(json["warnings"][1], "figure 5.13: lost (Error <1>): the recording is too short");
+  EXPECT_EQ(json["warnings"][1],
+            "items[1] (figure 5.13).ours.values.lost: null: Error <1>: the recording is too short");
 }
 
 TEST(ThesisJson, GivesAReasonForWhatIsNotFinite) {
   ThesisReport report = fake_report();
   report.programme.items[0].findings[0].ours = Uncertain{NAN, 0.0};
-  const Json json = Json::parse(thesis_json(report));
+  const Json json = Json::parse(to_json(describe(report)));
   EXPECT_TRUE(json["items"][0]["ours"]["values"]["after_1_s"].is_null());
   EXPECT_TRUE(has(json["warnings"].dump(), "after_1_s"));
 }
 
 TEST(ThesisJson, SaysWhatWasSimulatedAndHow) {
-  const Json json = Json::parse(thesis_json(fake_report()));
+  const Json json = Json::parse(to_json(describe(fake_report())));
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["runs"], 50);
   EXPECT_EQ(json["simulated"], (std::vector<std::string>{"static", "tumble"}));
@@ -56,7 +61,7 @@ TEST(ThesisJson, SaysWhatWasSimulatedAndHow) {
 }
 
 TEST(ThesisHtml, LinksItsContentsToEachChapterAndItem) {
-  const std::string html = thesis_html(fake_report());
+  const std::string html = to_html(describe(fake_report()));
   for (const char* id : {"chapter-2", "table-2.1", "chapter-5", "figure-5.13", "figure-5.19"}) {
     EXPECT_TRUE(has(html, "<a href=\"#" + std::string(id) + "\">")) << id;
     EXPECT_TRUE(has(html, " id=\"" + std::string(id) + "\">")) << id;
@@ -64,7 +69,7 @@ TEST(ThesisHtml, LinksItsContentsToEachChapterAndItem) {
 }
 
 TEST(ThesisHtml, HasAllThreeTextsAndTheNumbersBesideEachOther) {
-  const std::string html = thesis_html(fake_report());
+  const std::string html = to_html(describe(fake_report()));
   EXPECT_TRUE(has(html, "It prints &lt;16&gt; cells."));
   EXPECT_TRUE(has(html, "They agree; the formula is ½ b t²."));
   EXPECT_TRUE(has(html, "<td>3600 mm</td><td>100.0\u00a0±\u00a01.0 mm</td><td>1/36</td>"));
@@ -72,13 +77,13 @@ TEST(ThesisHtml, HasAllThreeTextsAndTheNumbersBesideEachOther) {
 }
 
 TEST(ThesisHtml, GivesItsFiguresNoNumbersOfTheirOwn) {
-  const std::string html = thesis_html(fake_report());
+  const std::string html = to_html(describe(fake_report()));
   EXPECT_TRUE(has(html, "<b>Error &amp; time</b>"));
   EXPECT_FALSE(has(html, "Figure 1. "));
 }
 
 TEST(ThesisHtml, HasNoIdTwice) {
-  const std::string html = thesis_html(fake_report());
+  const std::string html = to_html(describe(fake_report()));
   std::vector<std::string> ids;
   for (std::size_t at = html.find(" id=\""); at != std::string::npos;
        at = html.find(" id=\"", at + 1))
@@ -88,7 +93,7 @@ TEST(ThesisHtml, HasNoIdTwice) {
 }
 
 TEST(ThesisText, HasALineOrTwoForEachItem) {
-  const std::string text = thesis_text(fake_report());
+  const std::string text = to_text(describe(fake_report()));
   EXPECT_TRUE(has(
       text,
       "\nChapter 2. Robot Localization\n  Table 2.1. Position error (1 of 1 agree)\n"
@@ -100,10 +105,19 @@ TEST(ThesisText, HasALineOrTwoForEachItem) {
 
 TEST(ThesisText, CountsWhatAgrees) {
   EXPECT_TRUE(
-      thesis_text(fake_report())
-          .starts_with("3 tables, figures and sections of the thesis, computed anew. They "
-                       "print 3 numbers: 1 agree with ours, 1 do not, 1 cannot be told again.\n"));
+      to_text(describe(fake_report()))
+          .starts_with("3 tables, figures and sections of the thesis, recomputed. They "
+                       "print 3 numbers: 1 agree with ours, 1 do not, 1 cannot be recomputed. "));
+}
+
+TEST(ThesisSchema, IsTheGeneratedOne) {
+  ThesisReport report = fake_report();
+  report.programme.items[2].findings[0].si_unit = "s";  // its numbers have units of their own
+  report::expect_schema(
+      "Every table and figure of the thesis beside ours. Numbers are in the unit "
+      "beside them, SI; \"1\" is a number without unit.",
+      {describe(report)});
 }
 
 }  // namespace
-}  // namespace proofmass::thesis::documents_test
+}  // namespace proofmass::thesis::thesis_report_test

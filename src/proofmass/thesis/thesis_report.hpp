@@ -6,26 +6,21 @@
 #include <vector>
 
 #include "proofmass/core/recording.hpp"
+#include "proofmass/report/document.hpp"
 #include "proofmass/thesis/programme.hpp"
 
-// What `thesis` shows.
 namespace proofmass::thesis {
 
 struct ThesisReport {
   std::vector<std::string> inputs;  ///< files, as the user named them
-  std::uint64_t seed = 1;           ///< of what is simulated
+  std::uint64_t seed = 1;           ///< of the simulation
   std::size_t runs = 0;             ///< simulated at each speed
   std::vector<Note> notes = {};     ///< of reading
   Programme programme = {};
 };
 
-/// docs/schema/thesis.schema.json: items[] of {id, title, thesis, ours, note}.
-[[nodiscard]] std::string thesis_json(const ThesisReport& report);
-
-/// One page, chapter by chapter.
-[[nodiscard]] std::string thesis_html(const ThesisReport& report);
-
-/// A line or two an item, for a terminal.
-[[nodiscard]] std::string thesis_text(const ThesisReport& report);
+/// Each table and figure of the thesis beside ours, by chapter: items[] of {id, title, thesis,
+/// ours, note}. It refers to the report, which must outlive it.
+[[nodiscard]] report::Document describe(const ThesisReport& report);
 
 }  // namespace proofmass::thesis
