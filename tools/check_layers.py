@@ -73,7 +73,8 @@ def include_offence(source: Path, quote: str, target: str, modules: dict[str, Mo
         other, file = ours.groups()
         if other not in modules[own].uses | {own}:
             return f"{own} may not include {other}: its USES line does not name it"
-        private = file not in modules[other].headers
+        shared_by_tests = source.name in modules[own].tests and file.endswith("_test_support.hpp")
+        private = file not in modules[other].headers and not shared_by_tests
         if private and other != own:
             return f"{target} is private to {other}"
         if private and public:

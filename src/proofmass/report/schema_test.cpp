@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "proofmass/report/schema_expectation.hpp"
+#include "proofmass/report/schema_test_support.hpp"
 #include "proofmass/report/tilt_fake.hpp"
 #include "proofmass/report/track_fake.hpp"
 #include "proofmass/report/tune_fake.hpp"

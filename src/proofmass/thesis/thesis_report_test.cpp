@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "proofmass/report/schema_expectation.hpp"
+#include "proofmass/report/schema_test_support.hpp"
 #include "proofmass/thesis/thesis_fake.hpp"
 
 namespace proofmass::thesis::thesis_report_test {
