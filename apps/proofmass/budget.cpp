@@ -5,15 +5,39 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "output.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/report/budget_report.hpp"
 #include "proofmass/sensor/grades.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+struct BudgetCommand {
+  std::vector<double> bias_mg, times_s;
+  std::vector<std::string> sensors;
+  OutputFlags output;
+};
+
+void add_budget_flags(CLI::App& verb, BudgetCommand& command) {
+  CLI::Option* bias =
+      verb.add_option("--bias-mg", command.bias_mg, "bias that is left; may be repeated");
+  bias->type_name("MG")->delimiter(',')->allow_extra_args(false)->check(finite());
+  verb.add_option("--sensor", command.sensors,
+                  "take bias and noise (white, flicker, random walk, ramp) from this sensor file")
+      ->type_name("FILE.toml")
+      ->allow_extra_args(false);
+  verb.add_option("--times", command.times_s, "after these times (default 1,10,60,3600)")
+      ->type_name("S,S...")
+      ->delimiter(',')
+      ->check(not_negative());
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass budget --bias-mg 3 --times 1,10,60");
+}
 
 double si_or_zero(const std::optional<sensor::Figure>& figure) {
   return figure ? figure->si() : 0.0;
@@ -94,9 +118,7 @@ std::vector<estimate::BudgetSensor> axes_of(const std::string& path, std::vector
   return sensors;
 }
 
-}  // namespace
-
-void run(const BudgetCommand& command) {
+void run_budget(const BudgetCommand& command) {
   report::BudgetReport report;
   std::vector<estimate::BudgetSensor> sensors;
   for (const double mg : command.bias_mg) {
@@ -116,6 +138,14 @@ void run(const BudgetCommand& command) {
            .json = [&] { return report::budget_json(report); },
            .html = [&] { return report::budget_html(report); }},
           command.output);
+}
+
+}  // namespace
+
+Verb budget_verb() {
+  return make_verb<BudgetCommand>(
+      {.name = "budget", .group = "Estimate", .help = "position error against time for a sensor"},
+      add_budget_flags, run_budget);
 }
 
 }  // namespace proofmass::app

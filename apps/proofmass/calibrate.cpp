@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <numbers>
 
+#include "calibrate_command.hpp"
 #include "calibrate_poses.hpp"
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/calibrate/multi_position_budget.hpp"
@@ -19,10 +21,90 @@
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/calibration_update.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+// Flags of `calibrate` that say where the poses are.
+void add_pose_flags(CLI::App& verb, CalibrateCommand& command) {
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type);
+  };
+  add("--rests", command.rests, "FILE",
+      "start and end of each rest, perhaps with label and direction (default: found)");
+  add("--rest", command.shortest_rest_s, "S", "the shortest rest to look for (default: 0.5)")
+      ->check(positive());
+  verb.add_flag("--means", command.means, "the files are tables of means, one row a position");
+  add("--parameters", command.parameters, "6|9|12",
+      "6: bias and scale; 9: and misalignment; 12: and mounting, by given directions (default: 9, "
+      "or 6 where the positions carry no more)")
+      ->check(CLI::IsMember({6, 9, 12}));
+  verb.add_flag("--six-position", command.six_position,
+                "take six given positions for exact (what others do; better: turn it freely)");
+  verb.add_flag("--keep-suspects", command.keep_suspects,
+                "positions that contradict the others stay in the fit");
+  add("--validate", command.validate, "FILE", "new positions to try the calibration on")
+      ->allow_extra_args(false);
+}
+
+// Flags of `calibrate` that say how well something is known.
+void add_uncertainty_flags(CLI::App& verb, CalibrateCommand& command) {
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type);
+  };
+  add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", gravity_std_help)
+      ->check(not_negative());
+  add("--orthogonality-std", command.orthogonality_std_deg, "DEG",
+      "of the angles between the axes where they are not fitted")
+      ->check(not_negative())
+      ->capture_default_str();
+  add("--placement-std", command.placement_std_deg, "DEG",
+      "of the positions that --six-position takes for exact")
+      ->check(not_negative())
+      ->capture_default_str();
+  add("--bias-stability", command.bias_stability_mg, "MG",
+      "standard deviation of the biases from one session to another, as drift finds it of several "
+      "power-ups (default: by the flicker noise and random walk of the file to update, else of the "
+      "recording)")
+      ->check(not_negative());
+  add("--type-b", command.type_b, "NAME,TARGET,VALUE UNIT[,DISTRIBUTION[,DOF]]",
+      "a contribution to the uncertainty: \"ADC reference,scale,0.05 %,uniform\"; may be repeated")
+      ->allow_extra_args(false);
+  add("--monte-carlo", command.monte_carlo, "N", "draws that check the uncertainties; 0: none")
+      ->capture_default_str();
+  add("--supplies", command.supplies_v, "V,…", "supply of each file, to tell what it does")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(positive());
+}
+
+void add_calibrate_flags(CLI::App& verb, CalibrateCommand& command) {
+  verb.add_option("FILE", command.files,
+                  "recordings of a sensor laid down in 9 or more directions, or tables of means; - "
+                  "is standard input (CSV)")
+      ->type_name("")
+      ->required();
+  add_pose_flags(verb, command);
+  add_uncertainty_flags(verb, command);
+  verb.add_option("--name", command.name, "of the sensor, for certificate and sensor file")
+      ->type_name("TEXT");
+  verb.add_option("--serial", command.serial, "its serial number")->type_name("TEXT");
+  verb.add_option("--date", command.date, "of the measurement, ISO 8601")->type_name("DATE");
+  verb.add_option("--temperature", command.temperature_c, "at which it was made")
+      ->type_name("DEG_C")
+      ->check(finite());
+  verb.add_option("--update-sensor", command.update_sensor,
+                  "write the calibration into this sensor file")
+      ->type_name("FILE.toml");
+  add_input_flags(verb, command.input);
+  add_output_file(verb, command.output, "write the positions with forces and residuals");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer(
+      "Example:\n  proofmass calibrate turned.csv --latitude 44.6 --update-sensor sensor.toml "
+      "--report calibration.html");
+}
 
 using calibrate::MultiPosition;
 using calibrate::MultiPositionOptions;
@@ -271,7 +353,7 @@ void check_by_draws(const CalibrateCommand& command,
 
 }  // namespace
 
-void run(const CalibrateCommand& command) {
+void run_calibrate(const CalibrateCommand& command) {
   expect_sense(command);
   const std::vector<TypeB> lines = type_b_of(command);
   report::CalibrateReport report;
@@ -331,6 +413,14 @@ void run(const CalibrateCommand& command) {
            .html = [&] { return report::calibrate_html(report); }},
           command.output);
   hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
+}
+
+Verb calibrate_verb() {
+  return make_verb<CalibrateCommand>(
+      {.name = "calibrate",
+       .group = "Characterise",
+       .help = "bias, scale and misalignment from rests in several positions"},
+      add_calibrate_flags, run_calibrate);
 }
 
 }  // namespace proofmass::app

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "command_line.hpp"
+#include "calibrate_command.hpp"
 #include "proofmass/calibrate/pose_means.hpp"
 #include "proofmass/calibrate/session_noise.hpp"
 #include "proofmass/core/recording.hpp"

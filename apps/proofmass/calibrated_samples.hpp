@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "command_line.hpp"
+#include "common_flags.hpp"
 #include "input.hpp"
 #include "proofmass/core/block.hpp"
 

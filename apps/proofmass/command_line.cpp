@@ -2,8 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -17,30 +15,9 @@
 #include "proofmass/core/version.hpp"
 #include "provenance.hpp"
 #include "usage_error.hpp"
-#include "verb_flags.hpp"
 
 namespace proofmass::app {
 namespace {
-
-// The verbs, each bound to its command.
-struct Commands {
-  InspectCommand inspect;
-  ConvertCommand convert;
-  WheelCommand wheel;
-  NoiseCommand noise;
-  DriftCommand drift;
-  CalibrateCommand calibrate;
-  TumbleCommand tumble;
-  TiltCommand tilt;
-  TrackCommand track;
-  TuneCommand tune;
-  SimulateCommand simulate;
-  BudgetCommand budget;
-  RecordCommand record;
-  RecoverCommand recover;
-  SensorCommand sensor;
-  ThesisCommand thesis;
-};
 
 // The value of --config, if it is given.
 std::string config_path(const std::vector<std::string>& arguments) {
@@ -138,25 +115,6 @@ std::vector<std::string> with_config(CLI::App& app, std::vector<std::string> arg
   return arguments;
 }
 
-Command chosen(CLI::App& app, Commands& commands) {
-  if (app.got_subcommand("inspect")) return std::move(commands.inspect);
-  if (app.got_subcommand("convert")) return std::move(commands.convert);
-  if (app.got_subcommand("wheel")) return std::move(commands.wheel);
-  if (app.got_subcommand("noise")) return std::move(commands.noise);
-  if (app.got_subcommand("drift")) return std::move(commands.drift);
-  if (app.got_subcommand("calibrate")) return std::move(commands.calibrate);
-  if (app.got_subcommand("tumble")) return std::move(commands.tumble);
-  if (app.got_subcommand("tilt")) return std::move(commands.tilt);
-  if (app.got_subcommand("track")) return std::move(commands.track);
-  if (app.got_subcommand("tune")) return std::move(commands.tune);
-  if (app.got_subcommand("simulate")) return std::move(commands.simulate);
-  if (app.got_subcommand("record")) return std::move(commands.record);
-  if (app.got_subcommand("recover")) return std::move(commands.recover);
-  if (app.got_subcommand("sensor")) return std::move(commands.sensor);
-  if (app.got_subcommand("thesis")) return std::move(commands.thesis);
-  return std::move(commands.budget);
-}
-
 // The first word that is no flag, and has to be a verb.
 std::string first_word(const std::vector<std::string>& arguments) {
   const auto word = std::ranges::find_if(
@@ -174,22 +132,15 @@ std::vector<std::string> as_flags(std::vector<std::string> arguments) {
   return arguments;
 }
 
-void add_verbs(CLI::App& app, Commands& commands) {
-  const auto group = [&app](const char* name, auto&... all) {
-    (add_flags(app, all), ...);
-    for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; }))
-      if (verb->get_group() == "Subcommands") verb->group(name);
-  };
-  group("Look", commands.inspect, commands.convert);
-  group("Characterise", commands.noise, commands.drift, commands.calibrate, commands.tumble,
-        commands.sensor);
-  group("Estimate", commands.wheel, commands.track, commands.tilt, commands.tune, commands.budget);
-  group("Live", commands.record, commands.recover);
-  group("Study", commands.simulate, commands.thesis);
+void add_verbs(CLI::App& app, const std::vector<Verb>& verbs) {
   const std::string name = std::string("--") + input_help_flag;
-  const std::string what = "list the flags for reading recordings";
-  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; }))
-    if (std::ranges::count(verb->get_groups(), input_group) > 0) verb->add_flag(name, what);
+  const std::string help = "list the flags for reading recordings";
+  for (const Verb& verb : verbs) {
+    CLI::App& flags = *app.add_subcommand(verb.text.name, verb.text.help);
+    flags.group(verb.text.group);
+    verb.add_flags(flags);
+    if (std::ranges::count(flags.get_groups(), input_group) > 0) flags.add_flag(name, help);
+  }
 }
 
 // What a file is read for, or changed by; anything else of this type is written.
@@ -252,7 +203,7 @@ bool print_help(CLI::App& app, const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-std::optional<Command> parse_command_line(int argc, char** argv) {
+std::optional<Verb> parse_command_line(int argc, char** argv) {
   CLI::App app(
       "Puts an accelerometer to the proof: from raw readings to angle, turns and speed with "
       "honest error bars.",
@@ -260,8 +211,8 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("proofmass {}", version()));
   app.require_subcommand(1);
   app.footer("Each verb explains itself: proofmass help VERB");
-  Commands commands;
-  add_verbs(app, commands);
+  const std::vector<Verb> verbs = all_verbs();
+  add_verbs(app, verbs);
   if (argc > 1 && argv[1] == completion_verb) {
     print_out(completions(app, {argv + 2, argv + argc}));
     return std::nullopt;
@@ -282,42 +233,14 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw Failure(usage, usage_error(app, error));
   }
-  Command command = chosen(app, commands);
-  std::visit(
-      [&](auto& verb) {
-        if (verb.output.output == "-" && verb.output.json == "-")
-          throw Failure(usage,
-                        "--output - and --json - cannot both have standard output: name a file");
-        if (!verb.output.json.empty() || !verb.output.report.empty())
-          verb.output.invocation = invocation(*app.get_subcommands().front(), typed);
-      },
-      command);
-  return command;
-}
-
-std::array<double, 3> parse_axis(const std::string& text) {
-  const bool minus = text.starts_with('-');
-  const std::string letter = text.substr(minus || text.starts_with('+') ? 1 : 0);
-  const double sign = minus ? -1.0 : 1.0;
-  if (letter == "x") return {sign, 0.0, 0.0};
-  if (letter == "y") return {0.0, sign, 0.0};
-  if (letter == "z") return {0.0, 0.0, sign};
-  std::array<double, 3> axis{};
-  const char* from = text.data();
-  const char* end = from + text.size();
-  bool good = true;
-  for (std::size_t k = 0; k < 3 && good; ++k) {
-    const auto [stop, error] = std::from_chars(from, end, axis[k]);
-    good = error == std::errc() && std::isfinite(axis[k]) &&
-           (k == 2 ? stop == end : stop != end && *stop == ',');
-    from = stop + 1;
-  }
-  if (!good || std::hypot(axis[0], axis[1], axis[2]) == 0.0) {
-    throw Failure(
-        usage,
-        "--spin-axis: expected x, y, z, -x, -y, -z or three numbers \"0,0,1\", not '" + text + "'");
-  }
-  return axis;
+  const CLI::App& chosen = *app.get_subcommands().front();
+  const Verb& verb =
+      *std::ranges::find(verbs, chosen.get_name(), [](const Verb& one) { return one.text.name; });
+  OutputFlags& output = *verb.output;
+  if (output.output == "-" && output.json == "-")
+    throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");
+  if (!output.json.empty() || !output.report.empty()) output.invocation = invocation(chosen, typed);
+  return verb;
 }
 
 }  // namespace proofmass::app

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "command_line.hpp"
+#include "common_flags.hpp"
 #include "proofmass/core/progress.hpp"
 #include "proofmass/core/recording.hpp"
 

@@ -4,6 +4,7 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "piece_source.hpp"
@@ -11,10 +12,30 @@
 #include "proofmass/io/write_recording.hpp"
 #include "proofmass/report/convert_report.hpp"
 #include "proofmass/report/json.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+struct ConvertCommand {
+  std::string file;
+  InputFlags input;
+  OutputFlags output;
+};
+
+void add_convert_flags(CLI::App& verb, ConvertCommand& command) {
+  verb.add_option("FILE", command.file, "a recording: a file or a folder; - is standard input")
+      ->type_name("")
+      ->required();
+  add_output_file(
+      verb, command.output,
+      "the new file: .csv, .csv.gz, .npy, .mat, .tdms, .h5, .mcap or .parquet; - is CSV")
+      ->required();
+  add_input_flags(verb, command.input);
+  add_output_flags(verb, command.output);
+  add_memory_flag(verb, command.input);
+  verb.footer("Example:\n  proofmass convert log.csv.xz --unit mg -o log.npy");
+}
 
 // What was written: its channels without values.
 struct Converted {
@@ -90,9 +111,7 @@ Converted convert(io::RecordingStream stream,
   return out;
 }
 
-}  // namespace
-
-void run(const ConvertCommand& command) {
+void run_convert(const ConvertCommand& command) {
   std::vector<Note> sensor_notes;
   const auto models = load_sensors(command.input, sensor_notes);
   auto opened = open_input(command.file, command.input, progress_bar(command.output));
@@ -108,6 +127,13 @@ void run(const ConvertCommand& command) {
            .html = {}},
           command.output);
   hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
+}
+
+}  // namespace
+
+Verb convert_verb() {
+  return make_verb<ConvertCommand>({.name = "convert", .group = "Look", .help = "between formats"},
+                                   add_convert_flags, run_convert);
 }
 
 }  // namespace proofmass::app

@@ -4,6 +4,7 @@
 #include "console.hpp"
 #include "drift_runs.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/characterise/drift_analysis.hpp"
@@ -14,10 +15,50 @@
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/drift_update.hpp"
 #include "rest_channels.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+struct DriftCommand {
+  std::vector<std::string> files;
+  std::string temperature, update_sensor, order = "time";
+  std::optional<double> forecast_s;
+  InputFlags input;
+  OutputFlags output;
+};
+
+void add_drift_flags(CLI::App& verb, DriftCommand& command) {
+  verb.add_option("FILE", command.files,
+                  "recordings at rest from switching on; three or more are compared as power-ups; "
+                  "- is standard input (CSV)")
+      ->type_name("")
+      ->required();
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type);
+  };
+  add("--forecast", command.forecast_s, "S", "foretell the bias so long after switching on")
+      ->check(not_negative());
+  add("--temperature", command.temperature, "NAME",
+      "fit the bias against this channel (default: the only one in a unit of temperature); none: "
+      "do not");
+  add("--order", command.order, "ORDER",
+      "of three files or more: time (default: by their absolute time stamps, else by the numbers "
+      "in "
+      "their names) or given (as on the command line)")
+      ->check(CLI::IsMember({"time", "given"}));
+  add("--update-sensor", command.update_sensor, "FILE.toml",
+      "write what is identified into this sensor file");
+  add_input_flags(verb, command.input);
+  add_switch_on_flag(verb, command.input,
+                     "how long the sensor had been on at the first sample (default 0)");
+  add_output_file(
+      verb, command.output,
+      "write block means, curve, its standard deviation, and the bias less white noise");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass drift rest.csv --rate 100 --unit g --report drift.html");
+}
 
 using characterise::DriftAnalysis;
 using characterise::DriftOptions;
@@ -188,9 +229,7 @@ void update_drift(const std::string& path,
   if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error().message);
 }
 
-}  // namespace
-
-void run(const DriftCommand& command) {
+void run_drift(const DriftCommand& command) {
   report::DriftReport report;
   report.inputs = command.files;
   report.since_switch_on_s = since_switch_on_s(command.input);
@@ -224,6 +263,16 @@ void run(const DriftCommand& command) {
           command.output);
   need_a_channel(report.channels);
   hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
+}
+
+}  // namespace
+
+Verb drift_verb() {
+  return make_verb<DriftCommand>(
+      {.name = "drift",
+       .group = "Characterise",
+       .help = "warm-up of the bias of a sensor at rest, and whether the recording can tell"},
+      add_drift_flags, run_drift);
 }
 
 }  // namespace proofmass::app

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "command_line.hpp"
+#include "common_flags.hpp"
 
 // Flags that several verbs have, and what their values may be.
 namespace proofmass::app {

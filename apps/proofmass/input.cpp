@@ -1,7 +1,10 @@
 #include "input.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <limits>
@@ -251,6 +254,31 @@ Uncertain uncertain_gravity_mps2(const InputFlags& flags,
                    "gravity: taken for 9.80665 m/s^2, which no place has exactly: it makes every "
                    "scale uncertain by 0.15 %; give --gravity, or --latitude and --height"});
   return {gravity, sensor::gravity_std_on_earth_mps2};
+}
+
+std::array<double, 3> parse_axis(const std::string& text) {
+  const bool minus = text.starts_with('-');
+  const std::string letter = text.substr(minus || text.starts_with('+') ? 1 : 0);
+  const double sign = minus ? -1.0 : 1.0;
+  if (letter == "x") return {sign, 0.0, 0.0};
+  if (letter == "y") return {0.0, sign, 0.0};
+  if (letter == "z") return {0.0, 0.0, sign};
+  std::array<double, 3> axis{};
+  const char* from = text.data();
+  const char* end = from + text.size();
+  bool good = true;
+  for (std::size_t k = 0; k < 3 && good; ++k) {
+    const auto [stop, error] = std::from_chars(from, end, axis[k]);
+    good = error == std::errc() && std::isfinite(axis[k]) &&
+           (k == 2 ? stop == end : stop != end && *stop == ',');
+    from = stop + 1;
+  }
+  if (!good || std::hypot(axis[0], axis[1], axis[2]) == 0.0) {
+    throw Failure(
+        usage,
+        "--spin-axis: expected x, y, z, -x, -y, -z or three numbers \"0,0,1\", not '" + text + "'");
+  }
+  return axis;
 }
 
 }  // namespace proofmass::app

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "command_line.hpp"
+#include "common_flags.hpp"
 #include "proofmass/core/progress.hpp"
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/core/recording.hpp"
@@ -77,5 +78,8 @@ void remove_warm_up(const InputFlags& flags,
 [[nodiscard]] Uncertain uncertain_gravity_mps2(const InputFlags& flags,
                                                const std::optional<double>& std_mps2,
                                                std::vector<Note>& notes);
+
+/// "x", "-z", "0,0.1,1" as a vector. Throws Failure (usage).
+[[nodiscard]] std::array<double, 3> parse_axis(const std::string& text);
 
 }  // namespace proofmass::app

@@ -4,6 +4,7 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "piece_source.hpp"
@@ -12,10 +13,31 @@
 #include "proofmass/report/inspect_report.hpp"
 #include "proofmass/signal/running_audit.hpp"
 #include "proofmass/signal/running_overview.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+struct InspectCommand {
+  std::vector<std::string> files;
+  bool pyramid = false;
+  InputFlags input;
+  OutputFlags output;
+};
+
+void add_inspect_flags(CLI::App& verb, InspectCommand& command) {
+  verb.add_option("FILE", command.files, "recordings: files or folders; - is standard input")
+      ->type_name("")
+      ->required();
+  add_input_flags(verb, command.input);
+  verb.add_flag("--pyramid", command.pyramid,
+                "store the smallest and largest values at every scale beside each file, as "
+                "FILE.pyramid.npz, for pictures of any stretch without reading it again");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  add_memory_flag(verb, command.input);
+  verb.footer("Example:\n  proofmass inspect wheel.csv --report wheel.html");
+}
 
 // A file judged; the recording is an overview where it was too large to be kept.
 struct Inspected {
@@ -93,9 +115,7 @@ const Recording& head_of(const std::variant<Recording, io::RecordingStream>& ope
   return recording != nullptr ? *recording : std::get<io::RecordingStream>(opened).head();
 }
 
-}  // namespace
-
-void run(const InspectCommand& command) {
+void run_inspect(const InspectCommand& command) {
   check_pyramid(command);
   std::vector<Note> sensor_notes;
   const Models models = load_sensors(command.input, sensor_notes);
@@ -127,6 +147,14 @@ void run(const InspectCommand& command) {
           command.output);
   hold_to_strict(command.output, std::any_of(all.begin(), all.end(),
                                              [](const auto& one) { return one.audit.is_bad(); }));
+}
+
+}  // namespace
+
+Verb inspect_verb() {
+  return make_verb<InspectCommand>(
+      {.name = "inspect", .group = "Look", .help = "what is in a file and how good it is"},
+      add_inspect_flags, run_inspect);
 }
 
 }  // namespace proofmass::app

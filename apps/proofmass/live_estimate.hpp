@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "command_line.hpp"
 #include "live_view.hpp"
 #include "proofmass/acquire/recorder.hpp"
+#include "record_command.hpp"
 
 namespace proofmass::app {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "command_line.hpp"
 #include "proofmass/acquire/recorder.hpp"
+#include "record_command.hpp"
 
 namespace proofmass::app {
 

@@ -5,7 +5,6 @@
 #include "console.hpp"
 #include "distinct_files.hpp"
 #include "exit_status.hpp"
-#include "verbs.hpp"
 
 namespace {
 
@@ -21,9 +20,9 @@ int fail(ExitStatus status, const char* message) {
 int main(int argc, char** argv) {
   watch_for_interrupts();
   try {
-    const std::optional<Command> command = parse_command_line(argc, argv);
-    if (command) hold_apart(*command);
-    if (command) std::visit([](const auto& chosen) { run(chosen); }, *command);
+    const std::optional<Verb> verb = parse_command_line(argc, argv);
+    if (verb) hold_apart(verb->files());
+    if (verb) verb->run();
     return done;
   } catch (const Failure& failure) {
     return fail(failure.status(), failure.what());

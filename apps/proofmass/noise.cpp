@@ -7,6 +7,8 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
+#include "noise_command.hpp"
 #include "noise_pieces.hpp"
 #include "output.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
@@ -17,10 +19,47 @@
 #include "proofmass/sensor/noise_update.hpp"
 #include "proofmass/signal/regress_out.hpp"
 #include "rest_channels.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+void add_noise_flags(CLI::App& verb, NoiseCommand& command) {
+  verb.add_option("FILE", command.files, "recordings at rest; - is standard input (CSV)")
+      ->type_name("")
+      ->required();
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type);
+  };
+  add("--statistic", command.statistic, "NAME",
+      "oadev (default), adev, mdev, tdev, hdev, ohdev, totdev, mtotdev, ttotdev, htotdev, theo1 or "
+      "pdev")
+      ->check(CLI::IsMember({"oadev", "adev", "mdev", "tdev", "hdev", "ohdev", "totdev", "mtotdev",
+                             "ttotdev", "htotdev", "theo1", "pdev"}));
+  add("--taus", command.taus, "LIST",
+      "octave, decade, all, N-per-decade (default 16) or seconds \"1,2,10\"");
+  add("--stop-ratio", command.stop_ratio, "X",
+      "length of the recording over the longest averaging time (default: the statistic's)")
+      ->check(number("a number of 1 or more", [](double x) { return x >= 1.0; }));
+  add("--data", command.data, "KIND", "rate (default), or phase: the integral of it over time")
+      ->check(CLI::IsMember({"rate", "phase"}));
+  add("--confidence", command.confidence, "P", "of the deviation's limits (default 0.683)")
+      ->check(number("a number between 0 and 1", [](double x) { return x > 0.0 && x < 1.0; }));
+  add("--noise-type", command.noise_type, "TYPE",
+      "on which the limits hang: auto (default), lag1, or the power of f from -4 to 2");
+  verb.add_flag("--exclude-events", command.exclude_events,
+                "leave out knocks, and whatever reaches across a step");
+  add("--temperature", command.temperature, "NAME",
+      "take out what follows this channel, by least squares");
+  add("--update-sensor", command.update_sensor, "FILE.toml",
+      "write the figures into this sensor file");
+  add_input_flags(verb, command.input);
+  add_output_file(verb, command.output, "write the deviation curves");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  add_memory_flag(verb, command.input);
+  verb.footer("Example:\n  proofmass noise rest.csv --rate 100 --unit g --report noise.html");
+}
 
 using characterise::NoiseAnalysis;
 using characterise::NoiseOptions;
@@ -213,7 +252,7 @@ void update_noise(const std::string& path, const std::vector<NoiseChannel>& chan
 
 }  // namespace
 
-void run(const NoiseCommand& command) {
+void run_noise(const NoiseCommand& command) {
   const NoiseOptions options = options_of(command);
   report::NoiseReport report;
   report.inputs = command.files;
@@ -239,6 +278,14 @@ void run(const NoiseCommand& command) {
           command.output);
   need_a_channel(report.channels);
   hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
+}
+
+Verb noise_verb() {
+  return make_verb<NoiseCommand>(
+      {.name = "noise",
+       .group = "Characterise",
+       .help = "Allan deviation, spectrum and noise figures of a sensor at rest"},
+      add_noise_flags, run_noise);
 }
 
 }  // namespace proofmass::app

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "command_line.hpp"
+#include "common_flags.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/io/recording_writer.hpp"
 #include "proofmass/report/document.hpp"

@@ -8,10 +8,12 @@
 #include <string_view>
 #include <unistd.h>
 
+#include "calibrate_command.hpp"
 #include "exit_status.hpp"
+#include "noise_command.hpp"
 #include "output.hpp"
 #include "provenance.hpp"
-#include "verbs.hpp"
+#include "tumble_command.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -188,18 +190,18 @@ void RecordGuide::run_verb(const std::string& file) const {
     case GuideProcedure::multi_position: {
       CalibrateCommand command = fill(CalibrateCommand{});
       command.rests = rests_path(file);
-      return run(command);
+      return run_calibrate(command);
     }
     case GuideProcedure::tumble: {
       TumbleCommand command = fill(TumbleCommand{});
       command.rests = rests_path(file);
-      return run(command);
+      return run_tumble(command);
     }
     case GuideProcedure::still: {
       NoiseCommand command = fill(NoiseCommand{});
       command.input.from_s = start_of(guide_->poses().back());
       command.input.to_s = end_of(guide_->poses().back());
-      return run(command);
+      return run_noise(command);
     }
   }
 }

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "command_line.hpp"
 #include "proofmass/calibrate/pose_guide.hpp"
 #include "proofmass/core/block.hpp"
 #include "proofmass/core/recording.hpp"
+#include "record_command.hpp"
 
 namespace proofmass::app {
 

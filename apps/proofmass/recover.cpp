@@ -4,12 +4,30 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "output.hpp"
 #include "proofmass/report/record_report.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+struct RecoverCommand {
+  std::string file;
+  OutputFlags output;
+};
+
+void add_recover_flags(CLI::App& verb, RecoverCommand& command) {
+  verb.add_option("FILE", command.file, "run.mcap.part, or any MCAP file that is damaged")
+      ->type_name("")
+      ->required();
+  verb.add_option("-o,--output", command.output.output,
+                  "where to (default: run.mcap of run.mcap.part, else run.recovered.mcap)")
+      ->type_name("FILE.mcap")
+      ->group("Output");
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass recover run.mcap.part");
+}
 
 // "run.mcap.part" → "run.mcap", "run.mcap" → "run.recovered.mcap".
 std::string recovered_name(const std::string& file) {
@@ -19,9 +37,7 @@ std::string recovered_name(const std::string& file) {
       .string();
 }
 
-}  // namespace
-
-void run(const RecoverCommand& command) {
+void run_recover(const RecoverCommand& command) {
   report::RecoverReport report;
   report.input = command.file;
   const std::string to =
@@ -37,6 +53,16 @@ void run(const RecoverCommand& command) {
            .html = {}},
           command.output);
   hold_to_strict(command.output, !report.recovery.was_whole);
+}
+
+}  // namespace
+
+Verb recover_verb() {
+  return make_verb<RecoverCommand>(
+      {.name = "recover",
+       .group = "Live",
+       .help = "what is whole of a recording that was not closed, as a file that is"},
+      add_recover_flags, run_recover);
 }
 
 }  // namespace proofmass::app

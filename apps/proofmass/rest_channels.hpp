@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "command_line.hpp"
+#include "common_flags.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/io/recording_stream.hpp"

@@ -3,16 +3,54 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "output.hpp"
 #include "proofmass/report/json.hpp"
 #include "proofmass/report/sensor_report.hpp"
 #include "proofmass/sensor/sensor_comparison.hpp"
 #include "proofmass/sensor/sensor_export.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+struct SensorCommand {
+  std::string action, format, rostopic;
+  std::vector<std::string> files;
+  std::optional<double> rate_hz;
+  OutputFlags output;
+};
+
+void add_sensor_flags(CLI::App& verb, SensorCommand& command) {
+  verb.add_option("ACTION", command.action, "show FILE, diff OLD NEW, or export FILE")
+      ->type_name("")
+      ->check(CLI::IsMember({"show", "diff", "export"}))
+      ->required();
+  verb.add_option("FILE", command.files, "sensor files, TOML")
+      ->type_name("")
+      ->expected(1, 2)
+      ->required();
+  verb.add_option("--format", command.format,
+                  "export: imu-yaml, for visual-inertial calibration, or c-header, for firmware")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"imu-yaml", "c-header"}));
+  verb.add_option("--rate", command.rate_hz, "export, imu-yaml: of the recordings to come")
+      ->type_name("HZ")
+      ->check(positive());
+  verb.add_option("--rostopic", command.rostopic, "export, imu-yaml: their topic (default /imu0)")
+      ->type_name("NAME");
+  verb.add_option("-o,--output", command.output.output,
+                  "export: the new file (default: standard output)")
+      ->type_name("FILE")
+      ->group("Output");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer(
+      "Examples:\n  proofmass sensor show rim.toml\n"
+      "  proofmass sensor diff rim-2025.toml rim.toml --report change.html\n"
+      "  proofmass sensor export rim.toml --format imu-yaml --rate 100 -o imu.yaml");
+}
 
 // Flags and files that the action has no use for, or lacks.
 void check(const SensorCommand& command) {
@@ -117,9 +155,7 @@ void run_diff(const SensorCommand& command) {
                               command.files[1], command.files[0]));
 }
 
-}  // namespace
-
-void run(const SensorCommand& command) {
+void run_sensor(const SensorCommand& command) {
   check(command);
   if (command.action == "show")
     run_show(command);
@@ -127,6 +163,16 @@ void run(const SensorCommand& command) {
     run_diff(command);
   else
     run_export(command);
+}
+
+}  // namespace
+
+Verb sensor_verb() {
+  return make_verb<SensorCommand>(
+      {.name = "sensor",
+       .group = "Characterise",
+       .help = "a sensor file's figures: shown, compared, or for other programs"},
+      add_sensor_flags, run_sensor);
 }
 
 }  // namespace proofmass::app

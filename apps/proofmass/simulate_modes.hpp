@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "command_line.hpp"
+#include "simulate_command.hpp"
 
 namespace proofmass::app {
 

@@ -2,14 +2,64 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/thesis/thesis_report.hpp"
+#include "thesis_command.hpp"
 #include "thesis_recordings.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+void add_recording_flags(CLI::App& verb, ThesisCommand& command) {
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type);
+  };
+  add("--static", command.still, "FILE",
+      "your own recording at rest from switching on (default: simulated)");
+  CLI::Option* tumble =
+      add("--tumble", command.tumble, "FILE",
+          "your own positions, or a recording that rests in them (default: simulated)");
+  add("--angles", command.angles_deg, "DEG,…",
+      "of that recording's rests, one for each in its order: \"0,90,180,270,0\"")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(finite())
+      ->needs(tumble);
+  add("--wheel", command.wheels, "FILE",
+      "your own recordings of the turning wheel, one for each speed (default: simulated)");
+  add("--radius", command.radius_m, "M", "of your sensors from the axle, where known")
+      ->check(positive());
+}
+
+void add_thesis_flags(CLI::App& verb, ThesisCommand& command) {
+  add_recording_flags(verb, command);
+  verb.add_option("--runs", command.runs, "simulated runs at each speed, behind the bands")
+      ->type_name("N")
+      ->check(number("a whole number from 2 to 1000",
+                     [](double x) { return x >= 2.0 && x <= 1000.0 && x == std::floor(x); }))
+      ->capture_default_str();
+  verb.add_option("--static-hours", command.static_hours, "length of the simulated test at rest")
+      ->type_name("H")
+      ->check(number("hours from 0.1 to 24", [](double x) { return x >= 0.1 && x <= 24.0; }))
+      ->capture_default_str();
+  verb.add_option("--seed", command.seed, "same seed, same numbers")
+      ->type_name("N")
+      ->check(not_negative())
+      ->capture_default_str();
+  add_input_flags(verb, command.input);
+  add_switch_on_flag(verb, command.input,
+                     "how long the sensors had been on at each recording's first sample (default 0 "
+                     "of --static; of --wheel it takes out the warm-up that --sensor knows of)");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer(
+      "Examples:\n"
+      "  proofmass thesis --report thesis.html\n"
+      "  proofmass thesis --wheel 11rpm.csv 21rpm.csv --radius 0.1 --json -");
+}
 
 constexpr double s_per_h = 3600.0;
 
@@ -23,9 +73,7 @@ std::vector<std::string> files_of(const ThesisCommand& command) {
   return files;
 }
 
-}  // namespace
-
-void run(const ThesisCommand& command) {
+void run_thesis(const ThesisCommand& command) {
   thesis::ThesisReport report;
   report.inputs = files_of(command);
   report.seed = command.seed;
@@ -39,6 +87,16 @@ void run(const ThesisCommand& command) {
                                        .progress = progress_bar(command.output)}),
            Stage::computing);
   finish(thesis::describe(report), {}, command.output);
+}
+
+}  // namespace
+
+Verb thesis_verb() {
+  return make_verb<ThesisCommand>(
+      {.name = "thesis",
+       .group = "Study",
+       .help = "every table and figure of the thesis beside ours, simulated or of your own rig"},
+      add_thesis_flags, run_thesis);
 }
 
 }  // namespace proofmass::app

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "command_line.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/thesis/programme.hpp"
+#include "thesis_command.hpp"
 
 namespace proofmass::app {
 

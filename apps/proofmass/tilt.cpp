@@ -8,16 +8,83 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "gyroscope.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/estimate/tilt_axis.hpp"
 #include "proofmass/report/tilt_report.hpp"
 #include "proofmass/signal/channel_audit.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+/// Accelerations; or, with `angle`, the angle that they gave and a gyroscope's rate.
+struct TiltCommand {
+  std::string file;
+  std::string base = "auto", reads = "+g";
+  std::vector<std::string> gyro;  ///< channels x, y, z; empty: found
+  bool no_gyro = false;
+  std::string angle, rate_channel;  ///< columns, by name or number
+  std::string angle_unit = "rad", rate_unit = "rad/s";
+  std::optional<double> shortest_rest_s, bias_std_mps2, gravity_std_mps2;
+  InputFlags input;
+  OutputFlags output;
+};
+
+void add_tilt_flags(CLI::App& verb, TiltCommand& command) {
+  verb.add_option("FILE", command.file, "a recording; - is standard input (CSV)")
+      ->type_name("")
+      ->required();
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type);
+  };
+  add("--base", command.base, "KIND",
+      "auto (default): still if it rests nearly throughout; still, or moving")
+      ->check(CLI::IsMember({"auto", "still", "moving"}));
+  add("--reads", command.reads, "SIGN",
+      "what an axis that points up reads at rest: +g (default), or -g as on an iPhone")
+      ->check(CLI::IsMember({"+g", "-g"}));
+  add("--gyro", command.gyro, "NAME",
+      "the gyroscope's channels for x, y and z: three of them (default: found by name and unit)")
+      ->allow_extra_args(false);
+  verb.add_flag("--no-gyro", command.no_gyro, "leave the gyroscope's channels alone");
+  add("--rate-unit", command.rate_unit, "UNIT",
+      "of the gyroscope, where its heading has none: rad/s (default) or deg/s")
+      ->check(CLI::IsMember({"rad/s", "deg/s"}));
+  add("--shortest-rest", command.shortest_rest_s, "S",
+      "a rest lasts at least so long (default 0.5)")
+      ->check(positive());
+  add("--bias-std", command.bias_std_mps2, "M_PER_S2",
+      "standard deviation of each axis' bias; with a --sensor file, of what it has changed by "
+      "since "
+      "the calibration (default: judged by the force at rest)")
+      ->check(not_negative());
+  add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", gravity_std_help)
+      ->check(not_negative());
+  CLI::Option* angle =
+      add("--angle", command.angle, "COLUMN",
+          "the recording holds an angle instead of accelerations, in this column (name or number, "
+          "1 being the first)");
+  add("--rate-channel", command.rate_channel, "COLUMN",
+      "and the gyroscope's rate about the same axis in this one")
+      ->needs(angle);
+  add("--angle-unit", command.angle_unit, "UNIT",
+      "of that column, where its heading has none: rad (default) or deg")
+      ->check(CLI::IsMember({"rad", "deg"}))
+      ->needs(angle);
+  add_input_flags(verb, command.input);
+  add_output_file(verb, command.output,
+                  "write roll and pitch against time with standard deviations");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer(
+      "Examples:\n"
+      "  proofmass tilt lying.csv --sensor sensor.toml\n"
+      "  proofmass tilt drive.csv --base moving --report tilt.html\n"
+      "  proofmass tilt motor.dat --angle 3 --rate-channel 2");
+}
 
 std::vector<double> times_of(const Recording& recording) {
   std::vector<double> time_s(recording.samples());
@@ -193,9 +260,7 @@ estimate::TiltSolution solve(const TiltCommand& command, report::TiltReport& rep
   return std::move(solution).value();
 }
 
-}  // namespace
-
-void run(const TiltCommand& command) {
+void run_tilt(const TiltCommand& command) {
   report::TiltReport report;
   report.inputs = {command.file};
   report.reads_minus_g = command.reads == "-g";
@@ -204,6 +269,16 @@ void run(const TiltCommand& command) {
   else
     report.solution = solve(command, report);
   finish(report::describe(report), [&] { return report::tilt_series(report); }, command.output);
+}
+
+}  // namespace
+
+Verb tilt_verb() {
+  return make_verb<TiltCommand>(
+      {.name = "tilt",
+       .group = "Estimate",
+       .help = "roll and pitch from gravity, at rest and on a moving base"},
+      add_tilt_flags, run_tilt);
 }
 
 }  // namespace proofmass::app

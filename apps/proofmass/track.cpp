@@ -8,6 +8,7 @@
 #include "accel_figures.hpp"
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "gyroscope.hpp"
 #include "input.hpp"
 #include "output.hpp"
@@ -15,10 +16,121 @@
 #include "proofmass/io/interval_list.hpp"
 #include "proofmass/report/track_report.hpp"
 #include "proofmass/sensor/warm_up.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+/// Displacement of one accelerometer, or of several that are fused.
+struct TrackCommand {
+  std::string file;
+  std::string model = "inertial";  ///< or pva, fused
+  std::optional<double> jerk_psd_m2ps5;
+  std::vector<std::string> gravity;  ///< a number in m/s^2, "removed" or "present", or both
+  std::string axis;                  ///< empty: found
+  bool same_place = false;
+  double same_place_std_m = 1e-3;
+  std::string fixes, still, turns;  ///< files: positions, intervals, times of velocity 0
+  std::string rests = "found";
+  double fix_std_m = 0.01;  ///< of fixes without their own
+  std::optional<double> shortest_rest_s, scale_std;
+  double rest_speed_std_mps = 1e-4;
+  bool take_as_acceleration = false, no_gyro = false;
+  std::string rate_unit = "rad/s";
+  InputFlags input;
+  OutputFlags output;
+};
+
+// A number as of the other verbs, or a word.
+CLI::Validator gravity_value() {
+  const CLI::Validator number = positive();
+  const auto check = [number](std::string& text) -> std::string {
+    if (text == "removed" || text == "present" || number(text).empty()) return {};
+    return "expected removed, present or a number above 0, not '" + text + "'";
+  };
+  return CLI::Validator(check, "");
+}
+
+void add_motion_flags(CLI::App& verb, TrackCommand& command) {
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type);
+  };
+  add("--model", command.model, "MODEL",
+      "inertial (default): the acceleration is integrated between stops, which holds for a motion "
+      "of any kind; pva: it is estimated, as one that white jerk drives, and NIS judges each "
+      "sample; fused: the same from 2 to 4 accelerometers with parallel axes")
+      ->check(CLI::IsMember({"inertial", "pva", "fused"}));
+  add("--jerk-psd", command.jerk_psd_m2ps5, "M2_PER_S5",
+      "density of that jerk (default: by maximum likelihood)")
+      ->check(positive());
+  add("--axis", command.axis, "AXIS",
+      "direction of the displacement: x, y, z, with a sign, or X,Y,Z in the sensor's axes, with a "
+      "gyroscope the world's (default: along which it moved farthest)");
+  CLI::Option* same = verb.add_flag("--same-place", command.same_place, "it ended where it began");
+  add("--same-place-std", command.same_place_std_m, "M", "how well (default 0.001)")
+      ->check(positive())
+      ->needs(same);
+  CLI::Option* fixes = add("--fixes", command.fixes, "FILE.csv",
+                           "positions measured on the way: time, position and, if known, std");
+  add("--fix-std", command.fix_std_m, "M", "of those without their own (default 0.01)")
+      ->check(positive())
+      ->needs(fixes);
+  CLI::Option* still = add("--still", command.still, "FILE",
+                           "list of intervals in which it stood still, instead of those found");
+  add("--rests", command.rests, "WHICH",
+      "which quiet stretches are rests: found (default: as they fit the motion), or ends: the "
+      "first "
+      "and the last alone")
+      ->check(CLI::IsMember({"found", "ends"}))
+      ->excludes(still);
+  add("--turns", command.turns, "FILE", "list of times at which it turned round: velocity 0");
+  add("--shortest-rest", command.shortest_rest_s, "S",
+      "a rest lasts at least so long (default 0.5)")
+      ->check(positive());
+  add("--rest-speed-std", command.rest_speed_std_mps, "M_PER_S",
+      "speed that a sensor at rest may have (default 0.0001)")
+      ->check(positive());
+  add("--scale-std", command.scale_std, "SHARE",
+      "relative standard deviation of the readings' scale (default: of the --sensor file, or by "
+      "gravity at rest)")
+      ->check(not_negative());
+  verb.add_flag("--take-as-acceleration", command.take_as_acceleration,
+                "give a displacement though the readings look like jerk");
+  verb.add_flag("--no-gyro", command.no_gyro, "leave the gyroscope's channels alone");
+  add("--rate-unit", command.rate_unit, "UNIT",
+      "of the gyroscope, where its heading has none: rad/s (default) or deg/s")
+      ->check(CLI::IsMember({"rad/s", "deg/s"}));
+}
+
+void add_track_flags(CLI::App& verb, TrackCommand& command) {
+  verb.add_option("FILE", command.file, "a recording; - is standard input (CSV)")
+      ->type_name("")
+      ->required();
+  add_motion_flags(verb, command);
+  add_input_flags(verb, command.input);
+  verb.remove_option(verb.get_option("--gravity"));
+  verb.add_option(
+          "--gravity", command.gravity,
+          "removed or present, where the readings do not show it; or local gravity (default "
+          "9.80665); may be repeated")
+      ->type_name("WORD|M_PER_S2")
+      ->allow_extra_args(false)
+      ->check(gravity_value())
+      ->group("Input");
+  add_switch_on_flag(verb, command.input,
+                     "how long the sensor had been on at the first sample: takes the warm-up of "
+                     "the --sensor file out");
+  add_output_file(verb, command.output,
+                  "write position and velocity against time with standard deviations");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer(
+      "Examples:\n"
+      "  proofmass track stroke.csv --report track.html\n"
+      "  proofmass track phone.csv --gravity removed --same-place\n"
+      "  proofmass track slide.csv --sensor sensor.toml --axis x --fixes tape.csv\n"
+      "  proofmass track pair.csv --model fused --axis x");
+}
 
 using estimate::GravityContent;
 using estimate::TrackOptions;
@@ -200,9 +312,7 @@ estimate::TrackSolution solve_track(const std::string& file,
   return std::move(solution).value();
 }
 
-}  // namespace
-
-void run(const TrackCommand& given) {
+void run_track(const TrackCommand& given) {
   TrackCommand command = given;
   expect_sense(command);
   report::TrackReport report;
@@ -212,6 +322,15 @@ void run(const TrackCommand& given) {
   report.solution = solve_track(command.file, sensor, report.options);
   report.options.progress = {};  // which wipes the bar away
   finish(report::describe(report), [&] { return report::track_series(report); }, command.output);
+}
+
+}  // namespace
+
+Verb track_verb() {
+  return make_verb<TrackCommand>({.name = "track",
+                                  .group = "Estimate",
+                                  .help = "displacement from acceleration, from rest to rest"},
+                                 add_track_flags, run_track);
 }
 
 }  // namespace proofmass::app

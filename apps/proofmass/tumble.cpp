@@ -6,6 +6,7 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/calibrate/tumble_axes.hpp"
@@ -13,12 +14,78 @@
 #include "proofmass/report/tumble_report.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/calibration_update.hpp"
+#include "tumble_command.hpp"
 #include "tumble_modes.hpp"
 #include "tumble_positions.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+// Flags of `tumble` that say how the positions stood.
+void add_position_flags(CLI::App& verb, TumbleCommand& command) {
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type);
+  };
+  add("--angles", command.angles_deg, "DEG,…",
+      "of a recording's rests, one for each in its order: \"0,90,180,270,0\"")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(finite());
+  add("--rests", command.rests, "FILE",
+      "start and end of each rest, perhaps with the table's angle (default: found)");
+  add("--angle", command.angle_channel, "NAME",
+      "the column with the angle (default: found by name and unit)");
+  add("--rest", command.shortest_rest_s, "S", "the shortest rest to look for (default: found)")
+      ->check(positive());
+  add("--plane", command.planes, "1|2",
+      "in which the file was tumbled; once for all files or once for each")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({1, 2}));
+  add("--mount", command.mounts, "0|180",
+      "how the sensor sat on the table; once for all files or once for each")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({0, 180}));
+  add("--input-axis", command.input_axis, "NAME",
+      "the channel whose axis sees g·sin(angle) (default: found from the readings)");
+  add("--indexing-std", command.indexing_std_deg, "DEG",
+      "standard deviation of the table's angles (default: 0.5, less where the residuals show it)")
+      ->check(not_negative());
+  add("--drift-std", command.drift_std_mps2, "M_PER_S2",
+      "standard deviation of the amplitudes by which the bias wanders about a straight line "
+      "(default: 0.0057, 1 mg/√3, and a quarter of the linear drift; less where repeats show it)")
+      ->check(not_negative());
+  add("--bandwidth", command.bandwidth_hz, "HZ",
+      "of the sensor's filter, one pole, with --rotating --angle: its delay is taken out of the "
+      "misalignment")
+      ->check(positive());
+  add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", gravity_std_help)
+      ->check(not_negative());
+}
+
+void add_tumble_flags(CLI::App& verb, TumbleCommand& command) {
+  verb.add_option("FILE", command.files,
+                  "positions (angle and output), or a recording that rests in them; - is standard "
+                  "input (CSV)")
+      ->type_name("")
+      ->required();
+  add_position_flags(verb, command);
+  verb.add_flag("--rotating", command.rotating,
+                "the sensor sat on a wheel that turned: scale factor and bias from its turns");
+  verb.add_option("--coefficients", command.coefficients,
+                  "fit these coefficients of the whole model equation")
+      ->type_name("K0,K1...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  verb.add_option("--update-sensor", command.update_sensor,
+                  "write bias and scale into this sensor file")
+      ->type_name("FILE.toml");
+  add_input_flags(verb, command.input);
+  add_output_file(verb, command.output, "write the positions with fit and residuals");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass tumble positions.csv --unit g --report tumble.html");
+}
 
 using calibrate::TumbleQuantity;
 using report::ChannelTumble;
@@ -154,7 +221,7 @@ void check(const TumbleCommand& command) {
 
 }  // namespace
 
-void run(const TumbleCommand& command) {
+void run_tumble(const TumbleCommand& command) {
   if (command.rotating) return run_rotation(command);
   if (!command.coefficients.empty()) return run_model_equation(command);
   check(command);
@@ -192,6 +259,14 @@ void run(const TumbleCommand& command) {
            .html = [&] { return report::tumble_html(report); }},
           command.output);
   hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
+}
+
+Verb tumble_verb() {
+  return make_verb<TumbleCommand>(
+      {.name = "tumble",
+       .group = "Characterise",
+       .help = "scale factor, bias and the model's other coefficients from a turntable, IEEE 1293"},
+      add_tumble_flags, run_tumble);
 }
 
 }  // namespace proofmass::app

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "command_line.hpp"
+#include "tumble_command.hpp"
 
 // What `tumble` does other than positions at rest. Throw Failure.
 namespace proofmass::app {

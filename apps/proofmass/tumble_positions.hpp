@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "command_line.hpp"
 #include "proofmass/calibrate/tumble_model.hpp"
 #include "proofmass/core/recording.hpp"
+#include "tumble_command.hpp"
 
 // From tables of positions, or recordings that rest in them, to the readings of a tumble.
 namespace proofmass::app {

@@ -9,6 +9,7 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/core/in_parallel.hpp"
@@ -17,10 +18,57 @@
 #include "proofmass/sensor/noise_update.hpp"
 #include "proofmass/signal/rests.hpp"
 #include "rest_channels.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 
 namespace proofmass::app {
 namespace {
+
+/// Q, R and the time constant of a bias from one recording.
+struct TuneCommand {
+  std::string file;
+  std::string model = "auto";
+  std::vector<std::string> fix, share;  ///< --fix NAME=VALUE, --share NAME
+  bool from_sensor = false;             ///< start at the noise of the sensor file
+  double study_step_s = 0.0;            ///< 0: the recording's own
+  std::string update_sensor;
+  InputFlags input;
+  OutputFlags output;
+};
+
+void add_tune_flags(CLI::App& verb, TuneCommand& command) {
+  verb.add_option("FILE", command.file, "a recording; - is standard input (CSV)")
+      ->type_name("")
+      ->required();
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type);
+  };
+  add("--model", command.model, "MODEL",
+      "auto (default): rest if it rests nearly throughout, else pva; rest, rest-markov, pva, "
+      "pva-bias, local-level, local-trend, position")
+      ->check(CLI::IsMember({"auto", "rest", "rest-markov", "pva", "pva-bias", "local-level",
+                             "local-trend", "position"}));
+  add("--fix", command.fix, "NAME=VALUE", "hold a parameter, in SI; may be repeated")
+      ->allow_extra_args(false);
+  add("--share", command.share, "NAME",
+      "one value of this parameter for all channels; may be "
+      "repeated")
+      ->allow_extra_args(false);
+  verb.add_flag("--start-at-sensor", command.from_sensor,
+                "start at the noise of the --sensor file instead of the Allan deviation");
+  add("--study-step", command.study_step_s, "S",
+      "step of the study of gain and covariance (default: the recording's)")
+      ->check(positive());
+  add("--update-sensor", command.update_sensor, "FILE.toml",
+      "write white noise and random walk into this sensor file (model rest)");
+  add_input_flags(verb, command.input);
+  add_output_file(verb, command.output, "write the innovations with standard deviations");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer(
+      "Examples:\n"
+      "  proofmass tune rest.csv --rate 100 --unit g\n"
+      "  proofmass tune stroke.csv --model pva --share jerk_psd --report tune.html");
+}
 
 using estimate::TunedParameter;
 using estimate::TuneModel;
@@ -303,9 +351,7 @@ void fill(const TuneCommand& command,
   }
 }
 
-}  // namespace
-
-void run(const TuneCommand& command) {
+void run_tune(const TuneCommand& command) {
   report::TuneReport report;
   report.inputs = {command.file};
   const std::vector<RestRecording> recordings =
@@ -327,6 +373,17 @@ void run(const TuneCommand& command) {
     without_interruption([&] { update_sensor(command, report, channels); });
   }
   finish(report::describe(report), [&] { return report::tune_series(report); }, command.output);
+}
+
+}  // namespace
+
+Verb tune_verb() {
+  return make_verb<TuneCommand>(
+      {.name = "tune",
+       .group = "Estimate",
+       .help =
+           "Q, R and the bias's time constant of a filter from the recording that it is to run on"},
+      add_tune_flags, run_tune);
 }
 
 }  // namespace proofmass::app

@@ -2,14 +2,78 @@
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "flags.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/report/wheel_report.hpp"
-#include "verbs.hpp"
+#include "verb.hpp"
 #include "wheel_input.hpp"
 
 namespace proofmass::app {
-void run(const WheelCommand& command) {
+namespace {
+
+struct WheelCommand {
+  std::vector<std::string> files;
+  std::string spin_axis;
+  std::optional<double> radius_m, radius_std_m, rim_radius_m, rolling_radius_m, bandwidth_hz,
+      axle_tilt_std_deg;
+  bool no_gyro = false;
+  std::string rate_unit = "rad/s";
+  InputFlags input;
+  OutputFlags output;
+};
+
+void add_wheel_flags(CLI::App& verb, WheelCommand& command) {
+  verb.add_option("FILE", command.files, "one recording, or one for each of two sensors")
+      ->type_name("")
+      ->expected(1, 2)
+      ->required();
+  verb.add_option("--spin-axis", command.spin_axis,
+                  "x, y, z, -x, -y, -z or \"X,Y,Z\" in the sensor's axes (default: found)")
+      ->type_name("AXIS");
+  CLI::Option* radius =
+      verb.add_option("--radius", command.radius_m, "of the sensor from the axle, where known")
+          ->type_name("M")
+          ->check(not_negative());
+  verb.add_option("--radius-std", command.radius_std_m,
+                  "standard deviation of --radius (default: 2 %, at least 0.0002)")
+      ->type_name("M")
+      ->check(not_negative())
+      ->needs(radius);
+  verb.add_option("--bandwidth", command.bandwidth_hz,
+                  "-3 dB of the sensor's filter, which delays the angle (default: of the --sensor "
+                  "file, or anywhere from 6 Hz to 2.5 times the rate)")
+      ->type_name("HZ")
+      ->check(positive());
+  verb.add_option("--axle-tilt-std", command.axle_tilt_std_deg,
+                  "standard deviation of the axle from level (default 5)")
+      ->type_name("DEG")
+      ->check(not_negative());
+  verb.add_flag("--no-gyro", command.no_gyro, "leave the gyroscope's channels alone");
+  verb.add_option("--rate-unit", command.rate_unit,
+                  "of the gyroscope, where its heading has none: rad/s (default) or deg/s")
+      ->type_name("UNIT")
+      ->check(CLI::IsMember({"rad/s", "deg/s"}));
+  verb.add_option("--rolling-radius", command.rolling_radius_m,
+                  "on which the wheel rolls under a vehicle (0: on a bench): takes its speeding up "
+                  "out of the angle")
+      ->type_name("M")
+      ->check(not_negative());
+  verb.add_option("--rim-radius", command.rim_radius_m, "of the rim, whose path is the distance")
+      ->type_name("M")
+      ->check(positive());
+  add_input_flags(verb, command.input);
+  add_switch_on_flag(
+      verb, command.input,
+      "the sensors had been on so long at the file's first sample: takes the warm-up "
+      "that their sensor files know of out");
+  add_output_file(verb, command.output, "write the whole time series with standard deviations");
+  add_report_flag(verb, command.output);
+  add_output_flags(verb, command.output);
+  verb.footer("Example:\n  proofmass wheel hub.csv rim.csv --spin-axis z --report wheel.html");
+}
+
+void run_wheel(const WheelCommand& command) {
   report::WheelReport report;
   report.inputs = command.files;
   if (!command.spin_axis.empty()) report.options.spin_axis = parse_axis(command.spin_axis);
@@ -30,6 +94,16 @@ void run(const WheelCommand& command) {
   report.solution = need(estimate::estimate_wheel(input.sensors, report.options), Stage::computing);
   report.options.progress = {};  // which wipes the bar away
   finish(report::describe(report), [&] { return report::wheel_series(report); }, command.output);
+}
+
+}  // namespace
+
+Verb wheel_verb() {
+  return make_verb<WheelCommand>(
+      {.name = "wheel",
+       .group = "Estimate",
+       .help = "angle, turns and speed from one or two accelerometers on a wheel"},
+      add_wheel_flags, run_wheel);
 }
 
 }  // namespace proofmass::app

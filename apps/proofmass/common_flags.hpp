@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+// Flags that verbs have in common.
+namespace proofmass::app {
+
+/// Flags of every verb that reads recordings.
+struct InputFlags {
+  std::optional<double> rate_hz;
+  std::string unit;
+  std::vector<std::string> channels, variables;
+  std::string time;
+  std::optional<double> from_s, to_s;
+  std::vector<std::string> sensors;
+  std::optional<double> supply_v;
+  std::optional<double> resample_hz, skew_s;
+  std::string resample_method = "sinc";
+  double memory_mb = 1024.0;  ///< of verbs that read larger tables a piece at a time
+  std::optional<double> gravity_mps2, latitude_deg, height_m;
+  /// How long the sensors had been on at the file's first sample; of verbs that know warm-up only.
+  std::optional<double> since_switch_on_s;
+};
+
+class Invocation;
+
+/// Flags of every verb.
+struct OutputFlags {
+  std::string json, report, output;
+  bool quiet = false, verbose = false, strict = false;
+  std::shared_ptr<Invocation> invocation{};  ///< where a document or a page was asked for
+};
+
+}  // namespace proofmass::app
