@@ -24,13 +24,13 @@ struct BudgetCommand {
 
 void add_budget_flags(CLI::App& verb, BudgetCommand& command) {
   CLI::Option* bias =
-      verb.add_option("--bias-mg", command.bias_mg, "bias that is left; may be repeated");
+      verb.add_option("--bias-mg", command.bias_mg, "residual bias; may be repeated");
   bias->type_name("MG")->delimiter(',')->allow_extra_args(false)->check(finite());
   verb.add_option("--sensor", command.sensors,
                   "take bias and noise (white, flicker, random walk, ramp) from this sensor file")
       ->type_name("FILE.toml")
       ->allow_extra_args(false);
-  verb.add_option("--times", command.times_s, "after these times (default 1,10,60,3600)")
+  verb.add_option("--times", command.times_s, "elapsed times (default 1,10,60,3600)")
       ->type_name("S,S...")
       ->delimiter(',')
       ->check(not_negative());

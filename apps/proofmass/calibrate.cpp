@@ -32,19 +32,21 @@ void add_pose_flags(CLI::App& verb, CalibrateCommand& command) {
     return verb.add_option(name, into, help)->type_name(type);
   };
   add("--rests", command.rests, "FILE",
-      "start and end of each rest, perhaps with label and direction (default: found)");
-  add("--rest", command.shortest_rest_s, "S", "the shortest rest to look for (default: 0.5)")
+      "start and end of each rest, optionally with label and direction (default: detected)");
+  add("--rest", command.shortest_rest_s, "S", "minimum duration of a rest (default 0.5)")
       ->check(positive());
-  verb.add_flag("--means", command.means, "the files are tables of means, one row a position");
+  verb.add_flag("--means", command.means, "the files are tables of means, one row per position");
   add("--parameters", command.parameters, "6|9|12",
-      "6: bias and scale; 9: and misalignment; 12: and mounting, by given directions (default: 9, "
-      "or 6 where the positions carry no more)")
+      "6: bias and scale factor; 9: also misalignment; 12: also mounting, from given directions "
+      "(default: 9, or 6 where the positions determine no more)")
       ->check(CLI::IsMember({6, 9, 12}));
-  verb.add_flag("--six-position", command.six_position,
-                "take six given positions for exact (what others do; better: turn it freely)");
+  verb.add_flag(
+      "--six-position", command.six_position,
+      "assume six exact orientations (the classical method; free orientations are more accurate)");
   verb.add_flag("--keep-suspects", command.keep_suspects,
-                "positions that contradict the others stay in the fit");
-  add("--validate", command.validate, "FILE", "new positions to try the calibration on")
+                "keep positions that contradict the others in the fit");
+  add("--validate", command.validate, "FILE",
+      "independent positions to validate the calibration with")
       ->allow_extra_args(false);
 }
 
@@ -56,24 +58,26 @@ void add_uncertainty_flags(CLI::App& verb, CalibrateCommand& command) {
   add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", gravity_std_help)
       ->check(not_negative());
   add("--orthogonality-std", command.orthogonality_std_deg, "DEG",
-      "of the angles between the axes where they are not fitted")
+      "standard deviation of the angles between the axes if they are not fitted")
       ->check(not_negative())
       ->capture_default_str();
   add("--placement-std", command.placement_std_deg, "DEG",
-      "of the positions that --six-position takes for exact")
+      "standard deviation of the orientations that --six-position assumes exact")
       ->check(not_negative())
       ->capture_default_str();
   add("--bias-stability", command.bias_stability_mg, "MG",
-      "standard deviation of the biases from one session to another, as drift finds it of several "
-      "power-ups (default: by the flicker noise and random walk of the file to update, else of the "
-      "recording)")
+      "standard deviation of the biases between sessions, as drift estimates it from several "
+      "power-ups (default: from the flicker noise and random walk of the file to update, else of "
+      "the recording)")
       ->check(not_negative());
   add("--type-b", command.type_b, "NAME,TARGET,VALUE UNIT[,DISTRIBUTION[,DOF]]",
       "a contribution to the uncertainty: \"ADC reference,scale,0.05 %,uniform\"; may be repeated")
       ->allow_extra_args(false);
-  add("--monte-carlo", command.monte_carlo, "N", "draws that check the uncertainties; 0: none")
+  add("--monte-carlo", command.monte_carlo, "N",
+      "Monte Carlo draws that check the uncertainties; 0: none")
       ->capture_default_str();
-  add("--supplies", command.supplies_v, "V,…", "supply of each file, to tell what it does")
+  add("--supplies", command.supplies_v, "V,…",
+      "supply voltage of each file, to estimate its effect")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(positive());
@@ -81,17 +85,17 @@ void add_uncertainty_flags(CLI::App& verb, CalibrateCommand& command) {
 
 void add_calibrate_flags(CLI::App& verb, CalibrateCommand& command) {
   verb.add_option("FILE", command.files,
-                  "recordings of a sensor laid down in 9 or more directions, or tables of means; - "
-                  "is standard input (CSV)")
+                  "recordings of a sensor held still in 9 or more orientations, or tables of "
+                  "means; - is standard input (CSV)")
       ->type_name("")
       ->required();
   add_pose_flags(verb, command);
   add_uncertainty_flags(verb, command);
-  verb.add_option("--name", command.name, "of the sensor, for certificate and sensor file")
+  verb.add_option("--name", command.name, "name of the sensor, for certificate and sensor file")
       ->type_name("TEXT");
   verb.add_option("--serial", command.serial, "its serial number")->type_name("TEXT");
   verb.add_option("--date", command.date, "of the measurement, ISO 8601")->type_name("DATE");
-  verb.add_option("--temperature", command.temperature_c, "at which it was made")
+  verb.add_option("--temperature", command.temperature_c, "temperature of the measurement")
       ->type_name("DEG_C")
       ->check(finite());
   verb.add_option("--update-sensor", command.update_sensor,
@@ -419,7 +423,7 @@ Verb calibrate_verb() {
   return make_verb<CalibrateCommand>(
       {.name = "calibrate",
        .group = "Characterise",
-       .help = "bias, scale and misalignment from rests in several positions"},
+       .help = "bias, scale factor and misalignment from static positions"},
       add_calibrate_flags, run_calibrate);
 }
 

@@ -205,12 +205,12 @@ bool print_help(CLI::App& app, const std::vector<std::string>& arguments) {
 
 std::optional<Verb> parse_command_line(int argc, char** argv) {
   CLI::App app(
-      "Puts an accelerometer to the proof: from raw readings to angle, turns and speed with "
-      "honest error bars.",
+      "Puts an accelerometer to the proof: from raw voltages to angle and position with honest "
+      "error bars.",
       "proofmass");
   app.set_version_flag("--version", fmt::format("proofmass {}", version()));
   app.require_subcommand(1);
-  app.footer("Each verb explains itself: proofmass help VERB");
+  app.footer("Help on a verb: proofmass help VERB");
   const std::vector<Verb> verbs = all_verbs();
   add_verbs(app, verbs);
   if (argc > 1 && argv[1] == completion_verb) {

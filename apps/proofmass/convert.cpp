@@ -132,8 +132,9 @@ void run_convert(const ConvertCommand& command) {
 }  // namespace
 
 Verb convert_verb() {
-  return make_verb<ConvertCommand>({.name = "convert", .group = "Look", .help = "between formats"},
-                                   add_convert_flags, run_convert);
+  return make_verb<ConvertCommand>(
+      {.name = "convert", .group = "Look", .help = "convert recordings between formats"},
+      add_convert_flags, run_convert);
 }
 
 }  // namespace proofmass::app

@@ -30,28 +30,26 @@ struct DriftCommand {
 
 void add_drift_flags(CLI::App& verb, DriftCommand& command) {
   verb.add_option("FILE", command.files,
-                  "recordings at rest from switching on; three or more are compared as power-ups; "
-                  "- is standard input (CSV)")
+                  "static recordings from power-on; three or more are compared as power-ups; - is "
+                  "standard input (CSV)")
       ->type_name("")
       ->required();
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type);
   };
-  add("--forecast", command.forecast_s, "S", "foretell the bias so long after switching on")
+  add("--forecast", command.forecast_s, "S", "predict the bias S seconds after power-on")
       ->check(not_negative());
   add("--temperature", command.temperature, "NAME",
-      "fit the bias against this channel (default: the only one in a unit of temperature); none: "
-      "do not");
+      "fit the bias against this channel (default: the only one in a unit of temperature), or "
+      "none");
   add("--order", command.order, "ORDER",
-      "of three files or more: time (default: by their absolute time stamps, else by the numbers "
-      "in "
-      "their names) or given (as on the command line)")
+      "order of three or more files: time (default; by their absolute time stamps, else by the "
+      "numbers in their names) or given (as on the command line)")
       ->check(CLI::IsMember({"time", "given"}));
   add("--update-sensor", command.update_sensor, "FILE.toml",
-      "write what is identified into this sensor file");
+      "write the identified coefficients into this sensor file");
   add_input_flags(verb, command.input);
-  add_switch_on_flag(verb, command.input,
-                     "how long the sensor had been on at the first sample (default 0)");
+  add_switch_on_flag(verb, command.input, "time since power-on at the first sample (default 0)");
   add_output_file(
       verb, command.output,
       "write block means, curve, its standard deviation, and the bias less white noise");
@@ -271,7 +269,7 @@ Verb drift_verb() {
   return make_verb<DriftCommand>(
       {.name = "drift",
        .group = "Characterise",
-       .help = "warm-up of the bias of a sensor at rest, and whether the recording can tell"},
+       .help = "warm-up drift of the bias of a static sensor, and whether it is identifiable"},
       add_drift_flags, run_drift);
 }
 

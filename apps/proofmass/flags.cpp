@@ -61,29 +61,30 @@ void add_input_flags(CLI::App& verb, InputFlags& flags) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->group("Input");
   };
-  add("--rate", flags.rate_hz, "HZ", "sample rate, where the file has no time column")
+  add("--rate", flags.rate_hz, "HZ", "sample rate, if the file has no time column")
       ->check(positive());
   add("--unit", flags.unit, "UNIT",
-      "of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s")
+      "unit of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or "
+      "rad/s")
       ->check(CLI::IsMember({"g", "mg", "m/s2", "V", "mV", "counts", "deg/s", "rad/s"}))
       ->transform(unit_spelling());
   add("--channel", flags.channels, "NAME", "use this channel; may be repeated (default: all)")
       ->allow_extra_args(false);
   add("--dataset,--variable", flags.variables, "NAME",
-      "of a file or folder of several tables, read this dataset, variable, group, topic or file; "
-      "may be repeated (default: chosen by size and name)")
+      "dataset, variable, group, topic or file to read from a file or folder with several; may be "
+      "repeated (default: chosen by size and name)")
       ->allow_extra_args(false);
   add("--time", flags.time, "NAME", "the time column (default: found by name and content)");
-  add("--from", flags.from_s, "S", "leave out what comes before")->check(finite());
-  add("--to", flags.to_s, "S", "leave out what comes from here on")->check(finite());
+  add("--from", flags.from_s, "S", "start of the interval to use")->check(finite());
+  add("--to", flags.to_s, "S", "end of the interval to use")->check(finite());
   add("--resample", flags.resample_hz, "HZ",
-      "bring the samples, or several --variable, onto an even grid (default: as they were taken)")
+      "resample onto a uniform grid, also several --variable (default: as recorded)")
       ->check(positive());
   add("--resample-method", flags.resample_method, "METHOD",
       "of --resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc)")
       ->check(CLI::IsMember({"sinc", "cubic", "linear", "nearest", "mean"}));
   add("--skew", flags.skew_s, "S",
-      "the channels were sampled one after another, so far apart: brings them to one instant")
+      "correct a multiplexer skew of S seconds between successive channels")
       ->check(finite());
   add_place_flags(verb, flags);
 }
@@ -96,15 +97,16 @@ void add_place_flags(CLI::App& verb, InputFlags& flags) {
       add("--sensor", flags.sensors, "FILE.toml",
           "apply this sensor file's calibration first; once for all sensors or once for each");
   sensor->allow_extra_args(false);
-  add("--supply", flags.supply_v, "V", "the ratiometric sensor's supply, instead of the file's")
+  add("--supply", flags.supply_v, "V", "supply of the ratiometric sensor, instead of the file's")
       ->check(positive())
       ->needs(sensor);
   CLI::Option* gravity =
       add("--gravity", flags.gravity_mps2, "M_PER_S2", "local gravity (default 9.80665)");
   gravity->check(positive());
-  CLI::Option* where = add("--latitude", flags.latitude_deg, "DEG", "gravity from the latitude");
+  CLI::Option* where =
+      add("--latitude", flags.latitude_deg, "DEG", "compute gravity from the latitude");
   where->check(latitude())->excludes(gravity);
-  add("--height", flags.height_m, "M", "and from the height above the ellipsoid")
+  add("--height", flags.height_m, "M", "height above the ellipsoid, for gravity")
       ->check(finite())
       ->needs(where);
 }
@@ -128,11 +130,10 @@ void add_output_flags(CLI::App& verb, OutputFlags& flags) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->group("Output");
   };
-  add("--json", flags.json, "FILE", "write the results as JSON; - is standard output, alone");
-  verb.add_flag("-q,--quiet", flags.quiet, "say nothing on standard error but an error")
-      ->group("Output");
-  verb.add_flag("-v,--verbose", flags.verbose, "tell what was found while reading")
-      ->group("Output");
+  add("--json", flags.json, "FILE",
+      "write the results as JSON; - is standard output, without the text");
+  verb.add_flag("-q,--quiet", flags.quiet, "print errors only")->group("Output");
+  verb.add_flag("-v,--verbose", flags.verbose, "show details found while reading")->group("Output");
   verb.add_flag("--strict", flags.strict, "exit with status 5 if the data are bad")
       ->group("Output");
   // Read before all others, by config_path(); here it stands for --help.

@@ -31,8 +31,8 @@ void add_inspect_flags(CLI::App& verb, InspectCommand& command) {
       ->required();
   add_input_flags(verb, command.input);
   verb.add_flag("--pyramid", command.pyramid,
-                "store the smallest and largest values at every scale beside each file, as "
-                "FILE.pyramid.npz, for pictures of any stretch without reading it again");
+                "store minima and maxima at every scale beside each file, as FILE.pyramid.npz, for "
+                "plots at any zoom without reading it again");
   add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);
   add_memory_flag(verb, command.input);
@@ -153,7 +153,7 @@ void run_inspect(const InspectCommand& command) {
 
 Verb inspect_verb() {
   return make_verb<InspectCommand>(
-      {.name = "inspect", .group = "Look", .help = "what is in a file and how good it is"},
+      {.name = "inspect", .group = "Look", .help = "contents and data quality of a recording"},
       add_inspect_flags, run_inspect);
 }
 

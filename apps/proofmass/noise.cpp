@@ -25,7 +25,7 @@ namespace proofmass::app {
 namespace {
 
 void add_noise_flags(CLI::App& verb, NoiseCommand& command) {
-  verb.add_option("FILE", command.files, "recordings at rest; - is standard input (CSV)")
+  verb.add_option("FILE", command.files, "static recordings; - is standard input (CSV)")
       ->type_name("")
       ->required();
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
@@ -41,18 +41,20 @@ void add_noise_flags(CLI::App& verb, NoiseCommand& command) {
   add("--stop-ratio", command.stop_ratio, "X",
       "length of the recording over the longest averaging time (default: the statistic's)")
       ->check(number("a number of 1 or more", [](double x) { return x >= 1.0; }));
-  add("--data", command.data, "KIND", "rate (default), or phase: the integral of it over time")
+  add("--data", command.data, "KIND", "rate (default) or phase, its integral over time")
       ->check(CLI::IsMember({"rate", "phase"}));
-  add("--confidence", command.confidence, "P", "of the deviation's limits (default 0.683)")
+  add("--confidence", command.confidence, "P",
+      "confidence level of the deviation's limits (default 0.683)")
       ->check(number("a number between 0 and 1", [](double x) { return x > 0.0 && x < 1.0; }));
   add("--noise-type", command.noise_type, "TYPE",
-      "on which the limits hang: auto (default), lag1, or the power of f from -4 to 2");
+      "noise type used for the confidence limits: auto (default), lag1, or the power of f from -4 "
+      "to 2");
   verb.add_flag("--exclude-events", command.exclude_events,
-                "leave out knocks, and whatever reaches across a step");
+                "exclude shocks, and intervals that span a step");
   add("--temperature", command.temperature, "NAME",
-      "take out what follows this channel, by least squares");
+      "remove the linear dependence on this channel, by least squares");
   add("--update-sensor", command.update_sensor, "FILE.toml",
-      "write the figures into this sensor file");
+      "write the coefficients into this sensor file");
   add_input_flags(verb, command.input);
   add_output_file(verb, command.output, "write the deviation curves");
   add_report_flag(verb, command.output);
@@ -284,7 +286,7 @@ Verb noise_verb() {
   return make_verb<NoiseCommand>(
       {.name = "noise",
        .group = "Characterise",
-       .help = "Allan deviation, spectrum and noise figures of a sensor at rest"},
+       .help = "Allan deviation, spectrum and noise coefficients of a static sensor"},
       add_noise_flags, run_noise);
 }
 

@@ -29,27 +29,30 @@ void add_file_flags(CLI::App& verb, RecordCommand& command) {
   };
   add("-o,--output", command.output.output, "FILE.mcap",
       "the recording (default: named by source and time)");
-  add("--duration", command.duration_s, "S", "end after so long (default: at Ctrl-C)")
+  add("--duration", command.duration_s, "S", "duration of the recording (default: until Ctrl-C)")
       ->check(positive());
-  add("--rotate", command.rotate_s, "S", "begin a new file after so long: run.0001.mcap, …")
+  add("--rotate", command.rotate_s, "S", "start a new file every S seconds: run.0001.mcap, …")
       ->check(positive());
-  add("--rotate-mb", command.rotate_mb, "MB", "or after so much")->check(positive());
+  add("--rotate-mb", command.rotate_mb, "MB", "start a new file every MB megabytes")
+      ->check(positive());
   CLI::Option* trigger = add("--trigger", command.trigger, "CHANNEL>LEVEL",
-                             "keep only what is around a passing of this level, in the channel's "
-                             "unit; < is downwards");
-  add("--trigger-before", command.trigger_before_s, "S", "how much before it (default 1)")
+                             "keep only the samples around a crossing of this level, in the "
+                             "channel's unit; < for a falling edge");
+  add("--trigger-before", command.trigger_before_s, "S",
+      "duration kept before the trigger (default 1)")
       ->check(not_negative())
       ->needs(trigger);
-  add("--trigger-after", command.trigger_after_s, "S", "and behind it (default 1)")
+  add("--trigger-after", command.trigger_after_s, "S",
+      "duration kept after the trigger (default 1)")
       ->check(not_negative())
       ->needs(trigger);
   verb.add_flag("--reconnect", command.reconnect,
-                "wait for a source that is not there yet or has gone, and continue after a marked "
-                "gap")
+                "wait for a source that is missing or lost, and continue after a marked gap")
       ->group("Recording");
-  add("--stall", command.stall_s, "S", "silence that is told (default 2)")->check(positive());
+  add("--stall", command.stall_s, "S", "report a stall after S seconds without data (default 2)")
+      ->check(positive());
   add("--stall-end", command.stall_end_s, "S",
-      "silence that is taken for a source that has gone (default 30)")
+      "consider the source lost after S seconds without data (default 30)")
       ->check(positive());
 }
 
@@ -57,27 +60,26 @@ void add_estimate_flags(CLI::App& verb, RecordCommand& command) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->group("Estimate");
   };
-  CLI::Option* estimate =
-      add("--estimate", command.estimate, "WHAT",
-          "work out and record beside the samples: wheel (angle and speed), tilt (roll and pitch) "
-          "or track (displacement)");
+  CLI::Option* estimate = add("--estimate", command.estimate, "WHAT",
+                              "estimate online and record beside the samples: wheel (angle and "
+                              "speed), tilt (roll and pitch) or track (displacement)");
   estimate->check(CLI::IsMember({"wheel", "tilt", "track"}));
-  add("--lag", command.lag_s, "S",
-      "of the estimates that know what follows (default 0.25, of track 3)")
+  add("--lag", command.lag_s, "S", "lag of the fixed-lag smoother (default 0.25; 3 for track)")
       ->check(not_negative())
       ->needs(estimate);
-  add("--radius", command.radius_m, "M", "of the wheel's sensors, where known")
+  add("--radius", command.radius_m, "M", "distance of the wheel's sensors from the axle, if known")
       ->check(positive())
       ->needs(estimate);
   add("--bandwidth", command.bandwidth_hz, "HZ",
-      "-3 dB of the filter of the wheel's sensors, which delays the angle (default: of the "
-      "--sensor file, or not known)")
+      "-3 dB bandwidth of the wheel sensors' filter, which delays the angle (default: from the "
+      "--sensor file, else unknown)")
       ->check(positive())
       ->needs(estimate);
-  add("--axis", command.axis, "AXIS", "of the wheel's axle, or of the motion (default: found)")
+  add("--axis", command.axis, "AXIS", "axis of the wheel's axle, or of the motion (default: found)")
       ->needs(estimate);
   add("--procedure", command.guide.procedure, "NAME",
-      "be led through it: tumble, multi-position or static; then calibrate, or tell the noise")
+      "guided procedure: tumble, multi-position or static, followed by calibration or noise "
+      "analysis")
       ->check(CLI::IsMember({"tumble", "multi-position", "static"}))
       ->excludes(estimate);
 }
@@ -88,15 +90,16 @@ void add_guide_flags(CLI::App& verb, GuideFlags& flags) {
     return verb.add_option(name, into, help)->type_name(type)->group("Procedure")->needs(procedure);
   };
   add("--positions", flags.positions, "N",
-      "in a turn of the table, or at least by hand (default 12)")
+      "positions per turn of the table, or minimum by hand (default 12)")
       ->check(CLI::Range(4, 360));
   add("--target-std", flags.target_std_mg, "MG",
-      "how well readings of 1 g shall be calibrated (default 1)")
+      "wanted standard deviation of calibrated measurements at 1 g (default 1)")
       ->check(positive());
   add("--minutes", flags.minutes, "MIN",
-      "of static (default: until the noise shows its floor, 5 to 60)")
+      "duration of static (default: until the noise floor is reached, 5 to 60)")
       ->check(positive());
-  add("--update-sensor", flags.update_sensor, "FILE.toml", "write what is found into this file");
+  add("--update-sensor", flags.update_sensor, "FILE.toml",
+      "write the results into this sensor file");
 }
 
 // Those of the input flags that make sense where samples are still to come.
@@ -107,12 +110,12 @@ void add_live_input_flags(CLI::App& verb, InputFlags& flags) {
   add("--rate", flags.rate_hz, "HZ", "ask the source for this sample rate (as rate= in SOURCE)")
       ->check(positive());
   add("--unit", flags.unit, "UNIT",
-      "of channels whose unit the source does not know: g, mg, m/s2, V, mV or counts")
+      "unit of channels if the source does not state it: g, mg, m/s2, V, mV or counts")
       ->check(CLI::IsMember({"g", "mg", "m/s2", "V", "mV", "counts"}))
       ->transform(unit_spelling());
   add("--channel", flags.channels, "NAME",
-      "of the estimate and the procedure; may be repeated (default: all accelerometers). All "
-      "channels are recorded")
+      "channel for the estimate and the procedure; may be repeated (default: all accelerometers). "
+      "All channels are recorded")
       ->allow_extra_args(false);
   add_place_flags(verb, flags);
 }
@@ -122,7 +125,7 @@ void add_record_flags(CLI::App& verb, RecordCommand& command) {
       verb.add_option("SOURCE", command.source,
                       "such as sim:, serial:/dev/ttyACM0, iio:ip:HOST; - is standard input");
   source->type_name("");
-  verb.add_flag("--list", command.list, "show what is there to record from, and all kinds of it")
+  verb.add_flag("--list", command.list, "list the sources found, and all kinds of source")
       ->excludes(source);
   add_file_flags(verb, command);
   add_estimate_flags(verb, command);
@@ -313,7 +316,7 @@ Verb record_verb() {
   return make_verb<RecordCommand>(
       {.name = "record",
        .group = "Live",
-       .help = "live samples to disk, from a device, the network, a pipe or the twin"},
+       .help = "record live samples from a device, the network, a pipe or the digital twin"},
       add_record_flags, run_record);
 }
 

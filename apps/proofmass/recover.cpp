@@ -18,11 +18,11 @@ struct RecoverCommand {
 };
 
 void add_recover_flags(CLI::App& verb, RecoverCommand& command) {
-  verb.add_option("FILE", command.file, "run.mcap.part, or any MCAP file that is damaged")
+  verb.add_option("FILE", command.file, "run.mcap.part, or any damaged MCAP file")
       ->type_name("")
       ->required();
   verb.add_option("-o,--output", command.output.output,
-                  "where to (default: run.mcap of run.mcap.part, else run.recovered.mcap)")
+                  "the new file (default: run.mcap for run.mcap.part, else run.recovered.mcap)")
       ->type_name("FILE.mcap")
       ->group("Output");
   add_output_flags(verb, command.output);
@@ -58,11 +58,10 @@ void run_recover(const RecoverCommand& command) {
 }  // namespace
 
 Verb recover_verb() {
-  return make_verb<RecoverCommand>(
-      {.name = "recover",
-       .group = "Live",
-       .help = "what is whole of a recording that was not closed, as a file that is"},
-      add_recover_flags, run_recover);
+  return make_verb<RecoverCommand>({.name = "recover",
+                                    .group = "Live",
+                                    .help = "recover the intact part of an unclosed recording"},
+                                   add_recover_flags, run_recover);
 }
 
 }  // namespace proofmass::app

@@ -35,10 +35,11 @@ void add_sensor_flags(CLI::App& verb, SensorCommand& command) {
                   "export: imu-yaml, for visual-inertial calibration, or c-header, for firmware")
       ->type_name("NAME")
       ->check(CLI::IsMember({"imu-yaml", "c-header"}));
-  verb.add_option("--rate", command.rate_hz, "export, imu-yaml: of the recordings to come")
+  verb.add_option("--rate", command.rate_hz, "export, imu-yaml: sample rate of the recordings")
       ->type_name("HZ")
       ->check(positive());
-  verb.add_option("--rostopic", command.rostopic, "export, imu-yaml: their topic (default /imu0)")
+  verb.add_option("--rostopic", command.rostopic,
+                  "export, imu-yaml: topic of the recordings (default /imu0)")
       ->type_name("NAME");
   verb.add_option("-o,--output", command.output.output,
                   "export: the new file (default: standard output)")
@@ -169,9 +170,7 @@ void run_sensor(const SensorCommand& command) {
 
 Verb sensor_verb() {
   return make_verb<SensorCommand>(
-      {.name = "sensor",
-       .group = "Characterise",
-       .help = "a sensor file's figures: shown, compared, or for other programs"},
+      {.name = "sensor", .group = "Characterise", .help = "show, compare or export sensor files"},
       add_sensor_flags, run_sensor);
 }
 

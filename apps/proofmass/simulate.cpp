@@ -18,29 +18,34 @@ namespace {
 void add_procedure_flags(CLI::App& verb, SimulateCommand& command) {
   CLI::Option* procedure =
       verb.add_option("--procedure", command.procedure,
-                      "instead of the rig a calibration: tumble, four-position, six-position or "
-                      "multi-position; or a slide along a line");
+                      "instead of the rig: tumble, four-position, six-position, multi-position, or "
+                      "slide (motion along a line)");
   procedure->type_name("NAME")->check(
       CLI::IsMember({"tumble", "four-position", "six-position", "multi-position", "slide"}));
   const auto add = [&](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->needs(procedure)->group("Procedure");
   };
-  add("--session", command.session, "N", "same sensor and table, other noise and hand")
+  add("--session", command.session, "N", "another session with the same sensor and table")
       ->check(not_negative());
-  add("--positions", command.positions, "N", "of tumble (default 24) or multi-position (24)");
-  add("--dwell", command.dwell_s, "S", "in each position")->check(positive());
-  add("--supply", command.supply_v, "V", "of the ratiometric sensor (default 3.3)")
+  add("--positions", command.positions, "N",
+      "number of positions of tumble or multi-position (default 24)");
+  add("--dwell", command.dwell_s, "S", "duration of each position")->check(positive());
+  add("--supply", command.supply_v, "V", "supply of the ratiometric sensor (default 3.3)")
       ->check(positive());
-  add("--strokes", command.strokes, "N", "of a slide, each followed by a rest (default 6)");
-  add("--repetitions", command.repetitions, "N", "of a slide: each stroke there and back so often");
-  add("--length", command.length_m, "M", "of a slide's stroke (default 0.4)")->check(finite());
-  add("--stroke-time", command.stroke_s, "S", "of a slide's stroke (default 1)")->check(positive());
-  add("--elevation", command.elevation_deg, "DEG", "of a slide's line above the horizontal")
+  add("--strokes", command.strokes, "N",
+      "slide: number of strokes, each followed by a rest (default 6)");
+  add("--repetitions", command.repetitions, "N", "slide: repetitions of each stroke");
+  add("--length", command.length_m, "M", "slide: length of a stroke (default 0.4)")
       ->check(finite());
-  verb.add_flag("--gravity-removed", command.gravity_removed, "of a slide, as phones do")
+  add("--stroke-time", command.stroke_s, "S", "slide: duration of a stroke (default 1)")
+      ->check(positive());
+  add("--elevation", command.elevation_deg, "DEG",
+      "slide: elevation of the line above the horizontal")
+      ->check(finite());
+  verb.add_flag("--gravity-removed", command.gravity_removed, "slide: remove gravity, as phones do")
       ->needs(procedure)
       ->group("Procedure");
-  verb.add_flag("--gyro", command.gyro, "of a slide: channels of angular rate")
+  verb.add_flag("--gyro", command.gyro, "slide: add angular-rate channels")
       ->needs(procedure)
       ->group("Procedure");
   add("--signal", command.signal, "KIND", "acceleration (default), voltage or counts")
@@ -50,15 +55,11 @@ void add_procedure_flags(CLI::App& verb, SimulateCommand& command) {
 void add_simulate_flags(CLI::App& verb, SimulateCommand& command) {
   verb.add_option("RIG", command.rig, "description, TOML (default: the thesis's rig)")
       ->type_name("");
-  verb.add_option("--seed", command.seed, "same seed, same numbers")
+  verb.add_option("--seed", command.seed, "seed of the random numbers")
       ->type_name("N")
       ->check(not_negative());
-  verb.add_option("--rpm", command.rpm, "turn at this speed throughout")
-      ->type_name("RPM")
-      ->check(finite());
-  verb.add_option("--rate", command.rate_hz, "samples a second")
-      ->type_name("HZ")
-      ->check(positive());
+  verb.add_option("--rpm", command.rpm, "constant speed")->type_name("RPM")->check(finite());
+  verb.add_option("--rate", command.rate_hz, "sample rate")->type_name("HZ")->check(positive());
   verb.add_option("--duration", command.duration_s, "length of the recording")
       ->type_name("S")
       ->check(positive());
@@ -66,8 +67,9 @@ void add_simulate_flags(CLI::App& verb, SimulateCommand& command) {
       ->type_name("M_PER_S2")
       ->check(positive());
   verb.add_flag("--datasheet-errors", command.datasheet_errors,
-                "misalignment, cross-axis, scale and nonlinearity as the datasheet allows");
-  verb.add_option("--adc-bits", command.adc_bits, "of the converter")->type_name("N");
+                "misalignment, cross-axis, scale-factor and nonlinearity errors within the "
+                "datasheet's limits");
+  verb.add_option("--adc-bits", command.adc_bits, "resolution of the converter")->type_name("N");
   verb.add_flag("--print-config", command.print_config, "print the description and stop");
   add_procedure_flags(verb, command);
   add_output_file(verb, command.output,
@@ -150,10 +152,11 @@ void run_simulate(const SimulateCommand& command) {
 }
 
 Verb simulate_verb() {
-  return make_verb<SimulateCommand>({.name = "simulate",
-                                     .group = "Study",
-                                     .help = "the rig, a calibration or a slide as a digital twin"},
-                                    add_simulate_flags, run_simulate);
+  return make_verb<SimulateCommand>(
+      {.name = "simulate",
+       .group = "Study",
+       .help = "digital twin of the rig, of a calibration procedure or of a slide"},
+      add_simulate_flags, run_simulate);
 }
 
 }  // namespace proofmass::app

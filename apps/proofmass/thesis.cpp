@@ -18,41 +18,41 @@ void add_recording_flags(CLI::App& verb, ThesisCommand& command) {
     return verb.add_option(name, into, help)->type_name(type);
   };
   add("--static", command.still, "FILE",
-      "your own recording at rest from switching on (default: simulated)");
+      "your own static recording from power-on (default: simulated)");
   CLI::Option* tumble =
       add("--tumble", command.tumble, "FILE",
-          "your own positions, or a recording that rests in them (default: simulated)");
+          "your own positions, or a recording with a rest in each (default: simulated)");
   add("--angles", command.angles_deg, "DEG,…",
-      "of that recording's rests, one for each in its order: \"0,90,180,270,0\"")
+      "angle of each rest of that recording, in order: \"0,90,180,270,0\"")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(finite())
       ->needs(tumble);
   add("--wheel", command.wheels, "FILE",
       "your own recordings of the turning wheel, one for each speed (default: simulated)");
-  add("--radius", command.radius_m, "M", "of your sensors from the axle, where known")
+  add("--radius", command.radius_m, "M", "distance of your sensors from the axle, if known")
       ->check(positive());
 }
 
 void add_thesis_flags(CLI::App& verb, ThesisCommand& command) {
   add_recording_flags(verb, command);
-  verb.add_option("--runs", command.runs, "simulated runs at each speed, behind the bands")
+  verb.add_option("--runs", command.runs, "simulated runs at each speed, for the bands")
       ->type_name("N")
       ->check(number("a whole number from 2 to 1000",
                      [](double x) { return x >= 2.0 && x <= 1000.0 && x == std::floor(x); }))
       ->capture_default_str();
-  verb.add_option("--static-hours", command.static_hours, "length of the simulated test at rest")
+  verb.add_option("--static-hours", command.static_hours, "duration of the simulated static test")
       ->type_name("H")
       ->check(number("hours from 0.1 to 24", [](double x) { return x >= 0.1 && x <= 24.0; }))
       ->capture_default_str();
-  verb.add_option("--seed", command.seed, "same seed, same numbers")
+  verb.add_option("--seed", command.seed, "seed of the random numbers")
       ->type_name("N")
       ->check(not_negative())
       ->capture_default_str();
   add_input_flags(verb, command.input);
   add_switch_on_flag(verb, command.input,
-                     "how long the sensors had been on at each recording's first sample (default 0 "
-                     "of --static; of --wheel it takes out the warm-up that --sensor knows of)");
+                     "time since power-on at the first sample of each recording (default 0 for "
+                     "--static; for --wheel it removes the warm-up drift in the --sensor file)");
   add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer(
@@ -95,7 +95,7 @@ Verb thesis_verb() {
   return make_verb<ThesisCommand>(
       {.name = "thesis",
        .group = "Study",
-       .help = "every table and figure of the thesis beside ours, simulated or of your own rig"},
+       .help = "every table and figure of the thesis beside ours, simulated or from your own rig"},
       add_thesis_flags, run_thesis);
 }
 

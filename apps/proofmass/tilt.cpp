@@ -41,37 +41,34 @@ void add_tilt_flags(CLI::App& verb, TiltCommand& command) {
     return verb.add_option(name, into, help)->type_name(type);
   };
   add("--base", command.base, "KIND",
-      "auto (default): still if it rests nearly throughout; still, or moving")
+      "auto (default; still if it rests nearly throughout), still or moving")
       ->check(CLI::IsMember({"auto", "still", "moving"}));
   add("--reads", command.reads, "SIGN",
-      "what an axis that points up reads at rest: +g (default), or -g as on an iPhone")
+      "output at rest of an axis that points up: +g (default), or -g as on an iPhone")
       ->check(CLI::IsMember({"+g", "-g"}));
   add("--gyro", command.gyro, "NAME",
       "the gyroscope's channels for x, y and z: three of them (default: found by name and unit)")
       ->allow_extra_args(false);
-  verb.add_flag("--no-gyro", command.no_gyro, "leave the gyroscope's channels alone");
+  verb.add_flag("--no-gyro", command.no_gyro, "do not use the gyroscope's channels");
   add("--rate-unit", command.rate_unit, "UNIT",
-      "of the gyroscope, where its heading has none: rad/s (default) or deg/s")
+      "unit of the gyroscope if its heading has none: rad/s (default) or deg/s")
       ->check(CLI::IsMember({"rad/s", "deg/s"}));
-  add("--shortest-rest", command.shortest_rest_s, "S",
-      "a rest lasts at least so long (default 0.5)")
+  add("--shortest-rest", command.shortest_rest_s, "S", "minimum duration of a rest (default 0.5)")
       ->check(positive());
   add("--bias-std", command.bias_std_mps2, "M_PER_S2",
-      "standard deviation of each axis' bias; with a --sensor file, of what it has changed by "
-      "since "
-      "the calibration (default: judged by the force at rest)")
+      "standard deviation of the bias of each axis; with a --sensor file, of its change since the "
+      "calibration (default: from the norm of the force at rest)")
       ->check(not_negative());
   add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", gravity_std_help)
       ->check(not_negative());
   CLI::Option* angle =
       add("--angle", command.angle, "COLUMN",
-          "the recording holds an angle instead of accelerations, in this column (name or number, "
-          "1 being the first)");
+          "column with an angle instead of accelerations (name, or number from 1)");
   add("--rate-channel", command.rate_channel, "COLUMN",
-      "and the gyroscope's rate about the same axis in this one")
+      "column with the gyroscope's rate about the same axis")
       ->needs(angle);
   add("--angle-unit", command.angle_unit, "UNIT",
-      "of that column, where its heading has none: rad (default) or deg")
+      "unit of that column if its heading has none: rad (default) or deg")
       ->check(CLI::IsMember({"rad", "deg"}))
       ->needs(angle);
   add_input_flags(verb, command.input);

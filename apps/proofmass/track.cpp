@@ -84,8 +84,7 @@ void add_motion_flags(CLI::App& verb, TrackCommand& command) {
       ->check(CLI::IsMember({"found", "ends"}))
       ->excludes(still);
   add("--turns", command.turns, "FILE", "list of times at which it turned round: velocity 0");
-  add("--shortest-rest", command.shortest_rest_s, "S",
-      "a rest lasts at least so long (default 0.5)")
+  add("--shortest-rest", command.shortest_rest_s, "S", "minimum duration of a rest (default 0.5)")
       ->check(positive());
   add("--rest-speed-std", command.rest_speed_std_mps, "M_PER_S",
       "speed that a sensor at rest may have (default 0.0001)")
@@ -96,9 +95,9 @@ void add_motion_flags(CLI::App& verb, TrackCommand& command) {
       ->check(not_negative());
   verb.add_flag("--take-as-acceleration", command.take_as_acceleration,
                 "give a displacement though the readings look like jerk");
-  verb.add_flag("--no-gyro", command.no_gyro, "leave the gyroscope's channels alone");
+  verb.add_flag("--no-gyro", command.no_gyro, "do not use the gyroscope's channels");
   add("--rate-unit", command.rate_unit, "UNIT",
-      "of the gyroscope, where its heading has none: rad/s (default) or deg/s")
+      "unit of the gyroscope if its heading has none: rad/s (default) or deg/s")
       ->check(CLI::IsMember({"rad/s", "deg/s"}));
 }
 

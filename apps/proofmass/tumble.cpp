@@ -28,36 +28,35 @@ void add_position_flags(CLI::App& verb, TumbleCommand& command) {
     return verb.add_option(name, into, help)->type_name(type);
   };
   add("--angles", command.angles_deg, "DEG,…",
-      "of a recording's rests, one for each in its order: \"0,90,180,270,0\"")
+      "angle of each rest of a recording, in order: \"0,90,180,270,0\"")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(finite());
   add("--rests", command.rests, "FILE",
-      "start and end of each rest, perhaps with the table's angle (default: found)");
+      "start and end of each rest, optionally with the table's angle (default: detected)");
   add("--angle", command.angle_channel, "NAME",
       "the column with the angle (default: found by name and unit)");
-  add("--rest", command.shortest_rest_s, "S", "the shortest rest to look for (default: found)")
+  add("--rest", command.shortest_rest_s, "S", "minimum duration of a rest (default: found)")
       ->check(positive());
-  add("--plane", command.planes, "1|2",
-      "in which the file was tumbled; once for all files or once for each")
+  add("--plane", command.planes, "1|2", "plane of the tumble; once for all files or once for each")
       ->allow_extra_args(false)
       ->check(CLI::IsMember({1, 2}));
   add("--mount", command.mounts, "0|180",
-      "how the sensor sat on the table; once for all files or once for each")
+      "mounting of the sensor on the table; once for all files or once for each")
       ->allow_extra_args(false)
       ->check(CLI::IsMember({0, 180}));
   add("--input-axis", command.input_axis, "NAME",
-      "the channel whose axis sees g·sin(angle) (default: found from the readings)");
+      "the channel whose axis measures g·sin(angle) (default: found from the data)");
   add("--indexing-std", command.indexing_std_deg, "DEG",
-      "standard deviation of the table's angles (default: 0.5, less where the residuals show it)")
+      "standard deviation of the table's angles (default: 0.5, less if the residuals show it)")
       ->check(not_negative());
   add("--drift-std", command.drift_std_mps2, "M_PER_S2",
-      "standard deviation of the amplitudes by which the bias wanders about a straight line "
-      "(default: 0.0057, 1 mg/√3, and a quarter of the linear drift; less where repeats show it)")
+      "standard deviation of the bias drift about a straight line (default: 0.0057, 1 mg/√3, and a "
+      "quarter of the linear drift; less if repeats show it)")
       ->check(not_negative());
   add("--bandwidth", command.bandwidth_hz, "HZ",
-      "of the sensor's filter, one pole, with --rotating --angle: its delay is taken out of the "
-      "misalignment")
+      "bandwidth of the sensor's one-pole filter, with --rotating --angle: its delay is removed "
+      "from the misalignment")
       ->check(positive());
   add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", gravity_std_help)
       ->check(not_negative());
@@ -65,13 +64,13 @@ void add_position_flags(CLI::App& verb, TumbleCommand& command) {
 
 void add_tumble_flags(CLI::App& verb, TumbleCommand& command) {
   verb.add_option("FILE", command.files,
-                  "positions (angle and output), or a recording that rests in them; - is standard "
+                  "positions (angle and output), or a recording with a rest in each; - is standard "
                   "input (CSV)")
       ->type_name("")
       ->required();
   add_position_flags(verb, command);
   verb.add_flag("--rotating", command.rotating,
-                "the sensor sat on a wheel that turned: scale factor and bias from its turns");
+                "the sensor rotated continuously: scale factor and bias from the turns");
   verb.add_option("--coefficients", command.coefficients,
                   "fit these coefficients of the whole model equation")
       ->type_name("K0,K1...")
@@ -262,11 +261,11 @@ void run_tumble(const TumbleCommand& command) {
 }
 
 Verb tumble_verb() {
-  return make_verb<TumbleCommand>(
-      {.name = "tumble",
-       .group = "Characterise",
-       .help = "scale factor, bias and the model's other coefficients from a turntable, IEEE 1293"},
-      add_tumble_flags, run_tumble);
+  return make_verb<TumbleCommand>({.name = "tumble",
+                                   .group = "Characterise",
+                                   .help = "scale factor, bias and further model coefficients from "
+                                           "a dividing head or rate table, IEEE 1293"},
+                                  add_tumble_flags, run_tumble);
 }
 
 }  // namespace proofmass::app

@@ -381,8 +381,7 @@ Verb tune_verb() {
   return make_verb<TuneCommand>(
       {.name = "tune",
        .group = "Estimate",
-       .help =
-           "Q, R and the bias's time constant of a filter from the recording that it is to run on"},
+       .help = "maximum-likelihood Q, R and bias time constant of a filter from a recording"},
       add_tune_flags, run_tune);
 }
 

@@ -31,43 +31,43 @@ void add_wheel_flags(CLI::App& verb, WheelCommand& command) {
   verb.add_option("--spin-axis", command.spin_axis,
                   "x, y, z, -x, -y, -z or \"X,Y,Z\" in the sensor's axes (default: found)")
       ->type_name("AXIS");
-  CLI::Option* radius =
-      verb.add_option("--radius", command.radius_m, "of the sensor from the axle, where known")
-          ->type_name("M")
-          ->check(not_negative());
+  CLI::Option* radius = verb.add_option("--radius", command.radius_m,
+                                        "distance of the sensor from the axle, if known")
+                            ->type_name("M")
+                            ->check(not_negative());
   verb.add_option("--radius-std", command.radius_std_m,
                   "standard deviation of --radius (default: 2 %, at least 0.0002)")
       ->type_name("M")
       ->check(not_negative())
       ->needs(radius);
   verb.add_option("--bandwidth", command.bandwidth_hz,
-                  "-3 dB of the sensor's filter, which delays the angle (default: of the --sensor "
-                  "file, or anywhere from 6 Hz to 2.5 times the rate)")
+                  "-3 dB bandwidth of the sensor's filter, which delays the angle (default: from "
+                  "the --sensor file, else assumed between 6 Hz and 2.5 times the rate)")
       ->type_name("HZ")
       ->check(positive());
   verb.add_option("--axle-tilt-std", command.axle_tilt_std_deg,
-                  "standard deviation of the axle from level (default 5)")
+                  "standard deviation of the axle's inclination (default 5)")
       ->type_name("DEG")
       ->check(not_negative());
-  verb.add_flag("--no-gyro", command.no_gyro, "leave the gyroscope's channels alone");
+  verb.add_flag("--no-gyro", command.no_gyro, "do not use the gyroscope's channels");
   verb.add_option("--rate-unit", command.rate_unit,
-                  "of the gyroscope, where its heading has none: rad/s (default) or deg/s")
+                  "unit of the gyroscope if its heading has none: rad/s (default) or deg/s")
       ->type_name("UNIT")
       ->check(CLI::IsMember({"rad/s", "deg/s"}));
   verb.add_option("--rolling-radius", command.rolling_radius_m,
-                  "on which the wheel rolls under a vehicle (0: on a bench): takes its speeding up "
-                  "out of the angle")
+                  "rolling radius of a vehicle's wheel (0: a bench); corrects the angle for the "
+                  "vehicle's acceleration")
       ->type_name("M")
       ->check(not_negative());
-  verb.add_option("--rim-radius", command.rim_radius_m, "of the rim, whose path is the distance")
+  verb.add_option("--rim-radius", command.rim_radius_m,
+                  "radius of the rim, whose path length is the distance")
       ->type_name("M")
       ->check(positive());
   add_input_flags(verb, command.input);
   add_switch_on_flag(
       verb, command.input,
-      "the sensors had been on so long at the file's first sample: takes the warm-up "
-      "that their sensor files know of out");
-  add_output_file(verb, command.output, "write the whole time series with standard deviations");
+      "time since power-on at the first sample; removes the warm-up drift in the sensor files");
+  add_output_file(verb, command.output, "write the time series with standard deviations");
   add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer("Example:\n  proofmass wheel hub.csv rim.csv --spin-axis z --report wheel.html");
