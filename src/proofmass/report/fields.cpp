@@ -108,6 +108,13 @@ Field text(std::string key, std::string_view value, About about) {
   return {std::move(key), {Kind::text}, std::move(about), Value(value)};
 }
 
+Field text_or_null(std::string key, std::string_view value, About about) {
+  return {std::move(key),
+          {.kind = Kind::text, .nullable = true},
+          std::move(about),
+          value.empty() ? Value() : Value(value)};
+}
+
 Field choice(std::string key,
              std::string_view value,
              std::vector<std::string> choices,

@@ -58,6 +58,8 @@ struct Field {
 namespace field {
 
 [[nodiscard]] Field text(std::string key, std::string_view value, About about = {});
+/// A text that is absent where it is empty.
+[[nodiscard]] Field text_or_null(std::string key, std::string_view value, About about = {});
 /// One of a fixed set of words.
 [[nodiscard]] Field choice(std::string key,
                            std::string_view value,

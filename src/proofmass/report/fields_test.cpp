@@ -30,6 +30,12 @@ TEST(ReasonsForNulls, NameTheKeyAtTheTop) {
             Reasons{"turns: null: the angle was lost"});
 }
 
+TEST(ReasonsForNulls, AreNotNamedAfterTheFileOfTheDocument) {
+  EXPECT_EQ(reasons_for_nulls({field::text("file", "a.csv"),
+                               field::text_or_null("unit", "", {.why_null = "not stated"})}),
+            Reasons{"unit: null: not stated"});
+}
+
 TEST(ReasonsForNulls, JoinTheKeysOfAnObjectThatHaveOneReason) {
   const auto absent = [](const char* key, const char* why) {
     return field::measured(key, std::nullopt, "1", {.why_null = why});
