@@ -133,11 +133,7 @@ void run_budget(const BudgetCommand& command) {
   std::sort(times_s.begin(), times_s.end());
   report.inputs = command.sensors;
   report.rows = estimate::position_budget(sensors, times_s);
-  show_notes(report.notes, "", command.output);
-  publish({.text = [&] { return report::budget_text(report); },
-           .json = [&] { return report::budget_json(report); },
-           .html = [&] { return report::budget_html(report); }},
-          command.output);
+  finish(report::describe(report), {}, command.output);
 }
 
 }  // namespace

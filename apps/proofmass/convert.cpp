@@ -122,10 +122,7 @@ void run_convert(const ConvertCommand& command) {
   show_notes(notes, "", command.output);
   const report::ConvertReport result{command.file, command.output.output, converted.head,
                                      converted.samples, notes};
-  publish({.text = [&] { return report::convert_text(result); },
-           .json = [&] { return report::convert_json(result); },
-           .html = {}},
-          command.output);
+  publish(report::describe(result), command.output);
   hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
 }
 

@@ -5,6 +5,7 @@
 
 #include "proofmass/core/recording.hpp"
 #include "proofmass/estimate/position_budget.hpp"
+#include "proofmass/report/document.hpp"
 
 namespace proofmass::report {
 
@@ -14,13 +15,8 @@ struct BudgetReport {
   std::vector<estimate::BudgetRow> rows;
 };
 
-/// The document of `budget`: docs/schema/budget.schema.json.
-[[nodiscard]] std::string budget_json(const BudgetReport& report);
-
-/// Error against time, both axes logarithmic, and the table.
-[[nodiscard]] std::string budget_html(const BudgetReport& report);
-
-/// The table for a terminal.
-[[nodiscard]] std::string budget_text(const BudgetReport& report);
+/// Position error against time, as a table and as a figure. It refers to the report, which must
+/// outlive it.
+[[nodiscard]] Document describe(const BudgetReport& report);
 
 }  // namespace proofmass::report

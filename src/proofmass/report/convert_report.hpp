@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "proofmass/core/recording.hpp"
+#include "proofmass/report/document.hpp"
 
 namespace proofmass::report {
 
@@ -15,10 +16,7 @@ struct ConvertReport {
   const std::vector<Note>& notes;
 };
 
-/// The document of `convert`: docs/schema/convert.schema.json.
-[[nodiscard]] std::string convert_json(const ConvertReport& report);
-
-/// One line: what went where.
-[[nodiscard]] std::string convert_text(const ConvertReport& report);
+/// Which samples went where, in one line. It refers to the report, which must outlive it.
+[[nodiscard]] Document describe(const ConvertReport& report);
 
 }  // namespace proofmass::report

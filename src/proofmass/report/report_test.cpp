@@ -150,11 +150,11 @@ TEST(WheelSeries, HasAColumnForEachStandardDeviationAndNoneForWhatIsAbsent) {
 TEST(BudgetReport, HasMilligramsBesideSiAndTheSameErrors) {
   const BudgetReport report{
       {}, {}, {{"Tactical", {0.3e-3 * standard_gravity_mps2, 0.0}, {{1.0, {0.00147, 0.0}}}}}};
-  const Json json = Json::parse(budget_json(report));
+  const Json json = Json::parse(to_json(describe(report)));
   EXPECT_NEAR(json["rows"][0]["bias_mg"].get<double>(), 0.3, 1e-12);
   EXPECT_EQ(json["rows"][0]["error_m"][0]["value"], 0.00147);
-  EXPECT_NE(budget_text(report).find("1.5 mm"), std::string::npos);
-  EXPECT_NE(budget_html(report).find("</svg>"), std::string::npos);
+  EXPECT_NE(to_text(describe(report)).find("1.5 mm"), std::string::npos);
+  EXPECT_NE(to_html(describe(report)).find("</svg>"), std::string::npos);
 }
 
 TEST(InspectJson, HasNullAndAReasonForAChannelWithoutAValue) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "proofmass/report/budget_report.hpp"
+#include "proofmass/report/convert_report.hpp"
 #include "proofmass/report/schema_test_support.hpp"
 #include "proofmass/report/tilt_fake.hpp"
 #include "proofmass/report/track_fake.hpp"
@@ -94,6 +96,19 @@ TEST(Schemas, Tune) {
       "Noise figures of a filter by maximum likelihood, its consistency, and the study of "
       "its gain.",
       {describe(found), describe(limited)});
+}
+
+TEST(Schemas, Budget) {
+  const BudgetReport report{{}, {}, {{"Tactical", {3e-3, 0.0}, {{1.0, {1.5e-3, 0.0}}}}}};
+  expect_schema("Position error by double integration from rest.", {describe(report)});
+}
+
+TEST(Schemas, Convert) {
+  Recording recording;
+  recording.channels = {{"x", {}, {}}};
+  const std::vector<Note> notes;
+  const ConvertReport report{"a.csv", "b.npy", recording, 0, notes};
+  expect_schema("Recording written in another format.", {describe(report)});
 }
 
 }  // namespace

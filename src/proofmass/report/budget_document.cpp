@@ -1,11 +1,8 @@
-#include "proofmass/report/budget_report.hpp"
-
 #include <array>
 #include <fmt/format.h>
 
 #include "proofmass/core/units.hpp"
-#include "proofmass/report/json.hpp"
-#include "proofmass/report/page.hpp"
+#include "proofmass/report/budget_report.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {
@@ -17,7 +14,7 @@ using estimate::BudgetRow;
 
 constexpr double mps2_per_mg = 1e-3 * standard_gravity_mps2;
 
-// "15 mm ± 2 mm": the error that the bias makes, and how sure that is.
+// "15 mm ± 2 mm": error by the bias, and its standard deviation.
 std::string error_words(const BudgetError& error) {
   const std::string size = length_words(error.position_m.value);
   return error.position_m.std > 0.0 ? size + " ± " + length_words(error.position_m.std) : size;
@@ -47,8 +44,8 @@ Figure error_figure(const BudgetReport& report) {
   constexpr std::array inks{Ink::blue, Ink::green, Ink::orange, Ink::red, Ink::purple, Ink::grey};
   Figure figure{.title = "Position error against time",
                 .description =
-                    "What double integration from rest makes of the bias: it grows with "
-                    "the square of the time.",
+                    "Double integration from rest: the error by a bias grows with the "
+                    "square of the time.",
                 .x = {.label = "Time (s)", .scale = AxisScale::log},
                 .y = {.label = "Error (m)", .scale = AxisScale::log},
                 .height = 340.0};
@@ -72,23 +69,40 @@ std::string conclusion(const BudgetReport& report) {
   const BudgetRow& worst = report.rows.back();
   const std::string when = duration_words(best.errors.back().t_s);
   if (report.rows.size() == 1) {
-    return fmt::format("After {} the position of {} is off by {}.", when, best.name,
+    return fmt::format("After {} the position error of {} is {}.", when, best.name,
                        error_words(best.errors.back()));
   }
-  return fmt::format("After {} the position is off by {} ({}) to {} ({}).", when,
+  return fmt::format("After {} the position error is {} ({}) to {} ({}).", when,
                      error_words(best.errors.back()), best.name, error_words(worst.errors.back()),
                      worst.name);
 }
 
-Object parts_object(const BudgetParts& parts) {
-  return {{"bias", parts.bias_m},
-          {"white", parts.white_m},
-          {"flicker", parts.flicker_m},
-          {"random_walk", parts.random_walk_m},
-          {"ramp", parts.ramp_m}};
+Field parts_field(const BudgetParts& parts) {
+  return field::object(
+      "std_parts",
+      {field::magnitude("bias", parts.bias_m), field::magnitude("white", parts.white_m),
+       field::magnitude("flicker", parts.flicker_m),
+       field::magnitude("random_walk", parts.random_walk_m),
+       field::magnitude("ramp", parts.ramp_m)},
+      {.meaning = "contributions to std in metres, which add in quadrature"});
 }
 
-// What the figure behind ± consists of at the last time; no row where it is 0.
+Fields error_fields(const BudgetError& error) {
+  return {field::number("t_s", error.t_s, {.meaning = "since the beginning of the integration"}),
+          field::number("value", error.position_m.value, {.meaning = "½ b t²"}),
+          field::magnitude("std", error.position_m.std), field::choice("unit", "m", {"m"}),
+          parts_field(error.parts)};
+}
+
+Fields row_fields(const BudgetRow& row) {
+  return {field::text("grade", row.name, {.meaning = "of sensor, or the sensor's name and axis"}),
+          field::measured("bias", row.bias_mps2, "m/s^2"),
+          field::number("bias_mg", row.bias_mps2.value / mps2_per_mg,
+                        {.meaning = "the same value in 1e-3 of standard gravity"}),
+          field::records("error_m", row.errors, error_fields)};
+}
+
+// Contributions to the standard deviation at the last time; no row where it is 0.
 Table parts_table(const BudgetReport& report) {
   Table table{"", {"Sensor", "Bias", "White noise", "Flicker", "Random walk", "Ramp"}, {}};
   for (const BudgetRow& row : report.rows) {
@@ -106,57 +120,39 @@ Table parts_table(const BudgetReport& report) {
   return table;
 }
 
-}  // namespace
-
-std::string budget_json(const BudgetReport& report) {
-  Array rows;
-  for (const BudgetRow& row : report.rows) {
-    Array errors;
-    for (const BudgetError& error : row.errors) {
-      errors.push_back(Object{{"t_s", error.t_s},
-                              {"value", error.position_m.value},
-                              {"std", error.position_m.std},
-                              {"unit", "m"},
-                              {"std_parts", parts_object(error.parts)}});
-    }
-    rows.push_back(Object{{"grade", row.name},
-                          {"bias", quantity(row.bias_mps2, "m/s^2")},
-                          {"bias_mg", row.bias_mps2.value / mps2_per_mg},
-                          {"error_m", std::move(errors)}});
-  }
-  return to_json({"budget", report.inputs, texts(report.notes, Severity::warning)},
-                 {{"rows", std::move(rows)}});
-}
-
-std::string budget_text(const BudgetReport& report) {
-  std::vector<std::vector<std::string>> rows{heading(report)};
-  for (const BudgetRow& row : report.rows) rows.push_back(cells(row));
-  return conclusion(report) + "\n\n" + aligned(rows);
-}
-
-std::string budget_html(const BudgetReport& report) {
+Section error_section(const BudgetReport& report) {
   Table table{"Error of the position by double integration, from rest", heading(report), {}};
   for (const BudgetRow& row : report.rows) table.rows.push_back(cells(row));
-  Page page{.verb = "budget",
-            .title = "Position error of an accelerometer left to itself",
-            .inputs = report.inputs,
-            .conclusion = conclusion(report),
-            .notes = report.notes};
-  page.sections = {
-      {.heading = "Error after each time",
-       .tables = {std::move(table)},
-       .figures = {error_figure(report)}},
+  Section section{.heading = "Error after each time",
+                  .tables = {std::move(table)},
+                  .figures = {[&] { return error_figure(report); }},
+                  .on_terminal = true};
+  Table parts = parts_table(report);
+  parts.page_only = true;
+  if (!parts.rows.empty()) section.tables.push_back(std::move(parts));
+  return section;
+}
+
+}  // namespace
+
+Document describe(const BudgetReport& report) {
+  Document document{.page = {.verb = "budget",
+                             .title = "Position error of an unaided accelerometer",
+                             .inputs = report.inputs,
+                             .conclusion = conclusion(report),
+                             .notes = report.notes},
+                    .fields = {field::records("rows", report.rows, row_fields)}};
+  document.page.sections = {
+      error_section(report),
       {.heading = "How it was computed",
        .paragraphs = {
-           "A bias b that no calibration has removed gives ½ b t² after the time t. The standard "
-           "deviation behind ± is √((½ σ t²)² + N² t³/3 + (½ σ_B t²)² + K² t⁵/20 + (R t³/6)²): σ "
-           "of the bias, N white noise (velocity random walk), K random walk from the beginning of "
-           "the integration, R ramp, and σ_B = B √((ln(P/(2π t)) + 1.17)/π) from flicker B of "
-           "periods up to P, one hour or ten times t. Scale errors and tilt act through the motion "
-           "and are not in it."}}};
-  Table parts = parts_table(report);
-  if (!parts.rows.empty()) page.sections.front().tables.push_back(std::move(parts));
-  return html(page);
+           "An uncorrected bias b gives ½ b t² after the time t. The standard deviation after ± "
+           "is √((½ σ t²)² + N² t³/3 + (½ σ_B t²)² + K² t⁵/20 + (R t³/6)²): σ of the bias, N "
+           "white noise (velocity random walk), K random walk from the beginning of the "
+           "integration, R ramp, and σ_B = B √((ln(P/(2π t)) + 1.17)/π) from flicker B of periods "
+           "up to P, one hour or ten times t. Scale errors and tilt act through the motion and "
+           "are not included."}}};
+  return document;
 }
 
 }  // namespace proofmass::report
