@@ -6,7 +6,7 @@ An offence is
   - an #include of a module that USES does not name, or a USES that no source needs;
   - a cycle among the USES lines;
   - a public header that shows anything but std, Eigen/Core and public headers of Proofmass;
-  - another module's private header, or a path that is not written "proofmass/module/file.hpp";
+  - another module's private header (tests may include its *_test_support.hpp), or a path that is not written "proofmass/module/file.hpp";
   - a listed header or source that does not exist, or one that exists and is not listed;
   - in the library (tests and *test_support* apart), output, exit, the environment or the process's locale.
 

@@ -74,7 +74,7 @@ class TheProgram(CompletionTest):
         self.assertIn("--gyro", self.words("proofmass tilt a.csv "))
 
     def test_says_what_only_the_user_knows(self):
-        self.assertEqual(self.offered("proofmass wheel --from "), [":text S: leave out what comes before"])
+        self.assertEqual(self.offered("proofmass wheel --from "), [":text S: start of the interval to use"])
 
     def test_offers_kinds_of_sources_and_what_is_there_of_one(self):
         kinds = self.words("proofmass record ")
