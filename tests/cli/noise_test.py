@@ -203,8 +203,11 @@ class Noise(CommandTest):
 
     def test_the_same_recording_gives_the_same_bytes(self):
         self.rest(samples=5000)
-        self.assertEqual(self.succeed("noise", "rest.csv", "--json", "-"),
-                         self.succeed("noise", "rest.csv", "--json", "-"))
+        def digits():
+            text = self.succeed("noise", "rest.csv", "--json", "-")
+            return text[:text.index('"provenance"')]  # which has the time of day
+
+        self.assertEqual(digits(), digits())
 
     def test_the_limits_hang_on_the_noise_type_that_was_asked_for(self):
         self.rest(samples=5000)

@@ -50,8 +50,11 @@ int main() {
     sensors[0].time_s.push_back(rig.recording.time.at(k));
   sensors[0].accel_mps2 = {
       rig.recording.find("acc1_x")->values, rig.recording.find("acc1_y")->values, {}};
-  const auto wheel = pm::estimate::estimate_wheel(sensors, {}).value();
-  std::cout << pm::version() << '\n' << pm::report::wheel_conclusion(wheel) << '\n';
+  pm::report::WheelReport report;
+  report.inputs = {"rig.csv"};
+  report.solution = pm::estimate::estimate_wheel(sensors, {}).value();
+  const pm::estimate::WheelSolution& wheel = report.solution;
+  std::cout << pm::version() << '\n' << pm::report::describe(report).page.conclusion << '\n';
 
   const bool right = std::abs(turned.bias[2]->value - 0.1) < 1e-9 && audit.samples == 3 &&
                      sensor.model.name == "A1" && decay.converged &&
