@@ -91,7 +91,7 @@ std::string to_text(const Document& document) {
   std::string out = document.page.conclusion + '\n';
   std::vector<std::vector<std::string>> rows;
   for (const KeyFigure& figure : document.page.key_figures)
-    rows.push_back({figure.label, figure.value});
+    if (!figure.page_only) rows.push_back({figure.label, figure.value});
   if (!rows.empty()) out += '\n' + aligned(rows);
   for (const Section& section : document.page.sections) print(out, section);
   return out;

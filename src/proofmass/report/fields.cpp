@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <limits>
 
 #include "proofmass/report/wording.hpp"
 
@@ -19,6 +20,9 @@ Field with_number(std::string key, const std::optional<double>& value, Shape sha
 }
 
 Value value_of(const Field& field) {
+  if (field.figure && field.shape.std_nullable)
+    return Object{
+        {"value", field.figure->value}, {"std", field.figure->std}, {"unit", field.shape.unit}};
   if (field.shape.kind == Kind::quantity) return quantity(field.figure, field.shape.unit);
   if (!field.fields) return field.scalar;
   if (field.shape.kind != Kind::list) return json_of(*field.fields);
@@ -27,10 +31,18 @@ Value value_of(const Field& field) {
   return items;
 }
 
-// Keys that are null for one reason.
+// Keys of one object that are null for one reason.
 struct NullGroup {
   std::string reason;
   std::vector<std::string> keys;
+};
+
+// Such keys with the object that they belong to, and what it has in common with the others of its
+// list: "positions[]".
+struct Nulls {
+  std::string place, pattern;
+  NullGroup group;
+  bool named = false;
 };
 
 void add_null(std::vector<NullGroup>& groups, const std::string& reason, const std::string& key) {
@@ -41,6 +53,21 @@ void add_null(std::vector<NullGroup>& groups, const std::string& reason, const s
     same->keys.push_back(key);
 }
 
+std::string without_index(const std::string& key) {
+  std::string out;
+  bool index = false;
+  for (const char c : key) {
+    if (c == ']') index = false;
+    if (!index) out += c;
+    if (c == '[') index = true;
+  }
+  return out;
+}
+
+std::string inside(const std::string& place, const std::string& key) {
+  return place.empty() ? key : place + "." + key;
+}
+
 // What names an object of a list: its first text that is a name.
 std::string name_in(const Fields& fields) {
   for (const Field& field : fields)
@@ -49,19 +76,27 @@ std::string name_in(const Fields& fields) {
   return {};
 }
 
-void collect(const Fields& fields, const std::string& path, std::vector<std::string>& out);
+// An object among the entries, by its path.
+struct Path {
+  std::string place, pattern;
+};
+
+void collect(const Fields& fields, const Path& path, std::vector<Nulls>& out);
 
 // Nulls among the items of a list belong to the object around it; objects in it stand by
 // themselves.
 void look(const Field& field,
           const std::string& key,
-          const std::string& path,
+          const Path& path,
           std::vector<NullGroup>& groups,
-          std::vector<std::string>& below) {
+          std::vector<Nulls>& below) {
   if (is_absent(field)) return add_null(groups, field.about.why_null, key);
+  if (field.figure && std::isnan(field.figure->std))
+    return add_null(groups, field.about.why_no_std, key + ".std");
   if (!field.fields) return;
-  const std::string inner = path.empty() ? key : path + "." + key;
-  if (field.shape.kind != Kind::list) return collect(*field.fields, inner, below);
+  if (field.shape.kind != Kind::list)
+    return collect(*field.fields,
+                   {inside(path.place, key), inside(path.pattern, without_index(key))}, below);
   for (std::size_t i = 0; i < field.fields->size(); ++i) {
     const Field& item = (*field.fields)[i];
     if (item.about.why_null.empty() && is_absent(item))
@@ -71,22 +106,29 @@ void look(const Field& field,
   }
 }
 
-void collect(const Fields& fields, const std::string& path, std::vector<std::string>& out) {
+void collect(const Fields& fields, const Path& path, std::vector<Nulls>& out) {
   const std::string name = name_in(fields);
-  const std::string place =
-      path.empty() || name.empty() ? path : fmt::format("{} ({})", path, name);
+  const bool named = !path.place.empty() && !name.empty();
+  const Path own{named ? fmt::format("{} ({})", path.place, name) : path.place, path.pattern};
   std::vector<NullGroup> groups;
-  std::vector<std::string> below;
-  for (const Field& field : fields) look(field, field.key, place, groups, below);
-  for (const NullGroup& group : groups) {
-    const std::string keys = fmt::format("{}", fmt::join(group.keys, ", "));
-    const bool by_path = place == path && group.keys.size() == 1;
-    const std::string_view link = path.empty() ? "" : by_path ? "." : ": ";
-    const std::string reason =
-        group.reason.empty() ? "this recording does not determine it" : group.reason;
-    out.push_back(fmt::format("{}{}{}: null: {}", place, link, keys, reason));
-  }
+  std::vector<Nulls> below;
+  for (const Field& field : fields) look(field, field.key, own, groups, below);
+  for (NullGroup& group : groups) out.push_back({own.place, own.pattern, std::move(group), named});
   out.insert(out.end(), below.begin(), below.end());
+}
+
+std::string sentence(const Nulls& nulls) {
+  const std::vector<std::string>& keys = nulls.group.keys;
+  const std::string_view link = nulls.place.empty()                ? ""
+                                : !nulls.named && keys.size() == 1 ? "."
+                                                                   : ": ";
+  return fmt::format("{}{}{}: null: {}", nulls.place, link, fmt::join(keys, ", "),
+                     nulls.group.reason);
+}
+
+std::string sentence(const Nulls& nulls, std::size_t times) {
+  return fmt::format("{}: {}: null ({} times): {}", nulls.pattern,
+                     fmt::join(nulls.group.keys, ", "), times, nulls.group.reason);
 }
 
 struct Shown {
@@ -129,6 +171,10 @@ Field flag(std::string key, bool value, About about) {
   return {std::move(key), {Kind::flag}, std::move(about), Value(value)};
 }
 
+Field flag(std::string key, const std::optional<bool>& value, About about) {
+  return {std::move(key), {.kind = Kind::flag, .nullable = true}, std::move(about), or_null(value)};
+}
+
 Field count(std::string key, std::size_t value, About about) {
   return {std::move(key), {Kind::count}, std::move(about), Value(std::uint64_t{value})};
 }
@@ -159,6 +205,27 @@ Field measured(std::string key,
               {.kind = Kind::quantity, .unit = std::string(unit), .nullable = true},
               std::move(about)};
   if (value && std::isfinite(value->value) && std::isfinite(value->std)) field.figure = value;
+  return field;
+}
+
+Field measured(std::string key,
+               const std::optional<double>& value,
+               const std::optional<double>& std,
+               std::string_view unit,
+               About about) {
+  Field field{
+      std::move(key),
+      {.kind = Kind::quantity, .unit = std::string(unit), .nullable = true, .std_nullable = true},
+      std::move(about)};
+  if (value && std::isfinite(*value))
+    field.figure = Uncertain{
+        *value, std && std::isfinite(*std) ? *std : std::numeric_limits<double>::quiet_NaN()};
+  return field;
+}
+
+Field interval(std::string key, const std::optional<std::array<double, 2>>& ends, About about) {
+  Field field{std::move(key), {.kind = Kind::list, .nullable = true}, std::move(about)};
+  if (ends) field.fields = Fields{number({}, (*ends)[0]), number({}, (*ends)[1])};
   return field;
 }
 
@@ -201,6 +268,10 @@ Field notes(const std::vector<Note>& notes) {
 
 }  // namespace field
 
+void append(Fields& fields, Fields more) {
+  for (Field& field : more) fields.push_back(std::move(field));
+}
+
 bool is_absent(const Field& field) {
   if (field.shape.kind == Kind::quantity) return !field.figure;
   return !field.fields && field.scalar.is_null();
@@ -213,8 +284,29 @@ Object json_of(const Fields& fields) {
 }
 
 std::vector<std::string> reasons_for_nulls(const Fields& fields) {
+  constexpr std::size_t most_listed = 3;
+  std::vector<Nulls> all;
+  collect(fields, {}, all);
   std::vector<std::string> out;
-  collect(fields, {}, out);
+  std::vector<std::vector<Nulls>> alike;
+  for (Nulls& one : all) {
+    if (one.group.reason.empty()) one.group.reason = "this recording does not determine it";
+    const auto same = std::ranges::find_if(alike, [&](const std::vector<Nulls>& others) {
+      const Nulls& other = others.front();
+      return other.pattern == one.pattern && other.group.keys == one.group.keys &&
+             other.group.reason == one.group.reason;
+    });
+    if (same == alike.end())
+      alike.push_back({std::move(one)});
+    else
+      same->push_back(std::move(one));
+  }
+  for (const std::vector<Nulls>& some : alike) {
+    if (some.size() > most_listed)
+      out.push_back(sentence(some.front(), some.size()));
+    else
+      for (const Nulls& one : some) out.push_back(sentence(one));
+  }
   return out;
 }
 
@@ -231,7 +323,9 @@ std::string shown_value(const Field& field) {
   if (field.shape.kind != Kind::quantity) return std::visit(Shown{}, field.scalar.state());
   const Display display =
       field.about.display.value_or(Display{field.shape.unit == "1" ? "" : field.shape.unit});
-  return with_std(scaled(field.figure, display.factor), display.unit, absent);
+  std::optional<Uncertain> figure = scaled(field.figure, display.factor);
+  if (figure && std::isnan(figure->std)) figure->std = 0.0;  // the value alone
+  return with_std(figure, display.unit, absent);
 }
 
 }  // namespace proofmass::report

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -31,6 +32,7 @@ struct About {
   std::string label = {};               ///< for people; empty: only in the document
   std::string why_null = {};            ///< the reason, should there be no value
   std::optional<Display> display = {};  ///< of a number; absent: as in the document
+  std::string why_no_std = {};  ///< the reason, should a quantity have no standard deviation
 };
 
 /// What may stand under a key.
@@ -42,6 +44,7 @@ struct Shape {
   std::vector<std::string> choices = {};  ///< of a choice
   bool nullable = false;
   bool not_negative = false;  ///< of a number
+  bool std_nullable = false;  ///< of a quantity
   bool of_texts = false;      ///< of a list
 };
 
@@ -50,7 +53,7 @@ struct Field {
   Shape shape;
   About about = {};
   Value scalar = {};                     ///< null where there is no value, and in lists and objects
-  std::optional<Uncertain> figure = {};  ///< of a quantity
+  std::optional<Uncertain> figure = {};  ///< of a quantity; its std NaN where there is none
   std::optional<Fields> fields = {};     ///< of a list or an object
 };
 
@@ -66,6 +69,7 @@ namespace field {
                            std::vector<std::string> choices,
                            About about = {});
 [[nodiscard]] Field flag(std::string key, bool value, About about = {});
+[[nodiscard]] Field flag(std::string key, const std::optional<bool>& value, About about = {});
 [[nodiscard]] Field count(std::string key, std::size_t value, About about = {});
 [[nodiscard]] Field number(std::string key, double value, About about = {});
 [[nodiscard]] Field number(std::string key, const std::optional<double>& value, About about = {});
@@ -78,6 +82,16 @@ namespace field {
                              const std::optional<Uncertain>& value,
                              std::string_view unit,
                              About about = {});
+/// The same, where the value may be known without its standard deviation.
+[[nodiscard]] Field measured(std::string key,
+                             const std::optional<double>& value,
+                             const std::optional<double>& std,
+                             std::string_view unit,
+                             About about = {});
+/// [lower, upper], or null.
+[[nodiscard]] Field interval(std::string key,
+                             const std::optional<std::array<double, 2>>& ends,
+                             About about = {});
 [[nodiscard]] Field object(std::string key, Fields fields, About about = {});
 /// An object that may be absent.
 [[nodiscard]] Field object_or_null(std::string key, std::optional<Fields> fields, About about = {});
@@ -88,6 +102,14 @@ namespace field {
 
 /// A list of strings.
 [[nodiscard]] Field texts(std::string key, const std::vector<std::string>& items, About about = {});
+
+/// A list of numbers.
+template <class Range>
+[[nodiscard]] Field numbers(std::string key, const Range& range, About about = {}) {
+  Fields items;
+  for (const double value : range) items.push_back(number({}, value));
+  return list(std::move(key), std::move(items), std::move(about));
+}
 
 /// A list with one object for each element: `fields_of(element)`.
 template <class Range, class FieldsOf>
@@ -105,13 +127,16 @@ template <class Range, class FieldsOf>
 
 }  // namespace field
 
+void append(Fields& fields, Fields more);
+
 [[nodiscard]] bool is_absent(const Field& field);
 
 /// The entries as JSON, in their order.
 [[nodiscard]] Object json_of(const Fields& fields);
 
 /// One sentence for each null, those of one object with one reason together:
-/// "sensors[0] (a.csv): radius_m, bias[0]: null: this recording does not determine them".
+/// "sensors[0] (a.csv): radius_m, bias[0]: null: this recording does not determine them"; the same
+/// of more than three objects of a list together, too: "positions[]: std: null (24 times): ...".
 [[nodiscard]] std::vector<std::string> reasons_for_nulls(const Fields& fields);
 
 /// The value as people read it, in its display unit, a list in parentheses; "not determined" where

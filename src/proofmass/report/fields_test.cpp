@@ -65,6 +65,24 @@ TEST(ReasonsForNulls, GiveTheReasonOfAnAbsentObjectOnce) {
             Reasons{"gyroscope: null: there is none"});
 }
 
+TEST(ReasonsForNulls, JoinTheObjectsOfAListThatHaveThem) {
+  const std::vector<int> four(4);
+  const Field points = field::records("points", four, [](int) -> Fields {
+    return {field::number("p", std::nullopt, {.why_null = "the noise is not known"})};
+  });
+  EXPECT_EQ(reasons_for_nulls({points}),
+            Reasons{"points[]: p: null (4 times): the noise is not known"});
+}
+
+TEST(Fields, AQuantityMayLackItsStandardDeviationAlone) {
+  const Field bias = field::measured("bias", 0.5, std::nullopt, "V", {.why_no_std = "four points"});
+  EXPECT_EQ(
+      json_text(json_of({bias})),
+      "{\n  \"bias\": {\n    \"value\": 0.5,\n    \"std\": null,\n    \"unit\": \"V\"\n  }\n}");
+  EXPECT_EQ(reasons_for_nulls({bias}), Reasons{"bias.std: null: four points"});
+  EXPECT_EQ(shown_value(bias), "0.500000 V");
+}
+
 TEST(ShownValue, IsInTheDisplayUnit) {
   const Field angle = field::measured("angle_rad", Uncertain{1.0, 0.01}, "rad",
                                       {.display = Display{"°", 180.0 / 3.14159265358979}});

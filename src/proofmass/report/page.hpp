@@ -66,6 +66,7 @@ struct Section {
 /// One figure that answers the question, set large above everything else.
 struct KeyFigure {
   std::string label, value;
+  bool page_only = false;  ///< a table has it on a terminal
 };
 
 struct Page {

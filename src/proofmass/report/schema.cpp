@@ -75,6 +75,30 @@ void add_items(Object& schema, const Samples& samples) {
   schema.push_back({"items", schema_of(entries_of(samples))});
 }
 
+// {"value", "std", "unit"}
+Object figure_schema(Value std_type, Object unit) {
+  return {{"type", "object"},
+          {"properties", Object{{"value", Object{{"type", "number"}}},
+                                {"std", Object{{"type", std::move(std_type)}, {"minimum", 0}}},
+                                {"unit", std::move(unit)}}},
+          {"required", Array{"value", "std", "unit"}},
+          {"additionalProperties", false}};
+}
+
+void add_quantity(Object& schema, const Samples& samples) {
+  const Shape& shape = samples.front()->shape;
+  if (shape.std_nullable) {
+    Object unit =
+        has_one_unit(samples) ? Object{{"const", shape.unit}} : Object{{"type", "string"}};
+    schema.push_back({"anyOf", Array{Object{{"type", "null"}},
+                                     figure_schema(Array{"number", "null"}, std::move(unit))}});
+    return;
+  }
+  schema.push_back({"$ref", "#/$defs/quantity"});
+  if (has_one_unit(samples))
+    schema.push_back({"properties", Object{{"unit", Object{{"const", shape.unit}}}}});
+}
+
 std::vector<const Fields*> objects_of(const Samples& samples) {
   std::vector<const Fields*> objects;
   for (const Field* field : samples)
@@ -105,9 +129,7 @@ void add_shape(Object& schema, const Samples& samples) {
       if (shape.not_negative) schema.push_back({"minimum", 0});
       break;
     case Kind::quantity:
-      schema.push_back({"$ref", "#/$defs/quantity"});
-      if (!has_one_unit(samples)) break;
-      schema.push_back({"properties", Object{{"unit", Object{{"const", shape.unit}}}}});
+      add_quantity(schema, samples);
       break;
     case Kind::list:
       schema.push_back({"type", type_of("array", samples)});
@@ -182,25 +204,22 @@ Object provenance() {
 }
 
 Object quantity_schema() {
-  Object figure{{"type", "object"},
-                {"properties", Object{{"value", Object{{"type", "number"}}},
-                                      {"std", Object{{"type", "number"}, {"minimum", 0}}},
-                                      {"unit", Object{{"type", "string"}}}}},
-                {"required", Array{"value", "std", "unit"}},
-                {"additionalProperties", false}};
   return {{"description", "a figure and its standard deviation, or null with a reason in warnings"},
-          {"anyOf", Array{Object{{"type", "null"}}, std::move(figure)}}};
+          {"anyOf",
+           Array{Object{{"type", "null"}}, figure_schema("number", Object{{"type", "string"}})}}};
 }
 
 }  // namespace
 
-std::string json_schema(const std::string& description, const std::vector<Document>& samples) {
+std::string json_schema(const std::string& description,
+                        const std::vector<Document>& samples,
+                        const std::string& name) {
   PM_EXPECTS(!samples.empty());
   const std::string& verb = samples.front().page.verb;
   std::vector<const Fields*> objects;
   for (const Document& sample : samples) objects.push_back(&sample.fields);
   Object schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                {"$id", verb + ".schema.json"},
+                {"$id", (name.empty() ? verb : name) + ".schema.json"},
                 {"title", "proofmass " + verb + " --json"},
                 {"description", description},
                 {"type", "object"}};
