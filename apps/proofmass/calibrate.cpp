@@ -17,7 +17,6 @@
 #include "proofmass/calibrate/session_noise.hpp"
 #include "proofmass/calibrate/validation.hpp"
 #include "proofmass/report/calibrate_report.hpp"
-#include "proofmass/report/json.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/calibration_update.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
@@ -352,7 +351,7 @@ void check_by_draws(const CalibrateCommand& command,
   if (check)
     report.check = std::move(check).value();
   else
-    report.notes.push_back({Severity::warning, "monte_carlo: null: " + check.error().message});
+    report.why_no_check = check.error().message;
 }
 
 }  // namespace
@@ -408,15 +407,8 @@ void run_calibrate(const CalibrateCommand& command) {
   if (!command.validate.empty()) validate(command, report);
   if (!command.update_sensor.empty())
     without_interruption([&] { update_sensor(command, set.reference_supply_v, report); });
-  const std::vector<Note> notes = report::calibrate_notes(report);
-  show_notes(notes, "", command.output);
-  if (!command.output.output.empty())
-    write_series(report::calibrate_series(report), command.output.output);
-  publish({.text = [&] { return report::calibrate_text(report); },
-           .json = [&] { return report::calibrate_json(report); },
-           .html = [&] { return report::calibrate_html(report); }},
-          command.output);
-  hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
+  finish(
+      report::describe(report), [&] { return report::calibrate_series(report); }, command.output);
 }
 
 Verb calibrate_verb() {

@@ -16,7 +16,7 @@ double place(std::size_t k) {
   return static_cast<double>(k + 1);
 }
 
-// A step for each position, since their means may be of different length.
+// A step for each position, since the durations of their means may differ.
 Band noise_band(const CalibrateReport& report) {
   Band band{.label = "± 2 standard deviations of the noise",
             .x = {},
@@ -35,7 +35,7 @@ Band noise_band(const CalibrateReport& report) {
   return band;
 }
 
-// Half the height of the plot: by the positions that were used.
+// Half the height of the plot, from the positions that are not suspect.
 double reach(const CalibrateReport& report) {
   double most = 0.0;
   for (const PoseResidual& pose : report.fit.poses) {
@@ -69,7 +69,7 @@ void add_point(const Eigen::Vector3d& up, Curve& curve) {
   curve.y.push_back(y);
 }
 
-// So many degrees from the middle of each disc.
+// Circles this many degrees from the centre of each disc.
 void add_circles(double from_z_deg, Mark mark, Figure& figure) {
   const double r = std::sqrt(1.0 - std::cos(from_z_deg * rad_per_deg));
   for (const double center : {-disc_center, disc_center}) {
@@ -135,14 +135,14 @@ Figure residual_figure(const CalibrateReport& report) {
   const double limit = reach(report);
   Figure figure{.title = "Residual of each position",
                 .description =
-                    "Length of the calibrated force less gravity, with every position in the "
-                    "fit, and by a fit to the others alone.",
+                    "Norm of the calibrated force less gravity: residuals of the fit, and "
+                    "leave-one-out residuals.",
                 .x = {.label = "Position", .min = 0.5, .max = static_cast<double>(n) + 0.5},
                 .y = {.label = "Residual (mg)", .min = -limit, .max = limit},
                 .levels = {{"", 0.0}}};
   if (Band band = noise_band(report); !band.x.empty()) figure.bands.push_back(std::move(band));
   Curve others{
-      .label = "by the others alone", .x = {}, .y = {}, .ink = Ink::orange, .mark = Mark::points};
+      .label = "leave-one-out", .x = {}, .y = {}, .ink = Ink::orange, .mark = Mark::points};
   Curve own{.label = "residual", .x = {}, .y = {}, .ink = Ink::blue, .mark = Mark::points};
   for (std::size_t k = 0; k < n; ++k) {
     const PoseResidual& pose = report.fit.poses[k];
@@ -174,11 +174,10 @@ Figure residual_figure(const CalibrateReport& report) {
 }
 
 Figure direction_figure(const CalibrateReport& report) {
-  Figure figure{.title = "Where upwards was, in the sensor's axes",
+  Figure figure{.title = "Upward directions in the sensor's axes",
                 .description =
-                    "Left the directions with +z up, right those with −z up, on a map of equal "
-                    "areas: gaps are as large as they look. The rim is z level, the inner circle "
-                    "45° from z.",
+                    "Left: +z up, right: −z up, in an equal-area projection. The rim is z "
+                    "horizontal, the inner circle 45° from z.",
                 .x = {.label = "", .scale = AxisScale::bare, .min = -2.45, .max = 2.45},
                 .y = {.label = "", .scale = AxisScale::bare, .min = -1.2, .max = 1.2},
                 .height = 396.0};
@@ -199,42 +198,49 @@ Figure direction_figure(const CalibrateReport& report) {
   return figure;
 }
 
-std::vector<Figure> supply_figures(const CalibrateReport& report) {
-  if (!report.supply) return {};
+Figure supply_bias_figure(const CalibrateReport& report) {
   const bool voltage = report.unit.quantity == Quantity::voltage;
   const double factor = voltage ? 1e3 : 1.0;
   Figure bias{.title = "Bias against the supply",
               .description =
-                  "Change from the bias at the reference supply, by each calibration "
-                  "and by the line through them.",
+                  "Change from the bias at the reference supply: each calibration, and "
+                  "the line fitted to them.",
               .x = {.label = "Supply (V)"},
               .y = {.label = fmt::format("Change of bias ({})",
                                          voltage ? "mV" : print_unit(report.unit.symbol))}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<calibrate::SupplyAxis>& found = report.supply->axes[axis];
+    if (!found) continue;
+    const auto change = [&](const std::optional<Uncertain>& figure) {
+      return figure ? std::optional(factor * (figure->value - found->zero_ref.value))
+                    : std::nullopt;
+    };
+    add_axis(
+        report, axis, [&](const SuppliedFit& one) { return change(one.fit.bias[axis]); },
+        [&](const calibrate::AtSupply& at) { return change(at.bias); }, bias);
+  }
+  return bias;
+}
+
+Figure supply_scale_figure(const CalibrateReport& report) {
   Figure scale{.title = "Scale against the supply",
                .description =
-                   "Change from the scale at the reference supply, by each calibration "
-                   "and by the power of the supply that fits them.",
+                   "Change from the scale at the reference supply: each calibration, "
+                   "and the power of the supply fitted to them.",
                .x = {.label = "Supply (V)"},
                .y = {.label = "Change of scale (%)"}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::optional<calibrate::SupplyAxis>& found = report.supply->axes[axis];
     if (!found) continue;
-    const auto bias_change = [&](const std::optional<Uncertain>& figure) {
-      return figure ? std::optional(factor * (figure->value - found->zero_ref.value))
-                    : std::nullopt;
-    };
-    const auto scale_change = [&](const std::optional<Uncertain>& figure) {
+    const auto change = [&](const std::optional<Uncertain>& figure) {
       return figure ? std::optional(100.0 * (figure->value / found->scale_ref.value - 1.0))
                     : std::nullopt;
     };
     add_axis(
-        report, axis, [&](const SuppliedFit& one) { return bias_change(one.fit.bias[axis]); },
-        [&](const calibrate::AtSupply& at) { return bias_change(at.bias); }, bias);
-    add_axis(
-        report, axis, [&](const SuppliedFit& one) { return scale_change(one.fit.scale[axis]); },
-        [&](const calibrate::AtSupply& at) { return scale_change(at.scale); }, scale);
+        report, axis, [&](const SuppliedFit& one) { return change(one.fit.scale[axis]); },
+        [&](const calibrate::AtSupply& at) { return change(at.scale); }, scale);
   }
-  return {std::move(bias), std::move(scale)};
+  return scale;
 }
 
 }  // namespace proofmass::report

@@ -16,14 +16,15 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/report/certificate.hpp"
+#include "proofmass/report/document.hpp"
 
 namespace proofmass::report {
 
 /// How the poses came to be known.
 enum class PoseOrigin {
   found,     ///< rests found in the recording
-  labelled,  ///< by the recording's own labels
-  listed,    ///< by a list of intervals
+  labelled,  ///< labels in the recording
+  listed,    ///< a list of intervals
   table,     ///< a table of means
 };
 
@@ -35,7 +36,7 @@ struct PoseFile {
   std::size_t samples = 0;   ///< of the recording; 0 of a table
   double duration_s = 0.0;   ///< 0 where its rate is not known
   bool times_known = true;   ///< false: start and end of its poses are in samples
-  std::size_t rejected = 0;  ///< samples at rest that were passed over: no number, or a spike
+  std::size_t rejected = 0;  ///< samples at rest that are not finite or outliers
 };
 
 /// One of several calibrations at different supplies.
@@ -49,14 +50,15 @@ struct SuppliedFit {
 struct CalibrateReport {
   std::vector<std::string> inputs;  ///< files, as the user named them
   std::vector<PoseFile> files;
-  std::string sensor;                  ///< what the three channels' names share
-  Unit unit;                           ///< of the reading: m/s^2, V or counts
+  std::string sensor;                  ///< common part of the three channels' names
+  Unit unit;                           ///< of the output: m/s^2, V or counts
   std::vector<calibrate::Pose> poses;  ///< one for each of fit.poses; times in s
   std::vector<std::size_t> pose_file;  ///< index into files
   std::array<double, 3> sample_std{};  ///< of one sample at rest; 0 where not known
   calibrate::MultiPosition fit;        ///< type B contributions included
   std::vector<calibrate::UncertaintyBudget> budgets;
   std::optional<calibrate::MonteCarloCheck> check;
+  std::string why_no_check;  ///< where one was requested and failed
   /// Between sessions: beside what the figures' own uncertainties say; in the certificate's
   /// budgets.
   std::optional<calibrate::BiasStability> stability;
@@ -69,24 +71,15 @@ struct CalibrateReport {
   std::vector<Note> notes;      ///< of reading and preparing; those of the fit are added
 };
 
-/// The document of `calibrate`: docs/schema/calibrate.schema.json.
-[[nodiscard]] std::string calibrate_json(const CalibrateReport& report);
+/// The nine figures with their uncertainties, the positions with their residuals, budgets, next
+/// pose, supplies, and the certificate to print. It refers to the report, which must outlive it.
+[[nodiscard]] Document describe(const CalibrateReport& report);
 
-/// The page: conclusion, key figures, residual of each pose with its bounds, the poses' directions
-/// on the sphere, table of poses, budgets, next pose, supplies, and the certificate to print.
-[[nodiscard]] std::string calibrate_html(const CalibrateReport& report);
-
-/// For a terminal, without colour, closed by a newline.
-[[nodiscard]] std::string calibrate_text(const CalibrateReport& report);
-
-/// "24 positions, nine parameters: readings at rest are good to 0.06 mg; …", a verdict in words.
-[[nodiscard]] std::string calibrate_conclusion(const CalibrateReport& report);
-
-/// All notes: the report's own, then the fit's; suspects as Severity::bad, lack of fit and poses
-/// that are doubtful as warnings.
+/// All notes: the report's own, then the fit's; suspects as Severity::bad, lack of fit and doubtful
+/// poses as warnings.
 [[nodiscard]] std::vector<Note> calibrate_notes(const CalibrateReport& report);
 
-/// One row a pose: start, end, means, force, residual, leave-one-out residual: what `--output`
+/// One row per pose: start, end, means, force, residual, leave-one-out residual: what `--output`
 /// writes.
 [[nodiscard]] Recording calibrate_series(const CalibrateReport& report);
 

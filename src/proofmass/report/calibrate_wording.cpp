@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "proofmass/calibrate/direction_words.hpp"
 #include "proofmass/calibrate/multi_position_budget.hpp"
-#include "proofmass/calibrate/rest_accuracy.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {
@@ -24,12 +24,12 @@ const std::optional<Uncertain>& figure_of(const MultiPosition& fit, std::size_t 
 }
 
 std::string meaning_of(std::size_t k, bool acceleration) {
-  constexpr std::array<const char*, 3> angles{"of x and y away from a right angle",
-                                              "of x and z away from a right angle",
-                                              "of y and z away from a right angle"};
+  constexpr std::array<const char*, 3> angles{"non-orthogonality of x and y",
+                                              "non-orthogonality of x and z",
+                                              "non-orthogonality of y and z"};
   if (k >= 6) return angles[k - 6];
-  if (k >= 3) return acceleration ? "reading over acceleration" : "reading per g";
-  return "reading at 0 g";
+  if (k >= 3) return acceleration ? "output over acceleration" : "output per g";
+  return "output at 0 g";
 }
 
 void set_units(std::size_t k, const Unit& unit, CalibrationFigure& out) {
@@ -54,7 +54,7 @@ void set_units(std::size_t k, const Unit& unit, CalibrationFigure& out) {
   out.printed_unit = acceleration ? "" : printed + "/g";
 }
 
-// The budget's interval, which knows the degrees of freedom of all its lines.
+// By the budget, which has the degrees of freedom of all its lines.
 double half_width(const CalibrateReport& report, const std::string& key, double std) {
   for (const calibrate::UncertaintyBudget& budget : report.budgets)
     if (budget.measurand.quantity == key) return budget.expanded_95;
@@ -65,7 +65,7 @@ std::string with_unit(const std::string& number, const std::string& unit) {
   return unit.empty() ? number : number + " " + unit;
 }
 
-// Two digits without powers of ten: the interval of a scale stands beside 1.01002.
+// Two digits without powers of ten, as beside a scale of 1.01002.
 std::string two_digits(double value) {
   constexpr int most = 9;
   if (!(value > 0.0)) return "0";
@@ -73,18 +73,7 @@ std::string two_digits(double value) {
   return fixed(value, decimals);
 }
 
-// Why the angles were not fitted: the first words of the fit's own, which stand among the notes.
-std::string why_no_angles(const MultiPosition& fit) {
-  const std::string start = "misalignment_rad: null: ";
-  for (const std::string& note : fit.notes) {
-    if (!note.starts_with(start)) continue;
-    const std::string why = note.substr(start.size());
-    return why.substr(0, why.find(';'));
-  }
-  return "the positions do not carry it";
-}
-
-// Decimals that leave the typical residual two digits; rounding is no residual.
+// Decimals that leave the typical residual two digits; residuals below it are rounding.
 int residual_decimals(const CalibrateReport& report) {
   const double rms = report.fit.residual_rms_mps2 / mg;
   constexpr double rounding = 1e-6;
@@ -92,7 +81,7 @@ int residual_decimals(const CalibrateReport& report) {
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(rms))), 0, 6);
 }
 
-// The first row is the head.
+// All rows but the first, which is the head.
 void without_empty_columns(std::vector<std::vector<std::string>>& rows) {
   for (std::size_t column = rows.front().size(); column-- > 0;) {
     const auto blank = [&](const std::vector<std::string>& row) { return row[column].empty(); };
@@ -105,13 +94,36 @@ void without_empty_columns(std::vector<std::vector<std::string>>& rows) {
 std::string verdict_of(const CalibrateReport& report, std::size_t k) {
   const PoseResidual& pose = report.fit.poses[k];
   if (pose.suspect)
-    return pose.used ? "contradicts the others; kept" : "contradicts the others; left out";
+    return pose.used ? "contradicts the others; kept" : "contradicts the others; excluded";
   const std::vector<std::size_t>& doubtful = report.fit.doubtful;
   if (std::find(doubtful.begin(), doubtful.end(), k) != doubtful.end()) return "doubtful";
   return "";
 }
 
+// "12.3–15.1 s", "samples 120–450", "" where no times are known.
+std::string time_words(const CalibrateReport& report, std::size_t k) {
+  const calibrate::Pose& pose = report.poses[k];
+  if (!pose.start_s || !pose.end_s) return "";
+  const PoseFile& file = report.files[report.pose_file[k]];
+  if (!file.times_known)
+    return fmt::format("samples {}–{}", compact(*pose.start_s, 9), compact(*pose.end_s, 9));
+  const int decimals = *pose.end_s < 1e4 ? 1 : 0;
+  return fmt::format("{}–{} s", fixed(*pose.start_s, decimals), fixed(*pose.end_s, decimals));
+}
+
+constexpr std::string_view no_misalignment = "misalignment_rad: null: ";
+
 }  // namespace
+
+bool is_reason_of_null(const std::string& note) {
+  return note.find(": null: ") != std::string::npos;
+}
+
+std::string why_no_misalignment(const MultiPosition& fit) {
+  for (const std::string& note : fit.notes)
+    if (note.starts_with(no_misalignment)) return note.substr(no_misalignment.size());
+  return "the positions do not determine it";
+}
 
 std::vector<CalibrationFigure> calibration_figures(const CalibrateReport& report) {
   std::vector<CalibrationFigure> out;
@@ -120,6 +132,8 @@ std::vector<CalibrationFigure> calibration_figures(const CalibrateReport& report
   for (std::size_t k = 0; k < 9; ++k) {
     CalibrationFigure& one = out.emplace_back();
     one.key = calibrate::parameter_names()[k];
+    one.label = one.key;
+    one.label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(one.label[0])));
     one.meaning = meaning_of(k, acceleration);
     one.figure = figure_of(report.fit, k);
     if (one.figure && known) one.half_width_95 = half_width(report, one.key, one.figure->std);
@@ -129,7 +143,7 @@ std::vector<CalibrationFigure> calibration_figures(const CalibrateReport& report
 }
 
 std::string figure_words(const CalibrationFigure& figure, bool std_known) {
-  if (!figure.figure) return "not determined";
+  if (!figure.figure) return std::string(absent);
   const double value = figure.figure->value * figure.factor;
   if (!std_known) return with_unit(significant(value, 6), figure.printed_unit);
   return with_std(Uncertain{value, figure.figure->std * figure.factor}, figure.printed_unit);
@@ -137,12 +151,13 @@ std::string figure_words(const CalibrationFigure& figure, bool std_known) {
 
 std::vector<std::vector<std::string>> figure_rows(const CalibrateReport& report) {
   const bool known = stds_known(report);
-  std::vector<std::vector<std::string>> rows{{"figure", "value", "95 %", "what it is"}};
+  std::vector<std::vector<std::string>> rows{{"Figure", "Value", "95 %", "Meaning"}};
+  const std::string why = why_no_misalignment(report.fit);
   for (const CalibrationFigure& one : calibration_figures(report)) {
-    const std::string band =
-        one.half_width_95 ? "± " + two_digits(*one.half_width_95 * one.factor) : "";
-    rows.push_back({one.key, figure_words(one, known), band,
-                    one.figure ? one.meaning : why_no_angles(report.fit)});
+    const std::string band =  // the sign stays on the line of its number
+        one.half_width_95 ? "±\u00a0" + two_digits(*one.half_width_95 * one.factor) : "";
+    rows.push_back({one.label, figure_words(one, known), band,
+                    one.figure ? one.meaning : why.substr(0, why.find(';'))});
   }
   without_empty_columns(rows);
   return rows;
@@ -159,29 +174,15 @@ std::string model_words(PoseModel model) {
     case PoseModel::norm_6:
       return "six parameters";
     case PoseModel::given_12:
-      return "twelve parameters by given directions";
+      return "twelve parameters from given directions";
     case PoseModel::six_position:
       break;
   }
-  return "six directions taken for exact";
+  return "six directions assumed exact";
 }
 
-std::string accuracy_words(const CalibrateReport& report) {
-  const std::optional<calibrate::RestAccuracy> found = calibrate::rest_accuracy(report.fit);
-  if (!found)
-    return "how good they are cannot be told: no position is to spare, and the noise of the means "
-           "is not known";
-  std::string text = "readings at rest are good to " + mg_words(found->overall_mps2) + " (68 %)";
-  constexpr double much = 2.0;
-  if (found->overall_mps2 > much * found->by_noise_mps2) {
-    text += fmt::format(", most of it from {}; noise alone leaves {}", found->main_type_b,
-                        mg_words(found->by_noise_mps2));
-  }
-  if (found->worst_mps2 > much * found->overall_mps2) {
-    text += fmt::format(", but to {} with {}, where positions are missing",
-                        mg_words(found->worst_mps2), calibrate::direction_words(found->worst_up));
-  }
-  return text;
+bool has_free_directions(PoseModel model) {
+  return model == PoseModel::norm_9 || model == PoseModel::norm_6;
 }
 
 std::string mg_words(double accel_mps2) {
@@ -191,16 +192,6 @@ std::string mg_words(double accel_mps2) {
   if (std::abs(value) < 1e-3) return significant(value * 1e3, 2) + " µg";
   if (std::abs(value) >= 1e3) return significant(value * 1e-3, 3) + " g";
   return significant(value, std::abs(value) >= 100.0 ? 3 : 2) + " mg";
-}
-
-std::string time_words(const CalibrateReport& report, std::size_t k) {
-  const calibrate::Pose& pose = report.poses[k];
-  if (!pose.start_s || !pose.end_s) return "";
-  const PoseFile& file = report.files[report.pose_file[k]];
-  if (!file.times_known)
-    return fmt::format("samples {}–{}", compact(*pose.start_s, 9), compact(*pose.end_s, 9));
-  const int decimals = *pose.end_s < 1e4 ? 1 : 0;
-  return fmt::format("{}–{} s", fixed(*pose.start_s, decimals), fixed(*pose.end_s, decimals));
 }
 
 std::string position_words(const CalibrateReport& report, std::size_t k) {
@@ -217,7 +208,7 @@ std::string position_words(const CalibrateReport& report, std::size_t k) {
 std::vector<std::vector<std::string>> position_rows(const CalibrateReport& report) {
   const int decimals = residual_decimals(report);
   std::vector<std::vector<std::string>> rows{
-      {"position", "when", "direction", "residual, mg", "by the others, mg", "t", "verdict"}};
+      {"Position", "Time", "Up", "Residual, mg", "Leave-one-out, mg", "t", ""}};
   for (std::size_t k = 0; k < report.poses.size(); ++k) {
     const PoseResidual& pose = report.fit.poses[k];
     std::string where = report.poses[k].label;

@@ -13,7 +13,7 @@ namespace {
 using calibrate::BudgetLine;
 using calibrate::UncertaintyBudget;
 
-// SI units in which the figures of an accelerometer are all zeros, and what people write instead.
+// SI units in which the figures of an accelerometer begin with zeros, and those printed instead.
 struct PrintedUnit {
   std::string_view si, printed;
   double factor;
@@ -105,7 +105,7 @@ Table results_table(const CertificateData& data) {
   return table;
 }
 
-// u(x) of a relative contribution is read in per cent.
+// u(x) of a relative contribution is shown in per cent.
 PrintedUnit printed_input(const std::string& si) {
   return si == "1" ? PrintedUnit{"1", "%", 100.0} : printed(si);
 }
@@ -167,10 +167,10 @@ Section limits_section(const CertificateData& data) {
   section.points = {
       "Other temperatures and supplies than those stated; drift and ageing since the day of "
       "measurement, beyond a line of the budget on stability between sessions.",
-      "The angle between the sensor's axes and its case, which gravity alone does not show.",
+      "The angle between the sensor's axes and its case, which gravity alone does not determine.",
       "Forces beyond ± 1 g, vibration, and the response to frequency: the sensor was at rest.",
-      "Traceability of local gravity, of the readings' reference and of the contributions of type "
-      "B, for which whoever signs answers."};
+      "Traceability of local gravity, of the reference of the outputs and of the type B "
+      "contributions, for which the signatory is responsible."};
   section.points.insert(section.points.end(), data.limits.begin(), data.limits.end());
   section.signatures = {"Certificate number", "Laboratory", "Place and date", "Measured by",
                         "Approved by"};
@@ -180,8 +180,8 @@ Section limits_section(const CertificateData& data) {
 Section budgets_section(const CertificateData& data) {
   Section section{.heading = "Uncertainty budgets"};
   section.paragraphs = {
-      "u(x) is the standard uncertainty of each source, c the sensitivity of the result to it, "
-      "ν its degrees of freedom. Type A was evaluated by statistics, type B by other means."};
+      "u(x) is the standard uncertainty of each source, c the sensitivity coefficient, ν the "
+      "degrees of freedom. Type A is evaluated by statistics, type B by other means."};
   if (!data.equations.empty()) section.paragraphs.emplace_back("Model: " + lines(data.equations));
   if (!data.monte_carlo.empty())
     section.paragraphs.push_back("Check by Monte Carlo, after JCGM 101:2008: " + data.monte_carlo);
@@ -196,17 +196,6 @@ std::vector<Section> certificate_sections(const CertificateData& data) {
   std::vector<Section> sections{head_section(data), results_section(data), limits_section(data)};
   if (!data.budgets.empty()) sections.push_back(budgets_section(data));
   return sections;
-}
-
-std::string certificate_html(const CertificateData& data) {
-  const std::string serial = data.serial.empty() ? "" : ", serial number " + data.serial;
-  Page page{.verb = "certificate",
-            .title = stated(data.name) + serial,
-            .inputs = data.files,
-            .conclusion = {}};
-  page.sections = certificate_sections(data);
-  page.sections.front().new_sheet = false;
-  return html(page);
 }
 
 }  // namespace proofmass::report

@@ -56,6 +56,14 @@ CertificateData fake_certificate() {
   return data;
 }
 
+std::string page_of(const CertificateData& data) {
+  return html({.verb = "certificate",
+               .title = data.serial,
+               .inputs = data.files,
+               .conclusion = {},
+               .sections = certificate_sections(data)});
+}
+
 const Table& results_of(const std::vector<Section>& sections) {
   return sections.at(1).tables.at(0);
 }
@@ -86,7 +94,7 @@ TEST(Certificate, NamesEverySourceWithItsShare) {
 TEST(Certificate, SaysWhatIsNotStatedAndWhatItDoesNotCover) {
   CertificateData bare;
   bare.not_determined = {"misalignment: null: six parameters were asked for"};
-  const std::string page = certificate_html(bare);
+  const std::string page = page_of(bare);
   EXPECT_NE(page.find("not stated"), std::string::npos);
   EXPECT_NE(page.find("six parameters were asked for"), std::string::npos);
   EXPECT_EQ(page.find("Uncertainty budgets"), std::string::npos);
@@ -113,7 +121,7 @@ TEST(Certificate, OfCertainFiguresHasNoUncertainty) {
 }
 
 TEST(Certificate, IsOnePageThatPrintsOnPaper) {
-  const std::string page = certificate_html(fake_certificate());
+  const std::string page = page_of(fake_certificate());
   EXPECT_NE(page.find("level of confidence of 95 percent"), std::string::npos);
   EXPECT_NE(page.find("@page{size:A4"), std::string::npos);
   EXPECT_NE(page.find("<section class=\"signed\">"), std::string::npos);

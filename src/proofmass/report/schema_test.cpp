@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proofmass/report/budget_report.hpp"
+#include "proofmass/report/calibrate_fake.hpp"
 #include "proofmass/report/convert_report.hpp"
 #include "proofmass/report/schema_test_support.hpp"
 #include "proofmass/report/tilt_fake.hpp"
@@ -109,6 +110,35 @@ TEST(Schemas, Convert) {
   const std::vector<Note> notes;
   const ConvertReport report{"a.csv", "b.npy", recording, 0, notes};
   expect_schema("Recording written in another format.", {describe(report)});
+}
+
+// With every entry that a calibration may have.
+CalibrateReport full_calibration() {
+  CalibrateReport report = fake_supply_report();
+  report.check =
+      calibrate::MonteCarloCheck{.draws = 100, .parameters = {{}}, .agrees = true, .verdict = "v"};
+  report.validation = calibrate::Validation{{0.01}, 0.01, 0.01, 0.5};
+  report.stability = calibrate::BiasStability{{1.0, 1.0, 1.0}, "flicker noise"};
+  report.fit.doubtful = {1};
+  report.fit.mounting_rad = report.fit.mounting_std_rad = Eigen::Vector3d::Zero();
+  report.fit.placement_std_rad = 0.01;
+  report.fit.axes_in_fixture = Eigen::Matrix3d::Identity();
+  report.poses.front().label = "z up";
+  report.fit.shares.push_back({.source = "gravity", .type_a = false});
+  report.budgets = calibrate::budget_of(report.fit, {}, "V").value();
+  report.budgets.front().effective_dof = 0.0;
+  return report;
+}
+
+TEST(Schemas, Calibrate) {
+  const CalibrateReport full = full_calibration();
+  CalibrateReport counts = full, untimed = fake_calibrate_report();
+  counts.unit = {Quantity::counts, 1.0, 0.0, "counts"};
+  untimed.files.front().times_known = false;
+  expect_schema(
+      "Multi-position calibration of a three-axis accelerometer. SI unless a key or a unit beside "
+      "the figure names another.",
+      {describe(full), describe(counts), describe(untimed), describe(fake_bare_report())});
 }
 
 }  // namespace
