@@ -10,7 +10,6 @@
 #include "output.hpp"
 #include "proofmass/calibrate/cross_axis.hpp"
 #include "proofmass/io/names.hpp"
-#include "proofmass/report/json.hpp"
 #include "proofmass/report/model_equation_report.hpp"
 #include "tumble_modes.hpp"
 
@@ -220,12 +219,7 @@ void run_model_equation(const TumbleCommand& command) {
   if (report.outputs.empty()) {
     throw Failure(usage, table.source + ": no output column: name it with --channel");
   }
-  show_notes(report.notes, "", command.output);
-  publish({.text = [&] { return report::model_equation_text(report); },
-           .json = [&] { return report::model_equation_json(report); },
-           .html = [&] { return report::model_equation_html(report); }},
-          command.output);
-  hold_to_strict(command.output, !report::texts(report.notes, Severity::bad).empty());
+  finish(report::describe(report), {}, command.output);
 }
 
 }  // namespace proofmass::app

@@ -7,6 +7,7 @@
 #include "proofmass/calibrate/cross_axis.hpp"
 #include "proofmass/calibrate/model_fit.hpp"
 #include "proofmass/core/recording.hpp"
+#include "proofmass/report/document.hpp"
 
 namespace proofmass::report {
 
@@ -27,13 +28,8 @@ struct ModelEquationReport {
   std::vector<ModelOutput> outputs;
 };
 
-/// The document of `tumble --coefficients`: docs/schema/tumble_coefficients.schema.json.
-[[nodiscard]] std::string model_equation_json(const ModelEquationReport& report);
-
-/// Coefficients, residuals against the input acceleration and what could not be told.
-[[nodiscard]] std::string model_equation_html(const ModelEquationReport& report);
-
-/// The coefficients for a terminal.
-[[nodiscard]] std::string model_equation_text(const ModelEquationReport& report);
+/// Coefficients, identifiable combinations and residuals. It refers to the report, which must
+/// outlive it.
+[[nodiscard]] Document describe(const ModelEquationReport& report);
 
 }  // namespace proofmass::report

@@ -7,6 +7,7 @@
 #include "proofmass/report/budget_report.hpp"
 #include "proofmass/report/calibrate_fake.hpp"
 #include "proofmass/report/convert_report.hpp"
+#include "proofmass/report/model_equation_report.hpp"
 #include "proofmass/report/schema_test_support.hpp"
 #include "proofmass/report/tilt_fake.hpp"
 #include "proofmass/report/track_fake.hpp"
@@ -139,6 +140,38 @@ TEST(Schemas, Calibrate) {
       "Multi-position calibration of a three-axis accelerometer. SI unless a key or a unit beside "
       "the figure names another.",
       {describe(full), describe(counts), describe(untimed), describe(fake_bare_report())});
+}
+
+// One output with all coefficients, in this unit.
+ModelOutput fake_output(const std::string& unit) {
+  ModelOutput output{.name = "E", .unit = unit, .rows = {}, .fit = {}, .cross_axis = {}};
+  calibrate::ModelFit& fit = output.fit;
+  for (const sensor::CoefficientInfo& about : sensor::coefficients())
+    fit.coefficients.push_back({.coefficient = about.coefficient, .value = Uncertain{1.0, 0.1}});
+  fit.covariance = Eigen::MatrixXd::Identity(16, 16);
+  fit.residuals = {0.0};
+  const sensor::Coefficient K1 = sensor::Coefficient::K1;
+  fit.confounded = {{.coefficients = {K1},
+                     .determined = 1,
+                     .relations = {"a"},
+                     .combinations = {{.name = "K1", .parts = {{K1, 1.0}}, .value = {1.0, 0.1}}},
+                     .words = "w"}};
+  fit.test = calibrate::ResidualTest{};
+  output.cross_axis = calibrate::CrossAxis{};
+  return output;
+}
+
+TEST(Schemas, ModelEquation) {
+  ModelEquationReport volts, plain, several;
+  volts.gravity_mps2 = 9.81;
+  volts.outputs = {fake_output("V")};
+  plain.outputs = {fake_output("m/s^2")};
+  several.outputs = {fake_output("V"), fake_output("")};
+  several.outputs.front().fit.coefficients.front().value.reset();
+  expect_schema(
+      "Coefficients of the IEEE 1293 model equation from outputs under known motion. SI. With a "
+      "single output its coefficients are entries of the document, too.",
+      {describe(volts), describe(plain), describe(several)}, "tumble_coefficients");
 }
 
 }  // namespace
