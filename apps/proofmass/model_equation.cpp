@@ -116,8 +116,8 @@ std::vector<sensor::Motion> read_motions(const Recording& table, const TumbleCom
     add_gravity(table, *angle, command, motions);
   } else if (!any) {
     throw Failure(usage, table.source +
-                             ": no column a_i, a_p or a_o, and no column angle: they say how the "
-                             "accelerometer was moved");
+                             ": no column a_i, a_p or a_o, and no column angle: the motion of the "
+                             "accelerometer is not known");
   }
   return motions;
 }

@@ -8,7 +8,6 @@
 #include "exit_status.hpp"
 #include "input.hpp"
 #include "output.hpp"
-#include "proofmass/report/json.hpp"
 #include "proofmass/report/rotation_report.hpp"
 #include "tumble_modes.hpp"
 
@@ -186,12 +185,7 @@ void run_rotation(const TumbleCommand& command) {
   for (const std::string& text : report.fit.notes) {
     report.notes.push_back({Severity::warning, text});
   }
-  show_notes(report.notes, "", command.output);
-  publish({.text = [&] { return report::rotation_text(report); },
-           .json = [&] { return report::rotation_json(report); },
-           .html = [&] { return report::rotation_html(report); }},
-          command.output);
-  hold_to_strict(command.output, !report::texts(report.notes, Severity::bad).empty());
+  finish(report::describe(report), {}, command.output);
 }
 
 }  // namespace proofmass::app

@@ -190,6 +190,14 @@ Field number(std::string key, const std::optional<double>& value, About about) {
                      std::move(about));
 }
 
+Field integer(std::string key, const std::optional<int>& value, About about) {
+  const bool nullable = !about.why_null.empty();
+  return {std::move(key),
+          {.kind = Kind::number, .nullable = nullable},
+          std::move(about),
+          or_null(value)};
+}
+
 Field magnitude(std::string key, const std::optional<double>& value, About about) {
   const bool nullable = !about.why_null.empty();
   return with_number(std::move(key), value,

@@ -73,6 +73,7 @@ namespace field {
 [[nodiscard]] Field count(std::string key, std::size_t value, About about = {});
 [[nodiscard]] Field number(std::string key, double value, About about = {});
 [[nodiscard]] Field number(std::string key, const std::optional<double>& value, About about = {});
+[[nodiscard]] Field integer(std::string key, const std::optional<int>& value, About about = {});
 /// A number that cannot be negative: a length, a standard deviation, a probability.
 [[nodiscard]] Field magnitude(std::string key,
                               const std::optional<double>& value,

@@ -1,6 +1,7 @@
 #include "proofmass/report/schema.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "proofmass/core/contract.hpp"
 
@@ -51,10 +52,15 @@ void add_properties(Object& schema, Object properties, const std::vector<const F
   schema.push_back({"additionalProperties", false});
 }
 
-bool has_one_unit(const Samples& samples) {
-  return std::ranges::all_of(samples, [&](const Field* field) {
-    return field->shape.unit == samples.front()->shape.unit;
-  });
+// The unit of a quantity, if all samples have the same. An absent one may have none.
+std::optional<std::string> only_unit(const Samples& samples) {
+  std::optional<std::string> unit;
+  for (const Field* field : samples) {
+    if (field->shape.unit.empty() && is_absent(*field)) continue;
+    if (unit && *unit != field->shape.unit) return std::nullopt;
+    unit = field->shape.unit;
+  }
+  return unit;
 }
 
 // What is in the lists or maps, at least one entry.
@@ -86,17 +92,15 @@ Object figure_schema(Value std_type, Object unit) {
 }
 
 void add_quantity(Object& schema, const Samples& samples) {
-  const Shape& shape = samples.front()->shape;
-  if (shape.std_nullable) {
-    Object unit =
-        has_one_unit(samples) ? Object{{"const", shape.unit}} : Object{{"type", "string"}};
+  const std::optional<std::string> unit = only_unit(samples);
+  const Object unit_schema = unit ? Object{{"const", *unit}} : Object{{"type", "string"}};
+  if (samples.front()->shape.std_nullable) {
     schema.push_back({"anyOf", Array{Object{{"type", "null"}},
-                                     figure_schema(Array{"number", "null"}, std::move(unit))}});
+                                     figure_schema(Array{"number", "null"}, unit_schema)}});
     return;
   }
   schema.push_back({"$ref", "#/$defs/quantity"});
-  if (has_one_unit(samples))
-    schema.push_back({"properties", Object{{"unit", Object{{"const", shape.unit}}}}});
+  if (unit) schema.push_back({"properties", Object{{"unit", unit_schema}}});
 }
 
 std::vector<const Fields*> objects_of(const Samples& samples) {

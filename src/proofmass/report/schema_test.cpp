@@ -8,6 +8,7 @@
 #include "proofmass/report/calibrate_fake.hpp"
 #include "proofmass/report/convert_report.hpp"
 #include "proofmass/report/model_equation_report.hpp"
+#include "proofmass/report/rotation_report.hpp"
 #include "proofmass/report/schema_test_support.hpp"
 #include "proofmass/report/tilt_fake.hpp"
 #include "proofmass/report/track_fake.hpp"
@@ -172,6 +173,27 @@ TEST(Schemas, ModelEquation) {
       "Coefficients of the IEEE 1293 model equation from outputs under known motion. SI. With a "
       "single output its coefficients are entries of the document, too.",
       {describe(volts), describe(plain), describe(several)}, "tumble_coefficients");
+}
+
+RotationReport fake_rotation(const std::string& unit) {
+  RotationReport report{
+      .inputs = {"a.csv"}, .notes = {}, .axis_names = {"x"}, .unit = unit, .fit = {}};
+  calibrate::RotationAxis& axis = report.fit.axes.emplace_back();
+  for (std::size_t q = 0; q < calibrate::rotation_quantities; ++q)
+    axis.coefficients[q] = {.quantity = static_cast<calibrate::RotationQuantity>(q),
+                            .value = Uncertain{1.0, 0.1}};
+  axis.fold = {{0.0}, {0.0}, {0.0}, {0.1}};
+  report.fit.sections = {{}};
+  report.fit.ripples = {{}};
+  return report;
+}
+
+TEST(Schemas, RotatingTable) {
+  const RotationReport volts = fake_rotation("V"), plain = fake_rotation("m/s^2");
+  expect_schema(
+      "Coefficients of the IEEE 1293 model equation from a sensor that rotates evenly about a "
+      "horizontal axis. SI.",
+      {describe(volts), describe(plain)}, "tumble_rotating");
 }
 
 }  // namespace
