@@ -10,7 +10,6 @@
 #include "input.hpp"
 #include "output.hpp"
 #include "proofmass/calibrate/tumble_axes.hpp"
-#include "proofmass/report/json.hpp"
 #include "proofmass/report/tumble_report.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/calibration_update.hpp"
@@ -249,15 +248,7 @@ void run_tumble(const TumbleCommand& command) {
   note_assumptions(report);
   if (!command.update_sensor.empty())
     without_interruption([&] { update_sensor(command, readings, report); });
-  const std::vector<Note> notes = report::tumble_notes(report);
-  show_notes(notes, "", command.output);
-  if (!command.output.output.empty())
-    write_series(report::tumble_series(report), command.output.output);
-  publish({.text = [&] { return report::tumble_text(report); },
-           .json = [&] { return report::tumble_json(report); },
-           .html = [&] { return report::tumble_html(report); }},
-          command.output);
-  hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
+  finish(report::describe(report), [&] { return report::tumble_series(report); }, command.output);
 }
 
 Verb tumble_verb() {

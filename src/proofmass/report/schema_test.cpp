@@ -12,6 +12,7 @@
 #include "proofmass/report/schema_test_support.hpp"
 #include "proofmass/report/tilt_fake.hpp"
 #include "proofmass/report/track_fake.hpp"
+#include "proofmass/report/tumble_fake.hpp"
 #include "proofmass/report/tune_fake.hpp"
 #include "proofmass/report/wheel_fake.hpp"
 
@@ -194,6 +195,19 @@ TEST(Schemas, RotatingTable) {
       "Coefficients of the IEEE 1293 model equation from a sensor that rotates evenly about a "
       "horizontal axis. SI.",
       {describe(volts), describe(plain)}, "tumble_rotating");
+}
+
+TEST(Schemas, Tumble) {
+  const TumbleReport full = fake_full_tumble();
+  TumbleReport volts = fake_tumble(fake_channel(24, 1e-5));
+  volts.channels.front().fit->lack_of_fit = calibrate::TumbleLackOfFit{};
+  TumbleReport refused = fake_tumble(fake_channel(4, 0.0));
+  refused.channels.front().fit.reset();
+  refused.channels.front().refused = "level";
+  expect_schema(
+      "Coefficients of the IEEE 1293 model equation from positions on a turntable. SI unless a key "
+      "or a unit beside the figure names another. Those at the top are of `channel`.",
+      {describe(full), describe(volts), describe(refused)});
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ double turn_deg(double angle_rad) {
   return angle < -1e-9 ? angle + 360.0 : std::max(angle, 0.0);
 }
 
-// What readings have in common: plane, mounting, direction.
+// Positions with the same plane, mounting and direction.
 struct Group {
   int plane = 1, direction = 0;
   double mount_rad = 0.0;
@@ -47,7 +47,7 @@ std::vector<Group> groups_of(const ChannelTumble& channel) {
 }
 
 std::string label_of(const Group& group, const std::vector<Group>& all) {
-  if (all.size() == 1) return "readings";
+  if (all.size() == 1) return "output";
   std::string text = fmt::format("plane {}", group.plane);
   if (group.mount_rad > 0.5 * rad_per_deg)
     text += fmt::format(", mounted at {}°", compact(group.mount_rad / rad_per_deg, 4));
@@ -63,7 +63,7 @@ std::string unit_of(const ChannelTumble& channel) {
   return channel.unit.symbol.empty() ? "" : " (" + print_unit(channel.unit.symbol) + ")";
 }
 
-// The first harmonics of the fit, enough for the eye: K1 (K0 + g sin φ + δ g cos φ).
+// The first harmonics of the fit, all that is visible: K1 (K0 + g sin φ + δ g cos φ).
 Curve fitted_curve(const ChannelTumble& channel, const Group& group, Ink ink) {
   Curve curve{.label = {}, .x = {}, .y = {}, .ink = ink, .mark = Mark::line};
   const auto* scale = channel.fit->find(calibrate::TumbleQuantity::K1);
@@ -78,7 +78,7 @@ Curve fitted_curve(const ChannelTumble& channel, const Group& group, Ink ink) {
   return curve;
 }
 
-// The 95 % band of one group's residuals.
+// The 95 % band of the residuals of one group.
 Band residual_band(const ChannelTumble& channel, const Group& group) {
   constexpr double two_sided_95 = 1.959964;
   Band band{.label = "± 95 %", .x = {}, .lower = {}, .upper = {}, .ink = Ink::grey};
@@ -105,8 +105,8 @@ Callout suspect_callout(const TumblePosition& position, double residual) {
 Figure tumble_output_figure(const ChannelTumble& channel) {
   Figure figure{.title = channel.name + ": output against angle",
                 .description =
-                    "Readings at each position, and the sine of scale factor and bias; what the "
-                    "other terms add is too small to see here.",
+                    "Output at each position, and the sine given by scale factor and bias; the "
+                    "other terms are too small to be visible.",
                 .x = angle_axis(),
                 .y = {.label = "Output" + unit_of(channel)}};
   const std::vector<Group> groups = groups_of(channel);
@@ -125,13 +125,14 @@ Figure tumble_output_figure(const ChannelTumble& channel) {
 }
 
 Figure tumble_residual_figure(const ChannelTumble& channel) {
-  Figure figure{.title = channel.name + ": residuals against angle",
-                .description =
-                    "Reading less fit, all terms counted, with the band that should hold 95 % of "
-                    "them.",
-                .x = angle_axis(),
-                .y = {.label = "Residual" + unit_of(channel)},
-                .levels = {{"", 0.0}}};
+  Figure figure{
+      .title = channel.name + ": residuals against angle",
+      .description =
+          "Output less fit with all terms, and the band that is expected to contain 95 % of "
+          "the residuals.",
+      .x = angle_axis(),
+      .y = {.label = "Residual" + unit_of(channel)},
+      .levels = {{"", 0.0}}};
   const std::vector<Group> groups = groups_of(channel);
   Band band = residual_band(channel, groups.front());
   if (band.x.size() > 1) figure.bands.push_back(std::move(band));

@@ -1,46 +1,13 @@
 #include "proofmass/report/tumble_report.hpp"
 
-#include <cmath>
-#include <fmt/format.h>
 #include <limits>
-
-#include "proofmass/report/tumble_wording.hpp"
-#include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {
 namespace {
 
-using calibrate::TumbleCoefficient;
-using calibrate::TumbleFit;
 using calibrate::TumblePosition;
-using Q = calibrate::TumbleQuantity;
 
-std::string scale_words(const ChannelTumble& channel) {
-  const TumbleCoefficient* scale = channel.fit->find(Q::K1);
-  return scale == nullptr ? "" : "scale factor " + coefficient_words(*scale, channel.unit);
-}
-
-std::string bias_words(const ChannelTumble& channel) {
-  for (const auto& [quantity, where] :
-       {std::pair{Q::K0, " at 0 g"}, {Q::K0_second, " at 0 g"}, {Q::K0_up_down, " between ±1 g"}}) {
-    const TumbleCoefficient* bias = channel.fit->find(quantity);
-    if (bias != nullptr && bias->value)
-      return "bias " + coefficient_words(*bias, channel.unit) + where;
-  }
-  return "bias not determined";
-}
-
-std::string channel_text(const ChannelTumble& channel) {
-  std::string text = channel.name + '\n';
-  if (!channel.fit) return text + "  refused: " + channel.refused + '\n';
-  std::vector<std::vector<std::string>> rows{{"coefficient", "value", "95 %", "what it is"}};
-  for (std::vector<std::string>& row : coefficient_rows(channel)) rows.push_back(std::move(row));
-  text += aligned(rows) + '\n';
-  for (const std::string& sentence : tumble_sentences(channel)) text += "  " + sentence + '\n';
-  return text;
-}
-
-// Of all channels the one with most positions has the rows.
+// The channel with the most positions determines the rows.
 const ChannelTumble* longest(const TumbleReport& report) {
   const ChannelTumble* found = nullptr;
   for (const ChannelTumble& channel : report.channels) {
@@ -77,27 +44,6 @@ void add_columns(const ChannelTumble& channel, const ChannelTumble& rows, Record
 }
 
 }  // namespace
-
-std::string tumble_conclusion(const TumbleReport& report) {
-  std::string text;
-  for (const ChannelTumble& channel : report.channels) {
-    if (!channel.fit) continue;
-    const std::string name = report.channels.size() > 1 ? channel.name + ": " : "";
-    const std::string words = name + scale_words(channel) + ", " + bias_words(channel) + ". ";
-    text += words;
-  }
-  if (text.empty()) return "No channel follows the angle: there is nothing to be told.";
-  text.pop_back();
-  if (report.channels.size() == 1 || text[0] == 's') text[0] = 'S';
-  return text;
-}
-
-std::string tumble_text(const TumbleReport& report) {
-  std::string text = tumble_conclusion(report) + "\n";
-  for (const ChannelTumble& channel : report.channels) text += '\n' + channel_text(channel);
-  for (const std::string& sentence : table_sentences(report)) text += "\n  " + sentence;
-  return text.ends_with('\n') ? text : text + '\n';
-}
 
 std::vector<Note> tumble_notes(const TumbleReport& report) {
   std::vector<Note> notes = report.notes;

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "proofmass/report/tumble_fake.hpp"
+
 namespace proofmass::report::tumble_report_test {
 namespace {
 
@@ -13,36 +15,12 @@ using nlohmann::json;
 
 constexpr double g = standard_gravity_mps2;
 
-// Readings in volts of an axis about 1.65 V; the sixth position is off where asked.
-ChannelTumble channel(int count, double noise_v, double off_v = 0.0) {
-  ChannelTumble out;
-  out.name = "acc_x";
-  out.unit = *parse_unit("V");
-  out.axis.phase_rad[0] = 0.0;
-  out.axis.words = "follows sin(angle)";
-  for (int k = 0; k < count; ++k) {
-    const double angle = 2.0 * std::numbers::pi * k / count;
-    const double ai = g * std::sin(angle), ap = g * std::cos(angle);
-    const double scatter = noise_v * std::sin(12.9898 * k * k + 1.0);
-    out.positions.push_back(
-        {.angle_rad = angle,
-         .output = 1.65 + 0.0337 * (0.1 + ai + 2e-3 * ap) + scatter + (k == 5 ? off_v : 0.0),
-         .label = "line " + std::to_string(k + 2)});
-  }
-  out.fit = calibrate::fit_tumble(out.positions, {.gravity_mps2 = g, .output_unit = "V"}).value();
-  return out;
-}
-
-TumbleReport report_of(ChannelTumble one) {
-  TumbleReport report;
-  report.inputs = {"table <1>.csv"};
-  report.source = "a table of positions";
-  report.channels.push_back(std::move(one));
-  return report;
+json document_of(const TumbleReport& report) {
+  return json::parse(to_json(describe(report)));
 }
 
 TEST(TumbleReport, GivesSiAtTheTopAndTheStandardsUnitsBeside) {
-  const json document = json::parse(tumble_json(report_of(channel(24, 1e-5))));
+  const json document = document_of(fake_tumble(fake_channel(24, 1e-5)));
   EXPECT_EQ(document["verb"], "tumble");
   EXPECT_NEAR(document["K1"]["value"].get<double>(), 0.0337, 1e-6);
   EXPECT_EQ(document["K1"]["unit"], "V/(m/s^2)");
@@ -60,27 +38,30 @@ TEST(TumbleReport, GivesSiAtTheTopAndTheStandardsUnitsBeside) {
 }
 
 TEST(TumbleReport, GivesTheReasonOfEveryNull) {
-  const json document = json::parse(tumble_json(report_of(channel(4, 0.0))));
+  const json document = document_of(fake_tumble(fake_channel(4, 0.0)));
   EXPECT_TRUE(document["K3"].is_null());
   EXPECT_TRUE(document["K1"]["std"].is_null());
   EXPECT_TRUE(document["drift"]["value"].is_null());
   std::string reasons;
   for (const auto& warning : document["warnings"]) reasons += warning.get<std::string>() + '\n';
-  for (const char* key : {"K3: null: at these angles", "every std: null: no standard deviation",
-                          "drift.value: null: drift during the test is unknown",
-                          "lack_of_fit: null", "hysteresis: null", "indexing_cos_rad: null"})
+  for (const char* key :
+       {"K3: null: at these angles", "K1.std, K0.std, K2_minus_Kpp.std, misalignment_rad.std",
+        "drift: value, std, p: null: drift during the test is unknown",
+        "lack_of_fit, residual_std: null: there is no redundant position",
+        "hysteresis, backlash_rad: null: ",
+        "indexing: cos_rad, sin_rad, cos2_rad, sin2_rad: null: "})
     EXPECT_NE(reasons.find(key), std::string::npos) << key;
 }
 
 TEST(TumbleReport, NamesARefusedChannelAndKeepsTheOthers) {
-  TumbleReport report = report_of(channel(12, 1e-5));
+  TumbleReport report = fake_tumble(fake_channel(12, 1e-5));
   ChannelTumble refused;
   refused.name = "acc_z";
   refused.unit = *parse_unit("V");
   refused.refused = "it does not follow the angle";
   refused.axis.phase_rad[0] = 0.0;
   report.channels.push_back(refused);
-  const json document = json::parse(tumble_json(report));
+  const json document = document_of(report);
   EXPECT_EQ(document["channel"], "acc_x");
   EXPECT_EQ(document["channels"][1]["refused"], "it does not follow the angle");
   EXPECT_TRUE(document["channels"][1]["K1"].is_null());
@@ -97,28 +78,31 @@ TEST(TumbleReport, NamesARefusedChannelAndKeepsTheOthers) {
   EXPECT_EQ(worst(), Severity::bad);
 }
 
-TEST(TumbleReport, SaysInOneSentenceWhatItComesTo) {
-  const std::string words = tumble_conclusion(report_of(channel(24, 1e-5)));
+TEST(TumbleReport, ConcludesWithScaleFactorAndBias) {
+  const TumbleReport report = fake_tumble(fake_channel(24, 1e-5));
+  const std::string words = describe(report).page.conclusion;
   EXPECT_EQ(words.find("Scale factor 0.3304"), 0U) << words;
   EXPECT_NE(words.find("mg at 0 g."), std::string::npos) << words;
 }
 
-TEST(TumbleReport, ShowsWhatEachCoefficientIs) {
-  const std::string text = tumble_text(report_of(channel(24, 1e-5)));
+TEST(TumbleReport, ShowsEachCoefficientInTheStandardsUnits) {
+  const TumbleReport report = fake_tumble(fake_channel(24, 1e-5));
+  const std::string text = to_text(describe(report));
   for (const char* words : {"K0 + Kpp g²", "K2 − Kpp", "µg/g²", "V/g", "mrad", "± "})
     EXPECT_NE(text.find(words), std::string::npos) << words << '\n' << text;
 }
 
 TEST(TumbleReport, ShowsFitResidualsAndTheSuspectOnItsPage) {
-  const std::string page = tumble_html(report_of(channel(24, 1e-5, 2e-3)));
-  for (const char* words :
-       {"output against angle", "residuals against angle", "± 95 %", "line 7", "suspect",
-        "Conditions of the test", "table &lt;1&gt;.csv", "Where the standard deviations come from"})
+  const TumbleReport report = fake_tumble(fake_channel(24, 1e-5, 2e-3));
+  const std::string page = to_html(describe(report));
+  for (const char* words : {"output against angle", "residuals against angle", "± 95 %", "line 7",
+                            "suspect", "Conditions of the test", "table &lt;1&gt;.csv",
+                            "Contributions to the standard deviations"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
 }
 
 TEST(TumbleReport, WritesTheTableThatOutputAsksFor) {
-  const TumbleReport report = report_of(channel(12, 1e-5));
+  const TumbleReport report = fake_tumble(fake_channel(12, 1e-5));
   const Recording series = tumble_series(report);
   ASSERT_EQ(series.samples(), 12U);
   const Channel* output = series.find("acc_x");

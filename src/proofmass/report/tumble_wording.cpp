@@ -1,9 +1,11 @@
 #include "proofmass/report/tumble_wording.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
-#include "proofmass/report/json.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {
@@ -21,51 +23,28 @@ bool is_table_angle(Q quantity) {
          quantity == Q::indexing_cos2 || quantity == Q::indexing_sin2;
 }
 
-std::string base_symbol(Q quantity) {
-  switch (quantity) {
-    case Q::K1:
-      return "K1";
-    case Q::K0:
-      return "K0 + Kpp g²";
-    case Q::K0_up_down:
-      return "K0 + K2 g²";
-    case Q::misalignment:
-      return "δo";
-    case Q::K2_minus_Kpp:
-      return "K2 − Kpp";
-    case Q::Kip:
-      return "Kip";
-    case Q::K3:
-      return "K3";
-    case Q::third_cosine:
-      return "cos 3φ";
-    case Q::K0_second:
-      return "K0 + Koo g²";
-    case Q::misalignment_p:
-      return "δp";
-    case Q::K2_minus_Koo:
-      return "K2 − Koo";
-    case Q::Kio:
-      return "Kio";
-    case Q::drift:
-      return "drift";
-    case Q::temperature:
-      return "bias per kelvin";
-    case Q::hysteresis:
-      return "hysteresis";
-    case Q::backlash:
-      return "backlash";
-    case Q::indexing_cos:
-      return "indexing, cos θ";
-    case Q::indexing_sin:
-      return "indexing, sin θ";
-    case Q::indexing_cos2:
-      return "indexing, cos 2θ";
-    case Q::indexing_sin2:
-      break;
-  }
-  return "indexing, sin 2θ";
-}
+constexpr std::array<std::pair<Q, const char*>, 20> symbols{{
+    {Q::K1, "K1"},
+    {Q::K0, "K0 + Kpp g²"},
+    {Q::K0_up_down, "K0 + K2 g²"},
+    {Q::misalignment, "δo"},
+    {Q::K2_minus_Kpp, "K2 − Kpp"},
+    {Q::Kip, "Kip"},
+    {Q::K3, "K3"},
+    {Q::third_cosine, "cos 3φ"},
+    {Q::K0_second, "K0 + Koo g²"},
+    {Q::misalignment_p, "δp"},
+    {Q::K2_minus_Koo, "K2 − Koo"},
+    {Q::Kio, "Kio"},
+    {Q::drift, "drift"},
+    {Q::temperature, "bias per kelvin"},
+    {Q::hysteresis, "hysteresis"},
+    {Q::backlash, "backlash"},
+    {Q::indexing_cos, "indexing, cos θ"},
+    {Q::indexing_sin, "indexing, sin θ"},
+    {Q::indexing_cos2, "indexing, cos 2θ"},
+    {Q::indexing_sin2, "indexing, sin 2θ"},
+}};
 
 std::string mounted(const TumbleCoefficient& coefficient) {
   constexpr double some = 0.5 * rad_per_deg;
@@ -75,17 +54,32 @@ std::string mounted(const TumbleCoefficient& coefficient) {
 
 std::string lack_of_fit_words(const calibrate::TumbleLackOfFit& found) {
   constexpr double chance = 0.05;
-  // A drift or an angle error that follows the turn leaves no residual: they never show that the
-  // model fits.
-  const char* verdict = found.p < chance ? "the residuals are larger than chance explains"
-                                         : "the residuals are no larger than chance explains";
-  return fmt::format("Against the {}: mean square {} times as large, p = {}: {}.", found.against,
+  // A drift or an angle error that follows the turn leaves no residual: the test cannot confirm the
+  // model.
+  const char* verdict =
+      found.p < chance ? "exceed what chance explains" : "are consistent with chance";
+  return fmt::format("Lack of fit against the {}: F = {}, p = {}: the residuals {}.", found.against,
                      significant(found.statistic, 3), significant(found.p, 2), verdict);
 }
 
 std::string capital(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
   return text;
+}
+
+std::string scale_words(const ChannelTumble& channel) {
+  const TumbleCoefficient* scale = channel.fit->find(Q::K1);
+  return scale == nullptr ? "" : "scale factor " + coefficient_words(*scale, channel.unit);
+}
+
+std::string bias_words(const ChannelTumble& channel) {
+  for (const auto& [quantity, where] :
+       {std::pair{Q::K0, " at 0 g"}, {Q::K0_second, " at 0 g"}, {Q::K0_up_down, " between ±1 g"}}) {
+    const TumbleCoefficient* bias = channel.fit->find(quantity);
+    if (bias != nullptr && bias->value)
+      return "bias " + coefficient_words(*bias, channel.unit) + where;
+  }
+  return "bias not determined";
 }
 
 }  // namespace
@@ -122,11 +116,13 @@ std::string printed(const InG& unit) {
 }
 
 std::string symbol_words(const TumbleCoefficient& coefficient) {
-  return base_symbol(coefficient.quantity) + mounted(coefficient);
+  const auto found =
+      std::ranges::find(symbols, coefficient.quantity, &std::pair<Q, const char*>::first);
+  return (found == symbols.end() ? "" : found->second) + mounted(coefficient);
 }
 
 std::string coefficient_words(const TumbleCoefficient& coefficient, const Unit& output) {
-  if (!coefficient.value) return "not determined";
+  if (!coefficient.value) return std::string(absent);
   const InG unit = in_g(coefficient, output);
   const double value = *coefficient.value * unit.factor;
   const std::string symbol = printed(unit);
@@ -170,13 +166,13 @@ std::vector<std::string> tumble_sentences(const ChannelTumble& channel) {
   const TumbleFit& fit = *channel.fit;
   std::vector<std::string> out;
   out.push_back(fmt::format("The output {}.", channel.axis.words));
-  out.push_back(fmt::format("{} for {}; residuals {} {} rms.",
+  out.push_back(fmt::format("{}, {}; residuals {} {} rms.",
                             count_words(fit.positions.size(), "position"),
                             count_words(fit.parameters, "parameter"),
                             significant(fit.residual_rms, 3), print_unit(channel.unit.symbol)));
-  out.push_back(fit.noise_known ? "Standard deviations by the stated noise of the outputs."
-                : fit.dof > 0   ? "Standard deviations by the residuals."
-                                : "No standard deviations: no position is over to judge by.");
+  out.push_back(fit.noise_known ? "Standard deviations from the stated noise of the outputs."
+                : fit.dof > 0   ? "Standard deviations from the residuals."
+                                : "No standard deviations: there is no redundant position.");
   if (fit.lack_of_fit) out.push_back(lack_of_fit_words(*fit.lack_of_fit));
   out.push_back(capital(fit.drift.words) + ".");
   return out;
@@ -188,6 +184,20 @@ std::vector<std::string> table_sentences(const TumbleReport& report) {
   for (const std::string& words : report.channels[report.main].fit->indexing.words)
     if (!words.empty()) out.push_back(capital(words) + ".");
   return out;
+}
+
+std::string tumble_conclusion(const TumbleReport& report) {
+  std::string text;
+  for (const ChannelTumble& channel : report.channels) {
+    if (!channel.fit) continue;
+    const std::string name = report.channels.size() > 1 ? channel.name + ": " : "";
+    const std::string words = name + scale_words(channel) + ", " + bias_words(channel) + ". ";
+    text += words;
+  }
+  if (text.empty()) return "No channel follows the angle: no coefficient is determined.";
+  text.pop_back();
+  if (report.channels.size() == 1 || text[0] == 's') text[0] = 'S';
+  return text;
 }
 
 }  // namespace proofmass::report

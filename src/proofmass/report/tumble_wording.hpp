@@ -7,7 +7,7 @@
 
 #include "proofmass/report/tumble_report.hpp"
 
-// The coefficients as people and the standard write them.
+// Coefficients and sentences of `tumble`, in the notation of the standard.
 namespace proofmass::report {
 
 /// A coefficient in the standard's own units: g in place of m/s².
@@ -17,7 +17,7 @@ struct InG {
 };
 [[nodiscard]] InG in_g(const calibrate::TumbleCoefficient& coefficient, const Unit& output);
 
-/// Its unit as print has it: "µg/g²"; empty for 1.
+/// The unit with its superscripts: "µg/g²"; empty for 1.
 [[nodiscard]] std::string printed(const InG& unit);
 
 /// "K2 − Kpp", "δo (mounted at 180°)".
@@ -30,16 +30,20 @@ struct InG {
 /// "x: misalignment_rad (mounted at 180°)".
 [[nodiscard]] std::string key_words(const calibrate::TumbleCoefficient& coefficient);
 
-/// Is the coefficient worth a line: a value, or one of the standard's own six.
+/// Whether the coefficient is listed: it has a value, or it is one of the standard's own.
 [[nodiscard]] bool is_shown(const calibrate::TumbleCoefficient& coefficient);
 
 /// Rows of symbol, figure, 95 % interval, meaning or reason.
 [[nodiscard]] std::vector<std::vector<std::string>> coefficient_rows(const ChannelTumble& channel);
 
-/// What there is to say of the fit of one channel, a sentence each.
+/// "x: scale factor 0.3301 ± 0.0002 V/g, bias 12.1 ± 0.3 mg at 0 g."
+[[nodiscard]] std::string tumble_conclusion(const TumbleReport& report);
+
+/// Findings about the fit of one channel, a sentence each.
 [[nodiscard]] std::vector<std::string> tumble_sentences(const ChannelTumble& channel);
 
-/// What errors of the table's angle do to all channels, or how large they are; by the main channel.
+/// Effect of indexing errors of the table on the coefficients, or their size; from the main
+/// channel.
 [[nodiscard]] std::vector<std::string> table_sentences(const TumbleReport& report);
 
 }  // namespace proofmass::report
