@@ -8,6 +8,8 @@
 // Flags that verbs have in common.
 namespace proofmass::app {
 
+struct Host;
+
 /// Flags of every verb that reads recordings.
 struct InputFlags {
   std::optional<double> rate_hz;
@@ -23,6 +25,7 @@ struct InputFlags {
   std::optional<double> gravity_mps2, latitude_deg, height_m;
   /// How long the sensors had been on at the file's first sample; of verbs that know warm-up only.
   std::optional<double> since_switch_on_s;
+  std::shared_ptr<Host> host{};  ///< empty: recordings are files
 };
 
 class Invocation;
@@ -32,6 +35,7 @@ struct OutputFlags {
   std::string json, report, output;
   bool quiet = false, verbose = false, strict = false;
   std::shared_ptr<Invocation> invocation{};  ///< where a document or a page was asked for
+  std::shared_ptr<Host> host{};              ///< empty: results go to files and the terminal
 };
 
 }  // namespace proofmass::app

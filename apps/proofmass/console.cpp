@@ -12,6 +12,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "host.hpp"
 #include "plain_text.hpp"
 #include "proofmass/io/shown_text.hpp"
 
@@ -182,6 +183,11 @@ void show_notes(const std::vector<Note>& notes,
                 const std::string& where,
                 const OutputFlags& flags) {
   constexpr int yellow = 33, red = 31, grey = 90;
+  if (flags.host) {
+    for (const Note& note : notes)
+      flags.host->notes.push_back({note.severity, (where.empty() ? "" : where + ": ") + note.text});
+    return;
+  }
   if (flags.quiet) return;
   for (const Note& note : notes) {
     std::string word = painted("warning", yellow);
@@ -194,6 +200,7 @@ void show_notes(const std::vector<Note>& notes,
 }
 
 Progress progress_bar(const OutputFlags& flags) {
+  if (flags.host) return flags.host->progress;
   const std::shared_ptr<Bar> bar =
       flags.quiet || !on_terminal() ? nullptr : std::make_shared<Bar>();
   return [bar](std::string_view stage, double fraction) {

@@ -75,7 +75,7 @@ Converted convert(Recording recording,
   std::vector<Recording> recordings{std::move(recording)};
   if (!models.empty()) calibrate(models, accelerometers(recordings), recordings);
   Recording& calibrated = recordings.front();
-  write_series(calibrated, command.output.output, write_options(command));
+  write_series(calibrated, command.output, write_options(command));
   const std::size_t samples = calibrated.samples();
   std::vector<Note> notes = calibrated.notes;
   Converted out{std::move(calibrated), samples, std::move(notes)};

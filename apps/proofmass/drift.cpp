@@ -253,7 +253,7 @@ void run_drift(const DriftCommand& command) {
   const std::vector<Note> notes = report::drift_notes(report);
   show_notes(notes, "", command.output);
   if (!command.output.output.empty()) {
-    write_series(report::drift_series(report), command.output.output);
+    write_series(report::drift_series(report), command.output);
   }
   publish({.text = [&] { return report::drift_text(report); },
            .json = [&] { return report::drift_json(report); },

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -23,13 +24,17 @@ enum ExitStatus : int {
 /// What ends a verb early: main() prints the one line and returns the status.
 class Failure : public std::exception {
  public:
-  Failure(ExitStatus status, std::string message) : status_(status), message_(std::move(message)) {}
+  Failure(ExitStatus status, std::string message, std::optional<Errc> code = {})
+      : status_(status), message_(std::move(message)), code_(code) {}
   [[nodiscard]] ExitStatus status() const { return status_; }
+  /// Of the library's error behind it, where there is one.
+  [[nodiscard]] std::optional<Errc> code() const { return code_; }
   [[nodiscard]] const char* what() const noexcept override { return message_.c_str(); }
 
  private:
   ExitStatus status_;
   std::string message_;
+  std::optional<Errc> code_;
 };
 
 /// At what an error arose, which decides what it means for the exit status.
@@ -40,7 +45,10 @@ enum class Stage { reading, computing, writing };
 /// The value, or a Failure.
 template <class T>
 [[nodiscard]] T need(Result<T> result, Stage stage) {
-  if (!result) throw Failure(status_of(result.error(), stage), result.error().message);
+  if (!result) {
+    const Error& error = result.error();
+    throw Failure(status_of(error, stage), error.message, error.code);
+  }
   return std::move(result).value();
 }
 

@@ -8,9 +8,12 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <limits>
+#include <utility>
 
 #include "exit_status.hpp"
+#include "host.hpp"
 #include "proofmass/core/rising_stamps.hpp"
+#include "proofmass/io/recording_in_memory.hpp"
 #include "proofmass/sensor/calibration.hpp"
 #include "proofmass/sensor/gravity.hpp"
 #include "proofmass/sensor/warm_up.hpp"
@@ -62,6 +65,15 @@ std::optional<Triad> lone_accelerometer(const Recording& recording) {
   return lone;
 }
 
+Result<sensor::SensorFile> sensor_file(const std::string& path, const InputFlags& flags) {
+  if (flags.host) {
+    const auto given = flags.host->sensor_files.find(path);
+    if (given != flags.host->sensor_files.end())
+      return sensor::parse_sensor_file(given->second, path);
+  }
+  return sensor::read_sensor_file(path);
+}
+
 // Puts --supply in place of what the files say of their supply.
 void set_supply(double supply_v,
                 std::vector<sensor::SensorModel>& models,
@@ -111,7 +123,21 @@ std::string duckdb_library() {
   return path != nullptr ? path : "";
 }
 
+std::optional<Recording> given_recording(const std::string& file, const InputFlags& flags) {
+  if (!flags.host) return std::nullopt;
+  const auto given = flags.host->recordings.find(file);
+  if (given == flags.host->recordings.end()) return std::nullopt;
+  Recording taken =
+      flags.host->may_be_read_again ? given->second : std::exchange(given->second, {});
+  auto recording = io::recording_in_memory(std::move(taken), read_options(flags, {}));
+  if (!recording) {
+    throw Failure(status_of(recording.error(), Stage::reading), recording.error().at(file).message);
+  }
+  return cut_to_window(std::move(recording).value(), flags);
+}
+
 Recording load(const std::string& file, const InputFlags& flags, const Progress& progress) {
+  if (auto given = given_recording(file, flags)) return std::move(*given);
   return cut_to_window(
       need(io::read_recording(file, read_options(flags, progress)), Stage::reading), flags);
 }
@@ -163,7 +189,7 @@ std::vector<Accelerometer> accelerometers(const std::vector<Recording>& recordin
 std::vector<sensor::SensorModel> load_sensors(const InputFlags& flags, std::vector<Note>& notes) {
   std::vector<sensor::SensorModel> models;
   for (const std::string& path : flags.sensors) {
-    sensor::SensorFile file = need(sensor::read_sensor_file(path), Stage::reading);
+    sensor::SensorFile file = need(sensor_file(path, flags), Stage::reading);
     notes.insert(notes.end(), file.notes.begin(), file.notes.end());
     models.push_back(std::move(file.model));
   }

@@ -25,6 +25,11 @@ namespace proofmass::app {
                              const InputFlags& flags,
                              const Progress& progress);
 
+/// The recording that the host gives for a file of this name, as the flags say; or none. Throws
+/// Failure.
+[[nodiscard]] std::optional<Recording> given_recording(const std::string& file,
+                                                       const InputFlags& flags);
+
 /// What the flags say to the readers.
 [[nodiscard]] io::ReadOptions read_options(const InputFlags& flags, const Progress& progress);
 

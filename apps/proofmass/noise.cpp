@@ -9,6 +9,7 @@
 #include "exit_status.hpp"
 #include "flags.hpp"
 #include "noise_command.hpp"
+#include "noise_options.hpp"
 #include "noise_pieces.hpp"
 #include "output.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
@@ -119,28 +120,6 @@ TauGrid parse_taus(const std::string& text, double stop_ratio) {
     }
   }
   return grid;
-}
-
-NoiseOptions options_of(const NoiseCommand& command) {
-  NoiseOptions options;
-  options.statistic = characterise::parse_statistic(command.statistic).value();
-  options.taus = parse_taus(command.taus, command.stop_ratio.value_or(0.0));
-  options.confidence = command.confidence;
-  options.exclude_events = command.exclude_events;
-  if (command.data == "phase") options.kind = characterise::SeriesKind::phase;
-  if (command.noise_type == "lag1") {
-    options.noise_type = NoiseTypeSource::lag1;
-  } else if (command.noise_type != "auto") {
-    const auto alpha = number_of<int>(command.noise_type);
-    if (!alpha || *alpha < -4 || *alpha > 2) {
-      throw Failure(usage,
-                    "--noise-type: expected auto, lag1 or a whole number from -4 to 2, not '" +
-                        command.noise_type + "'");
-    }
-    options.noise_type = NoiseTypeSource::fixed;
-    options.alpha = *alpha;
-  }
-  return options;
 }
 
 void take_temperature_out(const RestTemperature& cause,
@@ -254,8 +233,30 @@ void update_noise(const std::string& path, const std::vector<NoiseChannel>& chan
 
 }  // namespace
 
+NoiseOptions noise_options(const NoiseCommand& command) {
+  NoiseOptions options;
+  options.statistic = characterise::parse_statistic(command.statistic).value();
+  options.taus = parse_taus(command.taus, command.stop_ratio.value_or(0.0));
+  options.confidence = command.confidence;
+  options.exclude_events = command.exclude_events;
+  if (command.data == "phase") options.kind = characterise::SeriesKind::phase;
+  if (command.noise_type == "lag1") {
+    options.noise_type = NoiseTypeSource::lag1;
+  } else if (command.noise_type != "auto") {
+    const auto alpha = number_of<int>(command.noise_type);
+    if (!alpha || *alpha < -4 || *alpha > 2) {
+      throw Failure(usage,
+                    "--noise-type: expected auto, lag1 or a whole number from -4 to 2, not '" +
+                        command.noise_type + "'");
+    }
+    options.noise_type = NoiseTypeSource::fixed;
+    options.alpha = *alpha;
+  }
+  return options;
+}
+
 void run_noise(const NoiseCommand& command) {
-  const NoiseOptions options = options_of(command);
+  const NoiseOptions options = noise_options(command);
   report::NoiseReport report;
   report.inputs = command.files;
   report.events_excluded = command.exclude_events;
@@ -272,7 +273,7 @@ void run_noise(const NoiseCommand& command) {
   const std::vector<Note> notes = report::noise_notes(report);
   show_notes(notes, "", command.output);
   if (!command.output.output.empty()) {
-    write_series(report::noise_series(report), command.output.output);
+    write_series(report::noise_series(report), command.output);
   }
   publish({.text = [&] { return report::noise_text(report); },
            .json = [&] { return report::noise_json(report); },

@@ -5,9 +5,11 @@
 #include <cstdio>
 #include <cstring>
 #include <fmt/format.h>
+#include <utility>
 
 #include "console.hpp"
 #include "exit_status.hpp"
+#include "host.hpp"
 #include "input.hpp"
 #include "plain_text.hpp"
 #include "proofmass/core/new_file.hpp"
@@ -42,7 +44,11 @@ bool is_bad(const Note& note) {
 
 }  // namespace
 
-void write_text(const std::string& path, const std::string& text) {
+void write_text(const std::string& path, const std::string& text, const OutputFlags& flags) {
+  if (flags.host) {
+    flags.host->texts.emplace_back(path, text);
+    return;
+  }
   without_interruption([&] {
     const Status written = write_file(path, text);
     if (!written) {
@@ -59,13 +65,19 @@ void print_out(const std::string& text) {
 }
 
 void publish(const Results& results, const OutputFlags& flags) {
+  if (flags.host) {
+    flags.host->text = results.text();
+    flags.host->json = results.json();
+    if (results.html && flags.host->wants_page) flags.host->html = results.html();
+    return;
+  }
   const auto json = [&] {
     return report::with_provenance(results.json(), flags.invocation->provenance());
   };
   if (!flags.report.empty())
     write_text(flags.report,
-               report::page_with_provenance(results.html(), flags.invocation->provenance()));
-  if (!flags.json.empty() && flags.json != "-") write_text(flags.json, json());
+               report::page_with_provenance(results.html(), flags.invocation->provenance()), flags);
+  if (!flags.json.empty() && flags.json != "-") write_text(flags.json, json(), flags);
   // One thing only goes to standard output: the series, the document or the text.
   if (flags.output == "-") return;
   print_out(flags.json == "-" ? json() : shown_text(clean_lines(results.text())));
@@ -78,9 +90,18 @@ void publish(const report::Document& document, const OutputFlags& flags) {
           flags);
 }
 
-void write_series(const Recording& recording,
-                  const std::string& path,
-                  const io::WriteOptions& options) {
+OutputFlags with_output(const OutputFlags& flags, const std::string& path) {
+  OutputFlags other = flags;
+  other.output = path;
+  return other;
+}
+
+void write_series(Recording recording, const OutputFlags& flags, const io::WriteOptions& options) {
+  const std::string& path = flags.output;
+  if (flags.host) {
+    flags.host->series.emplace_back(path, std::move(recording));
+    return;
+  }
   const auto write = [&] {
     io::WriteOptions all = options;
     all.duckdb_library = duckdb_library();
@@ -103,7 +124,7 @@ void finish(const report::Document& document,
             const std::function<Recording()>& series,
             const OutputFlags& flags) {
   show_notes(document.page.notes, "", flags);
-  if (series && !flags.output.empty()) write_series(series(), flags.output);
+  if (series && !flags.output.empty()) write_series(series(), flags);
   publish(document, flags);
   hold_to_strict(flags, document.bad || std::ranges::any_of(document.page.notes, is_bad));
 }

@@ -110,6 +110,7 @@ void PieceSource::calibrate_block(Block& block) {
 std::variant<Recording, io::RecordingStream> open_input(const std::string& file,
                                                         const InputFlags& flags,
                                                         const Progress& progress) {
+  if (auto given = given_recording(file, flags)) return std::move(*given);
   constexpr double bytes_per_mb = 1e6;
   constexpr double most_bytes = 1e18;
   const double bytes = std::min(flags.memory_mb * bytes_per_mb, most_bytes);

@@ -161,7 +161,7 @@ std::string RecordGuide::write_rests(const std::string& file) const {
     text += fmt::format("{:.6f},{:.6f},{}", start_of(poses[k]), end_of(poses[k]), poses[k].label);
     text += angles.empty() ? "\n" : fmt::format(",{}\n", angles[k]);
   }
-  write_text(rests_path(file), text);
+  write_text(rests_path(file), text, command_.output);
   return fmt::format("proofmass {} {} --rests {}", verb_of(command_.guide), file, rests_path(file));
 }
 

@@ -114,7 +114,7 @@ void run_export(const SensorCommand& command) {
   show_notes(notes, "", command.output);
   const std::string& output = command.output.output;
   const bool to_file = !output.empty() && output != "-";
-  if (to_file) write_text(output, text);
+  if (to_file) write_text(output, text, command.output);
   if (output == "-") print_out(text);
   publish({.text =
                [&] {

@@ -140,8 +140,8 @@ void run_simulate(const SimulateCommand& command) {
       need(simulate::simulate_rig(options, progress_bar(flags)), Stage::computing);
   show_notes(result.recording.notes, "", flags);
   const std::string truth = flags.output == "-" ? "" : truth_name(flags.output);
-  write_series(result.recording, flags.output);
-  if (!truth.empty()) write_series(result.truth, truth);
+  write_series(result.recording, flags);
+  if (!truth.empty()) write_series(result.truth, with_output(flags, truth));
   const std::vector<std::string> inputs =
       command.rig.empty() ? std::vector<std::string>{} : std::vector{command.rig};
   const report::SimulateReport report{inputs, flags.output, truth, options, result};

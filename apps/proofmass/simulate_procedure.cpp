@@ -106,12 +106,12 @@ void run_procedure(const SimulateCommand& command) {
       need(simulate::simulate_procedure(options, progress_bar(flags)), Stage::computing);
   report::ProcedureReport report{.output = flags.output, .options = options, .result = result};
   if (!command.rig.empty()) report.inputs = {command.rig};
-  write_series(result.recording, flags.output);
+  write_series(result.recording, flags);
   if (flags.output != "-") {
     report.truth = truth_name(flags.output);
     report.sensor = sensor_name(report.truth);
-    write_series(result.truth_series, report.truth);
-    write_text(report.sensor, sensor::format_sensor_file(result.truth.sensor));
+    write_series(result.truth_series, with_output(flags, report.truth));
+    write_text(report.sensor, sensor::format_sensor_file(result.truth.sensor), flags);
   }
   publish({.text = [&] { return report::procedure_text(report); },
            .json = [&] { return report::procedure_json(report); },

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <any>
 #include <functional>
 #include <memory>
 #include <string>
@@ -27,6 +28,7 @@ struct Verb {
   std::function<void()> run;     ///< throws Failure
   OutputFlags* output = nullptr;
   InputFlags* input = nullptr;  ///< null: reads no recordings
+  std::any command{};           ///< std::shared_ptr to it, for its flags alone
 };
 
 /// `add_flags` binds the flags to a command, `run` carries it out. The command has a member
@@ -40,7 +42,8 @@ template <class Command>
             .add_flags = [=](CLI::App& app) { add_flags(app, *command); },
             .files = [=] { return files_of(*command); },
             .run = [=] { run(*command); },
-            .output = &command->output};
+            .output = &command->output,
+            .command = command};
   if constexpr (requires { command->input; }) verb.input = &command->input;
   return verb;
 }
