@@ -1,0 +1,99 @@
+"""From what callers hand over to a verb of the library, and back."""
+from __future__ import annotations
+
+import os
+import warnings
+from typing import Any, Optional
+
+import numpy as np
+
+from . import _core, _options
+from ._core import ArgumentError, Error
+from ._progress import Progress, Shown
+from ._recording import Recording
+from ._results import Result
+from ._sensor import Sensor
+
+
+class ProofmassWarning(UserWarning):
+    """What a person should know of the data or of a result."""
+
+
+def run(verb: str, data: Any, options: dict[str, Any], progress: Progress, output: Optional[str]) -> Result:
+    """Run a verb on files, recordings, DataFrames or arrays."""
+    sensors: dict[str, str] = {}
+    options = {name: _without_sensors(value, sensors) for name, value in options.items()}
+    inputs = _inputs(data)
+    as_array = any(not isinstance(item, (str, Recording)) for item in inputs)
+    names: list[str] = []
+    given: dict[str, _core.Recording] = {}
+    for item in inputs:
+        if isinstance(item, str):
+            names.append(_options.file_word(item))
+            continue
+        recording = item if isinstance(item, Recording) else _made(item, options)
+        names.append(_free_name(_options.file_word(recording.source), given))
+        given[names[-1]] = recording._handle
+    if as_array:
+        options = {name: value for name, value in options.items() if name not in ("rate_hz", "unit", "time")}
+    words = [verb, *names, *_options.words(options), *([f"--output={output}"] if output else [])]
+    temporary = as_array and not any(isinstance(item, Recording) for item in inputs)
+    try:
+        with Shown(progress) as shown:
+            found = _core.run(words, given, sensors, temporary, verb == "calibrate", shown)
+    except Error as error:
+        raise _options.in_python(error) from None
+    for severity, text in found["notes"]:
+        if severity != "info":
+            warnings.warn(text, ProofmassWarning, stacklevel=3)
+    return Result(found)
+
+
+def options_of(given: dict[str, Any]) -> dict[str, Any]:
+    """The arguments of a function that are flags."""
+    return {name: value for name, value in given.items() if name not in ("x", "rig", "progress")}
+
+
+def _inputs(data: Any) -> list[Any]:
+    """Each a path, a Recording, or what a recording is made of."""
+    if data is None:
+        return []
+    several = isinstance(data, (list, tuple)) and len(data) > 0 and all(_is_whole(item) for item in data)
+    return [_input(item) for item in (data if several else [data])]
+
+
+def _is_whole(item: Any) -> bool:
+    """Whether an item of a list is a recording by itself, and no sample or column of one."""
+    return isinstance(item, (str, os.PathLike, Recording)) or hasattr(item, "columns") or isinstance(item, np.ndarray)
+
+
+def _input(item: Any) -> Any:
+    if isinstance(item, (str, os.PathLike)):
+        return os.fspath(item)
+    return item
+
+
+def _made(item: Any, options: dict[str, Any]) -> Recording:
+    rate_hz, unit, time = (options.get(name) for name in ("rate_hz", "unit", "time"))
+    if hasattr(item, "columns"):
+        return Recording.from_pandas(item, rate_hz=rate_hz, time=time, unit=unit)
+    if time is not None:
+        raise ArgumentError("time: an array has no named columns: give rate_hz, or a Recording")
+    return Recording.from_arrays(item, rate_hz=rate_hz, unit=unit)
+
+
+def _free_name(name: str, taken: dict[str, Any]) -> str:
+    free, number = name, 2
+    while free in taken:
+        free, number = f"{name} ({number})", number + 1
+    return free
+
+
+def _without_sensors(value: Any, texts: dict[str, str]) -> Any:
+    """Sensors as names of files, with their text in `texts`."""
+    if isinstance(value, Sensor):
+        texts[value.name] = value.text
+        return value.name
+    if isinstance(value, (list, tuple)):
+        return [_without_sensors(item, texts) for item in value]
+    return value

@@ -1,0 +1,1200 @@
+"""The verbs of the command as functions; ``tests/options_test.py`` holds their options to its flags."""
+from __future__ import annotations
+
+from typing import Any, Optional, Sequence, Union
+
+from ._progress import Progress
+from ._recording import Path, Recording
+from ._results import Result
+from ._run import options_of, run
+from ._sensor import Sensor
+
+
+def inspect(
+    x: Any,
+    /,
+    *,
+    rate_hz: Optional[float] = None,
+    unit: Optional[str] = None,
+    channel: Union[str, Sequence[str], None] = None,
+    variable: Union[str, Sequence[str], None] = None,
+    time: Optional[str] = None,
+    from_s: Optional[float] = None,
+    to_s: Optional[float] = None,
+    resample: Optional[float] = None,
+    resample_method: Optional[str] = None,
+    skew: Optional[float] = None,
+    sensor: Union[Sensor, Path, Sequence[Union[Sensor, Path]], None] = None,
+    supply: Optional[float] = None,
+    gravity: Optional[float] = None,
+    latitude: Optional[float] = None,
+    height: Optional[float] = None,
+    progress: Progress = None,
+) -> Result:
+    """What is in a recording and how good it is.
+
+    Parameters
+    ----------
+    x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
+        A recording, or several.
+    rate_hz : float, optional
+        Sample rate, where the file has no time column.
+    unit : str, optional
+        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    channel : str or list of str, optional
+        Use this channel; may be repeated (default: all).
+    variable : str or list of str, optional
+        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
+        repeated (default: chosen by size and name).
+    time : str, optional
+        The time column (default: found by name and content).
+    from_s : float, optional
+        Leave out what comes before.
+    to_s : float, optional
+        Leave out what comes from here on.
+    resample : float, optional
+        Bring the samples, or several variable, onto an even grid (default: as they were taken).
+    resample_method : str, optional
+        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
+    skew : float, optional
+        The channels were sampled one after another, so far apart: brings them to one instant.
+    sensor : Sensor, path or list of them, optional
+        Apply this sensor file's calibration first; once for all sensors or once for each.
+    supply : float, optional
+        The ratiometric sensor's supply, instead of the file's (needs sensor).
+    gravity : float, optional
+        Local gravity (default 9.80665) (not with latitude).
+    latitude : float, optional
+        Gravity from the latitude (not with gravity).
+    height : float, optional
+        And from the height above the ellipsoid (needs latitude).
+    progress : bool or callable of (stage, fraction), optional
+        True shows a bar.
+
+    Returns
+    -------
+    Result
+        The members of the document of ``proofmass inspect --json`` as attributes.
+
+    Raises
+    ------
+    ArgumentError
+        An option that makes no sense; a ValueError too.
+    FileError
+        A file that cannot be read; an OSError too.
+    DataError
+        Data that cannot be analysed; a ValueError too.
+
+    Examples
+    --------
+    >>> import proofmass as pm
+    >>> found = pm.inspect(pm.simulate(duration=20, rpm=60, seed=1).recording)
+    >>> found.samples, found.timing.source, found.channels[0].unit
+    (4000, 'given_rate', 'm/s^2')
+    """
+    return run("inspect", x, options_of(locals()), progress, None)
+
+
+def noise(
+    x: Any,
+    /,
+    *,
+    rate_hz: Optional[float] = None,
+    unit: Optional[str] = None,
+    statistic: Optional[str] = None,
+    taus: Union[str, Sequence[float], None] = None,
+    stop_ratio: Optional[float] = None,
+    data: Optional[str] = None,
+    confidence: Optional[float] = None,
+    noise_type: Union[str, int, None] = None,
+    exclude_events: bool = False,
+    temperature: Optional[str] = None,
+    update_sensor: Optional[Path] = None,
+    channel: Union[str, Sequence[str], None] = None,
+    variable: Union[str, Sequence[str], None] = None,
+    time: Optional[str] = None,
+    from_s: Optional[float] = None,
+    to_s: Optional[float] = None,
+    resample: Optional[float] = None,
+    resample_method: Optional[str] = None,
+    skew: Optional[float] = None,
+    sensor: Union[Sensor, Path, Sequence[Union[Sensor, Path]], None] = None,
+    supply: Optional[float] = None,
+    gravity: Optional[float] = None,
+    latitude: Optional[float] = None,
+    height: Optional[float] = None,
+    progress: Progress = None,
+) -> Result:
+    """Allan deviation, spectrum and noise figures of a sensor at rest.
+
+    Parameters
+    ----------
+    x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
+        Recordings at rest.
+    rate_hz : float, optional
+        Sample rate, where the file has no time column.
+    unit : str, optional
+        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    statistic : str, optional
+        oadev (default), adev, mdev, tdev, hdev, ohdev, totdev, mtotdev, ttotdev, htotdev, theo1 or
+        pdev.
+    taus : str or list of float, optional
+        octave, decade, all, N-per-decade (default 16) or seconds "1,2,10".
+    stop_ratio : float, optional
+        Length of the recording over the longest averaging time (default: the statistic's).
+    data : str, optional
+        rate (default), or phase: the integral of it over time.
+    confidence : float, optional
+        Of the deviation's limits (default 0.683).
+    noise_type : str or int, optional
+        On which the limits hang: auto (default), lag1, or the power of f from -4 to 2.
+    exclude_events : bool
+        Leave out knocks, and whatever reaches across a step.
+    temperature : str, optional
+        Take out what follows this channel, by least squares.
+    update_sensor : path, optional
+        Write the figures into this sensor file.
+    channel : str or list of str, optional
+        Use this channel; may be repeated (default: all).
+    variable : str or list of str, optional
+        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
+        repeated (default: chosen by size and name).
+    time : str, optional
+        The time column (default: found by name and content).
+    from_s : float, optional
+        Leave out what comes before.
+    to_s : float, optional
+        Leave out what comes from here on.
+    resample : float, optional
+        Bring the samples, or several variable, onto an even grid (default: as they were taken).
+    resample_method : str, optional
+        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
+    skew : float, optional
+        The channels were sampled one after another, so far apart: brings them to one instant.
+    sensor : Sensor, path or list of them, optional
+        Apply this sensor file's calibration first; once for all sensors or once for each.
+    supply : float, optional
+        The ratiometric sensor's supply, instead of the file's (needs sensor).
+    gravity : float, optional
+        Local gravity (default 9.80665) (not with latitude).
+    latitude : float, optional
+        Gravity from the latitude (not with gravity).
+    height : float, optional
+        And from the height above the ellipsoid (needs latitude).
+    progress : bool or callable of (stage, fraction), optional
+        True shows a bar.
+
+    Returns
+    -------
+    Result
+        The members of the document of ``proofmass noise --json`` as attributes.
+
+    Raises
+    ------
+    ArgumentError
+        An option that makes no sense; a ValueError too.
+    FileError
+        A file that cannot be read; an OSError too.
+    DataError
+        Data that cannot be analysed; a ValueError too.
+
+    Examples
+    --------
+    >>> import numpy as np, proofmass as pm
+    >>> x = np.random.default_rng(1).normal(scale=0.1, size=20000)
+    >>> white = pm.noise(x, rate_hz=100, unit="m/s2").channels[0].white
+    >>> white.verdict, abs(white.value - 0.01) < 4 * white.std
+    ('identified', True)
+    """
+    return run("noise", x, options_of(locals()), progress, "noise.csv")
+
+
+def drift(
+    x: Any,
+    /,
+    *,
+    rate_hz: Optional[float] = None,
+    unit: Optional[str] = None,
+    forecast: Optional[float] = None,
+    temperature: Optional[str] = None,
+    order: Optional[str] = None,
+    update_sensor: Optional[Path] = None,
+    since_switch_on: Optional[float] = None,
+    channel: Union[str, Sequence[str], None] = None,
+    variable: Union[str, Sequence[str], None] = None,
+    time: Optional[str] = None,
+    from_s: Optional[float] = None,
+    to_s: Optional[float] = None,
+    resample: Optional[float] = None,
+    resample_method: Optional[str] = None,
+    skew: Optional[float] = None,
+    sensor: Union[Sensor, Path, Sequence[Union[Sensor, Path]], None] = None,
+    supply: Optional[float] = None,
+    gravity: Optional[float] = None,
+    latitude: Optional[float] = None,
+    height: Optional[float] = None,
+    progress: Progress = None,
+) -> Result:
+    """Warm-up of the bias of a sensor at rest, and whether the recording can tell.
+
+    Parameters
+    ----------
+    x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
+        Recordings at rest from switching on; three or more are compared.
+    rate_hz : float, optional
+        Sample rate, where the file has no time column.
+    unit : str, optional
+        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    forecast : float, optional
+        Foretell the bias so long after switching on.
+    temperature : str, optional
+        Fit the bias against this channel (default: the only one in a unit of temperature); none: do
+        not.
+    order : str, optional
+        Of three files or more: time (default: by their absolute time stamps, else by the numbers in
+        their names) or given (as on the command line).
+    update_sensor : path, optional
+        Write what is identified into this sensor file.
+    since_switch_on : float, optional
+        How long the sensor had been on at the first sample (default 0).
+    channel : str or list of str, optional
+        Use this channel; may be repeated (default: all).
+    variable : str or list of str, optional
+        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
+        repeated (default: chosen by size and name).
+    time : str, optional
+        The time column (default: found by name and content).
+    from_s : float, optional
+        Leave out what comes before.
+    to_s : float, optional
+        Leave out what comes from here on.
+    resample : float, optional
+        Bring the samples, or several variable, onto an even grid (default: as they were taken).
+    resample_method : str, optional
+        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
+    skew : float, optional
+        The channels were sampled one after another, so far apart: brings them to one instant.
+    sensor : Sensor, path or list of them, optional
+        Apply this sensor file's calibration first; once for all sensors or once for each.
+    supply : float, optional
+        The ratiometric sensor's supply, instead of the file's (needs sensor).
+    gravity : float, optional
+        Local gravity (default 9.80665) (not with latitude).
+    latitude : float, optional
+        Gravity from the latitude (not with gravity).
+    height : float, optional
+        And from the height above the ellipsoid (needs latitude).
+    progress : bool or callable of (stage, fraction), optional
+        True shows a bar.
+
+    Returns
+    -------
+    Result
+        The members of the document of ``proofmass drift --json`` as attributes.
+
+    Raises
+    ------
+    ArgumentError
+        An option that makes no sense; a ValueError too.
+    FileError
+        A file that cannot be read; an OSError too.
+    DataError
+        Data that cannot be analysed; a ValueError too.
+
+    Examples
+    --------
+    >>> import numpy as np, proofmass as pm
+    >>> t = np.arange(36000) / 10
+    >>> x = 0.05 * (1 - np.exp(-t / 300)) + np.random.default_rng(2).normal(scale=0.002, size=t.size)
+    >>> found = pm.drift(x, rate_hz=10, unit="m/s2").channels[0]
+    >>> found.verdict, abs(found.time_constant_s.value - 300) < 4 * found.time_constant_s.std
+    ('identified', True)
+    """
+    return run("drift", x, options_of(locals()), progress, "drift.csv")
+
+
+def calibrate(
+    x: Any,
+    /,
+    *,
+    rate_hz: Optional[float] = None,
+    unit: Optional[str] = None,
+    rests: Optional[Path] = None,
+    rest: Optional[float] = None,
+    means: bool = False,
+    parameters: Optional[int] = None,
+    six_position: bool = False,
+    keep_suspects: bool = False,
+    validate: Union[str, Sequence[str], None] = None,
+    gravity_std: Optional[float] = None,
+    orthogonality_std: Optional[float] = None,
+    placement_std: Optional[float] = None,
+    bias_stability: Optional[float] = None,
+    type_b: Union[str, Sequence[str], None] = None,
+    monte_carlo: Optional[int] = None,
+    supplies: Optional[Sequence[float]] = None,
+    name: Optional[str] = None,
+    serial: Optional[str] = None,
+    date: Optional[str] = None,
+    temperature: Optional[float] = None,
+    update_sensor: Optional[Path] = None,
+    channel: Union[str, Sequence[str], None] = None,
+    variable: Union[str, Sequence[str], None] = None,
+    time: Optional[str] = None,
+    from_s: Optional[float] = None,
+    to_s: Optional[float] = None,
+    resample: Optional[float] = None,
+    resample_method: Optional[str] = None,
+    skew: Optional[float] = None,
+    sensor: Union[Sensor, Path, Sequence[Union[Sensor, Path]], None] = None,
+    supply: Optional[float] = None,
+    gravity: Optional[float] = None,
+    latitude: Optional[float] = None,
+    height: Optional[float] = None,
+    progress: Progress = None,
+) -> Result:
+    """Bias, scale and misalignment from rests in several positions.
+
+    Parameters
+    ----------
+    x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
+        Recordings of a sensor laid down in 9 or more directions, or tables of means.
+    rate_hz : float, optional
+        Sample rate, where the file has no time column.
+    unit : str, optional
+        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    rests : path, optional
+        Start and end of each rest, perhaps with label and direction (default: found).
+    rest : float, optional
+        The shortest rest to look for (default: 0.5).
+    means : bool
+        The files are tables of means, one row a position.
+    parameters : int, optional
+        6: bias and scale; 9: and misalignment; 12: and mounting, by given directions (default: 9, or 6
+        where the positions carry no more).
+    six_position : bool
+        Take six given positions for exact (what others do; better: turn it freely).
+    keep_suspects : bool
+        Positions that contradict the others stay in the fit.
+    validate : str or list of str, optional
+        New positions to try the calibration on.
+    gravity_std : float, optional
+        Standard deviation of gravity (default: 0 of gravity, 4e-4 of latitude, else 0.015).
+    orthogonality_std : float, optional
+        Of the angles between the axes where they are not fitted (default 0.57).
+    placement_std : float, optional
+        Of the positions that six_position takes for exact (default 1).
+    bias_stability : float, optional
+        Standard deviation of the biases from one session to another, as drift finds it of several
+        power-ups (default: by the flicker noise and random walk of the file to update, else of the
+        recording).
+    type_b : str or list of str, optional
+        A contribution to the uncertainty: "ADC reference,scale,0.05 %,uniform"; may be repeated.
+    monte_carlo : int, optional
+        Draws that check the uncertainties; 0: none (default 200).
+    supplies : list of float, optional
+        Supply of each file, to tell what it does.
+    name : str, optional
+        Of the sensor, for certificate and sensor file.
+    serial : str, optional
+        Its serial number.
+    date : str, optional
+        Of the measurement, ISO 8601.
+    temperature : float, optional
+        At which it was made.
+    update_sensor : path, optional
+        Write the calibration into this sensor file.
+    channel : str or list of str, optional
+        Use this channel; may be repeated (default: all).
+    variable : str or list of str, optional
+        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
+        repeated (default: chosen by size and name).
+    time : str, optional
+        The time column (default: found by name and content).
+    from_s : float, optional
+        Leave out what comes before.
+    to_s : float, optional
+        Leave out what comes from here on.
+    resample : float, optional
+        Bring the samples, or several variable, onto an even grid (default: as they were taken).
+    resample_method : str, optional
+        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
+    skew : float, optional
+        The channels were sampled one after another, so far apart: brings them to one instant.
+    sensor : Sensor, path or list of them, optional
+        Apply this sensor file's calibration first; once for all sensors or once for each.
+    supply : float, optional
+        The ratiometric sensor's supply, instead of the file's (needs sensor).
+    gravity : float, optional
+        Local gravity (default 9.80665) (not with latitude).
+    latitude : float, optional
+        Gravity from the latitude (not with gravity).
+    height : float, optional
+        And from the height above the ellipsoid (needs latitude).
+    progress : bool or callable of (stage, fraction), optional
+        True shows a bar.
+
+    Returns
+    -------
+    Result
+        The members of the document of ``proofmass calibrate --json`` as attributes.
+
+    Raises
+    ------
+    ArgumentError
+        An option that makes no sense; a ValueError too.
+    FileError
+        A file that cannot be read; an OSError too.
+    DataError
+        Data that cannot be analysed; a ValueError too.
+
+    Examples
+    --------
+    >>> import proofmass as pm
+    >>> twin = pm.simulate(procedure="multi-position", seed=3)
+    >>> found = pm.calibrate(twin.recording, gravity=9.80665, monte_carlo=0)
+    >>> len(found.bias), len(found.positions)
+    (3, 25)
+    """
+    return run("calibrate", x, options_of(locals()), progress, "calibrate.csv")
+
+
+def tumble(
+    x: Any,
+    /,
+    *,
+    rate_hz: Optional[float] = None,
+    unit: Optional[str] = None,
+    angles: Optional[Sequence[float]] = None,
+    rests: Optional[Path] = None,
+    angle: Optional[str] = None,
+    rest: Optional[float] = None,
+    plane: Union[int, Sequence[int], None] = None,
+    mount: Union[int, Sequence[int], None] = None,
+    input_axis: Optional[str] = None,
+    indexing_std: Optional[float] = None,
+    drift_std: Optional[float] = None,
+    bandwidth: Optional[float] = None,
+    gravity_std: Optional[float] = None,
+    rotating: bool = False,
+    coefficients: Union[str, Sequence[str], None] = None,
+    update_sensor: Optional[Path] = None,
+    channel: Union[str, Sequence[str], None] = None,
+    variable: Union[str, Sequence[str], None] = None,
+    time: Optional[str] = None,
+    from_s: Optional[float] = None,
+    to_s: Optional[float] = None,
+    resample: Optional[float] = None,
+    resample_method: Optional[str] = None,
+    skew: Optional[float] = None,
+    sensor: Union[Sensor, Path, Sequence[Union[Sensor, Path]], None] = None,
+    supply: Optional[float] = None,
+    gravity: Optional[float] = None,
+    latitude: Optional[float] = None,
+    height: Optional[float] = None,
+    progress: Progress = None,
+) -> Result:
+    """Scale factor, bias and the model's other coefficients from a turntable, IEEE 1293.
+
+    Parameters
+    ----------
+    x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
+        Positions (angle and output), or a recording that rests in them.
+    rate_hz : float, optional
+        Sample rate, where the file has no time column.
+    unit : str, optional
+        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    angles : list of float, optional
+        Of a recording's rests, one for each in its order: "0,90,180,270,0".
+    rests : path, optional
+        Start and end of each rest, perhaps with the table's angle (default: found).
+    angle : str, optional
+        The column with the angle (default: found by name and unit).
+    rest : float, optional
+        The shortest rest to look for (default: found).
+    plane : int or list of int, optional
+        In which the file was tumbled; once for all files or once for each.
+    mount : int or list of int, optional
+        How the sensor sat on the table; once for all files or once for each.
+    input_axis : str, optional
+        The channel whose axis sees g·sin(angle) (default: found from the readings).
+    indexing_std : float, optional
+        Standard deviation of the table's angles (default: 0.5, less where the residuals show it).
+    drift_std : float, optional
+        Standard deviation of the amplitudes by which the bias wanders about a straight line (default:
+        0.0057, 1 mg/√3, and a quarter of the linear drift; less where repeats show it).
+    bandwidth : float, optional
+        Of the sensor's filter, one pole, with rotating angle: its delay is taken out of the
+        misalignment.
+    gravity_std : float, optional
+        Standard deviation of gravity (default: 0 of gravity, 4e-4 of latitude, else 0.015).
+    rotating : bool
+        The sensor sat on a wheel that turned: scale factor and bias from its turns.
+    coefficients : str or list of str, optional
+        Fit these coefficients of the whole model equation.
+    update_sensor : path, optional
+        Write bias and scale into this sensor file.
+    channel : str or list of str, optional
+        Use this channel; may be repeated (default: all).
+    variable : str or list of str, optional
+        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
+        repeated (default: chosen by size and name).
+    time : str, optional
+        The time column (default: found by name and content).
+    from_s : float, optional
+        Leave out what comes before.
+    to_s : float, optional
+        Leave out what comes from here on.
+    resample : float, optional
+        Bring the samples, or several variable, onto an even grid (default: as they were taken).
+    resample_method : str, optional
+        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
+    skew : float, optional
+        The channels were sampled one after another, so far apart: brings them to one instant.
+    sensor : Sensor, path or list of them, optional
+        Apply this sensor file's calibration first; once for all sensors or once for each.
+    supply : float, optional
+        The ratiometric sensor's supply, instead of the file's (needs sensor).
+    gravity : float, optional
+        Local gravity (default 9.80665) (not with latitude).
+    latitude : float, optional
+        Gravity from the latitude (not with gravity).
+    height : float, optional
+        And from the height above the ellipsoid (needs latitude).
+    progress : bool or callable of (stage, fraction), optional
+        True shows a bar.
+
+    Returns
+    -------
+    Result
+        The members of the document of ``proofmass tumble --json`` as attributes.
+
+    Raises
+    ------
+    ArgumentError
+        An option that makes no sense; a ValueError too.
+    FileError
+        A file that cannot be read; an OSError too.
+    DataError
+        Data that cannot be analysed; a ValueError too.
+
+    Examples
+    --------
+    >>> import math, pandas as pd, proofmass as pm
+    >>> angles = [0, 90, 180, 270]
+    >>> table = pd.DataFrame({"angle (deg)": angles, "x (g)": [0.02 + math.sin(math.radians(a)) for a in angles]})
+    >>> found = pm.tumble(table, gravity=9.80665)
+    >>> round(found.K0.value / 9.80665, 6)
+    0.02
+    """
+    return run("tumble", x, options_of(locals()), progress, "tumble.csv")
+
+
+def wheel(
+    x: Any,
+    /,
+    *,
+    rate_hz: Optional[float] = None,
+    unit: Optional[str] = None,
+    spin_axis: Union[str, Sequence[float], None] = None,
+    radius: Optional[float] = None,
+    radius_std: Optional[float] = None,
+    bandwidth: Optional[float] = None,
+    axle_tilt_std: Optional[float] = None,
+    no_gyro: bool = False,
+    rate_unit: Optional[str] = None,
+    rolling_radius: Optional[float] = None,
+    rim_radius: Optional[float] = None,
+    since_switch_on: Optional[float] = None,
+    channel: Union[str, Sequence[str], None] = None,
+    variable: Union[str, Sequence[str], None] = None,
+    time: Optional[str] = None,
+    from_s: Optional[float] = None,
+    to_s: Optional[float] = None,
+    resample: Optional[float] = None,
+    resample_method: Optional[str] = None,
+    skew: Optional[float] = None,
+    sensor: Union[Sensor, Path, Sequence[Union[Sensor, Path]], None] = None,
+    supply: Optional[float] = None,
+    gravity: Optional[float] = None,
+    latitude: Optional[float] = None,
+    height: Optional[float] = None,
+    progress: Progress = None,
+) -> Result:
+    """Angle, turns and speed from one or two accelerometers on a wheel.
+
+    Parameters
+    ----------
+    x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
+        One recording, or one for each of two sensors.
+    rate_hz : float, optional
+        Sample rate, where the file has no time column.
+    unit : str, optional
+        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    spin_axis : str or list of float, optional
+        x, y, z, -x, -y, -z or "X,Y,Z" in the sensor's axes (default: found).
+    radius : float, optional
+        Of the sensor from the axle, where known.
+    radius_std : float, optional
+        Standard deviation of radius (default: 2 %, at least 0.0002) (needs radius).
+    bandwidth : float, optional
+        -3 dB of the sensor's filter, which delays the angle (default: of the sensor file, or anywhere
+        from 6 Hz to 2.5 times the rate).
+    axle_tilt_std : float, optional
+        Standard deviation of the axle from level (default 5).
+    no_gyro : bool
+        Leave the gyroscope's channels alone.
+    rate_unit : str, optional
+        Of the gyroscope, where its heading has none: rad/s (default) or deg/s.
+    rolling_radius : float, optional
+        On which the wheel rolls under a vehicle (0: on a bench): takes its speeding up out of the
+        angle.
+    rim_radius : float, optional
+        Of the rim, whose path is the distance.
+    since_switch_on : float, optional
+        The sensors had been on so long at the file's first sample: takes the warm-up that their sensor
+        files know of out.
+    channel : str or list of str, optional
+        Use this channel; may be repeated (default: all).
+    variable : str or list of str, optional
+        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
+        repeated (default: chosen by size and name).
+    time : str, optional
+        The time column (default: found by name and content).
+    from_s : float, optional
+        Leave out what comes before.
+    to_s : float, optional
+        Leave out what comes from here on.
+    resample : float, optional
+        Bring the samples, or several variable, onto an even grid (default: as they were taken).
+    resample_method : str, optional
+        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
+    skew : float, optional
+        The channels were sampled one after another, so far apart: brings them to one instant.
+    sensor : Sensor, path or list of them, optional
+        Apply this sensor file's calibration first; once for all sensors or once for each.
+    supply : float, optional
+        The ratiometric sensor's supply, instead of the file's (needs sensor).
+    gravity : float, optional
+        Local gravity (default 9.80665) (not with latitude).
+    latitude : float, optional
+        Gravity from the latitude (not with gravity).
+    height : float, optional
+        And from the height above the ellipsoid (needs latitude).
+    progress : bool or callable of (stage, fraction), optional
+        True shows a bar.
+
+    Returns
+    -------
+    Result
+        The members of the document of ``proofmass wheel --json`` as attributes.
+
+    Raises
+    ------
+    ArgumentError
+        An option that makes no sense; a ValueError too.
+    FileError
+        A file that cannot be read; an OSError too.
+    DataError
+        Data that cannot be analysed; a ValueError too.
+
+    Examples
+    --------
+    >>> import proofmass as pm
+    >>> twin = pm.simulate(duration=20, rpm=60, seed=1)
+    >>> turns = pm.wheel(twin.recording).turns
+    >>> abs(turns.value - twin.truth["angle"][-1] / 6.283185307179586) < 0.02
+    True
+    """
+    return run("wheel", x, options_of(locals()), progress, "wheel.csv")
+
+
+def track(
+    x: Any,
+    /,
+    *,
+    rate_hz: Optional[float] = None,
+    unit: Optional[str] = None,
+    model: Optional[str] = None,
+    jerk_psd: Optional[float] = None,
+    axis: Union[str, Sequence[float], None] = None,
+    same_place: bool = False,
+    same_place_std: Optional[float] = None,
+    fixes: Optional[Path] = None,
+    fix_std: Optional[float] = None,
+    still: Optional[Path] = None,
+    rests: Optional[str] = None,
+    turns: Optional[Path] = None,
+    shortest_rest: Optional[float] = None,
+    rest_speed_std: Optional[float] = None,
+    scale_std: Optional[float] = None,
+    take_as_acceleration: bool = False,
+    no_gyro: bool = False,
+    rate_unit: Optional[str] = None,
+    since_switch_on: Optional[float] = None,
+    channel: Union[str, Sequence[str], None] = None,
+    variable: Union[str, Sequence[str], None] = None,
+    time: Optional[str] = None,
+    from_s: Optional[float] = None,
+    to_s: Optional[float] = None,
+    resample: Optional[float] = None,
+    resample_method: Optional[str] = None,
+    skew: Optional[float] = None,
+    sensor: Union[Sensor, Path, Sequence[Union[Sensor, Path]], None] = None,
+    supply: Optional[float] = None,
+    latitude: Optional[float] = None,
+    height: Optional[float] = None,
+    gravity: Union[float, str, None] = None,
+    progress: Progress = None,
+) -> Result:
+    """Displacement from acceleration, from rest to rest.
+
+    Parameters
+    ----------
+    x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
+        A recording.
+    rate_hz : float, optional
+        Sample rate, where the file has no time column.
+    unit : str, optional
+        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    model : str, optional
+        Inertial (default): the acceleration is integrated between stops, which holds for a motion of
+        any kind; pva: it is estimated, as one that white jerk drives, and NIS judges each sample;
+        fused: the same from 2 to 4 accelerometers with parallel axes.
+    jerk_psd : float, optional
+        Density of that jerk (default: by maximum likelihood).
+    axis : str or list of float, optional
+        Direction of the displacement: x, y, z, with a sign, or X,Y,Z in the sensor's axes, with a
+        gyroscope the world's (default: along which it moved farthest).
+    same_place : bool
+        It ended where it began.
+    same_place_std : float, optional
+        How well (default 0.001) (needs same_place).
+    fixes : path, optional
+        Positions measured on the way: time, position and, if known, std.
+    fix_std : float, optional
+        Of those without their own (default 0.01) (needs fixes).
+    still : path, optional
+        List of intervals in which it stood still, instead of those found (not with rests).
+    rests : str, optional
+        Which quiet stretches are rests: found (default: as they fit the motion), or ends: the first and
+        the last alone (not with still).
+    turns : path, optional
+        List of times at which it turned round: velocity 0.
+    shortest_rest : float, optional
+        A rest lasts at least so long (default 0.5).
+    rest_speed_std : float, optional
+        Speed that a sensor at rest may have (default 0.0001).
+    scale_std : float, optional
+        Relative standard deviation of the readings' scale (default: of the sensor file, or by gravity
+        at rest).
+    take_as_acceleration : bool
+        Give a displacement though the readings look like jerk.
+    no_gyro : bool
+        Leave the gyroscope's channels alone.
+    rate_unit : str, optional
+        Of the gyroscope, where its heading has none: rad/s (default) or deg/s.
+    since_switch_on : float, optional
+        How long the sensor had been on at the first sample: takes the warm-up of the sensor file out.
+    channel : str or list of str, optional
+        Use this channel; may be repeated (default: all).
+    variable : str or list of str, optional
+        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
+        repeated (default: chosen by size and name).
+    time : str, optional
+        The time column (default: found by name and content).
+    from_s : float, optional
+        Leave out what comes before.
+    to_s : float, optional
+        Leave out what comes from here on.
+    resample : float, optional
+        Bring the samples, or several variable, onto an even grid (default: as they were taken).
+    resample_method : str, optional
+        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
+    skew : float, optional
+        The channels were sampled one after another, so far apart: brings them to one instant.
+    sensor : Sensor, path or list of them, optional
+        Apply this sensor file's calibration first; once for all sensors or once for each.
+    supply : float, optional
+        The ratiometric sensor's supply, instead of the file's (needs sensor).
+    latitude : float, optional
+        Gravity from the latitude.
+    height : float, optional
+        And from the height above the ellipsoid (needs latitude).
+    gravity : float or str, optional
+        removed or present, where the readings do not show it; or local gravity (default 9.80665); may
+        be repeated.
+    progress : bool or callable of (stage, fraction), optional
+        True shows a bar.
+
+    Returns
+    -------
+    Result
+        The members of the document of ``proofmass track --json`` as attributes.
+
+    Raises
+    ------
+    ArgumentError
+        An option that makes no sense; a ValueError too.
+    FileError
+        A file that cannot be read; an OSError too.
+    DataError
+        Data that cannot be analysed; a ValueError too.
+
+    Examples
+    --------
+    >>> import proofmass as pm
+    >>> slide = pm.simulate(procedure="slide", length=0.5, strokes=2, seed=1)
+    >>> [round(stroke.length_m, 1) for stroke in pm.track(slide.recording).strokes]
+    [0.5, -0.5]
+    """
+    return run("track", x, options_of(locals()), progress, "track.csv")
+
+
+def tilt(
+    x: Any,
+    /,
+    *,
+    rate_hz: Optional[float] = None,
+    unit: Optional[str] = None,
+    base: Optional[str] = None,
+    reads: Optional[str] = None,
+    gyro: Union[str, Sequence[str], None] = None,
+    no_gyro: bool = False,
+    rate_unit: Optional[str] = None,
+    shortest_rest: Optional[float] = None,
+    bias_std: Optional[float] = None,
+    gravity_std: Optional[float] = None,
+    angle: Union[str, int, None] = None,
+    rate_channel: Union[str, int, None] = None,
+    angle_unit: Optional[str] = None,
+    channel: Union[str, Sequence[str], None] = None,
+    variable: Union[str, Sequence[str], None] = None,
+    time: Optional[str] = None,
+    from_s: Optional[float] = None,
+    to_s: Optional[float] = None,
+    resample: Optional[float] = None,
+    resample_method: Optional[str] = None,
+    skew: Optional[float] = None,
+    sensor: Union[Sensor, Path, Sequence[Union[Sensor, Path]], None] = None,
+    supply: Optional[float] = None,
+    gravity: Optional[float] = None,
+    latitude: Optional[float] = None,
+    height: Optional[float] = None,
+    progress: Progress = None,
+) -> Result:
+    """Roll and pitch from gravity, at rest and on a moving base.
+
+    Parameters
+    ----------
+    x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
+        A recording.
+    rate_hz : float, optional
+        Sample rate, where the file has no time column.
+    unit : str, optional
+        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    base : str, optional
+        Auto (default): still if it rests nearly throughout; still, or moving.
+    reads : str, optional
+        What an axis that points up reads at rest: +g (default), or -g as on an iPhone.
+    gyro : str or list of str, optional
+        The gyroscope's channels for x, y and z: three of them (default: found by name and unit).
+    no_gyro : bool
+        Leave the gyroscope's channels alone.
+    rate_unit : str, optional
+        Of the gyroscope, where its heading has none: rad/s (default) or deg/s.
+    shortest_rest : float, optional
+        A rest lasts at least so long (default 0.5).
+    bias_std : float, optional
+        Standard deviation of each axis' bias; with a sensor file, of what it has changed by since the
+        calibration (default: judged by the force at rest).
+    gravity_std : float, optional
+        Standard deviation of gravity (default: 0 of gravity, 4e-4 of latitude, else 0.015).
+    angle : str or int, optional
+        The recording holds an angle instead of accelerations, in this column (name or number, 1 being
+        the first).
+    rate_channel : str or int, optional
+        And the gyroscope's rate about the same axis in this one (needs angle).
+    angle_unit : str, optional
+        Of that column, where its heading has none: rad (default) or deg (needs angle).
+    channel : str or list of str, optional
+        Use this channel; may be repeated (default: all).
+    variable : str or list of str, optional
+        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
+        repeated (default: chosen by size and name).
+    time : str, optional
+        The time column (default: found by name and content).
+    from_s : float, optional
+        Leave out what comes before.
+    to_s : float, optional
+        Leave out what comes from here on.
+    resample : float, optional
+        Bring the samples, or several variable, onto an even grid (default: as they were taken).
+    resample_method : str, optional
+        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
+    skew : float, optional
+        The channels were sampled one after another, so far apart: brings them to one instant.
+    sensor : Sensor, path or list of them, optional
+        Apply this sensor file's calibration first; once for all sensors or once for each.
+    supply : float, optional
+        The ratiometric sensor's supply, instead of the file's (needs sensor).
+    gravity : float, optional
+        Local gravity (default 9.80665) (not with latitude).
+    latitude : float, optional
+        Gravity from the latitude (not with gravity).
+    height : float, optional
+        And from the height above the ellipsoid (needs latitude).
+    progress : bool or callable of (stage, fraction), optional
+        True shows a bar.
+
+    Returns
+    -------
+    Result
+        The members of the document of ``proofmass tilt --json`` as attributes.
+
+    Raises
+    ------
+    ArgumentError
+        An option that makes no sense; a ValueError too.
+    FileError
+        A file that cannot be read; an OSError too.
+    DataError
+        Data that cannot be analysed; a ValueError too.
+
+    Examples
+    --------
+    >>> import numpy as np, proofmass as pm
+    >>> g = np.array([0.0, 9.80665 * np.sin(0.1), 9.80665 * np.cos(0.1)])
+    >>> lying = g + np.random.default_rng(3).normal(scale=0.01, size=(2000, 3))
+    >>> round(pm.tilt(lying, rate_hz=100, unit="m/s2", gravity=9.80665).roll_rad.value, 3)
+    0.1
+    """
+    return run("tilt", x, options_of(locals()), progress, "tilt.csv")
+
+
+def tune(
+    x: Any,
+    /,
+    *,
+    rate_hz: Optional[float] = None,
+    unit: Optional[str] = None,
+    model: Optional[str] = None,
+    fix: Union[str, Sequence[str], None] = None,
+    share: Union[str, Sequence[str], None] = None,
+    start_at_sensor: bool = False,
+    study_step: Optional[float] = None,
+    update_sensor: Optional[Path] = None,
+    channel: Union[str, Sequence[str], None] = None,
+    variable: Union[str, Sequence[str], None] = None,
+    time: Optional[str] = None,
+    from_s: Optional[float] = None,
+    to_s: Optional[float] = None,
+    resample: Optional[float] = None,
+    resample_method: Optional[str] = None,
+    skew: Optional[float] = None,
+    sensor: Union[Sensor, Path, Sequence[Union[Sensor, Path]], None] = None,
+    supply: Optional[float] = None,
+    gravity: Optional[float] = None,
+    latitude: Optional[float] = None,
+    height: Optional[float] = None,
+    progress: Progress = None,
+) -> Result:
+    """Q, R and the bias's time constant of a filter from the recording that it is to run on.
+
+    Parameters
+    ----------
+    x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
+        A recording.
+    rate_hz : float, optional
+        Sample rate, where the file has no time column.
+    unit : str, optional
+        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    model : str, optional
+        Auto (default): rest if it rests nearly throughout, else pva; rest, rest-markov, pva, pva-bias,
+        local-level, local-trend, position.
+    fix : str or list of str, optional
+        Hold a parameter, in SI; may be repeated.
+    share : str or list of str, optional
+        One value of this parameter for all channels; may be repeated.
+    start_at_sensor : bool
+        Start at the noise of the sensor file instead of the Allan deviation.
+    study_step : float, optional
+        Step of the study of gain and covariance (default: the recording's).
+    update_sensor : path, optional
+        Write white noise and random walk into this sensor file (model rest).
+    channel : str or list of str, optional
+        Use this channel; may be repeated (default: all).
+    variable : str or list of str, optional
+        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
+        repeated (default: chosen by size and name).
+    time : str, optional
+        The time column (default: found by name and content).
+    from_s : float, optional
+        Leave out what comes before.
+    to_s : float, optional
+        Leave out what comes from here on.
+    resample : float, optional
+        Bring the samples, or several variable, onto an even grid (default: as they were taken).
+    resample_method : str, optional
+        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
+    skew : float, optional
+        The channels were sampled one after another, so far apart: brings them to one instant.
+    sensor : Sensor, path or list of them, optional
+        Apply this sensor file's calibration first; once for all sensors or once for each.
+    supply : float, optional
+        The ratiometric sensor's supply, instead of the file's (needs sensor).
+    gravity : float, optional
+        Local gravity (default 9.80665) (not with latitude).
+    latitude : float, optional
+        Gravity from the latitude (not with gravity).
+    height : float, optional
+        And from the height above the ellipsoid (needs latitude).
+    progress : bool or callable of (stage, fraction), optional
+        True shows a bar.
+
+    Returns
+    -------
+    Result
+        The members of the document of ``proofmass tune --json`` as attributes.
+
+    Raises
+    ------
+    ArgumentError
+        An option that makes no sense; a ValueError too.
+    FileError
+        A file that cannot be read; an OSError too.
+    DataError
+        Data that cannot be analysed; a ValueError too.
+
+    Examples
+    --------
+    >>> import numpy as np, proofmass as pm
+    >>> level = np.cumsum(np.random.default_rng(4).normal(scale=0.01, size=4000))
+    >>> z = level + np.random.default_rng(5).normal(scale=0.1, size=4000)
+    >>> found = pm.tune({"height": z}, rate_hz=1, model="local-level")
+    >>> len(found.parameters)
+    2
+    """
+    return run("tune", x, options_of(locals()), progress, "tune.csv")
+
+
+class Simulated(Result):
+    """What the digital twin has made.
+
+    Attributes
+    ----------
+    recording, truth : Recording
+        What the sensors would have given, and what was so.
+    sensor : Sensor or None
+        The true figures of a calibration's sensor.
+    """
+
+    @property
+    def recording(self) -> Recording:
+        return Recording(self._given["series"][0][1])
+
+    @property
+    def truth(self) -> Recording:
+        return Recording(self._given["series"][1][1])
+
+    @property
+    def sensor(self) -> Optional[Sensor]:
+        for _, text in self._given["texts"]:
+            return Sensor(text=text)
+        return None
+
+
+def simulate(
+    rig: Optional[Path] = None,
+    *,
+    seed: Optional[int] = None,
+    rpm: Optional[float] = None,
+    rate_hz: Optional[float] = None,
+    duration: Optional[float] = None,
+    gravity: Optional[float] = None,
+    datasheet_errors: bool = False,
+    adc_bits: Optional[int] = None,
+    procedure: Optional[str] = None,
+    session: Optional[int] = None,
+    positions: Optional[int] = None,
+    dwell: Optional[float] = None,
+    supply: Optional[float] = None,
+    strokes: Optional[int] = None,
+    repetitions: Optional[int] = None,
+    length: Optional[float] = None,
+    stroke_time: Optional[float] = None,
+    elevation: Optional[float] = None,
+    gravity_removed: bool = False,
+    gyro: bool = False,
+    signal: Optional[str] = None,
+    progress: Progress = None,
+) -> Simulated:
+    """The rig, a calibration or a slide as a digital twin.
+
+    Parameters
+    ----------
+    rig : path, optional
+        Description, TOML; the thesis's rig where it is not given.
+    seed : int, optional
+        Same seed, same numbers.
+    rpm : float, optional
+        Turn at this speed throughout.
+    rate_hz : float, optional
+        Samples a second.
+    duration : float, optional
+        Length of the recording.
+    gravity : float, optional
+        Local gravity (default 9.80665).
+    datasheet_errors : bool
+        misalignment, cross-axis, scale and nonlinearity as the datasheet allows.
+    adc_bits : int, optional
+        Of the converter.
+    procedure : str, optional
+        Instead of the rig a calibration: tumble, four-position, six-position or multi-position; or a
+        slide along a line.
+    session : int, optional
+        Same sensor and table, other noise and hand (needs procedure).
+    positions : int, optional
+        Of tumble (default 24) or multi-position (24) (needs procedure).
+    dwell : float, optional
+        In each position (needs procedure).
+    supply : float, optional
+        Of the ratiometric sensor (default 3.3) (needs procedure).
+    strokes : int, optional
+        Of a slide, each followed by a rest (default 6) (needs procedure).
+    repetitions : int, optional
+        Of a slide: each stroke there and back so often (needs procedure).
+    length : float, optional
+        Of a slide's stroke (default 0.4) (needs procedure).
+    stroke_time : float, optional
+        Of a slide's stroke (default 1) (needs procedure).
+    elevation : float, optional
+        Of a slide's line above the horizontal (needs procedure).
+    gravity_removed : bool
+        Of a slide, as phones do (needs procedure).
+    gyro : bool
+        Of a slide: channels of angular rate (needs procedure).
+    signal : str, optional
+        acceleration (default), voltage or counts (needs procedure).
+    progress : bool or callable of (stage, fraction), optional
+        True shows a bar.
+
+    Returns
+    -------
+    Simulated
+        With `recording` and `truth`, and the document's members as attributes.
+
+    Raises
+    ------
+    ArgumentError
+        An option that makes no sense; a ValueError too.
+
+    Examples
+    --------
+    >>> import proofmass as pm
+    >>> twin = pm.simulate(duration=20, rpm=60, seed=1)
+    >>> twin.recording.channels
+    ['acc1_x', 'acc1_y', 'acc1_z', 'acc2_x', 'acc2_y', 'acc2_z']
+    """
+    found = run("simulate", rig, options_of(locals()), progress, "simulated.csv")
+    return Simulated(found._given)

@@ -1,0 +1,95 @@
+#include "computing.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace py = pybind11;
+
+namespace proofmass::python {
+namespace {
+
+/// What the work throws when it is to end.
+struct Cancelled {};
+
+// What the two threads have in common.
+class Shared {
+ public:
+  /// Of the working thread and those that it starts.
+  void tell(std::string_view stage, double fraction) {
+    if (cancelled_) throw Cancelled{};
+    const std::lock_guard lock(mutex_);
+    told_ = {std::string(stage), fraction};
+  }
+  void finish() {
+    const std::lock_guard lock(mutex_);
+    finished_ = true;
+    changed_.notify_one();
+  }
+  /// Whether it has finished, after a while at most.
+  bool wait() {
+    constexpr std::chrono::milliseconds look_again(50);
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, look_again, [&] { return finished_; });
+  }
+  [[nodiscard]] std::optional<std::pair<std::string, double>> take_told() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(told_, std::nullopt);
+  }
+  void cancel() { cancelled_ = true; }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool finished_ = false;
+  std::optional<std::pair<std::string, double>> told_;
+  std::atomic<bool> cancelled_ = false;
+};
+
+// Throws what a signal's handler or the callable raises.
+void look_up(Shared& shared, const py::object& progress) {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  if (progress.is_none()) return;
+  if (const auto told = shared.take_told()) progress(told->first, told->second);
+}
+
+}  // namespace
+
+void compute(const py::object& progress, const std::function<void(const Progress&)>& work) {
+  Shared shared;
+  std::exception_ptr thrown;
+  std::thread worker([&] {
+    try {
+      work([&](std::string_view stage, double fraction) { shared.tell(stage, fraction); });
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    shared.finish();
+  });
+  std::exception_ptr raised;
+  {
+    const py::gil_scoped_release unlocked;
+    while (!shared.wait()) {
+      if (raised) continue;
+      const py::gil_scoped_acquire locked;
+      try {
+        look_up(shared, progress);
+      } catch (...) {
+        raised = std::current_exception();
+        shared.cancel();
+      }
+    }
+    worker.join();
+  }
+  if (raised) std::rethrow_exception(raised);
+  if (thrown) std::rethrow_exception(thrown);
+  look_up(shared, progress);
+}
+
+}  // namespace proofmass::python

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+// The module's parts, one source each.
+namespace proofmass::python {
+
+void add_allan(pybind11::module_& module);
+void add_kalman(pybind11::module_& module);
+void add_live(pybind11::module_& module);
+void add_sensor(pybind11::module_& module);
+void add_verbs(pybind11::module_& module);
+
+}  // namespace proofmass::python
