@@ -31,7 +31,7 @@ def _filled(values: Any, what: str) -> NDArray[Any]:
     if isinstance(values, np.ma.MaskedArray):
         if values.dtype.kind not in "fiu":
             raise ArgumentError(f"{what}: expected real numbers, got a masked array of {values.dtype}")
-        return np.asarray(values.astype(np.float64).filled(np.nan))
+        return np.asarray(np.ma.filled(values.astype(np.float64), np.nan))  # type: ignore[no-untyped-call]
     if hasattr(values, "to_numpy"):
         numbers = values.to_numpy()
         if numbers.dtype.kind == "O" and hasattr(values, "convert_dtypes"):

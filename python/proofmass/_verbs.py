@@ -846,7 +846,7 @@ def track(
     >>> import proofmass as pm
     >>> slide = pm.simulate(procedure="slide", length=0.5, strokes=2, seed=1)
     >>> [round(stroke.length_m, 1) for stroke in pm.track(slide.recording).strokes]
-    [0.5, -0.5]
+    [0.5, 0.5]
     """
     return run("track", x, options_of(locals()), progress, "track.csv")
 

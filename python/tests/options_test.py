@@ -1,0 +1,42 @@
+"""Each function has the options of its verb, and each example in a docstring prints what it says."""
+import doctest
+import importlib
+import inspect
+import re
+import subprocess
+import warnings
+
+import pytest
+
+import proofmass as pm
+from conftest import COMMAND
+from proofmass._options import NAMES
+
+#: Flags about files, the terminal and the command itself.
+OF_THE_COMMAND = {
+    "help", "help-input", "json", "report", "output", "quiet", "verbose", "strict", "config", "memory", "pyramid",
+    "print-config", "dataset",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "verb", ["inspect", "noise", "drift", "calibrate", "tumble", "wheel", "track", "tilt", "tune", "simulate"]
+)
+def test_options_are_the_flags(verb):
+    text = "".join(
+        subprocess.run([COMMAND, verb, *words], capture_output=True, text=True).stdout
+        for words in (["--help"], ["--help-input"])
+        if verb != "simulate" or words == ["--help"]
+    )
+    flags = {flag for line in re.findall(r"^  (-\S+)", text, re.M) for flag in re.findall(r"--([a-z0-9-]+)", line)}
+    parameters = inspect.signature(getattr(pm, verb)).parameters.values()
+    options = {p.name for p in parameters if p.kind is p.KEYWORD_ONLY} - {"progress"}
+    assert {NAMES.get(name, name).replace("_", "-") for name in options} == flags - OF_THE_COMMAND
+
+
+@pytest.mark.parametrize("name", ["", "._verbs", "._recording", "._results", "._sensor", "._allan", "._kalman", ".live"])
+def test_examples_print_what_they_say(name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", pm.ProofmassWarning)
+        outcome = doctest.testmod(importlib.import_module("proofmass" + name))
+    assert outcome.attempted > 0 and outcome.failed == 0
