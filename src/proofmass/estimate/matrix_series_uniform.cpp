@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "proofmass/estimate/matrix_series.hpp"
 #include "proofmass/estimate/uniform_smoother.hpp"
@@ -21,12 +24,15 @@ LinearModel<N, 1> model_of(const MatrixSeries& series) {
 
 /// Each instant's covariance, whole, from those that are kept where they change.
 template <int N>
-void spread(const std::vector<Symmetric<N>>& covariances, std::span<double> out) {
+void spread(const CovarianceRuns<N>& covariances, std::span<double> out) {
   constexpr std::size_t entries = static_cast<std::size_t>(N) * N;
+  const Symmetric<N>* last = nullptr;
+  Mat<N, N> whole;
   for (std::size_t k = 0; k < covariances.size(); ++k) {
-    double* to = out.data() + k * entries;
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j) *to++ = covariances[k](i, j);
+    const Symmetric<N>& now = covariances.at(k);
+    if (&now != last) whole = now.dense();
+    last = &now;
+    std::copy_n(whole.data(), entries, out.data() + k * entries);
   }
 }
 
@@ -41,17 +47,15 @@ Result<MatrixSummary> run(const MatrixSeries& series, MatrixPass pass, const Mat
   std::copy_n(series.prior_mean.data(), states, prior.mean.data());
   std::copy_n(series.prior_cov.data(), states * states, prior.cov.data());
   std::vector<Mat<N>> means(size);
-  std::vector<Symmetric<N>> covariances(size);
   const UniformOptions<N> options{.smooth = pass == MatrixPass::smooth,
-                                  .covariances = Covariances::everywhere,
+                                  .covariances = Covariances::where_they_change,
                                   .innovations = true};
-  const auto found =
-      run_uniform<N, 0>(model_of<N>(series), prior, series.z, options,
-                        {means, covariances, output.innovation, output.innovation_cov});
+  const auto found = run_uniform<N, 0>(model_of<N>(series), prior, series.z, options,
+                                       {means, {}, output.innovation, output.innovation_cov});
   if (!found) return found.error();
   for (std::size_t k = 0; k < size; ++k)
     std::copy_n(means[k].data(), states, output.mean.data() + k * states);
-  spread<N>(covariances, output.cov);
+  spread<N>(found->covariances, output.cov);
   for (std::size_t k = 0; k < size; ++k)
     if (std::isnan(series.z[k]))
       output.innovation_cov[k] = std::numeric_limits<double>::quiet_NaN();
