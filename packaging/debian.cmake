@@ -12,13 +12,18 @@ set(revision 1)
 set(library_package libproofmass${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(program_package proofmass)
 set(development_package libproofmass-dev)
+set(python_package python3-proofmass)
+set(parts library program development)
+if(PROOFMASS_HAS_PYTHON)
+  list(APPEND parts python)
+endif()
 
 # A package tells whose it is and since when, in files that nothing else installs.
 file(TIMESTAMP ${PROJECT_SOURCE_DIR}/CHANGELOG.md date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(changelog.Debian.in changelog.Debian @ONLY)
 execute_process(COMMAND ${GZIP} -9nkf ${CMAKE_CURRENT_BINARY_DIR}/changelog.Debian
   COMMAND_ERROR_IS_FATAL ANY)
-foreach(part IN ITEMS library program development)
+foreach(part IN LISTS parts)
   install(FILES copyright ${CMAKE_CURRENT_BINARY_DIR}/changelog.Debian.gz
     DESTINATION share/doc/${${part}_package} COMPONENT debian_${part} EXCLUDE_FROM_ALL)
 endforeach()
@@ -26,7 +31,7 @@ endforeach()
 # What the static libraries are linked with, of the packages that this build needed.
 file(STRINGS ${PROJECT_SOURCE_DIR}/tools/packages.txt needed REGEX "^(run|more) .*-dev$")
 list(TRANSFORM needed REPLACE "^[a-z]+ +" "")
-list(REMOVE_ITEM needed libeigen3-dev libcli11-dev libfast-float-dev)
+list(REMOVE_ITEM needed libeigen3-dev libcli11-dev libfast-float-dev pybind11-dev python3-dev)
 list(JOIN needed ", " needed)
 
 set(CPACK_GENERATOR DEB)
@@ -81,10 +86,30 @@ static libraries.
 The shared library asks for Eigen alone; the static ones for the packages
 that are recommended.")
 
+if(PROOFMASS_HAS_PYTHON)
+  # The extension is built for one version of the interpreter.
+  math(EXPR next_minor "${PROOFMASS_PYTHON_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME ${python_package})
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.${PROOFMASS_PYTHON_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas, python3-matplotlib, python3-tqdm")
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION
+"accelerometer readings to angle and position, Python module
+Reads recordings of accelerometers, finds noise, drift and calibration, and
+estimates angle, turns, speed and displacement with standard deviations, of
+NumPy arrays and pandas tables; Allan deviations with limits and Kalman
+smoothers as tools of their own.")
+endif()
+
 # Not the licence, which Debian has already.
-set(CPACK_COMPONENTS_ALL library debian_library program debian_program development debian_development)
+set(CPACK_COMPONENTS_ALL ${parts})
+foreach(part IN LISTS parts)
+  list(APPEND CPACK_COMPONENTS_ALL debian_${part})
+endforeach()
 include(CPack)
-foreach(part IN ITEMS library program development)
+foreach(part IN LISTS parts)
   cpack_add_component_group(${part})
   cpack_add_component(${part} GROUP ${part})
   cpack_add_component(debian_${part} GROUP ${part})

@@ -48,8 +48,12 @@ class Packages(unittest.TestCase):
         lines = output(self.root / "usr/bin/proofmass", "__complete", "").splitlines()
         return [line.split("\t")[0] for line in lines]
 
-    def test_there_are_three_and_each_says_what_it_depends_on(self):
-        self.assertEqual(set(self.packages), {"proofmass", "libproofmass0.1", "libproofmass-dev"})
+    def test_each_is_there_and_says_what_it_depends_on(self):
+        expected = {"proofmass", "libproofmass0.1", "libproofmass-dev"}
+        if (BUILD / "python/proofmass").is_dir():
+            expected.add("python3-proofmass")
+            self.assertRegex(self.field("python3-proofmass", "Depends"), r"python3 \(<< 3\.\d+\), python3-numpy")
+        self.assertEqual(set(self.packages), expected)
         version = self.field("proofmass", "Version")
         self.assertRegex(version, r"^\d+\.\d+\.\d+-\d+$")
         for package in ("proofmass", "libproofmass0.1"):
@@ -117,6 +121,14 @@ class Packages(unittest.TestCase):
         rig = self.work / "rig.csv"
         output(program, "simulate", "--duration", "5", "-o", rig)
         self.assertIn("200 Hz for 5 s, 6 channels", output(program, "inspect", rig))
+
+    def test_the_python_module_runs(self):
+        if "python3-proofmass" not in self.packages:
+            self.skipTest("built without the Python module")
+        code = "import proofmass as pm; print(pm.simulate(duration=5).recording.samples, pm.__version__)"
+        said = output("/usr/bin/python3", "-c", code,
+                      env={**os.environ, "PYTHONPATH": str(self.root / "usr/lib/python3/dist-packages")})  # fmt: skip
+        self.assertEqual(said.split(), ["1000", self.field("python3-proofmass", "Version").split("-")[0]])
 
     def test_programs_are_built_against_both_kinds_of_library(self):
         build = self.work / "consumer"
