@@ -5,6 +5,7 @@ import copy
 import html
 import json
 import os
+import re
 from typing import TYPE_CHECKING, Any, Iterator
 
 from ._core import ArgumentError
@@ -13,7 +14,8 @@ from ._recording import Recording
 if TYPE_CHECKING:
     import pandas
 
-_NULL = ": null:"
+#: Before it, a reason says what is null: "sensors[0] (a.csv): radius, bias[0]", "positions[]: start_s".
+_NULL = re.compile(r": null(?: \(\d+ times\))?(?: for ([^:]*))?: ")
 
 
 class Missing:
@@ -230,22 +232,32 @@ def _wrapped(value: Any, path: tuple[str, ...], reasons: list[str]) -> Any:
         named = value.get("name", value.get("file"))
         return kind(value, (*path, named) if isinstance(named, str) else path, reasons)
     if isinstance(value, list):
-        return [_wrapped(item, path, reasons) for item in value]
+        items = [(*path[:-1], f"{path[-1]}[{k}]") for k in range(len(value))]
+        return [_wrapped(item, at, reasons) for item, at in zip(value, items)]
     if value is None:
         return Missing(_why(path, reasons))
     return value
 
 
 def _why(path: tuple[str, ...], reasons: list[str]) -> str:
-    """The reason of a null: the sentence that names it, and most of what it is part of."""
-    best, most = "", 0
+    """The reason of a null: the sentence that names it, most of what it is part of, and least else."""
+    best, most = "", (0, 0)
     for sentence in reasons:
-        about, null, reason = sentence.partition(_NULL)
+        null = _NULL.search(sentence)
         if not null:
             continue
-        names = [name for name in path if name in about]
-        weight = len(names) + 2 * (path[-1] in about)
-        if names and weight > most:
-            best, most = reason.strip(), weight
+        about = sentence[: null.start()] + " " + (null[1] or "")
+        named = [_names(about, name) for name in path]
+        weight = (sum(named) + 2 * named[-1], -len(about))
+        if any(named) and weight > most:
+            best, most = sentence[null.end() :].strip(), weight
     return best
+
+
+def _names(about: str, name: str) -> int:
+    """How closely the text names the member: 2; 1 as an item of a list that it names; 0 not at all."""
+    if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", about):
+        return 2
+    key, bracket, _ = name.partition("[")
+    return int(bool(bracket) and re.search(rf"(?<!\w){re.escape(key)}(\[\]|(?![\w\[]))", about) is not None)
 

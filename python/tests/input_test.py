@@ -1,5 +1,6 @@
 """Arrays and tables of every kind, errors, threads, processes, signals and memory."""
 import gc
+import json
 import multiprocessing
 import os
 import pickle
@@ -16,6 +17,7 @@ import pytest
 import proofmass as pm
 from proofmass import _core
 from proofmass._arrays import as_doubles
+from proofmass._results import Result
 
 pytestmark = pytest.mark.filterwarnings("ignore::proofmass.ProofmassWarning")
 
@@ -145,6 +147,35 @@ def test_results_pickle_and_say_why_something_is_missing():
     assert np.array_equal(pickle.loads(pickle.dumps(curve)).deviation, curve.deviation)
     sensor = pm.simulate(procedure="six-position", seed=1).sensor
     assert pickle.loads(pickle.dumps(sensor)).text == sensor.text
+
+
+def test_reasons_are_those_of_the_member_that_is_missing():
+    document = {
+        "turns": None,
+        "sensors": [{"file": "a.csv", "radius_m": None, "bias": [None, 1.0], "skew_rad": None}],
+        "positions": [{"start_s": None}] * 3 + [{"start_s": 1.0}, {"start_s": None}],
+        "cross_axis": [None, None, None],
+        "methods": {"atan2": {"turns": {"value": 1.0, "std": None, "unit": "turn"}}},
+        "warnings": [
+            "sensors[0] (a.csv): radius_m, bias[0]: null: still",
+            "sensors[0] (a.csv): skew_rad: null: slow",
+            "positions[4].start_s: null: cut off",
+            "positions[]: start_s: null (3 times): the file has no times",
+            "cross_axis[0], cross_axis[1]: null: misalignment was not fitted",
+            "cross_axis[2]: null: the z axis defines the frame",
+            "methods.atan2.turns.std: null: it has none",
+            "turns: null: the angle was lost",
+        ],
+    }
+    found = Result({"json": json.dumps(document)})
+    sensor = found.sensors[0]
+    assert [found.turns.why, sensor.radius_m.why, sensor.bias[0].why, sensor.skew_rad.why] == [
+        "the angle was lost", "still", "still", "slow",
+    ]  # fmt: skip
+    assert [position.start_s for position in found.positions][3] == 1.0
+    assert [found.positions[k].start_s.why for k in (0, 4)] == ["the file has no times", "cut off"]
+    assert [axis.why for axis in found.cross_axis][1:] == ["misalignment was not fitted", "the z axis defines the frame"]
+    assert found.methods.atan2.turns.std.why == "it has none"
 
 
 def test_page_and_plots_are_there(tmp_path):
