@@ -16,5 +16,5 @@ case ${1:-} in
 esac
 
 # clang-format 14 and 19 disagree, so the version is part of the style.
-find src apps tests bench fuzz examples rig -name '*.[ch]pp' -print0 |
+find src apps python tests bench fuzz examples rig -name '*.[ch]pp' -print0 |
   xargs -0 clang-format-19 "${mode[@]}"

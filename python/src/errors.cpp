@@ -62,8 +62,8 @@ void translate(std::exception_ptr thrown) {
 
 void add_errors(py::module_& module) {
   const py::handle plain = PyExc_Exception;
-  exceptions.error = made(module, "Error", "What Proofmass cannot do, and why.",
-                          py::make_tuple(plain));
+  exceptions.error =
+      made(module, "Error", "What Proofmass cannot do, and why.", py::make_tuple(plain));
   const py::handle error = exceptions.error;
   exceptions.argument =
       made(module, "ArgumentError", "What was asked for makes no sense; a ValueError too.",
@@ -71,9 +71,8 @@ void add_errors(py::module_& module) {
   exceptions.file =
       made(module, "FileError", "A file that cannot be read or written; an OSError too.",
            py::make_tuple(error, py::handle(PyExc_OSError)));
-  exceptions.data =
-      made(module, "DataError", "Data that cannot be analysed so; a ValueError too.",
-           py::make_tuple(error, py::handle(PyExc_ValueError)));
+  exceptions.data = made(module, "DataError", "Data that cannot be analysed so; a ValueError too.",
+                         py::make_tuple(error, py::handle(PyExc_ValueError)));
   py::register_exception_translator(translate);
 }
 

@@ -52,7 +52,10 @@ MatrixPass pass_named(const std::string& name) {
   return name == "fixed_lag" ? MatrixPass::fixed_lag : MatrixPass::filter;
 }
 
-py::dict run(const py::dict& model, const std::string& pass, std::size_t lag, const py::object& progress) {
+py::dict run(const py::dict& model,
+             const std::string& pass,
+             std::size_t lag,
+             const py::object& progress) {
   const Sequence F = sequence_of(model, "F"), Q = sequence_of(model, "Q"),
                  H = sequence_of(model, "H"), R = sequence_of(model, "R"),
                  B = sequence_of(model, "B");

@@ -96,12 +96,12 @@ py::dict state_of(const SharedRecording& recording) {
   py::dict state;
   py::list channels;
   for (const Channel& channel : recording->channels) {
-    channels.append(py::make_tuple(
-        channel.name,
-        py::make_tuple(static_cast<int>(channel.unit.quantity), channel.unit.to_si,
-                       channel.unit.offset_si, channel.unit.symbol),
-        py::array_t<double>(static_cast<py::ssize_t>(channel.values.size()),
-                            channel.values.data())));
+    channels.append(
+        py::make_tuple(channel.name,
+                       py::make_tuple(static_cast<int>(channel.unit.quantity), channel.unit.to_si,
+                                      channel.unit.offset_si, channel.unit.symbol),
+                       py::array_t<double>(static_cast<py::ssize_t>(channel.values.size()),
+                                           channel.values.data())));
   }
   const TimeBase& time = recording->time;
   py::list notes, labels;
@@ -112,9 +112,9 @@ py::dict state_of(const SharedRecording& recording) {
   state["source"] = recording->source;
   state["format"] = recording->format;
   state["channels"] = channels;
-  state["time"] = py::make_tuple(static_cast<int>(time.source), time.channel, time.rate_hz,
-                                 time.stamps_s, time.start_ns, time.band_s, time.mended,
-                                 time.mended_backwards);
+  state["time"] =
+      py::make_tuple(static_cast<int>(time.source), time.channel, time.rate_hz, time.stamps_s,
+                     time.start_ns, time.band_s, time.mended, time.mended_backwards);
   state["notes"] = notes;
   state["labels"] = labels;
   state["label_channel"] = recording->label_channel;
@@ -142,11 +142,11 @@ SharedRecording from_state(const py::dict& state) {
   for (const py::handle item : state["channels"]) {
     const auto channel = item.cast<py::tuple>();
     const auto unit = channel[1].cast<py::tuple>();
-    recording.channels.push_back({channel[0].cast<std::string>(),
-                                  {static_cast<Quantity>(unit[0].cast<int>()),
-                                   unit[1].cast<double>(), unit[2].cast<double>(),
-                                   unit[3].cast<std::string>()},
-                                  values_of(channel[2].cast<Doubles>())});
+    recording.channels.push_back(
+        {channel[0].cast<std::string>(),
+         {static_cast<Quantity>(unit[0].cast<int>()), unit[1].cast<double>(),
+          unit[2].cast<double>(), unit[3].cast<std::string>()},
+         values_of(channel[2].cast<Doubles>())});
   }
   recording.time = time_from(state["time"].cast<py::tuple>());
   for (const py::handle item : state["notes"]) {
@@ -156,8 +156,8 @@ SharedRecording from_state(const py::dict& state) {
   }
   for (const py::handle item : state["labels"]) {
     const auto label = item.cast<py::tuple>();
-    recording.labels.push_back({label[0].cast<std::string>(), label[1].cast<std::size_t>(),
-                                label[2].cast<std::size_t>()});
+    recording.labels.push_back(
+        {label[0].cast<std::string>(), label[1].cast<std::size_t>(), label[2].cast<std::size_t>()});
   }
   recording.label_channel = state["label_channel"].cast<std::string>();
   recording.first_line = state["first_line"].cast<std::size_t>();
@@ -200,21 +200,21 @@ void add_recording(py::module_& module) {
       .def_property_readonly("format", [](const Handle& h) { return h.recording->format; })
       .def_property_readonly("samples", [](const Handle& h) { return h.recording->samples(); })
       .def_property_readonly("rate_hz", [](const Handle& h) { return h.recording->time.rate_hz; })
-      .def_property_readonly("duration_s", [](const Handle& h) { return h.recording->duration_s(); })
+      .def_property_readonly("duration_s",
+                             [](const Handle& h) { return h.recording->duration_s(); })
       .def_property_readonly("start_ns", [](const Handle& h) { return h.recording->time.start_ns; })
       .def_property_readonly("is_uniform",
                              [](const Handle& h) { return h.recording->time.is_uniform(); })
       .def_property_readonly("time_source",
                              [](const Handle& h) { return name_of(h.recording->time.source); })
       .def_property_readonly("notes", [](const Handle& h) { return words_of(h.recording->notes); })
-      .def_property_readonly(
-          "labels",
-          [](const Handle& h) {
-            std::vector<std::tuple<std::string, std::size_t, std::size_t>> out;
-            for (const Label& label : h.recording->labels)
-              out.emplace_back(label.text, label.first, label.last);
-            return out;
-          })
+      .def_property_readonly("labels",
+                             [](const Handle& h) {
+                               std::vector<std::tuple<std::string, std::size_t, std::size_t>> out;
+                               for (const Label& label : h.recording->labels)
+                                 out.emplace_back(label.text, label.first, label.last);
+                               return out;
+                             })
       .def_property_readonly("channels",
                              [](const Handle& h) {
                                std::vector<std::string> names;
@@ -231,10 +231,8 @@ void add_recording(py::module_& module) {
                              })
       .def("time_s", [](const Handle& h) { return times_of(h.recording); })
       .def("channel", channel_of)
-      .def("cut",
-           [](const Handle& h, double from_s, double to_s) {
-             return Handle{shared(need(cut(*h.recording, from_s, to_s)))};
-           })
+      .def("cut", [](const Handle& h, double from_s,
+                     double to_s) { return Handle{shared(need(cut(*h.recording, from_s, to_s)))}; })
       .def(py::pickle([](const Handle& h) { return state_of(h.recording); },
                       [](const py::dict& state) { return Handle{from_state(state)}; }));
   module.def("read", read);
