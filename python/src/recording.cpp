@@ -12,6 +12,7 @@
 #include "input.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/io/recording_in_memory.hpp"
+#include "proofmass/report/inspect_report.hpp"
 #include "words.hpp"
 
 namespace py = pybind11;
@@ -31,8 +32,8 @@ Handle read(const std::vector<std::string>& words, const py::object& progress) {
   const app::Verb verb = parsed_verb(words);
   const std::string file = verb.files().read.front();
   Handle result;
-  compute(progress, [&](const Progress& told) {
-    result.recording = shared(app::load(file, *verb.input, told));
+  compute(progress, [&](const Progress& report) {
+    result.recording = shared(app::load(file, *verb.input, report));
   });
   return result;
 }
@@ -76,20 +77,6 @@ py::array_t<double> times_of(const SharedRecording& recording) {
   for (std::size_t k = 0; k < recording->samples(); ++k) at[k] = time.at(k);
   out.attr("flags").attr("writeable") = false;
   return out;
-}
-
-std::string name_of(TimeSource source) {
-  switch (source) {
-    case TimeSource::stamps:
-      return "stamps";
-    case TimeSource::counter:
-      return "counter";
-    case TimeSource::given_rate:
-      return "given_rate";
-    case TimeSource::none:
-      break;
-  }
-  return "none";
 }
 
 py::dict state_of(const SharedRecording& recording) {
@@ -205,8 +192,9 @@ void add_recording(py::module_& module) {
       .def_property_readonly("start_ns", [](const Handle& h) { return h.recording->time.start_ns; })
       .def_property_readonly("is_uniform",
                              [](const Handle& h) { return h.recording->time.is_uniform(); })
-      .def_property_readonly("time_source",
-                             [](const Handle& h) { return name_of(h.recording->time.source); })
+      .def_property_readonly(
+          "time_source",
+          [](const Handle& h) { return report::time_source_name(h.recording->time.source); })
       .def_property_readonly("notes", [](const Handle& h) { return words_of(h.recording->notes); })
       .def_property_readonly("labels",
                              [](const Handle& h) {

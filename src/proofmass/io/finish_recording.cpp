@@ -111,6 +111,10 @@ Result<Recording> finish_recording(RecordingReader& reader,
   clean_texts(recording);
   if (const Status settled = settle_units(recording, options); !settled) return settled.error();
   tell_other_clocks(recording);
+  return apply_channel_options(std::move(recording), options);
+}
+
+Result<Recording> apply_channel_options(Recording recording, const ReadOptions& options) {
   if (options.skew_s != 0.0) {
     auto even = signal::without_skew(recording, options.skew_s);
     if (!even) return even.error();

@@ -22,6 +22,11 @@ namespace proofmass::io {
 /// Reads all rows, and the same. Errors: also those of the reader.
 [[nodiscard]] Result<Recording> read_whole(RecordingReader& reader, const ReadOptions& options);
 
+/// Corrects the multiplexer skew of the options, then keeps the channels asked for.
+/// Errors: invalid_argument (no channel of a name asked for), those of signal::without_skew.
+[[nodiscard]] Result<Recording> apply_channel_options(Recording recording,
+                                                      const ReadOptions& options);
+
 /// Errors: invalid_argument (a rate not above zero).
 [[nodiscard]] Status check_rate(const ReadOptions& options);
 

@@ -7,7 +7,6 @@
 #include "proofmass/io/finish_recording.hpp"
 #include "proofmass/io/time_base.hpp"
 #include "proofmass/signal/resample.hpp"
-#include "proofmass/signal/skew.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -75,18 +74,9 @@ Result<Recording> recording_in_memory(Recording recording, const ReadOptions& op
   if (options.unit) {
     if (const Status settled = settle_units(recording, options); !settled) return settled.error();
   }
-  if (options.skew_s != 0.0) {
-    auto even = signal::without_skew(recording, options.skew_s);
-    if (!even) return even.error();
-    recording = std::move(even).value();
-  }
-  const auto chosen = chosen_channels(recording, options.channels);
-  if (!chosen) return chosen.error();
-  std::vector<Channel> kept;
-  for (const std::size_t c : *chosen) kept.push_back(std::move(recording.channels[c]));
-  recording.channels = std::move(kept);
-  if (!options.resample) return recording;
-  return signal::resample(recording, *options.resample);
+  auto chosen = apply_channel_options(std::move(recording), options);
+  if (!chosen || !options.resample) return chosen;
+  return signal::resample(*chosen, *options.resample);
 }
 
 }  // namespace proofmass::io

@@ -14,20 +14,6 @@ using signal::ChannelAudit;
 using signal::RecordingAudit;
 using signal::TimingAudit;
 
-const char* word(TimeSource source) {
-  switch (source) {
-    case TimeSource::stamps:
-      return "stamps";
-    case TimeSource::counter:
-      return "counter";
-    case TimeSource::given_rate:
-      return "given_rate";
-    case TimeSource::none:
-      break;
-  }
-  return "none";
-}
-
 const char* word(signal::Clipping clipping) {
   switch (clipping) {
     case signal::Clipping::rail:
@@ -79,7 +65,7 @@ Value timing_value(const TimingAudit& timing) {
   for (const signal::Gap& gap : timing.gaps) {
     gaps.push_back(Object{{"start_s", gap.start_s}, {"duration_s", gap.duration_s}});
   }
-  return Object{{"source", word(timing.source)},
+  return Object{{"source", time_source_name(timing.source)},
                 {"channel", timing.channel.empty() ? Value() : Value(timing.channel)},
                 {"rate_long_run_hz", optional(timing.long_run_hz)},
                 {"jitter_s", optional(timing.jitter_s)},
@@ -173,6 +159,20 @@ std::string labels_line(const Recording& recording) {
 
 }  // namespace
 
+const char* time_source_name(TimeSource source) {
+  switch (source) {
+    case TimeSource::stamps:
+      return "stamps";
+    case TimeSource::counter:
+      return "counter";
+    case TimeSource::given_rate:
+      return "given_rate";
+    case TimeSource::none:
+      break;
+  }
+  return "none";
+}
+
 std::vector<LabelUse> label_uses(const Recording& recording) {
   std::vector<LabelUse> uses;
   for (const Label& label : recording.labels) {
@@ -239,7 +239,7 @@ std::string inspect_text(const InspectedFile& file) {
   const TimingAudit& timing = audit.timing;
   text += aligned({{"format", audit.format},
                    {"samples", std::to_string(audit.samples)},
-                   {"time", fmt::format("{}{}", word(timing.source),
+                   {"time", fmt::format("{}{}", time_source_name(timing.source),
                                         timing.channel.empty() ? "" : " (" + timing.channel + ")")},
                    {"rate", rate_words(timing)},
                    {"jitter", jitter_words(timing)},

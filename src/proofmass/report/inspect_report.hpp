@@ -27,6 +27,9 @@ struct InspectedFile {
 /// steps between the stamps are spread.
 [[nodiscard]] std::string inspect_html(const std::vector<InspectedFile>& files);
 
+/// The name of a time source in documents: "stamps", "counter", "given_rate" or "none".
+[[nodiscard]] const char* time_source_name(TimeSource source);
+
 /// A screenful a file for a terminal.
 [[nodiscard]] std::string inspect_text(const InspectedFile& file);
 
