@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Optional, Sequence, Union
 
+from ._common_options import with_common_options
 from ._progress import Progress
 from ._recording import Path, Recording
 from ._results import Result
@@ -10,6 +11,7 @@ from ._run import options_of, run
 from ._sensor import Sensor
 
 
+@with_common_options
 def inspect(
     x: Any,
     /,
@@ -37,53 +39,10 @@ def inspect(
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
         A recording, or several.
-    rate_hz : float, optional
-        Sample rate, where the file has no time column.
-    unit : str, optional
-        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
-    channel : str or list of str, optional
-        Use this channel; may be repeated (default: all).
-    variable : str or list of str, optional
-        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
-        repeated (default: chosen by size and name).
-    time : str, optional
-        The time column (default: found by name and content).
-    from_s : float, optional
-        Leave out what comes before.
-    to_s : float, optional
-        Leave out what comes from here on.
-    resample : float, optional
-        Bring the samples, or several variable, onto an even grid (default: as they were taken).
-    resample_method : str, optional
-        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
-    skew : float, optional
-        The channels were sampled one after another, so far apart: brings them to one instant.
-    sensor : Sensor, path or list of them, optional
-        Apply this sensor file's calibration first; once for all sensors or once for each.
-    supply : float, optional
-        The ratiometric sensor's supply, instead of the file's (needs sensor).
-    gravity : float, optional
-        Local gravity (default 9.80665) (not with latitude).
-    latitude : float, optional
-        Gravity from the latitude (not with gravity).
-    height : float, optional
-        And from the height above the ellipsoid (needs latitude).
-    progress : bool or callable of (stage, fraction), optional
-        True shows a bar.
-
-    Returns
-    -------
-    Result
-        The members of the document of ``proofmass inspect --json`` as attributes.
-
-    Raises
-    ------
-    ArgumentError
-        An option that makes no sense; a ValueError too.
-    FileError
-        A file that cannot be read; an OSError too.
-    DataError
-        Data that cannot be analysed; a ValueError too.
+    {rate_hz, unit}
+    {channel to supply}
+    {gravity, latitude, height}
+    {progress}
 
     Examples
     --------
@@ -95,6 +54,7 @@ def inspect(
     return run("inspect", x, options_of(locals()), progress, None)
 
 
+@with_common_options
 def noise(
     x: Any,
     /,
@@ -131,10 +91,7 @@ def noise(
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
         Recordings at rest.
-    rate_hz : float, optional
-        Sample rate, where the file has no time column.
-    unit : str, optional
-        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    {rate_hz, unit}
     statistic : str, optional
         oadev (default), adev, mdev, tdev, hdev, ohdev, totdev, mtotdev, ttotdev, htotdev, theo1 or
         pdev.
@@ -147,56 +104,16 @@ def noise(
     confidence : float, optional
         Of the deviation's limits (default 0.683).
     noise_type : str or int, optional
-        On which the limits hang: auto (default), lag1, or the power of f from -4 to 2.
+        Exponent on which the limits depend: auto (default), lag1, or the power of f from -4 to 2.
     exclude_events : bool
         Leave out knocks, and whatever reaches across a step.
     temperature : str, optional
         Take out what follows this channel, by least squares.
     update_sensor : path, optional
         Write the figures into this sensor file.
-    channel : str or list of str, optional
-        Use this channel; may be repeated (default: all).
-    variable : str or list of str, optional
-        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
-        repeated (default: chosen by size and name).
-    time : str, optional
-        The time column (default: found by name and content).
-    from_s : float, optional
-        Leave out what comes before.
-    to_s : float, optional
-        Leave out what comes from here on.
-    resample : float, optional
-        Bring the samples, or several variable, onto an even grid (default: as they were taken).
-    resample_method : str, optional
-        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
-    skew : float, optional
-        The channels were sampled one after another, so far apart: brings them to one instant.
-    sensor : Sensor, path or list of them, optional
-        Apply this sensor file's calibration first; once for all sensors or once for each.
-    supply : float, optional
-        The ratiometric sensor's supply, instead of the file's (needs sensor).
-    gravity : float, optional
-        Local gravity (default 9.80665) (not with latitude).
-    latitude : float, optional
-        Gravity from the latitude (not with gravity).
-    height : float, optional
-        And from the height above the ellipsoid (needs latitude).
-    progress : bool or callable of (stage, fraction), optional
-        True shows a bar.
-
-    Returns
-    -------
-    Result
-        The members of the document of ``proofmass noise --json`` as attributes.
-
-    Raises
-    ------
-    ArgumentError
-        An option that makes no sense; a ValueError too.
-    FileError
-        A file that cannot be read; an OSError too.
-    DataError
-        Data that cannot be analysed; a ValueError too.
+    {channel to supply}
+    {gravity, latitude, height}
+    {progress}
 
     Examples
     --------
@@ -209,6 +126,7 @@ def noise(
     return run("noise", x, options_of(locals()), progress, "noise.csv")
 
 
+@with_common_options
 def drift(
     x: Any,
     /,
@@ -235,16 +153,13 @@ def drift(
     height: Optional[float] = None,
     progress: Progress = None,
 ) -> Result:
-    """Warm-up of the bias of a sensor at rest, and whether the recording can tell.
+    """Warm-up of the bias of a sensor at rest, and whether the recording determines it.
 
     Parameters
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
         Recordings at rest from switching on; three or more are compared.
-    rate_hz : float, optional
-        Sample rate, where the file has no time column.
-    unit : str, optional
-        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    {rate_hz, unit}
     forecast : float, optional
         Foretell the bias so long after switching on.
     temperature : str, optional
@@ -257,49 +172,9 @@ def drift(
         Write what is identified into this sensor file.
     since_switch_on : float, optional
         How long the sensor had been on at the first sample (default 0).
-    channel : str or list of str, optional
-        Use this channel; may be repeated (default: all).
-    variable : str or list of str, optional
-        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
-        repeated (default: chosen by size and name).
-    time : str, optional
-        The time column (default: found by name and content).
-    from_s : float, optional
-        Leave out what comes before.
-    to_s : float, optional
-        Leave out what comes from here on.
-    resample : float, optional
-        Bring the samples, or several variable, onto an even grid (default: as they were taken).
-    resample_method : str, optional
-        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
-    skew : float, optional
-        The channels were sampled one after another, so far apart: brings them to one instant.
-    sensor : Sensor, path or list of them, optional
-        Apply this sensor file's calibration first; once for all sensors or once for each.
-    supply : float, optional
-        The ratiometric sensor's supply, instead of the file's (needs sensor).
-    gravity : float, optional
-        Local gravity (default 9.80665) (not with latitude).
-    latitude : float, optional
-        Gravity from the latitude (not with gravity).
-    height : float, optional
-        And from the height above the ellipsoid (needs latitude).
-    progress : bool or callable of (stage, fraction), optional
-        True shows a bar.
-
-    Returns
-    -------
-    Result
-        The members of the document of ``proofmass drift --json`` as attributes.
-
-    Raises
-    ------
-    ArgumentError
-        An option that makes no sense; a ValueError too.
-    FileError
-        A file that cannot be read; an OSError too.
-    DataError
-        Data that cannot be analysed; a ValueError too.
+    {channel to supply}
+    {gravity, latitude, height}
+    {progress}
 
     Examples
     --------
@@ -313,6 +188,7 @@ def drift(
     return run("drift", x, options_of(locals()), progress, "drift.csv")
 
 
+@with_common_options
 def calibrate(
     x: Any,
     /,
@@ -359,10 +235,7 @@ def calibrate(
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
         Recordings of a sensor laid down in 9 or more directions, or tables of means.
-    rate_hz : float, optional
-        Sample rate, where the file has no time column.
-    unit : str, optional
-        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    {rate_hz, unit}
     rests : path, optional
         Start and end of each rest, perhaps with label and direction (default: found).
     rest : float, optional
@@ -393,7 +266,7 @@ def calibrate(
     monte_carlo : int, optional
         Draws that check the uncertainties; 0: none (default 200).
     supplies : list of float, optional
-        Supply of each file, to tell what it does.
+        Supply voltage of each file, to determine its effect.
     name : str, optional
         Of the sensor, for certificate and sensor file.
     serial : str, optional
@@ -404,49 +277,9 @@ def calibrate(
         At which it was made.
     update_sensor : path, optional
         Write the calibration into this sensor file.
-    channel : str or list of str, optional
-        Use this channel; may be repeated (default: all).
-    variable : str or list of str, optional
-        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
-        repeated (default: chosen by size and name).
-    time : str, optional
-        The time column (default: found by name and content).
-    from_s : float, optional
-        Leave out what comes before.
-    to_s : float, optional
-        Leave out what comes from here on.
-    resample : float, optional
-        Bring the samples, or several variable, onto an even grid (default: as they were taken).
-    resample_method : str, optional
-        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
-    skew : float, optional
-        The channels were sampled one after another, so far apart: brings them to one instant.
-    sensor : Sensor, path or list of them, optional
-        Apply this sensor file's calibration first; once for all sensors or once for each.
-    supply : float, optional
-        The ratiometric sensor's supply, instead of the file's (needs sensor).
-    gravity : float, optional
-        Local gravity (default 9.80665) (not with latitude).
-    latitude : float, optional
-        Gravity from the latitude (not with gravity).
-    height : float, optional
-        And from the height above the ellipsoid (needs latitude).
-    progress : bool or callable of (stage, fraction), optional
-        True shows a bar.
-
-    Returns
-    -------
-    Result
-        The members of the document of ``proofmass calibrate --json`` as attributes.
-
-    Raises
-    ------
-    ArgumentError
-        An option that makes no sense; a ValueError too.
-    FileError
-        A file that cannot be read; an OSError too.
-    DataError
-        Data that cannot be analysed; a ValueError too.
+    {channel to supply}
+    {gravity, latitude, height}
+    {progress}
 
     Examples
     --------
@@ -459,6 +292,7 @@ def calibrate(
     return run("calibrate", x, options_of(locals()), progress, "calibrate.csv")
 
 
+@with_common_options
 def tumble(
     x: Any,
     /,
@@ -500,10 +334,7 @@ def tumble(
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
         Positions (angle and output), or a recording that rests in them.
-    rate_hz : float, optional
-        Sample rate, where the file has no time column.
-    unit : str, optional
-        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    {rate_hz, unit}
     angles : list of float, optional
         Of a recording's rests, one for each in its order: "0,90,180,270,0".
     rests : path, optional
@@ -534,49 +365,9 @@ def tumble(
         Fit these coefficients of the whole model equation.
     update_sensor : path, optional
         Write bias and scale into this sensor file.
-    channel : str or list of str, optional
-        Use this channel; may be repeated (default: all).
-    variable : str or list of str, optional
-        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
-        repeated (default: chosen by size and name).
-    time : str, optional
-        The time column (default: found by name and content).
-    from_s : float, optional
-        Leave out what comes before.
-    to_s : float, optional
-        Leave out what comes from here on.
-    resample : float, optional
-        Bring the samples, or several variable, onto an even grid (default: as they were taken).
-    resample_method : str, optional
-        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
-    skew : float, optional
-        The channels were sampled one after another, so far apart: brings them to one instant.
-    sensor : Sensor, path or list of them, optional
-        Apply this sensor file's calibration first; once for all sensors or once for each.
-    supply : float, optional
-        The ratiometric sensor's supply, instead of the file's (needs sensor).
-    gravity : float, optional
-        Local gravity (default 9.80665) (not with latitude).
-    latitude : float, optional
-        Gravity from the latitude (not with gravity).
-    height : float, optional
-        And from the height above the ellipsoid (needs latitude).
-    progress : bool or callable of (stage, fraction), optional
-        True shows a bar.
-
-    Returns
-    -------
-    Result
-        The members of the document of ``proofmass tumble --json`` as attributes.
-
-    Raises
-    ------
-    ArgumentError
-        An option that makes no sense; a ValueError too.
-    FileError
-        A file that cannot be read; an OSError too.
-    DataError
-        Data that cannot be analysed; a ValueError too.
+    {channel to supply}
+    {gravity, latitude, height}
+    {progress}
 
     Examples
     --------
@@ -590,6 +381,7 @@ def tumble(
     return run("tumble", x, options_of(locals()), progress, "tumble.csv")
 
 
+@with_common_options
 def wheel(
     x: Any,
     /,
@@ -627,10 +419,7 @@ def wheel(
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
         One recording, or one for each of two sensors.
-    rate_hz : float, optional
-        Sample rate, where the file has no time column.
-    unit : str, optional
-        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    {rate_hz, unit}
     spin_axis : str or list of float, optional
         x, y, z, -x, -y, -z or "X,Y,Z" in the sensor's axes (default: found).
     radius : float, optional
@@ -654,49 +443,9 @@ def wheel(
     since_switch_on : float, optional
         The sensors had been on so long at the file's first sample: takes the warm-up that their sensor
         files know of out.
-    channel : str or list of str, optional
-        Use this channel; may be repeated (default: all).
-    variable : str or list of str, optional
-        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
-        repeated (default: chosen by size and name).
-    time : str, optional
-        The time column (default: found by name and content).
-    from_s : float, optional
-        Leave out what comes before.
-    to_s : float, optional
-        Leave out what comes from here on.
-    resample : float, optional
-        Bring the samples, or several variable, onto an even grid (default: as they were taken).
-    resample_method : str, optional
-        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
-    skew : float, optional
-        The channels were sampled one after another, so far apart: brings them to one instant.
-    sensor : Sensor, path or list of them, optional
-        Apply this sensor file's calibration first; once for all sensors or once for each.
-    supply : float, optional
-        The ratiometric sensor's supply, instead of the file's (needs sensor).
-    gravity : float, optional
-        Local gravity (default 9.80665) (not with latitude).
-    latitude : float, optional
-        Gravity from the latitude (not with gravity).
-    height : float, optional
-        And from the height above the ellipsoid (needs latitude).
-    progress : bool or callable of (stage, fraction), optional
-        True shows a bar.
-
-    Returns
-    -------
-    Result
-        The members of the document of ``proofmass wheel --json`` as attributes.
-
-    Raises
-    ------
-    ArgumentError
-        An option that makes no sense; a ValueError too.
-    FileError
-        A file that cannot be read; an OSError too.
-    DataError
-        Data that cannot be analysed; a ValueError too.
+    {channel to supply}
+    {gravity, latitude, height}
+    {progress}
 
     Examples
     --------
@@ -709,6 +458,7 @@ def wheel(
     return run("wheel", x, options_of(locals()), progress, "wheel.csv")
 
 
+@with_common_options
 def track(
     x: Any,
     /,
@@ -753,10 +503,7 @@ def track(
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
         A recording.
-    rate_hz : float, optional
-        Sample rate, where the file has no time column.
-    unit : str, optional
-        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    {rate_hz, unit}
     model : str, optional
         Inertial (default): the acceleration is integrated between stops, which holds for a motion of
         any kind; pva: it is estimated, as one that white jerk drives, and NIS judges each sample;
@@ -796,27 +543,7 @@ def track(
         Of the gyroscope, where its heading has none: rad/s (default) or deg/s.
     since_switch_on : float, optional
         How long the sensor had been on at the first sample: takes the warm-up of the sensor file out.
-    channel : str or list of str, optional
-        Use this channel; may be repeated (default: all).
-    variable : str or list of str, optional
-        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
-        repeated (default: chosen by size and name).
-    time : str, optional
-        The time column (default: found by name and content).
-    from_s : float, optional
-        Leave out what comes before.
-    to_s : float, optional
-        Leave out what comes from here on.
-    resample : float, optional
-        Bring the samples, or several variable, onto an even grid (default: as they were taken).
-    resample_method : str, optional
-        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
-    skew : float, optional
-        The channels were sampled one after another, so far apart: brings them to one instant.
-    sensor : Sensor, path or list of them, optional
-        Apply this sensor file's calibration first; once for all sensors or once for each.
-    supply : float, optional
-        The ratiometric sensor's supply, instead of the file's (needs sensor).
+    {channel to supply}
     latitude : float, optional
         Gravity from the latitude.
     height : float, optional
@@ -824,22 +551,7 @@ def track(
     gravity : float or str, optional
         removed or present, where the readings do not show it; or local gravity (default 9.80665); may
         be repeated.
-    progress : bool or callable of (stage, fraction), optional
-        True shows a bar.
-
-    Returns
-    -------
-    Result
-        The members of the document of ``proofmass track --json`` as attributes.
-
-    Raises
-    ------
-    ArgumentError
-        An option that makes no sense; a ValueError too.
-    FileError
-        A file that cannot be read; an OSError too.
-    DataError
-        Data that cannot be analysed; a ValueError too.
+    {progress}
 
     Examples
     --------
@@ -851,6 +563,7 @@ def track(
     return run("track", x, options_of(locals()), progress, "track.csv")
 
 
+@with_common_options
 def tilt(
     x: Any,
     /,
@@ -889,10 +602,7 @@ def tilt(
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
         A recording.
-    rate_hz : float, optional
-        Sample rate, where the file has no time column.
-    unit : str, optional
-        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    {rate_hz, unit}
     base : str, optional
         Auto (default): still if it rests nearly throughout; still, or moving.
     reads : str, optional
@@ -917,49 +627,9 @@ def tilt(
         And the gyroscope's rate about the same axis in this one (needs angle).
     angle_unit : str, optional
         Of that column, where its heading has none: rad (default) or deg (needs angle).
-    channel : str or list of str, optional
-        Use this channel; may be repeated (default: all).
-    variable : str or list of str, optional
-        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
-        repeated (default: chosen by size and name).
-    time : str, optional
-        The time column (default: found by name and content).
-    from_s : float, optional
-        Leave out what comes before.
-    to_s : float, optional
-        Leave out what comes from here on.
-    resample : float, optional
-        Bring the samples, or several variable, onto an even grid (default: as they were taken).
-    resample_method : str, optional
-        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
-    skew : float, optional
-        The channels were sampled one after another, so far apart: brings them to one instant.
-    sensor : Sensor, path or list of them, optional
-        Apply this sensor file's calibration first; once for all sensors or once for each.
-    supply : float, optional
-        The ratiometric sensor's supply, instead of the file's (needs sensor).
-    gravity : float, optional
-        Local gravity (default 9.80665) (not with latitude).
-    latitude : float, optional
-        Gravity from the latitude (not with gravity).
-    height : float, optional
-        And from the height above the ellipsoid (needs latitude).
-    progress : bool or callable of (stage, fraction), optional
-        True shows a bar.
-
-    Returns
-    -------
-    Result
-        The members of the document of ``proofmass tilt --json`` as attributes.
-
-    Raises
-    ------
-    ArgumentError
-        An option that makes no sense; a ValueError too.
-    FileError
-        A file that cannot be read; an OSError too.
-    DataError
-        Data that cannot be analysed; a ValueError too.
+    {channel to supply}
+    {gravity, latitude, height}
+    {progress}
 
     Examples
     --------
@@ -972,6 +642,7 @@ def tilt(
     return run("tilt", x, options_of(locals()), progress, "tilt.csv")
 
 
+@with_common_options
 def tune(
     x: Any,
     /,
@@ -1005,10 +676,7 @@ def tune(
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
         A recording.
-    rate_hz : float, optional
-        Sample rate, where the file has no time column.
-    unit : str, optional
-        Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.
+    {rate_hz, unit}
     model : str, optional
         Auto (default): rest if it rests nearly throughout, else pva; rest, rest-markov, pva, pva-bias,
         local-level, local-trend, position.
@@ -1022,49 +690,9 @@ def tune(
         Step of the study of gain and covariance (default: the recording's).
     update_sensor : path, optional
         Write white noise and random walk into this sensor file (model rest).
-    channel : str or list of str, optional
-        Use this channel; may be repeated (default: all).
-    variable : str or list of str, optional
-        Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
-        repeated (default: chosen by size and name).
-    time : str, optional
-        The time column (default: found by name and content).
-    from_s : float, optional
-        Leave out what comes before.
-    to_s : float, optional
-        Leave out what comes from here on.
-    resample : float, optional
-        Bring the samples, or several variable, onto an even grid (default: as they were taken).
-    resample_method : str, optional
-        Of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
-    skew : float, optional
-        The channels were sampled one after another, so far apart: brings them to one instant.
-    sensor : Sensor, path or list of them, optional
-        Apply this sensor file's calibration first; once for all sensors or once for each.
-    supply : float, optional
-        The ratiometric sensor's supply, instead of the file's (needs sensor).
-    gravity : float, optional
-        Local gravity (default 9.80665) (not with latitude).
-    latitude : float, optional
-        Gravity from the latitude (not with gravity).
-    height : float, optional
-        And from the height above the ellipsoid (needs latitude).
-    progress : bool or callable of (stage, fraction), optional
-        True shows a bar.
-
-    Returns
-    -------
-    Result
-        The members of the document of ``proofmass tune --json`` as attributes.
-
-    Raises
-    ------
-    ArgumentError
-        An option that makes no sense; a ValueError too.
-    FileError
-        A file that cannot be read; an OSError too.
-    DataError
-        Data that cannot be analysed; a ValueError too.
+    {channel to supply}
+    {gravity, latitude, height}
+    {progress}
 
     Examples
     --------

@@ -1,0 +1,68 @@
+"""Documentation of the options that all verbs for recordings have, and of what they return and raise."""
+from __future__ import annotations
+
+import textwrap
+from typing import Any, Callable, TypeVar
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+#: What stands for "{name}" on a line of its own in a docstring.
+_PARTS = {
+    "rate_hz, unit": """rate_hz : float, optional
+    Sample rate in Hz, where the file has no time column.
+unit : str, optional
+    Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.""",
+    "channel to supply": """channel : str or list of str, optional
+    Use this channel; may be repeated (default: all).
+variable : str or list of str, optional
+    Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
+    repeated (default: chosen by size and name).
+time : str, optional
+    The time column (default: found by name and content).
+from_s : float, optional
+    Leave out samples before this time in s.
+to_s : float, optional
+    Leave out samples from this time in s on.
+resample : float, optional
+    Resample to a uniform grid of this rate in Hz (default: the samples as recorded).
+resample_method : str, optional
+    Interpolation of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
+skew : float, optional
+    Delay in s from each channel to the next of a multiplexed converter; it is removed.
+sensor : Sensor, path or list of them, optional
+    Apply this sensor file's calibration first; once for all sensors or once for each.
+supply : float, optional
+    Supply voltage in V of a ratiometric sensor, instead of the sensor file's (needs sensor).""",
+    "gravity, latitude, height": """gravity : float, optional
+    Local gravity in m/s² (default 9.80665; not with latitude).
+latitude : float, optional
+    Latitude in degrees, from which gravity is computed (not with gravity).
+height : float, optional
+    Height in m above the ellipsoid (needs latitude).""",
+    "progress": """progress : bool or callable of (stage, fraction), optional
+    True shows a bar.
+
+Returns
+-------
+Result
+    The members of the document of ``proofmass {verb} --json`` as attributes.
+
+Raises
+------
+ArgumentError
+    An option that makes no sense; a ValueError too.
+FileError
+    A file that cannot be read; an OSError too.
+DataError
+    Data that cannot be analysed; a ValueError too.""",
+}
+
+
+def with_common_options(function: _Function) -> _Function:
+    """Fills in the parts of the docstring that several functions share."""
+    if function.__doc__ is None:  # python -OO
+        return function
+    for name, text in _PARTS.items():
+        text = textwrap.indent(text.replace("{verb}", function.__name__), "    ")
+        function.__doc__ = function.__doc__.replace("    {%s}" % name, text)
+    return function
