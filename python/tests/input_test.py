@@ -92,6 +92,8 @@ def test_errors_are_of_the_kinds_that_people_catch(tmp_path):
         pm.noise(PLAIN, rate_hz=100, unit="m/s2", taus="often")
     with pytest.raises(ValueError, match="rate_hz="):
         pm.noise(PLAIN, unit="m/s2")
+    with pytest.raises(ValueError, match=r"rate_hz=: .*see help\(proofmass\.[a-z]+\)"):
+        pm.noise(PLAIN, rate_hz=-1, unit="m/s2")
     with pytest.raises(TypeError, match="colour"):
         pm.noise(PLAIN, rate_hz=100, colour="red")  # type: ignore[call-arg]
     with pytest.raises(pm.FileError):
