@@ -27,7 +27,7 @@ class Failure : public std::exception {
   Failure(ExitStatus status, std::string message, std::optional<Errc> code = {})
       : status_(status), message_(std::move(message)), code_(code) {}
   [[nodiscard]] ExitStatus status() const { return status_; }
-  /// Of the library's error behind it, where there is one.
+  /// The code of the library's error that caused it; empty if none did.
   [[nodiscard]] std::optional<Errc> code() const { return code_; }
   [[nodiscard]] const char* what() const noexcept override { return message_.c_str(); }
 

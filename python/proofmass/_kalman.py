@@ -144,7 +144,7 @@ class KalmanModel:
         Parameters
         ----------
         z : array_like, shape (n,) or (n, M)
-            Readings, NaN where there is none.
+            Measurements; NaN marks a missing one.
         u : array_like, shape (n,) or (n, U), optional
             Known input of the step that ends at each instant.
         dt_s : float or array_like, shape (n,), optional

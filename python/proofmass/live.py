@@ -88,7 +88,7 @@ class Wheel(_Live):
     channels : dict of str to str
         Names and units of the samples' columns: {"acc_x": "g", "acc_y": "g"}.
     rate_hz : float, optional
-        Of the samples; told by their times where it is not given.
+        Sample rate in Hz (default: from the times of the samples).
     lag : float, optional
         Seconds that the smoothed estimates look ahead.
     axis : str, optional

@@ -39,8 +39,8 @@ py::dict allan(const std::vector<std::string>& words,
   options.rate_hz = command.input.rate_hz.value_or(0.0);
   const std::span values(series.data(), static_cast<std::size_t>(series.size()));
   NoiseAnalysis analysis;
-  compute(progress, [&](const Progress& told) {
-    options.progress = told;
+  compute(progress, [&](const Progress& report) {
+    options.progress = report;
     analysis = need(characterise::analyse_noise(values, options));
   });
   const DeviationCurve& curve = analysis.deviation;

@@ -21,11 +21,11 @@ struct Cancelled {};
 // What the two threads have in common.
 class Shared {
  public:
-  /// Of the working thread and those that it starts.
-  void tell(std::string_view stage, double fraction) {
+  /// Called by the working thread and those that it starts.
+  void report(std::string_view stage, double fraction) {
     if (cancelled_) throw Cancelled{};
     const std::lock_guard lock(mutex_);
-    told_ = {std::string(stage), fraction};
+    latest_ = {std::string(stage), fraction};
   }
   void finish() {
     const std::lock_guard lock(mutex_);
@@ -38,9 +38,9 @@ class Shared {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, look_again, [&] { return finished_; });
   }
-  [[nodiscard]] std::optional<std::pair<std::string, double>> take_told() {
+  [[nodiscard]] std::optional<std::pair<std::string, double>> take_latest() {
     const std::lock_guard lock(mutex_);
-    return std::exchange(told_, std::nullopt);
+    return std::exchange(latest_, std::nullopt);
   }
   void cancel() { cancelled_ = true; }
 
@@ -48,7 +48,7 @@ class Shared {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool finished_ = false;
-  std::optional<std::pair<std::string, double>> told_;
+  std::optional<std::pair<std::string, double>> latest_;
   std::atomic<bool> cancelled_ = false;
 };
 
@@ -56,7 +56,7 @@ class Shared {
 void look_up(Shared& shared, const py::object& progress) {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   if (progress.is_none()) return;
-  if (const auto told = shared.take_told()) progress(told->first, told->second);
+  if (const auto latest = shared.take_latest()) progress(latest->first, latest->second);
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ void compute(const py::object& progress, const std::function<void(const Progress
   std::exception_ptr thrown;
   std::thread worker([&] {
     try {
-      work([&](std::string_view stage, double fraction) { shared.tell(stage, fraction); });
+      work([&](std::string_view stage, double fraction) { shared.report(stage, fraction); });
     } catch (...) {
       thrown = std::current_exception();
     }

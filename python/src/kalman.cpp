@@ -81,9 +81,9 @@ py::dict run(const py::dict& model,
   std::optional<MatrixSummary> summary;
   const MatrixPass asked = pass_named(pass);
   const bool fast = asked != MatrixPass::fixed_lag && estimate::is_uniform(series);
-  compute(progress, [&](const Progress& told) {
+  compute(progress, [&](const Progress& report) {
     summary = need(fast ? estimate::run_uniform_matrices(series, asked, output)
-                        : estimate::run_matrices(series, asked, lag, output, told));
+                        : estimate::run_matrices(series, asked, lag, output, report));
   });
   py::dict out;
   out["mean"] = mean;

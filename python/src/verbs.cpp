@@ -52,8 +52,8 @@ py::dict run_verb(const std::vector<std::string>& words,
   if (verb.input != nullptr) verb.input->host = host;
   verb.output->host = host;
   app::hold_apart(verb.files());
-  compute(progress, [&](const Progress& told) {
-    host->progress = told;
+  compute(progress, [&](const Progress& report) {
+    host->progress = report;
     verb.run();
   });
   return results_of(*host);

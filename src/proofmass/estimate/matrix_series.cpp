@@ -42,12 +42,12 @@ Status check(const MatrixSequence& sequence,
   if (sequence.values.empty() || sequence.values.size() % entries != 0)
     return Error{Errc::invalid_argument, text + ": its size does not fit the model"};
   if (!sequence.which.empty() && sequence.which.size() != size)
-    return Error{Errc::invalid_argument, text + ": expected one for each instant"};
+    return Error{Errc::invalid_argument, text + ": expected one matrix for each epoch"};
   const auto matrices = static_cast<std::int64_t>(sequence.values.size() / entries);
   if (std::ranges::any_of(sequence.which, [&](auto k) { return k < 0 || k >= matrices; }))
-    return Error{Errc::invalid_argument, text + ": an instant asks for one that is not there"};
+    return Error{Errc::invalid_argument, text + ": a matrix index is out of range"};
   if (!std::ranges::all_of(sequence.values, [](double x) { return std::isfinite(x); }))
-    return Error{Errc::not_finite, text + ": holds what is no number"};
+    return Error{Errc::not_finite, text + ": expected finite entries"};
   return Done{};
 }
 
@@ -60,9 +60,10 @@ Status check_sizes(const MatrixSeries& s) {
   if (s.prior_mean.size() != n || s.prior_cov.size() != n * n)
     return Error{Errc::invalid_argument, "the prior's size is not that of the state"};
   if (s.z.empty() || s.z.size() % static_cast<std::size_t>(s.channels) != 0)
-    return Error{Errc::invalid_argument, "no reading, or not as many as channels"};
+    return Error{Errc::invalid_argument,
+                 "expected at least one epoch, with a measurement or NaN for each channel"};
   if (s.u.size() != s.size() * static_cast<std::size_t>(s.inputs))
-    return Error{Errc::invalid_argument, "expected an input for each instant"};
+    return Error{Errc::invalid_argument, "expected an input for each epoch"};
   return Done{};
 }
 
@@ -77,10 +78,11 @@ Status check(const MatrixSeries& s) {
     if (!one) return one;
   const auto finite = [](double x) { return std::isfinite(x); };
   if (!std::ranges::all_of(s.prior_mean, finite) || !std::ranges::all_of(s.prior_cov, finite))
-    return Error{Errc::not_finite, "the prior holds what is no number"};
-  if (!std::ranges::all_of(s.u, finite)) return Error{Errc::not_finite, "an input is no number"};
+    return Error{Errc::not_finite, "the prior: expected finite entries"};
+  if (!std::ranges::all_of(s.u, finite))
+    return Error{Errc::not_finite, "the inputs: expected finite values"};
   if (std::ranges::any_of(s.z, [](double x) { return std::isinf(x); }))
-    return Error{Errc::not_finite, "a reading is infinite; NaN says there is none"};
+    return Error{Errc::not_finite, "a measurement is infinite; mark a missing one as NaN"};
   return Done{};
 }
 
@@ -144,10 +146,9 @@ class Pass {
     for (std::size_t k = 0; k < series_.size(); ++k) {
       if (k > 0) predict(k);
       if (!correct(k))
-        return Error{Errc::not_positive_definite,
-                     "instant " + std::to_string(k) +
-                         ": the innovation's covariance is not positive "
-                         "definite"};
+        return Error{
+            Errc::not_positive_definite,
+            "epoch " + std::to_string(k) + ": the innovation covariance is not positive definite"};
       std::copy_n(x_.data(), series_.states, output_.mean.data() + k * states());
       std::copy_n(P_.data(), square(series_.states), output_.cov.data() + k * states() * states());
       if (progress && k % 1024 == 0)

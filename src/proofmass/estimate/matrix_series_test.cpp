@@ -186,7 +186,7 @@ TEST(MatrixSeries, SaysWhyItCannot) {
   const auto singular = run_matrices(run.series(), MatrixPass::filter, 0, run.output());
   ASSERT_FALSE(singular);
   EXPECT_EQ(singular.error().code, Errc::not_positive_definite);
-  EXPECT_NE(singular.error().message.find("instant 1"), std::string::npos);
+  EXPECT_NE(singular.error().message.find("epoch 1"), std::string::npos);
   run.Q[2] = nan;
   EXPECT_EQ(run_matrices(run.series(), MatrixPass::filter, 0, run.output()).error().code,
             Errc::not_finite);
