@@ -32,6 +32,8 @@ def test_options_are_the_flags(verb):
     parameters = inspect.signature(getattr(pm, verb)).parameters.values()
     options = {p.name for p in parameters if p.kind is p.KEYWORD_ONLY} - {"progress"}
     assert {NAMES.get(name, name).replace("_", "-") for name in options} == flags - OF_THE_COMMAND
+    documented = re.findall(r"^    (\w+) : ", getattr(pm, verb).__doc__, re.M)
+    assert set(documented) - {"x", "rig", "progress"} == options
 
 
 @pytest.mark.parametrize("name", ["", "._verbs", "._recording", "._results", "._sensor", "._allan", "._kalman", ".live"])
