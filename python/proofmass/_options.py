@@ -41,9 +41,13 @@ def file_word(path: str) -> str:
 
 def in_python(error: Error) -> Error:
     """The same error with the options' names in place of the flags'."""
-    text = re.sub(r"proofmass ([a-z]+) --help", r"help(proofmass.\1)", str(error))
-    text = re.sub(r"--([a-z][a-z0-9-]*)", lambda flag: _name_of(flag[1]) + "=", text)
-    return type(error)(text)
+    return type(error)(with_option_names(str(error)))
+
+
+def with_option_names(text: str) -> str:
+    """A message of the command, with options in place of flags."""
+    text = re.sub(r"proofmass ([a-z]+) --help", r"help(proofmass.\1)", text)
+    return re.sub(r"--([a-z][a-z0-9-]*)", lambda flag: _name_of(flag[1]) + "=", text)
 
 
 def _name_of(flag: str) -> str:

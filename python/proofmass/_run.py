@@ -45,7 +45,7 @@ def run(verb: str, data: Any, options: dict[str, Any], progress: Progress, outpu
         raise _options.in_python(error) from None
     for severity, text in found["notes"]:
         if severity != "info":
-            warnings.warn(text, ProofmassWarning, stacklevel=3)
+            warnings.warn(_options.with_option_names(text), ProofmassWarning, stacklevel=3)
     return Result(found)
 
 
