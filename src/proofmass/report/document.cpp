@@ -78,6 +78,7 @@ std::vector<KeyFigure> key_figures(const Fields& fields) {
 
 std::string to_json(const Document& document) {
   std::vector<std::string> warnings = texts(document.page.notes, Severity::warning);
+  warnings.insert(warnings.end(), document.warnings.begin(), document.warnings.end());
   for (std::string& reason : reasons_for_nulls(document.fields))
     warnings.push_back(std::move(reason));
   return to_json({document.page.verb, document.page.inputs, warnings}, json_of(document.fields));

@@ -11,9 +11,10 @@ namespace proofmass::report {
 /// The result of a verb, described once. `describe()` of each result makes one; text, JSON, page
 /// and schema are made from it.
 struct Document {
-  Page page;         ///< verb, inputs, conclusion, notes, key figures, sections
-  Fields fields;     ///< of the JSON document, after its head
-  bool bad = false;  ///< --strict fails even if no note says so
+  Page page;      ///< verb, inputs, conclusion, notes, key figures, sections
+  Fields fields;  ///< of the JSON document, after its head
+  std::vector<std::string> warnings = {};  ///< of the JSON document, beside notes and nulls
+  bool bad = false;                        ///< --strict fails even if no note says so
 };
 
 /// The labelled entries among `fields`, as key figures in the same order.
@@ -26,8 +27,8 @@ struct Document {
 /// each object; the first names the column.
 [[nodiscard]] Table records_table(std::string caption, const Field& records);
 
-/// The document: "proofmass", "verb", "input", "warnings" (warnings among the notes, and the reason
-/// of every null), then the fields.
+/// The document: "proofmass", "verb", "input", "warnings" (warnings among the notes, the document's
+/// own, and the reason of every null), then the fields.
 [[nodiscard]] std::string to_json(const Document& document);
 
 /// One self-contained page.

@@ -14,8 +14,8 @@ namespace {
 
 using Out = std::back_insert_iterator<std::string>;
 
-constexpr int top_level = 2;           // of a section's heading
-constexpr std::size_t most_rows = 40;  // of a table that may be cut
+constexpr int top_level = 2;            // of a section's heading
+constexpr std::size_t most_rows = 100;  // of a table that may be cut
 
 std::string_view word(Severity severity) {
   switch (severity) {

@@ -337,6 +337,11 @@ void add_sections(Page& page, const TiltReport& report) {
       .on_terminal = true};
   if (solution.axes == 3) angles.figures.push_back([&] { return gravity_figure(solution); });
   angles.figures.push_back([&] { return tilt_std_figure(solution); });
+  const auto reason = [&](const char* angle, const std::string& why) {
+    if (!why.empty()) angles.paragraphs.push_back(fmt::format("No {}: {}.", angle, why));
+  };
+  reason("roll", solution.final.why_no_roll);
+  reason("pitch", solution.final.why_no_pitch);
   if (is_nearly_vertical(solution.final))
     angles.paragraphs.emplace_back(
         "With x nearly vertical, roll and heading are nearly the same rotation; the azimuth gives "

@@ -13,6 +13,8 @@ TEST(TiltReport, GivesANullAndItsReasonWhereThereIsNoRoll) {
   EXPECT_NE(json.find("roll_rad: null: the x axis stands upright"), std::string::npos);
   EXPECT_NE(json.find("\"mode\": \"still\""), std::string::npos);
   EXPECT_EQ(json.find("consistency"), std::string::npos);
+  EXPECT_NE(to_text(describe(fake_tilt(false))).find("No roll: the x axis stands upright."),
+            std::string::npos);
 }
 
 TEST(TiltReport, SaysTheAnglesInDegreesWithTheirStandardDeviations) {

@@ -66,14 +66,10 @@ Field method(const char* key,
   const auto figure = [&](double value) { return method ? std::optional(value) : std::nullopt; };
   const TrackMethod m = method.value_or(TrackMethod{});
   const Uncertain& end = m.displacement_m;
-  Field interval =
-      field::list("interval_95_m",
-                  {field::number({}, end.value - m.half_width_95_m),
-                   field::number({}, end.value + m.half_width_95_m)},
-                  {.meaning = "wider than ± 1.96 std where few stops show the errors of motion",
-                   .why_null = why});
-  interval.shape.nullable = true;
-  if (!method) interval.fields.reset();
+  const auto interval =
+      method
+          ? std::optional(std::array{end.value - m.half_width_95_m, end.value + m.half_width_95_m})
+          : std::nullopt;
   return field::object(
       key,
       {field::number(
@@ -81,7 +77,10 @@ Field method(const char* key,
            {.meaning = "from the first sample to the last, along the axis", .why_null = why}),
        field::magnitude("std_m", figure(end.std),
                         {.meaning = "of the displacement", .why_null = why}),
-       std::move(interval),
+       field::interval(
+           "interval_95_m", interval,
+           {.meaning = "wider than ± 1.96 std where few stops show the errors of motion",
+            .why_null = why}),
        field::magnitude("path_m", figure(m.path_m),
                         {.meaning = "length of the path, both ways counted", .why_null = why}),
        field::magnitude("path_std_m", m.path_std_m, {.why_null = method ? why_no_path_std : why}),
@@ -164,9 +163,7 @@ Field motion_error(const estimate::MotionErrorFigures& error) {
 }
 
 Field axis(const TrackSolution& solution) {
-  Fields components;
-  for (const double component : solution.axis) components.push_back(field::number({}, component));
-  return field::list("axis", std::move(components), {.meaning = "unit vector"});
+  return field::numbers("axis", solution.axis, {.meaning = "unit vector"});
 }
 
 Field jerk_psd(const TrackSolution& solution) {

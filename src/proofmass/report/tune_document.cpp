@@ -80,13 +80,6 @@ Field matrix(const char* key, const estimate::TuneMatrix& A, int states) {
   return field::list(key, std::move(rows));
 }
 
-template <class Range>
-Field numbers(const char* key, const Range& range, About about = {}) {
-  Fields items;
-  for (const double value : range) items.push_back(field::number({}, value));
-  return field::list(key, std::move(items), std::move(about));
-}
-
 Field filter(const TunedSeries& series) {
   std::vector<double> H;
   for (int i = 0; i < series.system.states; ++i)
@@ -94,7 +87,7 @@ Field filter(const TunedSeries& series) {
   return field::object("filter",
                        {field::magnitude("step_s", 1.0 / series.rate_hz),
                         matrix("F", series.system.F, series.system.states),
-                        matrix("Q", series.system.Q, series.system.states), numbers("H", H),
+                        matrix("Q", series.system.Q, series.system.states), field::numbers("H", H),
                         field::number("R", series.system.R)},
                        {.meaning = "one step x[k+1] = F x[k] + w, w ~ N(0, Q), y = H x + v, v ~ "
                                    "N(0, R), with a noise that is not identified as 0"});
@@ -130,18 +123,18 @@ Fields case_fields(const GainCase& one) {
   for (std::size_t k = 0; k < study.instants.size(); k += every) {
     const estimate::GainInstant& instant = study.instants[k];
     t_s.push_back(instant.t_s);
-    gains.push_back(numbers("", instant.gain));
-    variances.push_back(numbers("", instant.variance));
+    gains.push_back(field::numbers("", instant.gain));
+    variances.push_back(field::numbers("", instant.variance));
   }
   return {field::text("label", one.label),
           field::number("process_psd", study.options.jerk_psd_m2ps5),
           field::number("reading_variance", study.options.accel_variance_m2ps4),
           field::number("step_s", study.options.step_s),
           field::number("prior_variance", study.options.prior_variance),
-          numbers("gain_limit", study.limit),
+          field::numbers("gain_limit", study.limit),
           field::list("settling_s", std::move(settling)),
           field::number("variance_limit", study.limit_variance_m2ps4),
-          numbers("t_s", t_s),
+          field::numbers("t_s", t_s),
           field::list("gain", std::move(gains)),
           field::list("variance", std::move(variances))};
 }
@@ -182,8 +175,8 @@ Fields tune_fields(const TuneReport& report) {
       field::number("gradient", tuning.gradient,
                     {.meaning = "largest derivative of the log-likelihood by the logarithm of a "
                                 "parameter, at the end"}),
-      numbers("em_log_likelihood", tuning.em_log_likelihood,
-              {.meaning = "before each step and after the last"}),
+      field::numbers("em_log_likelihood", tuning.em_log_likelihood,
+                     {.meaning = "before each step and after the last"}),
       field::list("channels", std::move(channels)),
       consistency_field(report.consistency, noise_names(tuning.model)),
       field::records("study", report.studies, study_fields),

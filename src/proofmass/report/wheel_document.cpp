@@ -57,7 +57,9 @@ std::string delay_words(const WheelReport& report) {
     return fmt::format("The delay of the sensor's filter ({} Hz), {}, is corrected.",
                        significant(*report.options.bandwidth_hz, 3), delay);
   return fmt::format(
-      "The bandwidth of the sensor's filter is unknown: its delay was assumed to be {}.", delay);
+      "The bandwidth of the sensor's filter is unknown: its delay was assumed to be {}. The "
+      "bandwidth, from the datasheet or the filter's capacitor, determines it.",
+      delay);
 }
 
 Fields method_fields(const WheelMethod& method) {
@@ -82,10 +84,8 @@ Field pair(const char* key,
 }
 
 Field spin_axis(const WheelSensorFit& fit) {
-  Fields items;
-  for (const double component : fit.spin_axis) items.push_back(field::number({}, component));
-  return field::list("spin_axis", std::move(items),
-                     {.meaning = "unit vector in the sensor's axes", .label = "Spin axis"});
+  return field::numbers("spin_axis", fit.spin_axis,
+                        {.meaning = "unit vector in the sensor's axes", .label = "Spin axis"});
 }
 
 // Relative to the first sensor: exactly zero for the first itself, as is the offset of a clock that
@@ -297,6 +297,7 @@ Document describe(const WheelReport& report) {
                              .conclusion = conclusion(solution),
                              .notes = all_notes(report)},
                     .fields = wheel_fields(report),
+                    .warnings = solution.not_observable,
                     .bad = std::ranges::any_of(solution.sensors, [](const WheelSensorFit& fit) {
                       return fit.unusable > 0;
                     })};
