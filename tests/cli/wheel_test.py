@@ -55,6 +55,12 @@ class Wheel(CommandTest):
         self.assertIsNone(document["gyroscope"])
         self.assertTrue(any("gyroscope: null" in text for text in document["warnings"]))
 
+    def test_what_is_not_identifiable_is_among_the_warnings(self):
+        self.simulate()
+        document = self.document("wheel", "rig.csv", "--radius", "0.1")
+        self.assertTrue(document["not_observable"])
+        self.assertLessEqual(set(document["not_observable"]), set(document["warnings"]))
+
     def test_a_bandwidth_that_is_given_narrows_the_final_angle(self):
         self.simulate()
         given = self.document("wheel", "rig.csv", "--bandwidth", "100")
