@@ -9,10 +9,10 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from console_blocks import BLOCK, DOCS, agrees, blocks_of, published, run, with_elisions
+from console_blocks import BLOCK, DOCS, ROOT, agrees, blocks_of, published, run, with_elisions
 
 PROGRAM = os.path.abspath(os.environ["PROOFMASS"])
-PAGES = [page for page in sorted(DOCS.rglob("*.md")) if BLOCK.search(page.read_text())]
+PAGES = [page for page in [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))] if BLOCK.search(page.read_text())]
 CHAPTERS = "noise drift calibration estimation wheel acquisition formats".split()
 
 
