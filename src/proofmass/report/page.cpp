@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "proofmass/core/version.hpp"
+#include "proofmass/report/page_script.hpp"
 #include "proofmass/report/page_style.hpp"
 #include "proofmass/report/wording.hpp"
 
@@ -205,10 +206,10 @@ std::string html(const Page& page) {
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"generator\" content=\"Proofmass {0}\">\n"
-      "<title>{1} – proofmass {2}</title>\n<style>\n{3}{4}</style>\n</head>\n<body>\n<main>\n"
+      "<title>{1} – proofmass {2}</title>\n<style>\n{3}{4}{6}</style>\n</head>\n<body>\n<main>\n"
       "<p class=\"from\">Proofmass {0} · {2}</p>\n<h1>{1}</h1>\n<p class=\"conclusion\">{5}</p>\n",
       version(), escaped(page.title), escaped(page.verb), figure_css(), page_css(),
-      escaped(page.conclusion));
+      escaped(page.conclusion), page_script_css());
   write(text, page.key_figures);
   write_grave_notes(text, page.notes);
   if (page.contents) write_contents(text, page.sections);
@@ -222,8 +223,10 @@ std::string html(const Page& page) {
   fmt::format_to(
       Out(text),
       "<p>Made by Proofmass {}. A figure written a ± b carries its standard deviation b; "
-      "bands are 95 % where they do not say otherwise.</p>\n</footer>\n</main>\n</body>\n</html>\n",
+      "bands are 95 % where they do not say otherwise.</p>\n</footer>\n</main>\n",
       version());
+  if (count.figures > 0) fmt::format_to(Out(text), "<script>\n{}</script>\n", page_script());
+  text += "</body>\n</html>\n";
   return text;
 }
 

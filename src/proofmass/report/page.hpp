@@ -10,7 +10,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/report/figure.hpp"
 
-// One self-contained page: no script, no network, no second file.
+// One self-contained page: no network, no second file, readable without its script.
 namespace proofmass::report {
 
 struct Table {
