@@ -11,7 +11,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Puts the columns of a plan into rows of a table: the time first, less the plan's own stamp.
+/// Converts the columns of a plan to rows of a table: the time first, without the plan's own stamp.
 class RosDecoder final : public McapDecoder {
  public:
   RosDecoder(CdrPlan plan, CdrLayout layout, const McapTopic& topic)
@@ -61,7 +61,7 @@ class RosDecoder final : public McapDecoder {
 
   [[nodiscard]] std::optional<std::int64_t> stamp() const {
     if (!plan_.stamp) return std::nullopt;
-    // Whole numbers of 32 bits.
+    // 32-bit integers.
     return stamp_ns(static_cast<std::int64_t>(figures_[*plan_.stamp]),
                     static_cast<std::int64_t>(figures_[*plan_.stamp + 1]));
   }

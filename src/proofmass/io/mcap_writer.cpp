@@ -10,7 +10,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Rows of a message: what 64 KiB hold, but a second's at most.
+/// Rows per message: 64 KiB, but at most one second.
 std::size_t rows_a_message(const WriterHead& head) {
   constexpr std::size_t bytes = std::size_t{64} << 10;
   const std::size_t columns = head.recording.channels.size() + (head.has_stamps ? 1 : 0);
