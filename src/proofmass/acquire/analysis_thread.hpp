@@ -23,8 +23,7 @@ struct Analysed {
   Rows estimates{};  ///< may be empty
   std::vector<Note> notes{};
   double time_s = 0.0;                    ///< time of the last sample processed
-  std::optional<std::int64_t> host_ns{};  ///< arrival of that sample; absent for the rows at the
-                                          ///< end
+  std::optional<std::int64_t> host_ns{};  ///< arrival of that sample; absent for rows at the end
   std::optional<Error> failure{};         ///< no more results follow
 };
 

@@ -36,8 +36,7 @@ struct FramingOptions {
   std::string sync{};                  ///< the word of Framing::sync
   std::string fields{};                ///< "u32 t_us, i16 x y z, crc16"; for all framings but lines
   bool big_endian = false;             ///< default byte order of the fields
-  std::vector<std::string> columns{};  ///< names if the lines have none; otherwise the columns to
-                                       ///< keep
+  std::vector<std::string> columns{};  ///< names if the lines have none; else columns to keep
   std::string time{};                  ///< column of the device's clock; "none"; empty: detect
   std::string time_unit{};             ///< s, ms, us, ns; empty: detect
   std::string counter{};               ///< column that counts rows; "none"; empty: detect

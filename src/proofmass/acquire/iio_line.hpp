@@ -29,8 +29,7 @@ struct IioRequest {
 struct IioLine {
   std::mutex lock{};
   std::condition_variable changed{};
-  std::string waits_for{};  ///< pending reply of the board: "an answer"; the timeout restarts with
-                            ///< each
+  std::string waits_for{};  ///< pending reply of the board: "an answer"; restarts the timeout
   std::size_t steps = 0;    ///< completed so far
   double slack_s = 0.0;     ///< added to the patience if the rate is low
   std::optional<Result<SourceHead>> opened{};

@@ -25,8 +25,7 @@ struct LevelTrigger {
   std::string channel;  ///< name, as for Recording::find()
   double level = 0.0;   ///< in the channel's unit
   enum class Edge { rising, falling } edge = Edge::rising;
-  double before_s = 1.0, after_s = 1.0;  ///< kept before and after; another crossing within extends
-                                         ///< it
+  double before_s = 1.0, after_s = 1.0;  ///< kept before and after; another crossing extends it
 };
 
 struct RecordOptions {

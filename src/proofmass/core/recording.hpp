@@ -52,8 +52,7 @@ struct TimeBase {
   /// rows in bursts); 0 where it can.
   double band_s = 0.0;
   std::size_t mended = 0;            ///< stamps that a reader replaced: not a number, or far off
-  std::size_t mended_backwards = 0;  ///< stamps that were below the previous one and have been
-                                     ///< corrected
+  std::size_t mended_backwards = 0;  ///< corrected stamps that were below the previous one
 
   [[nodiscard]] bool is_uniform() const { return stamps_s.empty(); }
   /// Seconds from the first sample to sample k; k itself if no rate is known.
@@ -78,8 +77,8 @@ struct Recording {
   TimeBase time;
   std::vector<Channel> channels;
   std::vector<Note> notes;
-  /// Line of the file (1 = first) that holds sample 0; also that of each later sample, where lines
-  /// and samples do not advance together. 0 for formats without lines.
+  /// Line of the file (1 = first) with sample 0; sample k is on line first_line + k. 0 for formats
+  /// without lines, or if lines and samples do not advance together.
   std::size_t first_line = 0;
   /// Runs of one word in a text column, ordered and disjoint; samples without a word are in none.
   std::vector<Label> labels{};

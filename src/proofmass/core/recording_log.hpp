@@ -44,8 +44,7 @@ struct RecordEvent {
 /// Relation of the recording's clock to the host's: host = start + (1 + drift) t.
 struct ClockMap {
   std::int64_t start_realtime_ns = 0;   ///< time of day (UTC, since 1970) of the first sample
-  std::optional<Uncertain> rate_error;  ///< relative rate error of the recording's clock; absent:
-                                        ///< recording too short
+  std::optional<Uncertain> rate_error;  ///< of the recording's clock; absent: recording too short
   std::optional<Uncertain> rate_hz;     ///< sample rate by the host's clock
 };
 
@@ -71,8 +70,7 @@ struct RecordSummary {
   std::uint64_t lost = 0;         ///< known missing: device, protocol, overruns, clocks, disk
   std::uint64_t overrun = 0;      ///< part of `lost` due to a full queue
   std::uint64_t not_kept = 0;     ///< rows outside the trigger
-  std::uint64_t not_written = 0;  ///< part of `not_kept` since the disk failed: rows that are in no
-                                  ///< file
+  std::uint64_t not_written = 0;  ///< part of `lost` since the disk failed: rows in no file
   double duration_s = 0.0;
   std::vector<RecordEvent> gaps;  ///< lost, overrun and gap events: the first 10 000
   std::size_t gap_count = 0;
@@ -80,8 +78,7 @@ struct RecordSummary {
   ClockMap clock;
   std::optional<Latency> latency;  ///< present with an analysis
   std::optional<Recording> head;   ///< the file's header, without values
-  std::vector<Note> audit;         ///< notes of signal::RunningAudit: jitter, clipping, stuck
-                                   ///< channels
+  std::vector<Note> audit;         ///< of signal::RunningAudit: jitter, clipping, stuck channels
 };
 
 /// What was recovered from an MCAP file that was not closed, and what is missing.

@@ -40,8 +40,7 @@ struct SeparableProblem {
 struct SeparableOptions {
   bool unit_variance = false;      ///< y and Φ are scaled to the known standard deviation of y
   bool search_again = false;       ///< as in LeastSquaresOptions
-  int max_iterations = 200;        ///< a decay that is not in the data would otherwise not
-                                   ///< terminate
+  int max_iterations = 200;        ///< a decay that is not in the data would not terminate
   std::vector<double> scale = {};  ///< natural scale of α, as in LeastSquaresOptions
 };
 
@@ -55,8 +54,7 @@ struct SeparableFit {
   int iterations;
   bool converged;
   std::vector<bool> at_bound;  ///< for each α
-  double condition;            ///< condition of α's Jacobian with Φ projected out, columns of unit
-                               ///< length
+  double condition;            ///< of α's Jacobian with Φ projected out, columns of unit length
   double basis_condition;      ///< |Φ| |Φ⁺| / columns in the Frobenius norm, columns of unit
                                ///< length: 1 if orthogonal, ∞ if rank deficient
 };

@@ -57,8 +57,7 @@ struct Marks {
   char separator;
   char point;
   char line_end;
-  bool can_be_missing;  ///< an empty line is not a row, and with blanks as separators nothing can
-                        ///< be missing
+  bool can_be_missing;  ///< not for empty lines, nor with blanks as separators
 };
 
 /// One plain number, or an empty field; nullptr for anything else. A stamp is relative to the

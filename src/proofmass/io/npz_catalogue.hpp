@@ -15,8 +15,7 @@ namespace proofmass::io {
 struct NpzArray {
   std::size_t entry = 0;  ///< index in the archive
   NpyPreface preface;
-  std::size_t first_column = 0;        ///< for a field of a structured array, among its numeric
-                                       ///< columns
+  std::size_t first_column = 0;        ///< of a structured array's field, among the numeric columns
   std::optional<std::size_t> columns;  ///< of the field; nullopt: not a structured array
 };
 

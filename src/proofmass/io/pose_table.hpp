@@ -18,8 +18,7 @@ struct PoseRow {
   std::array<double, 3> mean{};  ///< x, y, z in `unit`
   Unit unit;                     ///< one for all rows; Quantity::unknown if not stated
   std::optional<std::array<double, 3>> std_of_mean;  ///< in `unit`, if the table has it
-  std::optional<std::size_t> samples;                ///< number of samples in the mean, if the
-                                                     ///< table has it
+  std::optional<std::size_t> samples;                ///< number in the mean, if given
   std::optional<std::array<double, 3>> up;  ///< unit vector of the force in the fixture's frame
   std::optional<double> start_s, end_s;     ///< in the recording of the means
   std::size_t row = 0;                      ///< in the table, 0 = first

@@ -32,8 +32,7 @@ struct MendedStamps {
   double longest_wrap_gap = 0.0;  ///< between the stamps on either side, if above a usual interval
   SampleTally hours;              ///< daylight saving began or ended: the hour was removed
   std::size_t hours_back = 0;     ///< of these: the clock was set back
-  SampleTally restarts;           ///< the clock decreased permanently: time continues one step
-                                  ///< later
+  SampleTally restarts;           ///< the clock decreased permanently: continued one step later
   double fell_from = 0.0;         ///< clock value before the first of them
   double fell_to = 0.0;           ///< clock value at the first of them
   SampleTally settings;           ///< the clock jumped by more than ten years: likewise

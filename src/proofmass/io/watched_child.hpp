@@ -12,8 +12,7 @@ namespace proofmass::io {
 
 /// Resource limits of a child process.
 struct ChildLimits {
-  std::size_t memory_bytes = std::size_t{2} << 30;  ///< in addition to the memory mapped at its
-                                                    ///< start
+  std::size_t memory_bytes = std::size_t{2} << 30;  ///< beyond the memory mapped at its start
   unsigned cpu_s = 20;
   unsigned silence_s = 60;  ///< without output
 };

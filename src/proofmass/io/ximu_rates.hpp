@@ -16,8 +16,7 @@ namespace proofmass::io {
 /// if it is within a tenth.
 [[nodiscard]] constexpr std::optional<double> ximu_rate_counted(std::uint64_t rows,
                                                                 double seconds) {
-  constexpr double shortest_s = 10.0;  // stamps of whole seconds have an error of a second at both
-                                       // ends
+  constexpr double shortest_s = 10.0;  // whole seconds have an error of 1 s at both ends
   if (!(seconds >= shortest_s)) return std::nullopt;
   const double counted_hz = static_cast<double>(rows) / seconds;
   for (std::uint64_t value = 1; value <= 10; ++value) {

@@ -17,8 +17,7 @@ namespace proofmass::sensor {
 /// absent.
 struct MeasuredCalibration {
   std::array<std::optional<Uncertain>, 3> bias, scale, misalignment;
-  std::string bias_unit = "m/s^2";  ///< unit of the reading: "m/s^2", "V" or "counts", or a
-                                    ///< multiple
+  std::string bias_unit = "m/s^2";  ///< of the reading: "m/s^2", "V" or "counts", or a multiple
   std::string scale_unit = "1";     ///< "1", "V/(m/s^2)" or "counts/(m/s^2)", or a multiple
   /// Covariance of bias x y z, scale x y z, misalignment, in the units above and rad.
   std::optional<std::array<std::array<double, 9>, 9>> covariance;
@@ -30,8 +29,7 @@ struct MeasuredCalibration {
   /// Effective degrees of freedom of the standard deviations; absent: many. A comparison of two
   /// calibrations allows for more scatter if they are few.
   std::optional<double> dof;
-  std::optional<Uncertain> gravity_mps2;  ///< gravity assumed in the calibration; a std of 0 is not
-                                          ///< written
+  std::optional<Uncertain> gravity_mps2;  ///< assumed gravity; a std of 0 is not written
   std::optional<double> temperature_k;    ///< temperature of the sensor
   /// For readings in volts of a ratiometric sensor: the supply during the calibration, or V_ref if
   /// the readings are already scaled to it. Absent: the file's electrical.supply.

@@ -54,8 +54,7 @@ struct SensorComparison {
   std::string no_joint;  ///< the reason if there is none
   std::optional<CalibrationEffect> effect;
   std::string no_effect;                       ///< the reason if there is none
-  std::size_t tests = 0;                       ///< number of tests made; the joint one counts as
-                                               ///< one
+  std::size_t tests = 0;                       ///< made; the joint one counts as one
   double level = 0.0;                          ///< familywise false-alarm probability
   Verdict calibration = Verdict::cannot_tell;  ///< changed, same, unchanged or cannot_tell
   Verdict all = Verdict::cannot_tell;          ///< the same for the whole files

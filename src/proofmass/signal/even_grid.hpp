@@ -22,8 +22,7 @@ struct EvenGrid {
   std::size_t recorded = 0;      ///< samples present
   std::size_t missing = 0;       ///< grid points without a sample
   std::vector<Hole> holes;       ///< ascending
-  double relative_jitter = 0.0;  ///< standard deviation of the intervals that are not holes, in
-                                 ///< periods
+  double relative_jitter = 0.0;  ///< std of the intervals that are not holes, in periods
 };
 
 /// Positions of a recording's samples on an even grid.

@@ -14,8 +14,7 @@ enum class EventKind { knock, step };
 /// and leaves the level unchanged; a step changes it.
 struct Event {
   EventKind kind;
-  std::size_t first, last;  ///< samples, inclusive; for a step alone: the first sample at the new
-                            ///< level
+  std::size_t first, last;  ///< inclusive; a step alone: the first sample at the new level
   double size;  ///< shock: largest deviation from the local level; step: level after minus before
   double significance;  ///< in local standard deviations of the output of the detecting filter
 };

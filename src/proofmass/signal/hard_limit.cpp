@@ -12,8 +12,7 @@ namespace {
 constexpr std::size_t window = 8;         // samples per window that is tested for a constant level
 constexpr std::size_t fewest_visits = 8;  // minimum number of visits for a decision
 constexpr double band = 5.0;              // half width of the limit, in noise standard deviations
-constexpr double level_noise = 1.7;  // in noise standard deviations: scatter of eight samples in 99
-                                     // % of cases
+constexpr double level_noise = 1.7;  // in noise stds: scatter of eight samples in 99 % of cases
 
 /// A short segment.
 struct Window {

@@ -13,8 +13,7 @@ namespace proofmass::signal {
 struct RestNoise {
   PerAxis window_variance{};  ///< about the mean of its window
   PerAxis block_variance{};   ///< about the mean of its block
-  PerAxis step_variance{};    ///< from the differences of adjacent samples, which contain nothing
-                              ///< slow
+  PerAxis step_variance{};    ///< from differences of adjacent samples, free of slow motion
   /// Lower bound of the Allan variance: with noise below half a quantisation step, a mean moves by
   /// a step where the level crosses a code.
   PerAxis quantum_variance{};

@@ -23,8 +23,7 @@ enum class RestPhase {
 struct RestState {
   RestPhase phase = RestPhase::listening;
   double since_s = 0.0, until_s = 0.0;  ///< while resting: first and last sample
-  std::size_t samples = 0;              ///< samples used for the mean: those of the last half
-                                        ///< minute
+  std::size_t samples = 0;              ///< used for the mean: those of the last half minute
   std::array<double, 3> mean{};         ///< mean of the rest, per axis
   std::array<double, 3> noise_std{};    ///< of one sample about the mean of its block
   std::array<double, 3> step{};         ///< quantisation step; 0 if none is visible

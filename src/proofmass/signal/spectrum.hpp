@@ -18,14 +18,12 @@ struct SpectrumOptions {
 /// contributes Σ one_sided_psd · rate_hz / segment = A²/2.
 struct Spectrum {
   double rate_hz = 0.0;
-  std::size_t segment = 0;            ///< samples per segment: fewer than requested for a short
-                                      ///< series
+  std::size_t segment = 0;            ///< samples per segment: fewer for a short series
   std::size_t averaged = 0;           ///< number of segments averaged
   double window_bandwidth_hz = 0.0;   ///< equivalent noise bandwidth of the window
   std::vector<double> frequency_hz;   ///< 0 … rate/2, segment/2 + 1 bins
   std::vector<double> one_sided_psd;  ///< unit²/Hz; the bins at 0 and rate/2 are not doubled
-  double edf_per_bin = 0.0;  ///< equivalent degrees of freedom of a bin; half of that at 0 and
-                             ///< rate/2
+  double edf_per_bin = 0.0;  ///< equivalent degrees of freedom of a bin; half at 0 and rate/2
 };
 
 /// Power spectrum of a uniformly sampled series that arrives in blocks, by Welch's method: Hann

@@ -33,8 +33,7 @@ class ValueTail {
   double sign_;
   std::size_t capacity_;
   std::vector<double> kept_;                                ///< multiplied by sign_
-  double below_ = std::numeric_limits<double>::infinity();  ///< only values below this are still
-                                                            ///< relevant
+  double below_ = std::numeric_limits<double>::infinity();  ///< limit of relevant values
 };
 
 }  // namespace proofmass::signal

@@ -35,8 +35,7 @@ struct WhitenessTest {
   std::size_t values = 0;               ///< block means that are not missing
   std::size_t lags = 0;                 ///< largest lag of the autocorrelation
   std::vector<double> autocorrelation;  ///< at lag 1 … lags, in blocks
-  double bound = 0.0;                   ///< 1.96/√n: |r| of white noise is below it in 95 % of
-                                        ///< cases
+  double bound = 0.0;                   ///< 1.96/√n: 95 % bound of |r| for white noise
   double inside_bounds = 0.0;           ///< fraction of the lags with |r| ≤ bound
   double ljung_box = 0.0;               ///< Q
   double ljung_box_p = 0.0;             ///< correlation at short lags

@@ -71,8 +71,7 @@ struct ProcedureTiming {
   double dwell_s = 4.0;  ///< from arrival to the next move, settling included
   double move_s = 2.0;   ///< for a slide: one stroke
   double dwell_jitter = 0.0, move_jitter = 0.0;  ///< uniform draws of ± these fractions
-  double settle_s = 0.6;                         ///< a decaying oscillation after each move, then
-                                                 ///< exact rest
+  double settle_s = 0.6;                         ///< decaying oscillation after a move, then rest
   double settle_mps2 = 0.3, settle_hz = 14.0;
 };
 
@@ -108,8 +107,7 @@ struct ProcedureTable {
   double radius_m = 0.02;         ///< distance of the sensor from the table's axis
   double vibration_mps2 = 0.05;   ///< rms while moving, up to 20 Hz
   bool angle_recorded = true;     ///< the commanded angle, as a channel "angle"
-  bool angle_follows = false;     ///< the channel follows the table, like an encoder; else it steps
-                                  ///< ahead
+  bool angle_follows = false;     ///< like an encoder's; else it steps ahead of the table
 };
 
 /// Manual positioning.

@@ -35,8 +35,7 @@ struct RigSensor {
   Axes bias_mps2{};
   Axes scale{1.0, 1.0, 1.0};
   Axes misalignment_rad{};             ///< α_yz, α_zy, α_zx
-  std::array<double, 6> cross_axis{};  ///< xy, xz, yx, yz, zx, zy: sensitivity of the first axis to
-                                       ///< the second
+  std::array<double, 6> cross_axis{};  ///< xy, xz, yx, yz, zx, zy: of the first axis to the second
   double nonlinearity = 0.0;           ///< fraction of full scale, at full scale
   double full_scale_mps2 = *sensor::adxl335.full_scale_mps2.typ;
   Axes warm_up_mps2{0.1, 0.1, 0.1};

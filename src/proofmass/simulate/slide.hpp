@@ -35,8 +35,7 @@ struct ProcedureSlide {
   double elevation_rad = 0.0;                             ///< of the line above the horizontal
   double roll_rad = 0.0, pitch_rad = 0.0, yaw_rad = 0.0;  ///< mounting of the sensor
   bool any_mounting = false;     ///< the seed draws the mounting, uniformly over all rotations
-  double turn_std_rad = 0.0;     ///< rotation of each rest relative to the mounting, about each
-                                 ///< axis
+  double turn_std_rad = 0.0;     ///< of each rest relative to the mounting, about each axis
   double wobble_rms_rad = 0.0;   ///< about each axis while moving, up to 2 Hz
   double vibration_mps2 = 0.0;   ///< rms along each axis while moving, 8 to 12 Hz
   bool gravity_removed = false;  ///< true gravity is subtracted from the recording, as phones do
@@ -47,8 +46,7 @@ struct ProcedureSlide {
   double gyro_walk_radps_rts = 0.001 * rad_per_deg;   ///< random walk of the bias in one second
   /// A second sensor of the same kind: channels acc2_x, acc2_y, acc2_z.
   bool second_sensor = false;
-  Axes second_place_m{0.1, 0.0, 0.0};  ///< r of the second sensor, in the sensor's axes; for the
-                                       ///< first r = 0
+  Axes second_place_m{0.1, 0.0, 0.0};  ///< r of it, in the sensor's axes; for the first r = 0
 };
 
 /// True values of one way along the line.

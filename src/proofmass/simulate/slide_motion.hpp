@@ -45,8 +45,7 @@ class SlideMotion {
   ProcedureSlide slide_;
   double gravity_mps2_;
   std::vector<PlannedPose> rests_;
-  std::vector<Eigen::Vector3d> turns_rad_;  ///< of each rest relative to the mounting, about its
-                                            ///< axes
+  std::vector<Eigen::Vector3d> turns_rad_;  ///< of each rest to the mounting, about its axes
   std::vector<TrueStroke> strokes_;
   Eigen::Vector3d direction_;  ///< of the line; z upwards
   Eigen::Matrix3d mounting_;   ///< from the sensor's axes
