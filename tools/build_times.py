@@ -42,7 +42,7 @@ def read_log(log: Path) -> dict[str, float]:
     seconds = {}
     for line in lines:
         begin, end, _, output, _ = line.split("\t")
-        # Where an object's path is absolute, a line of the same step names it relative, too.
+        # If an object's path is absolute, another line of the same step has the relative one.
         if OBJECT.search(output) and not output.startswith("/"):
             seconds[output] = (int(end) - int(begin)) / 1000
     return {output: s for output, s in seconds.items() if (log.parent / output).exists()}

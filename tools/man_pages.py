@@ -22,8 +22,8 @@ COLUMN = 30  # where the help's descriptions begin, in bytes
 @dataclass
 class Help:
     description: str
-    usage: str  # behind the program's and the verb's name
-    groups: dict[str, list[tuple[str, str]]] = field(default_factory=dict)  # names and what they are
+    usage: str  # after the program's and the verb's name
+    groups: dict[str, list[tuple[str, str]]] = field(default_factory=dict)  # names and descriptions
     footer: list[str] = field(default_factory=list)
 
 

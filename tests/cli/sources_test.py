@@ -97,7 +97,7 @@ class Sources(CommandTest):
             try:
                 sender.sendto(text, ("127.0.0.1", port))
             except ConnectionRefusedError:
-                pass  # the recorder is not there yet, or no more
+                pass  # the recorder is not running yet, or no longer
 
         self.send(write)
 

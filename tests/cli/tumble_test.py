@@ -181,7 +181,7 @@ class Tumble(CommandTest):
     def test_an_angle_that_is_shown_before_the_table_stands_still(self):
         lines = rests([*range(0, 360, 30), 0], encoder=True).splitlines()
         shown = [line.split(",") for line in lines[1:]]
-        for k, cells in enumerate(shown):  # 4 s rest, 1 s move: the setting is shown at once
+        for k, cells in enumerate(shown):  # 4 s rest, 1 s move: the setting is recorded at once
             cells[1] = str((k + 100) // 500 * 30 % 360)
         self.write("r.csv", "\n".join([lines[0], *map(",".join, shown)]) + "\n")
         found = self.document("tumble", "r.csv")
@@ -220,7 +220,7 @@ class Tumble(CommandTest):
         self.succeed("tumble", "p.csv", "--update-sensor", "s.toml")
         calibration = tomllib.loads((self.folder / "s.toml").read_text())["calibration"]
         self.assertIn("proofmass tumble p.csv", str(calibration))
-        # Applied again, the readings are accelerations with scale 1 and bias 0.
+        # After applying it, the readings are accelerations with scale 1 and bias 0.
         again = self.document("tumble", "p.csv", "--sensor", "s.toml")
         self.assertAlmostEqual(again["K1"]["value"], 1.0, places=4)
         self.assertAlmostEqual(again["K0"]["value"], 0.0, places=4)

@@ -20,7 +20,7 @@ BLOCK = re.compile(r"^```console\n(.*?)^```$", re.S | re.M)
 
 @dataclass
 class Command:
-    text: str # as it stands, without "$ "
+    text: str # as written, without "$ "
     output: list = field(default_factory=list)
 
     @property
@@ -31,7 +31,7 @@ class Command:
 @dataclass
 class Block:
     page: Path
-    line: int # of the page, of the first command
+    line: int # line of the first command in the page
     commands: list
 
     @property

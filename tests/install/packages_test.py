@@ -28,7 +28,7 @@ class Packages(unittest.TestCase):
         cls.work = Path(tempfile.mkdtemp(prefix="proofmass-packages-"))
         cls.addClassCleanup(shutil.rmtree, cls.work)
         cls.root = cls.work / "root"
-        # The packages are compressed by xz for who downloads them; a test need not wait for that.
+        # Released packages are compressed by xz; the test uses a faster compression.
         cpack = Path(CMAKE).with_name("cpack")
         output(cpack, "--config", BUILD / "CPackConfig.cmake", "-B", cls.work / "deb",
                "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip")  # fmt: skip

@@ -38,7 +38,7 @@ def target_page(path: Path) -> Path:
 class Stage:
     def __init__(self, folder: Path):
         self.folder = folder
-        self.linked = set() # files and folders that are linked to and are no pages
+        self.linked = set() # linked files and folders that are not pages
         self.broken = []
 
     def rewrite(self, page: Path, text: str) -> str:
@@ -57,7 +57,7 @@ class Stage:
                 self.linked.add(path)
             return f"{before}{os.path.relpath(there, page.parent)}{anchor or ''}{after}"
 
-        pieces = re.split(r"(^```.*?^```|`[^`\n]*`)", text, flags=re.S | re.M) # code stays as it is
+        pieces = re.split(r"(^```.*?^```|`[^`\n]*`)", text, flags=re.S | re.M) # code is unchanged
         return "".join(p if p.startswith("`") else LINK.sub(link, p) for p in pieces)
 
     def write(self, page: Path, text: str):
