@@ -26,7 +26,7 @@ double size_of_knock(View<double> series, const Stretch& at, double rate_hz) {
   return size;
 }
 
-/// Two steps that cancel within seconds are a shock.
+/// Two steps that cancel within seconds are an outlier.
 void pair_steps(std::vector<Step>& steps, std::vector<Hit>& hits, double rate_hz) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -72,8 +72,8 @@ void settle_burst(const Source& source, Event& event, double rate_hz) {
   event.size = size_of_knock(source.series, {event.first, event.last}, rate_hz);
 }
 
-/// A shock decays below its detection threshold. Extends its end in tenths of a second while these
-/// means differ from the level seconds later by more than four times the scatter of the means
+/// An outlier decays below its detection threshold. Extends its end in tenths of a second while
+/// these means differ from the level seconds later by more than four times the scatter of the means
 /// before it.
 void follow_to_its_end(const Source& source, Event& event, double rate_hz) {
   const std::size_t w = std::max<std::size_t>(4, samples_in(0.1, rate_hz));
@@ -100,7 +100,7 @@ void measure_steps(const Source& source, std::vector<Step>& steps, double rate_h
   for (std::size_t k = 0; k < steps.size(); ++k) steps[k].size = sizes[k];
 }
 
-/// True if a hit is caused by the step itself: a step triggers the shock filter next to it, in a
+/// True if a hit is caused by the step itself: a step triggers the outlier filter next to it, in a
 /// window as long as that of its detection.
 bool lies_beside(const Stretch& at, const Step& step, double rate_hz) {
   const std::size_t reach =
@@ -133,7 +133,7 @@ std::vector<Event> events_from(View<double> series,
   return events;
 }
 
-/// Truncates a shock that overlaps a step.
+/// Truncates an outlier that overlaps a step.
 void part_overlapping(std::vector<Event>& events) {
   for (std::size_t k = 1; k < events.size(); ++k) {
     if (events[k].first > events[k - 1].last) continue;

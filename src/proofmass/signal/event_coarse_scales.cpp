@@ -113,7 +113,7 @@ void find_steps(const Record& record,
   }
 }
 
-/// Finds shocks with windows of `width` blocks and marks them as missing in the level.
+/// Finds outliers with windows of `width` blocks and marks them as missing in the level.
 void find_knocks(
     const Record& record, Level& level, View<double> m, std::size_t width, std::vector<Hit>& hits) {
   if (m.size() < 5 * width) return;

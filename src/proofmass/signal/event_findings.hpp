@@ -9,7 +9,7 @@
 // Findings of the scales, before they are assembled into events.
 namespace proofmass::signal {
 
-/// A detection of the shock filter.
+/// A detection of the outlier filter.
 struct Hit {
   Stretch at;
   double sigmas;

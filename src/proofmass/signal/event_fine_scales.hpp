@@ -9,7 +9,7 @@
 #include "proofmass/signal/event_source.hpp"
 #include "proofmass/signal/event_thresholds.hpp"
 
-// The shock filter over windows of 1, 2, 4 and 8 samples. Every sample is filtered once to
+// The outlier filter over windows of 1, 2, 4 and 8 samples. Every sample is filtered once to
 // determine the scatter of the outputs, and again only in the blocks with a detection.
 namespace proofmass::signal {
 
@@ -21,7 +21,7 @@ using FineTallies = std::array<std::vector<Tally>, fine_scales>;
 /// Where the filter lacks samples, tallies the deviation from those present.
 [[nodiscard]] FineTallies tally_fine_scales(const Source& source);
 
-/// Filters the blocks with a detection again, with a level that excludes the shock itself.
+/// Filters the blocks with a detection again, with a level that excludes the outlier itself.
 [[nodiscard]] std::vector<Hit> hits_on_fine_scales(const Source& source,
                                                    const FineTallies& blocks,
                                                    const std::array<Bar, fine_scales>& bars);

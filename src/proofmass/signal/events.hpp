@@ -10,12 +10,12 @@ namespace proofmass::signal {
 
 enum class EventKind { knock, step };
 
-/// A deviation that noise, drift and lines do not explain. A shock (`knock`) is over within seconds
-/// and leaves the level unchanged; a step changes it.
+/// A deviation that noise, drift and lines do not explain. An outlier (`knock`) is over within
+/// seconds and leaves the level unchanged; a step changes it.
 struct Event {
   EventKind kind;
   std::size_t first, last;  ///< inclusive; a step alone: the first sample at the new level
-  double size;  ///< shock: largest deviation from the local level; step: level after minus before
+  double size;  ///< outlier: largest deviation from the local level; step: level after minus before
   double significance;  ///< in local standard deviations of the output of the detecting filter
 };
 
@@ -23,8 +23,9 @@ struct EventOptions {
   double rate_hz;  ///< sampling rate of the series
 };
 
-/// Detects shocks and steps in a series of a static sensor; ascending, not overlapping. Windows of
-/// w = 1, 2, 4, … samples slide along the series; with m their means, w apart, the two filters are
+/// Detects outliers and steps in a series of a static sensor; ascending, not overlapping. Windows
+/// of w = 1, 2, 4, … samples slide along the series; with m their means, w apart, the two filters
+/// are
 ///
 ///     knock: m[k] − (m[k−2] + m[k−1] + m[k+1] + m[k+2]) / 4          w = 1 … 2 s,
 ///     step:  (m[k−2] − 3 m[k−1] + 3 m[k] − m[k+1]) / 2               w = 16 … 30 s or 1024,
@@ -38,18 +39,18 @@ struct EventOptions {
 ///   quartiles of the blocks' largest outputs reaches once in a hundred records, whichever is
 ///   larger: heavy tails raise it.
 /// - Scales run from short to long; events found at one scale are removed before the next.
-/// - A shock must also deviate in the same direction from the level before and after it.
+/// - An outlier must also deviate in the same direction from the level before and after it.
 /// - A step must be isolated among its neighbours, which the bend of a warm-up is not, and at least
 ///   half as high through windows a quarter as wide.
-/// - Two steps that cancel within 5 s are a shock; a shock next to a step is part of it. Of two
-///   steps closer than 2 w only the first found is reported.
+/// - Two steps that cancel within 5 s are an outlier; an outlier next to a step is part of it. Of
+///   two steps closer than 2 w only the first found is reported.
 ///
 /// Source: the filter bank follows D. L. Donoho, I. M. Johnstone, Ideal spatial adaptation by
 /// wavelet shrinkage, Biometrika 81 (1994) 425, section 2.2 (the bound σ √(2 ln n)).
 ///
 /// NaN, infinities and runs of a repeated value far longer than usual (a stuck or clipped sensor)
-/// count as missing. If the noise is below half a quantum, σ is at least half a quantum for shocks
-/// and a third of one for steps.
+/// count as missing. If the noise is below half a quantum, σ is at least half a quantum for
+/// outliers and a third of one for steps.
 /// Errors: none. rate_hz must be positive and finite.
 /// Cost: O(N), about 8 ns per sample; allocates about N / 4 doubles in total.
 [[nodiscard]] std::vector<Event> find_events(View<double> series, const EventOptions& options);
