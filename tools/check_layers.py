@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Holds src/proofmass to its walls. The truth is in the modules' CMakeLists.txt: what a module may
-include stands in its USES line, what of it is public in its HEADERS line.
+"""Checks the layers of src/proofmass. They are defined in the modules' CMakeLists.txt: the modules that
+a module may include are in its USES line, its public headers in its HEADERS line.
 
 An offence is
   - an #include of a module that USES does not name, or a USES that no source needs;
   - a cycle among the USES lines;
-  - a public header that shows anything but std, Eigen/Core and public headers of Proofmass;
+  - a public header that includes anything but std, Eigen/Core and public headers of Proofmass;
   - another module's private header (tests may include its *_test_support.hpp), or a path that is not written "proofmass/module/file.hpp";
   - a listed header or source that does not exist, or one that exists and is not listed;
   - in the library (tests and *test_support* apart), output, exit, the environment or the process's locale.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Takes one figure out of a report, as an SVG file that stands alone and follows light and dark.
+"""Extracts one figure from a report as a standalone SVG file with light and dark modes.
 
     tools/report_figure.py out/report.html 2 docs/images/wheel.svg
 

@@ -1,4 +1,4 @@
-"""What goes wrong ends with the status that the contract names, and one line that helps."""
+"""Errors give the documented exit status and one helpful line."""
 import fcntl
 import os
 import pty

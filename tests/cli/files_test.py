@@ -1,4 +1,4 @@
-"""What is written: never over an input, never half, never through somebody else's file."""
+"""Output files: never over an input, never partial, never through another file."""
 import os
 import random
 import signal
@@ -113,7 +113,7 @@ class Files(CommandTest):
 
 
 class Killed(CommandTest):
-    """kill -9 at any instant: what was read, and what was there before, is whole."""
+    """kill -9 at any time: the inputs and the previous files are intact."""
 
     def kill_at_instants(self, whole_s, *arguments):
         draw = random.Random(7)

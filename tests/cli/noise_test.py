@@ -1,4 +1,4 @@
-"""proofmass noise, on made-up recordings whose noise is known."""
+"""proofmass noise, on synthetic recordings with known noise."""
 import csv
 import math
 import random

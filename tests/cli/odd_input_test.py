@@ -1,4 +1,4 @@
-"""Streams without a row, names that a terminal obeys, and verbs on recordings of every scale."""
+"""Streams without rows, names with control characters, and verbs on recordings of every magnitude."""
 import gzip
 import os
 import unittest
@@ -41,7 +41,7 @@ class Streams(CommandTest):
 
 
 class Flags(CommandTest):
-    """A flag that contradicts the file is not obeyed in silence."""
+    """A flag that contradicts the file is not applied silently."""
 
     def test_of_a_rate_beside_stamps_are_warned_of(self):
         self.write("a.csv", turning_csv(seconds=4))
@@ -109,7 +109,7 @@ class Names(CommandTest):
 
 
 class Verbs(CommandTest):
-    """Of whatever size a recording is: a document that fits its schema, or one line that says why not."""
+    """For a recording of any magnitude: a document that matches its schema, or one line with the reason."""
 
     def test_end_with_a_document_or_one_line_on_any_recording(self):
         ends = {}

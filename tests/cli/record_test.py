@@ -17,7 +17,7 @@ HEADER = b"t (ms),x (m/s^2),y (m/s^2),z (m/s^2)\n"
 
 
 def rows(first, count):
-    """Lines as a microcontroller would send them: milliseconds and three figures."""
+    """Lines as sent by a microcontroller: milliseconds and three values."""
     return b"".join(ROW % (10 * k, k % 7, k % 11, 9.81) for k in range(first, first + count))
 
 
@@ -50,7 +50,7 @@ class Record(CommandTest):
         self.wait_for(lambda: part.exists() and part.stat().st_size >= size, part.name)
 
     def end(self, process, status):
-        """Its document, once it has ended with this status."""
+        """Its document, once it has exited with this status."""
         out, err = process.communicate(timeout=200)
         self.assertEqual(process.returncode, status, (err or b"").decode())
         document = parse_json(out.decode())
@@ -237,7 +237,7 @@ class Record(CommandTest):
         self.assertEqual([c["unit"] for c in document["channels"]], ["g"] * 3)
 
     def open_pty(self, link):
-        """A serial line that the program opens by the link's name."""
+        """A serial line that the program opens by a link."""
         ours, theirs = pty.openpty()
         tty.setraw(theirs)
         os.set_blocking(ours, False)
@@ -247,7 +247,7 @@ class Record(CommandTest):
         return ours, theirs
 
     def feed(self, ours, first, process, until):
-        """Sends rows every now and then until the condition holds; the next row's number."""
+        """Sends rows at intervals until the condition holds; returns the next row's number."""
         end = time.monotonic() + 120
         while not until():
             self.assertLess(time.monotonic(), end, "waited 120 s")

@@ -72,7 +72,7 @@ int main(void) {{
 
 
 def yaml_entries(text) -> dict:
-    """The entries of a flat YAML, numbers as YAML 1.1 knows them (with a point)."""
+    """The entries of a flat YAML, numbers as in YAML 1.1 (with a point)."""
     entries = {}
     for line in text.splitlines():
         line = re.sub(r"\s+#.*", "", line)

@@ -1,5 +1,5 @@
-"""The Debian packages that the finished build makes: what they say, what is in them, and that it works from where
-dpkg would lay it. Nothing is installed."""
+"""The Debian packages made from the finished build: their metadata, their contents, and that these work at the
+location where dpkg would unpack them. Nothing is installed."""
 import gzip
 import os
 import re

@@ -1,5 +1,5 @@
-// A part of the table printed by wheel_coverage: the coverage of every interval is at least the
-// stated one, up to chance and the small number of draws.
+// A part of the table printed by wheel_coverage: every interval has at least the stated coverage, and
+// no error is larger than chance and rare gross draws allow.
 #include "wheel_coverage.hpp"
 
 #include <gtest/gtest.h>
