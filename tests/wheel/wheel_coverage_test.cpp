@@ -1,5 +1,5 @@
-// A part of the table printed by wheel_coverage: every interval has at least the stated coverage, and
-// no error is larger than chance and rare gross draws allow.
+// A part of the table printed by wheel_coverage: every interval has at least the stated coverage,
+// and no error is larger than chance and rare gross draws allow.
 #include "wheel_coverage.hpp"
 
 #include <gtest/gtest.h>

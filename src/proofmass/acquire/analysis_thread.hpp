@@ -70,7 +70,7 @@ class AnalysisThread {
   const std::unique_ptr<LiveAnalysis> analysis_;
   const std::size_t most_bytes_;
   const std::function<void()> tell_;
-  double time_s_ = 0.0;  ///< of the last sample; used by the thread alone
+  double time_s_ = 0.0;  ///< time of the last sample; used by the thread alone
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -100,7 +100,7 @@ class RowQueue {
   RepeatedNote restart_notes_{"times that the count jumped"};
   RepeatedNote untimed_notes_{"rows without a reading of the clock"};
   std::uint64_t pending_lost_ = 0;
-  double count_ = 0.0;  ///< of the last row
+  double count_ = 0.0;  ///< count at the last row
   std::uint64_t rows_ = 0, lost_ = 0, late_ = 0, untimed_ = 0;
   std::optional<std::int64_t> first_device_ns_;
 };

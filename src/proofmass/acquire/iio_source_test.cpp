@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double scale = 0.009806;  // of the board, in m/s² per count
+constexpr double scale = 0.009806;  // scale of the board, m/s² per count
 
 std::string setting(const SourceHead& head, std::string_view key) {
   const auto found =

@@ -44,7 +44,7 @@ class PhyphoxSource : public Source {
   PhyphoxStart start_;
   SourceHead head_;
   SensorMerge merge_;
-  std::vector<std::string> names_, times_;  ///< of all buffers; of those that contain times
+  std::vector<std::string> names_, times_;  ///< all buffers; buffers that contain times
   std::string ends_target_;                 ///< requests the ends of the times
   PhyphoxReply reply_{};
   std::vector<double> row_{};

@@ -61,7 +61,7 @@ class RecordFile {
                                    RecordWords summary);
 
   [[nodiscard]] std::uint64_t rows() const { return rows_; }
-  [[nodiscard]] double last_s() const { return last_s_; }  ///< of the last row
+  [[nodiscard]] double last_s() const { return last_s_; }  ///< time of the last row
   [[nodiscard]] std::uint64_t bytes() const { return mcap_.bytes(); }
   /// The audit's notes; valid after close.
   [[nodiscard]] const std::vector<Note>& notes() const { return found_->notes; }

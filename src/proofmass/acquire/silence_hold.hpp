@@ -32,7 +32,7 @@ class SilenceHold {
   std::deque<Incoming> held_;
   std::size_t settled_ = 0;               ///< decided items, from the front
   std::optional<std::int64_t> quiet_ns_;  ///< host's time of the last rows before a pause
-  std::optional<std::int64_t> last_ns_;   ///< of the last rows added
+  std::optional<std::int64_t> last_ns_;   ///< host's time of the last rows added
 };
 
 }  // namespace proofmass::acquire

@@ -44,7 +44,7 @@ struct RecordEvent {
 /// Relation of the recording's clock to the host's: host = start + (1 + drift) t.
 struct ClockMap {
   std::int64_t start_realtime_ns = 0;   ///< time of day (UTC, since 1970) of the first sample
-  std::optional<Uncertain> rate_error;  ///< of the recording's clock; absent: recording too short
+  std::optional<Uncertain> rate_error;  ///< recording's clock; absent: recording too short
   std::optional<Uncertain> rate_hz;     ///< sample rate by the host's clock
 };
 
@@ -78,7 +78,7 @@ struct RecordSummary {
   ClockMap clock;
   std::optional<Latency> latency;  ///< present with an analysis
   std::optional<Recording> head;   ///< the file's header, without values
-  std::vector<Note> audit;         ///< of signal::RunningAudit: jitter, clipping, stuck channels
+  std::vector<Note> audit;         ///< from signal::RunningAudit: jitter, clipping, stuck channels
 };
 
 /// What was recovered from an MCAP file that was not closed, and what is missing.

@@ -32,7 +32,7 @@ struct CurveOptions {
 struct CurvePoint {
   double value;
   double std;          ///< standard deviation of the curve
-  double reading_std;  ///< of a new measurement with sigma 1: √(std² + residual_std²)
+  double reading_std;  ///< std of a new measurement with sigma 1: √(std² + residual_std²)
 };
 
 /// The fitted curve at each x with its confidence band, by the delta method:

@@ -44,7 +44,7 @@ struct LeastSquaresFit {
   int iterations;              ///< total of all descents tried
   bool converged;              ///< the gradient is zero to the rounding of the residuals
   std::vector<bool> at_bound;  ///< the minimum is at an active bound, or the parameter is fixed
-  double condition;            ///< of the Jacobian, columns scaled to unit length; ∞ if singular
+  double condition;            ///< Jacobian's, columns scaled to unit length; ∞ if singular
 };
 
 /// The p between lower and upper that minimises ½ |r(p)|², in the basin of the start.

@@ -20,7 +20,7 @@ struct MemberHint {
   /// Time since 1970 at which the file's stamps, in seconds, are zero.
   std::optional<std::int64_t> zero_ns;
   std::string sensor;    ///< prefix for names that are an axis alone: "Gyroscope"; may be empty
-  std::string unit;      ///< of columns named by an axis alone, if the file has none
+  std::string unit;      ///< unit of columns named by an axis alone, if the file has none
   std::string left_out;  ///< a counter column of omitted data, not a time
   std::vector<Note> notes;
 };

@@ -55,7 +55,7 @@ class Planner {
 
   /// Location of a field.
   struct Place {
-    std::string path;    ///< of the enclosing message
+    std::string path;    ///< path of the enclosing message
     std::string parent;  ///< as in CdrColumn
     std::size_t depth = 0;
   };

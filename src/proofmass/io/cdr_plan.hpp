@@ -21,7 +21,7 @@ struct CdrStep {
   std::size_t bytes = 8;                ///< size of one of them
   bool is_sequence = false;             ///< preceded by its length
   std::uint32_t count = 1;              ///< if not a sequence
-  std::optional<std::size_t> column{};  ///< of the first number; none: skipped
+  std::optional<std::size_t> column{};  ///< column of the first number; none: skipped
   std::vector<CdrStep> inner{};         ///< for nested messages: the steps of each
 };
 

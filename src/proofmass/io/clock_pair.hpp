@@ -15,7 +15,7 @@ struct ClockPair {
   double offset_s = 0.0;        ///< other clock minus base clock where that is 0
   double drift_ppm = 0.0;       ///< rate error of the other clock; positive if fast
   double drift_std_ppm = 0.0;   ///< standard deviation
-  double base_jitter_s = 0.0;   ///< of an interval about the median, robust
+  double base_jitter_s = 0.0;   ///< jitter of an interval about the median, robust
   double other_jitter_s = 0.0;  ///< likewise
   std::size_t blocks = 0;       ///< number of blocks in the fit
   std::size_t outliers = 0;     ///< blocks with zero weight

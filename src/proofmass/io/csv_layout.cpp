@@ -96,7 +96,7 @@ struct Trial {
   char separator = ',';
   char point = '.';
   bool is_grouped = false;
-  std::size_t width = 0;  ///< of most lines, not counting an empty last field
+  std::size_t width = 0;  ///< width of most lines, not counting an empty last field
   bool trailing = false;  ///< most lines of that width end in a separator
   double score = -1e300;
   std::vector<Tally> tallies{};
@@ -377,7 +377,7 @@ bool is_odd_figure(std::string_view word) {
   constexpr std::string_view figures = "0123456789.,'_() %";
   word = trimmed(word);
   if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
-  constexpr std::string_view full_width = "\xEF\xBC";  // of U+FF00 … U+FF3F
+  constexpr std::string_view full_width = "\xEF\xBC";  // prefix of U+FF00 … U+FF3F
   bool has_digit = false;
   while (!word.empty()) {
     const bool is_wide = word.starts_with(full_width) && word.size() > 2;

@@ -15,7 +15,7 @@ class FileWindow {
   explicit FileWindow(std::shared_ptr<const RandomBytes> bytes)
       : bytes_(std::move(bytes)), end_of_file_(bytes_->size()) {}
 
-  [[nodiscard]] std::uint64_t size() const { return end_of_file_; }  ///< of the file
+  [[nodiscard]] std::uint64_t size() const { return end_of_file_; }  ///< size of the file
   /// `count` bytes from `offset`, or as many as exist; valid until the next call.
   /// Errors: unreadable.
   [[nodiscard]] Result<std::string_view> view(std::uint64_t offset, std::uint64_t count);

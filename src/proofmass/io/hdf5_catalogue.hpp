@@ -41,7 +41,7 @@ struct Hdf5Catalogue {
   std::vector<Hdf5Dataset> datasets;
   std::vector<Hdf5Attribute> attributes;
   std::vector<std::string> skipped;  ///< "title (text)", "f (link)"
-  std::vector<Label> runs{};         ///< of labelled samples; not checked
+  std::vector<Label> runs{};         ///< runs of labelled samples; not checked
   std::string run_channel{};         ///< Recording::label_channel
   bool is_cut = false;               ///< the list is incomplete
 };

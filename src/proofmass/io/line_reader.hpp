@@ -23,7 +23,7 @@ class LineReader {
   /// The line without its LF or CRLF; decimal_padding bytes are readable after it, and the first of
   /// them is not part of a number. Valid until next().
   [[nodiscard]] std::string_view text() const { return text_; }
-  [[nodiscard]] std::uint64_t offset() const { return offset_; }  ///< of its first byte
+  [[nodiscard]] std::uint64_t offset() const { return offset_; }  ///< offset of its first byte
   [[nodiscard]] std::size_t number() const { return number_; }    ///< 1 = first
   [[nodiscard]] bool is_ended() const { return is_ended_; }       ///< by an LF
 

@@ -22,8 +22,8 @@ struct LvmClock {
 
 /// The rows of one segment.
 struct LvmRows {
-  std::uint64_t offset = 0;  ///< of the first
-  std::size_t line = 0;      ///< of the first
+  std::uint64_t offset = 0;  ///< offset of the first row
+  std::size_t line = 0;      ///< line of the first row
   std::size_t count = 0;
   std::size_t claimed = 0;  ///< according to the header, for the longest channel
   LvmClock clock;
@@ -37,7 +37,7 @@ struct LvmTable {
   bool x_is_time = true;
   std::string x_heading;
   std::vector<LvmRows> segments;
-  std::size_t columns_in_file = 0;  ///< of the widest row examined, without comments
+  std::size_t columns_in_file = 0;  ///< width of the widest row examined, without comments
   std::vector<Note> notes;
 
   [[nodiscard]] std::uint64_t rows() const;

@@ -14,8 +14,8 @@ struct LvmTiming {
   /// Common rate of all rows, if one period fits them; nullopt: each row has its own time.
   std::optional<double> rate_hz;
   std::optional<std::int64_t> start_ns;  ///< origin of starts_s
-  std::vector<double> starts_s;          ///< of each segment's row 0, or of its X value 0
-  std::vector<double> steps_s;           ///< of each segment, if rows have no X value
+  std::vector<double> starts_s;          ///< start of each segment: its row 0, or its X value 0
+  std::vector<double> steps_s;           ///< period of each segment, if rows have no X value
   std::vector<Note> notes;
 };
 

@@ -20,7 +20,7 @@ struct Header {
   std::size_t columns = 0;
   bool is_complex = false;
   std::string name;
-  std::size_t bytes = 0;  ///< of the header, including the name
+  std::size_t bytes = 0;  ///< size of the header, including the name
 };
 
 struct Precision {

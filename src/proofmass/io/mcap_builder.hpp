@@ -61,7 +61,7 @@ class McapBuilder {
   McapChunking chunking_;
   std::string bytes_;
   std::uint64_t taken_ = 0;     ///< bytes returned so far
-  std::uint32_t data_crc_ = 0;  ///< of those bytes
+  std::uint32_t data_crc_ = 0;  ///< checksum of those bytes
   std::vector<McapSchema> schemas_;
   std::vector<McapChannel> channels_;
   std::size_t schemas_put_ = 0;

@@ -42,7 +42,7 @@ class McapDecoder {
 struct McapTopic {
   McapChannel channel;
   McapSchema schema;       ///< empty if there is none
-  McapFirstMessage first;  ///< of the topic
+  McapFirstMessage first;  ///< the topic's first message
 };
 
 /// Selects the decoder by encoding. Errors: unsupported (an encoding or schema), corrupt.

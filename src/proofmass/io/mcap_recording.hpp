@@ -26,12 +26,12 @@ struct McapChunking {
 
 /// The state of a file at the end of a chunk, to which it can be rewound.
 struct McapMark {
-  std::uint64_t bytes = 0;  ///< of the file so far
+  std::uint64_t bytes = 0;  ///< size of the file so far
   std::uint32_t data_crc = 0;
   std::size_t chunk_index_bytes = 0, attachment_index_bytes = 0, metadata_index_bytes = 0;
   std::uint32_t chunks = 0, attachments = 0, metadata = 0;
   std::uint64_t start_ns = 0, end_ns = 0, messages = 0;
-  std::vector<std::uint32_t> sequences{};  ///< of the channels
+  std::vector<std::uint32_t> sequences{};  ///< sequence numbers of the channels
 };
 
 /// A topic with blocks of samples.

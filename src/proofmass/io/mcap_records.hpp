@@ -63,7 +63,7 @@ struct McapChunkHead {
   std::uint64_t start_ns = 0;
   std::uint64_t end_ns = 0;
   std::uint64_t unpacked_bytes = 0;
-  std::uint32_t crc = 0;  ///< of the decompressed bytes; 0: none
+  std::uint32_t crc = 0;  ///< checksum of the decompressed bytes; 0: none
   std::string compression;
   std::uint64_t packed_bytes = 0;
   std::size_t head_bytes = 0;  ///< size of the record's content before the compressed bytes

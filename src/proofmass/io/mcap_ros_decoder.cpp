@@ -93,7 +93,7 @@ class RosDecoder final : public McapDecoder {
 
   CdrPlan plan_;
   CdrLayout layout_;
-  std::vector<double> figures_;  ///< of the message, in the plan's columns
+  std::vector<double> figures_;  ///< values of the message, in the plan's columns
   MessageClock clock_;
   std::vector<std::size_t> kept_;  ///< columns of the plan that are not the stamp
   double time_ = 0.0;

@@ -117,7 +117,7 @@ class SamplesDecoder final : public McapDecoder {
 
   McapSamplesLayout layout_;
   TableHead head_;
-  std::string_view figures_;  ///< of the message
+  std::string_view figures_;  ///< values of the message
   std::size_t rows_ = 0;
   std::size_t missing_ = 0;  ///< rows before it
   std::uint64_t expected_ = 0;

@@ -100,7 +100,7 @@ class McapWriter final : public RecordingWriter {
   bool has_stamps_;
   std::size_t rows_a_message_;
   McapRecording::Topic topic_ = 0;
-  std::vector<std::vector<double>> columns_;  ///< of the next message; the stamps first
+  std::vector<std::vector<double>> columns_;  ///< columns of the next message; the stamps first
   std::uint64_t written_ = 0;
 };
 

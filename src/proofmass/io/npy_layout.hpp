@@ -16,14 +16,14 @@ namespace proofmass::io {
 struct NpyColumn {
   FigureType type;
   std::size_t offset = 0;  ///< within the row
-  std::string name;        ///< of a structured array's field; else empty
+  std::string name;        ///< name of a structured array's field; else empty
 };
 
 /// Layout of an array in its file, as a table.
 struct NpyLayout {
   std::vector<NpyColumn> columns;  ///< the numeric ones
   std::size_t rows = 0;
-  std::size_t row_bytes = 0;  ///< of all columns, including skipped ones
+  std::size_t row_bytes = 0;  ///< size of all columns, including skipped ones
   std::uint64_t begin = 0;    ///< file offset of the values
   bool by_column = false;     ///< column-major
   bool is_structured = false;

@@ -15,8 +15,8 @@ namespace proofmass::io {
 struct NpzArray {
   std::size_t entry = 0;  ///< index in the archive
   NpyPreface preface;
-  std::size_t first_column = 0;        ///< of a structured array's field, among the numeric columns
-  std::optional<std::size_t> columns;  ///< of the field; nullopt: not a structured array
+  std::size_t first_column = 0;        ///< position of a structured field among the numeric columns
+  std::optional<std::size_t> columns;  ///< width of the field; nullopt: not a structured array
 };
 
 /// The arrays of an archive as variables of a MAT file, the input of table selection. Shapes are as

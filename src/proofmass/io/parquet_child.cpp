@@ -191,7 +191,7 @@ class ParquetReading {
   std::string path_;  ///< quoted for SQL
   const ReadOptions& options_;
   ParquetHead head_;
-  std::vector<std::string> names_;  ///< of the columns that are read, quoted for SQL
+  std::vector<std::string> names_;  ///< names of the columns that are read, quoted for SQL
   std::vector<double> block_;
 };
 

@@ -159,7 +159,7 @@ TableHead table_head(const ParquetHead& parquet, const OpenParquet& file) {
 }
 
 ChildLimits limits_for(const LibraryFile& file) {
-  constexpr std::uint64_t bytes_a_second = 200'000;  // of data compressed as well as possible
+  constexpr std::uint64_t bytes_a_second = 200'000;  // rate for maximally compressed data
   constexpr std::uint64_t longest_s = 360'000;
   ChildLimits limits;
   limits.memory_bytes = std::size_t{4} << 30;  // DuckDB reserves more than it uses

@@ -15,7 +15,7 @@ struct Published {
   std::size_t samples;
   double rate_hz;  ///< 0: not given in the file
   const char* unit;
-  std::size_t axes;  ///< of its first accelerometer; 0: no three-axis one
+  std::size_t axes;  ///< axes of its first accelerometer; 0: no three-axis one
 };
 
 class PublishedRecording : public testing::TestWithParam<Published> {};

@@ -13,7 +13,7 @@ namespace proofmass::io {
 
 /// Statistics of a channel in each bin of samples.
 struct PyramidChannel {
-  std::vector<double> min;  ///< of the finite values; NaN if there are none
+  std::vector<double> min;  ///< minimum of the finite values; NaN if there are none
   std::vector<double> max;
   std::vector<std::uint32_t> nonfinite;  ///< number of values that are not finite
 };
@@ -30,7 +30,7 @@ struct PyramidLevel {
 /// A recording's minima and maxima at every scale, from which any part of it can be plotted without
 /// reading its samples.
 struct Pyramid {
-  std::vector<std::string> names;  ///< of the channels
+  std::vector<std::string> names;  ///< channel names
   std::vector<std::string> units;
   std::uint64_t samples = 0;
   double end_s = 0.0;                ///< time of the last sample

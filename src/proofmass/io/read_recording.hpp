@@ -17,10 +17,10 @@ namespace proofmass::io {
 /// Settings of the user that override the file.
 struct ReadOptions {
   std::optional<double> rate_hz{};       ///< sample rate; stamps of the file are then ignored
-  std::optional<Unit> unit{};            ///< of the accelerometer channels, overriding the header
+  std::optional<Unit> unit{};            ///< accelerometers' unit, overriding the header
   std::string time_channel{};            ///< name of the time column; empty: detect
   std::vector<std::string> channels{};   ///< keep only these, in the order of the file; empty: all
-  std::vector<std::string> variables{};  ///< of a file of named arrays; empty: select automatically
+  std::vector<std::string> variables{};  ///< variables of a file of named arrays; empty: automatic
   std::string duckdb_library{};          ///< path of libduckdb.so, for Parquet; empty: the system's
   /// Resamples to an even grid, and joins several tables on one; empty: samples as recorded.
   std::optional<signal::ResampleOptions> resample{};

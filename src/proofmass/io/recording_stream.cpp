@@ -225,7 +225,7 @@ class RecordingStream::Reading {
   std::unique_ptr<TableFile> file_;
   std::unique_ptr<RecordingReader> reader_;
   ReadOptions options_;
-  std::string name_;           ///< of the file
+  std::string name_;           ///< name of the file
   std::deque<RawRows> ahead_;  ///< read but not returned yet
   bool at_end_ = false;
   std::optional<RunningTimeBase> time_;

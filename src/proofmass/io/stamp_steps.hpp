@@ -16,7 +16,7 @@ inline constexpr double largest_stamp = 1e20;
 
 /// Intervals of a column of stamps, from at most 65 536 of them spread over the file.
 struct StampSteps {
-  double median = 0.0;  ///< of the finite positive intervals; 0 if there are none
+  double median = 0.0;  ///< median of the finite positive intervals; 0 if none
   double rounding =
       0.0;  ///< common divisor of all intervals, if more than 1 % of the median; else 0
   double mean_near = 0.0;  ///< mean of the intervals within one rounding of the median

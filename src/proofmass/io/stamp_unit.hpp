@@ -10,7 +10,7 @@ namespace proofmass::io {
 /// Unit of a column of stamps.
 struct StampUnit {
   double unit_s = 1.0;
-  StampOrigin origin;        ///< of the column, counted from 1970 if its values are dates
+  StampOrigin origin;        ///< origin of the column, counted from 1970 if its values are dates
   bool is_calendar = false;  ///< the stamps are dates or times of day
   std::optional<Note> note;  ///< present if the file does not state the unit
 };

@@ -25,13 +25,13 @@ struct SampleTally {
 /// Corrections of a column of stamps.
 struct MendedStamps {
   SampleTally samples;            ///< replaced samples
-  std::size_t backwards = 0;      ///< of these: below the previous stamp
-  std::size_t by_counter = 0;     ///< of these: determined by the instrument's counter
+  std::size_t backwards = 0;      ///< replaced stamps that were below the previous one
+  std::size_t by_counter = 0;     ///< replaced stamps determined by the instrument's counter
   SampleTally wraps;              ///< positions of counter wraps
   std::string wrapped;            ///< its range: "32 bits"
   double longest_wrap_gap = 0.0;  ///< between the stamps on either side, if above a usual interval
   SampleTally hours;              ///< daylight saving began or ended: the hour was removed
-  std::size_t hours_back = 0;     ///< of these: the clock was set back
+  std::size_t hours_back = 0;     ///< number of `hours` with the clock set back
   SampleTally restarts;           ///< the clock decreased permanently: continued one step later
   double fell_from = 0.0;         ///< clock value before the first of them
   double fell_to = 0.0;           ///< clock value at the first of them

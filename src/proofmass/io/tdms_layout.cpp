@@ -68,7 +68,7 @@ Result<TdmsLayout> lay_out_contiguous(std::span<const TdmsPart> parts, const Tdm
 
 /// Rows with values of the same channels.
 struct Band {
-  std::uint64_t offset = 0;  ///< of the first row, then of the next channel's value in it
+  std::uint64_t offset = 0;  ///< offset of the first row, then of the next channel's value in it
   std::uint64_t width = 0;
   std::uint64_t from = 0;  ///< first row
   std::uint64_t to = 0;

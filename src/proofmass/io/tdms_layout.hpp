@@ -14,7 +14,7 @@ namespace proofmass::io {
 
 /// Evenly spaced values of one channel in a chunk.
 struct TdmsPiece {
-  std::uint64_t offset = 0;  ///< of the first, from the start of the chunk
+  std::uint64_t offset = 0;  ///< offset of the first value from the start of the chunk
   std::uint64_t stride = 0;
   std::uint64_t values = 0;
 };

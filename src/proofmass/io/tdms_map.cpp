@@ -242,7 +242,7 @@ class TdmsWalk {
   std::string previous_metadata_;
   std::uint32_t previous_contents_ = 0;
   std::unordered_map<std::string, std::uint32_t> by_key_;
-  std::optional<std::uint32_t> layout_;  ///< of the current list, if it is known
+  std::optional<std::uint32_t> layout_;  ///< layout of the current list, if it is known
   std::uint32_t layout_bits_ = 0;
   std::size_t layout_entries_ = 0;
   bool told_version_ = false;

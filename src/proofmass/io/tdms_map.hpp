@@ -16,7 +16,7 @@ namespace proofmass::io {
 /// The file, a group, or a channel.
 struct TdmsObject {
   std::string group;  ///< empty: the object is the file
-  std::string name;   ///< of the channel; empty: the object is the group
+  std::string name;   ///< channel's name; empty: the object is the group
   TdmsProperties properties{};
   TdmsKind kind = TdmsKind::other;  ///< kind of its first values
   std::uint32_t type = 0;
@@ -41,7 +41,7 @@ struct TdmsMap {
   std::vector<TdmsLayout> layouts;
   std::vector<TdmsRun> runs;
   std::uint64_t segments = 0;       ///< total
-  std::uint64_t data_segments = 0;  ///< of these: with values
+  std::uint64_t data_segments = 0;  ///< segments with values
   std::vector<Note> notes;          ///< faults
 
   std::map<std::string, std::uint32_t> groups;  ///< index into objects; "": the file itself

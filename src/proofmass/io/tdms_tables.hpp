@@ -17,9 +17,9 @@ struct TdmsGroup {
   std::string name;                     ///< the group's, with a suffix if the group has several
   std::vector<std::uint32_t> channels;  ///< indices into the map's objects
   std::vector<std::string> headings;    ///< with units
-  std::uint64_t rows = 0;               ///< of the longest channel
+  std::uint64_t rows = 0;               ///< length of the longest channel
   std::optional<double> rate_hz;
-  std::optional<std::int64_t> start_ns;    ///< of row 0, since 1970
+  std::optional<std::int64_t> start_ns;    ///< time of row 0, since 1970
   std::optional<std::size_t> time_column;  ///< timestamps, or seconds from start_ns
   std::vector<Note> notes;
 };

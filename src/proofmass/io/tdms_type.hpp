@@ -21,7 +21,7 @@ enum class TdmsKind : unsigned char {
   f64,
   boolean,
   instant,  ///< TdmsInstant
-  text,     ///< of any length
+  text,     ///< variable length
   other,    ///< unsupported: complex, extended, fixed point
 };
 

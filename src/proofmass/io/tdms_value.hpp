@@ -14,7 +14,7 @@ namespace proofmass::io {
 /// A timestamp as stored by LabVIEW.
 struct TdmsInstant {
   std::int64_t seconds = 0;    ///< since 1904-01-01 00:00 UTC
-  std::uint64_t fraction = 0;  ///< of a second, in 2^-64 s
+  std::uint64_t fraction = 0;  ///< fraction of a second, in 2^-64 s
 
   /// 1904 itself means that no time is set.
   [[nodiscard]] bool is_set() const { return seconds != 0 || fraction != 0; }

@@ -66,7 +66,7 @@ class ChunkReader {
  private:
   struct Chunk {
     std::string name;
-    std::uint64_t begin = 0;  ///< of its content
+    std::uint64_t begin = 0;  ///< offset of its content
     std::uint64_t size = 0;
     std::uint64_t left = 0;  ///< bytes of the file from there
   };

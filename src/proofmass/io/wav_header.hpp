@@ -18,12 +18,12 @@ namespace proofmass::io {
 struct WavHeader {
   std::size_t channels = 0;
   std::uint32_t rate_hz = 0;
-  FigureType figure;                           ///< of each sample; 'u' for a byte, 'i', or 'f'
+  FigureType figure;                           ///< type of each sample; 'u' for a byte, 'i', or 'f'
   std::size_t valid_bits = 0;                  ///< for an integer, the highest of its bytes
   std::uint64_t begin = 0;                     ///< offset of the samples
   std::uint64_t bytes = 0;                     ///< size of the samples present
   std::optional<std::uint64_t> claimed_bytes;  ///< if more were claimed
-  std::map<std::string, std::string> texts;    ///< of LIST INFO by their four letters: "ICMT"
+  std::map<std::string, std::string> texts;    ///< LIST INFO by four-letter key: "ICMT"
   std::vector<Note> notes;
 
   [[nodiscard]] std::size_t row_bytes() const { return channels * figure.bytes; }

@@ -49,7 +49,7 @@ class WordRuns {
 
   std::vector<std::string> names_;
   std::vector<Run> runs_;
-  std::string field_;                ///< of the previous row, as read
+  std::string field_;                ///< field of the previous row, as read
   std::optional<std::size_t> name_;  ///< its word, if any
   std::size_t last_row_ = 0;
   bool given_up_ = false;

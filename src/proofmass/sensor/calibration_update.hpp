@@ -17,7 +17,7 @@ namespace proofmass::sensor {
 /// absent.
 struct MeasuredCalibration {
   std::array<std::optional<Uncertain>, 3> bias, scale, misalignment;
-  std::string bias_unit = "m/s^2";  ///< of the reading: "m/s^2", "V" or "counts", or a multiple
+  std::string bias_unit = "m/s^2";  ///< unit of the reading: "m/s^2", "V", "counts", or a multiple
   std::string scale_unit = "1";     ///< "1", "V/(m/s^2)" or "counts/(m/s^2)", or a multiple
   /// Covariance of bias x y z, scale x y z, misalignment, in the units above and rad.
   std::optional<std::array<std::array<double, 9>, 9>> covariance;
@@ -35,7 +35,7 @@ struct MeasuredCalibration {
   /// the readings are already scaled to it. Absent: the file's electrical.supply.
   std::optional<double> supply_v;
   std::string origin;              ///< "proofmass calibrate poses.csv, 24 positions"
-  std::string name, serial, date;  ///< of the sensor, and the date (ISO 8601), if known
+  std::string name, serial, date;  ///< sensor's name and number; date (ISO 8601), if known
 };
 
 /// Stores the calibration in the model; figures that were not measured are kept.

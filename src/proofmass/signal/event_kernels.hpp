@@ -11,7 +11,7 @@ namespace proofmass::signal {
 
 /// Outputs of one filter over a block of positions.
 struct Tally {
-  double mean, max;  ///< of |output|; NaN and 0 if there was none
+  double mean, max;  ///< mean and maximum |output|; NaN and 0 if there was none
 };
 
 /// out = in where that is finite, else NaN.

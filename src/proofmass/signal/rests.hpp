@@ -23,7 +23,7 @@ struct RestOptions {
 
 struct RestSearch {
   std::vector<Rest> rests;        ///< ascending, not overlapping
-  std::vector<double> noise_std;  ///< of one static sample about its window's mean, one per axis
+  std::vector<double> noise_std;  ///< std of one static sample about its window's mean, per axis
   std::size_t window = 0;         ///< samples per variance window: 0.5 s or `shortest_s`
   std::string why_none;           ///< the reason, if there is no rest
 };

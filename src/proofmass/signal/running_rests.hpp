@@ -25,7 +25,7 @@ struct RestState {
   double since_s = 0.0, until_s = 0.0;  ///< while resting: first and last sample
   std::size_t samples = 0;              ///< used for the mean: those of the last half minute
   std::array<double, 3> mean{};         ///< mean of the rest, per axis
-  std::array<double, 3> noise_std{};    ///< of one sample about the mean of its block
+  std::array<double, 3> noise_std{};    ///< std of one sample about the mean of its block
   std::array<double, 3> step{};         ///< quantisation step; 0 if none is visible
   /// Mean of the newest block, static or not; valid if it has samples.
   std::array<double, 3> newest_mean{};

@@ -19,7 +19,7 @@ struct SpectralLine {
   double frequency_hz = 0.0;
   double low_hz = 0.0;  ///< the band of the power sum
   double high_hz = 0.0;
-  double amplitude = 0.0;  ///< of a sine of the same power, √(2 · excess power); in the unit
+  double amplitude = 0.0;  ///< sine of the same power, √(2 · excess power); in the unit
   double amplitude_std = 0.0;
   double excess_db = 0.0;  ///< its peak relative to the background
 };

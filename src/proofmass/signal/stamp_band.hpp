@@ -36,7 +36,7 @@ class StampBand {
   bool has_begun_ = false;
   double first_ = 0.0;
   double number_ = 0.0;  ///< number of the next sample, missing ones counted
-  double low_ = 0.0;     ///< of the recent stamps minus their even times
+  double low_ = 0.0;     ///< lower edge of the recent stamps minus their even times
   double high_ = 0.0;
   double strain_ = 0.0;
 };

@@ -32,7 +32,7 @@ class BiasNoise {
 
  private:
   std::vector<double> markov_;  ///< x_j
-  double std_ = 0.0;            ///< of each
+  double std_ = 0.0;            ///< standard deviation of each x_j
   double walk_ = 0.0, walk_rate_ = 0.0;
   struct Step {
     double lost, draw;  ///< step of a process: −lost x + draw · normal

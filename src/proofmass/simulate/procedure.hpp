@@ -103,7 +103,7 @@ struct ProcedureTable {
   double twice_rad = 0.0, twice_phase_rad = 0.0;
   double position_std_rad = 0.0, setting_std_rad = 0.0, backlash_rad = 0.0;
   double axis_tilt_rad = 0.0;
-  double mounting_std_rad = 0.0;  ///< of the small rotation about each axis at each mounting
+  double mounting_std_rad = 0.0;  ///< small rotation about each axis at each mounting
   double radius_m = 0.02;         ///< distance of the sensor from the table's axis
   double vibration_mps2 = 0.05;   ///< rms while moving, up to 20 Hz
   bool angle_recorded = true;     ///< the commanded angle, as a channel "angle"
@@ -119,7 +119,7 @@ struct ProcedureHand {
   double sway_rms_mps2 = 0.8;                    ///< up to 3 Hz
   double tremor_rms_mps2 = 0.25;                 ///< 8 to 12 Hz
   double wobble_rms_rad = 4.0 * rad_per_deg;     ///< about the shortest rotation, up to 2 Hz
-  double bump_mps2 = 5.0;                        ///< of setting it down, and of some shocks
+  double bump_mps2 = 5.0;                        ///< peak when set down, and of some shocks
   int bad_pose = 0;                              ///< number of the disturbed position; 0: none
   double bad_pose_push_mps2 = 0.0;               ///< increase of |f| in it
 };

@@ -54,11 +54,11 @@ struct RigWheel {
   double start_angle_rad = 0.0;  ///< angle of the mark on the wheel; 0 = horizontal
   std::vector<SpeedSegment> profile{{.duration_s = 60.0, .speed_radps = 11.0 * radps_per_rpm}};
   SpeedRipple ripple{.fraction = 0.02};
-  double axle_tilt_rad = 2.0 * rad_per_deg;  ///< of the spin axis above the horizontal
+  double axle_tilt_rad = 2.0 * rad_per_deg;  ///< tilt of the spin axis above the horizontal
   /// The wheel rolls on the ground below it without slip, and its hub accelerates with it: by
   /// −rolling_radius · α along the horizontal from which the angle is measured. 0 = hub at rest.
   double rolling_radius_m = 0.0;
-  double shake_horizontal_rms_mps2 = 0.0, shake_vertical_rms_mps2 = 0.0;  ///< of the hub
+  double shake_horizontal_rms_mps2 = 0.0, shake_vertical_rms_mps2 = 0.0;  ///< hub vibration
   double shake_bandwidth_hz = 20.0;
 };
 

@@ -27,15 +27,15 @@ struct ProcedureSlide {
   int strokes = 6;             ///< or sets of strokes, each followed by a rest
   int repetitions = 0;         ///< 0: a stroke is one way; n: n times there and back without a rest
   bool returning = true;       ///< one-way strokes alternate in direction, else all go the same way
-  double length_m = 0.4;       ///< of a stroke; negative: it begins downwards
+  double length_m = 0.4;       ///< length of a stroke; negative: it begins downwards
   double length_jitter = 0.0;  ///< uniform draw of ± this fraction
   double turn_pause_s = 0.0;   ///< pause between there and back within a set
   double initial_rest_s = 4.0, final_rest_s = 4.0;
   SlideProfile profile = SlideProfile::minimum_jerk;
-  double elevation_rad = 0.0;                             ///< of the line above the horizontal
+  double elevation_rad = 0.0;                             ///< angle above the horizontal
   double roll_rad = 0.0, pitch_rad = 0.0, yaw_rad = 0.0;  ///< mounting of the sensor
   bool any_mounting = false;     ///< the seed draws the mounting, uniformly over all rotations
-  double turn_std_rad = 0.0;     ///< of each rest relative to the mounting, about each axis
+  double turn_std_rad = 0.0;     ///< rotation of each rest from the mounting, per axis
   double wobble_rms_rad = 0.0;   ///< about each axis while moving, up to 2 Hz
   double vibration_mps2 = 0.0;   ///< rms along each axis while moving, 8 to 12 Hz
   bool gravity_removed = false;  ///< true gravity is subtracted from the recording, as phones do

@@ -45,9 +45,9 @@ class SlideMotion {
   ProcedureSlide slide_;
   double gravity_mps2_;
   std::vector<PlannedPose> rests_;
-  std::vector<Eigen::Vector3d> turns_rad_;  ///< of each rest to the mounting, about its axes
+  std::vector<Eigen::Vector3d> turns_rad_;  ///< rotation of each rest from the mounting
   std::vector<TrueStroke> strokes_;
-  Eigen::Vector3d direction_;  ///< of the line; z upwards
+  Eigen::Vector3d direction_;  ///< direction of the line; z upwards
   Eigen::Matrix3d mounting_;   ///< from the sensor's axes
   bool turns_ = false;
   TripleNoise wobble_, vibration_;
