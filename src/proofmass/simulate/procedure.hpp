@@ -119,7 +119,7 @@ struct ProcedureHand {
   double sway_rms_mps2 = 0.8;                    ///< up to 3 Hz
   double tremor_rms_mps2 = 0.25;                 ///< 8 to 12 Hz
   double wobble_rms_rad = 4.0 * rad_per_deg;     ///< about the shortest rotation, up to 2 Hz
-  double bump_mps2 = 5.0;                        ///< peak when set down, and of some shocks
+  double bump_mps2 = 5.0;                        ///< peak of setting it down, and of some shocks
   int bad_pose = 0;                              ///< number of the disturbed position; 0: none
   double bad_pose_push_mps2 = 0.0;               ///< increase of |f| in it
 };
