@@ -72,7 +72,7 @@ int main(void) {{
 
 
 def yaml_entries(text) -> dict:
-    """The entries of a flat YAML, numbers as YAML 1.1 knows them (with a point)."""
+    """The entries of a flat YAML, numbers as in YAML 1.1 (with a point)."""
     entries = {}
     for line in text.splitlines():
         line = re.sub(r"\s+#.*", "", line)
@@ -167,7 +167,7 @@ class CHeader(CommandTest):
                                "-o", "-", "-q")
         wanted = [float(cell) for cell in applied.splitlines()[1].split(",")[-3:]]
         for value, expected in zip(map(float, ran.stdout.split()), wanted, strict=True):
-            # A float of 33123.83 counts is good to 0.004 counts, 1e-5 m/s².
+            # A float of 33123.83 counts is accurate to 0.004 counts, 1e-5 m/s².
             self.assertAlmostEqual(value, expected, delta=2e-5)
         self.assertGreater(max(map(abs, wanted)), 5.0)
 

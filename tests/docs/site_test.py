@@ -1,4 +1,4 @@
-"""The site is built of the pages without a broken link; the checks that say so can fail."""
+"""The site is built from the pages without a broken link; its checks can fail."""
 import shutil
 import subprocess
 import sys
