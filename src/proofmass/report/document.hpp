@@ -11,9 +11,10 @@ namespace proofmass::report {
 /// The result of a verb, described once. `describe()` of each result makes one; text, JSON, page
 /// and schema are made from it.
 struct Document {
-  Page page;         ///< verb, inputs, conclusion, notes, key figures, sections
-  Fields fields;     ///< of the JSON document, after its head
-  bool bad = false;  ///< --strict fails even if no note says so
+  Page page;                 ///< verb, inputs, conclusion, notes, key figures, sections
+  Fields fields;             ///< of the JSON document, after its head
+  bool bad = false;          ///< --strict fails even if no note says so
+  std::string failure = {};  ///< why there is no result at all: with it the run fails
 };
 
 /// The labelled entries among `fields`, as key figures in the same order.

@@ -221,7 +221,7 @@ std::string drift_json(const DriftReport& report) {
   Array channels, runs;
   for (const ChannelDrift& channel : report.channels) {
     Object item = drift_object(channel);
-    item.push_back({"rest", rest_value(channel.rest)});
+    item.push_back(json_of({rest_field(channel.rest)}).front());
     channels.emplace_back(std::move(item));
     warn(null_reasons(report, channel));
   }

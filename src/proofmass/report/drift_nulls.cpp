@@ -98,7 +98,7 @@ std::vector<std::string> null_reasons(const DriftReport& report, const ChannelDr
   } else {
     say("null for " + names(drift_keys) + ", because it was not analysed: " + channel.refused);
   }
-  if (const std::string reason = rest_null_reason(channel.rest); !reason.empty()) say(reason);
+  for (const std::string& reason : reasons_for_nulls({rest_field(channel.rest)})) say(reason);
   if (channel.temperature) explain_temperature(*channel.temperature, say);
   if (channel.outlook) explain_outlook(channel, say);
   return reasons;

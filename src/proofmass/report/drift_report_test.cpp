@@ -201,7 +201,7 @@ TEST(DriftReports, SayFirstThatTheSensorMoved) {
   const DriftReport report = report_of(std::move(channel));
   EXPECT_EQ(drift_conclusion(report).find("Not at rest (x)"), 0U);
   const std::string text = drift_text(report);
-  EXPECT_LT(text.find("Not at rest: 12 %"), text.find("Warm-up of"));
+  EXPECT_LT(text.find("Not at rest: only 12 %"), text.find("Warm-up of"));
   EXPECT_LT(text.find("Warm-up of"), text.find("Warm-up a1"));
   EXPECT_TRUE(contains(text, "--from 3.00 --to 8.50"));
   EXPECT_FALSE(texts(drift_notes(report), Severity::bad).empty());
