@@ -7,6 +7,7 @@
 #include "proofmass/report/budget_report.hpp"
 #include "proofmass/report/calibrate_fake.hpp"
 #include "proofmass/report/convert_report.hpp"
+#include "proofmass/report/drift_fake.hpp"
 #include "proofmass/report/model_equation_report.hpp"
 #include "proofmass/report/rotation_report.hpp"
 #include "proofmass/report/noise_fake.hpp"
@@ -225,6 +226,35 @@ TEST(Schemas, Tumble) {
       "Coefficients of the IEEE 1293 model equation from positions on a turntable. SI unless a key "
       "or a unit beside the figure names another. Those at the top are of `channel`.",
       {describe(full), describe(volts), describe(refused)});
+}
+
+// A curve with every term.
+void complete(characterise::DriftFit& fit) {
+  fit.possibilities.resize(1);
+  fit.curve.steps.resize(1);
+  fit.a1 = fit.slope_per_s = fit.second_a1 = fake_interval(1.0, 0.1);
+  fit.time_constant_s = fit.second_time_constant_s = fake_interval(1.0, 0.1);
+  fit.time_constant_above_s.reset();
+  fit.time_constant_below_s = fit.candidates.front().time_constant_s = 1.0;
+}
+
+TEST(Schemas, Drift) {
+  const DriftReport plain = fake_drift_report();
+  DriftReport all = plain;
+  complete(all.channels.front().analysis->fit);
+  all.channels[1].rest.reset();
+  all.channels[1].temperature = DriftTemperature{.channel = "t", .model = {}, .refused = "r"};
+  all.runs = {fake_runs("acc_x"), fake_runs("acc_y"), {"acc_z", {}, {}, "2 runs left"}};
+  all.runs.front().set->level_curve = all.channels.front().analysis->fit;
+  complete(all.runs.front().set->warm_up.fit);
+  all.runs[1].set->trend_per_run.reset();
+  DriftReport volts = all;  // no unit is fixed
+  volts.channels.front().unit = volts.runs.front().unit = *parse_unit("V");
+  volts.forecast_s.reset();
+  expect_schema(
+      "Bias of a sensor at rest after power-on. SI unless a key names another unit; times are "
+      "since power-on.",
+      {describe(plain), describe(all), describe(volts)});
 }
 
 TEST(Schemas, Noise) {
