@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <iterator>
 
 #include "proofmass/report/drift_figures.hpp"
 #include "proofmass/report/drift_report.hpp"
@@ -400,13 +399,11 @@ Fields drift_fields(const ChannelDrift& channel) {
                 reason_field(channel.analysis ? reason_code(fit.why) : "not_analysed")};
   for (Field& one : fit_fields(analysis, channel.unit, why))
     fields.push_back(channel.analysis ? std::move(one) : field::without_value(std::move(one), why));
-  Fields lists{
-      steps(fit, unit),
-      field::records("whiteness", analysis.whiteness, whiteness_fields,
-                     {.meaning = "of the samples less the curve, by scale: what a least-squares "
-                                 "fit assumes"}),
-      candidates(fit), profile(fit), knocks(analysis, unit)};
-  std::ranges::move(lists, std::back_inserter(fields));
+  append(fields, {steps(fit, unit),
+                  field::records("whiteness", analysis.whiteness, whiteness_fields,
+                                 {.meaning = "of the samples less the curve, by scale: what a "
+                                             "least-squares fit assumes"}),
+                  candidates(fit), profile(fit), knocks(analysis, unit)});
   if (channel.temperature) fields.push_back(temperature(*channel.temperature, channel.unit));
   if (channel.outlook) fields.push_back(forecast(*channel.outlook, channel.unit));
   return fields;

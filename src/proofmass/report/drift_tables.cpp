@@ -107,7 +107,7 @@ Table position_table(const characterise::DriftForecast& forecast) {
   const bool gravity = holds_gravity(forecast.bias);
   Table table{fmt::format("Position error ½ b t² from the bias at {}, with its 95 % band{}",
                           duration_words(forecast.t_s),
-                          gravity ? "; the level contains gravity, so it is not left in" : ""),
+                          gravity ? "; none uncorrected, as the level contains gravity" : ""),
               {"After", "Zeroed at the end of the recording", "Uncorrected"},
               {}};
   table.page_only = true;

@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <iterator>
 #include <numbers>
 
 #include "proofmass/report/noise_figures.hpp"
@@ -406,11 +405,10 @@ Fields channel_fields(const ChannelNoise& channel) {
                 rest_field(channel.rest), stationarity(channel),
                 field::object_or_null("deviation", deviation_fields(channel),
                                       {.why_null = why_not_analysed(channel)})};
-  const auto append = [&](Fields more) { std::ranges::move(more, std::back_inserter(fields)); };
-  append(model_fields(channel));
-  append(spectrum_fields(channel));
-  append({lines(channel), events(channel)});
-  append(record_fields(channel));
+  append(fields, model_fields(channel));
+  append(fields, spectrum_fields(channel));
+  append(fields, {lines(channel), events(channel)});
+  append(fields, record_fields(channel));
   if (channel.temperature) fields.push_back(temperature(channel));
   return fields;
 }
