@@ -126,6 +126,7 @@ void finish(const report::Document& document,
   show_notes(document.page.notes, "", flags);
   if (series && !flags.output.empty()) write_series(series(), flags);
   publish(document, flags);
+  if (!document.failure.empty()) throw Failure(bad_input, document.failure);
   hold_to_strict(flags, document.bad || std::ranges::any_of(document.page.notes, is_bad));
 }
 

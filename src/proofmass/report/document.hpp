@@ -15,6 +15,7 @@ struct Document {
   Fields fields;  ///< of the JSON document, after its head
   std::vector<std::string> warnings = {};  ///< of the JSON document, beside notes and nulls
   bool bad = false;                        ///< --strict fails even if no note says so
+  std::string failure = {};                ///< why there is no result at all: with it the run fails
 };
 
 /// The labelled entries among `fields`, as key figures in the same order.

@@ -193,7 +193,7 @@ Field number(std::string key, const std::optional<double>& value, About about) {
 Field integer(std::string key, const std::optional<int>& value, About about) {
   const bool nullable = !about.why_null.empty();
   return {std::move(key),
-          {.kind = Kind::number, .nullable = nullable},
+          {.kind = Kind::integer, .nullable = nullable},
           std::move(about),
           or_null(value)};
 }
@@ -258,6 +258,15 @@ Field map(std::string key, Fields entries, About about) {
 Field list(std::string key, Fields items, About about) {
   Field field{std::move(key), {Kind::list}, std::move(about)};
   field.fields = std::move(items);
+  return field;
+}
+
+Field without_value(Field field, std::string_view why) {
+  field.shape.nullable = true;
+  field.about.why_null = why;
+  field.scalar = {};
+  field.figure.reset();
+  field.fields.reset();
   return field;
 }
 

@@ -37,7 +37,7 @@ struct About {
 
 /// What may stand under a key.
 struct Shape {
-  enum class Kind { text, choice, flag, count, number, quantity, list, object, map };
+  enum class Kind { text, choice, flag, count, integer, number, quantity, list, object, map };
 
   Kind kind = Kind::text;
   std::string unit = {};                  ///< of a quantity
@@ -71,9 +71,10 @@ namespace field {
 [[nodiscard]] Field flag(std::string key, bool value, About about = {});
 [[nodiscard]] Field flag(std::string key, const std::optional<bool>& value, About about = {});
 [[nodiscard]] Field count(std::string key, std::size_t value, About about = {});
+/// A whole number that may be negative.
+[[nodiscard]] Field integer(std::string key, const std::optional<int>& value, About about = {});
 [[nodiscard]] Field number(std::string key, double value, About about = {});
 [[nodiscard]] Field number(std::string key, const std::optional<double>& value, About about = {});
-[[nodiscard]] Field integer(std::string key, const std::optional<int>& value, About about = {});
 /// A number that cannot be negative: a length, a standard deviation, a probability.
 [[nodiscard]] Field magnitude(std::string key,
                               const std::optional<double>& value,
@@ -100,6 +101,8 @@ namespace field {
 [[nodiscard]] Field map(std::string key, Fields entries, About about = {});
 /// The items' keys are left empty.
 [[nodiscard]] Field list(std::string key, Fields items, About about = {});
+/// The same entry without its value.
+[[nodiscard]] Field without_value(Field field, std::string_view why);
 
 /// A list of strings.
 [[nodiscard]] Field texts(std::string key, const std::vector<std::string>& items, About about = {});

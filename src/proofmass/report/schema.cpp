@@ -14,11 +14,14 @@ using Samples = std::vector<const Field*>;
 
 Object schema_of(const Samples& samples);
 
+bool is_nullable(const Samples& samples) {
+  return std::ranges::any_of(
+      samples, [](const Field* field) { return field->shape.nullable || is_absent(*field); });
+}
+
 // "number", or ["number", "null"].
 Value type_of(const char* name, const Samples& samples) {
-  const bool nullable = std::ranges::any_of(
-      samples, [](const Field* field) { return field->shape.nullable || is_absent(*field); });
-  if (!nullable) return name;
+  if (!is_nullable(samples)) return name;
   return Array{name, "null"};
 }
 
@@ -118,6 +121,7 @@ void add_shape(Object& schema, const Samples& samples) {
       break;
     case Kind::choice: {
       Array choices = Array(shape.choices.begin(), shape.choices.end());
+      if (is_nullable(samples)) choices.emplace_back();
       schema.push_back({"enum", std::move(choices)});
       break;
     }
@@ -127,6 +131,9 @@ void add_shape(Object& schema, const Samples& samples) {
     case Kind::count:
       schema.push_back({"type", type_of("integer", samples)});
       schema.push_back({"minimum", 0});
+      break;
+    case Kind::integer:
+      schema.push_back({"type", type_of("integer", samples)});
       break;
     case Kind::number:
       schema.push_back({"type", type_of("number", samples)});
