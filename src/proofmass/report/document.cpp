@@ -1,6 +1,7 @@
 #include "proofmass/report/document.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 
 #include "proofmass/report/wording.hpp"
@@ -33,6 +34,14 @@ void print(std::string& out, const Section& section) {
     out += fmt::format("  {}{}\n", part.heading, part.gist.empty() ? "" : " (" + part.gist + ")");
     if (!part.digest.empty()) out += "      " + part.digest + '\n';
   }
+}
+
+void print(std::string& out, const std::vector<Note>& notes) {
+  constexpr std::array words{"note", "warning", "bad data"};
+  if (!notes.empty()) out += "\nNotes:\n";
+  for (const Note& note : notes)
+    out +=
+        fmt::format("  - {}: {}\n", words.at(static_cast<std::size_t>(note.severity)), note.text);
 }
 
 // The labelled entries, those in lists among them.
@@ -95,6 +104,7 @@ std::string to_text(const Document& document) {
     if (!figure.page_only) rows.push_back({figure.label, figure.value});
   if (!rows.empty()) out += '\n' + aligned(rows);
   for (const Section& section : document.page.sections) print(out, section);
+  if (document.notes_in_text) print(out, document.page.notes);
   return out;
 }
 

@@ -27,7 +27,11 @@ Value value_of(const Field& field) {
   if (!field.fields) return field.scalar;
   if (field.shape.kind != Kind::list) return json_of(*field.fields);
   Array items;
-  for (const Field& item : *field.fields) items.push_back(value_of(item));
+  if (field.items)
+    for (std::size_t k = 0; k < field.items->count; ++k)
+      items.emplace_back(json_of(field.items->at(k)));
+  else
+    for (const Field& item : *field.fields) items.push_back(value_of(item));
   return items;
 }
 

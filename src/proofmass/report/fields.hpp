@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -55,6 +56,12 @@ struct Field {
   Value scalar = {};                     ///< null where there is no value, and in lists and objects
   std::optional<Uncertain> figure = {};  ///< of a quantity; its std NaN where there is none
   std::optional<Fields> fields = {};     ///< of a list or an object
+  /// Of a long list, whose first item alone is in `fields`.
+  struct Items {
+    std::size_t count = 0;
+    std::function<Fields(std::size_t)> at = {};  ///< the entries of an item
+  };
+  std::optional<Items> items = {};
 };
 
 // One function for each kind. A number that is not finite is absent.
@@ -124,6 +131,21 @@ template <class Range, class FieldsOf>
   Fields items;
   for (const auto& element : range) items.push_back(object({}, fields_of(element)));
   return list(std::move(key), std::move(items), std::move(about));
+}
+
+/// The same for as many as a million elements: their entries are made one at a time, while the
+/// document is written; `range` must live until then. No entry may be absent.
+template <class Range, class FieldsOf>
+[[nodiscard]] Field long_records(std::string key,
+                                 const Range& range,
+                                 FieldsOf fields_of,
+                                 About about = {}) {
+  Fields first;
+  if (!range.empty()) first.push_back(object({}, fields_of(range.front())));
+  Field field = list(std::move(key), std::move(first), std::move(about));
+  field.items = Field::Items{range.size(),
+                             [&range, fields_of](std::size_t k) { return fields_of(range[k]); }};
+  return field;
 }
 
 /// The texts of all notes, under "notes".

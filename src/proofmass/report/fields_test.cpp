@@ -90,6 +90,19 @@ TEST(Fields, WithoutValueKeepTheirKeyAndTheirReason) {
   EXPECT_TRUE(is_absent(field::without_value(field::list("rests", {}), "not analysed")));
 }
 
+TEST(Fields, ALongListIsWrittenFromItsElements) {
+  std::vector<int> elements{1, 2};
+  const Field list =
+      field::long_records("a", elements, [](int k) { return Fields{field::integer("k", k)}; });
+  elements[1] = 7;
+  EXPECT_EQ(json_text(json_of({list})),
+            "{\n  \"a\": [\n    {\n      \"k\": 1\n    },\n    {\n      \"k\": 7\n    }\n  ]\n}");
+  const std::vector<int> none;
+  EXPECT_EQ(json_text(json_of({field::long_records(
+                "a", none, [](int k) { return Fields{field::integer("k", k)}; })})),
+            "{\n  \"a\": []\n}");
+}
+
 TEST(Fields, WholeNumbersMayBeNegative) {
   EXPECT_EQ(json_text(json_of({field::integer("alpha", -2)})), "{\n  \"alpha\": -2\n}");
   EXPECT_TRUE(is_absent(field::integer("alpha", std::nullopt)));

@@ -8,8 +8,10 @@
 #include "proofmass/report/calibrate_fake.hpp"
 #include "proofmass/report/convert_report.hpp"
 #include "proofmass/report/drift_fake.hpp"
+#include "proofmass/report/inspect_report.hpp"
 #include "proofmass/report/model_equation_report.hpp"
 #include "proofmass/report/noise_fake.hpp"
+#include "proofmass/report/recover_report.hpp"
 #include "proofmass/report/rotation_report.hpp"
 #include "proofmass/report/schema_test_support.hpp"
 #include "proofmass/report/tilt_fake.hpp"
@@ -131,6 +133,27 @@ TEST(Schemas, Convert) {
   const std::vector<Note> notes;
   const ConvertReport report{"a.csv", "b.npy", recording, 0, notes};
   expect_schema("Recording written in another format.", {describe(report)});
+}
+
+TEST(Schemas, Inspect) {
+  Recording recording;
+  recording.labels = {{"up", 0, 1}};
+  signal::RecordingAudit audit;
+  audit.channels.resize(1);
+  audit.timing.gaps.resize(1);
+  audit.timing.lost = 0;
+  signal::RecordingAudit uncounted = audit;
+  uncounted.timing.lost.reset();
+  const InspectedFile file{"a.csv", recording, audit}, other{"b.csv", recording, uncounted};
+  expect_schema(
+      "Contents and data quality of recordings. The entries at the top are those of the first "
+      "file.",
+      {describe({file}), describe({other, file})});
+}
+
+TEST(Schemas, Recover) {
+  expect_schema("What was recovered of a recording that was not closed.",
+                {describe(RecoverReport{})});
 }
 
 // With every entry that a calibration may have.
