@@ -223,7 +223,7 @@ std::string format_words(const RecordingAudit& audit) {
 
 Table channels_table(const RecordingAudit& audit) {
   Table table{
-      "Channels, each in its own unit; values not finite or absurd are left out of the statistics",
+      "Channels, each in its own unit; statistics are of the plausible values",
       {"Channel", "Unit", "Mean", "Std", "Min", "Max", "LSB", "Not finite", "Absurd", "Clipped"},
       {}};
   for (const ChannelAudit& channel : audit.channels) {
