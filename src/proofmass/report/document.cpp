@@ -54,6 +54,11 @@ void collect_labelled(const Fields& fields, std::vector<const Field*>& out) {
 
 }  // namespace
 
+std::vector<Note> all_notes(std::vector<Note> reading, const std::vector<Note>& computing) {
+  reading.insert(reading.end(), computing.begin(), computing.end());
+  return reading;
+}
+
 Table fields_table(std::string caption, const Fields& fields) {
   Table table{std::move(caption), {}, {}};
   std::vector<const Field*> labelled;

@@ -19,6 +19,10 @@ struct Document {
   std::string failure = {};    ///< why there is no result at all: with it the run fails
 };
 
+/// Notes of reading, then those of computing.
+[[nodiscard]] std::vector<Note> all_notes(std::vector<Note> reading,
+                                          const std::vector<Note>& computing);
+
 /// The labelled entries among `fields`, as key figures in the same order.
 [[nodiscard]] std::vector<KeyFigure> key_figures(const Fields& fields);
 

@@ -41,7 +41,7 @@ Field interval(const char* key,
                std::string meaning = {}) {
   const About open{.why_null = "the recording does not bound it"};
   const Interval95 ends = figure.value_or(Interval95{});
-  Field both = field::list(
+  Field both = field::fixed_list(
       key, {field::number({}, ends.lower_95, open), field::number({}, ends.upper_95, open)},
       {.meaning = std::move(meaning)});
   both.shape.nullable = !why.empty();
@@ -71,17 +71,17 @@ Field reason_field(std::string_view code) {
 Fields whiteness_fields(const WhitenessTest& test) {
   return {
       field::magnitude("scale_s", test.scale_s, {.meaning = "length of the blocks"}),
-      field::magnitude("ljung_box_p", test.ljung_box_p, {.meaning = "correlation at short lags"}),
-      field::magnitude("inside_bounds", test.inside_bounds,
-                       {.meaning = "share of the lags within the bound; 0.95 if white"}),
+      field::probability("ljung_box_p", test.ljung_box_p, {.meaning = "correlation at short lags"}),
+      field::probability("inside_bounds", test.inside_bounds,
+                         {.meaning = "share of the lags within the bound; 0.95 if white"}),
       field::count("values", test.values, {.meaning = "block means"}),
       field::count("lags", test.lags),
       field::magnitude("bound", test.bound, {.meaning = "1.96/sqrt(values)"}),
       field::number("ljung_box", test.ljung_box, {.meaning = "Q"}),
-      field::magnitude("periodogram_p", test.periodogram_p,
-                       {.meaning = "cumulative periodogram: power concentrated in a band"}),
+      field::probability("periodogram_p", test.periodogram_p,
+                         {.meaning = "cumulative periodogram: power concentrated in a band"}),
       field::number("periodogram_excess", test.periodogram_excess),
-      field::magnitude("runs_p", test.runs_p, {.meaning = "runs of sign"}),
+      field::probability("runs_p", test.runs_p, {.meaning = "runs of sign"}),
       field::number("runs_z", test.runs_z),
       field::flag("white", test.white,
                   {.meaning = "none of the three is rejected at a joint level of 5 %"})};
@@ -134,10 +134,10 @@ Field tests(const DriftFit& fit) {
       "tests",
       {field::number("constant_deviance", fit.constant_deviance,
                      {.meaning = "gain of an exponential over the best fit without drift"}),
-       field::magnitude("constant_p", fit.constant_p),
+       field::probability("constant_p", fit.constant_p),
        field::number("line_deviance", fit.line_deviance,
                      {.meaning = "gain of an exponential over a straight line"}),
-       field::magnitude("line_p", fit.line_p)});
+       field::probability("line_p", fit.line_p)});
 }
 
 // What only some shapes have, and only some fits can bound.
@@ -428,8 +428,8 @@ Field scatter(const char* key,
        estimate("between_std", found.between_std, unit,
                 {.meaning = "not explained by noise within the runs"}),
        interval("interval_95", found.between_std, {}, "of between_std"),
-       field::magnitude("p", found.p,
-                        {.meaning = "probability of so much scatter if the runs did not differ"})},
+       field::probability(
+           "p", found.p, {.meaning = "probability of so much scatter if the runs did not differ"})},
       {.meaning = std::move(meaning)});
 }
 
@@ -479,7 +479,7 @@ Fields set_fields(const RunSet& set, const std::string& unit) {
           field::measured("trend_per_run", set.trend_per_run, unit,
                           {.meaning = "of the means against the number of the run",
                            .why_null = "too few runs for a trend"}),
-          field::magnitude("trend_p", set.trend_p),
+          field::probability("trend_p", set.trend_p),
           level_curve(set, unit)};
 }
 
@@ -715,22 +715,12 @@ Section method_section() {
           "of sign, at a joint level of 5 %."}};
 }
 
-std::string title_of(const std::vector<std::string>& inputs) {
-  constexpr std::size_t most_named = 4;
-  std::string title;
-  for (std::size_t k = 0; k < inputs.size(); ++k) {
-    if (k == most_named) return title + fmt::format(" and {} more", inputs.size() - k);
-    title += (title.empty() ? "" : ", ") + file_name(inputs[k]);
-  }
-  return title;
-}
-
 }  // namespace
 
 Document describe(const DriftReport& report) {
   const std::vector<Note> notes = all_notes(report);
   Document document{.page = {.verb = "drift",
-                             .title = title_of(report.inputs),
+                             .title = file_names(report.inputs),
                              .inputs = report.inputs,
                              .conclusion = conclusion(report),
                              .key_figures = figures_of(report),

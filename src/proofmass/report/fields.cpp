@@ -209,6 +209,12 @@ Field magnitude(std::string key, const std::optional<double>& value, About about
                      std::move(about));
 }
 
+Field probability(std::string key, const std::optional<double>& value, About about) {
+  Field field = magnitude(std::move(key), value, std::move(about));
+  field.shape.maximum = 1.0;
+  return field;
+}
+
 Field measured(std::string key,
                const std::optional<Uncertain>& value,
                std::string_view unit,
@@ -236,7 +242,8 @@ Field measured(std::string key,
 }
 
 Field interval(std::string key, const std::optional<std::array<double, 2>>& ends, About about) {
-  Field field{std::move(key), {.kind = Kind::list, .nullable = true}, std::move(about)};
+  Field field{
+      std::move(key), {.kind = Kind::list, .nullable = true, .length = 2}, std::move(about)};
   if (ends) field.fields = Fields{number({}, (*ends)[0]), number({}, (*ends)[1])};
   return field;
 }
@@ -262,6 +269,12 @@ Field map(std::string key, Fields entries, About about) {
 Field list(std::string key, Fields items, About about) {
   Field field{std::move(key), {Kind::list}, std::move(about)};
   field.fields = std::move(items);
+  return field;
+}
+
+Field fixed_list(std::string key, Fields items, About about) {
+  Field field = list(std::move(key), std::move(items), std::move(about));
+  field.shape.length = field.fields->size();
   return field;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -44,9 +45,13 @@ struct Shape {
   std::string unit = {};                  ///< of a quantity
   std::vector<std::string> choices = {};  ///< of a choice
   bool nullable = false;
-  bool not_negative = false;  ///< of a number
-  bool std_nullable = false;  ///< of a quantity
-  bool of_texts = false;      ///< of a list
+  bool not_negative = false;               ///< of a number
+  bool std_nullable = false;               ///< of a quantity
+  bool of_texts = false;                   ///< of a list
+  std::optional<std::size_t> length = {};  ///< of a list that always has as many items
+  std::optional<double> maximum = {};      ///< of a number or count
+  std::string pattern = {};  ///< regular expression: of a text, or of the keys of a map
+  bool decides = false;      ///< of a choice: which entries the object has depends on it
 };
 
 struct Field {
@@ -86,6 +91,10 @@ namespace field {
 [[nodiscard]] Field magnitude(std::string key,
                               const std::optional<double>& value,
                               About about = {});
+/// A probability, or another number from 0 to 1.
+[[nodiscard]] Field probability(std::string key,
+                                const std::optional<double>& value,
+                                About about = {});
 /// {"value", "std", "unit"}.
 [[nodiscard]] Field measured(std::string key,
                              const std::optional<Uncertain>& value,
@@ -108,18 +117,28 @@ namespace field {
 [[nodiscard]] Field map(std::string key, Fields entries, About about = {});
 /// The items' keys are left empty.
 [[nodiscard]] Field list(std::string key, Fields items, About about = {});
+/// A list that always has as many items.
+[[nodiscard]] Field fixed_list(std::string key, Fields items, About about = {});
 /// The same entry without its value.
 [[nodiscard]] Field without_value(Field field, std::string_view why);
 
 /// A list of strings.
 [[nodiscard]] Field texts(std::string key, const std::vector<std::string>& items, About about = {});
 
+/// Whether the type says how many values there are: std::array, fixed vectors of Eigen.
+template <class Range>
+inline constexpr bool has_fixed_size = requires { std::tuple_size<Range>::value; } ||
+                                       requires { requires(Range::SizeAtCompileTime > 0); };
+
 /// A list of numbers.
 template <class Range>
 [[nodiscard]] Field numbers(std::string key, const Range& range, About about = {}) {
   Fields items;
   for (const double value : range) items.push_back(number({}, value));
-  return list(std::move(key), std::move(items), std::move(about));
+  if constexpr (has_fixed_size<Range>)
+    return fixed_list(std::move(key), std::move(items), std::move(about));
+  else
+    return list(std::move(key), std::move(items), std::move(about));
 }
 
 /// A list with one object for each element: `fields_of(element)`.

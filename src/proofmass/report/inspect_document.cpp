@@ -302,17 +302,16 @@ Document describe(const std::vector<InspectedFile>& files) {
                     .fields = inspect_fields(files),
                     .notes_in_text = true};
   Page& page = document.page;
-  std::vector<std::string> titles, verdicts;
+  std::vector<std::string> verdicts;
   for (const InspectedFile& file : files) {
     const std::string name = file_name(file.name);
-    titles.push_back(name);
     page.inputs.push_back(file.name);
     verdicts.push_back(name + ": " + verdict(file.audit));
     for (const Note& note : file.audit.notes)
       page.notes.push_back({note.severity, (files.size() > 1 ? name + ": " : "") + note.text});
     page.sections.push_back(file_section(file));
   }
-  page.title = fmt::to_string(fmt::join(titles, ", "));
+  page.title = file_names(page.inputs);
   page.conclusion = fmt::to_string(fmt::join(verdicts, "\n"));
   page.sections.push_back(method_section());
   return document;

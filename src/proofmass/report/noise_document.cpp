@@ -70,7 +70,7 @@ std::optional<Fields> deviation_fields(const ChannelNoise& channel) {
                     {"adev", "oadev", "mdev", "tdev", "hdev", "ohdev", "totdev", "mtotdev",
                      "ttotdev", "htotdev", "theo1", "pdev"}),
       field::text("unit", noise_unit(channel.unit, curve_scale(curve.statistic))),
-      field::magnitude("confidence", curve.confidence, {.meaning = "of lower and upper"}),
+      field::probability("confidence", curve.confidence, {.meaning = "of lower and upper"}),
       field::text("bias_correction", curve.bias_correction,
                   {.meaning = "in words; empty: none was needed"}),
       std::move(lowest),
@@ -152,7 +152,7 @@ Field misfit(const NoiseModelFit& model) {
       {field::magnitude("share_of_density", model.misfit,
                         {.meaning = "rms difference of spectrum and model beyond the scatter of "
                                     "the spectrum"}),
-       field::magnitude("p", model.misfit_p, {.meaning = "probability of as much by chance"}),
+       field::probability("p", model.misfit_p, {.meaning = "probability of as much by chance"}),
        field::count("groups", model.ordinates, {.meaning = "of spectral values in the fit"})});
 }
 
@@ -350,7 +350,7 @@ Field stationarity(const ChannelNoise& channel) {
     fields = Fields{
         field::choice("verdict", test.stationary ? "stationary" : "not_stationary",
                       {"stationary", "not_stationary"}),
-        field::magnitude("p", test.p, {.meaning = "of all tests together"}),
+        field::probability("p", test.p, {.meaning = "of all tests together"}),
         field::magnitude("averaging_s",
                          test.line_hz ? std::nullopt : std::optional(test.averaging_s),
                          {.meaning = "averaging time at which the level varies most",
@@ -633,19 +633,13 @@ Section method_section(const NoiseReport& report) {
   return section;
 }
 
-std::string title_of(const std::vector<std::string>& inputs) {
-  std::string title;
-  for (const std::string& input : inputs) title += (title.empty() ? "" : ", ") + file_name(input);
-  return title;
-}
-
 }  // namespace
 
 Document describe(const NoiseReport& report) {
   const std::vector<Note> notes = all_notes(report);
   Document document{
       .page = {.verb = "noise",
-               .title = title_of(report.inputs),
+               .title = file_names(report.inputs),
                .inputs = report.inputs,
                .conclusion = conclusion(report),
                .key_figures = figures_of(report),

@@ -40,7 +40,7 @@ Field rest_field(const std::optional<RestShare>& rest) {
       longest = Fields{field::number("start_s", rest->longest_start_s),
                        field::number("end_s", rest->longest_end_s)};
     fields =
-        Fields{field::magnitude("share", rest->share, {.meaning = "at rest, 0 to 1"}),
+        Fields{field::probability("share", rest->share, {.meaning = "at rest, 0 to 1"}),
                field::flag("at_rest", rest->is_at_rest()),
                field::object_or_null("longest", std::move(longest),
                                      {.why_null = "the recording is not at rest at any time"})};

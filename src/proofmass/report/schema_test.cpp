@@ -1,5 +1,7 @@
 #include "proofmass/report/schema.hpp"
 
+#include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -57,6 +59,45 @@ TEST(JsonSchema, FixesAUnitOnlyIfAllSamplesHaveIt) {
   };
   EXPECT_EQ(schema_of("m", "m")["properties"]["a"]["properties"]["unit"]["const"], "m");
   EXPECT_FALSE(schema_of("m", "V")["properties"]["a"].contains("properties"));
+}
+
+// Schema of the only entry of a document.
+json schema_of(const Field& field) {
+  return json::parse(json_schema("d", {document_of({field})}))["properties"][field.key];
+}
+
+TEST(JsonSchema, BoundsProbabilitiesCountsAndListsOfFixedLength) {
+  EXPECT_EQ(schema_of(field::probability("p", 0.5)),
+            (json{{"type", "number"}, {"minimum", 0}, {"maximum", 1.0}}));
+  const json three = schema_of(field::numbers("a", std::array{1.0, 2.0, 3.0}));
+  EXPECT_EQ(three["minItems"], 3);
+  EXPECT_EQ(three["maxItems"], 3);
+  EXPECT_EQ(schema_of(field::numbers("a", Eigen::Vector2d::Zero().eval()))["maxItems"], 2);
+  EXPECT_FALSE(schema_of(field::numbers("a", std::vector{1.0})).contains("maxItems"));
+  EXPECT_EQ(schema_of(field::interval("a", std::array{0.0, 1.0}))["minItems"], 2);
+}
+
+TEST(JsonSchema, HasThePatternsOfTextsAndOfTheKeysOfMaps) {
+  Field text = field::text("a", "x"), map = field::map("m", {field::count("k", 1)});
+  text.shape.pattern = map.shape.pattern = "^[a-z]$";
+  EXPECT_EQ(schema_of(text)["pattern"], "^[a-z]$");
+  EXPECT_EQ(schema_of(map)["propertyNames"]["pattern"], "^[a-z]$");
+}
+
+// A document whose other entry depends on its mode.
+Document in_mode(const char* word, const char* key) {
+  Field mode = field::choice("mode", word, {"still", "moving"});
+  mode.shape.decides = true;
+  return document_of({mode, field::count("n", 1), field::count(key, 2)});
+}
+
+TEST(JsonSchema, RequiresWithEachWordOfADecidingChoiceWhatItsSamplesHave) {
+  const json schema =
+      json::parse(json_schema("d", {in_mode("still", "rests"), in_mode("moving", "speed")}));
+  ASSERT_EQ(schema["allOf"].size(), 2U);
+  EXPECT_EQ(schema["allOf"][0]["if"]["properties"]["mode"]["const"], "still");
+  EXPECT_EQ(schema["allOf"][0]["then"]["required"], (json{"rests"}));
+  EXPECT_EQ(schema["allOf"][1]["then"]["required"], (json{"speed"}));
 }
 
 TEST(JsonSchema, AllowsNullBesideTheWordsOfAnAbsentChoice) {
