@@ -11,7 +11,6 @@
 #include "proofmass/characterise/temperature_model.hpp"
 #include "proofmass/core/in_parallel.hpp"
 #include "proofmass/report/drift_report.hpp"
-#include "proofmass/report/json.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/drift_update.hpp"
 #include "rest_channels.hpp"
@@ -250,17 +249,7 @@ void run_drift(const DriftCommand& command) {
     without_interruption([&] { update_drift(command.update_sensor, channels, report.notes); });
   }
   for (DriftChannel& channel : channels) report.channels.push_back(std::move(channel.shown));
-  const std::vector<Note> notes = report::drift_notes(report);
-  show_notes(notes, "", command.output);
-  if (!command.output.output.empty()) {
-    write_series(report::drift_series(report), command.output);
-  }
-  publish({.text = [&] { return report::drift_text(report); },
-           .json = [&] { return report::drift_json(report); },
-           .html = [&] { return report::drift_html(report); }},
-          command.output);
-  need_a_channel(report.channels);
-  hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
+  finish(report::describe(report), [&] { return report::drift_series(report); }, command.output);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <exception>
 #include <optional>
 #include <string>
@@ -50,16 +49,6 @@ template <class T>
     throw Failure(status_of(error, stage), error.message, error.code);
   }
   return std::move(result).value();
-}
-
-/// Throws Failure (bad_input) where the analysis of every channel was refused, with the first
-/// reason.
-template <class Channels>
-void need_a_channel(const Channels& channels) {
-  const auto is_analysed = [](const auto& channel) { return channel.refused.empty(); };
-  if (channels.empty() || std::ranges::any_of(channels, is_analysed)) return;
-  const auto& first = channels.front();
-  throw Failure(bad_input, "no channel can be analysed: " + first.name + ": " + first.refused);
 }
 
 }  // namespace proofmass::app

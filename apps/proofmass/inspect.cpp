@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <deque>
 #include <optional>
 
@@ -135,18 +134,7 @@ void run_inspect(const InspectCommand& command) {
   std::vector<report::InspectedFile> files;
   for (std::size_t k = 0; k < all.size(); ++k)
     files.push_back({command.files[k], all[k].recording, all[k].audit, all[k].overview_span});
-  publish({.text =
-               [&] {
-                 std::string text;
-                 for (const auto& file : files)
-                   text += (text.empty() ? "" : "\n") + inspect_text(file);
-                 return text;
-               },
-           .json = [&] { return report::inspect_json(files); },
-           .html = [&] { return report::inspect_html(files); }},
-          command.output);
-  hold_to_strict(command.output, std::any_of(all.begin(), all.end(),
-                                             [](const auto& one) { return one.audit.is_bad(); }));
+  finish(report::describe(files), {}, command.output);
 }
 
 }  // namespace

@@ -14,7 +14,6 @@
 #include "output.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/core/in_parallel.hpp"
-#include "proofmass/report/json.hpp"
 #include "proofmass/report/noise_report.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/noise_update.hpp"
@@ -270,17 +269,7 @@ void run_noise(const NoiseCommand& command) {
     without_interruption([&] { update_noise(command.update_sensor, channels); });
   }
   for (NoiseChannel& channel : channels) report.channels.push_back(std::move(channel.shown));
-  const std::vector<Note> notes = report::noise_notes(report);
-  show_notes(notes, "", command.output);
-  if (!command.output.output.empty()) {
-    write_series(report::noise_series(report), command.output);
-  }
-  publish({.text = [&] { return report::noise_text(report); },
-           .json = [&] { return report::noise_json(report); },
-           .html = [&] { return report::noise_html(report); }},
-          command.output);
-  need_a_channel(report.channels);
-  hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
+  finish(report::describe(report), [&] { return report::noise_series(report); }, command.output);
 }
 
 Verb noise_verb() {

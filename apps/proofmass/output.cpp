@@ -123,9 +123,10 @@ void hold_to_strict(const OutputFlags& flags, bool bad) {
 void finish(const report::Document& document,
             const std::function<Recording()>& series,
             const OutputFlags& flags) {
-  show_notes(document.page.notes, "", flags);
+  if (!document.notes_in_text) show_notes(document.page.notes, "", flags);
   if (series && !flags.output.empty()) write_series(series(), flags);
   publish(document, flags);
+  if (!document.failure.empty()) throw Failure(bad_input, document.failure);
   hold_to_strict(flags, document.bad || std::ranges::any_of(document.page.notes, is_bad));
 }
 

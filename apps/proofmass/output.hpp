@@ -39,7 +39,7 @@ void write_series(Recording recording,
 void hold_to_strict(const OutputFlags& flags, bool bad);
 
 /// How a verb ends: notes, the time series (where it has one) if --output asks for it, the
-/// document, --strict. Throws Failure.
+/// document, --strict. Throws Failure, after a document without a result as bad_input.
 void finish(const report::Document& document,
             const std::function<Recording()>& series,
             const OutputFlags& flags);

@@ -6,7 +6,7 @@
 #include "exit_status.hpp"
 #include "flags.hpp"
 #include "output.hpp"
-#include "proofmass/report/record_report.hpp"
+#include "proofmass/report/recover_report.hpp"
 #include "verb.hpp"
 
 namespace proofmass::app {
@@ -48,11 +48,7 @@ void run_recover(const RecoverCommand& command) {
     report.recovery =
         need(acquire::recover(command.file, to, progress_bar(command.output)), Stage::reading);
   });
-  publish({.text = [&] { return report::recover_text(report); },
-           .json = [&] { return report::recover_json(report); },
-           .html = {}},
-          command.output);
-  hold_to_strict(command.output, !report.recovery.was_whole);
+  finish(report::describe(report), {}, command.output);
 }
 
 }  // namespace

@@ -180,10 +180,10 @@ class Drift(CommandTest):
     def test_of_many_files_the_summary_comes_first_and_each_run_on_request(self):
         names = self.runs_that_warm_up(14)
         text = self.succeed("drift", *names)
-        self.assertTrue(text.startswith("acc_x: 14 runs"), text)
-        self.assertLess(len(text.splitlines()), 15)
+        self.assertTrue(text.startswith("acc_x over 14 runs"), text)
+        self.assertLess(len(text.splitlines()), 20)
         self.assertIn("-v prints each", text)
-        self.assertIn("run14.csv: acc_x", self.succeed("drift", *names, "-v"))
+        self.assertIn("run14.csv: acc_x:\n", self.succeed("drift", *names, "-v"))
 
     def test_a_table_of_means_is_a_record(self):
         means = total(warm_up(30, 5e-3, 1e-3, 4.0), white(30, 1e-4, 8))
@@ -223,9 +223,9 @@ class Drift(CommandTest):
         up = total([1.0] * HOURS_2, warm_up(HOURS_2, 5e-3, 0.0, 900.0), white(HOURS_2, 1e-3, 1))
         self.write("up.csv", table({"acc_z (g)": up}))
         text = self.succeed("drift", "up.csv", "--forecast", "10000")
-        self.assertIn("Level at switching on a2", text)
-        self.assertNotIn("ias at switching on", text)
-        self.assertIn("after switching on: level", text)
+        self.assertIn("Level at power-on a2", text)
+        self.assertNotIn("ias at power-on", text)
+        self.assertIn("after power-on: level", text)
         self.assertTrue(self.document("drift", "up.csv")["channels"][0]["bears_gravity"])
 
     def test_power_ups_are_compared_as_a_set(self):
@@ -355,7 +355,7 @@ class Drift(CommandTest):
         text = self.succeed("drift", "warm.csv", "--report", "r.html")
         self.assertIn("Warm-up of", text)
         page = (self.folder / "r.html").read_text()
-        self.assertIn("warm-up of", page)
+        self.assertIn("warm-up of", page.lower())
         self.assertGreaterEqual(page.count("</svg>"), 3)
 
     def test_the_same_recording_gives_the_same_bytes(self):

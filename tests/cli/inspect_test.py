@@ -29,7 +29,7 @@ class Inspect(CommandTest):
         self.assertEqual(document["labels"],
                          [{"channel": "part", "name": "up", "runs": 1, "samples": 300},
                           {"channel": "part", "name": "down", "runs": 1, "samples": 200}])
-        self.assertIn("labels in part, 2 names in 2 runs: up, down", self.succeed("inspect", "a.csv"))
+        self.assertIn("Labels in column part", self.succeed("inspect", "a.csv"))
         self.succeed("convert", "a.csv", "--from", "2", "--to", "6", "--output", "b.csv")
         labels = self.document("inspect", "b.csv")["labels"]
         self.assertEqual([(use["name"], use["samples"]) for use in labels],

@@ -18,15 +18,6 @@ using calibrate::PoseResidual;
 
 constexpr double rounding_g = 1e-9;  // residuals below it are rounding
 
-std::string title_of(const std::vector<std::string>& inputs) {
-  constexpr std::size_t few = 3;
-  std::string text;
-  for (std::size_t k = 0; k < std::min(inputs.size(), few); ++k)
-    text += (k == 0 ? "" : ", ") + file_name(inputs[k]);
-  if (inputs.size() > few) text += fmt::format(" and {} more", inputs.size() - few);
-  return text;
-}
-
 std::string used_words(const MultiPosition& fit) {
   const auto used = std::ranges::count_if(fit.poses, &PoseResidual::used);
   if (static_cast<std::size_t>(used) == fit.poses.size()) return fmt::format("all {}", used);
@@ -191,7 +182,7 @@ std::vector<Note> calibrate_notes(const CalibrateReport& report) {
 
 Document describe(const CalibrateReport& report) {
   Document document{.page = {.verb = "calibrate",
-                             .title = title_of(report.inputs),
+                             .title = file_names(report.inputs),
                              .inputs = report.inputs,
                              .conclusion = calibrate_conclusion(report),
                              .key_figures = figures_of(report),

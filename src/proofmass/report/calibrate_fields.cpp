@@ -107,8 +107,8 @@ Fields in_groups(const CalibrateReport& report, bool described, FieldOf field_of
   for (std::size_t group = 0; group < 3; ++group) {
     Fields items;
     for (std::size_t k = 0; k < 3; ++k) items.push_back(field_of(report, figures[3 * group + k]));
-    out.push_back(field::list(groups[group].key, std::move(items),
-                              {.meaning = described ? groups[group].meaning : ""}));
+    out.push_back(field::fixed_list(groups[group].key, std::move(items),
+                                    {.meaning = described ? groups[group].meaning : ""}));
   }
   return out;
 }
@@ -119,8 +119,8 @@ Field covariance(const MultiPosition& fit) {
     const Eigen::Matrix<double, 9, 1> row = fit.covariance.row(i);
     rows.push_back(field::numbers({}, row));
   }
-  return field::list("covariance", std::move(rows),
-                     {.meaning = "of bias, scale and misalignment, in this order"});
+  return field::fixed_list("covariance", std::move(rows),
+                           {.meaning = "of bias, scale and misalignment, in this order"});
 }
 
 Field gravity(const CalibrateReport& report) {
@@ -154,8 +154,8 @@ Field lack_of_fit(const MultiPosition& fit) {
     fields = Fields{field::magnitude("statistic", fit.lack_of_fit->statistic,
                                      {.meaning = "F: mean square of the residuals over that of the "
                                                  "noise"}),
-                    field::magnitude("p", fit.lack_of_fit->p,
-                                     {.meaning = "probability of this or more by chance"}),
+                    field::probability("p", fit.lack_of_fit->p,
+                                       {.meaning = "probability of this or more by chance"}),
                     field::magnitude("dof", fit.lack_of_fit->dof)};
   return field::object_or_null("lack_of_fit", std::move(fields),
                                {.why_null = fit.model == PoseModel::six_position
@@ -192,15 +192,16 @@ Field cross_axis(const CalibrateReport& report) {
           field::magnitude("std", value ? std::optional(value->std) : std::nullopt,
                            {.why_null = why}),
           field::choice("unit", "1", {"1"}), field::magnitude("upper_95", one->upper_95),
-          field::magnitude("p", one->p,
-                           {.meaning = "probability of this or more if it were zero"})};
+          field::probability("p", one->p,
+                             {.meaning = "probability of this or more if it were zero"})};
     items.push_back(field::object_or_null(
         {}, std::move(fields),
         {.why_null = k == 2 ? "the z axis defines the frame" : "misalignment was not fitted"}));
   }
-  return field::list("cross_axis", std::move(items),
-                     {.meaning = "cross-axis sensitivity of x, y and z in the sensor's own frame, "
-                                 "whose z is its z axis"});
+  return field::fixed_list(
+      "cross_axis", std::move(items),
+      {.meaning = "cross-axis sensitivity of x, y and z in the sensor's own frame, "
+                  "whose z is its z axis"});
 }
 
 // What only some models have.
@@ -223,9 +224,9 @@ void add_directions(const MultiPosition& fit, Fields& out) {
     const Eigen::Vector3d row = fit.axes_in_fixture->row(k);
     rows.push_back(field::numbers({}, row));
   }
-  out.push_back(
-      field::list("axes_in_fixture", std::move(rows),
-                  {.meaning = "row k: direction of the sensor's axis k in the fixture's frame"}));
+  out.push_back(field::fixed_list(
+      "axes_in_fixture", std::move(rows),
+      {.meaning = "row k: direction of the sensor's axis k in the fixture's frame"}));
 }
 
 Field sample_std(const CalibrateReport& report) {
@@ -236,7 +237,7 @@ Field sample_std(const CalibrateReport& report) {
                          {.meaning = "standard deviation of one sample at rest, in the unit of "
                                      "the output",
                           .why_null = "the noise of one sample is not known"}));
-  return field::list("sample_std", std::move(items));
+  return field::fixed_list("sample_std", std::move(items));
 }
 
 Fields file_fields(const PoseFile& file) {
@@ -356,8 +357,8 @@ Fields check_fields(const calibrate::ParameterCheck& check) {
           field::magnitude("drawn_std", check.drawn_std),
           field::number("drawn_shift", check.drawn_shift, {.meaning = "in units of budget_std"}),
           field::interval("drawn_95", std::array{check.drawn_95.lower, check.drawn_95.upper}),
-          field::magnitude("inside", check.inside,
-                           {.meaning = "share of the draws in the budget's 95 % interval"}),
+          field::probability("inside", check.inside,
+                             {.meaning = "share of the draws in the budget's 95 % interval"}),
           field::choice("agreement", name_of(check.agreement), {"right", "too_small", "too_large"},
                         {.meaning = "size of the budget against the draws"})};
 }
@@ -384,9 +385,9 @@ Field validation(const CalibrateReport& report) {
        field::count("positions", found.residuals_mps2.size()),
        field::magnitude("rms", found.rms_mps2, {.meaning = "m/s^2"}),
        field::magnitude("expected_rms", found.expected_rms_mps2, {.meaning = "m/s^2"}),
-       field::magnitude("p", found.p,
-                        {.meaning = "probability of this mean square or more by chance",
-                         .why_null = "the noise of the means of the new positions is not known"}),
+       field::probability("p", found.p,
+                          {.meaning = "probability of this mean square or more by chance",
+                           .why_null = "the noise of the means of the new positions is not known"}),
        field::numbers("residuals", found.residuals_mps2, {.meaning = "|f| - g, m/s^2"})},
       {.meaning = "with --validate"});
 }
@@ -398,7 +399,7 @@ Field three(const char* key,
   for (const auto& figure : figures)
     items.push_back(
         field::measured({}, figure, unit, {.why_null = "the positions do not determine it"}));
-  return field::list(key, std::move(items));
+  return field::fixed_list(key, std::move(items));
 }
 
 Field supply_axis(const std::optional<SupplyAxis>& axis, const std::string& unit) {
@@ -412,10 +413,10 @@ Field supply_axis(const std::optional<SupplyAxis>& axis, const std::string& unit
         field::measured("fraction", axis->fraction, unit == "V" ? "1" : unit + "/V"),
         field::measured("constant", axis->constant, unit),
         field::number("expected_fraction", axis->expected_fraction),
-        field::magnitude(
+        field::probability(
             "scale_p", axis->scale_p,
             {.meaning = "p-value of the exponent against 1", .why_null = no_uncertainty}),
-        field::magnitude(
+        field::probability(
             "zero_p", axis->zero_p,
             {.meaning = "p-value of the constant against 0", .why_null = no_uncertainty}),
         field::flag(
@@ -445,9 +446,9 @@ Field supply(const CalibrateReport& report) {
                                 three("scale", one.fit.scale, scale_unit(unit)),
                                 field::magnitude("residual_rms", one.fit.residual_rms_mps2)};
                       }),
-       field::list("axes", std::move(axes),
-                   {.meaning = "scale = scale_ref (V/V_ref)^exponent, bias = fraction V + "
-                               "constant"})},
+       field::fixed_list("axes", std::move(axes),
+                         {.meaning = "scale = scale_ref (V/V_ref)^exponent, bias = fraction V + "
+                                     "constant"})},
       {.meaning = "with --supplies"});
 }
 

@@ -15,13 +15,6 @@ using calibrate::LackOfFit;
 using calibrate::PoseModel;
 using calibrate::PoseResidual;
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t k = 0; k < words.size(); ++k)
-    text += (k == 0 ? "" : k + 1 == words.size() ? " and " : ", ") + words[k];
-  return text;
-}
-
 std::string p_words(double p) {
   constexpr double least = 1e-4;
   return p < least ? "p < 0.0001" : "p = " + significant(p, 2);

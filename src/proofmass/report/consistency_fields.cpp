@@ -24,10 +24,10 @@ Fields stretch_fields(const estimate::StretchScatter& stretch) {
 
 Fields whiteness_fields(const signal::WhitenessTest& test) {
   return {field::number("scale_s", test.scale_s),
-          field::number("ljung_box_p", test.ljung_box_p),
-          field::number("periodogram_p", test.periodogram_p),
-          field::number("runs_p", test.runs_p),
-          field::number("inside_bounds", test.inside_bounds),
+          field::probability("ljung_box_p", test.ljung_box_p),
+          field::probability("periodogram_p", test.periodogram_p),
+          field::probability("runs_p", test.runs_p),
+          field::probability("inside_bounds", test.inside_bounds),
           field::flag("white", test.white)};
 }
 

@@ -1,6 +1,7 @@
 #include "proofmass/report/document.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 
 #include "proofmass/report/wording.hpp"
@@ -35,6 +36,14 @@ void print(std::string& out, const Section& section) {
   }
 }
 
+void print(std::string& out, const std::vector<Note>& notes) {
+  constexpr std::array words{"note", "warning", "bad data"};
+  if (!notes.empty()) out += "\nNotes:\n";
+  for (const Note& note : notes)
+    out +=
+        fmt::format("  - {}: {}\n", words.at(static_cast<std::size_t>(note.severity)), note.text);
+}
+
 // The labelled entries, those in lists among them.
 void collect_labelled(const Fields& fields, std::vector<const Field*>& out) {
   for (const Field& field : fields) {
@@ -44,6 +53,11 @@ void collect_labelled(const Fields& fields, std::vector<const Field*>& out) {
 }
 
 }  // namespace
+
+std::vector<Note> all_notes(std::vector<Note> reading, const std::vector<Note>& computing) {
+  reading.insert(reading.end(), computing.begin(), computing.end());
+  return reading;
+}
 
 Table fields_table(std::string caption, const Fields& fields) {
   Table table{std::move(caption), {}, {}};
@@ -95,6 +109,7 @@ std::string to_text(const Document& document) {
     if (!figure.page_only) rows.push_back({figure.label, figure.value});
   if (!rows.empty()) out += '\n' + aligned(rows);
   for (const Section& section : document.page.sections) print(out, section);
+  if (document.notes_in_text) print(out, document.page.notes);
   return out;
 }
 

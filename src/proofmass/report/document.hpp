@@ -15,7 +15,13 @@ struct Document {
   Fields fields;  ///< of the JSON document, after its head
   std::vector<std::string> warnings = {};  ///< of the JSON document, beside notes and nulls
   bool bad = false;                        ///< --strict fails even if no note says so
+  bool notes_in_text = false;  ///< to_text() has the notes, so that finish() need not show them
+  std::string failure = {};    ///< why there is no result at all: with it the run fails
 };
+
+/// Notes of reading, then those of computing.
+[[nodiscard]] std::vector<Note> all_notes(std::vector<Note> reading,
+                                          const std::vector<Note>& computing);
 
 /// The labelled entries among `fields`, as key figures in the same order.
 [[nodiscard]] std::vector<KeyFigure> key_figures(const Fields& fields);
@@ -34,7 +40,8 @@ struct Document {
 /// One self-contained page.
 [[nodiscard]] std::string to_html(const Document& document);
 
-/// For a terminal, without colour: conclusion, key figures, and the sections that are marked so.
+/// For a terminal, without colour: conclusion, key figures, the sections that are marked so,
+/// and the notes if they are to be there.
 [[nodiscard]] std::string to_text(const Document& document);
 
 }  // namespace proofmass::report

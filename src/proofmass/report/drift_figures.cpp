@@ -21,7 +21,7 @@ std::string axis_label(const std::string& what, const ShownUnit& shown) {
   return shown.symbol.empty() ? what : what + " (" + shown.symbol + ")";
 }
 
-// Least and greatest in turn, as a plot of the readings themselves looks.
+// Least and greatest in turn, as a plot of the samples themselves looks.
 Curve zigzag(const characterise::Envelope& envelope, double per_si) {
   Curve curve{.label = "", .x = {}, .y = {}, .ink = Ink::grey, .mark = Mark::thin};
   for (std::size_t k = 0; k < envelope.t_s.size(); ++k) {
@@ -94,7 +94,7 @@ void add_fit(const DriftAnalysis& analysis, double per_si, Figure& figure) {
               .y = {},
               .ink = Ink::orange,
               .mark = fit.identified ? Mark::line : Mark::dashes};
-  Band band{.label = "95 % band of the curve, wander apart",
+  Band band{.label = "95 % band of the curve, without slow noise",
             .x = curve.x,
             .lower = {},
             .upper = {},
@@ -109,7 +109,7 @@ void add_fit(const DriftAnalysis& analysis, double per_si, Figure& figure) {
   figure.curves.push_back(std::move(curve));
 }
 
-// From the end of the recording to the time that was asked for, with the wander until then.
+// From the end of the recording to the time of the forecast, with the slow noise until then.
 void add_forecast(const ChannelDrift& channel, double per_si, Figure& figure) {
   if (!channel.outlook || !channel.outlook->forecast) return;
   constexpr int count = 60;
@@ -166,6 +166,68 @@ std::string lags_words(const WhitenessTest& test) {
       test.white ? "white" : "not white");
 }
 
+}  // namespace
+
+Figure drift_figure(const ChannelDrift& channel, const std::string& label) {
+  const DriftAnalysis& analysis = *channel.analysis;
+  const ShownUnit shown = bias_unit(channel.unit, largest(analysis.data));
+  const std::string means = "means over " + duration_words(analysis.block_s);
+  Figure figure{
+      .title = label + ": bias since power-on",
+      .description = analysis.fit.identified
+                         ? "The curve is fitted to " + means + ", jointly with the noise model."
+                         : "No time constant is identified: the dashed curve is the best of the "
+                           "shapes without one.",
+      .x = {.label = "Time since power-on (s)"},
+      .y = {.label = axis_label("Bias", shown)},
+      .height = 340.0};
+  Curve bias{.label = means, .x = {}, .y = {}, .ink = Ink::grey, .mark = Mark::thin};
+  for (std::size_t k = 0; k < analysis.block_mean.size(); ++k) {
+    bias.x.push_back(analysis.block_time_s(k));
+    bias.y.push_back(analysis.block_mean[k] * shown.per_si);
+  }
+  Curve wander{
+      .label = "with slow noise, white noise removed", .x = bias.x, .y = {}, .ink = Ink::blue};
+  for (const double value : analysis.block_bias) wander.y.push_back(value * shown.per_si);
+  figure.curves.push_back(std::move(bias));
+  figure.curves.push_back(std::move(wander));
+  add_fit(analysis, shown.per_si, figure);
+  add_forecast(channel, shown.per_si, figure);
+  return figure;
+}
+
+Figure samples_figure(const ChannelDrift& channel, const std::string& label) {
+  const DriftAnalysis& analysis = *channel.analysis;
+  const ShownUnit shown = bias_unit(channel.unit, largest(analysis.data));
+  Figure figure{.title = label + ": samples",
+                .description = "Least and greatest in each interval, and the same curve.",
+                .x = {.label = "Time since power-on (s)"},
+                .y = {.label = axis_label("Output", shown)}};
+  figure.curves.push_back(zigzag(analysis.data, shown.per_si));
+  figure.curves.back().label = "samples";
+  add_fit(analysis, shown.per_si, figure);
+  return figure;
+}
+
+Figure residual_figure(const ChannelDrift& channel, std::size_t scale, const std::string& label) {
+  const characterise::Envelope& envelope = channel.analysis->residuals[scale];
+  const ShownUnit shown = bias_unit(channel.unit, largest(envelope));
+  const bool samples = envelope.scale_s < 1.5 / channel.analysis->rate_hz;
+  Curve curve = zigzag(envelope, shown.per_si);
+  curve.ink = Ink::blue;
+  Figure figure{.title = samples ? label + ": residuals, each sample"
+                                 : fmt::format("{}: residuals, means over {}", label,
+                                               duration_words(envelope.scale_s)),
+                .description = "Samples less the curve: the residuals should show no structure.",
+                .x = {.label = "Time since power-on (s)"},
+                .y = {.label = axis_label("Residual", shown)},
+                .curves = {std::move(curve)},
+                .levels = {{"", 0.0}},
+                .height = 195.0};
+  about_zero(largest(envelope) * shown.per_si, figure);
+  return figure;
+}
+
 Figure autocorrelation_figure(const WhitenessTest& test, const std::string& label) {
   constexpr std::size_t most_stems = 300;
   const bool stems = test.autocorrelation.size() <= most_stems;
@@ -198,79 +260,6 @@ Figure autocorrelation_figure(const WhitenessTest& test, const std::string& labe
   return figure;
 }
 
-}  // namespace
-
-Figure drift_figure(const ChannelDrift& channel, const std::string& label) {
-  const DriftAnalysis& analysis = *channel.analysis;
-  const ShownUnit shown = bias_unit(channel.unit, largest(analysis.data));
-  const std::string means = "means over " + duration_words(analysis.block_s);
-  Figure figure{
-      .title = label + ": bias since switching on",
-      .description = analysis.fit.identified
-                         ? "What the fit is of, " + means +
-                               ", and the curve fitted under the noise that was found beside it."
-                         : "No curve with a time constant is drawn, because none is identified: "
-                           "the dashed one is the best of the shapes without.",
-      .x = {.label = "Time since switching on (s)"},
-      .y = {.label = axis_label("Bias", shown)},
-      .height = 340.0};
-  Curve bias{.label = means, .x = {}, .y = {}, .ink = Ink::grey, .mark = Mark::thin};
-  for (std::size_t k = 0; k < analysis.block_mean.size(); ++k) {
-    bias.x.push_back(analysis.block_time_s(k));
-    bias.y.push_back(analysis.block_mean[k] * shown.per_si);
-  }
-  Curve wander{
-      .label = "with its wander, white noise filtered off", .x = bias.x, .y = {}, .ink = Ink::blue};
-  for (const double value : analysis.block_bias) wander.y.push_back(value * shown.per_si);
-  figure.curves.push_back(std::move(bias));
-  figure.curves.push_back(std::move(wander));
-  add_fit(analysis, shown.per_si, figure);
-  add_forecast(channel, shown.per_si, figure);
-  return figure;
-}
-
-Figure readings_figure(const ChannelDrift& channel, const std::string& label) {
-  const DriftAnalysis& analysis = *channel.analysis;
-  const ShownUnit shown = bias_unit(channel.unit, largest(analysis.data));
-  Figure figure{.title = label + ": the readings themselves",
-                .description = "Their least and greatest in each stretch, and the same curve.",
-                .x = {.label = "Time since switching on (s)"},
-                .y = {.label = axis_label("Reading", shown)}};
-  figure.curves.push_back(zigzag(analysis.data, shown.per_si));
-  figure.curves.back().label = "readings";
-  add_fit(analysis, shown.per_si, figure);
-  return figure;
-}
-
-std::vector<Figure> residual_figures(const ChannelDrift& channel, const std::string& label) {
-  std::vector<Figure> figures;
-  for (const characterise::Envelope& envelope : channel.analysis->residuals) {
-    const ShownUnit shown = bias_unit(channel.unit, largest(envelope));
-    const bool samples = envelope.scale_s < 1.5 / channel.analysis->rate_hz;
-    Curve curve = zigzag(envelope, shown.per_si);
-    curve.ink = Ink::blue;
-    figures.push_back({.title = samples ? label + ": residuals, each sample"
-                                        : fmt::format("{}: residuals, means over {}", label,
-                                                      duration_words(envelope.scale_s)),
-                       .description = "Readings less the curve: what is left should have no shape.",
-                       .x = {.label = "Time since switching on (s)"},
-                       .y = {.label = axis_label("Residual", shown)},
-                       .curves = {std::move(curve)},
-                       .levels = {{"", 0.0}},
-                       .height = 195.0});
-    about_zero(largest(envelope) * shown.per_si, figures.back());
-  }
-  return figures;
-}
-
-std::vector<Figure> autocorrelation_figures(const ChannelDrift& channel, const std::string& label) {
-  std::vector<Figure> figures;
-  for (const WhitenessTest& test : channel.analysis->whiteness) {
-    figures.push_back(autocorrelation_figure(test, label));
-  }
-  return figures;
-}
-
 Figure profile_figure(const ChannelDrift& channel, const std::string& label) {
   constexpr double bound = 3.84, least_height = 6.0, most_height = 16.0;
   const DriftFit& fit = channel.analysis->fit;
@@ -278,11 +267,11 @@ Figure profile_figure(const ChannelDrift& channel, const std::string& label) {
   const double highest = curve.y.empty() ? 0.0 : *std::ranges::max_element(curve.y);
   const double top = std::clamp(1.1 * highest, least_height, most_height);
   Figure figure{
-      .title = label + ": how well the time constant is known",
+      .title = label + ": profile likelihood of the time constant",
       .description = fit.identified
-                         ? "All else is fitted anew for each time constant. What lies below the "
-                           "dotted line is inside the 95 % interval."
-                         : "All else is fitted anew for each time constant. None is identified: " +
+                         ? "All else is refitted for each time constant. Values below the dotted "
+                           "line are inside the 95 % interval."
+                         : "All else is refitted for each time constant. None is identified: " +
                                drift_verdict(channel) + ".",
       .x = {.label = "Time constant T (s)", .scale = AxisScale::log},
       .y = {.label = "Deviance", .min = 0.0, .max = top},

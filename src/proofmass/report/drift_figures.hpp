@@ -1,6 +1,7 @@
 #pragma once
 
-#include <vector>
+#include <cstddef>
+#include <string>
 
 #include "proofmass/report/drift_report.hpp"
 #include "proofmass/report/figure.hpp"
@@ -8,22 +9,23 @@
 // The plots of `drift`. The channels must have an analysis, the runs a set.
 namespace proofmass::report {
 
-/// The block means with what was fitted to them and its 95 % band; dashed where no warm-up is
-/// identified. With a forecast, on to its time.
+/// The block means with the fitted curve and its 95 % band, dashed where no warm-up is identified;
+/// with a forecast up to its time.
 [[nodiscard]] Figure drift_figure(const ChannelDrift& channel, const std::string& label);
 
-/// The readings, least and greatest, with the same curve.
-[[nodiscard]] Figure readings_figure(const ChannelDrift& channel, const std::string& label);
+/// Least and greatest samples, with the same curve.
+[[nodiscard]] Figure samples_figure(const ChannelDrift& channel, const std::string& label);
 
-/// Readings less the curve, one figure a scale.
-[[nodiscard]] std::vector<Figure> residual_figures(const ChannelDrift& channel,
-                                                   const std::string& label);
+/// Samples less the curve, at one of the scales of residuals.
+[[nodiscard]] Figure residual_figure(const ChannelDrift& channel,
+                                     std::size_t scale,
+                                     const std::string& label);
 
-/// Autocorrelation of the residuals with the bounds of white noise, one figure a scale.
-[[nodiscard]] std::vector<Figure> autocorrelation_figures(const ChannelDrift& channel,
-                                                          const std::string& label);
+/// Autocorrelation of the residuals with the bounds of white noise.
+[[nodiscard]] Figure autocorrelation_figure(const signal::WhitenessTest& test,
+                                            const std::string& label);
 
-/// How likely each time constant is.
+/// Profile likelihood of the time constant.
 [[nodiscard]] Figure profile_figure(const ChannelDrift& channel, const std::string& label);
 
 /// Bias against temperature; the channel must have a model of it.

@@ -6,7 +6,7 @@
 #include "proofmass/report/noise_wording.hpp"
 #include "proofmass/report/wording.hpp"
 
-// The sentences that a channel and a set of runs come to.
+// Findings for a channel and for a set of runs.
 namespace proofmass::report {
 namespace {
 
@@ -44,11 +44,10 @@ std::string sentence(std::string words) {
 void add_tests(const ChannelDrift& channel, Sentences& sentences) {
   const DriftAnalysis& analysis = *channel.analysis;
   const DriftFit& fit = analysis.fit;
-  sentences.push_back(
-      fmt::format("By chance an exponential would gain as much over a constant with a probability "
-                  "of {}, over a "
-                  "straight line of {}.",
-                  p_words(fit.constant_p), p_words(fit.line_p)));
+  sentences.push_back(fmt::format(
+      "Probability of as large a gain of the exponential by chance: {} over a constant, "
+      "{} over a straight line.",
+      p_words(fit.constant_p), p_words(fit.line_p)));
   if (fit.identified || !(fit.undetected_below > 0.0) || !std::isfinite(fit.undetected_below))
     return;
   sentences.push_back(fmt::format(
@@ -73,7 +72,7 @@ void add_noise(const ChannelDrift& channel, Sentences& sentences) {
                     duration_words(noise.markov_time_constant_s)));
   }
   if (parts.empty()) return;
-  sentences.push_back("Noise that the intervals allow for: " + parts + ".");
+  sentences.push_back("Noise model of the intervals: " + parts + ".");
 }
 
 void add_temperature(const ChannelDrift& channel, Sentences& sentences) {
@@ -85,17 +84,18 @@ void add_temperature(const ChannelDrift& channel, Sentences& sentences) {
   }
   const characterise::TemperatureModel& model = *found.model;
   if (model.verdict != characterise::Verdict::identified) {
-    sentences.push_back(
-        sentence(fmt::format("No dependence on {} can be told: {}", found.channel, model.reason)));
+    sentences.push_back(sentence(
+        fmt::format("No dependence on {} is identified: {}", found.channel, model.reason)));
     return;
   }
   sentences.push_back(
-      fmt::format("Follows {} by a polynomial of degree {}: {} between {} and {} °C.",
+      fmt::format("Depends on {} as a polynomial of degree {}: {} between {} and {} °C.",
                   found.channel, model.degree, bias_words(model.bias_span, channel.unit),
                   fixed(model.lowest_k - 273.15, 1), fixed(model.highest_k - 273.15, 1)));
   if (model.hysteresis && model.hysteresis_significant) {
-    sentences.push_back(fmt::format("Heating reads {} above cooling at the same temperature.",
-                                    bias_words(*model.hysteresis, channel.unit)));
+    sentences.push_back(
+        fmt::format("Hysteresis: {} more on heating than on cooling at the same temperature.",
+                    bias_words(*model.hysteresis, channel.unit)));
   }
 }
 
@@ -107,7 +107,7 @@ void add_outlook(const ChannelDrift& channel, Sentences& sentences) {
   }
   const characterise::DriftForecast& later = *channel.outlook->forecast;
   sentences.push_back(fmt::format(
-      "{} after switching on: {} {} (95 %: {}), {} since the end of the recording.",
+      "{} after power-on: {} {} (95 %: {}), a change of {} since the end of the recording.",
       duration_words(later.t_s), holds_gravity(later.bias) ? "level" : "bias",
       bias_words(later.bias, channel.unit), bias_interval_words(later.bias, channel.unit),
       bias_words(later.change, channel.unit)));
@@ -121,8 +121,7 @@ void add_level_curve(const ChannelRuns& runs, Sentences& sentences) {
   if (fit.identified) {
     sentences.push_back(fmt::format(
         "The level warms up over the runs: {} with a time constant of {} (95 %: {}), from {} in "
-        "the "
-        "first run.",
+        "the first run.",
         bias_words(*fit.a1, runs.unit),
         with_std(Uncertain{fit.time_constant_s->value, fit.time_constant_s->std}, "runs"),
         runs_interval_words(*fit.time_constant_s), bias_words(fit.a2, runs.unit)));
@@ -141,10 +140,9 @@ void add_trend(const ChannelRuns& runs, Sentences& sentences) {
   constexpr double significant_p = 0.05;
   sentences.push_back(
       set.trend_p < significant_p
-          ? fmt::format("The level moves by {} from one run to the next, in the order of the files "
-                        "(p = {}).",
+          ? fmt::format("The level changes by {} per run, in the order of the files (p = {}).",
                         bias_words(*set.trend_per_run, runs.unit), p_words(set.trend_p))
-          : fmt::format("No trend from run to run, in the order of the files: {} a run (p = {}).",
+          : fmt::format("No trend from run to run, in the order of the files: {} per run (p = {}).",
                         bias_words(*set.trend_per_run, runs.unit), p_words(set.trend_p)));
 }
 
@@ -155,7 +153,7 @@ std::string whiteness_sentence(const DriftAnalysis& analysis) {
   for (const WhitenessTest& test : analysis.whiteness) {
     (test.white ? white : coloured).push_back(&test);
   }
-  if (white.empty() && coloured.empty()) return "Too short to test whether residuals are white.";
+  if (white.empty() && coloured.empty()) return "Too short to test the residuals for whiteness.";
   if (coloured.empty()) return "Residuals at " + scales_words(white) + " white.";
   const WhitenessTest& worst =
       **std::ranges::min_element(coloured, {}, &WhitenessTest::inside_bounds);
@@ -165,16 +163,17 @@ std::string whiteness_sentence(const DriftAnalysis& analysis) {
                                        scales_words(coloured));
   text += fmt::format(": {}{} (95 % if white)", inside_words(worst),
                       coloured.size() > 1 ? " at " + duration_words(worst.scale_s) : "");
-  if (!analysis.whitened) return text + "; whether the intervals allow for it cannot be tested.";
-  if (analysis.noise_explained) return text + "; the intervals allow for it.";
+  if (!analysis.whitened)
+    return text + "; whether the noise model accounts for it cannot be tested.";
+  if (analysis.noise_explained) return text + "; the noise model accounts for it.";
   return text + fmt::format(
-                    "; the noise model does not explain all of it ({} after it): take the "
-                    "intervals as too narrow.",
+                    "; the noise model does not account for all of it ({} after it): the intervals "
+                    "may be too narrow.",
                     inside_words(*analysis.whitened));
 }
 
 std::vector<std::string> drift_findings(const ChannelDrift& channel) {
-  if (!channel.analysis) return {"Not analysed: " + channel.refused + "."};
+  if (!channel.analysis) return {sentence(why_not_analysed(channel))};
   Sentences sentences;
   if (std::string moving = motion_sentence(channel.rest, "drift"); !moving.empty())
     sentences.push_back(std::move(moving));
@@ -185,7 +184,7 @@ std::vector<std::string> drift_findings(const ChannelDrift& channel) {
   add_temperature(channel, sentences);
   add_outlook(channel, sentences);
   const std::size_t knocks = channel.analysis->knocks.size();
-  if (knocks > 0) sentences.push_back(count_words(knocks, "knock") + " left out.");
+  if (knocks > 0) sentences.push_back(count_words(knocks, "knock") + " excluded.");
   return sentences;
 }
 
@@ -193,11 +192,11 @@ std::vector<std::string> run_findings(const ChannelRuns& runs) {
   if (!runs.set) return {"Not compared: " + runs.refused + "."};
   const RunSet& set = *runs.set;
   Sentences sentences;
-  sentences.push_back(fmt::format("Turn-on repeatability, of the first {}: {}.",
+  sentences.push_back(fmt::format("Turn-on repeatability, from the first {}: {}.",
                                   duration_words(set.window_s),
                                   scatter_words(set.turn_on, runs.unit)));
   sentences.push_back(
-      fmt::format("Scatter of the runs' levels: {}.", scatter_words(set.level, runs.unit)));
+      fmt::format("Scatter of the levels: {}.", scatter_words(set.level, runs.unit)));
   add_trend(runs, sentences);
   add_level_curve(runs, sentences);
   ChannelDrift common;

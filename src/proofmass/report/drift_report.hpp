@@ -9,11 +9,12 @@
 #include "proofmass/characterise/temperature_model.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/units.hpp"
+#include "proofmass/report/document.hpp"
 #include "proofmass/report/rest_share.hpp"
 
 namespace proofmass::report {
 
-/// What the bias at a later time costs in position.
+/// Bias at a later time.
 struct DriftOutlook {
   std::optional<characterise::DriftForecast> forecast;
   std::string refused;  ///< why there is none
@@ -54,29 +55,16 @@ struct DriftReport {
   std::vector<Note> notes;        ///< of reading and preparing; those of the analyses are added
   double since_switch_on_s = 0.0;
   std::optional<double> forecast_s;
-  bool every_run = false;  ///< the text goes on from a set of runs to each of them
+  bool every_run = false;  ///< the text has a section for each run of a set
 };
 
-/// The document of `drift`: docs/schema/drift.schema.json.
-[[nodiscard]] std::string drift_json(const DriftReport& report);
+/// For each channel the fitted curve, residuals at three scales, their autocorrelation, the profile
+/// of the time constant, the shapes tried, temperature and forecast; for several runs their levels
+/// and the warm-up that they share. It refers to the report, which must outlive it.
+[[nodiscard]] Document describe(const DriftReport& report);
 
-/// The page: conclusion, key figures, and for each channel the data with the curve, the residuals
-/// at three scales, their autocorrelation, the profile of the time constant, the shapes tried,
-/// temperature and forecast; of several runs their levels and the warm-up that they share.
-[[nodiscard]] std::string drift_html(const DriftReport& report);
-
-/// For a terminal, without colour, closed by a newline: per channel plain sentences and a table.
-[[nodiscard]] std::string drift_text(const DriftReport& report);
-
-/// "x: warm-up of 5.0 ± 0.1 mg with time constant 900 ± 20 s", or that there is none to be told.
-[[nodiscard]] std::string drift_conclusion(const DriftReport& report);
-
-/// All notes: the report's own, then each channel's with its name, refusals as Severity::bad. Why a
-/// figure is null stands in the document alone.
-[[nodiscard]] std::vector<Note> drift_notes(const DriftReport& report);
-
-/// Block means, curve, its standard deviation, and the bias with its wander but without white
-/// noise, against time: what `--output` writes.
+/// Block means, curve, its standard deviation, and the bias without white noise, against time: what
+/// `--output` writes.
 [[nodiscard]] Recording drift_series(const DriftReport& report);
 
 }  // namespace proofmass::report

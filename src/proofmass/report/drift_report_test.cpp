@@ -20,7 +20,7 @@ constexpr double mg = fake_mg;
 const Unit accel = *parse_unit("m/s^2");
 
 Json parsed(const DriftReport& report) {
-  return Json::parse(drift_json(report));
+  return Json::parse(to_json(describe(report)));
 }
 
 bool contains(const std::string& text, const std::string& part) {
@@ -63,7 +63,7 @@ TEST(DriftVerdict, OfAnExponentialGivesItsSizeAndTimeConstant) {
 
 TEST(DriftVerdict, OfStepsSaysThatTheyAreNoExponential) {
   EXPECT_EQ(drift_verdict(fake_steps("x")),
-            "no warm-up can be told: steps instead of an exponential: 3 steps of up to 4.10 mg");
+            "no warm-up identified: steps rather than an exponential: 3 steps of up to 4.10 mg");
 }
 
 TEST(DriftVerdict, HasItsOwnWordsForEachReason) {
@@ -73,8 +73,8 @@ TEST(DriftVerdict, HasItsOwnWordsForEachReason) {
     fit.why = why;
     return drift_verdict(channel);
   };
-  EXPECT_TRUE(contains(verdict(DriftReason::no_warm_up), "the noise alone explains"));
-  EXPECT_TRUE(contains(verdict(DriftReason::hidden_by_noise), "wander of the noise"));
+  EXPECT_TRUE(contains(verdict(DriftReason::no_warm_up), "noise alone explains"));
+  EXPECT_TRUE(contains(verdict(DriftReason::hidden_by_noise), "low-frequency noise explains"));
   EXPECT_TRUE(contains(verdict(DriftReason::longer_than_record),
                        "too short for the time constant, which is longer than 400 s (95 %)"));
   EXPECT_TRUE(contains(verdict(DriftReason::unexplained), "neither noise nor an exponential"));
@@ -84,8 +84,8 @@ TEST(DriftVerdict, HasItsOwnWordsForEachReason) {
   fit.time_constant_below_s.reset();
   fit.slope_per_s = fake_interval(2.0 * mg / 3600.0, 0.1 * mg / 3600.0);
   EXPECT_TRUE(contains(verdict(DriftReason::line),
-                       "a straight line explains the drift as well, 2.00 ± 0.10 mg/h; a time "
-                       "constant is not bounded from either side"));
+                       "a straight line fits as well, 2.00 ± 0.10 mg/h; the time constant is not "
+                       "bounded on either side"));
 }
 
 TEST(DriftIntervals, KeepTheDecimalsThatTheirWidthMeansAndTheirOpenEnds) {
@@ -98,48 +98,47 @@ TEST(DriftIntervals, KeepTheDecimalsThatTheirWidthMeansAndTheirOpenEnds) {
   EXPECT_EQ(time_interval_words(Interval95{900.0, 20.0, {}, {}}), "not bounded");
 }
 
-TEST(WhitenessSentence, TellsTheScalesApartAndWhetherTheIntervalsAllowForIt) {
+TEST(WhitenessSentence, DistinguishesTheScalesAndChecksTheNoiseModel) {
   characterise::DriftAnalysis analysis = *fake_warm_up("x").analysis;
   analysis.whiteness.back().inside_bounds = 0.41;
   EXPECT_EQ(whiteness_sentence(analysis),
             "Residuals at 1 s and 10 s white, at 100 s not: 41 % of lags inside the bounds (95 % "
-            "if white); the intervals allow for it.");
+            "if white); the noise model accounts for it.");
   analysis.whitened->white = false;
   analysis.noise_explained = false;
-  EXPECT_TRUE(contains(whiteness_sentence(analysis), "take the intervals as too narrow"));
+  EXPECT_TRUE(contains(whiteness_sentence(analysis), "the intervals may be too narrow"));
   analysis.whiteness.pop_back();
   EXPECT_EQ(whiteness_sentence(analysis), "Residuals at 1 s and 10 s white.");
   analysis.whiteness.clear();
-  EXPECT_EQ(whiteness_sentence(analysis), "Too short to test whether residuals are white.");
+  EXPECT_EQ(whiteness_sentence(analysis), "Too short to test the residuals for whiteness.");
 }
 
-TEST(DriftFindings, SayWhatWarmUpThereCannotHaveBeen) {
+TEST(DriftFindings, GiveALimitForAWarmUpThatIsNotIdentified) {
   const auto sentences = drift_findings(fake_steps("x"));
   EXPECT_TRUE(says(sentences, "no warm-up of more than 2.00 mg with a time constant of 24 min"))
       << ::testing::PrintToString(sentences);
   EXPECT_FALSE(says(drift_findings(fake_warm_up("x")), "no warm-up of more than"));
 }
 
-TEST(DriftFindings, TellTemperatureAndForecastOrWhyThereIsNone) {
+TEST(DriftFindings, HaveTemperatureAndForecastOrWhyThereIsNone) {
   const DriftReport report = fake_drift_report();
   const auto of_x = drift_findings(report.channels[0]);
-  EXPECT_TRUE(says(of_x, "Follows temp by a polynomial of degree 1: 392 mg") ||
-              says(of_x, "Follows temp by a polynomial of degree 1: 40.0 mg"));
+  EXPECT_TRUE(says(of_x, "Depends on temp as a polynomial of degree 1: 40.0 mg"));
   EXPECT_TRUE(says(of_x, "between 16.9 and 36.9 °C"));
-  EXPECT_TRUE(says(of_x, "Heating reads 300 ± 50 µg above cooling"));
-  EXPECT_TRUE(says(of_x, "3 h after switching on: bias 6.50 ± 0.10 mg"));
+  EXPECT_TRUE(says(of_x, "Hysteresis: 300 ± 50 µg more on heating"));
+  EXPECT_TRUE(says(of_x, "3 h after power-on: bias 6.50 ± 0.10 mg"));
   EXPECT_TRUE(says(drift_findings(report.channels[1]), "No forecast: the warm-up is not"));
   EXPECT_EQ(drift_findings(report.channels[2]),
             (std::vector<std::string>{"Not analysed: the values do not vary."}));
 }
 
-TEST(RunFindings, TellWhatScatterTheNoiseWithinTheRunsLeaves) {
+TEST(RunFindings, GiveTheScatterBeyondTheNoiseWithinTheRuns) {
   const auto sentences = run_findings(fake_runs("x"));
   EXPECT_EQ(sentences[0],
-            "Turn-on repeatability, of the first 6 s: 2.1 ± 0.5 mg (95 %: 1.4 … 4.3 mg).");
+            "Turn-on repeatability, from the first 6 s: 2.1 ± 0.5 mg (95 %: 1.4 … 4.3 mg).");
   EXPECT_TRUE(says(sentences, "levels: none beyond the noise within the runs, below 300 µg"));
   EXPECT_TRUE(says(sentences, "No trend from run to run"));
-  EXPECT_TRUE(says(sentences, "Common to all runs: no warm-up can be told"));
+  EXPECT_TRUE(says(sentences, "Common to all runs: no warm-up identified"));
 }
 
 TEST(DriftJson, HasTheFieldsOfTheContractForAWarmUp) {
@@ -175,21 +174,21 @@ TEST(DriftJson, LeavesAmplitudeAndTimeConstantNullWhereNoneIsIdentified) {
   EXPECT_FALSE(channel["a2"].is_null());
   EXPECT_EQ(channel["time_constant_above_s"], 400.0);
   EXPECT_EQ(channel["steps"].size(), 3U);
-  EXPECT_TRUE(warns(document,
-                    "acc_y: null for a1, time_constant_s and their interval_95: no "
-                    "warm-up can be told: steps"));
+  EXPECT_TRUE(warns(
+      document, "channels[1] (acc_y): a1, time_constant_s: null: no warm-up identified: steps"));
+  EXPECT_TRUE(warns(document, "interval_95: a1, time_constant_s: null: no warm-up identified"));
 }
 
 TEST(DriftJson, SaysWhyForEveryNull) {
   DriftReport report = fake_drift_report();
   report.runs = {fake_runs("acc_x"), {"acc_y", accel, {}, "2 runs left, a set needs 3"}};
   const Json document = parsed(report);
-  EXPECT_TRUE(warns(document, "acc_y: forecast: null: the warm-up is not identified"));
+  EXPECT_TRUE(warns(document, "(acc_y): forecast: null: the warm-up is not identified"));
   EXPECT_TRUE(warns(document, "acc_z: not analysed: the values do not vary"));
-  EXPECT_TRUE(warns(document, "acc_z: null for model, a1, a2"));
-  EXPECT_TRUE(warns(document, "acc_x: runs: level: between_std: an end of interval_95 is null"));
-  EXPECT_TRUE(warns(document, "acc_x: runs: warm_up: null for a1"));
-  EXPECT_TRUE(warns(document, "acc_y: runs: null for window_s"));
+  EXPECT_TRUE(warns(document, "(acc_z): model, a1, a2"));
+  EXPECT_TRUE(warns(document, "level.interval_95[0]: null: the recording does not bound it"));
+  EXPECT_TRUE(warns(document, "warm_up (acc_x): a1, time_constant_s: null"));
+  EXPECT_TRUE(warns(document, "runs[1] (acc_y): window_s, duration_s"));
   std::vector<std::string> nulls;
   collect_nulls(document["channels"][0], "", nulls);
   EXPECT_TRUE(nulls.empty()) << nulls.front();
@@ -199,12 +198,13 @@ TEST(DriftReports, SayFirstThatTheSensorMoved) {
   ChannelDrift channel = fake_warm_up("x");
   channel.rest = RestShare{.share = 0.12, .longest_start_s = 3.0, .longest_end_s = 8.5};
   const DriftReport report = report_of(std::move(channel));
-  EXPECT_EQ(drift_conclusion(report).find("Not at rest (x)"), 0U);
-  const std::string text = drift_text(report);
-  EXPECT_LT(text.find("Not at rest: 12 %"), text.find("Warm-up of"));
+  const Document document = describe(report);
+  const std::string text = to_text(document);
+  EXPECT_EQ(text.find("Not at rest (x)"), 0U);
+  EXPECT_LT(text.find("Not at rest: only 12 %"), text.find("Warm-up of"));
   EXPECT_LT(text.find("Warm-up of"), text.find("Warm-up a1"));
   EXPECT_TRUE(contains(text, "--from 3.00 --to 8.50"));
-  EXPECT_FALSE(texts(drift_notes(report), Severity::bad).empty());
+  EXPECT_FALSE(texts(document.page.notes, Severity::bad).empty());
   EXPECT_EQ(parsed(report)["channels"][0]["rest"]["at_rest"], false);
 }
 
@@ -213,7 +213,7 @@ TEST(DriftJson, SaysWhyItDoesNotKnowWhetherTheSensorMoved) {
   channel.rest.reset();
   const Json document = parsed(report_of(std::move(channel)));
   EXPECT_TRUE(document["channels"][0]["rest"].is_null());
-  EXPECT_TRUE(warns(document, "x: rest: null"));
+  EXPECT_TRUE(warns(document, "(x): rest: null"));
 }
 
 TEST(DriftJson, LeavesOpenEndsOfIntervalsOpenAndSaysSo) {
@@ -222,8 +222,8 @@ TEST(DriftJson, LeavesOpenEndsOfIntervalsOpenAndSaysSo) {
   channel.analysis->whitened.reset();
   const Json document = parsed(report_of(std::move(channel)));
   EXPECT_TRUE(document["channels"][0]["interval_95"]["time_constant_s"][1].is_null());
-  EXPECT_TRUE(warns(document, "x: interval_95: time_constant_s: upper end null"));
-  EXPECT_TRUE(warns(document, "x: whitened: null"));
+  EXPECT_TRUE(warns(document, "interval_95.time_constant_s[1]: null"));
+  EXPECT_TRUE(warns(document, "(x): whitened: null"));
 }
 
 TEST(DriftJson, GivesPositionCostsAsHalfBiasTimesTimeSquared) {
@@ -243,11 +243,11 @@ TEST(DriftJson, CountsNoCostOfGravityNorOfWhatIsNoAcceleration) {
   Json document = parsed(report_of(channel));
   EXPECT_TRUE(document["channels"][0]["forecast"]["position_error_uncorrected_m"].is_null());
   EXPECT_FALSE(document["channels"][0]["forecast"]["position_error_m"].is_null());
-  EXPECT_TRUE(warns(document, "the level holds gravity"));
+  EXPECT_TRUE(warns(document, "the level contains gravity"));
   channel.unit = *parse_unit("V");
   document = parsed(report_of(channel));
   EXPECT_TRUE(document["channels"][0]["forecast"]["position_error_m"].is_null());
-  EXPECT_TRUE(warns(document, "no acceleration in m/s^2"));
+  EXPECT_TRUE(warns(document, "not an acceleration in m/s^2"));
 }
 
 TEST(DriftJson, HasTemperatureCoefficientsWithTheirUnits) {
@@ -274,31 +274,42 @@ TEST(DriftJson, HasOfRunsTheirLevelsScatterAndCommonWarmUp) {
 
 TEST(DriftNotes, MakeRefusalsBadDataAndNameTheFileWhereThereAreSeveral) {
   DriftReport report = fake_drift_report();
-  EXPECT_EQ(drift_notes(report).back().severity, Severity::bad);
-  EXPECT_EQ(drift_notes(report).back().text, "acc_z: not analysed: the values do not vary");
+  const auto last = [&] { return describe(report).page.notes.back(); };
+  EXPECT_EQ(last().severity, Severity::bad);
+  EXPECT_EQ(last().text, "acc_z: not analysed: the values do not vary");
   report.channels[2].file = "runs/b.csv";
-  EXPECT_EQ(drift_notes(report).back().text, "b.csv: acc_z: not analysed: the values do not vary");
+  EXPECT_EQ(last().text, "b.csv: acc_z: not analysed: the values do not vary");
 }
 
-TEST(DriftText, BeginsWithTheConclusionOfEachChannel) {
-  const std::string text = drift_text(fake_drift_report());
+TEST(DriftText, HasTheResultOfEachChannel) {
+  const DriftReport report = fake_drift_report();
+  const std::string text = to_text(describe(report));
   EXPECT_TRUE(contains(text,
-                       "acc_x: 2 h at 1 Hz, 7\u202f200 samples, 12 of them missing\n"
-                       "  Warm-up of 5.00 ± 0.10 mg with time constant 900 ± 20 s.\n"))
+                       "acc_x:\n  7\u202f200 samples at 1 Hz, 2 h, 12 of them missing.\n"
+                       "  - Warm-up of 5.00 ± 0.10 mg with time constant 900 ± 20 s.\n"))
       << text;
   EXPECT_TRUE(contains(text, "862 … 941 s"));
   EXPECT_TRUE(contains(text, "acc_z: not analysed: the values do not vary"));
   EXPECT_EQ(text.back(), '\n');
 }
 
+TEST(DriftText, OfRunsHasEachOnRequest) {
+  DriftReport report = fake_drift_report();
+  report.runs = {fake_runs("acc_x")};
+  const std::string sample = "862 … 941 s";
+  EXPECT_FALSE(contains(to_text(describe(report)), sample));
+  report.every_run = true;
+  EXPECT_TRUE(contains(to_text(describe(report)), sample));
+}
+
 TEST(DriftConclusion, OfManyChannelsCountsThem) {
   DriftReport report = fake_drift_report();
-  EXPECT_TRUE(contains(drift_conclusion(report), "acc_y: no warm-up can be told"));
+  EXPECT_TRUE(contains(describe(report).page.conclusion, "acc_y: no warm-up identified"));
   report.channels.push_back(fake_steps("acc_w"));
   report.runs = {fake_runs("acc_x")};
-  EXPECT_EQ(drift_conclusion(report),
-            "A warm-up is identified in 1 of 4 channels, 1 not analysed. acc_x over 8 runs: "
-            "turn-on repeatability 2.1 ± 0.5 mg (95 %: 1.4 … 4.3 mg).");
+  EXPECT_EQ(describe(report).page.conclusion,
+            "acc_x over 8 runs: turn-on repeatability 2.1 ± 0.5 mg (95 %: 1.4 … 4.3 mg). A warm-up "
+            "is identified in 1 of 4 channels, 1 not analysed.");
 }
 
 TEST(DriftSeries, HasBlockMeansCurveAndItsStdAtTheMiddleOfEachBlock) {
@@ -341,17 +352,18 @@ TEST(ProfileFigure, MarksTheIntervalOfTheTimeConstant) {
 TEST(DriftHtml, ShowsLessOfEachTheMoreChannelsThereAre) {
   DriftReport report = fake_drift_report();
   report.runs = {fake_runs("acc_x")};
-  // Two of the runs; drift, readings, profile, 3 scales twice and temperature of x; the same less
+  // Two of the runs; drift, samples, profile, 3 scales twice and temperature of x; the same less
   // one of y and its profile.
-  EXPECT_EQ(count_of(drift_html(report), "</svg>"), 2U + 10U + 8U);
+  EXPECT_EQ(count_of(to_html(describe(report)), "</svg>"), 2U + 10U + 8U);
   report.channels.assign(10, fake_steps("y"));
-  EXPECT_EQ(count_of(drift_html(report), "</svg>"), 2U + 10U);
+  EXPECT_EQ(count_of(to_html(describe(report)), "</svg>"), 2U + 10U);
   report.channels.assign(30, fake_steps("y"));
-  EXPECT_EQ(count_of(drift_html(report), "</svg>"), 2U);
+  EXPECT_EQ(count_of(to_html(describe(report)), "</svg>"), 2U);
 }
 
 TEST(DriftHtml, EscapesWhatTheUserNamed) {
-  const std::string page = drift_html(fake_drift_report());
+  const DriftReport report = fake_drift_report();
+  const std::string page = to_html(describe(report));
   EXPECT_TRUE(contains(page, "rest &lt;1&gt;.csv"));
   EXPECT_FALSE(contains(page, "rest <1>.csv"));
 }

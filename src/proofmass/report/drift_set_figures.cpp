@@ -88,8 +88,8 @@ Figure temperature_figure(const ChannelDrift& channel, const std::string& label)
   const ShownUnit shown = bias_unit(channel.unit, size);
   Figure figure{.title = fmt::format("{} against {}", label, channel.temperature->channel),
                 .description =
-                    "Means about a temperature, with the scatter of what they are means "
-                    "of; the curve holds between the temperatures seen, not beyond.",
+                    "Means about a temperature, with their scatter; the curve is valid between the "
+                    "temperatures recorded.",
                 .x = {.label = "Temperature (°C)"},
                 .y = {.label = shown.symbol.empty() ? "Bias" : "Bias (" + shown.symbol + ")"},
                 .height = 300.0};
@@ -120,7 +120,7 @@ Figure levels_figure(const ChannelRuns& runs) {
   }
   Figure figure{
       .title = runs.name + ": from run to run",
-      .description = "Each with the 95 % interval that the noise within its run leaves.",
+      .description = "Each with the 95 % interval from the noise within its run.",
       .x = {.label = "Run", .min = 0.5, .max = static_cast<double>(set.runs.size()) + 0.5},
       .y = {.label = shown.symbol.empty() ? "Level" : "Level (" + shown.symbol + ")"},
       .levels = {{"mean of the runs", set.level.mean * shown.per_si}},

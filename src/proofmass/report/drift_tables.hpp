@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -7,18 +8,21 @@
 #include "proofmass/report/page.hpp"
 #include "proofmass/signal/whiteness.hpp"
 
-// The tables of a page of `drift`. The channels must have an analysis, the runs a set.
+// The tables of `drift`. The channels must have an analysis, the runs a set.
 namespace proofmass::report {
 
 [[nodiscard]] Table parameters_table(const ChannelDrift& channel);
 [[nodiscard]] Table steps_table(const ChannelDrift& channel);
 [[nodiscard]] Table whiteness_table(const characterise::DriftAnalysis& analysis);
-/// A row of that table.
+/// A row of that table; `name` is that of the series.
 [[nodiscard]] std::vector<std::string> whiteness_row(const std::string& name,
                                                      const signal::WhitenessTest& test);
 [[nodiscard]] Table candidates_table(const characterise::DriftFit& fit);
 
-/// What the bias costs in position, of a series in m/s².
+/// Times after which the position error from a bias is given.
+inline constexpr std::array integration_times_s{1.0, 10.0, 60.0};
+
+/// Position error from the bias of a series in m/s².
 [[nodiscard]] Table position_table(const characterise::DriftForecast& forecast);
 
 /// The channel must have a model of temperature.

@@ -55,35 +55,35 @@ std::string one_sided_words(const DriftFit& fit) {
   if (fit.time_constant_below_s) {
     return "shorter than " + duration_words(*fit.time_constant_below_s) + " (95 %)";
   }
-  return "not bounded from either side";
+  return "not bounded on either side";
 }
 
 std::string why_not(const DriftFit& fit, const Unit& unit) {
   switch (fit.why) {
     case DriftReason::hidden_by_noise:
-      return "what an exponential would explain, the wander of the noise explains as well";
+      return "low-frequency noise explains the change as well as an exponential";
     case DriftReason::steps:
-      return "steps instead of an exponential: " + steps_words(fit.curve, unit);
+      return "steps rather than an exponential: " + steps_words(fit.curve, unit);
     case DriftReason::line:
-      return "a straight line explains the drift as well" +
+      return "a straight line fits as well" +
              (fit.slope_per_s ? ", " + slope_words(*fit.slope_per_s, unit) : std::string()) +
-             "; a time constant is " + one_sided_words(fit);
+             "; the time constant is " + one_sided_words(fit);
     case DriftReason::longer_than_record:
       return "the recording is too short for the time constant, which is " + one_sided_words(fit);
     case DriftReason::shorter_than_resolved:
-      return "it is over before it can be resolved: the time constant is " + one_sided_words(fit);
+      return "it ends before it can be resolved: the time constant is " + one_sided_words(fit);
     case DriftReason::begun_later:
-      return "what drifts began long after switching on, with a time constant of " +
+      return "the drift began long after power-on, with a time constant of " +
              duration_words(fit.best_time_constant_s);
     case DriftReason::unexplained:
-      return "something moves the bias that is neither noise nor an exponential";
+      return "the bias changes in a way that neither noise nor an exponential explains";
     case DriftReason::shape_undetermined:
     case DriftReason::swing:
     case DriftReason::no_warm_up:
     case DriftReason::identified:
       break;
   }
-  return "the noise alone explains the recording";
+  return "noise alone explains the recording";
 }
 
 }  // namespace
@@ -92,6 +92,15 @@ std::string channel_label(const DriftReport& report, const ChannelDrift& channel
   const bool several = std::ranges::any_of(
       report.channels, [&](const ChannelDrift& other) { return other.file != channel.file; });
   return several ? file_name(channel.file) + ": " + channel.name : channel.name;
+}
+
+std::string level_unit(const Unit& unit) {
+  return noise_unit(unit, NoiseScale::level);
+}
+
+std::string per_kelvin(const std::string& unit, std::size_t power) {
+  if (power == 0) return unit;
+  return unit + "/K" + (power > 1 ? "^" + std::to_string(power) : "");
 }
 
 ShownUnit bias_unit(const Unit& unit, double size) {
@@ -130,7 +139,7 @@ std::string bias_words(double value, const Unit& unit) {
 }
 
 std::string slope_words(const Interval95& figure, const Unit& unit) {
-  // Drift is slow: people think of it by the hour.
+  // Drift is slow: shown per hour.
   constexpr double hour_s = 3600.0;
   return bias_words(Uncertain{figure.value * hour_s, figure.std * hour_s}, unit) + "/h";
 }
@@ -176,12 +185,12 @@ std::string reason_code(DriftReason reason) {
 }
 
 std::string drift_verdict(const ChannelDrift& channel) {
-  if (!channel.analysis) return "not analysed: " + channel.refused;
+  if (!channel.analysis) return why_not_analysed(channel);
   const DriftFit& fit = channel.analysis->fit;
   if (fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::swing)
     return fit.reason;
   if (!fit.identified || !fit.a1 || !fit.time_constant_s) {
-    return "no warm-up can be told: " + why_not(fit, channel.unit);
+    return "no warm-up identified: " + why_not(fit, channel.unit);
   }
   const Interval95& time = *fit.time_constant_s;
   std::string text =
@@ -210,7 +219,7 @@ std::string scatter_words(const characterise::RunScatter& scatter, const Unit& u
 std::string level_words(const ChannelDrift& channel) {
   const bool level =
       channel.analysis && costs_position(channel.unit) && holds_gravity(channel.analysis->fit.a2);
-  return level ? "Level at switching on a2" : "Bias at switching on a2";
+  return level ? "Level at power-on a2" : "Bias at power-on a2";
 }
 
 bool costs_position(const Unit& unit) {
@@ -218,7 +227,7 @@ bool costs_position(const Unit& unit) {
 }
 
 bool holds_gravity(const Interval95& bias_mps2) {
-  constexpr double no_bias_mps2 = 0.5;  // above what any accelerometer is sold with
+  constexpr double no_bias_mps2 = 0.5;  // above the bias of any accelerometer
   return std::abs(bias_mps2.value) > no_bias_mps2;
 }
 

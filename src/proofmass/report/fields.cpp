@@ -27,7 +27,11 @@ Value value_of(const Field& field) {
   if (!field.fields) return field.scalar;
   if (field.shape.kind != Kind::list) return json_of(*field.fields);
   Array items;
-  for (const Field& item : *field.fields) items.push_back(value_of(item));
+  if (field.items)
+    for (std::size_t k = 0; k < field.items->count; ++k)
+      items.emplace_back(json_of(field.items->at(k)));
+  else
+    for (const Field& item : *field.fields) items.push_back(value_of(item));
   return items;
 }
 
@@ -193,7 +197,7 @@ Field number(std::string key, const std::optional<double>& value, About about) {
 Field integer(std::string key, const std::optional<int>& value, About about) {
   const bool nullable = !about.why_null.empty();
   return {std::move(key),
-          {.kind = Kind::number, .nullable = nullable},
+          {.kind = Kind::integer, .nullable = nullable},
           std::move(about),
           or_null(value)};
 }
@@ -203,6 +207,12 @@ Field magnitude(std::string key, const std::optional<double>& value, About about
   return with_number(std::move(key), value,
                      {.kind = Kind::number, .nullable = nullable, .not_negative = true},
                      std::move(about));
+}
+
+Field probability(std::string key, const std::optional<double>& value, About about) {
+  Field field = magnitude(std::move(key), value, std::move(about));
+  field.shape.maximum = 1.0;
+  return field;
 }
 
 Field measured(std::string key,
@@ -232,7 +242,8 @@ Field measured(std::string key,
 }
 
 Field interval(std::string key, const std::optional<std::array<double, 2>>& ends, About about) {
-  Field field{std::move(key), {.kind = Kind::list, .nullable = true}, std::move(about)};
+  Field field{
+      std::move(key), {.kind = Kind::list, .nullable = true, .length = 2}, std::move(about)};
   if (ends) field.fields = Fields{number({}, (*ends)[0]), number({}, (*ends)[1])};
   return field;
 }
@@ -258,6 +269,21 @@ Field map(std::string key, Fields entries, About about) {
 Field list(std::string key, Fields items, About about) {
   Field field{std::move(key), {Kind::list}, std::move(about)};
   field.fields = std::move(items);
+  return field;
+}
+
+Field fixed_list(std::string key, Fields items, About about) {
+  Field field = list(std::move(key), std::move(items), std::move(about));
+  field.shape.length = field.fields->size();
+  return field;
+}
+
+Field without_value(Field field, std::string_view why) {
+  field.shape.nullable = true;
+  field.about.why_null = why;
+  field.scalar = {};
+  field.figure.reset();
+  field.fields.reset();
   return field;
 }
 

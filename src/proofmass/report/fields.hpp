@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -37,15 +39,19 @@ struct About {
 
 /// What may stand under a key.
 struct Shape {
-  enum class Kind { text, choice, flag, count, number, quantity, list, object, map };
+  enum class Kind { text, choice, flag, count, integer, number, quantity, list, object, map };
 
   Kind kind = Kind::text;
   std::string unit = {};                  ///< of a quantity
   std::vector<std::string> choices = {};  ///< of a choice
   bool nullable = false;
-  bool not_negative = false;  ///< of a number
-  bool std_nullable = false;  ///< of a quantity
-  bool of_texts = false;      ///< of a list
+  bool not_negative = false;               ///< of a number
+  bool std_nullable = false;               ///< of a quantity
+  bool of_texts = false;                   ///< of a list
+  std::optional<std::size_t> length = {};  ///< of a list that always has as many items
+  std::optional<double> maximum = {};      ///< of a number or count
+  std::string pattern = {};  ///< regular expression: of a text, or of the keys of a map
+  bool decides = false;      ///< of a choice: which entries the object has depends on it
 };
 
 struct Field {
@@ -55,6 +61,12 @@ struct Field {
   Value scalar = {};                     ///< null where there is no value, and in lists and objects
   std::optional<Uncertain> figure = {};  ///< of a quantity; its std NaN where there is none
   std::optional<Fields> fields = {};     ///< of a list or an object
+  /// Of a long list, whose first item alone is in `fields`.
+  struct Items {
+    std::size_t count = 0;
+    std::function<Fields(std::size_t)> at = {};  ///< the entries of an item
+  };
+  std::optional<Items> items = {};
 };
 
 // One function for each kind. A number that is not finite is absent.
@@ -71,13 +83,18 @@ namespace field {
 [[nodiscard]] Field flag(std::string key, bool value, About about = {});
 [[nodiscard]] Field flag(std::string key, const std::optional<bool>& value, About about = {});
 [[nodiscard]] Field count(std::string key, std::size_t value, About about = {});
+/// A whole number that may be negative.
+[[nodiscard]] Field integer(std::string key, const std::optional<int>& value, About about = {});
 [[nodiscard]] Field number(std::string key, double value, About about = {});
 [[nodiscard]] Field number(std::string key, const std::optional<double>& value, About about = {});
-[[nodiscard]] Field integer(std::string key, const std::optional<int>& value, About about = {});
 /// A number that cannot be negative: a length, a standard deviation, a probability.
 [[nodiscard]] Field magnitude(std::string key,
                               const std::optional<double>& value,
                               About about = {});
+/// A probability, or another number from 0 to 1.
+[[nodiscard]] Field probability(std::string key,
+                                const std::optional<double>& value,
+                                About about = {});
 /// {"value", "std", "unit"}.
 [[nodiscard]] Field measured(std::string key,
                              const std::optional<Uncertain>& value,
@@ -100,16 +117,28 @@ namespace field {
 [[nodiscard]] Field map(std::string key, Fields entries, About about = {});
 /// The items' keys are left empty.
 [[nodiscard]] Field list(std::string key, Fields items, About about = {});
+/// A list that always has as many items.
+[[nodiscard]] Field fixed_list(std::string key, Fields items, About about = {});
+/// The same entry without its value.
+[[nodiscard]] Field without_value(Field field, std::string_view why);
 
 /// A list of strings.
 [[nodiscard]] Field texts(std::string key, const std::vector<std::string>& items, About about = {});
+
+/// Whether the type says how many values there are: std::array, fixed vectors of Eigen.
+template <class Range>
+inline constexpr bool has_fixed_size = requires { std::tuple_size<Range>::value; } ||
+                                       requires { requires(Range::SizeAtCompileTime > 0); };
 
 /// A list of numbers.
 template <class Range>
 [[nodiscard]] Field numbers(std::string key, const Range& range, About about = {}) {
   Fields items;
   for (const double value : range) items.push_back(number({}, value));
-  return list(std::move(key), std::move(items), std::move(about));
+  if constexpr (has_fixed_size<Range>)
+    return fixed_list(std::move(key), std::move(items), std::move(about));
+  else
+    return list(std::move(key), std::move(items), std::move(about));
 }
 
 /// A list with one object for each element: `fields_of(element)`.
@@ -121,6 +150,21 @@ template <class Range, class FieldsOf>
   Fields items;
   for (const auto& element : range) items.push_back(object({}, fields_of(element)));
   return list(std::move(key), std::move(items), std::move(about));
+}
+
+/// The same for as many as a million elements: their entries are made one at a time, while the
+/// document is written; `range` must live until then. No entry may be absent.
+template <class Range, class FieldsOf>
+[[nodiscard]] Field long_records(std::string key,
+                                 const Range& range,
+                                 FieldsOf fields_of,
+                                 About about = {}) {
+  Fields first;
+  if (!range.empty()) first.push_back(object({}, fields_of(range.front())));
+  Field field = list(std::move(key), std::move(first), std::move(about));
+  field.items = Field::Items{range.size(),
+                             [&range, fields_of](std::size_t k) { return fields_of(range[k]); }};
+  return field;
 }
 
 /// The texts of all notes, under "notes".

@@ -83,6 +83,31 @@ TEST(Fields, AQuantityMayLackItsStandardDeviationAlone) {
   EXPECT_EQ(shown_value(bias), "0.500000 V");
 }
 
+TEST(Fields, WithoutValueKeepTheirKeyAndTheirReason) {
+  const Field none = field::without_value(field::count("samples", 3), "not analysed");
+  EXPECT_EQ(json_text(json_of({none})), "{\n  \"samples\": null\n}");
+  EXPECT_EQ(reasons_for_nulls({none}), Reasons{"samples: null: not analysed"});
+  EXPECT_TRUE(is_absent(field::without_value(field::list("rests", {}), "not analysed")));
+}
+
+TEST(Fields, ALongListIsWrittenFromItsElements) {
+  std::vector<int> elements{1, 2};
+  const Field list =
+      field::long_records("a", elements, [](int k) { return Fields{field::integer("k", k)}; });
+  elements[1] = 7;
+  EXPECT_EQ(json_text(json_of({list})),
+            "{\n  \"a\": [\n    {\n      \"k\": 1\n    },\n    {\n      \"k\": 7\n    }\n  ]\n}");
+  const std::vector<int> none;
+  EXPECT_EQ(json_text(json_of({field::long_records(
+                "a", none, [](int k) { return Fields{field::integer("k", k)}; })})),
+            "{\n  \"a\": []\n}");
+}
+
+TEST(Fields, WholeNumbersMayBeNegative) {
+  EXPECT_EQ(json_text(json_of({field::integer("alpha", -2)})), "{\n  \"alpha\": -2\n}");
+  EXPECT_TRUE(is_absent(field::integer("alpha", std::nullopt)));
+}
+
 TEST(ShownValue, IsInTheDisplayUnit) {
   const Field angle = field::measured("angle_rad", Uncertain{1.0, 0.01}, "rad",
                                       {.display = Display{"°", 180.0 / 3.14159265358979}});

@@ -104,7 +104,7 @@ Field cross_axis(const ModelOutput& output) {
     fields = Fields{field::measured("value", output.cross_axis->value, "1",
                                     {.why_null = output.cross_axis->reason}),
                     field::magnitude("upper_95", output.cross_axis->upper_95),
-                    field::magnitude("p", output.cross_axis->p)};
+                    field::probability("p", output.cross_axis->p)};
   return field::object_or_null("cross_axis_sensitivity", std::move(fields),
                                {.meaning = "sqrt(delta_o^2 + delta_p^2)",
                                 .why_null = "needs delta_o and delta_p, both determined"});
@@ -114,7 +114,7 @@ Field residual_test(const ModelFit& fit) {
   std::optional<Fields> fields;
   if (fit.test)
     fields = Fields{field::magnitude("chi_square", fit.test->chi_square),
-                    field::magnitude("p", fit.test->p)};
+                    field::probability("p", fit.test->p)};
   return field::object_or_null(
       "residual_test", std::move(fields),
       {.meaning = "of the residuals against the stated standard deviations",

@@ -110,6 +110,14 @@ inline ChannelNoise fake_channel(const std::string& name) {
   return channel;
 }
 
+inline ChannelNoise refused_channel(const std::string& name) {
+  ChannelNoise channel;
+  channel.name = name;
+  channel.unit = *parse_unit("m/s^2");
+  channel.refused = "the values do not vary";
+  return channel;
+}
+
 inline NoiseReport fake_noise_report() {
   NoiseReport report;
   report.inputs = {"rest <1>.csv"};

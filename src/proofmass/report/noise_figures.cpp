@@ -205,9 +205,10 @@ Figure deviation_figure(const ChannelNoise& channel) {
       .title =
           fmt::format("{}: {}", channel.name, characterise::title_of(analysis.deviation.statistic)),
       .description =
-          allan ? "How far means over τ scatter, with what the recording is found to be made of."
-                : "The terms are fitted to the spectrum, as Allan deviations; this statistic "
-                  "weighs them otherwise, so they are not drawn.",
+          allan
+              ? "Scatter of means over τ, with the terms identified in the recording."
+              : "The terms are not drawn: fitted to the spectrum, they are Allan deviations, with "
+                "which this statistic is not comparable.",
       .x = {.label = "Averaging time τ (s)", .scale = AxisScale::log},
       .y = {.label = "Deviation" + (shown.symbol.empty() ? "" : " (" + shown.symbol + ")"),
             .scale = AxisScale::log},
@@ -241,7 +242,7 @@ Figure parts_figure(const ChannelNoise& channel) {
   }
   band.x = level.x;
   return {.title = channel.name + ": white noise over time",
-          .description = "N of each part of the recording by itself, with its 95 % interval.",
+          .description = "N of each part of the recording, with its 95 % interval.",
           .x = {.label = "Time (s)"},
           .y = {.label = "N (" + shown.symbol + ")"},
           .bands = {std::move(band)},
@@ -252,8 +253,8 @@ Figure spectrum_figure(const ChannelNoise& channel) {
   const NoiseAnalysis& analysis = *channel.analysis;
   const signal::Spectrum& spectrum = analysis.spectrum;
   Curve curve{"spectrum", {}, {}};
-  Curve fitted{"fitted density, lines left out", {}, {}, Ink::orange};
-  // The ends stand for half a band each, and are no densities like the others.
+  Curve fitted{"fitted density, without lines", {}, {}, Ink::orange};
+  // The end bins are half as wide: theirs are not densities like the others.
   for (std::size_t k = 1; k + 1 < spectrum.frequency_hz.size(); ++k) {
     curve.x.push_back(spectrum.frequency_hz[k]);
     curve.y.push_back(std::sqrt(spectrum.one_sided_psd[k]));
@@ -266,8 +267,8 @@ Figure spectrum_figure(const ChannelNoise& channel) {
   }
   Figure figure{.title = channel.name + ": spectrum",
                 .description = fmt::format(
-                    "One-sided density, the mean of {} of {} samples under a Hann window; a "
-                    "density as data sheets give it, √2 above N.",
+                    "One-sided density as in data sheets, √2 N for white noise; mean over {} of {} "
+                    "samples with a Hann window.",
                     count_words(spectrum.averaged, "segment"), grouped(spectrum.segment)),
                 .x = {.label = "Frequency (Hz)", .scale = AxisScale::log},
                 .y = {.label = "Density (" + shown.symbol + ")", .scale = AxisScale::log},

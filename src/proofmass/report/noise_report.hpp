@@ -8,6 +8,7 @@
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/units.hpp"
+#include "proofmass/report/document.hpp"
 #include "proofmass/report/rest_share.hpp"
 
 namespace proofmass::report {
@@ -29,7 +30,7 @@ struct ChannelNoise {
   std::optional<RestShare> rest;  ///< absent where it was not looked for
 };
 
-/// The noise of a recording and what it was computed from.
+/// Noise of a recording and what it was computed from.
 struct NoiseReport {
   std::vector<std::string> inputs;  ///< files, as the user named them
   std::vector<ChannelNoise> channels;
@@ -37,22 +38,9 @@ struct NoiseReport {
   bool events_excluded = false;
 };
 
-/// The document of `noise`: docs/schema/noise.schema.json.
-[[nodiscard]] std::string noise_json(const NoiseReport& report);
-
-/// The page: conclusion, key figures, and for each channel the deviation with what it is made of,
-/// the spectrum, coefficients, lines and events.
-[[nodiscard]] std::string noise_html(const NoiseReport& report);
-
-/// For a terminal, without colour, closed by a newline: per channel a table and plain sentences.
-[[nodiscard]] std::string noise_text(const NoiseReport& report);
-
-/// "White noise 75.2 ± 0.3 µg/√Hz. No random walk seen: …", or of several channels their white
-/// noise side by side.
-[[nodiscard]] std::string noise_conclusion(const NoiseReport& report);
-
-/// All notes: the report's own, then each channel's with its name, refusals as Severity::bad.
-[[nodiscard]] std::vector<Note> noise_notes(const NoiseReport& report);
+/// For each channel the deviation, its decomposition into coefficients, the spectrum, lines and
+/// events. It refers to the report, which must outlive it.
+[[nodiscard]] Document describe(const NoiseReport& report);
 
 /// The deviation curves as a table without a time base: tau_s, then for each channel value, lower
 /// and upper limit; NaN where a channel has no such τ. What `--output` writes.

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <string>
 
-#include "proofmass/report/json.hpp"
 #include "proofmass/report/noise_fake.hpp"
 #include "proofmass/report/noise_figures.hpp"
 #include "proofmass/report/noise_wording.hpp"
@@ -17,17 +17,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr double ug = 1e-6 * standard_gravity_mps2;
 
-ChannelNoise refused(const std::string& name) {
-  ChannelNoise channel;
-  channel.name = name;
-  channel.unit = *parse_unit("m/s^2");
-  channel.refused = "the values do not vary";
-  return channel;
-}
-
 bool says(const std::vector<std::string>& sentences, const std::string& part) {
   return std::ranges::any_of(
       sentences, [&](const std::string& s) { return s.find(part) != std::string::npos; });
+}
+
+Json parsed(const NoiseReport& report) {
+  return Json::parse(to_json(describe(report)));
 }
 
 bool warns(const Json& document, const std::string& part) {
@@ -62,13 +58,13 @@ TEST(NoiseWords, LeaveUnknownUnitsAlone) {
   EXPECT_EQ(noise_words(3.0, *parse_unit("counts"), NoiseScale::walk), "3.00 counts/√s");
 }
 
-TEST(NoiseFindings, SayWhatWasFoundWhatWasNotAndHowLongWouldDo) {
+TEST(NoiseFindings, GiveLimitsAndTheRecordNeededForWhatIsNotIdentified) {
   const auto sentences = noise_findings(fake_channel("acc_x"));
   EXPECT_EQ(sentences[0], "White noise 75.20 ± 0.30 µg/√Hz.");
   EXPECT_TRUE(says(sentences, "Flicker noise (bias instability) 21.0 ± 2.0 µg"));
   EXPECT_TRUE(says(sentences,
-                   "No random walk seen: below 1.20 µg/√s with 95 % confidence; at that size 3 h "
-                   "of recording would show it."));
+                   "No random walk detected: below 1.20 µg/√s with 95 % confidence; identifying as "
+                   "much needs 3 h of recording."));
   EXPECT_TRUE(says(sentences, "1 knock and 1 step of level"));
 }
 
@@ -79,17 +75,17 @@ TEST(NoiseFindings, WarnOfALineThatReadsAsWhiteNoise) {
 }
 
 TEST(NoiseFindings, OfARefusedChannelAreTheReason) {
-  EXPECT_EQ(noise_findings(refused("z")),
+  EXPECT_EQ(noise_findings(refused_channel("z")),
             (std::vector<std::string>{"Not analysed: the values do not vary."}));
 }
 
-TEST(EventTime, IsToldToTheSample) {
+TEST(EventTime, HasTheResolutionOfASample) {
   EXPECT_EQ(event_time_words({signal::EventKind::knock, 1240, 1263, 1.0, 9.0}, 100.0),
             "12.40 … 12.63 s");
   EXPECT_EQ(event_time_words({signal::EventKind::step, 5, 5, 1.0, 9.0}, 1.0), "5 s");
 }
 
-TEST(NoiseFindings, TellADriftAndWhatItComesToOverTheRecording) {
+TEST(NoiseFindings, GiveADriftAndItsSizeOverTheRecording) {
   ChannelNoise channel = fake_channel("acc_x");
   channel.analysis->model.ramp = identified(0.02 * ug, 0.001 * ug);
   channel.analysis->model.slope_per_s = -0.02 * ug;
@@ -125,7 +121,7 @@ TEST(FlickerTau, LiesInTheMinimumOrBetweenTheWhiteNoiseAndTheEnd) {
 }
 
 TEST(NoiseJson, HasTheCurveTheCoefficientsAndBothDensities) {
-  const Json json = Json::parse(noise_json(fake_noise_report()));
+  const Json json = parsed(fake_noise_report());
   const Json& channel = json["channels"][0];
   EXPECT_EQ(channel["deviation"]["statistic"], "oadev");
   EXPECT_EQ(channel["deviation"]["points"][0]["tau_s"], 0.01);
@@ -142,7 +138,7 @@ TEST(NoiseJson, HasTheCurveTheCoefficientsAndBothDensities) {
 }
 
 TEST(NoiseJson, GivesEstimatorsSquaresOfTheCoefficients) {
-  const Json filter = Json::parse(noise_json(fake_noise_report()))["channels"][0]["filter"];
+  const Json filter = parsed(fake_noise_report())["channels"][0]["filter"];
   const double N = 75.2 * ug, B = 21.0 * ug;
   EXPECT_DOUBLE_EQ(filter["sample_variance"]["value"].get<double>(), N * N * 100.0);
   EXPECT_DOUBLE_EQ(filter["white_psd"]["std"].get<double>(), 2.0 * N * 0.3 * ug);
@@ -154,7 +150,7 @@ TEST(NoiseJson, GivesEstimatorsSquaresOfTheCoefficients) {
 
 TEST(NoiseJson, ThinsTheSpectrumAndKeepsItsPower) {
   const NoiseReport report = fake_noise_report();
-  const Json spectrum = Json::parse(noise_json(report))["channels"][0]["spectrum"];
+  const Json spectrum = parsed(report)["channels"][0]["spectrum"];
   const auto f = spectrum["frequency_hz"].get<std::vector<double>>();
   const auto psd = spectrum["one_sided_psd"].get<std::vector<double>>();
   ASSERT_EQ(f.size(), psd.size());
@@ -167,25 +163,26 @@ TEST(NoiseJson, ThinsTheSpectrumAndKeepsItsPower) {
 
 TEST(NoiseJson, SaysWhyForEveryNull) {
   NoiseReport report = fake_noise_report();
-  report.channels.push_back(refused("acc_z"));
-  const Json json = Json::parse(noise_json(report));
+  report.channels.push_back(refused_channel("acc_z"));
+  const Json json = parsed(report);
   EXPECT_TRUE(json["channels"][1]["deviation"].is_null());
   EXPECT_TRUE(json["channels"][1]["parameters"].is_null());
   EXPECT_TRUE(warns(json, "acc_z: not analysed: the values do not vary"));
-  EXPECT_TRUE(warns(json, "acc_x: record_needed_s: null for quantisation"));
-  EXPECT_TRUE(warns(json, "acc_x: bandwidth_hz: null"));
-  EXPECT_TRUE(warns(json, "bias_psd: null"));
+  EXPECT_TRUE(warns(json, "channels[1] (acc_z): stationarity, deviation, parameters"));
+  EXPECT_TRUE(warns(json, "parameters.quantisation.record_needed_s: null"));
+  EXPECT_TRUE(warns(json, "(acc_x): bandwidth_hz: null"));
+  EXPECT_TRUE(warns(json, "filter.bias_psd: null"));
 }
 
 TEST(NoiseJson, HasTheLag1TypeOnlyWhereItWasAskedFor) {
   NoiseReport report = fake_noise_report();
-  const auto point = [&] {
-    return Json::parse(noise_json(report))["channels"][0]["deviation"]["points"][0];
-  };
+  const auto point = [&] { return parsed(report)["channels"][0]["deviation"]["points"][0]; };
   EXPECT_FALSE(point().contains("alpha_lag1"));
   report.channels[0].analysis->deviation.points[0].alpha_lag1 = -1;
   EXPECT_EQ(point()["alpha_lag1"], -1);
-  EXPECT_TRUE(warns(Json::parse(noise_json(report)), "alpha_lag1: null where"));
+  const std::size_t others = report.channels[0].analysis->deviation.points.size() - 1;
+  EXPECT_TRUE(warns(parsed(report), "channels[].deviation.points[]: alpha_lag1: null (" +
+                                        std::to_string(others) + " times): needs 30 averages"));
 }
 
 TEST(NoiseReports, OfARecordTooShortForCoefficientsGiveTheDeviationAlone) {
@@ -195,21 +192,21 @@ TEST(NoiseReports, OfARecordTooShortForCoefficientsGiveTheDeviationAlone) {
   analysis.spectrum = {};
   analysis.lines = {};
   analysis.deviation.points.resize(3);
-  const Json json = Json::parse(noise_json(report));
+  const Json json = parsed(report);
   EXPECT_TRUE(json["channels"][0]["parameters"].is_null());
   EXPECT_TRUE(json["channels"][0]["spectrum"].is_null());
   EXPECT_EQ(json["channels"][0]["deviation"]["points"].size(), 3U);
-  EXPECT_TRUE(warns(json, "null for parameters, slow_change, bandwidth_hz, misfit, filter"));
-  const std::string text = noise_text(report);
+  EXPECT_TRUE(warns(json, "parameters, slow_change, bandwidth_hz, misfit, filter: null"));
+  const std::string text = to_text(describe(report));
   EXPECT_NE(text.find("Too short for coefficients"), std::string::npos);
   EXPECT_NE(text.find("68.3 % limits"), std::string::npos);
   EXPECT_EQ(text.find("White noise"), std::string::npos);
-  EXPECT_NE(noise_html(report).find("</html>"), std::string::npos);
+  EXPECT_NE(to_html(describe(report)).find("</html>"), std::string::npos);
 }
 
 TEST(NoiseSeries, HasOneRowForEachTauAndThreeColumnsForEachChannel) {
   NoiseReport report = fake_noise_report();
-  report.channels.push_back(refused("acc_y"));
+  report.channels.push_back(refused_channel("acc_y"));
   report.channels.push_back(fake_channel("acc_z"));
   report.channels.back().analysis->deviation.points.pop_back();
   const Recording table = noise_series(report);
@@ -221,26 +218,45 @@ TEST(NoiseSeries, HasOneRowForEachTauAndThreeColumnsForEachChannel) {
   EXPECT_TRUE(std::isfinite(table.channels[1].values.back()));
 }
 
-TEST(NoiseText, SaysOfEachChannelWhatItIsOrWhyNot) {
+TEST(NoiseText, HasTheResultOfEachChannelOrWhyThereIsNone) {
   NoiseReport report = fake_noise_report();
-  report.channels.push_back(refused("acc_z"));
-  const std::string text = noise_text(report);
-  EXPECT_NE(text.find("acc_x: 2 h 47 min at 100 Hz"), std::string::npos) << text;
+  report.channels.push_back(refused_channel("acc_z"));
+  const std::string text = to_text(describe(report));
+  EXPECT_NE(
+      text.find(
+          "acc_x:\n  1\u202f000\u202f000 samples at 100 Hz, 2 h 47 min, 120 of them missing."),
+      std::string::npos)
+      << text;
   EXPECT_NE(text.find("0, below 1.20 µg/√s (95 %)"), std::string::npos);
-  EXPECT_NE(text.find("acc_z: not analysed: the values do not vary"), std::string::npos);
+  EXPECT_NE(text.find("acc_z:\n  - Not analysed: the values do not vary"), std::string::npos);
 }
 
 TEST(NoiseConclusion, OfSeveralChannelsPutsTheirWhiteNoiseSideBySide) {
   NoiseReport report = fake_noise_report();
-  report.channels.push_back(refused("acc_z"));
-  EXPECT_EQ(noise_conclusion(report),
+  report.channels.push_back(refused_channel("acc_z"));
+  EXPECT_EQ(describe(report).page.conclusion,
             "White noise: acc_x 75.20 ± 0.30 µg/√Hz; acc_z not analysed.");
 }
 
 TEST(NoiseNotes, MakeARefusalBadData) {
   NoiseReport report = fake_noise_report();
-  report.channels.push_back(refused("acc_z"));
-  EXPECT_EQ(noise_notes(report).back().severity, Severity::bad);
+  report.channels.push_back(refused_channel("acc_z"));
+  EXPECT_EQ(describe(report).page.notes.back().severity, Severity::bad);
+}
+
+TEST(NoiseReports, FailOnlyIfNoChannelCouldBeAnalysed) {
+  NoiseReport report = fake_noise_report();
+  report.channels.push_back(refused_channel("acc_z"));
+  EXPECT_EQ(describe(report).failure, "");
+  report.channels.erase(report.channels.begin());
+  EXPECT_EQ(describe(report).failure, "no channel can be analysed: acc_z: the values do not vary");
+}
+
+TEST(NoiseText, OfASingleChannelDoesNotRepeatTheConclusion) {
+  const NoiseReport report = fake_noise_report();
+  const std::string text = to_text(describe(report));
+  EXPECT_EQ(text.find("No random walk detected"), text.rfind("No random walk detected"));
+  EXPECT_NE(text.find("- A line at 0.562 Hz"), std::string::npos);
 }
 
 TEST(NoiseFigures, MarkEachTermWhereItIsRead) {
@@ -262,8 +278,8 @@ TEST(NoiseFigures, DrawNoAllanTermsUnderAnotherStatistic) {
 
 TEST(NoiseHtml, HasTwoFiguresForEachChannelAndNoneForARefusedOne) {
   NoiseReport report = fake_noise_report();
-  report.channels.push_back(refused("acc_z"));
-  const std::string page = noise_html(report);
+  report.channels.push_back(refused_channel("acc_z"));
+  const std::string page = to_html(describe(report));
   std::size_t figures = 0;
   for (std::size_t at = page.find("</svg>"); at != std::string::npos;
        at = page.find("</svg>", at + 1)) {
@@ -277,10 +293,11 @@ TEST(NoiseReports, SayFirstThatTheSensorMoved) {
   NoiseReport report = fake_noise_report();
   report.channels.front().rest =
       RestShare{.share = 0.12, .longest_start_s = 3.0, .longest_end_s = 8.5};
-  EXPECT_EQ(noise_conclusion(report).find("Not at rest: 12 %"), 0U);
-  EXPECT_LT(noise_text(report).find("Not at rest"), noise_text(report).find("White noise N"));
-  EXPECT_NE(noise_text(report).find("--from 3.00 --to 8.50"), std::string::npos);
-  EXPECT_FALSE(texts(noise_notes(report), Severity::bad).empty());
+  const Document document = describe(report);
+  EXPECT_EQ(document.page.conclusion.find("Not at rest: only 12 %"), 0U);
+  EXPECT_NE(document.page.conclusion.find("--from 3.00 --to 8.50"), std::string::npos);
+  EXPECT_EQ(to_text(document).find(document.page.conclusion), 0U);
+  EXPECT_FALSE(texts(document.page.notes, Severity::bad).empty());
 }
 
 TEST(NoiseReports, SayFirstThatTheNoiseChanges) {
@@ -293,9 +310,9 @@ TEST(NoiseReports, SayFirstThatTheNoiseChanges) {
                            .line_hz = std::nullopt,
                            .relative_level = {0.7, 1.4}};
   analysis.parts = {{0.0, 5000.0, analysis.model}, {5000.0, 10'000.0, analysis.model}};
-  EXPECT_EQ(noise_conclusion(report).find("Not stationary"), 0U);
-  EXPECT_NE(noise_html(report).find("white noise over time"), std::string::npos);
-  EXPECT_NE(noise_json(report).find("\"verdict\": \"not_stationary\""), std::string::npos);
+  EXPECT_EQ(describe(report).page.conclusion.find("Not stationary"), 0U);
+  EXPECT_NE(to_html(describe(report)).find("white noise over time"), std::string::npos);
+  EXPECT_EQ(parsed(report)["channels"][0]["stationarity"]["verdict"], "not_stationary");
 }
 
 TEST(NoiseReports, GiveAGyroscopesNoiseInTheUnitsOfItsMakers) {

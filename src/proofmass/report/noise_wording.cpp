@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "proofmass/report/noise_nulls.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {
@@ -13,7 +12,6 @@ namespace {
 using characterise::Coefficient;
 using characterise::NoiseAnalysis;
 using characterise::NoiseModelFit;
-using characterise::Verdict;
 
 bool is_acceleration(const Unit& unit) {
   return unit.quantity == Quantity::acceleration && unit.to_si == 1.0;
@@ -87,7 +85,7 @@ Base base_of(const Unit& unit, NoiseScale scale) {
 
 std::string unless_enough(const Coefficient& coefficient) {
   if (!coefficient.record_needed_s) return "";
-  return fmt::format("; at that size {} of recording would show it",
+  return fmt::format("; identifying as much needs {} of recording",
                      duration_words(*coefficient.record_needed_s));
 }
 
@@ -96,17 +94,17 @@ std::string white_sentence(const ChannelNoise& channel, const Coefficient& white
     return fmt::format("White noise {}.",
                        coefficient_words(white, channel.unit, NoiseScale::density));
   }
-  return fmt::format("White noise cannot be told apart: below {} with 95 % confidence.",
+  return fmt::format("White noise is not identifiable: below {} with 95 % confidence.",
                      noise_words(white.upper_95, channel.unit, NoiseScale::density));
 }
 
 std::string flicker_sentence(const ChannelNoise& channel, const Coefficient& flicker) {
   if (is_identified(flicker)) {
     return fmt::format(
-        "Flicker noise (bias instability) {}: the curve's flat part is 0.664 of that.",
+        "Flicker noise (bias instability) {}; the flat part of the Allan deviation is 0.664 of it.",
         coefficient_words(flicker, channel.unit, NoiseScale::level));
   }
-  return fmt::format("No flicker noise seen: below {} with 95 % confidence{}.",
+  return fmt::format("No flicker noise detected: below {} with 95 % confidence{}.",
                      noise_words(flicker.upper_95, channel.unit, NoiseScale::level),
                      unless_enough(flicker));
 }
@@ -114,25 +112,25 @@ std::string flicker_sentence(const ChannelNoise& channel, const Coefficient& fli
 std::string walk_sentence(const ChannelNoise& channel, const Coefficient& walk) {
   if (is_identified(walk)) {
     const bool doubtful = walk.lower_95 == 0.0 && channel.analysis->model.slow_change;
-    return fmt::format("Random walk {}{}.", coefficient_words(walk, channel.unit, NoiseScale::walk),
-                       doubtful ? ", or a slow change: this recording cannot tell which" : "");
+    return fmt::format(
+        "Random walk {}{}.", coefficient_words(walk, channel.unit, NoiseScale::walk),
+        doubtful ? ", or a slow change: this recording does not distinguish them" : "");
   }
-  return fmt::format("No random walk seen: below {} with 95 % confidence{}.",
+  return fmt::format("No random walk detected: below {} with 95 % confidence{}.",
                      noise_words(walk.upper_95, channel.unit, NoiseScale::walk),
                      unless_enough(walk));
 }
 
-// What is only worth a sentence where it is there.
+// Terms that are mentioned only where they are present.
 void add_rarer_terms(const ChannelNoise& channel, std::vector<std::string>& sentences) {
   const NoiseModelFit& model = channel.analysis->model;
   const Unit& unit = channel.unit;
   if (model.slow_change && model.slow_change->taken_out) {
-    sentences.push_back(
-        fmt::format("A slow change of {} peak to peak, like a sine of {}, is not noise and was "
-                    "taken out of the "
-                    "coefficients: temperature, perhaps (--temperature).",
-                    noise_words(model.slow_change->peak_to_peak, unit, NoiseScale::level),
-                    duration_words(model.slow_change->period_s)));
+    sentences.push_back(fmt::format(
+        "A slow change of {} peak to peak, like a sine with a period of {}, was removed "
+        "before the fit: it is not noise, possibly temperature (--temperature).",
+        noise_words(model.slow_change->peak_to_peak, unit, NoiseScale::level),
+        duration_words(model.slow_change->period_s)));
   }
   if (is_identified(model.quantisation)) {
     sentences.push_back(
@@ -142,7 +140,7 @@ void add_rarer_terms(const ChannelNoise& channel, std::vector<std::string>& sent
   if (is_identified(model.ramp)) {
     const double whole = std::copysign(model.ramp.value, model.slope_per_s) * model.duration_s;
     sentences.push_back(
-        fmt::format("A steady drift of {}, {} over the recording: warming up, or temperature.",
+        fmt::format("A steady drift of {}, {} over the recording: warm-up or temperature.",
                     coefficient_words(model.ramp, unit, NoiseScale::slope),
                     noise_words(whole, unit, NoiseScale::level)));
   }
@@ -154,8 +152,7 @@ void add_rarer_terms(const ChannelNoise& channel, std::vector<std::string>& sent
   }
   if (model.bandwidth_hz) {
     sentences.push_back(fmt::format(
-        "A filter rolls the noise off at {}: averaging times below {} say nothing of the white "
-        "noise.",
+        "A filter rolls the noise off at {}: averaging times below {} do not show the white noise.",
         with_std(*model.bandwidth_hz, "Hz"),
         duration_words(5.0 / (rad_per_turn * model.bandwidth_hz->value))));
   }
@@ -200,8 +197,8 @@ void add_judgement(const NoiseAnalysis& analysis, std::vector<std::string>& sent
   const NoiseModelFit& model = analysis.model;
   if (model.misfit > 0.02 && model.misfit_p < 1e-3) {
     sentences.push_back(fmt::format(
-        "The spectrum departs from the model by {} % of the density: the standard deviations are "
-        "widened by it.",
+        "The spectrum departs from the model by {} % of the density; the standard deviations "
+        "include this.",
         significant(100.0 * model.misfit, 2)));
   }
   const auto knocks = static_cast<std::size_t>(
@@ -211,8 +208,34 @@ void add_judgement(const NoiseAnalysis& analysis, std::vector<std::string>& sent
   if (knocks > 0 || steps > 0) {
     std::string what = knocks > 0 ? count_words(knocks, "knock") : "";
     if (steps > 0) what += (what.empty() ? "" : " and ") + count_words(steps, "step") + " of level";
-    sentences.push_back(what + " found in the recording: see the events.");
+    sentences.push_back(what + " in the recording: see the events.");
   }
+}
+
+std::vector<std::string> doubts_of(const ChannelNoise& channel) {
+  std::vector<std::string> sentences;
+  if (!channel.analysis) return sentences;
+  if (std::string moving = motion_sentence(channel.rest, "noise"); !moving.empty())
+    sentences.push_back(std::move(moving));
+  const NoiseAnalysis& analysis = *channel.analysis;
+  const characterise::Stationarity& found = analysis.stationarity;
+  if (found.stationary) return sentences;
+  const auto [least, most] = std::ranges::minmax(found.relative_level);
+  std::string text = fmt::format(
+      "Not stationary (p = {}): {} changes by a factor of {} over the recording",
+      significant(found.p, 1),
+      found.line_hz ? "the line at " + compact(*found.line_hz, 4) + " Hz"
+                    : "the noise at averaging times near " + duration_words(found.averaging_s),
+      significant(most / least, 3));
+  if (!analysis.parts.empty()) {
+    const auto white = [](const characterise::NoisePart& part) { return part.model.white.value; };
+    const auto [low, high] = std::ranges::minmax(analysis.parts, {}, white);
+    text += fmt::format(", white noise from {} to {} in its parts",
+                        noise_words(white(low), channel.unit, NoiseScale::density),
+                        noise_words(white(high), channel.unit, NoiseScale::density));
+  }
+  sentences.push_back(text + ". The figures are averages over the recording.");
+  return sentences;
 }
 
 }  // namespace
@@ -276,6 +299,10 @@ bool has_coefficients(const ChannelNoise& channel) {
   return channel.analysis && channel.analysis->model.ordinates > 0;
 }
 
+bool has_spectrum(const ChannelNoise& channel) {
+  return channel.analysis && channel.analysis->spectrum.frequency_hz.size() > 1;
+}
+
 std::string coefficient_words(const Coefficient& coefficient, const Unit& unit, NoiseScale scale) {
   if (is_identified(coefficient)) {
     return noise_words(Uncertain{coefficient.value, coefficient.std}, unit, scale);
@@ -285,10 +312,9 @@ std::string coefficient_words(const Coefficient& coefficient, const Unit& unit, 
 
 std::string verdict_words(const Coefficient& coefficient, double duration_s) {
   if (is_identified(coefficient)) return "identified";
-  if (!coefficient.record_needed_s) return "not observable";
-  const bool as_long = *coefficient.record_needed_s <= duration_s;
-  return fmt::format("not observable; {} would show that much",
-                     as_long ? "this length" : duration_words(*coefficient.record_needed_s));
+  if (!coefficient.record_needed_s || *coefficient.record_needed_s <= duration_s)
+    return "not observable";
+  return fmt::format("not observable; needs {}", duration_words(*coefficient.record_needed_s));
 }
 
 bool estimates_allan(characterise::Statistic statistic) {
@@ -344,32 +370,6 @@ std::vector<CurveReading> curve_readings(const characterise::DeviationCurve& cur
   return readings;
 }
 
-std::vector<std::string> doubts_of(const ChannelNoise& channel) {
-  std::vector<std::string> sentences;
-  if (!channel.analysis) return sentences;
-  if (std::string moving = motion_sentence(channel.rest, "noise"); !moving.empty())
-    sentences.push_back(std::move(moving));
-  const NoiseAnalysis& analysis = *channel.analysis;
-  const characterise::Stationarity& found = analysis.stationarity;
-  if (found.stationary) return sentences;
-  const auto [least, most] = std::ranges::minmax(found.relative_level);
-  std::string text = fmt::format(
-      "Not stationary (p = {}): {} changes by a factor of {} over the recording",
-      significant(found.p, 1),
-      found.line_hz ? "the line at " + compact(*found.line_hz, 4) + " Hz"
-                    : "the noise at averaging times near " + duration_words(found.averaging_s),
-      significant(most / least, 3));
-  if (!analysis.parts.empty()) {
-    const auto white = [](const characterise::NoisePart& part) { return part.model.white.value; };
-    const auto [low, high] = std::ranges::minmax(analysis.parts, {}, white);
-    text += fmt::format(", white noise from {} to {} in its parts",
-                        noise_words(white(low), channel.unit, NoiseScale::density),
-                        noise_words(white(high), channel.unit, NoiseScale::density));
-  }
-  sentences.push_back(text + ". The figures are averages over it.");
-  return sentences;
-}
-
 std::vector<std::string> common_doubts(const NoiseReport& report) {
   std::string moving, changing;
   const auto add = [](std::string& names, const std::string& name) {
@@ -406,7 +406,7 @@ std::vector<std::string> noise_findings(const ChannelNoise& channel) {
         shown_unit(channel.unit, NoiseScale::level, channel.temperature->coefficient.value);
     const Uncertain& c = channel.temperature->coefficient;
     sentences.push_back(
-        fmt::format("{} was taken out with {} per {}.", channel.temperature->channel,
+        fmt::format("The dependence on {} was removed: {} per {}.", channel.temperature->channel,
                     with_std(Uncertain{c.value * shown.per_si, c.std * shown.per_si}, shown.symbol),
                     channel.temperature->per));
   }
@@ -414,7 +414,7 @@ std::vector<std::string> noise_findings(const ChannelNoise& channel) {
 }
 
 std::string event_time_words(const signal::Event& event, double rate_hz) {
-  // As many decimals as tell neighbouring samples apart.
+  // As many decimals as distinguish neighbouring samples.
   const int decimals = std::max(0, static_cast<int>(std::ceil(std::log10(rate_hz))));
   const auto time = [&](std::size_t sample) {
     return fixed(static_cast<double>(sample) / rate_hz, decimals);

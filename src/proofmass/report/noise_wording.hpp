@@ -8,7 +8,7 @@
 
 #include "proofmass/report/noise_report.hpp"
 
-// How the results of a noise analysis read: units, figures, sentences.
+// Units, figures and sentences of a noise analysis.
 namespace proofmass::report {
 
 /// What a figure of noise is to the unit u of its series.
@@ -51,22 +51,30 @@ struct NamedCoefficient {
 };
 extern const std::array<NamedCoefficient, 5> named_coefficients;
 
-/// Whether there are coefficients: not of a refused channel, nor of a record too short for them.
+[[nodiscard]] inline bool is_identified(const characterise::Coefficient& coefficient) {
+  return coefficient.verdict == characterise::Verdict::identified;
+}
+
+/// Whether there are coefficients: not for a refused channel or a record too short for them.
 [[nodiscard]] bool has_coefficients(const ChannelNoise& channel);
+
+/// The same of a spectrum.
+[[nodiscard]] bool has_spectrum(const ChannelNoise& channel);
 
 /// "75.2 ± 0.3 µg/√Hz" or "0, below 1.2 µg/√s (95 %)"
 [[nodiscard]] std::string coefficient_words(const characterise::Coefficient& coefficient,
                                             const Unit& unit,
                                             NoiseScale scale);
 
-/// "identified", or how long a recording would show it; duration_s is that of the one at hand.
+/// "identified", or the length of recording that would identify it where that is longer than this
+/// one, of duration_s.
 [[nodiscard]] std::string verdict_words(const characterise::Coefficient& coefficient,
                                         double duration_s);
 
-/// The curve whose points may be laid beside the fitted Allan variance.
+/// Whether the statistic is comparable with the fitted Allan variance.
 [[nodiscard]] bool estimates_allan(characterise::Statistic statistic);
 
-/// Of the curve's values: of tdev and ttotdev u·s, of all others u.
+/// Scale of the curve's values: u·s for tdev and ttotdev, u for all others.
 [[nodiscard]] NoiseScale curve_scale(characterise::Statistic statistic);
 
 /// Averaging time about which flicker noise shows: the minimum of the fitted variance, or where it
@@ -83,7 +91,7 @@ struct LineEffect {
 [[nodiscard]] LineEffect line_effect(const characterise::NoiseAnalysis& analysis,
                                      const signal::SpectralLine& line);
 
-/// A point of the curve that is quoted for itself.
+/// A point of the curve that is quoted by itself.
 struct CurveReading {
   characterise::DeviationPoint point;
   bool is_minimum = false;
@@ -93,18 +101,14 @@ struct CurveReading {
 /// where it lies within the curve and not at an end.
 [[nodiscard]] std::vector<CurveReading> curve_readings(const characterise::DeviationCurve& curve);
 
-/// What has to be said before any figure: that the sensor was not at rest, that its noise was not
-/// stationary. The first sentences of noise_findings().
-[[nodiscard]] std::vector<std::string> doubts_of(const ChannelNoise& channel);
-
-/// Those of all channels together, each once with the channels' names.
+/// Doubts about all figures, at the beginning of those of noise_findings(): the sensor was not at
+/// rest, its noise was not stationary. Those of all channels, each once with their names.
 [[nodiscard]] std::vector<std::string> common_doubts(const NoiseReport& report);
 
-/// What the analysis comes to, sentence by sentence, the most important first; of a refused channel
-/// why.
+/// The result in sentences, the most important first; for a refused channel the reason.
 [[nodiscard]] std::vector<std::string> noise_findings(const ChannelNoise& channel);
 
-/// "12.40 … 12.63 s", "12.40 s": to the sample.
+/// "12.40 … 12.63 s", "12.40 s": with the resolution of a sample.
 [[nodiscard]] std::string event_time_words(const signal::Event& event, double rate_hz);
 
 }  // namespace proofmass::report

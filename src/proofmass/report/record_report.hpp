@@ -37,13 +37,4 @@ struct SourceList {
 [[nodiscard]] std::string source_list_text(const SourceList& list);
 [[nodiscard]] std::string source_list_json(const SourceList& list);
 
-struct RecoverReport {
-  std::string input;
-  Recovery recovery{};
-};
-
-/// The document of `recover`: docs/schema/recover.schema.json.
-[[nodiscard]] std::string recover_json(const RecoverReport& report);
-[[nodiscard]] std::string recover_text(const RecoverReport& report);
-
 }  // namespace proofmass::report

@@ -117,17 +117,5 @@ TEST(SourceList, ShowsWhatIsThereAndAllKinds) {
   EXPECT_EQ(nlohmann::json::parse(source_list_json(list))["found"][0]["uri"], "iio:local:");
 }
 
-TEST(RecoverReport, SaysWhatWasSavedAndWhatIsMissing) {
-  RecoverReport report{"run.mcap.part", {}};
-  report.recovery.file = "run.mcap";
-  report.recovery.samples = 59500;
-  report.recovery.last_s = 59.499;
-  report.recovery.notes = {{Severity::warning, "the end is missing: 812 bytes of a chunk"}};
-  const std::string text = recover_text(report);
-  EXPECT_THAT(text, HasSubstr("59\u202f500 samples, from 0.00 s to 59.50 s, saved in run.mcap"));
-  EXPECT_THAT(text, HasSubstr("the end is missing"));
-  EXPECT_EQ(nlohmann::json::parse(recover_json(report))["samples"], 59500);
-}
-
 }  // namespace
 }  // namespace proofmass::report::record_report_test

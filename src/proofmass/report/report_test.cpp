@@ -4,7 +4,6 @@
 
 #include "proofmass/core/version.hpp"
 #include "proofmass/report/budget_report.hpp"
-#include "proofmass/report/inspect_report.hpp"
 #include "proofmass/report/json.hpp"
 #include "proofmass/report/wheel_fake.hpp"
 #include "proofmass/report/wheel_figures.hpp"
@@ -155,35 +154,6 @@ TEST(BudgetReport, HasMilligramsBesideSiAndTheSameErrors) {
   EXPECT_EQ(json["rows"][0]["error_m"][0]["value"], 0.00147);
   EXPECT_NE(to_text(describe(report)).find("1.5 mm"), std::string::npos);
   EXPECT_NE(to_html(describe(report)).find("</svg>"), std::string::npos);
-}
-
-TEST(InspectJson, HasNullAndAReasonForAChannelWithoutAValue) {
-  Recording recording;
-  recording.channels = {{"a", {}, {std::nan(""), std::nan("")}}};
-  signal::RecordingAudit audit;
-  audit.format = "CSV";
-  audit.samples = 2;
-  audit.channels.resize(1);
-  audit.channels[0].name = "a";
-  audit.channels[0].nonfinite = 2;
-  const Json json = Json::parse(inspect_json({{"f.csv", recording, audit}}));
-  EXPECT_TRUE(json["channels"][0]["mean"].is_null());
-  EXPECT_TRUE(json["rate_hz"].is_null());
-  EXPECT_EQ(json["channels"][0]["nonfinite"], 2);
-  EXPECT_NE(json["warnings"].dump().find("a: mean, std, min, max: null"), std::string::npos);
-  EXPECT_NE(json["warnings"].dump().find("rate_hz"), std::string::npos);
-}
-
-TEST(InspectHtml, DrawsThreeChannelsOfOneUnitTogether) {
-  const Unit unit = *parse_unit("m/s^2");
-  Recording recording;
-  recording.time.rate_hz = 10.0;
-  for (const char* name : {"x", "y", "z", "w"})
-    recording.channels.push_back({name, unit, {1.0, 2.0}});
-  const signal::RecordingAudit audit;
-  const std::string text = inspect_html({{"f.csv", recording, audit}});
-  EXPECT_NE(text.find("Figure 2. w"), std::string::npos);
-  EXPECT_EQ(text.find("Figure 3."), std::string::npos);
 }
 
 }  // namespace

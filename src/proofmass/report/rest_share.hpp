@@ -1,12 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "proofmass/report/json.hpp"
+#include "proofmass/report/fields.hpp"
 
-// How much of a recording that should be at rest is: what `noise` and `drift` say of it.
+// What `noise` and `drift` share: whether the recording is at rest, and channels that cannot be
+// analysed.
 namespace proofmass::report {
 
 /// How much of a recording is at rest, and its longest rest.
@@ -14,22 +16,33 @@ struct RestShare {
   double share = 0.0;
   double longest_start_s = 0.0, longest_end_s = 0.0;  ///< on the recording's clock; equal if none
 
-  /// What is left out by a knock or next to the ends is no motion.
+  /// What a knock or the ends leave out is not motion.
   [[nodiscard]] bool is_at_rest() const { return share >= 0.9; }
 };
 
-/// "Not at rest: … The figures are of the motion, not of the sensor's noise; …", or empty.
+/// "Not at rest: … The figures describe the motion, not the sensor's noise; …", or empty.
 /// `what` is "noise" or "drift".
 [[nodiscard]] std::string motion_sentence(const std::optional<RestShare>& rest,
                                           std::string_view what);
 
-/// The same of several channels, in short: "Not at rest (x, y): the figures are of the motion."
+/// The same for several channels, in short: "Not at rest (x, y): the figures describe the motion."
 [[nodiscard]] std::string motion_sentence_of_channels(const std::string& names);
 
-/// The key `rest` of a channel.
-[[nodiscard]] Value rest_value(const std::optional<RestShare>& rest);
+/// The entry `rest` of a channel.
+[[nodiscard]] Field rest_field(const std::optional<RestShare>& rest);
 
-/// Why something in `rest` is null; empty where nothing is.
-[[nodiscard]] std::string rest_null_reason(const std::optional<RestShare>& rest);
+template <class Channel>
+[[nodiscard]] std::string why_not_analysed(const Channel& channel) {
+  return "not analysed: " + channel.refused;
+}
+
+/// Why no channel could be analysed, or empty where one was.
+template <class Channels>
+[[nodiscard]] std::string why_no_channel(const Channels& channels) {
+  const auto is_analysed = [](const auto& channel) { return channel.refused.empty(); };
+  if (channels.empty() || std::ranges::any_of(channels, is_analysed)) return {};
+  const auto& first = channels.front();
+  return "no channel can be analysed: " + first.name + ": " + first.refused;
+}
 
 }  // namespace proofmass::report

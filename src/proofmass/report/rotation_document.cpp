@@ -100,9 +100,9 @@ Fields ripple_fields(const calibrate::SpeedRipple& ripple) {
       field::measured("amplitude", ripple.amplitude, "1",
                       {.meaning = "relative variation of the speed",
                        .why_null = "the harmonics may be chance or the sensor's"}),
-      field::magnitude("chance_p", ripple.chance_p,
-                       {.meaning = "probability of these harmonics without ripple and "
-                                   "nonlinearity"}),
+      field::probability("chance_p", ripple.chance_p,
+                         {.meaning = "probability of these harmonics without ripple and "
+                                     "nonlinearity"}),
       field::flag("accepted", ripple.accepted,
                   {.meaning = "the harmonics are attributed to the ripple, not to the sensor"})};
 }

@@ -14,11 +14,14 @@ using Samples = std::vector<const Field*>;
 
 Object schema_of(const Samples& samples);
 
+bool is_nullable(const Samples& samples) {
+  return std::ranges::any_of(
+      samples, [](const Field* field) { return field->shape.nullable || is_absent(*field); });
+}
+
 // "number", or ["number", "null"].
 Value type_of(const char* name, const Samples& samples) {
-  const bool nullable = std::ranges::any_of(
-      samples, [](const Field* field) { return field->shape.nullable || is_absent(*field); });
-  if (!nullable) return name;
+  if (!is_nullable(samples)) return name;
   return Array{name, "null"};
 }
 
@@ -39,6 +42,46 @@ std::vector<KeySamples> by_key(const std::vector<const Fields*>& objects) {
   return keys;
 }
 
+// The word of the choice on which the other entries depend.
+const std::string& word_in(const Fields& object, const std::string& key) {
+  return std::get<std::string>(std::ranges::find(object, key, &Field::key)->scalar.state());
+}
+
+// What all of the objects with this word have and the others need not.
+Object condition(const std::string& key,
+                 const std::string& word,
+                 const std::vector<const Fields*>& objects) {
+  std::vector<const Fields*> with_word;
+  std::ranges::copy_if(objects, std::back_inserter(with_word),
+                       [&](const Fields* one) { return word_in(*one, key) == word; });
+  const std::vector<KeySamples> all = by_key(objects);
+  Array required;
+  for (const KeySamples& one : by_key(with_word)) {
+    const bool everywhere =
+        std::ranges::find(all, one.key, &KeySamples::key)->samples.size() == objects.size();
+    if (one.samples.size() == with_word.size() && !everywhere) required.push_back(one.key);
+  }
+  return {{"if", Object{{"properties", Object{{key, Object{{"const", word}}}}}}},
+          {"then", Object{{"required", std::move(required)}}}};
+}
+
+// One condition for each word that the samples have.
+void add_conditions(Object& schema, const std::vector<const Fields*>& objects) {
+  if (objects.empty()) return;
+  const auto found = std::ranges::find_if(*objects.front(),
+                                          [](const Field& field) { return field.shape.decides; });
+  if (found == objects.front()->end()) return;
+  Array conditions;
+  std::vector<std::string> words;
+  for (const Fields* object : objects) {
+    const std::string& word = word_in(*object, found->key);
+    if (std::ranges::find(words, word) != words.end()) continue;
+    words.push_back(word);
+    conditions.emplace_back(condition(found->key, word, objects));
+  }
+  schema.push_back({"allOf", std::move(conditions)});
+}
+
 // "properties" and what belongs to them.
 void add_properties(Object& schema, Object properties, const std::vector<const Fields*>& objects) {
   Array required;
@@ -49,6 +92,7 @@ void add_properties(Object& schema, Object properties, const std::vector<const F
   }
   schema.push_back({"properties", std::move(properties)});
   schema.push_back({"required", std::move(required)});
+  add_conditions(schema, objects);
   schema.push_back({"additionalProperties", false});
 }
 
@@ -74,6 +118,14 @@ Samples entries_of(const Samples& samples) {
 }
 
 void add_items(Object& schema, const Samples& samples) {
+  const std::optional<std::size_t>& length = samples.front()->shape.length;
+  const bool is_fixed = length && std::ranges::all_of(samples, [&](const Field* field) {
+                          return field->shape.length == length;
+                        });
+  if (is_fixed) {
+    schema.push_back({"minItems", std::uint64_t{*length}});
+    schema.push_back({"maxItems", std::uint64_t{*length}});
+  }
   if (samples.front()->shape.of_texts) {
     schema.push_back({"items", Object{{"type", "string"}}});
     return;
@@ -110,14 +162,21 @@ std::vector<const Fields*> objects_of(const Samples& samples) {
   return objects;
 }
 
+void add_bounds(Object& schema, const Shape& shape) {
+  if (shape.not_negative || shape.kind == Kind::count) schema.push_back({"minimum", 0});
+  if (shape.maximum) schema.push_back({"maximum", *shape.maximum});
+}
+
 void add_shape(Object& schema, const Samples& samples) {
   const Shape& shape = samples.front()->shape;
   switch (shape.kind) {
     case Kind::text:
       schema.push_back({"type", type_of("string", samples)});
+      if (!shape.pattern.empty()) schema.push_back({"pattern", shape.pattern});
       break;
     case Kind::choice: {
       Array choices = Array(shape.choices.begin(), shape.choices.end());
+      if (is_nullable(samples)) choices.emplace_back();
       schema.push_back({"enum", std::move(choices)});
       break;
     }
@@ -126,11 +185,14 @@ void add_shape(Object& schema, const Samples& samples) {
       break;
     case Kind::count:
       schema.push_back({"type", type_of("integer", samples)});
-      schema.push_back({"minimum", 0});
+      add_bounds(schema, shape);
+      break;
+    case Kind::integer:
+      schema.push_back({"type", type_of("integer", samples)});
       break;
     case Kind::number:
       schema.push_back({"type", type_of("number", samples)});
-      if (shape.not_negative) schema.push_back({"minimum", 0});
+      add_bounds(schema, shape);
       break;
     case Kind::quantity:
       add_quantity(schema, samples);
@@ -141,6 +203,8 @@ void add_shape(Object& schema, const Samples& samples) {
       break;
     case Kind::map:
       schema.push_back({"type", "object"});
+      if (!shape.pattern.empty())
+        schema.push_back({"propertyNames", Object{{"pattern", shape.pattern}}});
       schema.push_back({"additionalProperties", schema_of(entries_of(samples))});
       break;
     case Kind::object:

@@ -8,9 +8,10 @@
 namespace proofmass::report {
 
 /// JSON Schema (draft 2020-12) of the documents of one verb, from samples of them: an entry that
-/// every sample has is required, one that some have is optional, none else may be there. The
-/// samples together must have each entry, and an item in each list. `name` is that of the schema
-/// where the verb has several.
+/// every sample has is required, one that some have is optional, none else may be there. Where a
+/// choice decides which entries there are (Shape::decides), those that every sample with a word of
+/// it has are required with that word. The samples together must have each entry, and an item in
+/// each list. `name` is that of the schema where the verb has several.
 [[nodiscard]] std::string json_schema(const std::string& description,
                                       const std::vector<Document>& samples,
                                       const std::string& name = {});

@@ -1,5 +1,7 @@
 #include "proofmass/report/schema.hpp"
 
+#include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -7,7 +9,11 @@
 #include "proofmass/report/budget_report.hpp"
 #include "proofmass/report/calibrate_fake.hpp"
 #include "proofmass/report/convert_report.hpp"
+#include "proofmass/report/drift_fake.hpp"
+#include "proofmass/report/inspect_report.hpp"
 #include "proofmass/report/model_equation_report.hpp"
+#include "proofmass/report/noise_fake.hpp"
+#include "proofmass/report/recover_report.hpp"
 #include "proofmass/report/rotation_report.hpp"
 #include "proofmass/report/schema_test_support.hpp"
 #include "proofmass/report/tilt_fake.hpp"
@@ -44,6 +50,61 @@ TEST(JsonSchema, IsNullableWhereAnEntryMayBeAbsent) {
   EXPECT_EQ(schema["properties"]["plain"]["type"], "number");
   EXPECT_EQ(schema["properties"]["open"]["type"], (json{"number", "null"}));
   EXPECT_EQ(schema["properties"]["inner"]["type"], (json{"object", "null"}));
+}
+
+TEST(JsonSchema, FixesAUnitOnlyIfAllSamplesHaveIt) {
+  const auto schema_of = [](const char* one, const char* other) {
+    return json::parse(json_schema("d", {document_of({field::measured("a", Uncertain{}, one)}),
+                                         document_of({field::measured("a", Uncertain{}, other)})}));
+  };
+  EXPECT_EQ(schema_of("m", "m")["properties"]["a"]["properties"]["unit"]["const"], "m");
+  EXPECT_FALSE(schema_of("m", "V")["properties"]["a"].contains("properties"));
+}
+
+// Schema of the only entry of a document.
+json schema_of(const Field& field) {
+  return json::parse(json_schema("d", {document_of({field})}))["properties"][field.key];
+}
+
+TEST(JsonSchema, BoundsProbabilitiesCountsAndListsOfFixedLength) {
+  EXPECT_EQ(schema_of(field::probability("p", 0.5)),
+            (json{{"type", "number"}, {"minimum", 0}, {"maximum", 1.0}}));
+  const json three = schema_of(field::numbers("a", std::array{1.0, 2.0, 3.0}));
+  EXPECT_EQ(three["minItems"], 3);
+  EXPECT_EQ(three["maxItems"], 3);
+  EXPECT_EQ(schema_of(field::numbers("a", Eigen::Vector2d::Zero().eval()))["maxItems"], 2);
+  EXPECT_FALSE(schema_of(field::numbers("a", std::vector{1.0})).contains("maxItems"));
+  EXPECT_EQ(schema_of(field::interval("a", std::array{0.0, 1.0}))["minItems"], 2);
+}
+
+TEST(JsonSchema, HasThePatternsOfTextsAndOfTheKeysOfMaps) {
+  Field text = field::text("a", "x"), map = field::map("m", {field::count("k", 1)});
+  text.shape.pattern = map.shape.pattern = "^[a-z]$";
+  EXPECT_EQ(schema_of(text)["pattern"], "^[a-z]$");
+  EXPECT_EQ(schema_of(map)["propertyNames"]["pattern"], "^[a-z]$");
+}
+
+// A document whose other entry depends on its mode.
+Document in_mode(const char* word, const char* key) {
+  Field mode = field::choice("mode", word, {"still", "moving"});
+  mode.shape.decides = true;
+  return document_of({mode, field::count("n", 1), field::count(key, 2)});
+}
+
+TEST(JsonSchema, RequiresWithEachWordOfADecidingChoiceWhatItsSamplesHave) {
+  const json schema =
+      json::parse(json_schema("d", {in_mode("still", "rests"), in_mode("moving", "speed")}));
+  ASSERT_EQ(schema["allOf"].size(), 2U);
+  EXPECT_EQ(schema["allOf"][0]["if"]["properties"]["mode"]["const"], "still");
+  EXPECT_EQ(schema["allOf"][0]["then"]["required"], (json{"rests"}));
+  EXPECT_EQ(schema["allOf"][1]["then"]["required"], (json{"speed"}));
+}
+
+TEST(JsonSchema, AllowsNullBesideTheWordsOfAnAbsentChoice) {
+  const Field one = field::choice("a", "x", {"x", "y"});
+  const json schema = json::parse(
+      json_schema("d", {document_of({one}), document_of({field::without_value(one, "why")})}));
+  EXPECT_EQ(schema["properties"]["a"]["enum"], (json{"x", "y", nullptr}));
 }
 
 // With every entry that a consistency may have.
@@ -113,6 +174,27 @@ TEST(Schemas, Convert) {
   const std::vector<Note> notes;
   const ConvertReport report{"a.csv", "b.npy", recording, 0, notes};
   expect_schema("Recording written in another format.", {describe(report)});
+}
+
+TEST(Schemas, Inspect) {
+  Recording recording;
+  recording.labels = {{"up", 0, 1}};
+  signal::RecordingAudit audit;
+  audit.channels.resize(1);
+  audit.timing.gaps.resize(1);
+  audit.timing.lost = 0;
+  signal::RecordingAudit uncounted = audit;
+  uncounted.timing.lost.reset();
+  const InspectedFile file{"a.csv", recording, audit}, other{"b.csv", recording, uncounted};
+  expect_schema(
+      "Contents and data quality of recordings. The entries at the top are those of the first "
+      "file.",
+      {describe({file}), describe({other, file})});
+}
+
+TEST(Schemas, Recover) {
+  expect_schema("What was recovered of a recording that was not closed.",
+                {describe(RecoverReport{})});
 }
 
 // With every entry that a calibration may have.
@@ -208,6 +290,56 @@ TEST(Schemas, Tumble) {
       "Coefficients of the IEEE 1293 model equation from positions on a turntable. SI unless a key "
       "or a unit beside the figure names another. Those at the top are of `channel`.",
       {describe(full), describe(volts), describe(refused)});
+}
+
+// A curve with every term.
+void complete(characterise::DriftFit& fit) {
+  fit.possibilities.resize(1);
+  fit.curve.steps.resize(1);
+  fit.a1 = fit.slope_per_s = fit.second_a1 = fake_interval(1.0, 0.1);
+  fit.time_constant_s = fit.second_time_constant_s = fake_interval(1.0, 0.1);
+  fit.time_constant_above_s.reset();
+  fit.time_constant_below_s = fit.candidates.front().time_constant_s = 1.0;
+}
+
+TEST(Schemas, Drift) {
+  const DriftReport plain = fake_drift_report();
+  DriftReport all = plain;
+  complete(all.channels.front().analysis->fit);
+  all.channels[1].rest.reset();
+  all.channels[1].temperature = DriftTemperature{.channel = "t", .model = {}, .refused = "r"};
+  all.runs = {fake_runs("acc_x"), fake_runs("acc_y"), {"acc_z", {}, {}, "2 runs left"}};
+  all.runs.front().set->level_curve = all.channels.front().analysis->fit;
+  complete(all.runs.front().set->warm_up.fit);
+  all.runs[1].set->trend_per_run.reset();
+  DriftReport volts = all;  // no unit is fixed
+  volts.channels.front().unit = volts.runs.front().unit = *parse_unit("V");
+  volts.forecast_s.reset();
+  expect_schema(
+      "Bias of a sensor at rest after power-on. SI unless a key names another unit; times are "
+      "since power-on.",
+      {describe(plain), describe(all), describe(volts)});
+}
+
+TEST(Schemas, Noise) {
+  NoiseReport plain = fake_noise_report(), all = fake_noise_report();
+  all.channels.push_back(refused_channel("acc_z"));
+  ChannelNoise& channel = all.channels.front();
+  channel.temperature = TemperatureEffect{.channel = "temp", .coefficient = {1e-3, 1e-4}};
+  channel.rest = RestShare{.share = 0.5, .longest_start_s = 1.0, .longest_end_s = 2.0};
+  characterise::NoiseAnalysis& analysis = *channel.analysis;
+  analysis.deviation.points.front().alpha_lag1 = -1;
+  analysis.deviation.points[5].tau_s = 1.0;
+  analysis.deviation.points[5].value = 0.0;  // the minimum
+  analysis.model.random_walk = identified(1e-5, 1e-6);
+  analysis.model.markov = {identified(1e-5, 1e-6), {60.0, 3.0}};
+  analysis.model.slow_change = characterise::SlowChange{};
+  analysis.stationarity = {.tested = true, .line_hz = {}, .relative_level = {0.7, 1.4}};
+  analysis.parts = {{0.0, 5000.0, analysis.model}, {5000.0, 10'000.0, {}}};
+  NoiseReport volts = all;  // no unit is fixed
+  volts.channels.front().unit = *parse_unit("V");
+  expect_schema("Allan deviation, spectrum and noise coefficients of a sensor at rest. SI.",
+                {describe(plain), describe(all), describe(volts)});
 }
 
 }  // namespace

@@ -146,9 +146,17 @@ Field unusable(std::size_t samples) {
 }
 
 Field mode(std::string_view name) {
-  return field::choice(
+  Field field = field::choice(
       "mode", name, {"still", "moving", "angle"},
       {.meaning = "still: from rests; moving: filter and smoother; angle: one angle and its rate"});
+  field.shape.decides = true;
+  return field;
+}
+
+Field axes(std::size_t recorded) {
+  Field field = field::count("axes", recorded, {.meaning = "recorded"});
+  field.shape.maximum = 3.0;
+  return field;
 }
 
 Fields axis_fields(const TiltReport& report) {
@@ -207,7 +215,7 @@ Fields tilt_fields(const TiltReport& report) {
       field::count("samples", solution.samples, {.meaning = "in the recording"}),
       unusable(solution.unusable),
       down_weighted_count(solution.told_less),
-      field::count("axes", solution.axes, {.meaning = "recorded, 1 to 3"}),
+      axes(solution.axes),
       roll(solution.final, "Roll"),
       pitch(solution.final, "Pitch"),
       elevations(solution.final),
@@ -357,10 +365,7 @@ void add_sections(Page& page, const TiltReport& report) {
 }  // namespace
 
 std::vector<Note> tilt_notes(const TiltReport& report) {
-  std::vector<Note> notes = report.notes;
-  const std::vector<Note>& own = report.solution ? report.solution->notes : report.axis->notes;
-  notes.insert(notes.end(), own.begin(), own.end());
-  return notes;
+  return all_notes(report.notes, report.solution ? report.solution->notes : report.axis->notes);
 }
 
 Document describe(const TiltReport& report) {

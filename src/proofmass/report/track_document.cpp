@@ -17,12 +17,6 @@ using estimate::Stroke;
 using estimate::TrackMethod;
 using estimate::TrackSolution;
 
-std::vector<Note> all_notes(const TrackReport& report) {
-  std::vector<Note> notes = report.notes;
-  notes.insert(notes.end(), report.solution.notes.begin(), report.solution.notes.end());
-  return notes;
-}
-
 Fields budget_fields(const estimate::TrackBudget& budget) {
   const std::string why = "nothing bounds the error";
   return {field::magnitude("white_mps2_rthz", budget.white_mps2_rthz,
@@ -135,7 +129,7 @@ Field stroke_summary(const TrackSolution& solution) {
 }
 
 Fields alternative_fields(const estimate::TrackAlternative& one) {
-  return {field::magnitude("probability", one.probability),
+  return {field::probability("probability", one.probability),
           field::number("displacement_m", one.displacement_m.value),
           field::magnitude("std_m", one.displacement_m.std),
           field::records("no_rests", one.no_rests, [](const estimate::TimeSpan& span) {
@@ -232,7 +226,7 @@ Fields track_fields(const TrackReport& report) {
                               "a displacement"}),
       field::count("missing", solution.missing, {.meaning = "samples without a value"}),
       consistency_field(solution.consistency),
-      field::notes(all_notes(report))};
+      field::notes(all_notes(report.notes, report.solution.notes))};
 }
 
 std::string seconds(double t) {
@@ -415,7 +409,7 @@ Document describe(const TrackReport& report) {
                              .inputs = report.inputs,
                              .conclusion = conclusion(solution),
                              .key_figures = figures_of(solution),
-                             .notes = all_notes(report)},
+                             .notes = all_notes(report.notes, report.solution.notes)},
                     .fields = track_fields(report)};
   std::vector<Section>& sections = document.page.sections;
   sections.push_back({.heading = "What sensor, duration and stops allow",

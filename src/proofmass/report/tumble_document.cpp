@@ -127,7 +127,7 @@ Field drift(const TumbleFit& fit) {
        field::flag("known", found.known, {.meaning = "a position was revisited late enough"}),
        field::flag("removed", found.removed,
                    {.meaning = "fitted with the coefficients; else it is part of the residuals"}),
-       field::magnitude(
+       field::probability(
            "p", found.p,
            {.meaning = "probability of this drift or more by chance", .why_null = found.words}),
        field::magnitude("wander_std_mps2", found.wander_std_mps2,
@@ -167,12 +167,12 @@ Field lack_of_fit(const TumbleFit& fit) {
   std::optional<Fields> fields;
   if (fit.lack_of_fit) {
     const calibrate::TumbleLackOfFit& found = *fit.lack_of_fit;
-    fields =
-        Fields{field::magnitude("statistic", found.statistic,
-                                {.meaning = "F: mean square of the lack of fit over that of "
-                                            "the noise"}),
-               field::magnitude("p", found.p, {.meaning = "probability of this or more by chance"}),
-               field::count("dof", found.dof), field::text("against", found.against)};
+    fields = Fields{
+        field::magnitude("statistic", found.statistic,
+                         {.meaning = "F: mean square of the lack of fit over that of "
+                                     "the noise"}),
+        field::probability("p", found.p, {.meaning = "probability of this or more by chance"}),
+        field::count("dof", found.dof), field::text("against", found.against)};
     if (found.noise_dof > 0.0)
       fields->push_back(
           field::magnitude("noise_dof", found.noise_dof, {.meaning = "omitted where infinite"}));
@@ -328,12 +328,6 @@ Fields tumble_fields(const TumbleReport& report) {
   return out;
 }
 
-std::string title_of(const std::vector<std::string>& inputs) {
-  std::string text;
-  for (const std::string& name : inputs) text += (text.empty() ? "" : " and ") + file_name(name);
-  return text;
-}
-
 std::vector<KeyFigure> figures_of(const TumbleReport& report) {
   std::vector<KeyFigure> figures;
   if (report.main >= report.channels.size()) return figures;
@@ -433,7 +427,7 @@ Section conditions_section(const TumbleReport& report) {
 
 Document describe(const TumbleReport& report) {
   Document document{.page = {.verb = "tumble",
-                             .title = title_of(report.inputs),
+                             .title = file_names(report.inputs),
                              .inputs = report.inputs,
                              .conclusion = tumble_conclusion(report),
                              .key_figures = figures_of(report),

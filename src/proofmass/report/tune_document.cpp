@@ -47,8 +47,9 @@ Fields parameter_fields(const TuneReport& report, const TunedParameter& paramete
       field::choice("verdict", verdict_of(parameter), {"identified", "not_observable", "fixed"})};
   if (identified) {
     const About end{.why_null = "the record does not bound it"};
-    fields.push_back(field::list("interval_95", {field::number({}, parameter.lower_95, end),
-                                                 field::number({}, parameter.upper_95, end)}));
+    fields.push_back(field::fixed_list(
+        "interval_95",
+        {field::number({}, parameter.lower_95, end), field::number({}, parameter.upper_95, end)}));
   }
   if (!identified && parameter.upper_95)
     fields.push_back(field::number(

@@ -80,7 +80,7 @@ Field pair(const char* key,
   for (std::size_t i = 0; i < 2; ++i)
     items.push_back(
         field::measured({}, figures[i], unit, {.label = fmt::format("{}, axis {}", label, i + 1)}));
-  return field::list(key, std::move(items), {.meaning = "of in-plane axis 1 and 2"});
+  return field::fixed_list(key, std::move(items), {.meaning = "of in-plane axis 1 and 2"});
 }
 
 Field spin_axis(const WheelSensorFit& fit) {
@@ -145,18 +145,12 @@ Field gyroscope(const WheelSolution& solution) {
 
 Fields candidate_fields(const estimate::TurnsCandidate& candidate) {
   return {field::number("value", candidate.turns.value), field::number("std", candidate.turns.std),
-          field::magnitude("probability", candidate.probability)};
+          field::probability("probability", candidate.probability)};
 }
 
 Fields stretch_fields(const estimate::Stretch& stretch) {
   return {field::number("start_s", stretch.start_s), field::number("end_s", stretch.end_s),
           field::count("rows", stretch.rows), field::text("reason", stretch.reason)};
-}
-
-std::vector<Note> all_notes(const WheelReport& report) {
-  std::vector<Note> notes = report.notes;
-  notes.insert(notes.end(), report.solution.notes.begin(), report.solution.notes.end());
-  return notes;
 }
 
 Field sensors(const WheelReport& report) {
@@ -217,7 +211,7 @@ Fields wheel_fields(const WheelReport& report) {
       consistency_field(solution.consistency),
       field::texts("not_observable", solution.not_observable,
                    {.meaning = "what the recording does not determine, and what would"}),
-      field::notes(all_notes(report))};
+      field::notes(all_notes(report.notes, report.solution.notes))};
 }
 
 Table methods_table(const WheelSolution& solution) {
@@ -280,22 +274,15 @@ Section method_section(const WheelReport& report) {
           fmt::format("Gravity was taken as {} m/s².", fixed(report.options.gravity_mps2, 5))}};
 }
 
-std::string title_of(const std::vector<std::string>& inputs) {
-  std::string title;
-  for (const std::string& input : inputs)
-    title += (title.empty() ? "" : " and ") + file_name(input);
-  return title;
-}
-
 }  // namespace
 
 Document describe(const WheelReport& report) {
   const WheelSolution& solution = report.solution;
   Document document{.page = {.verb = "wheel",
-                             .title = title_of(report.inputs),
+                             .title = file_names(report.inputs),
                              .inputs = report.inputs,
                              .conclusion = conclusion(solution),
-                             .notes = all_notes(report)},
+                             .notes = all_notes(report.notes, report.solution.notes)},
                     .fields = wheel_fields(report),
                     .warnings = solution.not_observable,
                     .bad = std::ranges::any_of(solution.sensors, [](const WheelSensorFit& fit) {

@@ -91,6 +91,22 @@ std::string print_unit(std::string_view symbol) {
   return text;
 }
 
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t k = 0; k < words.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == words.size() ? " and " : ", ") + words[k];
+  return text;
+}
+
+std::string file_names(const std::vector<std::string>& paths) {
+  constexpr std::size_t most = 4;
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < std::min(paths.size(), most); ++k)
+    names.push_back(file_name(paths[k]));
+  if (paths.size() > most) names.push_back(fmt::format("{} more", paths.size() - most));
+  return joined(names);
+}
+
 std::string file_name(std::string_view path) {
   const std::size_t folder = path.find_last_of('/');
   const bool inside = folder != std::string_view::npos && folder + 1 < path.size();

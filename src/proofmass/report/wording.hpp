@@ -48,6 +48,12 @@ using proofmass::significant;
 /// "m/s^2/sqrt(Hz)" as print has it: "m/s²/√Hz".
 [[nodiscard]] std::string print_unit(std::string_view symbol);
 
+/// "a, b and c".
+[[nodiscard]] std::string joined(const std::vector<std::string>& words);
+
+/// Names of the first four files: "a.csv and b.csv", "a.csv, b.csv, c.csv, d.csv and 3 more".
+[[nodiscard]] std::string file_names(const std::vector<std::string>& paths);
+
 /// A file's name without the folders before it, and whatever stands behind it ("a/b.csv: acc1" is
 /// "b.csv: acc1").
 [[nodiscard]] std::string file_name(std::string_view path);

@@ -73,5 +73,16 @@ TEST(PrintUnit, RaisesPowersAndDrawsRoots) {
   EXPECT_EQ(print_unit("V/sqrt(s)"), "V/√s");
 }
 
+TEST(Joined, HasAndBeforeTheLast) {
+  EXPECT_EQ(joined({}), "");
+  EXPECT_EQ(joined({"a"}), "a");
+  EXPECT_EQ(joined({"a", "b", "c"}), "a, b and c");
+}
+
+TEST(FileNames, AreThoseOfTheFirstFour) {
+  EXPECT_EQ(file_names({"d/a.csv", "b.csv"}), "a.csv and b.csv");
+  EXPECT_EQ(file_names({"a", "b", "c", "d", "e", "f"}), "a, b, c, d and 2 more");
+}
+
 }  // namespace
 }  // namespace proofmass::report::wording_test

@@ -44,15 +44,15 @@ report::Table whiteness_rows(const StaticTest& test, const AxisTest& axis) {
 }
 
 std::vector<report::Figure> residual_autocorrelations(const StaticTest& test, std::size_t at) {
-  report::ChannelDrift channel = channel_of(test, at);
-  std::vector<WhitenessTest>& shown = channel.analysis->whiteness;
-  shown.clear();
-  for (NamedTest& one : plain_tests(test, test.axes[at])) shown.push_back(std::move(one.test));
-  if (channel.analysis->whitened) shown.push_back(*channel.analysis->whitened);
-  std::vector<report::Figure> figures =
-      report::autocorrelation_figures(channel, channel.name + ", single samples");
-  if (channel.analysis->whitened)
+  const report::ChannelDrift channel = channel_of(test, at);
+  const std::string label = channel.name + ", single samples";
+  std::vector<report::Figure> figures;
+  for (const NamedTest& one : plain_tests(test, test.axes[at]))
+    figures.push_back(report::autocorrelation_figure(one.test, label));
+  if (channel.analysis->whitened) {
+    figures.push_back(report::autocorrelation_figure(*channel.analysis->whitened, label));
     figures.back().title = channel.name + ": the same of our curve, the noise model divided out";
+  }
   return figures;
 }
 

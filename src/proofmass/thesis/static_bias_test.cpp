@@ -151,7 +151,7 @@ TEST(StaticItems, OfARecordWithoutAWarmUpSayWhyThereIsNone) {
   const std::vector<Item> items = static_items(test);
   const Item& table = item_of(items, "table 4.1");
   EXPECT_FALSE(finding_of(table, "a1").ours);
-  EXPECT_EQ(finding_of(table, "a1").reason.rfind("No warm-up can be told: ", 0), 0U);
+  EXPECT_EQ(finding_of(table, "a1").reason.rfind("No warm-up identified: ", 0), 0U);
   EXPECT_FALSE(finding_of(table, "time_constant").ours);
   EXPECT_NEAR(finding_of(table, "a2").ours->value, 0.02, 1e-4);
   const Item& tracks = item_of(items, "figure 5.3");

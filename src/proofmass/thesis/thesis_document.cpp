@@ -31,6 +31,12 @@ std::string unit_of(const Finding& finding) {
   return finding.si_unit.empty() ? "1" : finding.si_unit;
 }
 
+report::Field named_values(Fields values, const char* meaning) {
+  report::Field field = field::map("values", std::move(values), {.meaning = meaning});
+  field.shape.pattern = "^[a-z][a-z0-9_]*$";
+  return field;
+}
+
 Fields printed_fields(const Item& item) {
   Fields values;
   for (const Finding& finding : item.findings)
@@ -38,7 +44,7 @@ Fields printed_fields(const Item& item) {
       values.push_back(field::object(finding.key, {field::number("value", *finding.thesis),
                                                    field::text("unit", unit_of(finding))}));
   return {field::text("text", item.thesis, {.meaning = "statement of the thesis"}),
-          field::map("values", std::move(values), {.meaning = "its printed numbers, by name"})};
+          named_values(std::move(values), "its printed numbers, by name")};
 }
 
 Fields our_fields(const Item& item) {
@@ -49,14 +55,15 @@ Fields our_fields(const Item& item) {
         {.why_null = finding.label + ": " +
                      (finding.reason.empty() ? "it is not finite" : finding.reason)}));
   return {field::text("text", item.ours, {.meaning = "our result"}),
-          field::map("values", std::move(values),
-                     {.meaning = "the same numbers and further ones, by name"})};
+          named_values(std::move(values), "the same numbers and further ones, by name")};
 }
 
 Fields item_fields(const Item& item) {
-  return {field::text("id", item.id, {.meaning = "as in the thesis"}),
+  report::Field id = field::text("id", item.id, {.meaning = "as in the thesis"});
+  id.shape.pattern = "^(table|figure|section) ([2-6]|A)\\.\\d+$";
+  return {std::move(id),
           field::text("title", item.title),
-          field::text("chapter", chapter_key(item)),
+          field::choice("chapter", chapter_key(item), {"2", "3", "4", "5", "6", "A"}),
           field::object("thesis", printed_fields(item)),
           field::object("ours", our_fields(item)),
           field::text("note", item.note,
