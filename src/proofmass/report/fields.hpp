@@ -100,6 +100,8 @@ namespace field {
 [[nodiscard]] Field map(std::string key, Fields entries, About about = {});
 /// The items' keys are left empty.
 [[nodiscard]] Field list(std::string key, Fields items, About about = {});
+/// A list that may be absent.
+[[nodiscard]] Field list_or_null(std::string key, std::optional<Fields> items, About about = {});
 
 /// A list of strings.
 [[nodiscard]] Field texts(std::string key, const std::vector<std::string>& items, About about = {});
