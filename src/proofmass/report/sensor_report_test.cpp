@@ -173,6 +173,7 @@ SensorModel full(double x_bias_mps2) {
 TEST(Schemas, Sensor) {
   SensorModel other = calibrated(0.1);
   other.calibration.bias[0].reset();
+  other.calibration.bias[1]->std.reset();
   other.noise.white[0]->value = 110.0;
   expect_schema_of_kinds(
       "A sensor file as it is (show), compared with another (diff), or in another format (export).",
