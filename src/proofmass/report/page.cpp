@@ -202,13 +202,14 @@ void write_plain_notes(std::string& text, const std::vector<Note>& notes) {
 }  // namespace
 
 std::string html(const Page& page) {
+  const std::string command = page.action.empty() ? page.verb : page.verb + ' ' + page.action;
   std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"generator\" content=\"Proofmass {0}\">\n"
       "<title>{1} – proofmass {2}</title>\n<style>\n{3}{4}{6}</style>\n</head>\n<body>\n<main>\n"
       "<p class=\"from\">Proofmass {0} · {2}</p>\n<h1>{1}</h1>\n<p class=\"conclusion\">{5}</p>\n",
-      version(), escaped(page.title), escaped(page.verb), figure_css(), page_css(),
+      version(), escaped(page.title), escaped(command), figure_css(), page_css(),
       escaped(page.conclusion), page_script_css());
   write(text, page.key_figures);
   write_grave_notes(text, page.notes);

@@ -71,6 +71,7 @@ struct KeyFigure {
 
 struct Page {
   std::string verb;
+  std::string action = {};          ///< of a verb that has several: "show" of `sensor show`
   std::string title;                ///< "wheel1.csv and wheel2.csv"
   std::vector<std::string> inputs;  ///< files, with their size in samples and seconds
   std::string conclusion;           ///< what it comes to, in a sentence or two

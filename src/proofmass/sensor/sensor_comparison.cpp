@@ -293,7 +293,7 @@ std::string_view words_of(Verdict verdict) {
     case Verdict::cannot_tell:
       break;
   }
-  return "cannot be told";
+  return "undetermined";
 }
 
 }  // namespace proofmass::sensor
