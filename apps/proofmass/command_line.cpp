@@ -10,6 +10,7 @@
 #include "completion.hpp"
 #include "config_file.hpp"
 #include "exit_status.hpp"
+#include "fleet_arguments.hpp"
 #include "help_format.hpp"
 #include "output.hpp"
 #include "plain_text.hpp"
@@ -40,6 +41,7 @@ struct Commands {
   RecoverCommand recover;
   SensorCommand sensor;
   ThesisCommand thesis;
+  FleetCommand fleet;
 };
 
 // The value of --config, if it is given.
@@ -154,6 +156,7 @@ Command chosen(CLI::App& app, Commands& commands) {
   if (app.got_subcommand("recover")) return std::move(commands.recover);
   if (app.got_subcommand("sensor")) return std::move(commands.sensor);
   if (app.got_subcommand("thesis")) return std::move(commands.thesis);
+  if (app.got_subcommand("fleet")) return std::move(commands.fleet);
   return std::move(commands.budget);
 }
 
@@ -184,6 +187,7 @@ void add_verbs(CLI::App& app, Commands& commands) {
   group("Characterise", commands.noise, commands.drift, commands.calibrate, commands.tumble,
         commands.sensor);
   group("Estimate", commands.wheel, commands.track, commands.tilt, commands.tune, commands.budget);
+  group("Many recordings", commands.fleet);
   group("Live", commands.record, commands.recover);
   group("Study", commands.simulate, commands.thesis);
   const std::string name = std::string("--") + input_help_flag;
@@ -194,7 +198,8 @@ void add_verbs(CLI::App& app, Commands& commands) {
 
 // What a file is read for, or changed by; anything else of this type is written.
 bool names_input(const CLI::Option& option) {
-  if (option.get_positional()) return true;
+  if (option.get_positional())
+    return option.get_type_name() != "WORD" && !option.get_type_name().starts_with("WORD:");
   for (const char* written : {"json", "report", "output", "update-sensor"})
     if (option.check_lname(written)) return false;
   return option.get_type_name().starts_with("FILE");
@@ -272,6 +277,7 @@ std::optional<Command> parse_command_line(int argc, char** argv) {
     throw Failure(usage, unknown_verb(app, word));
   if (print_help(app, arguments)) return std::nullopt;
   const std::vector<std::string> typed = arguments;
+  if (word == fleet_verb) commands.fleet.flags = take_verb_flags(app, arguments);
   arguments = with_config(app, std::move(arguments));
   std::ranges::reverse(arguments);  // as CLI11 takes them
   try {

@@ -235,6 +235,23 @@ struct SensorCommand {
   OutputFlags output;
 };
 
+/// A verb for many recordings; or, with the verb "summary", what they show together.
+struct FleetCommand {
+  std::string verb;
+  std::string manifest;            ///< a table or a folder of recordings; of summary the results
+  std::vector<std::string> flags;  ///< the verb's, as they were typed
+  std::string into;
+  std::optional<std::size_t> processes;
+  std::optional<double> memory_mb, timeout_s;
+  bool force = false, reports = false;
+  std::string shard;                ///< "2/4"; empty: by the environment
+  std::string dask, program;        ///< the scheduler's address; the program's path on its workers
+  std::string by;                   ///< column by which files of one sensor are one recording
+  std::vector<std::string> limits;  ///< of summary: "white<2e-3"
+  double false_share = 0.05;        ///< of summary: among the sensors that it calls out of family
+  OutputFlags output;
+};
+
 using Command = std::variant<InspectCommand,
                              ConvertCommand,
                              WheelCommand,
@@ -250,7 +267,8 @@ using Command = std::variant<InspectCommand,
                              RecordCommand,
                              RecoverCommand,
                              SensorCommand,
-                             ThesisCommand>;
+                             ThesisCommand,
+                             FleetCommand>;
 
 /// Reads the command line and the configuration file that it may name. --help and --version are
 /// printed here, and have no command; nor has what a shell asks for at Tab. Throws Failure.

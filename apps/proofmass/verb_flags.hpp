@@ -23,5 +23,6 @@ void add_flags(CLI::App& app, BudgetCommand& command);
 void add_flags(CLI::App& app, RecordCommand& command);
 void add_flags(CLI::App& app, RecoverCommand& command);
 void add_flags(CLI::App& app, ThesisCommand& command);
+void add_flags(CLI::App& app, FleetCommand& command);
 
 }  // namespace proofmass::app

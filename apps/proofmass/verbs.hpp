@@ -21,5 +21,6 @@ void run(const RecordCommand& command);
 void run(const RecoverCommand& command);
 void run(const SensorCommand& command);
 void run(const ThesisCommand& command);
+void run(const FleetCommand& command);
 
 }  // namespace proofmass::app

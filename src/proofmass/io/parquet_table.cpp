@@ -106,14 +106,14 @@ std::string page_of(const std::vector<TableCell>& cells, const TableColumn& colu
   std::string values;
   for (std::size_t k = 0; k < cells.size(); ++k) {
     if (!is_present(cells[k], column)) continue;
-    levels[bits + k / 8] = static_cast<char>(static_cast<unsigned char>(levels[bits + k / 8]) |
-                                             (1U << (k % 8)));
+    levels[bits + k / 8] =
+        static_cast<char>(static_cast<unsigned char>(levels[bits + k / 8]) | (1U << (k % 8)));
     const auto* figure = std::get_if<double>(&cells[k]);
     if (!column.is_text)
       append_little_endian(values, std::bit_cast<std::uint64_t>(*figure));
     else
-      append_text(values, figure != nullptr ? fmt::format("{}", *figure)
-                                            : std::get<std::string>(cells[k]));
+      append_text(values,
+                  figure != nullptr ? fmt::format("{}", *figure) : std::get<std::string>(cells[k]));
   }
   std::string page;
   append_little_endian(page, static_cast<std::uint32_t>(levels.size()));

@@ -10,8 +10,8 @@
 #include "proofmass/core/new_file.hpp"
 #include "proofmass/core/result.hpp"
 
-// Tables of figures and texts as Parquet, written without a library: DuckDB, pandas, Arrow and Spark
-// read them.
+// Tables of figures and texts as Parquet, written without a library: DuckDB, pandas, Arrow and
+// Spark read them.
 namespace proofmass::io {
 
 /// A field: none, a figure or a text (UTF-8). A figure that is not finite is none.
@@ -22,10 +22,10 @@ struct TableColumn {
   bool is_text = false;
 };
 
-/// A Parquet file on its way: optional columns of DOUBLE and of UTF-8 BYTE_ARRAY, plain encoding, one
-/// page a column and group of rows. It takes its name only in finish().
-/// Source: Apache Parquet format 2.9, README (file layout), Encodings.md (PLAIN, RLE/bit-packed
-/// hybrid), parquet.thrift; Apache Thrift, compact protocol specification.
+/// A Parquet file on its way: optional columns of DOUBLE and of UTF-8 BYTE_ARRAY, plain encoding,
+/// one page a column and group of rows. It takes its name only in finish(). Source: Apache Parquet
+/// format 2.9, README (file layout), Encodings.md (PLAIN, RLE/bit-packed hybrid), parquet.thrift;
+/// Apache Thrift, compact protocol specification.
 class ParquetTable {
  public:
   /// Errors of all: unwritable.
@@ -55,8 +55,8 @@ class ParquetTable {
   std::uint64_t offset_ = 0;
 };
 
-/// A Parquet file's rows as CSV with a line of names, every field quoted, read by DuckDB in a process
-/// of its own. Errors: unsupported (no library), corrupt, unreadable.
+/// A Parquet file's rows as CSV with a line of names, every field quoted, read by DuckDB in a
+/// process of its own. Errors: unsupported (no library), corrupt, unreadable.
 [[nodiscard]] Result<std::string> parquet_as_csv(const std::string& path,
                                                  const std::string& duckdb_library);
 

@@ -1,0 +1,45 @@
+#include "flags.hpp"
+#include "verb_flags.hpp"
+
+namespace proofmass::app {
+
+void add_flags(CLI::App& app, FleetCommand& command) {
+  CLI::App& verb =
+      *app.add_subcommand("fleet", "a verb for many recordings, and what they show together");
+  verb.add_option("VERB", command.verb,
+                  "inspect, noise, drift, calibrate, wheel, track or tilt; or summary, of results")
+      ->type_name("WORD")
+      ->check(CLI::IsMember(
+          {"inspect", "noise", "drift", "calibrate", "wheel", "track", "tilt", "summary"}))
+      ->required();
+  verb.add_option(
+          "MANIFEST", command.manifest,
+          "table of recordings (.csv, .ndjson or .parquet: path, flags, sensor, temperature, "
+          "date, …), or a folder of them; of summary the results")
+      ->type_name("")
+      ->required();
+  const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
+    return verb.add_option(name, into, help)->type_name(type)->group("Fleet");
+  };
+  add("--into", command.into, "FOLDER", "of the results; what is there already is not done again");
+  add("-j,--jobs", command.processes, "N", "processes at once (default: the processors)")
+      ->check(CLI::Range(1, 4096));
+  add("--memory", command.memory_mb, "MB",
+      "for all processes together (default: three quarters of what is free)")
+      ->check(positive());
+  add("--timeout", command.timeout_s, "S", "a recording that takes longer is ended (default: none)")
+      ->check(positive());
+  verb.add_flag("--force", command.force, "do again what is there already")->group("Fleet");
+  verb.add_flag("--reports", command.reports, "write a page for each recording, too")
+      ->group("Fleet");
+  add("--shard", command.shard, "I/N",
+      "do every N-th recording, from the I-th on, counted from 0 (default: by the variables of "
+      "SLURM, Kubernetes, AWS Batch or MPI; N alone takes I from them)");
+  add_output_flags(verb, command.output);
+  verb.footer(
+      "All other flags are the verb's, for every recording.\n\n"
+      "Examples:\n  proofmass fleet noise recordings/ --rate 100 --unit g --into results\n"
+      "  proofmass fleet summary results --report summary.html");
+}
+
+}  // namespace proofmass::app
