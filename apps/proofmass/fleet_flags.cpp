@@ -35,6 +35,17 @@ void add_flags(CLI::App& app, FleetCommand& command) {
   add("--shard", command.shard, "I/N",
       "do every N-th recording, from the I-th on, counted from 0 (default: by the variables of "
       "SLURM, Kubernetes, AWS Batch or MPI; N alone takes I from them)");
+  const auto of_summary = [&verb](const char* name, auto& into, const char* type,
+                                  const char* help) {
+    return verb.add_option(name, into, help)->type_name(type)->group("Summary");
+  };
+  of_summary("--limit", command.limits, "LIMIT",
+             "\"white<2e-3\": the yield, by the mean of each sensor; may be repeated")
+      ->allow_extra_args(false);
+  of_summary("--false-share", command.false_share, "SHARE",
+             "of the sensors called out of family, expected to be so by chance (default 0.05)")
+      ->check(number("a number between 0 and 1", [](double x) { return x > 0.0 && x < 1.0; }));
+  add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer(
       "All other flags are the verb's, for every recording.\n\n"

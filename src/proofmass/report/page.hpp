@@ -14,6 +14,7 @@ struct Table {
   std::vector<std::string> head;               ///< empty: none
   std::vector<std::vector<std::string>> rows;  ///< plain text; the first cell names the row
   bool stacks = false;  ///< where it is narrow, that cell stands above the others of its row
+  std::vector<std::string> links = {};  ///< of the rows' first cells, to files beside the page
 };
 
 /// A short text under a word of its own, beside others.
