@@ -226,7 +226,8 @@ std::string program_commit() {
 }
 
 std::string sha256_of(const std::string& path) {
-  return summed(path, {}).sha256;
+  std::error_code problem;
+  return fs::is_regular_file(path, problem) ? summed(path, {}).sha256 : std::string();
 }
 
 std::string quoted(const std::vector<std::string>& words) {

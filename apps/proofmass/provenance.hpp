@@ -32,7 +32,7 @@ class Invocation {
 /// Of the source that the program was built from; empty where it is not known.
 [[nodiscard]] std::string program_commit();
 
-/// SHA-256 of a file in hexadecimal; empty where it cannot be read.
+/// SHA-256 of a regular file in hexadecimal; empty where it cannot be read, and of anything else.
 [[nodiscard]] std::string sha256_of(const std::string& path);
 
 /// Words as a shell takes them.
