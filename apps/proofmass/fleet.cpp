@@ -43,6 +43,15 @@ void add_fleet_flags(CLI::App& verb, FleetCommand& command) {
   add("--shard", command.shard, "I/N",
       "do every N-th recording, from the I-th on, counted from 0 (default: by the variables of "
       "SLURM, Kubernetes, AWS Batch or MPI; N alone takes I from them)");
+  add("--by", command.by, "COLUMN",
+      "analyse the recordings with one value in this column of the manifest (sensor) as one with "
+      "gaps; of noise");
+  CLI::Option* dask =
+      add("--dask", command.dask, "ADDRESS",
+          "submit the recordings to this Dask scheduler (tcp://host:8786), whose workers do them");
+  add("--program", command.program, "FILE",
+      "the program on the workers (default: proofmass on their PATH)")
+      ->needs(dask);
   const auto of_summary = [&verb](const char* name, auto& into, const char* type,
                                   const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->group("Summary");

@@ -20,7 +20,9 @@ struct FleetCommand {
   std::optional<std::size_t> processes;
   std::optional<double> memory_mb, timeout_s;
   bool force = false, reports = false;
+  std::string by;                   ///< column: recordings with one value are analysed as one
   std::string shard;                ///< "2/4"; empty: by the environment
+  std::string dask, program;        ///< the scheduler's address; Proofmass on its workers
   std::vector<std::string> limits;  ///< of summary: "white<2e-3"
   double false_share = 0.05;        ///< of summary: among the sensors that it calls out of family
   OutputFlags output;

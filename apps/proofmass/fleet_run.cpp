@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -19,6 +21,7 @@
 #include "fleet_shard.hpp"
 #include "input.hpp"
 #include "proofmass/core/version.hpp"
+#include "proofmass/fleet/driver.hpp"
 #include "proofmass/fleet/figures.hpp"
 #include "proofmass/fleet/pool.hpp"
 #include "proofmass/io/shown_text.hpp"
@@ -54,6 +57,15 @@ std::string text_in(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+// Of an object storage: whether its bytes have changed is not looked at.
+bool is_url(const std::string& path) {
+  return path.find("://") != std::string::npos;
+}
+
+std::vector<std::string> files_of_job(const Job& job) {
+  return job.parts.empty() ? std::vector{job.path} : job.parts;
+}
+
 /// One fleet on its way.
 class Run {
  public:
@@ -65,9 +77,7 @@ class Run {
   FleetReport finish();
 
  private:
-  [[nodiscard]] std::vector<std::string> flags_of(const Job& job) const {
-    return fleet::merged_flags(command_.flags, job.flags);
-  }
+  [[nodiscard]] std::vector<std::string> flags_of(const Job& job) const;
   /// Relative to the folder; and where it is while it is written.
   [[nodiscard]] static std::string document_of(const Job& job) {
     return "documents/" + fleet::document_stem(job) + ".json";
@@ -87,6 +97,9 @@ class Run {
   void keep(const Entry& entry);
   void show(std::size_t running);
   std::vector<std::size_t> plan();
+  void share_memory();
+  [[nodiscard]] Status run_here(const std::vector<std::size_t>& order);
+  [[nodiscard]] Status run_by_dask(const std::vector<std::size_t>& order);
   void write_tables();
 
   const FleetCommand& command_;
@@ -115,27 +128,47 @@ Run::Run(const FleetCommand& command,
   report_.folder = command.into;
   report_.jobs = jobs_.size();
   report_.shard = shard;
-  report_.processes = command.processes.value_or(processors());
-  memory_mb_ =
-      command.memory_mb.value_or(0.75 * free_memory_mb()) / static_cast<double>(report_.processes);
-  constexpr double least_mb = 64.0;
-  if (memory_mb_ < least_mb)
-    throw Failure(
-        usage, fmt::format("--memory: {} MB for {} processes: each needs {} at least",
-                           report::compact(memory_mb_ * static_cast<double>(report_.processes), 3),
-                           report_.processes, least_mb));
+  report_.dask = command.dask;
+  share_memory();
   for (const Job& job : jobs_) {
-    std::error_code problem;
-    const std::uintmax_t bytes = fs::file_size(job.path, problem);
-    bytes_.push_back(problem ? 0 : bytes);
+    std::uintmax_t bytes = 0;
+    for (const std::string& file : files_of_job(job)) {
+      std::error_code problem;
+      const std::uintmax_t size = fs::file_size(file, problem);
+      if (!problem) bytes += size;
+    }
+    bytes_.push_back(bytes);
   }
+}
+
+// Among the processes here; a worker's is its own business unless --memory bounds it.
+void Run::share_memory() {
+  constexpr double least_mb = 64.0, share_of_free = 0.75;
+  const bool here = command_.dask.empty();
+  report_.processes = here ? command_.processes.value_or(processors()) : 0;
+  const auto sharers = static_cast<double>(here ? report_.processes : 1);
+  const double all_mb = command_.memory_mb.value_or(here ? share_of_free * free_memory_mb() : 0.0);
+  memory_mb_ = all_mb / sharers;
+  if (memory_mb_ < least_mb && (here || command_.memory_mb))
+    throw Failure(usage, fmt::format("--memory: {} MB for {:.0f} processes: each needs {} at least",
+                                     report::compact(all_mb, 3), sharers, least_mb));
+}
+
+std::vector<std::string> Run::flags_of(const Job& job) const {
+  std::vector<std::string> flags = fleet::merged_flags(command_.flags, job.flags);
+  if (job.parts.empty()) return flags;
+  flags.emplace_back("--as-one");
+  if (!job.starts_s.empty())
+    flags.push_back(fmt::format("--starts={}", fmt::join(job.starts_s, ",")));
+  return flags;
 }
 
 std::vector<std::string> Run::arguments_of(const Job& job) const {
   const std::string stem = fleet::document_stem(job);
   const fs::path folder(command_.into);
-  std::vector<std::string> arguments{"proofmass", command_.verb, job.path};
-  const std::vector<std::string> flags = flags_of(job);
+  std::vector<std::string> arguments{"proofmass", command_.verb};
+  const std::vector<std::string> files = files_of_job(job), flags = flags_of(job);
+  arguments.insert(arguments.end(), files.begin(), files.end());
   arguments.insert(arguments.end(), flags.begin(), flags.end());
   arguments.insert(arguments.end(), {"--quiet", "--json", "-"});
   if (command_.reports) {
@@ -143,7 +176,7 @@ std::vector<std::string> Run::arguments_of(const Job& job) const {
     arguments.push_back((folder / "reports" / (stem + ".html")).string());
   }
   // A table kept whole is copied by the analysis; a larger one is read in pieces.
-  if (command_.verb == "inspect" || command_.verb == "noise") {
+  if (memory_mb_ > 0.0 && (command_.verb == "inspect" || command_.verb == "noise")) {
     constexpr double copies = 4.0;
     arguments.emplace_back("--memory");
     arguments.push_back(fmt::format("{:.0f}", memory_mb_ / copies));
@@ -155,15 +188,15 @@ std::vector<std::string> Run::arguments_of(const Job& job) const {
 bool Run::is_done_already(const Job& job) {
   auto entry = results_.find(job.id());
   if (command_.force || !entry || entry->verb != command_.verb || entry->flags != flags_of(job) ||
-      entry->version != version() || entry->commit != program_commit() ||
-      (!entry->failure.empty() && !entry->is_lasting))
+      entry->parts != job.parts || entry->version != version() ||
+      entry->commit != program_commit() || (!entry->failure.empty() && !entry->is_lasting))
     return false;
   const bool has_document =
       !entry->failure.empty() || fs::exists(fs::path(command_.into) / entry->document);
   const bool lacks_report = command_.reports && entry->failure.empty() && entry->report.empty();
   if (!has_document || lacks_report) return false;
   for (const fleet::InputSum& input : entry->inputs)
-    if (input.sha256 != sha256_of(input.path)) return false;
+    if (!is_url(input.path) && input.sha256 != sha256_of(input.path)) return false;
   if (entry->columns != job.columns) {
     entry->columns = job.columns;
     keep(*entry);
@@ -241,6 +274,7 @@ Entry Run::entry_of(const Job& job, const fleet::Ended& ended) const {
   entry.own_flags = job.flags;
   entry.flags = flags_of(job);
   entry.columns = job.columns;
+  entry.parts = job.parts;
   entry.version = version();
   entry.commit = program_commit();
   entry.seconds = ended.seconds;
@@ -250,7 +284,8 @@ Entry Run::entry_of(const Job& job, const fleet::Ended& ended) const {
     entry.failure = why_it_failed(ended, command_.timeout_s);
   if (!entry.failure.empty()) {
     entry.is_lasting = ended.status == bad_input || ended.status == usage;
-    entry.inputs = {{job.path, sha256_of(job.path)}};
+    for (const std::string& file : files_of_job(job))
+      entry.inputs.push_back({file, sha256_of(file)});
     entry.document.clear();
     std::error_code problem;
     fs::remove(fs::path(command_.into) / document_of(job), problem);
@@ -312,19 +347,44 @@ void Run::write_tables() {
   if (!written) throw Failure(status_of(written.error(), Stage::writing), written.error().message);
 }
 
+Status Run::run_here(const std::vector<std::size_t>& order) {
+  return fleet::run_pool(
+      order,
+      {.processes = report_.processes,
+       .timeout_s = command_.timeout_s.value_or(0.0),
+       .memory_bytes = static_cast<std::size_t>(memory_mb_ * bytes_per_megabyte)},
+      {.run = [&](std::size_t job) { return run_child(jobs_[job]); },
+       .output = [&](std::size_t job) { return part_of(jobs_[job]); },
+       .ended = [&](const fleet::Ended& one) { return ended(one); },
+       .goes_on = [&](std::size_t running) { return goes_on(running); }});
+}
+
+Status Run::run_by_dask(const std::vector<std::size_t>& order) {
+  ignore_broken_pipes();
+  const char* python = std::getenv("PROOFMASS_PYTHON");
+  const fleet::DriverOptions options{
+      .command = {python == nullptr ? "python3" : python, "-m", "proofmass._dask", command_.dask},
+      .program = command_.program,
+      .timeout_s = command_.timeout_s.value_or(0.0),
+      .memory_bytes = static_cast<std::size_t>(memory_mb_ * bytes_per_megabyte)};
+  const Status ran =
+      fleet::run_driver(order, options,
+                        {.arguments =
+                             [&](std::size_t job) {
+                               std::vector<std::string> words = arguments_of(jobs_[job]);
+                               words.erase(words.begin());  // the program
+                               return words;
+                             },
+                         .output = [&](std::size_t job) { return part_of(jobs_[job]); },
+                         .ended = [&](const fleet::Ended& one) { return ended(one); },
+                         .goes_on = [&](std::size_t running) { return goes_on(running); }});
+  return ran ? ran : Status(ran.error().at("--dask"));
+}
+
 FleetReport Run::finish() {
   if (command_.reports) fs::create_directories(fs::path(command_.into) / "reports");
   const std::vector<std::size_t> order = plan();
-  fleet::PoolOptions options;
-  options.processes = report_.processes;
-  options.timeout_s = command_.timeout_s.value_or(0.0);
-  options.memory_bytes = static_cast<std::size_t>(memory_mb_ * bytes_per_megabyte);
-  const Status ran =
-      fleet::run_pool(order, options,
-                      {.run = [&](std::size_t job) { return run_child(jobs_[job]); },
-                       .output = [&](std::size_t job) { return part_of(jobs_[job]); },
-                       .ended = [&](const fleet::Ended& one) { return ended(one); },
-                       .goes_on = [&](std::size_t running) { return goes_on(running); }});
+  const Status ran = command_.dask.empty() ? run_here(order) : run_by_dask(order);
   panel_.wipe();
   write_tables();
   if (!ran) throw Failure(failed, ran.error().message);
@@ -361,6 +421,10 @@ FleetReport run_fleet(const FleetCommand& command) {
   const fleet::Shard shard = parse_shard(command.shard);
   std::vector<Job> jobs =
       need(fleet::read_manifest(command.manifest, duckdb_library()), Stage::reading);
+  if (!command.by.empty()) {
+    if (command.verb != "noise") throw Failure(usage, "--by: of noise alone");
+    jobs = need(fleet::grouped_by(jobs, command.by), Stage::reading);
+  }
   std::set<std::vector<std::string>> seen;
   for (const Job& job : jobs)
     if (seen.insert(job.flags).second)

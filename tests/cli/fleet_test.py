@@ -1,4 +1,5 @@
 """proofmass fleet: a verb for many recordings."""
+import datetime
 import json
 import os
 import random
@@ -45,6 +46,88 @@ class FleetTest(CommandTest):
 
     def counts(self, document):
         return document["jobs"], document["done"], document["skipped"], len(document["failed"])
+
+
+class BySensor(FleetTest):
+    """Recordings of a sensor that follow each other are analysed as one with gaps."""
+
+    HOURS, RATE_HZ = 24, 10.0
+
+    def day(self, samples, missing, own_clock=True, hours=HOURS):
+        """`hours` files of so many samples, so many missing behind each; and all of them in one file. A walk and white noise."""
+        draw = random.Random(11)
+        level, whole = 0.0, []
+        lines = ["path,sensor,date"]
+        for k in range(hours):
+            rows = []
+            for n in range(samples + missing):
+                level += draw.gauss(0, 0.002)
+                if n < samples:
+                    time_s = (k * (samples + missing) + n) / self.RATE_HZ
+                    rows.append((time_s, f"{9.8 + level + draw.gauss(0, 0.01):.6f}"))
+            whole += rows
+            start_s = rows[0][0]
+            self.write(f"h{k:02d}.csv", "time (s),acc_z (m/s^2)\n" + "".join(
+                f"{time_s if own_clock else time_s - start_s:.2f},{value}\n" for time_s, value in rows))
+            date = datetime.datetime(2026, 5, 1, tzinfo=datetime.timezone.utc) + datetime.timedelta(seconds=start_s)
+            lines.append(f"h{k:02d}.csv,S1,{date.isoformat(timespec='milliseconds').replace('+00:00', 'Z')}")
+        self.write("day.csv", "time (s),acc_z (m/s^2)\n" + "".join(f"{t:.2f},{value}\n" for t, value in whole))
+        self.write("manifest.csv", "\n".join([lines[0], *reversed(lines[1:])]) + "\n")
+
+    def assert_same(self, joined, whole):
+        points, others = (one["channels"][0]["deviation"]["points"] for one in (joined, whole))
+        self.assertEqual([point["tau_s"] for point in points], [point["tau_s"] for point in others])
+        self.assertGreater(len(points), 20)
+        for point, other in zip(points, others):
+            self.assertAlmostEqual(point["value"] / other["value"], 1.0, delta=1e-12)
+        found, other = (one["channels"][0]["parameters"] for one in (joined, whole))
+        for name in ("white", "random_walk"):
+            self.assertEqual(found[name]["verdict"], "identified")
+            self.assertAlmostEqual(found[name]["value"] / other[name]["value"], 1.0, delta=1e-6)
+
+    def joined(self, *flags):
+        document = self.document("fleet", "noise", "manifest.csv", "--by", "sensor", "--into", "results", *flags)
+        self.assertEqual(self.counts(document), (1, 1, 0, 0))
+        (path,) = (self.folder / "results/documents").glob("S1-*.json")
+        return parse_json(path.read_text())
+
+    def test_files_of_an_hour_are_the_recording_of_the_day(self):
+        self.day(samples=400, missing=0)
+        self.assert_same(self.joined(), self.document("noise", "day.csv"))
+
+    def test_with_gaps_between_them_they_are_the_recording_with_these_gaps(self):
+        self.day(samples=380, missing=7)
+        self.assert_same(self.joined(), self.document("noise", "day.csv"))
+
+    def test_where_each_file_begins_at_zero_the_dates_say_when_it_does(self):
+        self.day(samples=380, missing=7, own_clock=False)
+        self.assert_same(self.joined(), self.document("noise", "day.csv"))
+        self.write("manifest.csv", (self.folder / "manifest.csv").read_text().replace("T", " at "))
+        error = self.expect_failure(BAD_INPUT, "fleet", "noise", "manifest.csv", "--by", "sensor", "--into", "other")
+        self.assertIn("before the end of the recording before it", error)
+
+    def test_one_more_file_is_a_new_result_in_the_place_of_the_old_one(self):
+        self.day(samples=400, missing=0, hours=3)
+        flags = ("noise", "manifest.csv", "--by", "sensor", "--into", "results")
+        self.write("manifest.csv", "path,sensor\nh00.csv,S1\nh01.csv,S1\n")
+        self.assertEqual(self.counts(self.document("fleet", *flags)), (1, 1, 0, 0))
+        self.write("manifest.csv", "path,sensor\nh00.csv,S1\nh01.csv,S1\nh02.csv,S1\n")
+        self.assertEqual(self.counts(self.document("fleet", *flags)), (1, 1, 0, 0))
+        self.assertEqual(self.counts(self.document("fleet", *flags)), (1, 0, 1, 0))
+        self.assertEqual([entry["rows"][0]["deviation_statistic"] for entry in self.journal()][-1], "oadev")
+        self.assertEqual(self.summary("results")["recordings"], 1)
+
+    def test_what_does_not_fit_together_is_refused_with_the_reason(self):
+        self.day(samples=400, missing=0, hours=3)
+        self.write("other.csv", "time (s),acc_x (m/s^2)\n" + "".join(f"{100 + k / 10:.2f},{9.8 + k % 3}\n" for k in range(400)))
+        self.write("fast.csv", "time (s),acc_z (m/s^2)\n" + "".join(f"{200 + k / 50:.2f},{9.8 + k % 3}\n" for k in range(400)))
+        refusal = lambda *files: self.expect_failure(USAGE, "noise", *files, "--as-one")
+        self.assertIn("it has no channel acc_z", refusal("h00.csv", "other.csv"))
+        self.assertIn("it has 50 Hz", refusal("h00.csv", "fast.csv"))
+        self.assertIn("before the end of the recording before it", refusal("h01.csv", "h00.csv"))
+        self.assertIn("1 times for 2 files", self.expect_failure(USAGE, "noise", "h00.csv", "h01.csv", "--as-one", "--starts", "0"))
+        self.assertIn("of noise alone", self.expect_failure(USAGE, "fleet", "inspect", "manifest.csv", "--by", "sensor", "--into", "r"))
+        self.assertIn("has no batch", self.expect_failure(USAGE, "fleet", "noise", "manifest.csv", "--by", "batch", "--into", "r"))
 
 
 class Fleet(FleetTest):

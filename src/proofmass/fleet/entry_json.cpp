@@ -57,6 +57,7 @@ std::string line_of(const Entry& entry) {
                      {"own_flags", entry.own_flags},
                      {"flags", entry.flags},
                      {"columns", columns_json(entry.columns)},
+                     {"parts", entry.parts},
                      {"inputs", std::move(inputs)},
                      {"version", entry.version},
                      {"commit", entry.commit},
@@ -78,6 +79,7 @@ std::optional<Entry> entry_of_line(std::string_view line) {
     json.at("flags").get_to(entry.flags);
     for (const auto& [name, value] : json.at("columns").items())
       entry.columns.emplace_back(name, value.get<std::string>());
+    json.at("parts").get_to(entry.parts);
     for (const Json& input : json.at("inputs"))
       entry.inputs.push_back({input.at("path"), input.at("sha256")});
     json.at("version").get_to(entry.version);

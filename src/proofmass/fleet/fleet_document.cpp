@@ -9,12 +9,16 @@ namespace {
 namespace field = report::field;
 using report::Fields;
 
+std::string processes_of(const FleetReport& report) {
+  if (!report.dask.empty()) return "the workers of " + report.dask;
+  return report.processes == 1 ? "1 process" : fmt::format("{} processes", report.processes);
+}
+
 std::string run_conclusion(const FleetReport& report) {
-  std::string text = fmt::format(
-      "{} of {}: {} done, {} skipped, {} failed, in {} with {}.",
-      report::count_words(report.jobs, "recording"), report.manifest, report.done, report.skipped,
-      report.failed.size(), report::duration_words(report.elapsed_s),
-      report.processes == 1 ? "1 process" : fmt::format("{} processes", report.processes));
+  std::string text = fmt::format("{} of {}: {} done, {} skipped, {} failed, in {} with {}.",
+                                 report::count_words(report.jobs, "recording"), report.manifest,
+                                 report.done, report.skipped, report.failed.size(),
+                                 report::duration_words(report.elapsed_s), processes_of(report));
   if (report.shard.n > 1)
     text += fmt::format(" Shard {} of {}, counted from 0.", report.shard.i, report.shard.n);
   return text;
@@ -37,7 +41,10 @@ Fields run_fields(const FleetReport& report) {
       field::text("results", report.folder, {.meaning = "the folder"}),
       field::object("shard", {field::count("i", report.shard.i, {.meaning = "counted from 0"}),
                               field::count("n", report.shard.n, {.meaning = "1: all recordings"})}),
-      field::count("processes", report.processes, {.meaning = "at once"}),
+      field::text("dask", report.dask,
+                  {.meaning = "address of the scheduler; empty: processes of this machine"}),
+      field::count("processes", report.processes,
+                   {.meaning = "at once; 0: as many as the workers have"}),
       field::magnitude("elapsed_s", report.elapsed_s),
       field::magnitude("busy_s", report.busy_s, {.meaning = "of all processes together"}),
       field::notes(report.notes)};

@@ -22,7 +22,8 @@ struct FleetReport {
   std::size_t skipped = 0;  ///< done before, with the same bytes, flags and version
   std::vector<FailedJob> failed;
   Shard shard;
-  std::size_t processes = 1;
+  std::string dask;           ///< address of the scheduler; empty: processes of this machine
+  std::size_t processes = 1;  ///< 0: as many as its workers have
   double elapsed_s = 0.0;
   double busy_s = 0.0;  ///< of all processes together
   std::vector<Note> notes;

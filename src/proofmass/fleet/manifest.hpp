@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,11 +18,14 @@ using ManifestFields = std::vector<std::pair<std::string, std::string>>;
 /// The field of that name; empty where there is none.
 [[nodiscard]] std::string_view manifest_field(const ManifestFields& fields, std::string_view name);
 
-/// One recording with its flags.
+/// One recording with its flags, or several that are analysed as one.
 struct Job {
   std::string path;                ///< as it is opened: relative to the working folder
   std::vector<std::string> flags;  ///< of this recording alone
   ManifestFields columns;          ///< all others of the manifest: sensor, temperature, date, …
+  /// Recordings of a group, in the order of time; `path` is then the group's name.
+  std::vector<std::string> parts = {};
+  std::vector<double> starts_s = {};  ///< of the parts; empty: not known
 
   /// The same for the same recording and flags, whatever the other columns say.
   [[nodiscard]] std::string id() const;
@@ -47,6 +51,16 @@ struct Job {
 /// `common` flags and after them `own`; a common flag that `own` gives too is left out.
 [[nodiscard]] std::vector<std::string> merged_flags(const std::vector<std::string>& common,
                                                     const std::vector<std::string>& own);
+
+/// One job for each value of a column ("sensor"): its recordings by date, with their starts where
+/// all dates have a time of day, and the columns that they have in common; of the dates the first.
+/// Errors: invalid_argument (no such column, a recording without a value, flags that differ).
+[[nodiscard]] Result<std::vector<Job>> grouped_by(const std::vector<Job>& jobs,
+                                                  const std::string& column);
+
+/// Days since 1970 of "2026-11-25", "2026-11-25T04:30:00.5Z", "2026-11-25T04:30+02:00"; nullopt of
+/// anything else.
+[[nodiscard]] std::optional<double> day_of(std::string_view date);
 
 /// Every n-th recording, from the i-th on: shards of a manifest share nothing and leave nothing
 /// out.

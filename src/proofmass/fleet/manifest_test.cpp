@@ -115,5 +115,54 @@ TEST(ShardOf, DividesAllJobsAmongTheShards) {
   EXPECT_EQ(seen, (std::vector<std::string>{"0", "1", "2", "3", "4", "5", "6", "7", "8", "9"}));
 }
 
+TEST(DayOf, CountsDaysSince1970) {
+  EXPECT_EQ(day_of("1970-01-02"), 1.0);
+  EXPECT_EQ(day_of("2000-03-01"), 11017.0);
+  EXPECT_EQ(day_of("1970-01-01T12:00:00Z"), 0.5);
+  EXPECT_EQ(day_of("1970-01-02T00:00:13.5"), 1.0 + 13.5 / 86400.0);
+  EXPECT_EQ(day_of("1970-01-01T12:00:00-06:00"), 0.75);
+  EXPECT_EQ(day_of("1970-01-01T12:00+06"), 0.25);
+  for (const char* bad : {"", "yesterday", "2026-13-01", "01.02.2026"})
+    EXPECT_FALSE(day_of(bad)) << bad;
+}
+
+Job dated(const char* path, const char* sensor, const char* date) {
+  return {.path = path,
+          .flags = {},
+          .columns = {{"sensor", sensor}, {"date", date}, {"batch", "7"}, {"note", path}}};
+}
+
+TEST(GroupedBy, OrdersTheRecordingsOfASensorByDate) {
+  const auto groups = grouped_by(
+      {dated("c", "S1", "2026-01-01T02:00:00Z"), dated("x", "S0", "2026-01-01T00:00:00Z"),
+       dated("a", "S1", "2026-01-01T00:00:00Z"), dated("b", "S1", "2026-01-01T01:00:00.5Z")},
+      "sensor");
+  ASSERT_TRUE(groups);
+  ASSERT_EQ(groups->size(), 2U);
+  const Job& job = (*groups)[1];
+  EXPECT_EQ(job.path, "S1");
+  EXPECT_EQ(job.parts, (std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_EQ(job.starts_s, (std::vector<double>{0.0, 3600.5, 7200.0}));
+  EXPECT_EQ(job.columns,
+            (ManifestFields{{"sensor", "S1"}, {"date", "2026-01-01T00:00:00Z"}, {"batch", "7"}}));
+}
+
+TEST(GroupedBy, KnowsNoStartsByDatesWithoutATimeOfDay) {
+  const auto groups =
+      grouped_by({dated("a", "S1", "2026-01-01"), dated("b", "S1", "2026-01-02")}, "sensor");
+  ASSERT_TRUE(groups);
+  EXPECT_TRUE((*groups)[0].starts_s.empty());
+}
+
+TEST(GroupedBy, RefusesRecordingsWithoutAValueOrWithDifferentFlags) {
+  EXPECT_FALSE(grouped_by({dated("a", "", "2026-01-01")}, "sensor"));
+  EXPECT_FALSE(grouped_by({dated("a", "S1", "2026-01-01")}, "serial"));
+  Job other = dated("b", "S1", "2026-01-02");
+  other.flags = {"--rate", "50"};
+  const auto groups = grouped_by({dated("a", "S1", "2026-01-01"), other}, "sensor");
+  ASSERT_FALSE(groups);
+  EXPECT_EQ(groups.error().message, "a and b are of sensor S1, and have different flags");
+}
+
 }  // namespace
 }  // namespace proofmass::fleet::manifest_test

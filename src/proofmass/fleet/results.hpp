@@ -25,6 +25,7 @@ struct Entry {
   std::vector<std::string> own_flags;  ///< of the manifest, for this recording
   std::vector<std::string> flags;      ///< all that the verb was run with
   ManifestFields columns;
+  std::vector<std::string> parts;  ///< of a group its recordings
   std::vector<InputSum> inputs;
   std::string version, commit;
   double ended_s = 0.0;          ///< seconds since 1970

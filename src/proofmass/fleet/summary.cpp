@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fmt/format.h>
@@ -279,23 +278,6 @@ Result<Limit> parse_limit(const std::string& text) {
         Errc::invalid_argument,
         fmt::format("limit {}: expected a figure, < or >, and a number: \"white<2e-3\"", text)};
   return Limit{text, text.substr(0, at), text[at] == '<', *bound};
-}
-
-std::optional<double> day_of(std::string_view date) {
-  constexpr std::size_t of_day = 10;
-  if (date.size() < of_day || date[4] != '-' || date[7] != '-') return std::nullopt;
-  const auto part = [&](std::size_t from, std::size_t count) -> std::optional<double> {
-    return date.size() < from + count ? std::optional(0.0) : figure_in(date.substr(from, count));
-  };
-  const auto year = part(0, 4), month = part(5, 2), day = part(8, 2);
-  const auto hour = part(11, 2), minute = part(14, 2), second = part(17, 2);
-  if (!year || !month || !day || !hour || !minute || !second) return std::nullopt;
-  const std::chrono::year_month_day named{std::chrono::year(static_cast<int>(*year)),
-                                          std::chrono::month(static_cast<unsigned>(*month)),
-                                          std::chrono::day(static_cast<unsigned>(*day))};
-  if (!named.ok()) return std::nullopt;
-  return static_cast<double>(std::chrono::sys_days(named).time_since_epoch().count()) +
-         (*hour * 3600.0 + *minute * 60.0 + *second) / 86400.0;
 }
 
 Result<Summary> summarise(const std::string& folder, const SummaryOptions& options) {

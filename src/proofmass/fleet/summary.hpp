@@ -87,9 +87,6 @@ struct Summary {
 /// invalid_argument (a limit of a figure that is not there).
 [[nodiscard]] Result<Summary> summarise(const std::string& folder, const SummaryOptions& options);
 
-/// Days since 1970 of "2026-11-25", "2026-11-25T04:30:00Z"; nullopt of anything else.
-[[nodiscard]] std::optional<double> day_of(std::string_view date);
-
 /// Outliers, the type, trends, yield, and each figure's distribution. `links` leads from the page's
 /// folder to the results' folder. It refers to the summary, which must outlive it.
 [[nodiscard]] report::Document describe(const Summary& summary, const std::string& links);

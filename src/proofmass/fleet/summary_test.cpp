@@ -22,14 +22,6 @@ TEST(ParseLimit, ReadsAFigureASideAndABound) {
     EXPECT_FALSE(parse_limit(bad)) << bad;
 }
 
-TEST(DayOf, CountsDaysSince1970) {
-  EXPECT_EQ(day_of("1970-01-02"), 1.0);
-  EXPECT_EQ(day_of("2000-03-01"), 11017.0);
-  EXPECT_EQ(day_of("1970-01-01T12:00:00Z"), 0.5);
-  for (const char* bad : {"", "yesterday", "2026-13-01", "01.02.2026"})
-    EXPECT_FALSE(day_of(bad)) << bad;
-}
-
 // y = 2 + 0.5 x + level: the slope is exact whatever the levels are.
 TEST(FitTrend, FindsTheSlopeWithinSensorsOfDifferentLevels) {
   std::vector<TrendPoint> points;
