@@ -239,14 +239,18 @@ std::string last_words(const std::string& words) {
   return words.substr(from, words.find('\n', from) - from);
 }
 
-std::string why_it_failed(const fleet::Ended& ended, const std::optional<double>& timeout_s) {
+// The recording's own name before the reason is left away, as it stands beside it.
+std::string why_it_failed(const Job& job,
+                          const fleet::Ended& ended,
+                          const std::optional<double>& timeout_s) {
   if (ended.timed_out)
     return fmt::format("took longer than {} s (--timeout)",
                        report::compact(timeout_s.value_or(0.0), 4));
   if (ended.signal != 0)
     return fmt::format("its process was ended by signal {} ({})", ended.signal,
                        ::strsignal(ended.signal));
-  const std::string words = last_words(ended.words);
+  std::string words = last_words(ended.words);
+  if (words.starts_with(job.path + ": ")) words.erase(0, job.path.size() + 2);
   return words.empty() ? fmt::format("ended with status {}", ended.status) : words;
 }
 
@@ -281,7 +285,7 @@ Entry Run::entry_of(const Job& job, const fleet::Ended& ended) const {
   if (ended.status == done && ended.signal == 0)
     read_document(job, entry);
   else
-    entry.failure = why_it_failed(ended, command_.timeout_s);
+    entry.failure = why_it_failed(job, ended, command_.timeout_s);
   if (!entry.failure.empty()) {
     entry.is_lasting = ended.status == bad_input || ended.status == usage;
     for (const std::string& file : files_of_job(job))

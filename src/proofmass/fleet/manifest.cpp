@@ -79,13 +79,25 @@ bool is_beside_recordings(const fs::path& path) {
   return false;
 }
 
+// What --into has made, which may lie beside the recordings.
+bool holds_results(const fs::path& folder) {
+  std::error_code problem;
+  for (fs::directory_iterator at(folder, problem), end; !problem && at != end;
+       at.increment(problem)) {
+    const std::string name = at->path().filename().string();
+    if (name.starts_with("journal") && name.ends_with(".ndjson")) return true;
+  }
+  return false;
+}
+
 Result<std::vector<Job>> jobs_of_folder(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code problem;
   for (fs::recursive_directory_iterator at(folder, problem), end; !problem && at != end;
        at.increment(problem)) {
     const bool hidden = at->path().filename().string().starts_with('.');
-    if (at->is_directory(problem) && hidden) at.disable_recursion_pending();
+    if (at->is_directory(problem) && (hidden || holds_results(at->path())))
+      at.disable_recursion_pending();
     if (at->is_regular_file(problem) && !is_beside_recordings(at->path()))
       files.push_back(at->path().string());
   }

@@ -35,9 +35,9 @@ struct Job {
 /// recording, relative to the manifest's folder unless it is a URL; `flags` are words as a shell
 /// takes them. CSV (comma, semicolon or tab), .parquet (by DuckDB's library) or .ndjson/.jsonl. Of
 /// a folder all files in it and below are taken, in the order of their names, less hidden ones,
-/// tables named manifest.*, and what is written beside recordings (.truth.csv, .json, .html, .toml,
-/// .md, .part). Errors: unreadable; corrupt, with the line; invalid_argument (no column path, no
-/// recording, one that is listed twice with the same flags).
+/// folders of results, tables named manifest.*, and what is written beside recordings (.truth.csv,
+/// .json, .html, .toml, .md, .part). Errors: unreadable; corrupt, with the line; invalid_argument
+/// (no column path, no recording, one that is listed twice with the same flags).
 [[nodiscard]] Result<std::vector<Job>> read_manifest(const std::string& path,
                                                      const std::string& duckdb_library);
 

@@ -78,6 +78,8 @@ TEST_F(Manifest, OfAFolderHoldsItsRecordingsAndNotWhatLiesBeside) {
   for (const char* name : {"b.csv", "sub/a.tdms", "b.truth.csv", "b.json", "manifest.csv",
                            ".hidden.csv", ".git/c.csv", "sensor.toml"})
     write(name, "x");
+  write("results/journal.ndjson", "");
+  write("results/results.parquet", "");
   const auto jobs = read_manifest(folder_, "");
   ASSERT_TRUE(jobs);
   ASSERT_EQ(jobs->size(), 2U);

@@ -66,6 +66,19 @@ class Collector {
     for (const Row& row : entry.rows) take(entry, row);
   }
 
+  /// Leaves the folders that they share out of the names of sensors that are paths.
+  void shorten_names() {
+    if (by_path_.empty()) return;
+    std::string shared = summary_->sensors[by_path_.front()];
+    for (const std::size_t sensor : by_path_) {
+      const std::string& name = summary_->sensors[sensor];
+      const auto apart = std::ranges::mismatch(shared, name).in1;
+      shared.erase(apart, shared.end());
+    }
+    const std::size_t folders = shared.rfind('/') + 1;  // 0 where there is none
+    for (const std::size_t sensor : by_path_) summary_->sensors[sensor].erase(0, folders);
+  }
+
  private:
   void take(const Entry& entry, const Row& row) {
     const Fielded fields(row);
@@ -106,15 +119,18 @@ class Collector {
   std::size_t sensor_of(const Entry& entry) {
     std::string name(manifest_field(entry.columns, "sensor"));
     if (name.empty()) name = manifest_field(entry.columns, "serial");
-    if (name.empty()) name = entry.path;
+    const bool is_path = name.empty();
+    if (is_path) name = entry.path;
     const auto [place, is_new] = sensors_.try_emplace(name, summary_->sensors.size());
     if (is_new) summary_->sensors.push_back(name);
+    if (is_new && is_path) by_path_.push_back(place->second);
     return place->second;
   }
 
   Summary* summary_;
   std::map<std::pair<std::string, std::string>, std::size_t> places_;
   std::map<std::string, std::size_t> sensors_;
+  std::vector<std::size_t> by_path_;  // sensors that only the recordings' names tell apart
 };
 
 Quantiles quantiles_of(const FigureSummary& figure) {
@@ -292,6 +308,7 @@ Result<Summary> summarise(const std::string& folder, const SummaryOptions& optio
     return Done{};
   });
   if (!read) return read.error();
+  collector.shorten_names();
   std::erase_if(summary.figures,
                 [](const FigureSummary& figure) { return figure.values.size() < least_values; });
   FamilyTest test;

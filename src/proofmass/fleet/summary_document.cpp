@@ -153,6 +153,7 @@ Fields summary_fields(const Summary& summary) {
 
 // "1 000 recordings of 20 sensors; 5 failed. Out of family: S03, S11."
 std::string summary_conclusion(const Summary& summary) {
+  constexpr std::size_t most_listed = 8;
   std::set<std::string> out;
   for (const FigureSummary& figure : summary.figures)
     for (const Outlier& one : figure.outliers) out.insert(summary.sensors[one.sensor]);
@@ -161,8 +162,13 @@ std::string summary_conclusion(const Summary& summary) {
                   report::count_words(summary.sensors.size(), "sensor"), summary.failures);
   if (summary.family_tests == 0)
     return text + "No figure was measured on enough sensors to test which are out of family.";
-  return text + (out.empty() ? "No sensor is out of family."
-                             : fmt::format("Out of family: {}.", fmt::join(out, ", ")));
+  if (out.empty()) return text + "No sensor is out of family.";
+  const std::vector<std::string> listed(
+      out.begin(),
+      std::next(out.begin(), static_cast<std::ptrdiff_t>(std::min(out.size(), most_listed))));
+  const std::string more =
+      out.size() > listed.size() ? fmt::format(" and {} more", out.size() - listed.size()) : "";
+  return text + fmt::format("Out of family: {}{}.", fmt::join(listed, ", "), more);
 }
 
 Section outliers_section(const Summary& summary, const std::string& links) {
@@ -200,17 +206,19 @@ Section sensors_section(const Summary& summary) {
       .heading = "Sensors, by their number in the plots", .id = "sensors", .paragraphs = {names}};
 }
 
-std::vector<Section> figure_sections(const Summary& summary) {
-  std::vector<Section> sections;
-  std::size_t k = 0;
+Section figures_section(const Summary& summary) {
+  Section section{.heading = "Figure by figure", .id = "figures"};
   for (const FigureSummary& figure : summary.figures)
-    sections.push_back({.heading = figure_title(figure),
-                        .id = fmt::format("figure-{}", ++k),
-                        .figures = figures_of(figure)});
-  return sections;
+    section.parts.push_back({.heading = figure_title(figure), .figures = figures_of(figure)});
+  return section;
 }
 
 }  // namespace
+
+bool is_out_of_family(const FigureSummary& figure, std::size_t sensor) {
+  return std::ranges::any_of(figure.outliers,
+                             [&](const Outlier& one) { return one.sensor == sensor; });
+}
 
 std::string figure_title(const FigureSummary& figure) {
   return figure.channel.empty() ? figure.name : figure.channel + ": " + figure.name;
@@ -229,8 +237,9 @@ report::Document describe(const Summary& summary, const std::string& links) {
   add_table(sections, "Dependence on date and temperature", "trends", trend_table(summary));
   add_table(sections, "Yield", "yield", yield_table(summary));
   add_table(sections, "Distributions", "distributions", quantiles_table(summary));
-  if (!summary.figures.empty()) sections.push_back(sensors_section(summary));
-  for (Section& section : figure_sections(summary)) sections.push_back(std::move(section));
+  if (summary.figures.empty()) return document;
+  sections.push_back(sensors_section(summary));
+  sections.push_back(figures_section(summary));
   return document;
 }
 

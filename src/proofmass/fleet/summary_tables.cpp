@@ -1,4 +1,6 @@
 #include <fmt/format.h>
+#include <map>
+#include <utility>
 
 #include "proofmass/fleet/summary_parts.hpp"
 #include "proofmass/report/wording.hpp"
@@ -12,7 +14,7 @@ using report::Table;
 constexpr int digits = 4;
 
 std::string between(const Bounds& bounds) {
-  return fmt::format("{} … {}", compact(bounds.lower, digits), compact(bounds.upper, digits));
+  return fmt::format("{} … {}", compact(bounds.lower, 3), compact(bounds.upper, 3));
 }
 
 std::string unit_of(const FigureSummary& figure) {
@@ -49,41 +51,47 @@ Table outlier_table(const Summary& summary) {
 
 Table outlier_recordings_table(const Summary& summary, const std::string& links) {
   Table table{.caption = "Recordings of these sensors",
-              .head = {"Recording", "Sensor", "Figure", "Value"},
+              .head = {"Recording", "Sensor", "Out of family in"},
               .rows = {},
               .page_only = true,
               .long_list = true};
+  std::map<std::pair<std::size_t, std::string>, std::size_t> places;  // by sensor and file
   for (const FigureSummary& figure : summary.figures)
-    for (const Outlier& one : figure.outliers)
-      for (const FigureValue& value : figure.values) {
-        if (value.sensor != one.sensor) continue;
-        table.rows.push_back({report::file_name(value.file), summary.sensors[one.sensor],
-                              figure_title(figure),
-                              compact(value.value, digits) + " " + unit_of(figure)});
+    for (const FigureValue& value : figure.values) {
+      if (!is_out_of_family(figure, value.sensor)) continue;
+      const auto [place, is_new] =
+          places.try_emplace({value.sensor, value.file}, table.rows.size());
+      if (is_new) {
+        table.rows.push_back({report::file_name(value.file), summary.sensors[value.sensor], ""});
         table.links.push_back(links + value.page);
       }
+      std::string& figures = table.rows[place->second].back();
+      figures += (figures.empty() ? "" : ", ") + figure_title(figure);
+    }
   return table;
 }
 
 Table type_table(const Summary& summary) {
-  Table table{
-      .caption = "Sensors in the family alone, with 95 % intervals",
-      .head = {"Figure", "Mean", "95 %", "Std between sensors", "95 %", "Std within", "95 %"},
-      .rows = {}};
+  Table table{.caption = "Sensors in the family alone, with 95 % intervals",
+              .head = {"Figure", "Mean", "95 %", "Std between sensors", "Std within a sensor"},
+              .rows = {}};
+  const auto with_bounds = [](double std, const Bounds& bounds) {
+    return fmt::format("{} ({})", compact(std, 3), between(bounds));
+  };
   for (const FigureSummary& figure : summary.figures) {
     if (!figure.type) continue;
     const RandomEffects& type = *figure.type;
     table.rows.push_back({figure_title(figure), report::with_std(type.mean, unit_of(figure)),
-                          between(type.mean_95), compact(type.between_std, 3),
-                          between(type.between_95),
-                          type.within_std ? compact(*type.within_std, 3) : "–",
-                          type.within_std ? between(type.within_95) : "–"});
+                          between(type.mean_95), with_bounds(type.between_std, type.between_95),
+                          type.within_std ? with_bounds(*type.within_std, type.within_95) : "–"});
   }
   return table;
 }
 
 Table trend_table(const Summary& summary) {
-  Table table{.caption = "", .head = {"Figure", "Slope", "Adjusted p", "Found"}, .rows = {}};
+  Table table{.caption = "Slopes that are significant over all figures together",
+              .head = {"Figure", "Slope", "Adjusted p", "Found"},
+              .rows = {}};
   for (const FigureSummary& figure : summary.figures)
     for (const bool over_date : {true, false}) add_trend(summary, figure, over_date, table);
   return table;
@@ -91,7 +99,7 @@ Table trend_table(const Summary& summary) {
 
 Table yield_table(const Summary& summary) {
   constexpr double percent = 100.0;
-  Table table{.caption = "",
+  Table table{.caption = "Sensors within the limits, by the mean of each",
               .head = {"Figure", "Limit", "Sensors within it", "Share of the type, 95 %"},
               .rows = {}};
   for (const FigureSummary& figure : summary.figures)
@@ -107,7 +115,8 @@ Table quantiles_table(const Summary& summary) {
   Table table{.caption = "",
               .head = {"Figure", "Unit", "Recordings", "Smallest", "5 %", "25 %", "Median", "75 %",
                        "95 %", "Largest"},
-              .rows = {}};
+              .rows = {},
+              .page_only = true};
   for (const FigureSummary& figure : summary.figures) {
     const Quantiles& q = figure.quantiles;
     std::vector<std::string> row{figure_title(figure), unit_of(figure),

@@ -30,6 +30,14 @@ TEST(RecordingSequence, TakesAnOverlapOfASecondAsNone) {
   EXPECT_EQ(sequence.samples(), 200U);
 }
 
+TEST(RecordingSequence, ShortensGapsToTheLongestThatIsAllowed) {
+  RecordingSequence sequence(10.0, 500);
+  ASSERT_TRUE(sequence.append(0.0, 100));
+  EXPECT_EQ(sequence.append(604800.0, 100).value(), 500U);
+  EXPECT_EQ(sequence.append(604815.0, 100).value(), 50U);  // as long as it is
+  EXPECT_EQ(sequence.samples(), 850U);
+}
+
 TEST(RecordingSequence, RefusesALongerOne) {
   RecordingSequence sequence(10.0);
   ASSERT_TRUE(sequence.append(0.0, 100));
