@@ -40,12 +40,18 @@ std::string unbroken(const std::string& cell) {
   return text;
 }
 
-void write_cells(std::string& text, const std::vector<std::string>& cells, bool head) {
+void write_cells(std::string& text,
+                 const std::vector<std::string>& cells,
+                 bool head,
+                 const std::string& link = {}) {
   text += "<tr>";
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const std::string_view tag = head || k == 0 ? "th" : "td";
     const std::string_view scope = head ? " scope=\"col\"" : k == 0 ? " scope=\"row\"" : "";
-    fmt::format_to(Out(text), "<{0}{1}>{2}</{0}>", tag, scope, unbroken(cells[k]));
+    const std::string cell = k > 0 || link.empty() ? unbroken(cells[k])
+                                                   : fmt::format("<a href=\"{}\">{}</a>",
+                                                                 escaped(link), escaped(cells[k]));
+    fmt::format_to(Out(text), "<{0}{1}>{2}</{0}>", tag, scope, cell);
   }
   text += "</tr>\n";
 }
@@ -67,7 +73,8 @@ void write(std::string& text, const Table& table) {
   }
   text += "<tbody>\n";
   const std::size_t shown = cut ? most_rows : table.rows.size();
-  for (std::size_t k = 0; k < shown; ++k) write_cells(text, table.rows[k], false);
+  for (std::size_t k = 0; k < shown; ++k)
+    write_cells(text, table.rows[k], false, k < table.links.size() ? table.links[k] : "");
   text += "</tbody></table></div>\n";
 }
 

@@ -20,6 +20,7 @@ struct Table {
   bool stacks = false;     ///< where it is narrow, that cell stands above the others of its row
   bool page_only = false;  ///< too wide or too detailed for a terminal
   bool long_list = false;  ///< may be cut short, as the JSON document has all rows
+  std::vector<std::string> links = {};  ///< of the rows' first cells, to files beside the page
 };
 
 /// A figure, or what draws it: a result with a million samples is not copied into plots that nobody
