@@ -20,24 +20,6 @@ namespace {
 constexpr double width = 900.0, left = 66.0, right = 26.0, foot = 48.0, row = 20.0;
 constexpr double swatch = 24.0, letter = 6.9;  // advance of the 12.5-unit type, on average
 
-std::string_view colour(Ink ink) {
-  switch (ink) {
-    case Ink::blue:
-      return "blue";
-    case Ink::orange:
-      return "orange";
-    case Ink::green:
-      return "green";
-    case Ink::purple:
-      return "purple";
-    case Ink::red:
-      return "red";
-    case Ink::grey:
-      break;
-  }
-  return "grey";
-}
-
 // From the values of an axis to places on the page.
 struct Mapping {
   double low, high;
@@ -130,7 +112,7 @@ std::string_view stroke(Mark mark) {
 void draw_line(std::string& text, const Mappings& map, const Curve& curve) {
   const Polyline line = thinned(curve.x, curve.y);
   const Out out(text);
-  fmt::format_to(out, "<path class=\"{} pm-{}\" d=\"", stroke(curve.mark), colour(curve.ink));
+  fmt::format_to(out, "<path class=\"{} pm-{}\" d=\"", stroke(curve.mark), name_of(curve.ink));
   bool pen_down = false;
   for (std::size_t k = 0; k < line.x.size(); ++k) {
     if (!map.x.shows(line.x[k]) || !map.y.shows(line.y[k])) {
@@ -153,7 +135,7 @@ void draw_points(std::string& text, const Mappings& map, const Curve& curve) {
     if (!map.x.shows(line.x[k]) || !map.y.shows(line.y[k])) continue;
     fmt::format_to(Out(text),
                    "<circle class=\"pm-fill pm-{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>\n",
-                   colour(curve.ink), map.x(line.x[k]), map.y(line.y[k]));
+                   name_of(curve.ink), map.x(line.x[k]), map.y(line.y[k]));
   }
 }
 
@@ -162,7 +144,7 @@ void draw_ticks(std::string& text, const Mappings& map, const Curve& curve) {
   for (const double x : curve.x) {
     if (map.x.holds(x)) columns.insert(static_cast<int>(std::lround(map.x(x))));
   }
-  fmt::format_to(Out(text), "<path class=\"pm-line pm-{}\" d=\"", colour(curve.ink));
+  fmt::format_to(Out(text), "<path class=\"pm-line pm-{}\" d=\"", name_of(curve.ink));
   for (const int column : columns) {
     fmt::format_to(Out(text), "M{},{:.1f}v-9", column, map.y.from);
   }
@@ -192,7 +174,7 @@ void draw(std::string& text, const Mappings& map, const Band& band) {
   const auto shown = [&](std::size_t k) {
     return map.x.shows(area.x[k]) && map.y.shows(area.lower[k]) && map.y.shows(area.upper[k]);
   };
-  fmt::format_to(Out(text), "<path class=\"pm-band pm-{}\" d=\"", colour(band.ink));
+  fmt::format_to(Out(text), "<path class=\"pm-band pm-{}\" d=\"", name_of(band.ink));
   for (std::size_t begin = 0; begin < area.x.size();) {
     std::size_t end = begin;
     while (end < area.x.size() && shown(end)) ++end;
@@ -220,7 +202,7 @@ void draw(std::string& text, const Mappings& map, const Callout& callout) {
   if (callout.bare) {
     fmt::format_to(Out(text),
                    "<text class=\"pm-callout pm-mid pm-{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-                   colour(callout.ink), x, y + 4.0, escaped(callout.text));
+                   name_of(callout.ink), x, y + 4.0, escaped(callout.text));
     return;
   }
   const double wide = 10.0 + text_width(callout.text);
@@ -228,7 +210,7 @@ void draw(std::string& text, const Mappings& map, const Callout& callout) {
   fmt::format_to(Out(text),
                  "<circle class=\"pm-fill pm-{0}\" cx=\"{1:.1f}\" cy=\"{2:.1f}\" r=\"3.5\"/>"
                  "<text class=\"pm-callout{3} pm-{0}\" x=\"{4:.1f}\" y=\"{5:.1f}\">{6}</text>\n",
-                 colour(callout.ink), x, y, turned ? " pm-end" : "", turned ? x - 7.0 : x + 7.0,
+                 name_of(callout.ink), x, y, turned ? " pm-end" : "", turned ? x - 7.0 : x + 7.0,
                  callout.below ? y + 17.0 : y - 7.0, escaped(callout.text));
 }
 
@@ -296,14 +278,14 @@ std::vector<Entry> legend(const Figure& figure) {
     std::string_view shape = "<path class=\"{2} pm-{0}\" d=\"M0,0H{1}\"/>";
     if (curve.mark == Mark::points) shape = "<circle class=\"pm-fill pm-{0}\" cx=\"12\" r=\"3\"/>";
     if (curve.mark == Mark::ticks) shape = "<path class=\"pm-line pm-{0}\" d=\"M12,-5v10\"/>";
-    entries.push_back({curve.label, fmt::format(fmt::runtime(shape), colour(curve.ink), swatch,
+    entries.push_back({curve.label, fmt::format(fmt::runtime(shape), name_of(curve.ink), swatch,
                                                 stroke(curve.mark))});
   }
   for (const Band& band : figure.bands) {
     if (band.label.empty()) continue;
     entries.push_back(
         {band.label, fmt::format("<path class=\"pm-band pm-{}\" d=\"M0,-6h{}v12h-{}z\"/>",
-                                 colour(band.ink), swatch, swatch)});
+                                 name_of(band.ink), swatch, swatch)});
   }
   for (const Level& level : figure.levels) {
     if (level.label.empty()) continue;
@@ -334,6 +316,24 @@ double draw_legend(std::string& text, const std::vector<Entry>& entries) {
 
 }  // namespace
 
+std::string_view name_of(Ink ink) {
+  switch (ink) {
+    case Ink::blue:
+      return "blue";
+    case Ink::orange:
+      return "orange";
+    case Ink::green:
+      return "green";
+    case Ink::purple:
+      return "purple";
+    case Ink::red:
+      return "red";
+    case Ink::grey:
+      break;
+  }
+  return "grey";
+}
+
 std::string svg(const Figure& figure, const std::string& id) {
   std::string body;
   const double legend_height = draw_legend(body, legend(figure));
@@ -362,7 +362,7 @@ std::string svg(const Figure& figure, const std::string& id) {
 
 std::string figure_css() {
   return R"(:root{color-scheme:light dark;--paper:#fff;--ink:#1b2430;--soft:#5b6675;--rule:#d9dee5;
---grid:#e9edf1;--panel:#f6f8fa;--blue:#0b63a8;--orange:#b8560b;--green:#0a7a5a;--purple:#84479c;
+--grid:#e9edf1;--panel:#f6f8fa;--blue:#0b63a8;--orange:#b0520a;--green:#0a7a5a;--purple:#84479c;
 --red:#b3261e;--grey:#6d7683}
 @media screen and (prefers-color-scheme:dark){:root{--paper:#11161c;--ink:#e3e8ee;--soft:#98a3b1;
 --rule:#2f3843;--grid:#222a33;--panel:#181f27;--blue:#6cb4f7;--orange:#efa14e;--green:#4ccea0;

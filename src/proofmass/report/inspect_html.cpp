@@ -145,7 +145,7 @@ std::vector<Figure> step_figures(const Recording& recording) {
 
 }  // namespace
 
-std::string inspect_html(const std::vector<InspectedFile>& files) {
+Page inspect_page(const std::vector<InspectedFile>& files) {
   Page page{.verb = "inspect", .title = {}, .inputs = {}, .conclusion = {}};
   for (const InspectedFile& file : files) {
     page.title += (page.title.empty() ? "" : ", ") + file_name(file.name);
@@ -169,7 +169,11 @@ std::string inspect_html(const std::vector<InspectedFile>& files) {
            "of three or more in a row at the lowest or highest value. A gap is a step longer than "
            "1.5 "
            "nominal ones."}});
-  return html(page);
+  return page;
+}
+
+std::string inspect_html(const std::vector<InspectedFile>& files) {
+  return html(inspect_page(files));
 }
 
 }  // namespace proofmass::report

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "proofmass/core/recording.hpp"
+#include "proofmass/report/page.hpp"
 #include "proofmass/signal/audit.hpp"
 
 namespace proofmass::report {
@@ -26,6 +27,8 @@ struct InspectedFile {
 /// The page: each file's channels and timing as tables, each channel against time, and how the
 /// steps between the stamps are spread.
 [[nodiscard]] std::string inspect_html(const std::vector<InspectedFile>& files);
+
+[[nodiscard]] Page inspect_page(const std::vector<InspectedFile>& files);
 
 /// The name of a time source in documents: "stamps", "counter", "given_rate" or "none".
 [[nodiscard]] const char* time_source_name(TimeSource source);

@@ -208,7 +208,7 @@ std::string title_of(const NoiseReport& report) {
 
 }  // namespace
 
-std::string noise_html(const NoiseReport& report) {
+Page noise_page(const NoiseReport& report) {
   Page page{.verb = "noise",
             .title = title_of(report),
             .inputs = report.inputs,
@@ -219,7 +219,11 @@ std::string noise_html(const NoiseReport& report) {
     page.sections.push_back(channel_section(channel, report.events_excluded));
   }
   page.sections.push_back(method_section(report));
-  return html(page);
+  return page;
+}
+
+std::string noise_html(const NoiseReport& report) {
+  return html(noise_page(report));
 }
 
 }  // namespace proofmass::report

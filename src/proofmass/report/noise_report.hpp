@@ -8,6 +8,7 @@
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/units.hpp"
+#include "proofmass/report/page.hpp"
 #include "proofmass/report/rest_share.hpp"
 
 namespace proofmass::report {
@@ -43,6 +44,8 @@ struct NoiseReport {
 /// The page: conclusion, key figures, and for each channel the deviation with what it is made of,
 /// the spectrum, coefficients, lines and events.
 [[nodiscard]] std::string noise_html(const NoiseReport& report);
+
+[[nodiscard]] Page noise_page(const NoiseReport& report);
 
 /// For a terminal, without colour, closed by a newline: per channel a table and plain sentences.
 [[nodiscard]] std::string noise_text(const NoiseReport& report);
