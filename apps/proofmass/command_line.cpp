@@ -146,7 +146,7 @@ void add_verbs(CLI::App& app, const std::vector<Verb>& verbs) {
 // What a file is read for, or changed by; anything else of this type is written.
 bool names_input(const CLI::Option& option) {
   if (option.get_positional()) return true;
-  for (const char* written : {"json", "report", "output", "update-sensor"})
+  for (const char* written : {"json", "report", "page", "output", "update-sensor"})
     if (option.check_lname(written)) return false;
   return option.get_type_name().starts_with("FILE");
 }

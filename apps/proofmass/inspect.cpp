@@ -11,6 +11,7 @@
 #include "proofmass/io/pyramid.hpp"
 #include "proofmass/io/write_recording.hpp"
 #include "proofmass/report/inspect_report.hpp"
+#include "proofmass/report/page_json.hpp"
 #include "proofmass/signal/running_audit.hpp"
 #include "proofmass/signal/running_overview.hpp"
 #include "verb.hpp"
@@ -34,6 +35,7 @@ void add_inspect_flags(CLI::App& verb, InspectCommand& command) {
                 "store minima and maxima at every scale beside each file, as FILE.pyramid.npz, for "
                 "plots at any zoom without reading it again");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   add_memory_flag(verb, command.input);
   verb.footer("Example:\n  proofmass inspect wheel.csv --report wheel.html");
@@ -143,7 +145,8 @@ void run_inspect(const InspectCommand& command) {
                  return text;
                },
            .json = [&] { return report::inspect_json(files); },
-           .html = [&] { return report::inspect_html(files); }},
+           .html = [&] { return report::inspect_html(files); },
+           .page = [&] { return report::page_json(report::inspect_page(files)); }},
           command.output);
   hold_to_strict(command.output, std::any_of(all.begin(), all.end(),
                                              [](const auto& one) { return one.audit.is_bad(); }));

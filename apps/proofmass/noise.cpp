@@ -16,6 +16,7 @@
 #include "proofmass/core/in_parallel.hpp"
 #include "proofmass/report/json.hpp"
 #include "proofmass/report/noise_report.hpp"
+#include "proofmass/report/page_json.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/noise_update.hpp"
 #include "proofmass/signal/regress_out.hpp"
@@ -59,6 +60,7 @@ void add_noise_flags(CLI::App& verb, NoiseCommand& command) {
   add_input_flags(verb, command.input);
   add_output_file(verb, command.output, "write the deviation curves");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   add_memory_flag(verb, command.input);
   verb.footer("Example:\n  proofmass noise rest.csv --rate 100 --unit g --report noise.html");
@@ -277,7 +279,8 @@ void run_noise(const NoiseCommand& command) {
   }
   publish({.text = [&] { return report::noise_text(report); },
            .json = [&] { return report::noise_json(report); },
-           .html = [&] { return report::noise_html(report); }},
+           .html = [&] { return report::noise_html(report); },
+           .page = [&] { return report::page_json(report::noise_page(report)); }},
           command.output);
   need_a_channel(report.channels);
   hold_to_strict(command.output, !report::texts(notes, Severity::bad).empty());
