@@ -1,8 +1,14 @@
-// Builds dist/page.html, the page in one file, from src/. With --check compares instead of writing.
-import { build } from "esbuild";
-import { readFileSync, writeFileSync } from "node:fs";
+// Builds dist/page.html, the page in one file, from src/. With --check looks for type errors and
+// compares instead of writing.
+import { spawnSync } from "node:child_process";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 
 const here = new URL(".", import.meta.url);
+if (!existsSync(new URL("node_modules/esbuild", here))) {
+  console.log("SKIPPED, npm install in web/ has not been run");
+  process.exit(0);
+}
+const { build } = await import("esbuild");
 const read = (name) => readFileSync(new URL(name, here), "utf8");
 
 const bundle = async (entry) => {
@@ -44,6 +50,11 @@ ${licence}
 
 const target = new URL("dist/page.html", here);
 if (process.argv.includes("--check")) {
+  const types = spawnSync("node_modules/.bin/tsc", ["--noEmit", "-p", "."], { cwd: here.pathname, encoding: "utf8" });
+  if (types.status !== 0) {
+    console.error(types.stdout);
+    process.exit(1);
+  }
   if (read("dist/page.html") !== page) {
     console.error("web/dist/page.html is not what web/src builds: run npm run build in web/");
     process.exit(1);

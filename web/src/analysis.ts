@@ -2,7 +2,7 @@
 import { allVerbs, begin, blob, cancel, get, listAnalyses, listRecordings, pause, type Analysis, type Asked, type Option, type OptionValue, type Page, type Recording, type RecordingList, type Section, type Table, type Verb } from "./api";
 import { go, link, note, params } from "./address";
 import { h, replace, save } from "./dom";
-import { duration, significant } from "./format";
+import { significant } from "./format";
 import { notesList } from "./notes";
 import { draw, fileName, saveSvg, type Drawn } from "./plot";
 import { progress } from "./recording";
@@ -97,7 +97,7 @@ function fieldOf(option: Option, address: { [name: string]: string }, list: Reco
       return box;
     });
     value = () => boxes.filter((box) => box.checked).map((box) => box.value);
-    control = h("span", { id, class: "in", role: "group", "aria-label": "Channels; none chosen: all" }, ...boxes.map((box) => h("label", {}, box, box.value)));
+    control = h("span", { id, class: "in many", role: "group", "aria-label": "Channels; none chosen: all" }, ...boxes.map((box) => h("label", {}, box, box.value)));
   } else if (option.choices.length > 0 || option.file) {
     const names = option.file ? [...(option.type.includes("toml") ? list.sensor_files : list.recordings.map((one) => one.name))] : option.choices;
     const none = option.file ? "none" : option.default ? `${option.default} (default)` : "default";
@@ -145,7 +145,9 @@ export function analysisView(main: HTMLElement): View {
   const command = h("p", { class: "command" });
   const run = h("button", { type: "submit", class: "btn main" }, "Run ", h("kbd", { class: "keys" }, "Ctrl ↵"));
   const sensorBox = h("input", { type: "checkbox", id: "make-sensor-file" });
-  replace(main, head, h("div", { class: "ana" }, form, h("div", {}, status, result)));
+  // On a phone the form folds once there is a result.
+  const settings = h("details", { class: "settings", open: true }, h("summary", {}, "Settings"), form);
+  replace(main, head, h("div", { class: "ana" }, settings, h("div", {}, status, result)));
 
   function asked(): Asked {
     const options: Asked["options"] = {};
@@ -226,8 +228,7 @@ export function analysisView(main: HTMLElement): View {
       }),
       input.length > 0 && h("fieldset", {}, h("details", { open: inputIsSet }, h("summary", {}, `How the recording is read: ${input.length} settings`), ...input)),
       one.sensor_file && h("fieldset", {}, h("div", { class: "f" }, h("label", { for: "make-sensor-file" }, "Sensor file"), h("span", { class: "in" }, sensorBox, h("span", { class: "soft" }, "make one to download")))),
-      command,
-      h("div", { class: "run-line" }, run, h("button", { type: "button", class: "btn", onclick: () => void navigator.clipboard?.writeText(command.textContent ?? "") }, "Copy command")),
+      h("div", { class: "foot" }, command, h("div", { class: "run-line" }, run, h("button", { type: "button", class: "btn", onclick: () => void navigator.clipboard?.writeText(command.textContent ?? "") }, "Copy command"))),
     );
     changed();
   }
@@ -242,6 +243,7 @@ export function analysisView(main: HTMLElement): View {
     }
     const page = await get<Page>(`/api/analyses/${analysis.id}/page.json`);
     if (ended) return;
+    if (matchMedia("(max-width: 700px)").matches) settings.open = false;
     replace(result, ...resultOf(page, analysis, plots), messages);
     titleLine(analysis);
   }
@@ -255,7 +257,7 @@ export function analysisView(main: HTMLElement): View {
       if (ended || running !== id) return;
       if (now.state !== "waiting" && now.state !== "running") {
         running = undefined;
-        replace(status, now.state === "done" && h("p", { class: "soft" }, `done in ${duration(Math.max(0.01, Number(significant(now.seconds, 2).replace(/[^\d.]/g, "")) || now.seconds))}`));
+        replace(status, now.state === "done" && h("p", { class: "soft" }, `done in ${significant(now.seconds, 2)} s`));
         await showResult(now);
         return;
       }

@@ -5,6 +5,7 @@ export interface Note {
   text: string;
 }
 export interface Thumbnail {
+  channel: number;
   min: (number | null)[];
   max: (number | null)[];
 }

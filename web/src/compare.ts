@@ -33,7 +33,7 @@ export function compareView(main: HTMLElement): View {
       picked.length === 0 && h("p", { class: "empty" }, "No run is chosen: begin an analysis, or add one that is done."),
     );
     // Of one channel each; where a run has several, they are told apart by their names.
-    const named: Named[] = pages.map((page, k) => ({ page, name: `${letter(k)} ${picked[k]?.files[0] ?? ""}`, ink: inks[k % inks.length] ?? "grey" }));
+    const named: Named[] = pages.map((page, k) => ({ page, name: `${letter(k)} ${picked[k]?.files[0]?.split("/").at(-1) ?? ""}`, ink: inks[k % inks.length] ?? "grey" }));
     const titles = [...new Set(pages.flatMap((page) => figuresOf(page).map((figure) => figure.title)))].filter((title) => pages.every((page) => figuresOf(page).some((figure) => figure.title === title)));
     for (const title of pages.length > 0 ? titles : []) {
       const figure = mergedFigure(named, new RegExp(`^${title.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")}$`));

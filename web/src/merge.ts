@@ -22,7 +22,7 @@ function unitOf(label: string): { quantity: string; factor: number } {
 
 const scaled = (values: (number | null)[] | undefined, by: number): (number | null)[] => (values ?? []).map((value) => (value === null ? null : value * by));
 
-const mainCurve = (figure: Figure): Curve | undefined => figure.curves.find((curve) => /measured|^spectrum/i.test(curve.label)) ?? figure.curves[0];
+const mainCurve = (figure: Figure): Curve | undefined => figure.curves.find((curve) => /measured|deviation|spectrum/i.test(curve.label) && !/fitted/i.test(curve.label)) ?? figure.curves[0];
 
 /// The figure whose title fits, of the first result, with each result's main curve and first band,
 /// in the unit of the first; none where no result has one.
@@ -48,6 +48,6 @@ export function mergedFigure(results: Named[], title: RegExp): Figure | undefine
       const curve = mainCurve(figure);
       return curve ? [{ ...curve, y: scaled(curve.y, by), label: name, ink, mark: "line" as const }] : [];
     }),
-    bands: alike.flatMap(({ figure, name, ink, by }) => figure.bands.slice(0, 1).map((band) => ({ ...band, lower: scaled(band.lower, by), upper: scaled(band.upper, by), label: band.label ? `${name}: ${band.label}` : "", ink }))),
+    bands: alike.flatMap(({ figure, ink, by }) => figure.bands.slice(0, 1).map((band) => ({ ...band, lower: scaled(band.lower, by), upper: scaled(band.upper, by), label: "", ink }))),
   };
 }

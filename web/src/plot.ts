@@ -43,6 +43,17 @@ function aligned(figure: Figure): { data: uPlot.AlignedData; lines: Curve[]; ban
 // Curves that go back and forth in x, and maps, are drawn by hand over an empty grid.
 const isMap = (figure: Figure): boolean => figure.x.scale === "bare";
 
+// 1 … 9 times every power of ten.
+function logSplits(low: number, high: number): number[] {
+  const splits: number[] = [];
+  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); ++power)
+    for (let digit = 1; digit < 10; ++digit) {
+      const value = Number(`${digit}e${power}`);
+      if (value >= low && value <= high) splits.push(value);
+    }
+  return splits;
+}
+
 // Labels at 1, 2 and 5; over many decades at powers of ten alone.
 function logFilter(_: uPlot, splits: number[]): (number | null)[] {
   const decades = Math.log10((splits.at(-1) ?? 1) / (splits[0] ?? 1));
@@ -69,7 +80,10 @@ function axis(label: string, log: boolean, side: number): uPlot.Axis {
     made.label = label;
     made.labelSize = 18;
   }
-  if (log) made.filter = logFilter;
+  if (log) {
+    made.splits = (_, __, low, high) => logSplits(low, high);
+    made.filter = logFilter;
+  }
   return made;
 }
 

@@ -599,7 +599,8 @@ export function recordingView(main: HTMLElement, file: string): View {
     const body = h("div", { class: "pb side" }, h("p", { class: "soft" }, "being computed…"));
     const panel = h("section", { class: "panel", "aria-label": "Spectrum and Allan deviation" }, h("div", { class: "ph" }, h("h2", {}, stretch ? "Stretch" : "In view"), h("span", { class: "soft" }, words)), body);
     const most = 3;
-    const channels = strips.slice(0, most).map((one) => one.channel);
+    const shown = strips.map((one) => one.channel);
+    const channels = [...shown.filter(isAcceleration), ...shown.filter((channel) => !isAcceleration(channel))].slice(0, most);
     const results = await Promise.all(
       channels.map((channel) => get<Page>("/api/view/noise", { file, from: span[0], to: span[1], channel }).catch((problem: unknown) => (problem instanceof Error ? problem.message : String(problem)))),
     );
@@ -663,6 +664,9 @@ export function recordingView(main: HTMLElement, file: string): View {
         const asked = spanIn(`${params()["from"]},${params()["to"]}`);
         view = clamp(asked ?? all);
         drawn = true;
+        // Of many channels the accelerations are shown; the others are one click away.
+        if (params()["off"] === undefined && head.channels.length > 6 && head.channels.some((_, k) => isAcceleration(k)))
+          head.channels.forEach((_, k) => !isAcceleration(k) && hidden.add(k));
         const accelerations = head.channels.some((_, k) => isAcceleration(k));
         if (accelerations) toggles(units, [["", plain(head.channels.find((one) => one.quantity === "acceleration")?.unit ?? "")], ...(["m/s²", "g", "mg"] as const).filter((one) => one !== plain(head?.channels.find((channel) => channel.quantity === "acceleration")?.unit ?? "")).map((one): [string, string] => [one, one])], () => unit, (word) => { unit = word; noteState(); build(); void figures(); });
         toggles(modes, [["zoom", "Zoom"], ["pan", "Pan"], ["stretch", "Stretch"], ["cursors", "Cursors"]], () => mode, (word) => { mode = word as Mode; });

@@ -92,7 +92,7 @@ export function recordingsView(main: HTMLElement, folder: string): View {
   );
 
   const shown = (): Recording[] => (list?.recordings ?? []).filter((one) => matches(one, filter.value.trim()));
-  const inksOf = (one: Recording): string[] => (one.summary?.channels ?? []).map((channel, k) => channelInk(channel.name, k));
+  const inksOf = (one: Recording): string[] => (one.summary?.thumbnails ?? []).map((curve, k) => channelInk(one.summary?.channels[curve.channel]?.name ?? "", k));
 
   function rowOf(one: Recording): HTMLElement {
     const summary = one.summary;
@@ -113,7 +113,7 @@ export function recordingsView(main: HTMLElement, folder: string): View {
     } else {
       cells.push(h("span", { class: one.state === "failed" ? "why" : "why soft" }, one.error ?? (one.state === "running" ? "being inspected…" : "waits to be inspected")));
     }
-    const facts = summary ? `${summary.rate_hz === null ? "rate not given" : significant(summary.rate_hz, 4) + " Hz"} · ${duration(summary.duration_s)}${summary.gaps > 0 ? ` · ${count(summary.gaps)} gaps` : ""}${summary.clipped > 0 ? ` · ${count(summary.clipped)} clipped` : ""}` : "";
+    const facts = summary ? `${summary.rate_hz === null ? `rate not given · ${count(summary.samples)} rows` : `${significant(summary.rate_hz, 4)} Hz · ${duration(summary.duration_s)}`}${summary.gaps > 0 ? ` · ${count(summary.gaps)} gaps` : ""}${summary.clipped > 0 ? ` · ${count(summary.clipped)} clipped` : ""}` : "";
     const row = h(
       "div",
       { class: "row", role: "option", id: `row-${one.name}`, "aria-selected": String(one.name === selected), onclick: () => choose(one.name, true), ondblclick: () => open(one.name) },
@@ -151,7 +151,7 @@ export function recordingsView(main: HTMLElement, folder: string): View {
           one.error && h("p", { class: "failure" }, one.error),
           summary && h("p", {}, summary.conclusion),
           ...(summary?.thumbnails ?? []).map((curve, k) => {
-            const channel = summary?.channels[k];
+            const channel = summary?.channels[curve.channel];
             const canvas = h("canvas", { "aria-hidden": "true" });
             requestAnimationFrame(() => drawThumbnails(canvas, [curve], [inks[k] ?? "blue"]));
             const values = [...curve.min, ...curve.max].filter((value): value is number => value !== null);
