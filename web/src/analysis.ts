@@ -29,7 +29,7 @@ function tableOf(table: Table): HTMLElement {
   const more = table.rows_in_all > table.rows.length ? ` The first ${table.rows.length} of ${table.rows_in_all}; the JSON document has all.` : "";
   return h(
     "div",
-    { class: "wide" },
+    { class: "wide", tabindex: "0" },
     h("table", {}, h("caption", {}, table.caption + more), table.head.length > 0 && h("thead", {}, h("tr", {}, ...table.head.map((cell) => h("th", { scope: "col" }, cell)))), h("tbody", {}, ...rows)),
   );
 }
@@ -236,7 +236,7 @@ export function analysisView(main: HTMLElement): View {
   async function showResult(analysis: Analysis): Promise<void> {
     while (plots.length > 0) plots.pop()?.dispose();
     result.classList.remove("stale");
-    const messages = analysis.messages.length > 0 && h("details", {}, h("summary", {}, `${analysis.messages.length} lines that the program printed`), h("pre", { class: "wide" }, analysis.messages.join("\n")));
+    const messages = analysis.messages.length > 0 && h("details", {}, h("summary", {}, `${analysis.messages.length} lines that the program printed`), h("pre", { class: "wide", tabindex: "0" }, analysis.messages.join("\n")));
     if (analysis.state !== "done") {
       replace(result, h("div", { class: "failure", role: "alert" }, h("p", { class: "strong" }, analysis.state === "cancelled" ? "Cancelled" : `${title(analysis.verb)} failed`), h("p", {}, analysis.error ?? "It was stopped before it had a result."), h("p", { class: "bar" }, h("button", { type: "button", class: "btn", onclick: () => void start() }, "Run again"))), messages);
       return;
@@ -312,7 +312,7 @@ export function analysisView(main: HTMLElement): View {
         h("div", { class: "ph" }, h("h2", {}, "Runs"), h("span", { class: "soft" }, "kept until serve ends")),
         h(
           "div",
-          { class: "pb wide" },
+          { class: "pb wide", tabindex: "0" },
           runs.length === 0
             ? h("p", { class: "soft" }, "None yet.")
             : h("table", { class: "runs" }, h("thead", {}, h("tr", {}, ...["Run", "State", "Time", "Command"].map((word) => h("th", { scope: "col" }, word)))), h("tbody", {}, ...runs.reverse().map((one) => h("tr", {}, h("th", { scope: "row" }, h("a", { ...link(addressOf(one)) }, `${one.id} ${title(one.verb)}`)), h("td", { class: one.state === "failed" ? "red" : "" }, one.state), h("td", {}, one.seconds > 0 ? `${significant(one.seconds, 2)} s` : "–"), h("td", {}, one.command))))),

@@ -14,7 +14,7 @@ export interface Summary {
   duration_s: number;
   rate_hz: number | null;
   format: string;
-  channels: { name: string; unit: string }[];
+  channels: { name: string; unit: string | null }[];
   gaps: number;
   clipped: number;
   conclusion: string;

@@ -47,7 +47,7 @@ export function compareView(main: HTMLElement): View {
       const labels = [...new Set(pages.flatMap((page) => page.key_figures.map((figure) => figure.label)))];
       const value = (page: Page, label: string): string => page.key_figures.find((figure) => figure.label === label)?.value ?? "–";
       main.append(
-        h("section", { class: "panel", "aria-label": "Figures" }, h("div", { class: "ph" }, h("h2", {}, "Figures")), h("div", { class: "pb wide" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Figure"), ...pages.map((_, k) => h("th", { scope: "col", class: "num" }, letter(k))))), h("tbody", {}, ...labels.map((label) => h("tr", {}, h("th", { scope: "row" }, label), ...pages.map((page) => h("td", { class: "num" }, value(page, label))))), h("tr", {}, h("th", { scope: "row" }, "Conclusion"), ...pages.map((page) => h("td", {}, page.conclusion))))))),
+        h("section", { class: "panel", "aria-label": "Figures" }, h("div", { class: "ph" }, h("h2", {}, "Figures")), h("div", { class: "pb wide", tabindex: "0" }, h("table", {}, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Figure"), ...pages.map((_, k) => h("th", { scope: "col", class: "num" }, letter(k))))), h("tbody", {}, ...labels.map((label) => h("tr", {}, h("th", { scope: "row" }, label), ...pages.map((page) => h("td", { class: "num" }, value(page, label))))), h("tr", {}, h("th", { scope: "row" }, "Conclusion"), ...pages.map((page) => h("td", {}, page.conclusion))))))),
       );
     }
   }

@@ -237,16 +237,13 @@ function csvOf(figure: Figure): string {
   return `# ${figure.title}; x: ${figure.x.label}; y: ${figure.y.label}\n${lines.join("\n")}\n`;
 }
 
-/// The same figure as the report has it.
+/// The same figure as the report has it. It is cut out as text: a document that is parsed here would
+/// come under this page's policy, which lets no other style in.
 export async function saveSvg(report: string, index: number, name: string): Promise<void> {
   const text = await (await blob(report)).text();
-  const page = new DOMParser().parseFromString(text, "text/html");
-  const found = page.querySelectorAll("svg.pm-figure")[index];
-  if (!found) return;
-  const style = document.createElementNS("http://www.w3.org/2000/svg", "style");
-  style.textContent = page.querySelector("style")?.textContent ?? "";
-  found.prepend(style);
-  save(`${name}.svg`, new Blob([new XMLSerializer().serializeToString(found)], { type: "image/svg+xml" }));
+  const found = text.match(/<svg class="pm-figure"[\s\S]*?<\/svg>/g)?.[index];
+  const style = /<style>([\s\S]*?)<\/style>/.exec(text)?.[1] ?? "";
+  if (found) save(`${name}.svg`, new Blob([found.replace(">", `>\n<style>${style}</style>`)], { type: "image/svg+xml" }));
 }
 
 function savePng(plot: uPlot, name: string): void {

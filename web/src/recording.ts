@@ -85,7 +85,7 @@ export function recordingView(main: HTMLElement, file: string): View {
   const time = h("canvas", { "aria-hidden": "true" });
   time.style.height = "34px";
   const counts = h("div", { class: "counts" });
-  const table = h("div", { class: "wide" });
+  const table = h("div", { class: "wide", tabindex: "0" });
   const side = h("div", {});
   const analyse = h("a", { class: "btn main" }, "Analyse");
   const strip = (label: HTMLElement | string, canvas: HTMLCanvasElement): HTMLElement => h("div", { class: "strip" }, h("div", { class: "label" }, label), canvas);
@@ -409,6 +409,7 @@ export function recordingView(main: HTMLElement, file: string): View {
   function redraw(): void {
     cancelAnimationFrame(frame);
     frame = requestAnimationFrame(() => {
+      if (!head) return;
       drawOverview();
       drawLane();
       strips.forEach(drawStrip);

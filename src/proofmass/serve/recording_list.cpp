@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fstream>
 
+#include "proofmass/core/units.hpp"
 #include "proofmass/serve/analysis_arguments.hpp"
 #include "proofmass/serve/bench_parts.hpp"
 
@@ -47,17 +48,36 @@ Json thumbnail_of(const Json& curve) {
   return {{"min", low}, {"max", high}};
 }
 
-// Of the first curves of the page's plots of channels.
-Json thumbnails_of(const Json& page) {
+bool is_acceleration(const Json& channel) {
+  const Json& symbol = channel.at("unit");  // null where none is known
+  if (!symbol.is_string()) return false;
+  const auto unit = parse_unit(symbol.get<std::string>());
+  return unit && unit->quantity == Quantity::acceleration;
+}
+
+// The curve of that label among a section's plots; null where there is none.
+Json curve_named(const Json& section, const std::string& label) {
+  for (const Json& figure : section.at("figures"))
+    for (const Json& curve : figure.at("curves"))
+      if (curve.value("label", "") == label && curve.contains("y")) return curve;
+  return {};
+}
+
+// Of the accelerations, or where there is none of the first channels.
+Json thumbnails_of(const Json& channels, const Json& page) {
   constexpr std::size_t most = 3;
+  std::vector<std::size_t> wanted;
+  for (std::size_t k = 0; k < channels.size() && wanted.size() < most; ++k)
+    if (is_acceleration(channels[k])) wanted.push_back(k);
+  if (wanted.empty())
+    for (std::size_t k = 0; k < std::min(most, channels.size()); ++k) wanted.push_back(k);
   Json all = Json::array();
-  for (const Json& section : page.at("sections"))
-    for (const Json& figure : section.at("figures")) {
-      if (all.size() >= most) return all;
-      const Json& curves = figure.at("curves");
-      if (!curves.empty() && curves.front().contains("y"))
-        all.push_back(thumbnail_of(curves.front()));
-    }
+  for (const std::size_t k : wanted) {
+    const Json curve = curve_named(page.at("sections").at(0), channels[k].at("name"));
+    if (curve.is_null()) continue;
+    all.push_back(thumbnail_of(curve));
+    all.back()["channel"] = k;
+  }
   return all;
 }
 
@@ -78,7 +98,7 @@ Json summary_of(const Json& document, const Json& page) {
           {"clipped", clipped},
           {"conclusion", page.at("conclusion")},
           {"notes", page.at("notes")},
-          {"thumbnails", thumbnails_of(page)}};
+          {"thumbnails", thumbnails_of(channels, page)}};
 }
 
 }  // namespace

@@ -19,8 +19,9 @@ std::vector<std::size_t> axes_of(const ViewHead& head) {
   if (!triads.empty())
     for (const auto& axis : {triads.front().x, triads.front().y, triads.front().z})
       if (axis) axes.push_back(*axis);
-  for (std::size_t k = 0; axes.empty() && k < std::min<std::size_t>(3, head.channels.size()); ++k)
-    axes.push_back(k);
+  if (axes.empty())
+    for (std::size_t k = 0; k < std::min<std::size_t>(3, head.channels.size()); ++k)
+      axes.push_back(k);
   return axes;
 }
 
