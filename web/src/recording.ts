@@ -3,13 +3,13 @@
 import { get, pause, type Details, type Figures, type Page, type ViewHead, type ViewState, type Window } from "./api";
 import { go, link, note, params } from "./address";
 import { colour, h, light, replace, save } from "./dom";
-import { count, duration, fixed, plain, significant, ticks } from "./format";
+import { count, duration, fixed, plain, significant } from "./format";
 import { channelInk } from "./inks";
 import { mergedFigure } from "./merge";
 import { draw as drawPlot, type Drawn } from "./plot";
+import { drawLane, drawOverview, drawStrip, drawTime, plotWidth, timeAt, valueAt, type Scene, type Span } from "./strips";
 import type { View } from "./view";
 
-type Span = [number, number];
 type Mode = "zoom" | "pan" | "stretch" | "cursors";
 
 const standardGravity = 9.80665;
@@ -31,22 +31,7 @@ function place(value: number, span: Span): string {
   return fixed(value, Math.max(0, Math.min(9, 3 - Math.floor(Math.log10(Math.max(1e-9, span[1] - span[0]))))));
 }
 
-function context(canvas: HTMLCanvasElement): { ctx: CanvasRenderingContext2D; width: number; height: number } | undefined {
-  const { clientWidth: width, clientHeight: height } = canvas;
-  const ctx = canvas.getContext("2d");
-  if (!ctx || width === 0) return undefined;
-  const ratio = devicePixelRatio;
-  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-  }
-  ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
-  ctx.clearRect(0, 0, width, height);
-  return { ctx, width, height };
-}
-
 export function recordingView(main: HTMLElement, file: string): View {
-  const left = 44; // of the value axis, within each canvas
   const stripHeight = (): number => (innerWidth <= 700 ? 84 : 138);
   let ended = false;
   let head: ViewHead | undefined;
@@ -121,11 +106,6 @@ export function recordingView(main: HTMLElement, file: string): View {
   }
   const unitOf = (channel: number): string => (isAcceleration(channel) && unit !== "" ? unit : plain(head?.channels[channel]?.unit ?? ""));
 
-  // ---- places
-  const plotWidth = (canvas: HTMLCanvasElement): number => Math.max(1, canvas.clientWidth - left - 6);
-  const px = (t: number, span: Span, width: number): number => left + ((t - span[0]) / (span[1] - span[0])) * width;
-  const timeAt = (x: number, span: Span, width: number): number => span[0] + ((x - left) / width) * (span[1] - span[0]);
-
   function noteState(): void {
     note({
       from: String(view[0]), to: String(view[1]), unit,
@@ -177,243 +157,24 @@ export function recordingView(main: HTMLElement, file: string): View {
   }
 
   // ---- drawing
-  function gapsIn(span: Span): Span[] {
-    return (details?.json?.timing.gaps ?? []).map((gap): Span => [gap.start_s, gap.start_s + gap.duration_s]).filter((gap) => gap[1] > span[0] && gap[0] < span[1]);
-  }
-  function hatch(ctx: CanvasRenderingContext2D, x0: number, x1: number, height: number): void {
-    ctx.save();
-    ctx.beginPath();
-    ctx.rect(x0, 0, Math.max(1, x1 - x0), height);
-    ctx.clip();
-    ctx.strokeStyle = colour("mark");
-    ctx.lineWidth = 0.7;
-    ctx.beginPath();
-    for (let x = x0 - height; x < x1; x += 5) {
-      ctx.moveTo(x, height);
-      ctx.lineTo(x + height, 0);
-    }
-    ctx.stroke();
-    ctx.restore();
-  }
-  // A curve of samples, or of columns from the smallest to the largest value, broken at gaps.
-  function curve(ctx: CanvasRenderingContext2D, from: Window, channel: number, x: (t: number) => number, y: (v: number) => number): void {
-    const min = from.min[channel] ?? [];
-    const max = from.samples ? min : (from.max[channel] ?? min);
-    const gaps = gapsIn([from.t[0] ?? 0, from.t.at(-1) ?? 0]);
-    let gap = 0;
-    let before: number | undefined;
-    ctx.beginPath();
-    from.t.forEach((t, k) => {
-      const low = min[k];
-      const high = max[k];
-      let broken = false;
-      while (gap < gaps.length && (gaps[gap] as Span)[1] <= t + 1e-12) {
-        broken = true;
-        ++gap;
-      }
-      if (low === null || high === null || low === undefined || high === undefined) {
-        before = undefined;
-        return;
-      }
-      const at = x(t);
-      if (before === undefined || broken) ctx.moveTo(at, y(low));
-      else ctx.lineTo(at, y(Math.abs(low - before) < Math.abs(high - before) ? low : high));
-      if (high !== low) {
-        ctx.moveTo(at, y(low));
-        ctx.lineTo(at, y(high));
-      }
-      if (from.samples && from.t.length < 80) ctx.rect(at - 1, y(low) - 1, 2, 2);
-      before = high;
-    });
-    ctx.stroke();
-  }
-  function ends(from: Window | undefined, channel: number): Span {
-    let low = Infinity;
-    let high = -Infinity;
-    from?.t.forEach((t, k) => {
-      if (t < view[0] - (view[1] - view[0]) * 0.01 || t > view[1]) return;
-      for (const value of [from.min[channel]?.[k], from.samples ? undefined : from.max[channel]?.[k]])
-        if (value !== null && value !== undefined) {
-          low = Math.min(low, value);
-          high = Math.max(high, value);
-        }
-    });
-    if (!(low <= high)) return [-1, 1];
-    const room = (high - low) * 0.06 || Math.abs(high) * 1e-3 || 1e-6;
-    return [low - room, high + room];
-  }
-  function under(ctx: CanvasRenderingContext2D, width: number, height: number): void {
-    ctx.fillStyle = colour("rest");
-    for (const rest of head?.rests ?? []) {
-      if (rest[1] < view[0] || rest[0] > view[1]) continue;
-      ctx.fillRect(px(rest[0], view, width), 0, px(rest[1], view, width) - px(rest[0], view, width), height);
-    }
-    const chosen = mode === "stretch" && drag && !drag.pans ? ([Math.min(drag.from, drag.to), Math.max(drag.from, drag.to)] as Span) : stretch;
-    if (chosen) {
-      ctx.fillStyle = colour("stretch");
-      const x0 = px(chosen[0], view, width);
-      const x1 = px(chosen[1], view, width);
-      ctx.fillRect(x0, 0, x1 - x0, height);
-      ctx.fillStyle = colour("blue");
-      ctx.fillRect(x0, 0, 1, height);
-      ctx.fillRect(x1, 0, 1, height);
-    }
-    for (const gap of gapsIn(view)) hatch(ctx, px(gap[0], view, width), px(gap[1], view, width), height);
-    if (mode === "zoom" && drag && !drag.pans) {
-      ctx.fillStyle = colour("stretch");
-      const x0 = px(Math.min(drag.from, drag.to), view, width);
-      ctx.fillRect(x0, 0, px(Math.max(drag.from, drag.to), view, width) - x0, height);
-    }
-  }
-  function over(ctx: CanvasRenderingContext2D, width: number, height: number): void {
-    ctx.fillStyle = colour("ink");
-    for (const cursor of cursors) if (cursor !== undefined && cursor >= view[0] && cursor <= view[1]) ctx.fillRect(px(cursor, view, width), 0, 1, height);
-    if (pointer !== undefined && !drag) {
-      ctx.fillStyle = colour("mark");
-      ctx.fillRect(px(pointer, view, width), 0, 1, height);
-    }
-  }
-  function drawStrip(one: Strip): void {
-    const got = context(one.canvas);
-    if (!got) return;
-    const { ctx, height } = got;
-    const width = plotWidth(one.canvas);
-    const scale = factor(one.channel);
-    const [low, high] = ends(data, one.channel);
-    const y = (value: number): number => height - 4 - ((value - low) / (high - low)) * (height - 8);
-    under(ctx, width, height);
-    ctx.font = `11px ${colour("sans")}`;
-    ctx.textAlign = "right";
-    const grid = ticks(Math.min(low * scale, high * scale), Math.max(low * scale, high * scale), height / 40);
-    for (const value of grid.values) {
-      const at = y(value / scale);
-      ctx.fillStyle = colour("grid");
-      ctx.fillRect(left, at, width, 1);
-      ctx.fillStyle = colour("soft");
-      ctx.fillText(fixed(value, grid.decimals), left - 6, at + 4);
-    }
-    ctx.save();
-    ctx.beginPath();
-    ctx.rect(left, 0, width, height);
-    ctx.clip();
-    ctx.strokeStyle = colour(channelInk(head?.channels[one.channel]?.name ?? "", one.channel));
-    ctx.lineWidth = 1;
-    if (data) curve(ctx, data, one.channel, (t) => px(t, view, width), y);
-    const audit = details?.json?.channels.find((channel) => channel.name === head?.channels[one.channel]?.name);
-    if (audit && audit.clipped > 0)
-      for (const [limit, values, hit] of [[audit.limit_low, data?.min, (v: number, l: number) => v <= l], [audit.limit_high, data?.samples ? data.min : data?.max, (v: number, l: number) => v >= l]] as [number | null, (number | null)[][] | undefined, (v: number, l: number) => boolean][]) {
-        if (limit === null) continue;
-        ctx.setLineDash([4, 3]);
-        ctx.strokeStyle = colour("red");
-        ctx.beginPath();
-        ctx.moveTo(left, y(limit));
-        ctx.lineTo(left + width, y(limit));
-        ctx.stroke();
-        ctx.setLineDash([]);
-        ctx.fillStyle = colour("red");
-        values?.[one.channel]?.forEach((value, k) => value !== null && hit(value, limit) && ctx.fillRect(px(data?.t[k] ?? 0, view, width) - 2, y(limit) - 2, 4, 4));
-      }
-    ctx.restore();
-    over(ctx, width, height);
-    one.value.textContent = pointer === undefined ? "" : significant(valueAt(pointer, one.channel) * scale, 5);
-  }
-  function valueAt(t: number, channel: number): number {
-    if (!data || data.t.length === 0) return NaN;
-    const times = data.t;
-    let best = 0;
-    times.forEach((one, k) => {
-      if (Math.abs(one - t) < Math.abs((times[best] ?? Infinity) - t)) best = k;
-    });
-    const low = data.min[channel]?.[best];
-    const high = data.samples ? low : data.max[channel]?.[best];
-    return low === null || high === null || low === undefined || high === undefined ? NaN : (low + high) / 2;
-  }
-  function drawOverview(): void {
-    const got = context(overview);
-    if (!got) return;
-    const { ctx, height } = got;
-    const width = plotWidth(overview);
-    ctx.globalAlpha = 0.5;
-    if (whole)
-      for (const one of strips) {
-        let low = Infinity;
-        let high = -Infinity;
-        whole.min[one.channel]?.forEach((value) => value !== null && (low = Math.min(low, value)));
-        (whole.samples ? whole.min : whole.max)[one.channel]?.forEach((value) => value !== null && (high = Math.max(high, value)));
-        ctx.strokeStyle = colour(channelInk(head?.channels[one.channel]?.name ?? "", one.channel));
-        curve(ctx, whole, one.channel, (t) => px(t, all, width), (value) => height - 5 - ((value - low) / (high - low || 1)) * (height - 10));
-      }
-    ctx.globalAlpha = 1;
-    for (const gap of gapsIn(all)) hatch(ctx, px(gap[0], all, width), px(gap[1], all, width), height);
-    const x0 = px(view[0], all, width);
-    const x1 = Math.max(x0 + 3, px(view[1], all, width));
-    ctx.strokeStyle = colour("ink");
-    ctx.lineWidth = 1;
-    ctx.strokeRect(x0 + 0.5, 0.5, x1 - x0 - 1, height - 1);
-    ctx.fillStyle = colour("ink");
-    ctx.fillRect(x0 - 1, height / 2 - 7, 3, 14);
-    ctx.fillRect(x1 - 2, height / 2 - 7, 3, 14);
-  }
-  function drawLane(): void {
-    const got = context(lane);
-    if (!got) return;
-    const { ctx, height } = got;
-    const width = plotWidth(lane);
-    ctx.font = `11px ${colour("sans")}`;
-    ctx.textAlign = "center";
-    under(ctx, width, height);
-    (head?.rests ?? []).forEach((rest, k) => {
-      if (rest[1] < view[0] || rest[0] > view[1]) return;
-      const x0 = Math.max(left, px(rest[0], view, width));
-      const x1 = Math.min(left + width, px(rest[1], view, width));
-      ctx.fillStyle = colour("green");
-      ctx.fillRect(x0, height - 3, x1 - x0, 2);
-      const word = `rest ${k + 1}`;
-      if (ctx.measureText(word).width < x1 - x0 - 4) {
-        ctx.fillStyle = colour("ink");
-        ctx.fillText(word, (x0 + x1) / 2, height - 9);
-      }
-    });
-    ctx.fillStyle = colour("purple");
-    for (const knock of head?.knocks_s ?? []) {
-      if (knock < view[0] || knock > view[1]) continue;
-      const x = px(knock, view, width);
-      ctx.beginPath();
-      ctx.moveTo(x - 4, 2);
-      ctx.lineTo(x + 4, 2);
-      ctx.lineTo(x, 9);
-      ctx.fill();
-    }
-    cursors.forEach((cursor, k) => {
-      if (cursor === undefined || cursor < view[0] || cursor > view[1]) return;
-      const x = px(cursor, view, width);
-      ctx.fillStyle = colour("ink");
-      ctx.fillRect(x - 7, 0, 15, 14);
-      ctx.fillStyle = colour("paper");
-      ctx.fillText("AB".charAt(k), x + 0.5, 11);
-    });
-  }
-  function drawTime(): void {
-    const got = context(time);
-    if (!got) return;
-    const width = plotWidth(time);
-    const grid = ticks(view[0], view[1], width / 90);
-    got.ctx.font = `11px ${colour("sans")}`;
-    got.ctx.fillStyle = colour("soft");
-    got.ctx.textAlign = "center";
-    for (const value of grid.values) got.ctx.fillText(fixed(value, grid.decimals), px(value, view, width), 12);
-    got.ctx.textAlign = "right";
-    got.ctx.fillText(head?.rate_hz === 0 ? "Sample" : "Time since the first sample (s)", left + width, 30);
+  function scene(): Scene | undefined {
+    if (!head) return undefined;
+    const dragged = drag && !drag.pans ? ([Math.min(drag.from, drag.to), Math.max(drag.from, drag.to)] as Span) : undefined;
+    return { head, details, whole, data, all, view, stretch: mode === "stretch" && dragged ? dragged : stretch, zoom: mode === "zoom" ? dragged : undefined, cursors, pointer: drag ? undefined : pointer };
   }
   let frame = 0;
   function redraw(): void {
     cancelAnimationFrame(frame);
     frame = requestAnimationFrame(() => {
-      if (!head) return;
-      drawOverview();
-      drawLane();
-      strips.forEach(drawStrip);
-      drawTime();
+      const now = scene();
+      if (!now) return;
+      drawOverview(now, overview, strips.map((one) => one.channel));
+      drawLane(now, lane);
+      for (const one of strips) {
+        drawStrip(now, one.canvas, one.channel, factor(one.channel));
+        one.value.textContent = pointer === undefined ? "" : significant(valueAt(data, pointer, one.channel) * factor(one.channel), 5);
+      }
+      drawTime(now, time);
       inView.textContent = `In view ${place(view[0], view)} – ${place(view[1], view)} s`;
       const span = stretch ?? (view[1] - view[0] < 0.999 * (all[1] - all[0]) ? view : undefined);
       replace(analyse, stretch ? "Analyse stretch" : span ? "Analyse what is in view" : "Analyse", " ", h("kbd", { class: "keys" }, "n"));
