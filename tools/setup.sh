@@ -37,23 +37,27 @@ if [[ $groups == *test* ]] && ! command -v npm >/dev/null; then
   missing+=(nodejs npm)
 fi
 
-# Third-party programs used by tests/readers/; without them those tests are skipped.
-install_readers() {
-  local folder=$here/../tests/readers
-  local installed=$folder/node_modules/.installed
+# npm packages of the tests: third-party programs for tests/readers/, the build of the page, and the
+# driver of its browser. Without them those tests are skipped.
+install_by_npm() {
+  local folder installed
   [[ $groups == *test* ]] || return 0
-  if cmp -s "$folder/package.json" "$installed"; then return 0; fi
-  say "installing what tests/readers/package.json names"
-  if npm --prefix "$folder" install --no-package-lock --ignore-scripts --no-audit --no-fund \
-    --loglevel=error </dev/null >&2; then
-    cp "$folder/package.json" "$installed"
-  else
-    say "npm could not install them: tests/readers will be skipped"
-  fi
+  for folder in tests/readers web tests/page; do
+    folder=$here/../$folder
+    installed=$folder/node_modules/.installed
+    if cmp -s "$folder/package.json" "$installed"; then continue; fi
+    say "installing what ${folder#"$here"/../}/package.json names"
+    if npm --prefix "$folder" install --no-package-lock --ignore-scripts --no-audit --no-fund \
+      --loglevel=error </dev/null >&2; then
+      cp "$folder/package.json" "$installed"
+    else
+      say "npm could not install them: ${folder#"$here"/../} will be skipped"
+    fi
+  done
 }
 
 if ((${#missing[@]} == 0)); then
-  install_readers
+  install_by_npm
   exit 0
 fi
 
@@ -74,4 +78,4 @@ apt() {
 say "installing ${missing[*]}"
 apt update
 apt install --no-install-recommends "${missing[@]}"
-install_readers
+install_by_npm

@@ -153,7 +153,7 @@ void add_verbs(CLI::App& app, const std::vector<Verb>& verbs) {
 bool names_input(const CLI::Option& option) {
   if (option.get_positional())
     return option.get_type_name() != "WORD" && !option.get_type_name().starts_with("WORD:");
-  for (const char* written : {"json", "report", "output", "update-sensor"})
+  for (const char* written : {"json", "report", "page", "output", "update-sensor"})
     if (option.check_lname(written)) return false;
   return option.get_type_name().starts_with("FILE");
 }

@@ -7,6 +7,7 @@
 #include "console.hpp"
 #include "distinct_files.hpp"
 #include "exit_status.hpp"
+#include "view_command.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -20,6 +21,10 @@ int fail(ExitStatus status, const char* message) {
 
 int run_command(int argc, char** argv) {
   try {
+    if (argc == 4 && argv[1] == view_verb) {
+      write_view(argv[2], argv[3]);
+      return done;
+    }
     const std::optional<Verb> verb = parse_command_line(argc, argv);
     if (verb) hold_apart(verb->files());
     if (verb) verb->run();

@@ -62,6 +62,7 @@ void add_tune_flags(CLI::App& verb, TuneCommand& command) {
   add_input_flags(verb, command.input);
   add_output_file(verb, command.output, "write the innovations with standard deviations");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer(
       "Examples:\n"

@@ -20,24 +20,6 @@ namespace {
 constexpr double width = 900.0, left = 66.0, right = 26.0, foot = 48.0, row = 20.0;
 constexpr double swatch = 24.0, letter = 6.9;  // advance of the 12.5-unit type, on average
 
-std::string_view colour(Ink ink) {
-  switch (ink) {
-    case Ink::blue:
-      return "blue";
-    case Ink::orange:
-      return "orange";
-    case Ink::green:
-      return "green";
-    case Ink::purple:
-      return "purple";
-    case Ink::red:
-      return "red";
-    case Ink::grey:
-      break;
-  }
-  return "grey";
-}
-
 // From the values of an axis to places on the page.
 struct Mapping {
   double low, high;
@@ -123,7 +105,7 @@ double text_width(std::string_view text) {
 }
 
 // By which the page's script finds the shapes of a curve, and what it calls them.
-std::string name_of(const std::string& label) {
+std::string data_name(const std::string& label) {
   return label.empty() ? "" : fmt::format(" data-name=\"{}\"", escaped(label));
 }
 
@@ -135,8 +117,8 @@ std::string_view stroke(Mark mark) {
 void draw_line(std::string& text, const Mappings& map, const Curve& curve) {
   const Polyline line = thinned(curve.x, curve.y);
   const Out out(text);
-  fmt::format_to(out, "<path class=\"{} pm-{}\"{} d=\"", stroke(curve.mark), colour(curve.ink),
-                 name_of(curve.label));
+  fmt::format_to(out, "<path class=\"{} pm-{}\"{} d=\"", stroke(curve.mark), name_of(curve.ink),
+                 data_name(curve.label));
   bool pen_down = false;
   for (std::size_t k = 0; k < line.x.size(); ++k) {
     if (!map.x.shows(line.x[k]) || !map.y.shows(line.y[k])) {
@@ -155,12 +137,12 @@ void draw_line(std::string& text, const Mappings& map, const Curve& curve) {
 
 void draw_points(std::string& text, const Mappings& map, const Curve& curve) {
   const Polyline line = thinned(curve.x, curve.y);
-  const std::string name = name_of(curve.label);
+  const std::string name = data_name(curve.label);
   for (std::size_t k = 0; k < line.x.size(); ++k) {
     if (!map.x.shows(line.x[k]) || !map.y.shows(line.y[k])) continue;
     fmt::format_to(Out(text),
                    "<circle class=\"pm-fill pm-{}\"{} cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"3\"/>\n",
-                   colour(curve.ink), name, map.x(line.x[k]), map.y(line.y[k]));
+                   name_of(curve.ink), name, map.x(line.x[k]), map.y(line.y[k]));
   }
 }
 
@@ -169,7 +151,7 @@ void draw_ticks(std::string& text, const Mappings& map, const Curve& curve) {
   for (const double x : curve.x) {
     if (map.x.holds(x)) columns.insert(static_cast<int>(std::lround(map.x(x))));
   }
-  fmt::format_to(Out(text), "<path class=\"pm-line pm-events pm-{}\" d=\"", colour(curve.ink));
+  fmt::format_to(Out(text), "<path class=\"pm-line pm-events pm-{}\" d=\"", name_of(curve.ink));
   for (const int column : columns) {
     fmt::format_to(Out(text), "M{},{:.1f}v-9", column, map.y.from);
   }
@@ -199,8 +181,8 @@ void draw(std::string& text, const Mappings& map, const Band& band) {
   const auto shown = [&](std::size_t k) {
     return map.x.shows(area.x[k]) && map.y.shows(area.lower[k]) && map.y.shows(area.upper[k]);
   };
-  fmt::format_to(Out(text), "<path class=\"pm-band pm-{}\"{} d=\"", colour(band.ink),
-                 name_of(band.label));
+  fmt::format_to(Out(text), "<path class=\"pm-band pm-{}\"{} d=\"", name_of(band.ink),
+                 data_name(band.label));
   for (std::size_t begin = 0; begin < area.x.size();) {
     std::size_t end = begin;
     while (end < area.x.size() && shown(end)) ++end;
@@ -229,7 +211,7 @@ void draw(std::string& text, const Mappings& map, const Callout& callout) {
     fmt::format_to(Out(text),
                    "<text class=\"pm-callout pm-mid pm-{}\" data-dy=\"4\" x=\"{:.1f}\" "
                    "y=\"{:.1f}\">{}</text>\n",
-                   colour(callout.ink), x, y + 4.0, escaped(callout.text));
+                   name_of(callout.ink), x, y + 4.0, escaped(callout.text));
     return;
   }
   const double wide = 10.0 + text_width(callout.text);
@@ -239,7 +221,7 @@ void draw(std::string& text, const Mappings& map, const Callout& callout) {
                  "<circle class=\"pm-fill pm-{0}\" cx=\"{1:.1f}\" cy=\"{2:.1f}\" r=\"3.5\"/>"
                  "<text class=\"pm-callout{3} pm-{0}\" data-dx=\"{4}\" data-dy=\"{5}\" "
                  "x=\"{6:.1f}\" y=\"{7:.1f}\">{8}</text>\n",
-                 colour(callout.ink), x, y, turned ? " pm-end" : "", dx, dy, x + dx, y + dy,
+                 name_of(callout.ink), x, y, turned ? " pm-end" : "", dx, dy, x + dx, y + dy,
                  escaped(callout.text));
 }
 
@@ -309,14 +291,14 @@ std::vector<Entry> legend(const Figure& figure) {
     std::string_view shape = "<path class=\"{2} pm-{0}\" d=\"M0,0H{1}\"/>";
     if (curve.mark == Mark::points) shape = "<circle class=\"pm-fill pm-{0}\" cx=\"12\" r=\"3\"/>";
     if (curve.mark == Mark::ticks) shape = "<path class=\"pm-line pm-{0}\" d=\"M12,-5v10\"/>";
-    entries.push_back({curve.label, fmt::format(fmt::runtime(shape), colour(curve.ink), swatch,
+    entries.push_back({curve.label, fmt::format(fmt::runtime(shape), name_of(curve.ink), swatch,
                                                 stroke(curve.mark))});
   }
   for (const Band& band : figure.bands) {
     if (band.label.empty()) continue;
     entries.push_back(
         {band.label, fmt::format("<path class=\"pm-band pm-{}\" d=\"M0,-6h{}v12h-{}z\"/>",
-                                 colour(band.ink), swatch, swatch)});
+                                 name_of(band.ink), swatch, swatch)});
   }
   for (const Level& level : figure.levels) {
     if (level.label.empty()) continue;
@@ -359,6 +341,24 @@ std::string scale_of(const Mappings& map, const Figure& figure) {
 }
 
 }  // namespace
+
+std::string_view name_of(Ink ink) {
+  switch (ink) {
+    case Ink::blue:
+      return "blue";
+    case Ink::orange:
+      return "orange";
+    case Ink::green:
+      return "green";
+    case Ink::purple:
+      return "purple";
+    case Ink::red:
+      return "red";
+    case Ink::grey:
+      break;
+  }
+  return "grey";
+}
 
 std::string svg(const Figure& figure, const std::string& id) {
   std::string body;

@@ -5,6 +5,4 @@
 #include "proofmass/report/json.hpp"
 #include "proofmass/report/wording.hpp"
 
-namespace proofmass::report {
-
-}  // namespace proofmass::report
+namespace proofmass::report {}  // namespace proofmass::report
