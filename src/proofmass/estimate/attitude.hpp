@@ -39,8 +39,8 @@ struct AttitudeOptions {
   double gravity_std_mps2 = sensor::gravity_std_on_earth_mps2;
   std::optional<double> rate_noise_radps_rthz = std::nullopt;  ///< white; without rests 1e-3
   std::optional<double> accel_noise_mps2_rthz = std::nullopt;  ///< white; without rests 1e-2
-  double rate_bias_std_radps = 0.05;       ///< initial bias of the gyroscope
-  double rate_bias_walk_radps_rts = 2e-5;  ///< its random walk
+  double rate_bias_std_radps = 0.05;                           ///< initial bias of the gyroscope
+  double rate_bias_walk_radps_rts = 2e-5;                      ///< its random walk
   double rate_scale_std = 0.01;            ///< relative error of a rotation, axis included
   double accel_bias_std_mps2 = 0.05;       ///< residual after calibration, per axis
   double accel_bias_walk_mps2_rts = 2e-4;  ///< its random walk
@@ -82,8 +82,7 @@ struct Attitude {
   std::vector<Symmetric3> attitude_cov_rad2;
   std::vector<Mat<3>> velocity_mps, position_m;  ///< world axes
   std::vector<Symmetric3> velocity_cov_m2ps2, position_cov_m2;
-  std::vector<Mat<3>> filtered_velocity_mps, filtered_position_m;  ///< given the measurements so
-                                                                   /// far
+  std::vector<Mat<3>> filtered_velocity_mps, filtered_position_m;  ///< given data so far
   std::vector<Symmetric3> filtered_position_cov_m2;
   std::vector<Mat<3>> rate_bias_radps, rate_bias_std_radps;  ///< sensor axes
   std::vector<Mat<3>> accel_bias_mps2, accel_bias_std_mps2;  ///< sensor axes
