@@ -15,7 +15,7 @@ namespace {
 constexpr int N = inertial::states;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A knock at a rest pulls no harder than this many standard deviations.
+/// A shock at a rest pulls no harder than this many standard deviations.
 constexpr Gate gate{.huber = 5.0};
 
 /// What the gyroscope may do in the hand or by its flicker without the rest being a turn.
@@ -77,8 +77,8 @@ class Pass {
   /// What the last pass moved the motion by at sample k.
   [[nodiscard]] const InertialError& error(std::size_t k) const { return errors_[k]; }
 
-  /// Returns the largest tilt it moved by, rad. Heading does not count: what the readings do not
-  /// determine moves far without moving anything else.
+  /// Returns the largest tilt it moved by, rad. Heading does not count: what the measurements do
+  /// not determine moves far without moving anything else.
   template <class Forward, class Backward>
   double run(Forward&& forward, Backward&& backward) {
     smooth(*model_, FilterState<N>{model_->prior()}, gate, std::forward<Forward>(forward),

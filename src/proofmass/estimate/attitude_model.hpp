@@ -54,7 +54,7 @@ class AttitudeModel {
   [[nodiscard]] Transition<states, states> transition(const InertialError& x, std::size_t k) const;
   void measure(const InertialError& x, std::size_t k, Readings<states, channels>& out) const;
   void reopen(Gaussian<states>&, std::size_t) const {}
-  /// How many of the readings of sample k are the sensors', and not bounds of the velocity.
+  /// How many of the measurements of sample k are the sensors', and not bounds of the velocity.
   [[nodiscard]] int sensor_readings(std::size_t k) const { return at_rest(k) ? 6 : 0; }
 
  private:

@@ -82,7 +82,7 @@ class Filler {
 
  private:
   static Mat<3> mixed(const Axes& axes, std::array<std::size_t, 2> ends, double part) {
-    // At part = 1 the reading itself, to the last digit.
+    // At part = 1 the measurement itself, to the last digit.
     if (part >= 1.0) return at(axes, ends[1]);
     return (1.0 - part) * at(axes, ends[0]) + part * at(axes, ends[1]);
   }

@@ -10,7 +10,7 @@
 #include "proofmass/core/random.hpp"
 #include "proofmass/estimate/attitude.hpp"
 
-// A body that lies still, moves and turns, and lies still again, as two sensors read it.
+// A body that is at rest, moves and turns, and is at rest again, as two sensors read it.
 namespace proofmass::estimate::attitude_test {
 
 struct Body {

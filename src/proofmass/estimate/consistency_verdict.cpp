@@ -18,7 +18,7 @@ constexpr double too_far = 1.25;
 /// √((f + 1/f)/2) times as far as it need, and stays within what it states.
 constexpr double far_behind = 1.0 / 3.0;
 constexpr double too_correlated = 0.2;
-/// A share of readings left out that no noise explains.
+/// A share of measurements left out that no noise explains.
 constexpr double too_many_gated = 0.05;
 
 /// Of |N(0, 1)| below x.
@@ -85,7 +85,7 @@ bool few_carry_it(const ChannelConsistency& figures) {
 }
 
 /// Which noise is off, with size = ln(s) and colour = ln(√V): √V s is the factor of what the state
-/// does over a stretch, hence of √Q, and s that of the readings' noise.
+/// does over a stretch, hence of √Q, and s that of the measurement noise.
 void set_remedy(ChannelConsistency& figures, double size, const Colour& colour) {
   const double process = size + colour.log_factor;
   const auto move = [&](Remedy what, double log_factor) {

@@ -36,7 +36,7 @@ struct ConstantGainKernels {
   /// λ alone.
   void (*look_back)(
       const Model&, const ConstantGain<N>&, const LaneMean<N>* means, int count, LaneNumbers* l);
-  /// λ; the means become those given all readings.
+  /// λ; the means become those given all measurements.
   void (*smooth)(
       const Model&, const ConstantGain<N>&, LaneMean<N>* means, int count, LaneNumbers* l);
 };

@@ -11,10 +11,10 @@ namespace proofmass::estimate::packed {
 ///
 ///     Φ = A (I + P J)⁻¹,   P ← Φ P Aᵀ + C,   Λ₀ = J (I + P J)⁻¹
 ///
-/// J is the information that the readings hold on the state before the first step, C the covariance
-/// after the last where that state is known, A how the mean then hangs on it. Λ₀ is Hindsight's Λ
-/// before the first step, of these readings alone.
-/// Source: S. Särkkä, Á. F. García-Fernández, IEEE Trans. Automatic Control 66 (2021) 299.
+/// J is the information that the measurements hold on the state before the first step, C the
+/// covariance after the last where that state is known, A how the mean then depends on it. Λ₀ is
+/// Hindsight's Λ before the first step, of these measurements alone. Source: S. Särkkä, Á. F.
+/// García-Fernández, IEEE Trans. Automatic Control 66 (2021) 299.
 template <int N>
 struct FilterLeap {
   Mat<N, N> A, C, J;

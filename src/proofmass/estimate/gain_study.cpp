@@ -12,7 +12,7 @@ constexpr double settled_within = 0.02;
 
 struct Limit {
   std::array<double, 3> gain{};
-  double variance = 0.0, predicted = 0.0;  // of the acceleration, after and before a reading
+  double variance = 0.0, predicted = 0.0;  // of the acceleration, after and before a measurement
 };
 
 // Fixed point of the covariances with the acceleration, one after the other: that of the

@@ -29,10 +29,10 @@ struct InertialEpoch {
   bool resting = false;   ///< on the way here
   bool cruising = false;  ///< on the way here, if `resting`: at constant speed instead of none
   bool leaves_rest = false, arrives_at_rest = false;  ///< the motion begins before, ends after it
-  /// What the readings on the way integrate to, from standstill.
+  /// What the measurements on the way integrate to, from standstill.
   double velocity_step_mps = 0.0, position_step_m = 0.0;
-  double unknown_accel_std_mps2 = 0.0;  ///< of the whole step, where readings are missing
-  double velocity_std_mps = std::numeric_limits<double>::quiet_NaN();  ///< of the reading v = 0
+  double unknown_accel_std_mps2 = 0.0;  ///< of the whole step, where measurements are missing
+  double velocity_std_mps = std::numeric_limits<double>::quiet_NaN();  ///< of the measurement v = 0
   double level_mps2 = std::numeric_limits<double>::quiet_NaN();  ///< a at rest, mean since before
   double level_variance = 0.0;
   double position_m = std::numeric_limits<double>::quiet_NaN();
@@ -70,8 +70,9 @@ struct InertialStart {
 };
 [[nodiscard]] FilterState<3> inertial_start(const InertialStart& start);
 
-/// The epochs between two of `kept` taken together, exactly: noise, walk and readings of the whole
-/// step are those of its parts. Only epochs without readings and of one kind may lie between.
+/// The epochs between two of `kept` taken together, exactly: noise, walk and measurements of the
+/// whole step are those of its parts. Only epochs without measurements and of one kind may lie
+/// between.
 [[nodiscard]] std::vector<InertialEpoch> join_epochs(View<InertialEpoch> epochs,
                                                      const std::vector<std::size_t>& kept);
 

@@ -9,11 +9,11 @@
 namespace proofmass::estimate {
 namespace {
 
-// 2⁶⁰ readings are more than there will ever be.
+// 2⁶⁰ measurements are more than there will ever be.
 constexpr std::size_t most_doublings = 60;
 constexpr double nothing = 1e-6;
 
-/// Orthonormal rows that span what the readings see: H, H F, H F² …
+/// Orthonormal rows that span what the measurements see: H, H F, H F² …
 Eigen::MatrixXd seen_rows(const Eigen::MatrixXd& F, const Eigen::MatrixXd& H) {
   const Eigen::Index n = F.rows();
   Eigen::MatrixXd V(n, n);
@@ -43,7 +43,7 @@ std::string readings(std::size_t count, double dt_s) {
 }  // namespace
 
 // Powers of A grow where nothing is seen, and rounding would bring that back: all is done on what
-// the readings see.
+// the measurements see.
 LagGain::LagGain(const Parts& parts) {
   const Eigen::MatrixXd V = seen_rows(parts.F, parts.H);
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(parts.F.rows(), parts.F.rows());
@@ -85,7 +85,7 @@ Eigen::VectorXd LagGain::variance_reduction() const {
 std::size_t LagGain::shortest(int state, double share) const {
   PM_EXPECTS(state >= 0 && state < effect_.rows() && share > 0.0 && share < 1.0);
   const double wanted = share * variance_reduction()(state);
-  // The most readings that are not yet enough, bit by bit: each one more takes more off.
+  // The most measurements that are not yet enough, bit by bit: each one more takes more off.
   const Eigen::Index n = effect_.cols();
   std::size_t lag = 0;
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n), power = Eigen::MatrixXd::Identity(n, n);

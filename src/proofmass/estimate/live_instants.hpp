@@ -12,7 +12,7 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/gaussian.hpp"
 
-// From blocks of samples to the instants that a live filter takes. Private to the module's live*.
+// From blocks of samples to the epochs that a live filter takes. Private to the module's live*.
 namespace proofmass::estimate {
 
 /// Three channels that belong together, and what they are.
@@ -26,7 +26,7 @@ inline constexpr std::size_t most_live_vectors = 4;
 struct LiveInstant {
   double time_s = 0.0;
   bool anew = false;  ///< the clock was set back: what came before stands on another time line
-  /// m/s² and rad/s, an axis without channel is 0; NaN where there is no reading that one can
+  /// m/s² and rad/s, an axis without channel is 0; NaN where there is no measurement that one can
   /// believe.
   std::array<Mat<3>, most_live_vectors> vectors{};
 
@@ -38,9 +38,9 @@ struct LiveClock {
   double most_rate_hz = 500.0;  ///< faster samples are averaged down to this
 };
 
-/// Screens samples, and averages so many that no more instants than `most_rate_hz` are left: at
-/// that rate and below every sample is an instant, there as soon as the sample is. A mean ends
-/// where samples are missing. What the blocks are cut like makes no difference.
+/// Screens samples, and averages so many that no more epochs than `most_rate_hz` are left: at that
+/// rate and below every sample is an epoch, there as soon as the sample is. A mean ends where
+/// samples are missing. What the blocks are cut like makes no difference.
 class LiveInstants {
  public:
   LiveInstants(std::vector<LiveVector> vectors, const LiveClock& clock);
@@ -60,7 +60,7 @@ class LiveInstants {
     if (close()) visit(static_cast<const LiveInstant&>(instant_));
   }
 
-  /// Readings left out since it was asked last.
+  /// Measurements left out since it was asked last.
   [[nodiscard]] std::vector<Note> take_notes();
 
  private:

@@ -37,7 +37,7 @@ double step_of(const std::vector<LiveInstant>& instants) {
          static_cast<double>(instants.size() - 1);
 }
 
-/// White noise of one reading, by the differences of neighbours.
+/// White noise of one measurement, by the differences of neighbours.
 double difference_std(const std::vector<LiveInstant>& instants, std::size_t vector) {
   std::vector<double> differences;
   for (std::size_t k = 1; k < instants.size(); ++k)
@@ -48,7 +48,7 @@ double difference_std(const std::vector<LiveInstant>& instants, std::size_t vect
   return robust_std(differences).value_or(0.0) / std::numbers::sqrt2;
 }
 
-/// Gravity as these readings show it, where it can be gravity that they show.
+/// Gravity as these measurements show it, where it can be gravity that they show.
 double norm_of(const std::vector<LiveInstant>& instants, double gravity_mps2) {
   std::vector<double> norms;
   for (const LiveInstant& instant : instants)

@@ -14,13 +14,13 @@
 // tilt_model.hpp's filter, fed. Private to the module's live_tilt*.
 namespace proofmass::estimate {
 
-/// How long the base's acceleration hangs together: by the correlation of its departures with those
+/// How long the base's acceleration is correlated: by the correlation of its departures with those
 /// a tenth of a second before.
 class RunningCorrelation {
  public:
   explicit RunningCorrelation(std::size_t instants_apart) : ring_(instants_apart) {}
   void add(const Mat<3>& departure, double weight);
-  /// In units of the distance; what hangs together for less than half of it counts as half of it.
+  /// In units of the distance; what is correlated for less than half of it counts as half of it.
   [[nodiscard]] double time() const;
 
  private:
@@ -31,13 +31,13 @@ class RunningCorrelation {
 
 class LiveTiltFilter {
  public:
-  /// By what the first instants show; at least two of them.
+  /// By what the first epochs show; at least two of them.
   LiveTiltFilter(const std::vector<LiveInstant>& first, const LiveTiltOptions& options);
 
-  /// Takes one instant more. Allocates nothing.
+  /// Takes one epoch more. Allocates nothing.
   void step(const LiveInstant& instant);
 
-  /// Direction of gravity's reaction at the last instant, m/s².
+  /// Direction of gravity's reaction at the last epoch, m/s².
   [[nodiscard]] const Gaussian<3>& now() const { return window_.state(0); }
   /// The same `lag_s` before; null as long as that lies before the first.
   [[nodiscard]] const Gaussian<3>* lagged() const {
@@ -58,7 +58,7 @@ class LiveTiltFilter {
 
   bool gyroscope_;
   double usual_step_s_ = 0.01;
-  TiltInstants now_;  ///< two instants: 0 the first, 1 any later
+  TiltInstants now_;  ///< two epochs: 0 the first, 1 any later
   TiltKnown known_;
   TiltMotion motion_;
   BaseScatter scatter_, long_scatter_;

@@ -20,12 +20,12 @@ namespace proofmass::estimate {
 namespace {
 
 constexpr double patience_s = 10.0;          ///< for a first rest, before a note asks for one
-constexpr double longest_gathered_s = 60.0;  ///< of the motion that the axis is told from
+constexpr double longest_gathered_s = 60.0;  ///< of the motion that the axis is distinguished from
 constexpr double longest_gap_s = 60.0;       ///< over which a position is carried
 constexpr double longest_cruise_s = 10.0;
 constexpr double gap_steps = 2.5;
 constexpr double telling_turn_rad = 0.5 * rad_per_deg;
-/// By which a level wanders at rest where no sensor file says more, m/s²/√s.
+/// By which a level drifts at rest where no sensor file says more, m/s²/√s.
 constexpr double usual_rest_walk = 3e-4;
 
 std::vector<Channel> track_columns() {
@@ -97,7 +97,7 @@ class LiveTrack final : public LiveAnalysis {
     rests_.add(instant, [&](const LiveReading& reading) { follow(reading, out); });
   }
 
-  /// The clock was set back, which the instants have said.
+  /// The clock was set back, which the epochs have said.
   void start_anew() {
     for (Note& note : rests_.take_notes()) notes_.push_back(std::move(note));
     rests_ = LiveTrackRests(options_.sensor);
@@ -214,7 +214,7 @@ class LiveTrack final : public LiveAnalysis {
                     LiveLevel{level, squares.dot(level_variance_)});
   }
 
-  /// Of the instants; what stamps say may be anything.
+  /// Of the epochs; what stamps say may be anything.
   [[nodiscard]] double most_rate_hz() const { return 1.5 * options_.most_rate_hz; }
 
   [[nodiscard]] double density(const std::array<std::optional<double>, 3>& figures,
@@ -299,13 +299,13 @@ class LiveTrack final : public LiveAnalysis {
   std::vector<Channel> columns_ = track_columns();
   std::optional<double> began_s_;
   bool asked_ = false;
-  std::optional<double> unplaced_from_s_;  ///< since when readings have had no rest before them
-  double last_s_ = 0.0;                    ///< of the readings that were followed
+  std::optional<double> unplaced_from_s_;  ///< since when measurements have had no rest before them
+  double last_s_ = 0.0;                    ///< of the measurements that were followed
 
   std::optional<Mat<3>> axis_;
-  std::optional<LiveReading> level_;  ///< of the last rest, at its last instant until it moves
+  std::optional<LiveReading> level_;  ///< of the last rest, at its last epoch until it moves
   Mat<3> level_white_m2ps3_ = Mat<3>::Zero(), level_variance_ = Mat<3>::Zero();
-  std::vector<LiveReading> gathered_;  ///< the motion that the axis is told from
+  std::vector<LiveReading> gathered_;  ///< the motion that the axis is distinguished from
   std::optional<LiveTrackFilter> filter_;
   std::optional<double> doubted_since_s_;
   double said_turn_rad_ = 0.0;

@@ -17,8 +17,8 @@ namespace proofmass::estimate {
 
 [[nodiscard]] Mat<3> unit_vector(const std::array<double, 3>& axis);
 
-/// In which a motion was fastest that was gathered from the rest before it, with its last instant
-/// and its level, to the one after it, or to now. Expects a reading at least.
+/// In which a motion was fastest that was gathered from the rest before it, with its last epoch and
+/// its level, to the one after it, or to now. Expects a measurement at least.
 [[nodiscard]] FoundAxis axis_of_motion(const std::vector<LiveReading>& motion,
                                        const LiveReading& level,
                                        const Triad& sensor,

@@ -12,7 +12,7 @@ namespace {
 using inertial_axis::position_m;
 using inertial_axis::velocity_mps;
 
-/// A knock or an outlier at rest pulls no harder than a reading three deviations off.
+/// A shock or an outlier at rest pulls no harder than a measurement three deviations off.
 constexpr double resting_huber = 3.0;
 /// What an acceleration that nobody read may have been, at least, and for how long it stays.
 constexpr double unread_accel_mps2 = 1.0, unread_time_s = 1.0;

@@ -9,8 +9,7 @@
 #include "proofmass/estimate/inertial_axis.hpp"
 #include "proofmass/estimate/live_track_scale.hpp"
 
-// The inertial filter along one axis, one instant at a time. Private to the module's
-// live_track*.cpp.
+// The inertial filter along one axis, one epoch at a time. Private to the module's live_track*.cpp.
 namespace proofmass::estimate {
 
 struct LiveTrackSetup {
@@ -19,10 +18,10 @@ struct LiveTrackSetup {
   double rest_speed_std_mps = 1e-4;
   double scale_std = 0.0;
   double longest_step_s = 0.0;  ///< a longer one is a gap
-  std::size_t lag = 0;          ///< instants
+  std::size_t lag = 0;          ///< epochs
 };
 
-/// What the sensor reads along the axis while it lies still.
+/// What the sensor reads along the axis while it is at rest.
 struct LiveLevel {
   double mps2 = 0.0, variance = 0.0;
   /// Squared, in any direction: how far it moved since the rest before, beyond noise.
@@ -37,10 +36,10 @@ struct LiveTrackInstant {
 struct LiveTrackRow {
   Uncertain position_m, velocity_mps;
   double smoothed_time_s = 0.0;
-  Uncertain smoothed_position_m;  ///< NaN in the first `lag` instants
+  Uncertain smoothed_position_m;  ///< NaN in the first `lag` epochs
 };
 
-/// Position, velocity and bias from the last instant of a rest on.
+/// Position, velocity and bias from the last epoch of a rest on.
 class LiveTrackFilter {
  public:
   LiveTrackFilter(const LiveTrackSetup& setup,

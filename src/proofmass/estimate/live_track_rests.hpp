@@ -9,11 +9,11 @@
 #include "proofmass/estimate/live_instants.hpp"
 #include "proofmass/signal/running_rests.hpp"
 
-// Whether the sensor lay still at an instant, as soon as it is known. Private to the module's
+// Whether the sensor was at rest at an epoch, as soon as it is known. Private to the module's
 // live_track*.cpp.
 namespace proofmass::estimate {
 
-/// A reading of all axes, and whether the sensor lay still.
+/// A reading of all axes, and whether the sensor was at rest.
 struct LiveReading {
   double time_s = 0.0;
   Mat<3> accel_mps2 = Mat<3>::Zero();
@@ -28,7 +28,7 @@ struct LiveRest {
   double behind_level_s = 0.0;          ///< time that the level is the mean of
 };
 
-/// Holds instants back until it is known.
+/// Holds epochs back until it is known.
 class LiveTrackRests {
  public:
   explicit LiveTrackRests(const Triad& sensor);
@@ -46,7 +46,7 @@ class LiveTrackRests {
   }
 
   [[nodiscard]] const LiveRest& rest() const { return rest_; }
-  /// Of the readings, lately; 0 before the second.
+  /// Of the measurements, lately; 0 before the second.
   [[nodiscard]] double step_s() const { return step_s_; }
   [[nodiscard]] std::vector<Note> take_notes();
 

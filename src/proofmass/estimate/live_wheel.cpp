@@ -137,7 +137,7 @@ class LiveWheel final : public LiveAnalysis {
   }
 
   /// Without a filter: enough is gathered. With one: the wheel has turned round since, or its speed
-  /// has changed while nobody knew the sensors' places.
+  /// has changed while nobody knew the sensors' lever arms.
   [[nodiscard]] bool is_due() {
     const double now_s = gathered_.back().time_s;
     if (!filter_) return now_s - gathered_.front().time_s >= options_.start_s;
@@ -210,7 +210,7 @@ class LiveWheel final : public LiveAnalysis {
     const double rate_hz = static_cast<double>(gathered_.size() - 1) / span_s;
     filter_.emplace(start, static_cast<std::size_t>(std::lround(options_.lag_s * rate_hz)),
                     options_.wheel.alignment_std_rad);
-    double apart_rad = 0.0;  // of the new filter and what was given, at the last such instant
+    double apart_rad = 0.0;  // of the new filter and what was given, at the last such epoch
     for (std::size_t k = 0; k < gathered_.size(); ++k) {
       const double time_s = gathered_[k].time_s;
       filter_->step(gathered_[k]);
@@ -242,7 +242,7 @@ class LiveWheel final : public LiveAnalysis {
   }
 
   /// No accelerometer tells one turn from the next: counts on from what was given for the first
-  /// instant, or is nearest to where the wheel was last seen.
+  /// epoch, or is nearest to where the wheel was last seen.
   void count_on(double time_s) {
     turned_rad_ = 0.0;
     if (!last_.angle_rad) return;

@@ -9,7 +9,7 @@ namespace {
 /// The gate of wheel_gate; what it does when it stays shut, notice_surprise() does here.
 constexpr Gate live_gate{wheel_gate.huber, wheel_gate.limit, std::numeric_limits<int>::max()};
 
-/// How long readings are gathered before the noise is judged by them.
+/// How long measurements are gathered before the noise is judged by them.
 constexpr double stretch_s = 1.0;
 /// Factor between the noise of the rivals and the filter's own.
 constexpr double rival_factor = 3.1622776601683795;
@@ -79,7 +79,7 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelStart& start,
 }
 
 /// Not as the prior leaves the constants, which would let them swallow the first motion, but twice
-/// as uncertain as they were found: the filter meets the same readings once more. Nor more than
+/// as uncertain as they were found: the filter meets the same measurements once more. Nor more than
 /// that prior, and the places stay held.
 template <int S>
 void LiveWheelFilter<S>::narrow_constants(const Eigen::MatrixXd& found_cov) {
@@ -113,7 +113,7 @@ void LiveWheelFilter<S>::read(const LiveInstant& instant) {
   }
 }
 
-/// Of the readings at this instant. What is not known of ω² and α, times what is not known of a
+/// Of the measurements at this instant. What is not known of ω² and α, times what is not known of a
 /// place, is noise that no slope shows.
 template <int S>
 void LiveWheelFilter<S>::set_variance() {
@@ -168,7 +168,7 @@ void LiveWheelFilter<S>::step(const LiveInstant& instant) {
   if (time_s_ - stretch_start_s_ >= stretch_s) end_stretch();
 }
 
-/// Of the angle at this instant, before its readings.
+/// Of the angle at this epoch, before its measurements.
 template <int S>
 double LiveWheelFilter<S>::predicted_std_rad() const {
   const auto to = model_.transition(main_.x.mean, 1);
@@ -178,7 +178,7 @@ double LiveWheelFilter<S>::predicted_std_rad() const {
       to.Q(wheel::angle, wheel::angle));
 }
 
-/// What the innovations say of the readings' noise, and of the motion's.
+/// What the innovations say of the measurement noise, and of the motion's.
 template <int S>
 void LiveWheelFilter<S>::judge() {
   int channel = 0;
@@ -247,7 +247,7 @@ void LiveWheelFilter<S>::forget_stretch() {
   stretch_start_s_ = time_s_;
 }
 
-/// The readings' variance goes half of the way (in logarithm) to what the stretch says.
+/// The measurements' variance goes half of the way (in logarithm) to what the stretch says.
 template <int S>
 void LiveWheelFilter<S>::adapt_variance(std::size_t sensor) {
   const Noise said = noise_[sensor];

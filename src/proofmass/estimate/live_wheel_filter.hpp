@@ -30,7 +30,7 @@ class LiveWheelFilter {
   LiveWheelFilter(const LiveWheelFilter&) = delete;
   LiveWheelFilter& operator=(const LiveWheelFilter&) = delete;
 
-  /// Takes one instant more. Allocates nothing.
+  /// Takes one epoch more. Allocates nothing.
   void step(const LiveInstant& instant);
   /// Holds the sensors at this distance from the axle, once the start has been filtered.
   void use_radius(double radius_m);
@@ -50,18 +50,18 @@ class LiveWheelFilter {
   static constexpr int places = 2 * S;
   /// How far a place is moved to see what it does. What is read is linear in it.
   static constexpr double place_step_m = 1e-3;
-  /// The same with one coordinate of the places moved, and what it says of the readings.
+  /// The same with one coordinate of the places moved, and what it says of the measurements.
   struct Moved {
     FilterState<states> state;
     std::array<double, static_cast<std::size_t>(2 * S)> innovations{};
   };
-  /// Other noise, and how much better it predicts the readings of this stretch.
+  /// Other noise, and how much better it predicts the measurements of this stretch.
   struct Rival {
     double factor = 1.0;
     FilterState<states> state{};
     double log_likelihood = 0.0;
   };
-  /// Of one sensor's readings in a stretch, as of settle_variance().
+  /// Of one sensor's measurements in a stretch, as of settle_variance().
   struct Noise {
     double innovation2 = 0.0, explained = 0.0, readings = 0.0;
   };
@@ -85,11 +85,11 @@ class LiveWheelFilter {
   [[nodiscard]] Mat<2> places_variance() const;
 
   std::vector<WheelPlane> planes_;
-  WheelReadings now_;  ///< two instants: 0 the first, 1 any later; each sensor has one row
+  WheelReadings now_;  ///< two epochs: 0 the first, 1 any later; each sensor has one row
   Model model_;
   std::size_t instants_ = 0;
   double time_s_ = 0.0;
-  std::array<double, 2> variance_m2ps4_;  ///< of each sensor's readings
+  std::array<double, 2> variance_m2ps4_;  ///< of each sensor's measurements
   double alignment_variance_rad2_ = 0.0, delay_std_s_ = 0.0;
 
   FilterState<states> main_;

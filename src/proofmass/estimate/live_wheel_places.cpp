@@ -7,8 +7,8 @@
 // Where the sensors sit on the wheel: what a filter that runs learns of it.
 namespace proofmass::estimate {
 
-/// The radius in place of what was believed of a sensor that may be anywhere: the sensor is on its
-/// circle or, as long as the readings do not show on which side, within it.
+/// The radius instead of what was believed of a sensor that may be anywhere: the sensor is on its
+/// circle or, as long as the measurements do not show on which side, within it.
 template <int S>
 void LiveWheelFilter<S>::use_radius(double radius_m) {
   const double within_m = std::max(radius_m / std::numbers::sqrt2, 2e-4);
@@ -55,8 +55,8 @@ void LiveWheelFilter<S>::expect() {
   }
 }
 
-/// A reading `residual` = slopeᵀ (p − p̂) + noise. What hangs on the places moves with them, as the
-/// filters beside this one tell.
+/// A reading `residual` = slopeᵀ (p − p̂) + noise. What depends on the places moves with them, as
+/// the filters beside this one tell.
 template <int S>
 void LiveWheelFilter<S>::learn_place(const Mat<places>& slope, double residual, double variance) {
   const Mat<places> across = places_cov_ * slope;

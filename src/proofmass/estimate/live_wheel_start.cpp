@@ -17,7 +17,7 @@ double rate_of(const std::vector<LiveInstant>& instants) {
   return static_cast<double>(instants.size() - 1) / span_s;
 }
 
-/// One sensor's part, `each` instants averaged; a mean of anything missing is missing.
+/// One sensor's part, `each` epochs averaged; a mean of anything missing is missing.
 WheelSensor sensor_of(const std::vector<LiveInstant>& instants,
                       std::size_t index,
                       const Triad& channels,
@@ -71,7 +71,7 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveInstant>& instants,
   auto singles = fit_singles(sensors, wheel);
   if (!singles) return singles.error();
   Pair pair = std::move(singles).value();
-  pair.clocks.offset_s.value = 0.0;  // the instants are both sensors'
+  pair.clocks.offset_s.value = 0.0;  // the epochs are both sensors'
   Joint joint;
   if (count == 2)
     joint = fit_jointly(sensors, pair, wheel);

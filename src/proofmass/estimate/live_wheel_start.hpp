@@ -18,12 +18,12 @@ struct LiveWheelStart {
   double gravity_mps2 = standard_gravity_mps2, rolling_radius_m = 0.0, phase_rad = 0.0;
   Uncertain delay_s{};  ///< of the sensors' filters
   WheelNoise noise;
-  std::array<double, 2> variance_m2ps4{};  ///< of a reading of each sensor, at the instants' rate
-  WheelPrior prior;                        ///< of the state at the first instant
+  std::array<double, 2> variance_m2ps4{};  ///< of a measurement of each sensor, at the epochs' rate
+  WheelPrior prior;                        ///< of the state at the first epoch
   /// Covariance of `constants`, the places included; empty where the hub vibrates: vibration biases
   /// constants that were fitted to a few seconds.
   Eigen::MatrixXd constants_cov;
-  Eigen::VectorXd constants;  ///< where to make the readings linear about at first
+  Eigen::VectorXd constants;  ///< where to make the measurements linear about at first
   Eigen::MatrixXd places_cov;
   bool whole_turn = false;  ///< else the constants are believed more than shown
   std::vector<Note> notes;

@@ -26,7 +26,7 @@ void pack(const Mat<N, N>& P, double (&out)[Symmetric<N>::entries]) {
     for (int j = 0; j <= i; ++j) out[Symmetric<N>::index(i, j)] = 0.5 * (P(i, j) + P(j, i));
 }
 
-/// Joseph's form of correct_cov, for a P so much wider than the reading that differences of its
+/// Joseph's form of correct_cov, for a P so much wider than the measurement that differences of its
 /// entries hold little of the answer.
 template <int N>
 [[gnu::noinline]] void correct_wide(const StepModel<N>& m,
@@ -81,7 +81,7 @@ template <int Count>
   each<Count>([&](auto i) __attribute__((always_inline)) { to[i()] = from[i()]; });
 }
 
-/// P, x and K given the reading z. Returns y / S and 1 / S.
+/// P, x and K given the measurement z. Returns y / S and 1 / S.
 template <int N, Pattern S>
 [[gnu::always_inline]] inline std::pair<double, double> read(const StepModel<N>& m,
                                                              double z,

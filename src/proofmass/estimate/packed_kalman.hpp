@@ -3,7 +3,7 @@
 #include "proofmass/estimate/packed_model.hpp"
 
 // The equations of kalman.hpp on packed covariances, for a model that stays the same and has one
-// channel: each is written once, on plain numbers, and is run either on one instant after another
+// channel: each is written once, on plain numbers, and is run either on one epoch after another
 // (packed_filter.cpp) or side by side on many (uniform_lanes.cpp). What a model's zeros and ones
 // save is known when it is compiled (Pattern).
 namespace proofmass::estimate::packed {

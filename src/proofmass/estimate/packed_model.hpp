@@ -57,7 +57,7 @@ template <int N>
   return true;
 }
 
-/// States that no reading of such a model sees, now or later: Λ and λ are 0 there.
+/// States that no measurement of such a model sees, now or later: Λ and λ are 0 there.
 template <int N>
 [[nodiscard]] constexpr unsigned unseen(const Pattern& pattern) {
   constexpr unsigned all = (1U << N) - 1U;
@@ -69,8 +69,8 @@ template <int N>
   return ~seen & all;
 }
 
-/// One instant of a filter: x̂ and P after its reading, K, y / S and 1 / S (all three 0 where there
-/// is no reading).
+/// One epoch of a filter: x̂ and P after its reading, K, y / S and 1 / S (all three 0 where there is
+/// no measurement).
 template <int N>
 struct Row {
   static constexpr int entries = Symmetric<N>::entries;
@@ -80,9 +80,9 @@ struct Row {
   double y_S, per_S;
 };
 
-/// What later readings say of a state: λ and Λ of hindsight.hpp, and the covariance of the instant
-/// after given all readings. `wide`: behind a wide P, Λ has lost digits that the covariances of
-/// earlier instants still need.
+/// What later measurements say of a state: λ and Λ of hindsight.hpp, and the covariance of the
+/// epoch after given all measurements. `wide`: behind a wide P, Λ has lost digits that the
+/// covariances of earlier epochs still need.
 template <int N>
 struct Later {
   double L[Symmetric<N>::entries];

@@ -11,7 +11,7 @@
 #include "proofmass/estimate/kalman.hpp"
 #include "proofmass/estimate/motion_models.hpp"
 
-// Motion along one axis, from rest to rest, with the accelerometers as readings. Private to the
+// Motion along one axis, from rest to rest, with the accelerometers as measurements. Private to the
 // module's track*.cpp.
 //
 //     moving   p' = v,   v' = a − l,   a' = j       j white of density q, l of density L
@@ -26,15 +26,15 @@
 //
 //     a ← a + w,   v ← v + h a + h w/2,   p ← p + h v + h² a/2 + h² w/6,   w of variance q h.
 //
-// White jerk proper would add q h³/12 to the variance of v in each step, as much as the noise of
-// the readings in a smooth motion, and no sensor that is added could take it away. Over a step
-// longer than `longest_step_s` it does.
+// White jerk proper would add q h³/12 to the variance of v in each step, as much as the measurement
+// noise in a smooth motion, and no sensor that is added could take it away. Over a step longer than
+// `longest_step_s` it does.
 namespace proofmass::estimate {
 
 /// One accelerometer along the axis, less its level at the first rest.
 struct PvaSensor {
-  View<double> accel_mps2;                              ///< NaN where there is no reading
-  double variance_m2ps4 = 1.0;                          ///< of one reading, positive
+  View<double> accel_mps2;                              ///< NaN where there is no measurement
+  double variance_m2ps4 = 1.0;                          ///< of one measurement, positive
   double walk_m2ps5 = 0.0;                              ///< density of what drives the bias
   std::optional<double> warm_up_time_s = std::nullopt;  ///< in which it forgets; absent: it walks
 };
@@ -44,7 +44,7 @@ struct PvaSample {
   bool resting = false;  ///< on the way here, and here
   bool arrives = false;  ///< at a rest, from motion
   bool jumps = false;    ///< c does, on the way here
-  double velocity_std_mps = std::numeric_limits<double>::quiet_NaN();  ///< of the reading v = 0
+  double velocity_std_mps = std::numeric_limits<double>::quiet_NaN();  ///< of the measurement v = 0
   double position_m = std::numeric_limits<double>::quiet_NaN();
   double position_variance = 0.0;
 };
@@ -57,7 +57,7 @@ struct PvaNoise {
   double rest_speed_std_mps = 1e-3;
 };
 
-/// As many sensors as there are, up to S; the others have no readings.
+/// As many sensors as there are, up to S; the others have no measurements.
 template <int S>
 class PvaAxis {
  public:

@@ -106,7 +106,7 @@ inline QuadMatrix::Inverse QuadMatrix::inverse() const {
   return out;
 }
 
-/// One instant in 128 bits.
+/// One epoch in 128 bits.
 struct QuadGaussian {
   QuadMatrix mean, cov;
 };
@@ -168,9 +168,10 @@ struct QuadBatch {
   double log_likelihood = 0.0;  ///< diffuse, by the package KFAS's convention
 };
 
-/// Generalised least squares over the first `count` epochs: the information that readings, steps
-/// and the start (zero mean; no variance where nothing is known) put on all states, inverted. The
-/// likelihood is ∫ p(readings | start) over the states of which nothing is known, with density 1.
+/// Generalised least squares over the first `count` epochs: the information that measurements,
+/// steps and the start (zero mean; no variance where nothing is known) put on all states, inverted.
+/// The likelihood is ∫ p(measurements | start) over the states of which nothing is known, with
+/// density 1.
 template <int N, int M, int U>
 [[nodiscard]] QuadBatch least_squares(const LinearSeries<N, M, U>& series,
                                       const std::vector<Epoch<M, U>>& epochs,

@@ -35,7 +35,7 @@ VectorXd without(const MatrixXd& basis, Eigen::Index columns, VectorXd w) {
   return w;
 }
 
-/// An orthonormal basis, first of what the readings see, then of what they do not.
+/// An orthonormal basis, first of what the measurements see, then of what they do not.
 struct Staircase {
   MatrixXd basis;
   Eigen::Index seen = 0;

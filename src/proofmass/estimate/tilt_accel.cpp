@@ -12,7 +12,7 @@ namespace proofmass::estimate {
 namespace {
 
 // Over how long a time the force tells what the base does at present: so many correlation times,
-// that few enough weights hang on the very readings that they are for.
+// that few enough weights depend on the very measurements that they are for.
 constexpr double memory_times = 60.0, least_memory_s = 2.0, most_memory_s = 20.0;
 // Degrees of freedom of the scatter: the three axes share the error of the running mean and of τ.
 constexpr double effective_dof = 10.0;
@@ -20,7 +20,7 @@ constexpr double effective_dof = 10.0;
 constexpr double least_accel = 2e-3;
 constexpr double longest_s = 2.0;
 
-// Departures of the force, turned back into one frame that stands still: what autocorrelates.
+// Departures of the force, turned back into one frame that is at rest: what autocorrelates.
 struct Departures {
   std::vector<Mat<3>> vectors;
   std::vector<double> time_s;

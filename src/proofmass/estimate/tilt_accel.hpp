@@ -8,7 +8,7 @@
 // What the base does besides turning, by its scatter. Private to the module's tilt*.cpp.
 namespace proofmass::estimate {
 
-/// m and ⟨…⟩ below, instant by instant.
+/// m and ⟨…⟩ below, epoch by instant.
 class BaseScatter {
  public:
   struct Departure {
@@ -19,7 +19,7 @@ class BaseScatter {
   /// Over how long a time departures are averaged, over how long a time the force they depart from.
   BaseScatter(double memory_s, double mean_memory_s, bool gyroscope)
       : memory_s_(memory_s), mean_memory_s_(mean_memory_s), gyroscope_(gyroscope) {}
-  /// To the next instant; the rate is NaN where it is not known.
+  /// To the next epoch; the rate is NaN where it is not known.
   void turn(double step_s, const Mat<3>& rate_radps);
   /// A force there, finite.
   Departure add(const Mat<3>& force, double gravity_mps2);
@@ -52,7 +52,7 @@ class BaseScatter {
 
 /// The base's acceleration as scatter of the force.
 struct BaseAccel {
-  std::vector<Mat<3, 3>> cov_m2ps4;  ///< in sensor axes, at every instant, over the past M
+  std::vector<Mat<3, 3>> cov_m2ps4;  ///< in sensor axes, at every epoch, over the past M
   double time_s = 0.0;               ///< lag at which its autocorrelation falls to 1/e, 2 s at most
   double reading_std_mps2 = 0.0;     ///< white part, by the scatter of neighbours
 };

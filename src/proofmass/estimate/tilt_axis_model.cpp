@@ -93,7 +93,7 @@ FilterState<3> AxisTiltModel::start() const {
   const auto first =
       std::ranges::find_if(instants_.angle_rad, [](double angle) { return std::isfinite(angle); });
   state.x.mean(0) = first == instants_.angle_rad.end() ? 0.0 : *first;
-  // Any angle is as likely as any other; the reading itself is what then narrows it.
+  // Any angle is as likely as any other; the measurement itself is what then narrows it.
   state.x.cov.diagonal() = Mat<3>(square(std::numbers::pi / std::sqrt(3.0)),
                                   square(rate_bias_std_radps_), square(noise_.motion_std_rad));
   return state;

@@ -10,12 +10,12 @@
 namespace proofmass::estimate {
 
 struct AxisInstants {
-  std::vector<double> step_s;      ///< to this instant from the one before; 0 at the first
+  std::vector<double> step_s;      ///< to this epoch from the one before; 0 at the first
   std::vector<double> rate_radps;  ///< mean over the step to it; NaN: unknown
-  std::vector<double> angle_rad;   ///< NaN where there is no reading
+  std::vector<double> angle_rad;   ///< NaN where there is no measurement
 };
 
-/// States θ, b, d and the reading z = θ + d of tilt_axis.hpp.
+/// States θ, b, d and the measurement z = θ + d of tilt_axis.hpp.
 class AxisTiltModel {
  public:
   static constexpr int states = 3, moving = 3, channels = 1;
@@ -42,12 +42,12 @@ class AxisTiltModel {
                                          const AxisTiltOptions& options);
 
 /// Figures of largest likelihood, each held to a factor of some hundred about what is usual (a
-/// normal prior of the logarithm, standard deviation 3). Of long recordings the first 20 000
-/// instants count.
+/// normal prior of the logarithm, standard deviation 3). Of long recordings the first 20 000 epochs
+/// count.
 [[nodiscard]] AxisTiltNoise fit_axis_noise(const AxisInstants& instants,
                                            const AxisTiltOptions& options);
 
-/// The gate of every pass: readings lose weight beyond three standard deviations.
+/// The gate of every pass: measurements lose weight beyond three standard deviations.
 inline constexpr Gate axis_gate{.huber = 3.0};
 
 }  // namespace proofmass::estimate

@@ -19,8 +19,8 @@ struct BiasChange {
 ///     n ~ N(0, U C Uᵀ + diag(noise) + σ_G² 1 1ᵀ + b² U Uᵀ),
 ///
 /// C being the covariance of the calibration and b the standard deviation of the change of each
-/// axis's bias. Before the readings b is the stability that is stated with probability 0.9, or 0
-/// with probability 0.1 where none is; otherwise ln b is uniform from 0.2 to 60 mg, from the
+/// axis's bias. Before the measurements b is the stability that is stated with probability 0.9, or
+/// 0 with probability 0.1 where none is; otherwise ln b is uniform from 0.2 to 60 mg, from the
 /// turn-on repeatability of a good MEMS accelerometer to what a shock leaves. Uniform in the
 /// logarithm, since one norm then gives an interval that holds as often whatever b is. `std_mps2`
 /// is such that ± 1.96 of it, with C, is the 95 % interval of the mixture: the norm shows only the

@@ -10,7 +10,8 @@
 namespace proofmass::estimate {
 namespace {
 
-// What the norm of a calibrated sensor's readings at rest varies by from one attitude to another.
+// What the norm of a calibrated sensor's measurements at rest varies by from one attitude to
+// another.
 constexpr double calibrated_norm_std_mps2 = 5e-3;
 
 // Standard deviation of white noise as strong at low frequency as the longest rest shows.

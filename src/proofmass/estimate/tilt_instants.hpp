@@ -19,7 +19,7 @@ namespace proofmass::estimate {
 /// Steps, forces and rates.
 [[nodiscard]] TiltInstants instants_of(const TiltRecord& record, const TiltSolution& solution);
 
-/// Takes readings that a logger wrote again and again until the next came for one, and says how
+/// Takes measurements that a logger wrote again and again until the next came for one, and says how
 /// many it took out. They are told by whole rows that repeat, in motion, where noise alone would
 /// keep them apart.
 [[nodiscard]] std::size_t drop_held(TiltInstants& instants);

@@ -110,7 +110,7 @@ Mat<3> rate_bias_of(const TiltInstants& instants,
 
 namespace {
 
-// What the filter says, instant by instant.
+// What the filter says, epoch by instant.
 class FilterNotes {
  public:
   FilterNotes(const TiltInstants& instants,

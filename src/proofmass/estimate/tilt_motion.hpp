@@ -6,16 +6,16 @@
 // The moving base: noise figures from the data, then filter and smoother. Private to tilt*.cpp.
 namespace proofmass::estimate {
 
-/// The gate of every pass: readings lose weight beyond three standard deviations.
+/// The gate of every pass: measurements lose weight beyond three standard deviations.
 inline constexpr Gate tilt_gate{.huber = 3.0};
 
 /// White noise of a common gyroscope, where no rest shows its own.
 inline constexpr double usual_rate_noise_radps_rthz = 1e-3;
 
-/// ln L of one instant's first `readings` innovations, those beyond the gate by Huber's loss.
+/// ln L of one epoch's first `readings` innovations, those beyond the gate by Huber's loss.
 [[nodiscard]] double tilt_log_likelihood(const StepOf<TiltModel>& step, int readings);
 
-/// The same of the accelerometer's in motion, all instants together.
+/// The same of the accelerometer's in motion, all epochs together.
 [[nodiscard]] double tilt_log_likelihood(const TiltInstants& instants,
                                          const TiltKnown& known,
                                          const TiltMotion& motion);

@@ -10,7 +10,8 @@
 #include "proofmass/estimate/tilt.hpp"
 #include "proofmass/signal/rests.hpp"
 
-// What a record holds, and whether tilt can be told from it. Private to the module's tilt*.cpp.
+// What a record holds, and whether tilt can be distinguished from it. Private to the module's
+// tilt*.cpp.
 namespace proofmass::estimate {
 
 /// All three channels of the gyroscope are there.
@@ -19,9 +20,9 @@ namespace proofmass::estimate {
 /// Three axes at one sample; NaN where an axis is not there or not finite.
 [[nodiscard]] Mat<3> vector_at(const std::array<std::vector<double>, 3>& axes, std::size_t k);
 
-/// A copy of the record in which readings outside any sensor's range are NaN, and a note with their
-/// number. nullopt if there are none, or if they are the majority: then the unit is wrong, which
-/// check_record() reports.
+/// A copy of the record in which measurements outside any sensor's range are NaN, and a note with
+/// their number. nullopt if there are none, or if they are the majority: then the unit is wrong,
+/// which check_record() reports.
 [[nodiscard]] std::optional<TiltRecord> without_unbelievable(const TiltRecord& record,
                                                              std::vector<Note>& notes);
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t batches = 40;
 
-// What moves readings across the codes of a converter.
+// What moves measurements across the codes of a converter.
 struct Dither {
   double noise = 0.0;  ///< variance of its Gaussian part, steps²
   double sine = 0.0;   ///< amplitude of a sine beside it, in steps

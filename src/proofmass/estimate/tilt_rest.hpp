@@ -15,19 +15,19 @@ namespace proofmass::estimate {
 struct StretchMean {
   double mean = 0.0;
   double variance = 0.0;  ///< of the mean, by its noise
-  double scatter = 0.0;   ///< variance of one reading
+  double scatter = 0.0;   ///< variance of one measurement
   double rounding = 0.0;  ///< variance of what the converter's steps hide in the mean
-  std::size_t count = 0;  ///< finite readings
+  std::size_t count = 0;  ///< finite measurements
 };
 
 /// The mean of the finite values, and its variance by the scatter of the means of 40 batches (of
 /// single values where there are fewer than 160), widened to Student's t. Correlation from batch to
-/// batch, where it is beyond chance, is counted by the initial positive sequence; what wanders as
-/// slowly as the stretch lasts shows in part.
-/// Source: C. J. Geyer, Statist. Sci. 7 (1992) 473, sections 3.2 and 3.3.
+/// batch, where it is beyond chance, is counted by the initial positive sequence; what drifts as
+/// slowly as the stretch lasts shows in part. Source: C. J. Geyer, Statist. Sci. 7 (1992) 473,
+/// sections 3.2 and 3.3.
 [[nodiscard]] StretchMean stretch_mean(View<double> values, double step);
 
-/// Variance of the error that rounding to multiples of a step leaves in the mean of readings:
+/// Variance of the error that rounding to multiples of a step leaves in the mean of measurements:
 /// step²/12 without noise; Gaussian noise σ leaves (step/π) e^(−2π²(σ/step)²) at most and a sine of
 /// where the mean lies, a sine of amplitude A beside it |J₀(2πA/step)| ≤ (1/π) √(step/A) of that,
 /// both acting as dither. step²/12 where all but 2 in 1000 are of two codes. Source: B. Widrow, I.

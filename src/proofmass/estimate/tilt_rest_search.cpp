@@ -53,7 +53,7 @@ double left_of_polynomial(View<double> axis, const signal::Rest& rest) {
 // minutes. `sure`: standard deviations of a block's mean beside it.
 constexpr double wander_mps2 = 2e-3 * standard_gravity_mps2, sure = 4.0;
 
-// The level of one axis over a rest, block by block; NaN where a block holds no reading.
+// The level of one axis over a rest, block by block; NaN where a block holds no measurement.
 struct BlockLevels {
   std::vector<double> means;
   double room = 0.0;  // by how much a block may depart from the mean of those before it
@@ -71,7 +71,7 @@ struct BlockLevels {
 };
 
 // Noise of a block's mean by second differences, which a steady change leaves out, or that of white
-// readings if it is more.
+// measurements if it is more.
 double noise_of_means(const std::vector<double>& means, double white) {
   std::vector<double> bends;
   for (std::size_t b = 2; b < means.size(); ++b)

@@ -15,8 +15,8 @@
 namespace proofmass::estimate {
 namespace {
 
-// Twice integrated from the first sample, less the level of the first rest; a missing reading is
-// taken for the one before.
+// Twice integrated from the first sample, less the level of the first rest; a missing measurement
+// is taken for the one before.
 struct DoubleIntegral {
   std::vector<double> position_m, velocity_mps;
 };
@@ -152,7 +152,7 @@ void judge(const TrackSignal& signal,
   add_findings(signal, options, solution);
 }
 
-// Nobody has said when it stood still.
+// Nobody has said when it was at rest.
 bool rests_are_in_doubt(const TrackOptions& options) {
   return options.still.empty() && !options.only_end_rests;
 }

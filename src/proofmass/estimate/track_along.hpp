@@ -13,7 +13,7 @@ namespace proofmass::estimate {
 
 struct SensorAlong {
   std::string name;
-  std::vector<double> accel_mps2;  ///< less its level at the first rest; NaN: no reading
+  std::vector<double> accel_mps2;  ///< less its level at the first rest; NaN: no measurement
   double level_mps2 = 0.0;
   double white_m2ps3 = 0.0, walk_m2ps5 = 0.0;  ///< N², and the density of what drives the bias
   std::optional<double> warm_up_time_s;

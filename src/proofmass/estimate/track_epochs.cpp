@@ -51,7 +51,7 @@ void add_differences(const std::vector<double>& means, std::size_t m, AllanSum& 
 
 constexpr double block_length_s = 0.5;
 
-// By which readings differ at least, where they do; 0 where they never do.
+// By which measurements differ at least, where they do; 0 where they never do.
 double smallest_step(View<double> accel) {
   double step = 0.0;
   for (std::size_t k = 1; k < accel.size(); ++k) {
@@ -80,7 +80,7 @@ LevelNoise level_noise(View<double> accel, const std::vector<signal::Rest>& rest
   const double white = noise.sample_std_mps2 * noise.sample_std_mps2 /
                        static_cast<double>(std::max<std::size_t>(noise.block, 1));
   if (!(noise.sample_std_mps2 > 0.0)) {
-    // Readings that do not change at rest are off by their step, however many there are.
+    // Measurements that do not change at rest are off by their step, however many there are.
     const double step = smallest_step(accel);
     noise.variance_m2ps4 = std::max(step * step / 12.0, 1e-18);
     return noise;

@@ -10,14 +10,14 @@
 // From samples and stops to the epochs of inertial_axis.hpp. Private to the module's track*.cpp.
 namespace proofmass::estimate {
 
-/// How far the mean of a block of resting readings is off, whatever their correlation: from the
+/// How far the mean of a block of resting measurements is off, whatever their correlation: from the
 /// scatter of successive blocks.
 struct LevelNoise {
   std::size_t block = 1;  ///< samples
   double block_s = 0.0;
   double variance_m2ps4 = 0.0;   ///< of the mean of one block
-  double walk_m2ps5 = 0.0;       ///< by which the level wanders at rest
-  double sample_std_mps2 = 0.0;  ///< of one reading about its block's mean
+  double walk_m2ps5 = 0.0;       ///< by which the level drifts at rest
+  double sample_std_mps2 = 0.0;  ///< of one measurement about its block's mean
   /// N² of noise that is white from the length of a block on.
   [[nodiscard]] double white_m2ps3() const { return variance_m2ps4 * block_s; }
 };
@@ -40,7 +40,7 @@ struct TrackReadings {
   std::vector<std::size_t> turns;  ///< ascending; the velocity is 0
 };
 
-/// The accelerations along one axis: NaN where there is no reading.
+/// The accelerations along one axis: NaN where there is no measurement.
 struct AxisSignal {
   View<double> time_s, accel_mps2;
   double missing_std_mps2 = 0.0;  ///< how far an interpolated acceleration may be off
@@ -50,7 +50,8 @@ struct AxisSignal {
 struct AxisEpochs {
   std::vector<InertialEpoch> epochs;
   std::vector<std::size_t> of_sample;  ///< which epoch tells of the sample
-  /// Samples without a reading that were passed over in one step, which ends at the epoch of each.
+  /// Samples without a measurement that were passed over in one step, which ends at the epoch of
+  /// each.
   struct Gap {
     std::size_t first, last;
     double unknown_accel_std_mps2;

@@ -11,8 +11,8 @@ namespace proofmass::estimate {
 /// Why what was taken for rest may be motion.
 [[nodiscard]] Error hidden_motion();
 
-/// Relative uncertainty of the readings' scale along the solution's axis: as given; else 1 %, but
-/// upwards how far gravity at rest is from what it should be, at least 0.3 %.
+/// Relative uncertainty of the measurements' scale along the solution's axis: as given; else 1 %,
+/// but upwards how far gravity at rest is from what it should be, at least 0.3 %.
 [[nodiscard]] double scale_std(const TrackSignal& signal,
                                const TrackOptions& options,
                                const TrackSolution& solution);

@@ -79,8 +79,9 @@ void make_cruise(const StretchKnots& stretch,
   for (std::size_t k = stretch.first; k < stretch.end; ++k) knots[k].cruising = true;
 }
 
-/// The readings are integrated instead of telling the bias; returns the logarithm of their density
-/// about a level of their own, of which as many count as without_middles() leaves of a rest.
+/// The measurements are integrated instead of telling the bias; returns the logarithm of their
+/// density about a level of their own, of which as many count as without_middles() leaves of a
+/// rest.
 double make_plateau(const StretchKnots& stretch, std::vector<InertialEpoch>& knots) {
   constexpr double accel_std_mps2 = 0.5;
   constexpr std::size_t counted = 6;
@@ -101,7 +102,7 @@ double make_plateau(const StretchKnots& stretch, std::vector<InertialEpoch>& kno
   return log_density;
 }
 
-/// Of the readings, given what each stretch is.
+/// Of the measurements, given what each stretch is.
 double log_evidence_of(const std::vector<QuietStretch>& kinds,
                        const std::vector<StretchKnots>& stretches,
                        const std::vector<InertialEpoch>& knots,

@@ -29,9 +29,8 @@ void drop_plateaus(TrackSignal& signal);
 /// over and the next cancel, a tilt or a jump of the bias does not. Prior: a stretch between others
 /// is a rest nine times in ten, the first and the last 999 times in 1000; a cruise has a speed of
 /// about 0.3, 3 or 30 m/s; it is mostly, and a rest seldom, louder than the quietest stretch. A
-/// frame that moves at constant speed is no other than one at rest: only these priors tell a
-/// recording that ends under way from one that began so.
-/// None where more than sixteen stretches are in doubt.
+/// frame that moves at constant speed is exactly one at rest: only these priors tell a recording
+/// that ends under way from one that began so. None where more than sixteen stretches are in doubt.
 /// Cost: 343 passes over the knots for each combination tried, three times with a cruise: n + 1 for
 /// each step of the climb and n²/2 at its end, with n stretches in doubt.
 [[nodiscard]] std::vector<StopHypothesis> stop_hypotheses(const TrackSignal& signal,

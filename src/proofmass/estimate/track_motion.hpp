@@ -7,10 +7,11 @@
 #include "proofmass/estimate/track_epochs.hpp"
 #include "proofmass/estimate/track_signal.hpp"
 
-// The filter and the smoother over the readings along one axis. Private to the module's track*.cpp.
+// The filter and the smoother over the measurements along one axis. Private to the module's
+// track*.cpp.
 namespace proofmass::estimate {
 
-/// One axis' readings with all that a run over them needs.
+/// One axis' measurements with all that a run over them needs.
 struct AxisRun {
   AxisEpochs made;
   LevelNoise level;

@@ -59,7 +59,7 @@ class Judge {
   }
 
  private:
-  // The first readings only say where bias and acceleration start.
+  // The first measurements only say where bias and acceleration start.
   static constexpr std::size_t start_samples = 2;
 
   static std::vector<std::string> channels(std::vector<std::string> names) {

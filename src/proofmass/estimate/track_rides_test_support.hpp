@@ -12,7 +12,7 @@
 #include "proofmass/estimate/track.hpp"
 
 // Rides of lifts, carts and slides, drawn at random, whose truth is the position itself: the
-// readings are its second differences at 1 kHz.
+// measurements are its second differences at 1 kHz.
 namespace proofmass::estimate::rides {
 
 class Draw {

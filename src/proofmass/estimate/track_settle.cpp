@@ -40,7 +40,7 @@ double probability_of_first(const std::vector<TrackAlternative>& alternatives) {
   return sum;
 }
 
-// What each of several readings of the quiet stretches makes of the displacement.
+// What each of several measurements of the quiet stretches makes of the displacement.
 std::vector<TrackAlternative> alternatives_of(TrackSignal signal,
                                               const std::vector<StopHypothesis>& hypotheses,
                                               const TrackOptions& options) {
@@ -64,8 +64,8 @@ std::vector<TrackAlternative> alternatives_of(TrackSignal signal,
   return alternatives;
 }
 
-// Whether the readings look like jerk with the loud and the short ones of the stops left out; then
-// they are.
+// Whether the measurements look like jerk with the loud and the short ones of the stops left out;
+// then they are.
 bool leaves_jerk(TrackSignal& signal, const TrackOptions& options, Result<AlongAxis>& solved) {
   if (options.take_as_acceleration || signal.gravity == GravityContent::present) return false;
   TrackSignal quiet = signal;

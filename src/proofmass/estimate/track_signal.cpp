@@ -116,7 +116,7 @@ namespace {
 double noise_of(const TrackSignal& signal, const signal::Rest& rest) {
   double squares = 0.0;
   for (const auto& axis : signal.accel_mps2) {
-    // Differences, for a level that wanders is no noise; of which half may be anything.
+    // Differences, for a level that drifts is no noise; of which half may be anything.
     std::vector<double> differences;
     for (std::size_t k = rest.first + 1; k <= rest.last; ++k)
       differences.push_back(axis[k] - axis[k - 1]);
@@ -165,7 +165,7 @@ std::vector<signal::Rest> quiet_rests(const TrackSignal& signal) {
 
 namespace {
 
-// Range of the velocity that a rest's readings integrate to, less their mean.
+// Range of the velocity that a rest's measurements integrate to, less their mean.
 double velocity_range(const TrackSignal& signal, View<double> accel, const signal::Rest& rest) {
   const double mean = moments(accel.subspan(rest.first, rest.last - rest.first + 1)).mean;
   double v = 0.0;

@@ -9,7 +9,7 @@
 // The track along one axis, by the rests that the signal has. Private to the module's track*.cpp.
 namespace proofmass::estimate {
 
-/// Axis, readings and errors of motion, and what filter and smoother make of them.
+/// Axis, measurements and errors of motion, and what filter and smoother make of them.
 struct AlongAxis {
   FoundAxis axis;
   std::vector<double> accel_mps2;
@@ -29,7 +29,7 @@ struct AlongAxis {
 /// Rests, turns and fixes by sample.
 [[nodiscard]] TrackReadings readings_of(const TrackSignal& signal, const TrackOptions& options);
 
-/// Everything that is told of the readings before they are integrated.
+/// Everything that is told of the measurements before they are integrated.
 [[nodiscard]] TrackSolution described(const TrackSignal& signal, const TrackOptions& options);
 
 /// Fills what is told of every sample.

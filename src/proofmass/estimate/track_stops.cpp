@@ -16,7 +16,7 @@ namespace {
 // Means and scatter of the axes over blocks of samples.
 struct Blocks {
   std::size_t length = 0;
-  std::vector<double> scatter;  // root of the sum over axes; NaN without readings
+  std::vector<double> scatter;  // root of the sum over axes; NaN without measurements
   std::vector<std::array<double, 3>> mean;
 };
 
@@ -61,7 +61,7 @@ std::vector<signal::Rest> united(std::vector<signal::Rest> rests) {
 }
 
 // Means of the axes over blocks of a quarter of a second of each rest, NaN where a block has no
-// reading, and how far such means scatter where the sensor is at rest.
+// measurement, and how far such means scatter where the sensor is at rest.
 struct RestMeans {
   std::size_t length = 0;  // of a block, in samples
   std::vector<std::vector<std::array<double, 3>>> of_rest;

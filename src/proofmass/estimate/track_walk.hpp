@@ -19,18 +19,18 @@ struct MotionError {
       1.96;  ///< half width of a 95 % interval in standard deviations, by the mixture
 };
 
-/// Weight ∝ likelihood of the readings · prior. Each of the three is nothing with probability 3/4,
-/// else log₁₀ of its root is normal about −2.5 with a standard deviation of 0.7, in m/s²/√s, m/s²
-/// and m/s²/√Hz: a sensor that is carried by hand or on a machine. Where it shakes in motion more
-/// than at rest, nine tenths of the probability that nothing rocks are on all of that being
-/// aliased, and so white. The bias walks in motion no less than at rest. Source for the mixture in
-/// place of one value: A. Gelman et al., Bayesian Data Analysis (2013), section 5. Cost: 1728
+/// Weight ∝ likelihood of the measurements · prior. Each of the three is nothing with probability
+/// 3/4, else log₁₀ of its root is normal about −2.5 with a standard deviation of 0.7, in m/s²/√s,
+/// m/s² and m/s²/√Hz: a sensor that is carried by hand or on a machine. Where it shakes in motion
+/// more than at rest, nine tenths of the probability that nothing rocks are on all of that being
+/// aliased, and so white. The bias walks in motion no less than at rest. Source for the mixture
+/// instead of one value: A. Gelman et al., Bayesian Data Analysis (2013), section 5. Cost: 1728
 /// passes over the knots, a twelfth more where it shakes.
 [[nodiscard]] MotionError motion_error(View<InertialEpoch> knots,
                                        InertialNoise noise,
                                        const InertialStart& start);
 
-/// Logarithm of the likelihood of the readings, the three integrated out over the same prior.
+/// Logarithm of the likelihood of the measurements, the three integrated out over the same prior.
 [[nodiscard]] double log_evidence(View<InertialEpoch> knots,
                                   const InertialNoise& noise,
                                   const InertialStart& start);

@@ -59,7 +59,7 @@ class Pass {
     if (state.diffuse > 0) state.Pinf = symmetric(F_ * state.Pinf * F_.transpose());
   }
 
-  // Takes the reading in and says what it did; false where its variance is not positive.
+  // Takes the measurement in and says what it did; false where its variance is not positive.
   bool correct(double z, State<N>& state, Trace<N>& trace, TuneScore& score) const {
     trace = {Vec<N>::Zero(), 0.0, 0.0};
     if (std::isnan(z)) return true;
@@ -85,7 +85,7 @@ class Pass {
     return true;
   }
 
-  // What later readings say: λ, Λ of the state after step k become those before its reading.
+  // What later measurements say: λ, Λ of the state after step k become those before its reading.
   // Returns u² − D.
   double look_back(const Trace<N>& trace, Vec<N>& r, Square<N>& L) const {
     const Vec<N> LK = L * trace.gain;

@@ -7,7 +7,7 @@ namespace proofmass::estimate::packed {
 namespace {
 
 /// The filter over the chunk, from `x` before it, without keeping anything but its end. Says
-/// whether all readings are there.
+/// whether all measurements are there.
 template <int N>
 bool filter_ends(Work<N>& work, const Chunk<N>& chunk, LaneNumbers* x) {
   LaneNumbers unused{};
@@ -19,8 +19,8 @@ bool filter_ends(Work<N>& work, const Chunk<N>& chunk, LaneNumbers* x) {
   return true;
 }
 
-/// The same from the right beginnings: the means of each instant, and what the readings say of the
-/// model.
+/// The same from the right beginnings: the means of each epoch, and what the measurements say of
+/// the model.
 template <int N>
 void filter_means(Work<N>& work, const Chunk<N>& chunk, bool laid_out, LaneNumbers* x) {
   LaneNumbers squares{};

@@ -24,7 +24,7 @@ Leaps<N> leap_through(const Work<N>& work, const Chunk<N>& chunk, LaneState<N>& 
 }
 
 /// Whether the chunk begins with a covariance that shrinks a lot: there digits are lost that only
-/// the pass of one instant after another brings back.
+/// the pass of one epoch after another brings back.
 template <int N>
 bool begins_wide(const Chunk<N>& chunk, const Leaps<N>& leaps) {
   for (int i = 0; i < N; ++i)
@@ -94,7 +94,7 @@ void keep_covariances(Work<N>& work) {
 }
 
 /// The filter over the chunk, from `state` before it; rows are kept where asked for. Says whether
-/// all readings are there.
+/// all measurements are there.
 template <int N>
 bool filter_lanes(Work<N>& work, const Chunk<N>& chunk, LaneState<N>& state, bool keep) {
   work.lane_rows.resize(lane_length);

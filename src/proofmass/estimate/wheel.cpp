@@ -156,7 +156,7 @@ void add_sensor(const WheelSensor& sensor,
                                 "took the most level of the sensor's axes (--spin-axis)"});
 }
 
-/// Instants at which the gate shut out every channel there was, in stretches.
+/// Epochs at which the gate shut out every channel there was, in stretches.
 void add_gated(WheelSolution& solution) {
   const WheelSeries& series = solution.series;
   bool open = false;

@@ -16,7 +16,7 @@ double interpolated(const std::vector<double>& x, const std::vector<double>& y, 
   return std::lerp(y[i - 1], y[i], (at - x[i - 1]) / (x[i] - x[i - 1]));
 }
 
-/// The first's times on a grid of 20 Hz for which the second, shifted, has readings too.
+/// The first's times on a grid of 20 Hz for which the second, shifted, has measurements too.
 std::vector<double> common_times(const WheelMotion& first,
                                  const WheelMotion& second,
                                  double offset_s) {

@@ -9,10 +9,10 @@
 // What coloured innovations make of the bands. Private to the module's wheel_*.cpp.
 //
 // The filter's covariances hold for white innovations. Where the road or the hand colours them, the
-// information of a figure is not the sum over the readings: the scores h ν / S of a stretch add up
-// instead of cancelling. Their sums over blocks say how much wider the band is. Source: the
-// "sandwich" of P. J. Huber, Proc. 5th Berkeley Symp. 1 (1967) 221, with blocks as of H. R.
-// Künsch, Ann. Statist. 17 (1989) 1217.
+// information of a figure is not the sum over the measurements: the scores h ν / S of a stretch add
+// up instead of cancelling. Their sums over blocks say how much wider the band is. Source: the
+// "sandwich" of P. J. Huber, Proc. 5th Berkeley Symp. 1 (1967) 221, with blocks as of H. R. Künsch,
+// Ann. Statist. 17 (1989) 1217.
 namespace proofmass::estimate {
 
 /// Squares of block sums of one score, over the sum of its squares: 1 where it is white.
@@ -34,9 +34,9 @@ class BlockVariance {
 };
 
 /// The scores of the constants (all that stands, from wheel::first_of(0) on) summed over blocks: of
-/// a reading z at the smoothed state, h (z − ẑ)/R. The smoothed residual over R is Σ⁻¹ times the
-/// whole misfit, Σ the covariance of readings with the motion integrated out, so that these are the
-/// scores of the marginal likelihood. Source: S. J. Koopman, Biometrika 80 (1993) 117.
+/// a measurement z at the smoothed state, h (z − ẑ)/R. The smoothed residual over R is Σ⁻¹ times
+/// the whole misfit, Σ the covariance of measurements with the motion integrated out, so that these
+/// are the scores of the marginal likelihood. Source: S. J. Koopman, Biometrika 80 (1993) 117.
 template <int S>
 class ScoreBlocks {
  public:
@@ -44,7 +44,7 @@ class ScoreBlocks {
 
   explicit ScoreBlocks(double block_s) : block_s_(block_s) {}
 
-  /// Readings at the smoothed state, of an instant no later than the last added.
+  /// Measurements at the smoothed state, of an epoch no later than the last added.
   void add(double time_s, const Readings<wheel::states(S), WheelModel<S>::channels>& readings) {
     if (time_s < end_s_) {
       end_block();

@@ -73,7 +73,7 @@ void note_backward(const WheelModel<S>& model,
   fit.track.path.moving[k] = mean.template head<wheel::moving>();
 }
 
-/// Between the first instant and the last, from the state after the last.
+/// Between the first epoch and the last, from the state after the last.
 template <int S>
 Uncertain turns_in(const WheelModel<S>& model, const Gaussian<wheel::states(S)>& end) {
   Mat<wheel::states(S)> first = end.mean;
@@ -87,8 +87,7 @@ Uncertain turns_in(const WheelModel<S>& model, const Gaussian<wheel::states(S)>&
 }
 
 /// The extended filter as it would run on calibrated sensors: the motion unknown at the start, the
-/// constants as the whole recording tells them for its first instant, as well as it does at its
-/// last.
+/// constants as the whole recording tells them for its first epoch, as well as it does at its last.
 template <int S>
 void filter_calibrated(const WheelModel<S>& model,
                        const WheelPrior& prior,
@@ -326,9 +325,9 @@ class HeldFigures {
   Places base_places_;
 };
 
-/// Adds what the held figures leave open, from runs on the averaged readings, since differences are
-/// smooth, or on all of them where those slip. Where these slip too the recording has shown nothing
-/// of the constants, and the angle is as late as the delay is uncertain.
+/// Adds what the held figures leave open, from runs on the averaged measurements, since differences
+/// are smooth, or on all of them where those slip. Where these slip too the recording has shown
+/// nothing of the constants, and the angle is as late as the delay is uncertain.
 template <int S>
 void add_held_figures(const Settled<S>& settled,
                       const WheelReadings& averaged,
@@ -375,7 +374,7 @@ void add_gravity_uncertainty(const WheelReadings& readings,
   fit.constants_cov += change * change.transpose();
 }
 
-/// How many readings may be averaged before the wheel turns a twentieth of a radian meanwhile.
+/// How many measurements may be averaged before the wheel turns a twentieth of a radian meanwhile.
 std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack& track) {
   double fastest = 0.0;
   for (const Mat<wheel::moving>& at : track.path.moving)
@@ -385,7 +384,7 @@ std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack&
   return static_cast<std::size_t>(std::clamp(0.05 * readings.rate_hz() / fastest, 1.0, most));
 }
 
-/// A track of the averaged readings, on the time line of all of them.
+/// A track of the averaged measurements, on the time line of all of them.
 WheelTrack spread_track(const WheelTrack& track,
                         const WheelReadings& averaged,
                         const WheelReadings& readings) {
@@ -401,8 +400,8 @@ WheelTrack spread_track(const WheelTrack& track,
   return out;
 }
 
-/// Gives each reading the variance that its average was found to have, times what averaging took
-/// off.
+/// Gives each measurement the variance that its average was found to have, times what averaging
+/// took off.
 void spread_variance(const WheelReadings& averaged, std::size_t each, WheelReadings& readings) {
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
     readings.sensors[s].speed_variance =

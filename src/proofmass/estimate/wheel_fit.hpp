@@ -9,11 +9,12 @@
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/estimate/wheel_model.hpp"
 
-// From planar readings to the wheel's angle: where the motion starts, what the noise is, where the
-// sensors sit and what their constants are, then the smoother. The steps behind estimate_wheel().
+// From planar measurements to the wheel's angle: where the motion starts, what the noise is, where
+// the sensors sit and what their constants are, then the smoother. The steps behind
+// estimate_wheel().
 namespace proofmass::estimate {
 
-/// The readings of one or two sensors on one time line.
+/// The measurements of one or two sensors on one time line.
 struct WheelReadings {
   double gravity_mps2 = standard_gravity_mps2;  ///< its component in the plane of the wheel
   double gravity_std_mps2 = 0.0;                ///< of that, for want of knowing the axle's tilt
@@ -33,7 +34,7 @@ struct WheelReadings {
   [[nodiscard]] double rate_hz() const;
 };
 
-/// The readings averaged over `each` instants at a time: as good as all of them where the wheel
+/// The measurements averaged over `each` epochs at a time: as good as all of them where the wheel
 /// turns little within, at a fraction of the cost.
 [[nodiscard]] WheelReadings averaged(const WheelReadings& readings, std::size_t each);
 
@@ -63,22 +64,22 @@ struct WheelTrack {
   Beginning beginning;
   WheelNoise noise;
   WheelPath path;
-  double lost = 1.0;  ///< share of the readings that it does not explain, 0 … 1
+  double lost = 1.0;  ///< share of the measurements that it does not explain, 0 … 1
 };
 
-/// Eight readings a turn: no faster wheel is looked for, nor believed.
+/// Eight measurements a turn: no faster wheel is looked for, nor believed.
 [[nodiscard]] constexpr double fastest_radps(double rate_hz) {
   return rate_hz * rad_per_turn / 8.0;
 }
 
 /// Follows a single sensor's phase through the recording with whatever noise figures keep it: from
-/// a grid of starting speeds and angles, since at speed and off the axle the first readings do not
-/// show where gravity is. Sets the readings' variance on the way. `first` of wheel_seeks sets of
-/// noise figures are passed over, where they have led astray.
+/// a grid of starting speeds and angles, since at speed and off the axle the first measurements do
+/// not show where gravity is. Sets the measurements' variance on the way. `first` of wheel_seeks
+/// sets of noise figures are passed over, where they have led astray.
 [[nodiscard]] WheelTrack find_track(WheelReadings& readings, std::size_t first = 0);
 inline constexpr std::size_t wheel_seeks = 4;
 
-/// A stretch over which the angle is predicted to no better than lost_prediction_rad: instants, the
+/// A stretch over which the angle is predicted to no better than lost_prediction_rad: epochs, the
 /// first and the last that are predicted so badly.
 struct WheelDoubt {
   std::size_t first = 0, last = 0;
@@ -103,7 +104,7 @@ struct WheelFit {
   WheelSeries series;                       ///< what filter and smoother give; time_s too
 };
 
-/// What is known of the sensors' places beforehand.
+/// What is known of the sensors' lever arms beforehand.
 struct PlacesPrior {
   Eigen::VectorXd mean;  ///< (u, v) of each sensor, m
   Eigen::MatrixXd cov;   ///< m²
@@ -115,7 +116,8 @@ inline constexpr double lost_prediction_rad = 0.8;
 /// How far a fit goes.
 enum class FitDepth {
   whole,
-  track,  ///< motion and noise on averaged readings, for a sensor whose fit with another follows
+  /// Motion and noise on averaged measurements, for a sensor whose fit with another follows.
+  track,
 };
 
 /// Settles noise, places and constants about the track, then smooths. A fit to FitDepth::track has

@@ -10,10 +10,9 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Above this share of unexplained readings there is no wheel turning in gravity to be seen.
+/// Above this share of unexplained measurements there is no wheel turning in gravity to be seen.
 constexpr double not_a_wheel = 0.5;
-/// Rows of two sensors this close share one instant: 50 rad/s move the phase by 0.25 mrad
-/// meanwhile.
+/// Rows of two sensors this close share one epoch: 50 rad/s move the phase by 0.25 mrad meanwhile.
 constexpr double same_instant_s = 5e-6;
 
 /// A pole that is given is good to a tenth, as resistors and capacitors are. One that is not may be

@@ -6,8 +6,8 @@ namespace {
 
 constexpr double fewest_readings = 20.0;
 
-/// Sums over one stretch of a sensor's readings: squared innovations, and the part of them that the
-/// state's own uncertainty explains. What is left is the noise of the readings there, at least
+/// Sums over one stretch of a sensor's measurements: squared innovations, and the part of them that
+/// the state's own uncertainty explains. What is left is the measurement noise there, at least
 /// `least`.
 struct NoiseStretch {
   double innovation2 = 0.0, explained = 0.0, readings = 0.0, least = 0.0;
@@ -51,7 +51,7 @@ class VarianceProfile {
 
  private:
   /// A stretch takes the worst of itself and its neighbours: where quiet turns to shaking within
-  /// one, an average of the two would make the first knocks look impossible.
+  /// one, an average of the two would make the first shocks look impossible.
   void widen() {
     const std::vector<double> own = log_variance_;
     for (std::size_t i = 0; i < own.size(); ++i) {
@@ -65,7 +65,7 @@ class VarianceProfile {
   bool steady_ = true;
 };
 
-/// The channels of instant k that belong to each sensor stand in the order in which measure() wrote
+/// The channels of epoch k that belong to each sensor stand in the order in which measure() wrote
 /// them: two for each sensor that was read.
 template <int S>
 void gather(const WheelReadings& readings,
@@ -97,10 +97,11 @@ void gather(const WheelReadings& readings,
   }
 }
 
-/// The variance of white noise in the readings by their third differences, which a wheel that turns
-/// little from reading to reading hardly shows in; 0 where it turns more than a tenth of a radian.
-/// Innovations alone would let a filter that follows every reading find no noise at all, and then
-/// believe each of them. A third difference of white noise has 1 + 9 + 9 + 1 times its variance.
+/// The variance of white noise in the measurements by their third differences, which a wheel that
+/// turns little from reading to reading hardly shows in; 0 where it turns more than a tenth of a
+/// radian. Innovations alone would let a filter that follows every reading find no noise at all,
+/// and then believe each of them. A third difference of white noise has 1 + 9 + 9 + 1 times its
+/// variance.
 double least_variance(const PlanarReadings& sensor, double rate_hz, const WheelPath& path) {
   constexpr double smooth_rad = 0.1, gain = 20.0;
   for (const Mat<wheel::moving>& at : path.moving)
@@ -138,7 +139,7 @@ std::optional<double> variance_along_gravity(const std::vector<Misfit>& misfits)
   return square(of_normal * *median(sizes));
 }
 
-/// Residuals of a sensor's readings about the model's path, by stretches of length_s.
+/// Residuals of a sensor's measurements about the model's path, by stretches of length_s.
 template <int S>
 std::vector<std::vector<Misfit>> misfits_of(const WheelModel<S>& model,
                                             const WheelReadings& readings,
@@ -174,8 +175,8 @@ bool shows_shaking(const std::vector<double>& variance_m2ps4, double rate_hz) {
 }
 
 /// Sets the lower bound of the variance in a sensor's stretches from the residuals along gravity,
-/// which no rotation of the wheel explains: it moves the readings perpendicular to gravity. Returns
-/// whether the hub vibrates.
+/// which no rotation of the wheel explains: it moves the measurements perpendicular to gravity.
+/// Returns whether the hub vibrates.
 template <int S>
 bool set_least(const WheelModel<S>& model,
                const WheelReadings& readings,

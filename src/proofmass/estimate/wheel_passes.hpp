@@ -8,7 +8,7 @@
 
 #include "proofmass/estimate/wheel_fit.hpp"
 
-// Passes of the filter over a wheel's readings that every step of the fit makes. Private to the
+// Passes of the filter over a wheel's measurements that every step of the fit makes. Private to the
 // module's wheel_*.cpp.
 namespace proofmass::estimate {
 
@@ -111,7 +111,7 @@ class LostShare {
       ++readings_;
     }
   }
-  /// 1 where there were no readings.
+  /// 1 where there were no measurements.
   [[nodiscard]] double share() const {
     return readings_ > 0 ? sum_ / static_cast<double>(readings_) : 1.0;
   }
@@ -167,12 +167,12 @@ Gaussian<wheel::states(S)> trace_path(const WheelModel<S>& model,
   return end;
 }
 
-/// Sets each reading's variance from the innovations around it.
+/// Sets each measurement's variance from the innovations around it.
 template <int S>
 void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings);
 
-/// A part of the recording to tune on: all of it, or of a long one the stretch of 20 000 instants
-/// in which the speed changes most, with the filter's state at its beginning.
+/// A part of the recording to tune on: all of it, or of a long one the stretch of 20 000 epochs in
+/// which the speed changes most, with the filter's state at its beginning.
 template <int S>
 struct Excerpt {
   std::size_t first = 0, last = 0;
@@ -194,7 +194,7 @@ template <int S>
                                     const Excerpt<S>& excerpt,
                                     double first_factor);
 
-/// The levers of a path on the readings' time line.
+/// The levers of a path on the measurements' time line.
 [[nodiscard]] WheelLevers levers_of(const WheelPath& path, const WheelReadings& readings);
 
 struct FoundPlaces {
@@ -203,17 +203,17 @@ struct FoundPlaces {
   double log_likelihood = 0.0;
 };
 
-/// The sensors' places of maximum likelihood, all else integrated out by the filter. What ripples
-/// within a turn speaks for a place only as far as white jerk and snap are true of it, so this is
-/// where to begin, and no measure of what is known.
+/// The sensors' lever arms of maximum likelihood, all else integrated out by the filter. What
+/// ripples within a turn speaks for a place only as far as white jerk and snap are true of it, so
+/// this is where to begin, and no measure of what is known.
 template <int S>
 [[nodiscard]] FoundPlaces likeliest_places(const WheelModel<S>& model,
                                            const Excerpt<S>& excerpt,
                                            WheelPrior prior,
                                            const PlacesPrior& belief);
 
-/// The sensors' places as states beside everything else, about a path: as far as they show in how
-/// the mean force changes with the speed.
+/// The sensors' lever arms as states beside everything else, about a path: as far as they show in
+/// how the mean force changes with the speed.
 template <int S>
 [[nodiscard]] FoundPlaces places_by_levers(WheelModel<S> model,
                                            const WheelLevers& levers,

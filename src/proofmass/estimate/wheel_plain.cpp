@@ -11,7 +11,7 @@ struct Planar {
   double u = 0.0, v = 0.0;
 };
 
-/// Mean over the sensors of what `see` makes of each one's last reading, at every instant; a sensor
+/// Mean over the sensors of what `see` makes of each one's last reading, at every epoch; a sensor
 /// keeps its last reading until its next. NaN until all have been read.
 template <class See, class Visit>
 void at_each_instant(const WheelReadings& readings, See&& see, Visit&& visit) {

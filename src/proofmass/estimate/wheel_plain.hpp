@@ -5,10 +5,10 @@
 // The two plain methods beside which the filter stands: what people do without one.
 namespace proofmass::estimate {
 
-/// Gravity's phase, unwrapped: atan2 of the readings as they are, of two sensors their mean after
-/// the second is turned into the first's axes. Nothing removes bias or centripetal force, so far
-/// from the axle and fast it stops counting turns. As long as the time line; NaN before the first
-/// reading.
+/// Gravity's phase, unwrapped: atan2 of the measurements as they are, of two sensors their mean
+/// after the second is turned into the first's axes. Nothing removes bias or centripetal force, so
+/// far from the axle and fast it stops counting turns. As long as the time line; NaN before the
+/// first reading.
 [[nodiscard]] std::vector<double> atan2_angle(const WheelReadings& readings);
 
 /// Where the plain methods take the sensors to be: where they were found or, where their direction

@@ -139,7 +139,7 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
   return plane_about(axis);
 }
 
-/// Readings that stay at a channel's largest value for three rows or more: the end of the
+/// Measurements that stay at a channel's largest value for three rows or more: the end of the
 /// gyroscope's range. A channel that never changes is all of that, and tells nothing either.
 std::vector<bool> saturated(const std::vector<double>& rate_radps) {
   double most = 0.0;
@@ -153,7 +153,7 @@ std::vector<bool> saturated(const std::vector<double>& rate_radps) {
   return out;
 }
 
-/// The gyroscope's readings about the axle, with a first variance from how they scatter.
+/// The gyroscope's measurements about the axle, with a first variance from how they scatter.
 void add_speeds(const WheelSensor& sensor,
                 const Screened& screened,
                 const WheelPlane& plane,

@@ -9,7 +9,7 @@
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/estimate/wheel_model.hpp"
 
-// From what a sensor wrote down to readings in the plane of its wheel.
+// From what a sensor wrote down to measurements in the plane of its wheel.
 namespace proofmass::estimate {
 
 using Axis = std::array<double, 3>;

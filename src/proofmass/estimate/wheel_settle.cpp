@@ -32,7 +32,7 @@ PlacesPrior moved_where_open(const PlacesPrior& belief, const Places& to) {
   return moved;
 }
 
-/// Least squares of one order's (c, s) on what a path leaves of the readings.
+/// Least squares of one order's (c, s) on what a path leaves of the measurements.
 struct RippleFit {
   Mat<2, 2> information = Mat<2, 2>::Zero();
   Mat<2> score = Mat<2>::Zero();
@@ -51,8 +51,8 @@ struct RippleFit {
   }
 };
 
-/// One round: the readings' variance, the motion's noise and the sensors' places, all about the
-/// path found so far.
+/// One round: the measurements' variance, the motion's noise and the sensors' lever arms, all about
+/// the path found so far.
 template <int S>
 Settled<S> settle(WheelReadings& readings,
                   const WheelTrack& track,

@@ -17,7 +17,7 @@ struct Settled {
   double log_likelihood = 0.0;
 };
 
-/// How many instants a path has before it is a turn away from its start.
+/// How many epochs a path has before it is a turn away from its start.
 [[nodiscard]] std::size_t instants_of_first_turn(const WheelPath& path);
 
 /// The model of the settled passes: linear about a path, the places held.
@@ -33,8 +33,8 @@ template <int S>
   return model;
 }
 
-/// Orders 1 and 2 and the two others, up to highest_order, that explain most of what a path
-/// without ripple leaves of the readings.
+/// Orders 1 and 2 and the two others, up to highest_order, that explain most of what a path without
+/// ripple leaves of the measurements.
 template <int S>
 [[nodiscard]] RippleOrders orders_in(const WheelReadings& readings, const WheelPath& path);
 

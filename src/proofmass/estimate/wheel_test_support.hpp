@@ -111,7 +111,7 @@ inline std::complex<double> force(const Turning& now, const Mount& mount, const 
   return (p_ddot + 1i * g) * std::conj(turn * std::polar(1.0, mount.turned_rad));
 }
 
-/// The two readings less noise.
+/// The two measurements less noise.
 inline std::array<double, 2> reading(const std::complex<double>& f, const Mount& mount) {
   return {mount.scale[0] * (f.real() + mount.skew_rad * f.imag()) + mount.bias_mps2[0],
           mount.scale[1] * (f.imag() + mount.skew_rad * f.real()) + mount.bias_mps2[1]};

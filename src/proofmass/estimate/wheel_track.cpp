@@ -11,7 +11,7 @@ namespace {
 constexpr ConstantsPrior seeking_prior{0.3, 0.03, 0.01, 0.5, 0.15};
 
 struct Seek {
-  double accel_std_mps2;  ///< of a reading at 120 Hz
+  double accel_std_mps2;  ///< of a measurement at 120 Hz
   WheelNoise noise;
 };
 
@@ -29,7 +29,7 @@ void set_variance(WheelReadings& readings, double accel_std_mps2) {
     sensor.variance_m2ps4.assign(sensor.u_mps2.size(), variance);
 }
 
-/// Mean gravity phase of the first few readings.
+/// Mean gravity phase of the first few measurements.
 double first_phase(const PlanarReadings& sensor) {
   double u = 0.0, v = 0.0;
   int seen = 0;
