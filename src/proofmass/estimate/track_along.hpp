@@ -8,7 +8,7 @@
 #include "proofmass/estimate/pva_axis.hpp"
 #include "proofmass/estimate/track_pva.hpp"
 
-// What each accelerometer of a track reads along its axis. Private to the module's track*.cpp.
+// Measurements of each accelerometer along the track's axis. Private to the module's track*.cpp.
 namespace proofmass::estimate {
 
 struct SensorAlong {
@@ -23,7 +23,7 @@ struct SensorAlong {
   }
 };
 
-/// Of the model fused all, the task's own first; else that alone.
+/// For the model `fused` all sensors, the task's own first; else that one alone.
 struct SensorsAlong {
   std::vector<SensorAlong> all;
   std::vector<PvaSample> samples;

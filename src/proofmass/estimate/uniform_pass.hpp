@@ -17,19 +17,19 @@
 // The three passes of run_uniform(), a chunk of the recording at a time.
 namespace proofmass::estimate::packed {
 
-/// Epochs that one lane's numbers are moved at a time, of a lane, and of all lanes. A lane's is not
-/// a power of two, or lanes would share sets of the cache.
+/// Epochs of one lane moved at a time, epochs in a lane, and in all lanes. A lane's length is not a
+/// power of two, to avoid cache-set conflicts between lanes.
 inline constexpr std::size_t together = 8, blocks = 31, lane_length = blocks * together;
 inline constexpr std::size_t chunk_length = lane_length * lanes;
-/// Epochs of a lane that are written one after another.
+/// Consecutive epochs of a lane written together.
 inline constexpr std::size_t run_length = 62;
 static_assert(lane_length % run_length == 0);
-/// The first chunk's, in which a filter forgets a wide start.
+/// Length of the first chunk, in which a filter forgets a wide start.
 inline constexpr std::size_t head_length = 1024;
 
 enum class Pass { one_by_one, side_by_side, constant_gain };
 
-/// A stretch of the recording, and the filter after the epoch before it.
+/// A stretch of the recording, and the filter's state at the epoch before it.
 template <int N>
 struct Chunk {
   std::size_t first = 0, count = 0;
@@ -37,7 +37,7 @@ struct Chunk {
   Pass pass = Pass::one_by_one;
 };
 
-/// What the steady state gives to a pass of constant gain.
+/// Steady-state data of a constant-gain pass.
 template <int N>
 struct Steady {
   SteadyState<N, 1> limit;
@@ -53,7 +53,7 @@ struct Score {
   std::size_t readings = 0;
 };
 
-/// A run: what is given, what is known beforehand, where results go, and room to work in.
+/// A run: its input, precomputed data, output and workspace.
 template <int N>
 struct Work {
   StepModel<N> model{};
