@@ -57,7 +57,7 @@ Status check_readings(const Work<N>& work, const Chunk<N>& chunk) {
       "instant " + std::to_string(chunk.first + static_cast<std::size_t>(infinite - z.begin())));
 }
 
-/// Filters a chunk by the fastest pass that it allows, and notes which.
+/// Filters a chunk by the fastest applicable pass, and records it.
 template <int N>
 Status filter_chunk(Work<N>& work, Chunk<N>& chunk, State<N>& state) {
   chunk.pass = pass_of(work, chunk);
