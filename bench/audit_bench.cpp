@@ -1,6 +1,6 @@
-// Judges channels that come in blocks, and beside it, in the same run, does the least that any look
-// at the same values costs: adds them up from memory. The blocks are cut out of one table again and
-// again, so that the length of the recording is no matter of memory.
+// Audits channels in blocks and, for comparison in the same run, sums the same values from memory.
+// The blocks are taken from one table repeatedly, so that the recording's length does not depend on
+// memory.
 //
 //   audit_bench [millions of values a channel, 200]
 #include <algorithm>
@@ -20,7 +20,7 @@ using proofmass::Block;
 using proofmass::Recording;
 using proofmass::View;
 
-// Longer than the last cache, and a whole number of blocks.
+// Longer than the last-level cache, and a whole number of blocks.
 constexpr std::size_t table_rows = std::size_t{1} << 22, block_rows = 8192, channels = 3;
 using Table = std::vector<std::vector<double>>;
 

@@ -1,7 +1,7 @@
-// A calibration by turning: rests found in a recording of three axes, their means, nine parameters
-// with all that judges them. Beside the fit, in the same run and from the same means, a plain
-// descent of Levenberg and Marquardt's with a Jacobian by differences, as textbooks have it: nine
-// parameters and s² (JᵀJ)⁻¹, no weights, no bad position, no test.
+// A calibration by rotating: rest detection in a recording of three axes, their means, nine
+// parameters with all diagnostics. For comparison, in the same run and from the same means, a plain
+// Levenberg–Marquardt descent with a Jacobian by differences: nine parameters and s² (JᵀJ)⁻¹, no
+// weights, no outlier, no test.
 //
 //   calibrate_bench [samples, 51175 if not given] [rests, 38]
 #include <Eigen/Cholesky>
@@ -43,7 +43,7 @@ Eigen::Matrix3d angles(const Nine& p) {
   return T;
 }
 
-// Positions in a spiral over the sphere, and between them a turn with a shaking hand.
+// Positions in a spiral over the sphere, with a rotation by an unsteady hand between them.
 Axes made_up(std::size_t n, std::size_t rests) {
   std::mt19937_64 bits(1);
   std::normal_distribution<double> normal;

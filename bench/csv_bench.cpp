@@ -1,7 +1,7 @@
 // Reads one table three ways, on one core and in one run: with the library from a file, with a bare
 // fast_float loop over the text in memory, and with the same loop around std::from_chars. The bare
-// loops know the layout, check nothing and keep the doubles in one vector, which is the least that
-// any reader has to do.
+// loops know the layout, check nothing and store the doubles in one vector, the minimum work of any
+// reader.
 //
 //   csv_bench [MiB of text, 200]
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 namespace {
 
-/// How the columns of a table are spelt.
+/// Format of a table's columns.
 struct Table {
   const char* name;
   const char* header;
@@ -67,7 +67,7 @@ const Table tables[] = {
      }},
 };
 
-/// What both bare loops have in common: number, separator, number, …
+/// Common part of both bare loops: number, separator, number, …
 template <class Parse>
 std::vector<double> bare_loop(const std::string& text, std::size_t from, Parse parse) {
   std::vector<double> values;
@@ -82,15 +82,15 @@ std::vector<double> bare_loop(const std::string& text, std::size_t from, Parse p
   return values;
 }
 
-/// Seconds of one core that the work takes, the kernel's part included: other programs that run
-/// beside do not count.
+/// Processor time of the work in seconds, including the kernel's part; other processes do not
+/// count.
 double seconds_of(const std::function<void()>& work) {
   const std::clock_t start = std::clock();
   work();
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-/// Kilobytes of memory this process has held at most, or now.
+/// Peak or current memory of this process in kilobytes.
 double memory_kb(const char* field) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -107,7 +107,7 @@ void run(const Table& table, std::size_t bytes) {
   std::ofstream(path, std::ios::binary) << text;
   const double mb = static_cast<double>(text.size()) / 1e6;
 
-  // The best of five of each, in turn, so that a slow spell of the machine hits all three.
+  // The best of five of each, in turn, so that a slow phase of the machine affects all three.
   double checksum = 0.0;
   double reader_s = 1e300;
   double fast_float_s = 1e300;
@@ -137,7 +137,7 @@ void run(const Table& table, std::size_t bytes) {
   std::filesystem::remove(path);
 }
 
-/// Memory at the peak of one reading over the doubles that are kept.
+/// Peak memory of one read over the size of the stored doubles.
 int measure_memory(const std::string& path) {
   const double before_kb = memory_kb("VmRSS:");
   const auto read = proofmass::io::read_recording(path, {});
@@ -158,7 +158,7 @@ int measure_memory(const std::string& path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // "memory FILE" is a run of its own: the peak is the process's.
+  // "memory FILE" is a separate run: the peak is the process's.
   if (argc == 3 && std::string(argv[1]) == "memory") return measure_memory(argv[2]);
   const double mib = argc > 1 ? std::strtod(argv[1], nullptr) : 200.0;
   for (const Table& table : tables) run(table, static_cast<std::size_t>(mib * 1048576.0));

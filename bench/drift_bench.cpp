@@ -1,8 +1,8 @@
-// A drift analysis of two hours at 1 kHz, three axes from an .npy file, beside two references in
-// the same run, one thread, processor time: scipy's curve_fit of all samples (scipy_drift.py, if
-// there is a python3 with scipy), and the same fit as a plain C++ loop over the samples. They give
-// a curve with a standard deviation that holds for white noise; what is timed against them gives
-// the noise, the intervals, the choice between shapes, knocks and whiteness besides.
+// A drift analysis of two hours at 1 kHz, three axes from an .npy file, compared with two
+// references in the same run, one thread, processor time: scipy's curve_fit of all samples
+// (scipy_drift.py, if there is a python3 with scipy), and the same fit as a plain C++ loop over the
+// samples. The references give a curve with a standard deviation valid for white noise; the
+// analysis also gives the noise, the intervals, the model selection, shocks and whiteness.
 //
 //   drift_bench [samples, 7.2e6 if not given] [folder for the file, /tmp]
 #include <Eigen/Cholesky>
@@ -50,7 +50,7 @@ Recording made_up(std::size_t n) {
   return recording;
 }
 
-// Levenberg and Marquardt's descent over all samples; normal equations, one pass a step.
+// Levenberg–Marquardt over all samples; normal equations, one pass a step.
 Eigen::Vector3d plain_fit(const std::vector<double>& y, Eigen::Vector3d p) {
   double lambda = 1e-3, least = HUGE_VAL;
   Eigen::Vector3d best = p, gradient = Eigen::Vector3d::Zero();

@@ -1,8 +1,8 @@
 // Filter and smoother of one recording with four states (position, velocity, acceleration, a bias
-// with a time constant of 100 s), one reading an instant, one thread: instants a second, by
-// processor time. Beside them, in the same run, a plain Kalman filter with Rauch, Tung and
-// Striebel's smoother in Eigen, as anyone would write it (names with `reference`), and for the
-// means alone the time that memory takes for as many bytes.
+// with a time constant of 100 s), one measurement an epoch, one thread: epochs a second, by
+// processor time. For comparison, in the same run, a plain Kalman filter with the
+// Rauch–Tung–Striebel smoother in Eigen (names with `reference`), and for the means alone the time
+// to move as many bytes in memory.
 //
 //   estimate_bench [--benchmark_filter=...]
 #include <Eigen/Cholesky>
@@ -42,7 +42,7 @@ Gaussian<4> prior() {
   return x;
 }
 
-/// A slow swing, as an accelerometer or a tape reads it.
+/// A slow oscillation, measured by an accelerometer or a tape.
 std::vector<double> record(Reads reads, std::size_t count) {
   std::mt19937_64 bits(1);
   std::normal_distribution<double> noise(0.0, 0.02);
@@ -52,7 +52,8 @@ std::vector<double> record(Reads reads, std::size_t count) {
   return z;
 }
 
-/// The textbook: every state of the filter is kept, and the smoother inverts each prediction.
+/// Textbook implementation: every state of the filter is stored, and the smoother inverts each
+/// predicted covariance.
 struct Textbook {
   explicit Textbook(std::size_t count) : predicted(count), filtered(count), smoothed(count) {}
   std::vector<Gaussian<4>> predicted, filtered, smoothed;
@@ -108,7 +109,7 @@ void reference_filter_and_smoother(benchmark::State& state) {
   count_instants(state);
 }
 
-/// Ours, into memory that the caller has; `missing`: of so many readings one is not there.
+/// Ours, into the caller's memory; `missing`: one in this many measurements is missing.
 void run(benchmark::State& state,
          Reads reads,
          const UniformOptions<4>& options,
@@ -116,7 +117,7 @@ void run(benchmark::State& state,
   const auto model = model_of(reads);
   auto z = record(reads, instants);
   for (std::size_t k = 0; missing > 0 && k < z.size(); k += missing) z[k] = std::nan("");
-  std::vector<Mat<4>> means(instants, Mat<4>::Zero());  // memory that is there
+  std::vector<Mat<4>> means(instants, Mat<4>::Zero());  // already allocated
   std::vector<Symmetric<4>> covariances(options.covariances == Covariances::everywhere ? instants
                                                                                        : 0);
   for (auto _ : state) {
@@ -146,8 +147,8 @@ void position_filter_and_smoother_covariances_where_they_change(benchmark::State
   run(state, position, options_of(true, Covariances::where_they_change));
 }
 
-/// Seconds in which memory takes as many bytes as the means' passes have to move: the readings read
-/// once for the filter and once more for the smoother, the means written.
+/// Time in seconds to move as many bytes as the passes for the means: the measurements read once
+/// for the filter and once more for the smoother, the means written.
 double bandwidth_bound_s(const std::vector<double>& z, std::vector<Mat<4>>& means, bool smooth) {
   double best = 1e300;
   for (int again = 0; again < 9; ++again) {
@@ -165,12 +166,12 @@ double bandwidth_bound_s(const std::vector<double>& z, std::vector<Mat<4>>& mean
   return best;
 }
 
-/// `state.range(0)` instants.
+/// `state.range(0)` epochs.
 void constant_gain_means(benchmark::State& state, bool smooth) {
   const auto count = static_cast<std::size_t>(state.range(0));
   const auto model = model_of(position);
   const auto z = record(position, count);
-  std::vector<Mat<4>> means(count, Mat<4>::Zero());  // memory that is there
+  std::vector<Mat<4>> means(count, Mat<4>::Zero());  // already allocated
   double best_s = 1e300;
   for (auto _ : state) {
     const double from = cpu_s();
@@ -197,7 +198,7 @@ BENCHMARK(filter_and_smoother_all_covariances)->Unit(benchmark::kMillisecond);
 BENCHMARK(filter_and_smoother_all_covariances_1_percent_missing)->Unit(benchmark::kMillisecond);
 BENCHMARK(position_filter_and_smoother_covariances_where_they_change)
     ->Unit(benchmark::kMillisecond);
-// The longer fits in no cache.
+// The longer one does not fit in any cache.
 BENCHMARK(constant_gain_filter_means)
     ->Arg(1'000'000)
     ->Arg(8'000'000)
@@ -207,7 +208,7 @@ BENCHMARK(constant_gain_filter_and_smoother_means)
     ->Arg(8'000'000)
     ->Unit(benchmark::kMillisecond);
 
-/// So that it is seen to be the same work.
+/// Shows that both compute the same result.
 void print_difference(Reads reads, const char* what) {
   const auto model = model_of(reads);
   const auto z = record(reads, 100'000);

@@ -1,6 +1,6 @@
-// How fast MCAP files of our own channel are read and written, from the page cache, checksums
-// compared: MB of samples a second of
-// processor time, against copying those bytes and against zlib's checksum.
+// Speed of reading and writing MCAP files of our own channel, from the page cache, checksums
+// verified: MB of samples a second of processor time, compared with copying those bytes and with
+// zlib's checksum.
 //   mcap_bench [MiB of samples]
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ double seconds_of(Run run) {
   std::exit(1);
 }
 
-/// Three channels of noise at 1 kHz; with stamps, if asked for.
+/// Three channels of noise at 1 kHz; with stamps on request.
 void write(const std::string& path, std::size_t rows, bool has_stamps) {
   constexpr std::size_t block_rows = 8192;
   Recording recording;
@@ -61,7 +61,7 @@ void write(const std::string& path, std::size_t rows, bool has_stamps) {
   if (const Status finished = writer->finish(recording); !finished) give_up(finished.error());
 }
 
-/// Goes through all rows, and returns how many there are.
+/// Reads all rows and returns their number.
 std::size_t read(const std::string& path) {
   auto source = io::open_file(path);
   if (!source) give_up(source.error());
@@ -97,7 +97,7 @@ void run(double mib, bool has_stamps) {
   std::filesystem::remove(path);
 }
 
-/// A mebibyte at a time, which stays in the cache as a chunk does.
+/// One mebibyte at a time, which stays in the cache as a chunk does.
 void run_references() {
   std::string chunk(std::size_t{1} << 20, '\1');
   std::string copy = chunk;

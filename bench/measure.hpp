@@ -10,7 +10,7 @@ inline double cpu_s() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// The most memory that it has held.
+/// Peak memory so far.
 inline double peak_mib() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -1,6 +1,7 @@
-// A noise analysis beside two references in the same run, one thread, processor time: numpy's
-// formula for the overlapping Allan deviation (numpy_oadev.py, if there is a python3 with numpy),
-// and the same as a plain C++ loop. Then one read of the data, the limit that memory sets.
+// A noise analysis compared with two references in the same run, one thread, processor time:
+// numpy's formula for the overlapping Allan deviation (numpy_oadev.py, if there is a python3 with
+// numpy), and the same as a plain C++ loop. In addition one pass over the data, the memory
+// bandwidth limit.
 //
 //   noise_bench [samples, 7.2e6 if not given]
 #include <cmath>
@@ -42,7 +43,7 @@ std::vector<double> white_and_random_walk(std::size_t n) {
   return y;
 }
 
-// Every term at every τ, as the definition reads.
+// Every term at every τ, by definition.
 double plain_loop(const std::vector<double>& y, const std::vector<std::size_t>& factors) {
   double mean = 0.0, sum_of_all = 0.0;
   for (const double v : y) mean += v / static_cast<double>(y.size());
@@ -86,7 +87,7 @@ int main(int argc, char** argv) {
   NoiseOptions options{.rate_hz = rate_hz, .taus = {.per_decade = 18}};
   const auto factors = averaging_factors(options.taus, options.statistic, n, 1.0 / rate_hz);
   std::printf("%zu samples, %zu taus\n", n, factors.size());
-  // First, so that no other's peak hides it.
+  // First, so that no other peak hides it.
   volatile double sink = analyse_noise(y, options).value().deviation.points.back().value;
   const double memory = peak_mib() / data_mib;
   const double numpy = numpy_s(n, factors.size());

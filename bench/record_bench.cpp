@@ -1,9 +1,9 @@
-// What recording costs: a card's rate in real time, with the wheel's estimates beside it, and as
-// fast as a source gives, next to writing the same bytes without any thought.
+// Cost of recording: a card's rate in real time, with the wheel's estimates, and as fast as a
+// source delivers, compared with plainly writing the same bytes.
 //   record_bench [seconds of real time] [folder]
 //
-// In real time: 48 000 rows a second of 8 channels, then 1000 of 6, whose latency is of interest:
-// from a block's arrival to its estimate. Shares are of one core.
+// In real time: 48 000 rows a second of 8 channels, then 1000 of 6 with the latency from a block's
+// arrival to its estimate. Shares are of one core.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -53,7 +53,7 @@ std::string asked(const std::string& uri, double seconds) {
   return uri + "&seconds=" + std::to_string(seconds);
 }
 
-/// Reads a source to its end and does nothing with it.
+/// Reads a source to its end and discards the data.
 std::size_t drain(const std::string& uri) {
   const auto source = needed(open_source(uri));
   Arrival arrival;
@@ -63,7 +63,7 @@ std::size_t drain(const std::string& uri) {
   return rows;
 }
 
-/// The wheel's, of its first sensor and the opposite one.
+/// The wheel analysis of the first sensor and the opposite one.
 Result<std::unique_ptr<LiveAnalysis>> wheel_analysis(const SourceHead& head) {
   const std::vector<Triad> triads = accelerometer_triads(head.recording);
   estimate::LiveWheelOptions options;
@@ -104,7 +104,7 @@ void in_real_time(const std::string& base, double seconds, const std::string& pa
   if (summary.lost > 0) give_up("rows were lost");
 }
 
-/// The bytes of the file once more, by write() alone.
+/// Writes the bytes of the file again by write() alone.
 void write_plainly(const std::string& path, std::size_t bytes) {
   const std::vector<char> piece(std::size_t{1} << 20, '\1');
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);

@@ -1,6 +1,6 @@
-// Reads TDMS files of the ways that values can lie, warm and on one core, a block of rows at a
-// time, beside the least that any reader has to do with the same bytes in the same run: copying
-// them from the kernel's cache, and turning them into doubles in a bare loop.
+// Reads TDMS files of all value layouts, warm and on one core, a block of rows at a time, compared
+// with the minimum work of any reader on the same bytes in the same run: copying them from the
+// kernel's cache, and converting them to doubles in a bare loop.
 //
 //   tdms_bench [MiB of values, 256]
 #include <algorithm>
@@ -83,7 +83,7 @@ double read_table(const std::string& path) {
   }
 }
 
-/// The same bytes, read a piece at a time.
+/// Reads the same bytes piece by piece.
 double copy_file(const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "rb");
   std::setvbuf(file, nullptr, _IONBF, 0);
@@ -95,7 +95,7 @@ double copy_file(const std::string& path) {
   return sum;
 }
 
-/// Values in memory, one behind the other, as doubles into a small block.
+/// Consecutive values in memory, converted to doubles in a small block.
 template <class T>
 double convert(const std::string& bytes) {
   std::vector<double> block(16'384);
@@ -119,7 +119,7 @@ double convert_any(const Layout& layout, const std::string& bytes) {
   return layout.type == 9 ? convert<float>(bytes) : convert<std::int16_t>(bytes);
 }
 
-/// A file of segments that hold one value of each channel.
+/// A file of segments with one value of each channel.
 void run_fragmented(const std::string& path, std::size_t segments) {
   specimen::TdmsList list;
   for (std::size_t c = 0; c < channels; ++c)

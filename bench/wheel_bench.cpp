@@ -1,8 +1,8 @@
-// Samples a second of processor time of the wheel's filter and smoother, beside a textbook extended
-// Kalman filter with Rauch, Tung and Striebel's smoother: dense F over all states, all channels of
-// an instant at once, every state kept, the inverse by LDLᵀ. Both run the same WheelModel over the
-// same readings; the largest difference of their smoothed angles is printed, so that it is seen to
-// be the same work.
+// Samples a second of processor time of the wheel's filter and smoother, compared with a textbook
+// extended Kalman filter with the Rauch–Tung–Striebel smoother: dense F over all states, all
+// channels of an epoch at once, every state stored, the inverse by LDLᵀ. Both run the same
+// WheelModel over the same measurements; the largest difference of their smoothed angles is printed
+// to show that they compute the same result.
 //
 //   wheel_bench [most instants, 1e6 if not given]
 #include <Eigen/Cholesky>
@@ -25,7 +25,7 @@ using namespace proofmass::estimate;
 constexpr double rate_hz = 200.0, gravity_mps2 = 9.80665, radius_m = 0.1;
 constexpr double noise_mps2 = 0.02, speed_radps = 1.5;
 
-/// Sensors at opposite places of a wheel whose speed swings by a fifth.
+/// Sensors at opposite positions of a wheel whose speed oscillates by a fifth.
 struct Recording {
   std::vector<WheelInstant> instants;
   std::array<PlanarReadings, 2> sensors;
@@ -78,7 +78,7 @@ FilterState<wheel::states(S)> start() {
   return state;
 }
 
-/// The textbook, with no more than one reserve() of cleverness.
+/// Textbook implementation with only one optimisation, reserve().
 template <int S>
 std::vector<double> textbook_smoother(const WheelModel<S>& model) {
   constexpr int N = wheel::states(S), M = 2 * S, D = wheel::moving;
@@ -147,7 +147,7 @@ std::vector<double> our_smoother(const WheelModel<S>& model) {
 
 template <class Work>
 double seconds(Work&& work) {
-  const std::clock_t began = std::clock();  // of this process: a busy neighbour does not count
+  const std::clock_t began = std::clock();  // processor time: other processes do not count
   work();
   return static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
 }
@@ -158,7 +158,7 @@ long peak_rss_mb() {
   return usage.ru_maxrss / 1024;
 }
 
-/// What smooth() holds: the state at every chunk's start, and one chunk of steps.
+/// Memory of smooth(): the state at every chunk's start, and one chunk of steps.
 template <int S>
 double working_bytes_per_sample(std::size_t count) {
   constexpr int N = wheel::states(S);
@@ -184,7 +184,7 @@ void compare(std::size_t most) {
     const double smoother_s = seconds([&] { ours = our_smoother(model); });
     std::printf("%10zu %14.0f %16.0f %14.1f %14ld", count, n / filter_s, n / smoother_s,
                 working_bytes_per_sample<S>(count), peak_rss_mb());
-    // Its states of a longer recording would not fit in memory: 9 kB a sample.
+    // The textbook's states of a longer recording would not fit in memory: 9 kB a sample.
     if (count <= 10'000) {
       std::vector<double> textbook;
       const double textbook_s = seconds([&] { textbook = textbook_smoother(model); });

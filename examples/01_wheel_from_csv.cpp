@@ -1,4 +1,4 @@
-// The angle of a wheel from a recording of the accelerometers that turned with it:
+// Wheel angle from a recording of the accelerometers mounted on it:
 //
 //   example_01_wheel_from_csv rig.csv
 #include <cstddef>

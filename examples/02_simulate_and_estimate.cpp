@@ -1,6 +1,5 @@
 // Simulates the thesis's wheel at two speeds, estimates its angle from the two accelerometers
-// alone, and asks the truth how far off that was. Fails if the error is not what the estimate says
-// of it.
+// alone, and compares it with the truth. Fails if the error does not match the stated uncertainty.
 #include <cmath>
 #include <cstdio>
 #include <string>

@@ -1,6 +1,6 @@
-// What an accelerometer alone can say of a position, and what it cannot: a cart that is pushed to
-// and fro, filtered and smoothed by the linear position–velocity–acceleration model. Without any
-// reading of the position its standard deviation grows without bound, and the estimate says so.
+// Position from an accelerometer alone, and its limits: a cart that moves to and fro, filtered and
+// smoothed by the linear position–velocity–acceleration model. Without a position measurement the
+// standard deviation of the position grows without bound.
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -29,7 +29,7 @@ int main() {
   };
   const auto series = pm::LinearSeries<3, 1>::make(epochs, model_at).value();
 
-  pm::Gaussian<3> start;  // at rest, the acceleration not known
+  pm::Gaussian<3> start;  // at rest, the acceleration unknown
   start.cov(pm::pva::accel_mps2, pm::pva::accel_mps2) = 100.0;
   const auto run = pm::smooth_linear(series, start);
 

@@ -1,4 +1,4 @@
-// A logger's table, read from memory: what the reader finds out by itself, and what it tells.
+// A logger's table, read from memory: what the reader detects by itself, and what it reports.
 #include <cstdio>
 #include <span>
 #include <string>

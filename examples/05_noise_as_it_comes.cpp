@@ -1,5 +1,5 @@
-// Noise of a sensor at rest, block by block as from a driver, without keeping the recording: a
-// deviation curve with limits, and the coefficients with what the recording says of each.
+// Noise of a sensor at rest, block by block as from a driver, without storing the recording: a
+// deviation curve with limits, and the coefficients with their uncertainties.
 #include <cmath>
 #include <cstdio>
 #include <random>

@@ -1,5 +1,5 @@
-// A curve of one's own through noisy readings: the parameters with their errors, the band of the
-// curve, and the same fit with the linear parameters left to the linear algebra.
+// Fits a user-defined curve to noisy measurements: the parameters with their errors, the band of
+// the curve, and the same fit with the linear parameters eliminated.
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -11,7 +11,7 @@
 namespace pm = proofmass;
 
 int main() {
-  // A sensor that warms up: 9.81 + 0.05 exp(-t / 300 s), read once in 2 s.
+  // A sensor that warms up: 9.81 + 0.05 exp(-t / 300 s), sampled every 2 s.
   std::mt19937_64 bits(1);
   std::normal_distribution<double> normal(0.0, 0.005);
   std::vector<double> time_s, accel_mps2;
@@ -36,7 +36,7 @@ int main() {
   for (std::size_t k = 0; k < when.size(); ++k)
     std::printf("at %4.0f s  %.5f +- %.5f\n", when[k], band[k].value, band[k].std);
 
-  // For a given time constant the rest is linear: one unknown to search for, and no start for
+  // For a given time constant the fit is linear: one nonlinear parameter, and no initial values for
   // the other two.
   const auto n = static_cast<Eigen::Index>(time_s.size());
   const auto separable = pm::fit::fit_separable(

@@ -1,4 +1,4 @@
-// The warm-up of a sensor, from a recording at rest into a sensor file and out of the next
+// Warm-up of a sensor: from a recording at rest to a sensor file, and its removal from the next
 // recording:
 //
 //   example_07_warm_up sensor.toml
@@ -19,7 +19,8 @@ namespace {
 
 constexpr double rate_hz = 20.0;
 
-/// An x axis at rest from power-up: 0.05 m/s² come over 200 s, on 0.01 m/s², in white noise.
+/// An x axis at rest from power-up: 0.05 m/s² with a time constant of 200 s, on 0.01 m/s², in white
+/// noise.
 pm::Recording powered_up(unsigned seed, double duration_s) {
   std::mt19937_64 bits(seed);
   std::normal_distribution<double> normal(0.0, 0.005);
@@ -80,7 +81,7 @@ int main(int argc, char** argv) {
     return 1;
   }
 
-  // Another power-up, of which the first two minutes are what is wanted.
+  // Another power-up, of which the first two minutes are of interest.
   const auto file = pm::sensor::read_sensor_file(argv[1]).value();
   pm::Recording second = powered_up(2, 600.0);
   const double before =

@@ -1,5 +1,5 @@
 // The tumble test of IEEE 1293 through the library: positions of a turntable in, coefficients of
-// the model equation out, each with what it is, its standard deviation and where that comes from.
+// the model equation out, each with its definition, its standard deviation and the origin of that.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -15,7 +15,8 @@ namespace {
 
 constexpr double g = proofmass::standard_gravity_mps2;
 
-/// An ADXL335 at 3.3 V on the table: 33.7 mV per m/s² about 1.65 V, its input axis 2 mrad off.
+/// An ADXL335 at 3.3 V on the table: 33.7 mV per m/s² about 1.65 V, its input axis misaligned by 2
+/// mrad.
 double reading_v(double angle_rad) {
   const double ai = g * std::sin(angle_rad), ap = g * std::cos(angle_rad);
   return 1.65 + 0.0337 * (0.12 + ai + 2e-3 * ap + 2e-5 * ai * ai + 3e-6 * ai * ai * ai);
@@ -24,7 +25,7 @@ double reading_v(double angle_rad) {
 }  // namespace
 
 int main() {
-  // Every 30°, and the first position once more at the end, by which the drift is seen.
+  // Every 30°, with the first position repeated at the end, which shows the drift.
   std::mt19937_64 bits(1);
   std::normal_distribution<double> noise(0.0, 20e-6);
   std::vector<cal::TumblePosition> positions;
@@ -47,7 +48,7 @@ int main() {
   std::printf("%s\n", fit->drift.words.c_str());
   for (const std::string& words : fit->indexing.words) std::printf("%s\n", words.c_str());
 
-  // Take bias and scale factor out of a reading: the table at 30° reads half of gravity.
+  // Apply bias and scale factor to a measurement: at 30° the table gives half of gravity.
   const auto* K1 = fit->find(cal::TumbleQuantity::K1);
   const double force_mps2 = (reading_v(std::numbers::pi / 6.0) - *fit->bias_output) / *K1->value;
   std::printf("at 30 degrees: %.4f m/s^2, g/2 is %.4f\n", force_mps2, 0.5 * g);

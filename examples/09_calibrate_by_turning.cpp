@@ -1,4 +1,4 @@
-// A three-axis accelerometer laid down by hand in many directions: from the recording to bias,
+// A three-axis accelerometer set down by hand in many orientations: from the recording to bias,
 // scale and misalignment in a sensor file, and from there into the next recording.
 //
 //   example_09_calibrate_by_turning sensor.toml
@@ -21,7 +21,7 @@ namespace cal = proofmass::calibrate;
 
 namespace {
 
-constexpr double g = 9.8123;  // where the sensor was turned, known to 1e-4 m/s²
+constexpr double g = 9.8123;  // local gravity, known to 1e-4 m/s²
 
 /// A rest of 20 s and 24 positions by hand; another session is another day with the same sensor.
 pm::Recording turned_by_hand(std::uint64_t session) {
@@ -31,7 +31,7 @@ pm::Recording turned_by_hand(std::uint64_t session) {
   return pm::simulate::simulate_procedure(options).value().recording;
 }
 
-/// Where it lay still, and what it read there.
+/// The rests, and the mean output in each.
 cal::PoseMeans at_rest(const pm::Recording& recording) {
   const std::array<pm::View<double>, 3> axes{recording.find("acc_x")->values,
                                              recording.find("acc_y")->values,
@@ -67,7 +67,7 @@ void print(const cal::MultiPosition& fit) {
   if (fit.next_pose) std::printf("to know more: %s\n", fit.next_pose->words.c_str());
 }
 
-/// Of readings in m/s², whose scale is a ratio.
+/// From measurements in m/s², whose scale is a ratio.
 pm::sensor::MeasuredCalibration measured(const cal::MultiPosition& fit) {
   pm::sensor::MeasuredCalibration out;
   out.bias = fit.bias;
@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
     return 1;
   }
 
-  // Another day: what the sensor reads at rest, raw and by the file.
+  // Another day: the sensor's output at rest, raw and calibrated by the file.
   const auto file = pm::sensor::read_sensor_file(argv[1]).value();
   pm::Recording next = turned_by_hand(1);
   const double before = error_mps2(at_rest(next));

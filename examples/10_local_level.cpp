@@ -1,10 +1,10 @@
-// A level that wanders, read with noise and with readings missing, of which nothing is known
-// beforehand: filtered, smoothed and judged by its likelihood from an exactly diffuse start. The
-// readings determine the start; no large variance has to stand in for "not known".
+// A drifting level, measured with noise and with missing measurements, without prior knowledge:
+// filtered, smoothed and tested by its likelihood from an exactly diffuse start. The measurements
+// determine the start; no large variance replaces "unknown".
 //
-// A trend is the same with two states, F = (1 dt; 0 1), H = (1 0), and Start<2>::diffuse(): it
-// takes two readings to determine, wherever they are. A state of which something is known keeps it:
-// Start<2>::diffuse({1}, known) leaves only the slope open.
+// A trend is the same with two states, F = (1 dt; 0 1), H = (1 0), and Start<2>::diffuse(): two
+// measurements determine it, wherever they are. A state with a prior keeps it:
+// Start<2>::diffuse({1}, known) makes only the slope diffuse.
 #include <cmath>
 #include <cstddef>
 #include <cstdio>

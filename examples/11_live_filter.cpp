@@ -1,7 +1,7 @@
-// A filter that a robot feeds: one reading at a time, as they come, with no memory asked for and
-// none kept but the filter's own. A cart is pushed along its rail and stops now and then; its
-// accelerometer has a bias, and whoever knows that the cart stands still says so by a reading of
-// its speed, 0. Half a second later the same state is given again, by then better known.
+// An online filter for a robot: one measurement at a time, without allocation. A cart is pushed
+// along its rail and stops now and then; its accelerometer has a bias, and when the cart is known
+// to be at rest, this is applied as a measurement of its speed, 0. The smoothed state is available
+// half a second later.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -21,7 +21,8 @@ namespace {
 constexpr double accel_std_mps2 = 0.02, standstill_std_mps = 0.001, bias_mps2 = 0.05;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-// Position, velocity, acceleration and bias; read are the acceleration and, at rest, the velocity.
+// Position, velocity, acceleration and bias; measured are the acceleration and, at rest, the
+// velocity.
 pm::LinearModel<4, 2, 1> cart(double dt_s) {
   const auto motion = pm::pva_bias_model(
       {.motion = {.dt_s = dt_s, .jerk_psd_m2ps5 = 2.0, .accel_variance_m2ps4 = 4e-4},
@@ -65,7 +66,7 @@ int main() {
     pm::Epoch<2, 1> epoch{.dt_s = dt_s, .z = {}, .u = {}};
     epoch.z << truth.accel_mps2 + bias_mps2 + accel_std_mps2 * noise(rng),
         truth.rest ? standstill_std_mps * noise(rng) : none;
-    epoch.u << 0.0;  // what the bias settles at, were it known
+    epoch.u << 0.0;  // level to which the bias settles, if it were known
     if (const auto status = filter.step(cart(dt_s), epoch); !status) {
       std::printf("%s\n", status.error().message.c_str());
       return 1;

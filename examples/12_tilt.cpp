@@ -1,4 +1,5 @@
-// Roll and pitch of a sensor that lies still, and what they hang on: the calibration's share.
+// Roll and pitch of a sensor at rest, and the contributions to their uncertainty: the calibration's
+// share.
 #include <cmath>
 #include <cstdio>
 
@@ -8,7 +9,7 @@
 
 int main() {
   using namespace proofmass;
-  // Ten seconds at 100 Hz, turned by 5 degrees about x: y goes up.
+  // Ten seconds at 100 Hz, rotated by 5 degrees about x: y goes up.
   const double roll_rad = 5.0 * rad_per_deg;
   estimate::TiltRecord record;
   Random random(1, "noise");
@@ -20,7 +21,7 @@ int main() {
     record.accel_mps2[2].push_back(standard_gravity_mps2 * std::cos(roll_rad) +
                                    0.01 * random.normal());
   }
-  // A calibration that leaves 0.02 m/s² of doubt in each bias.
+  // A calibration with an uncertainty of 0.02 m/s² in each bias.
   estimate::TiltOptions options;
   options.calibration.emplace();
   options.calibration->bias = sensor::make_axis_figures({0.0, 0.0, 0.0}, "m/s^2", "example");

@@ -1,5 +1,5 @@
-// The noise of a filter's model from the recording itself: an acceleration that a motor drives,
-// read with noise; Q and R by maximum likelihood with their errors, and how soon the gain settles.
+// Noise of a filter's model from the recording itself: an acceleration driven by a motor, measured
+// with noise; Q and R by maximum likelihood with their errors, and the settling time of the gain.
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -11,7 +11,7 @@
 namespace pm = proofmass;
 
 int main() {
-  // White jerk of density 0.5 m²/s⁵, read at 100 Hz with a standard deviation of 0.2 m/s².
+  // White jerk of density 0.5 m²/s⁵, sampled at 100 Hz with a standard deviation of 0.2 m/s².
   constexpr double rate_hz = 100.0, jerk_psd = 0.5, accel_std = 0.2;
   std::mt19937_64 bits(1);
   std::normal_distribution<double> normal;

@@ -1,5 +1,5 @@
-// A recording that is read and written a piece at a time, whatever its format: judged on the way,
-// and converted to MCAP.
+// A recording that is read and written block by block, whatever its format: audited on the way, and
+// converted to MCAP.
 #include <cstdio>
 #include <string>
 #include <variant>
@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    // A limit of 0 bytes: as a stream, however small it is.
+    // A limit of 0 bytes: as a stream, even if it is small.
     auto opened = pm::io::open_recording(argv[1], {}, 0).value();
     auto& stream = std::get<pm::io::RecordingStream>(opened);
 

@@ -1,5 +1,5 @@
-// A wheel's angle while it turns: the twin's samples come in blocks, as from a device, and the
-// filter says after each where the wheel stands.
+// Wheel angle online: the simulated samples arrive in blocks, as from a device, and the filter
+// reports the angle after each.
 #include <cmath>
 #include <cstdio>
 #include <vector>

@@ -15,14 +15,14 @@ namespace proofmass::calibrate {
 
 inline constexpr double g = standard_gravity_mps2;
 
-// Readings of an ADXL335 at 3 V in volts, with misalignments of some mrad.
+// Output of an ADXL335 at 3 V in volts, with misalignments of some mrad.
 inline Parameters analog_sensor() {
   Parameters p;
   p << 1.51, 1.48, 1.53, 0.0306, 0.0305, 0.0301, 4e-3, -6e-3, 8e-3;
   return p;
 }
 
-// 24 directions spread over the sphere, read with noise of so many volts.
+// 24 directions spread over the sphere, measured with this noise in volts.
 inline std::vector<Pose> poses_of(
     const Parameters& p, double noise_v, bool known, std::uint64_t seed, double gravity_mps2 = g) {
   const Eigen::Matrix3d reading = correction(p).inverse();

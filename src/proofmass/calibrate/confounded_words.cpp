@@ -61,7 +61,7 @@ bool is_square(Coefficient c) {
   return c == Coefficient::K2 || c == Coefficient::Kpp || c == Coefficient::Koo;
 }
 
-// Of a relation that says |a|² is one number: K0 with squares of weight −1 and nothing else.
+// Whether a relation states that |a|² is constant: K0 with squares of weight −1 and nothing else.
 bool says_size_is_constant(const TiedTerms& group,
                            std::size_t left_out,
                            const std::vector<Coefficient>& coefficients) {
@@ -79,7 +79,7 @@ bool says_size_is_constant(const TiedTerms& group,
   return constant;
 }
 
-// Of a relation between functions of a_i alone, which holds where a_i takes few values.
+// Whether a relation involves functions of a_i alone, which holds if a_i has few values.
 bool is_of_input_axis(Coefficient c) {
   constexpr Coefficient functions[] = {Coefficient::K1,      Coefficient::K0,  Coefficient::K0_asym,
                                        Coefficient::K1_asym, Coefficient::Koq, Coefficient::K2,

@@ -8,14 +8,14 @@
 
 namespace proofmass::calibrate {
 
-/// What was fitted in place of the coefficients, the ones left out counting as zero.
+/// The fitted values, with omitted coefficients at zero.
 struct FittedValues {
   const Eigen::VectorXd& value;
   const Eigen::MatrixXd& covariance;
 };
 
-/// A group of coefficients that the rows cannot tell apart: its relations, what can be told of it,
-/// and what helps.
+/// A group of coefficients that the rows cannot separate: its relations, the combinations that are
+/// determined, and the remedy.
 [[nodiscard]] Confounded describe_confounded(const TiedTerms& group,
                                              const std::vector<sensor::Coefficient>& coefficients,
                                              const FittedValues& fitted);

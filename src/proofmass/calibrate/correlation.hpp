@@ -7,10 +7,10 @@
 
 namespace proofmass::calibrate {
 
-/// An L with L Lᵀ = C, of singular C too. Negative eigenvalues, which are rounding, count as 0.
+/// An L with L Lᵀ = C, also for singular C. Negative eigenvalues, due to rounding, count as 0.
 [[nodiscard]] Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance);
 
-/// Is it empty, or a possible correlation matrix of so many variables? Errors: invalid_argument.
+/// Checks that it is empty, or a valid correlation matrix of this size. Errors: invalid_argument.
 [[nodiscard]] Status check_correlation(const Eigen::MatrixXd& correlation, std::size_t count);
 
 }  // namespace proofmass::calibrate

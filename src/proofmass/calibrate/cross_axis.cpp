@@ -19,8 +19,8 @@ double normal_cdf(double z) {
 struct Normal2 {
   double mean[2], std[2];
 
-  // The probability that both together are shorter than `length`: Simpson's rule over the first,
-  // x = length sin t, the second integrated exactly.
+  // Probability that the norm of both is less than `length`: Simpson's rule over the first, x =
+  // length sin t, the second integrated exactly.
   [[nodiscard]] double shorter_than(double length) const {
     const int steps = std[1] > 0.2 * std[0] ? 100 : 2000;  // the narrower, the sharper its edges
     const double h = std::numbers::pi / steps;
@@ -37,8 +37,8 @@ struct Normal2 {
   }
 };
 
-// The length below which both lie with probability 0.95, which is below `high`: by the Illinois
-// variant of regula falsi.
+// The length exceeded with probability 0.05, which is below `high`: by the Illinois variant of
+// regula falsi.
 double root_95(const Normal2& normal, double high) {
   constexpr int most = 100;
   constexpr double exact = 1e-10;
@@ -63,8 +63,8 @@ double root_95(const Normal2& normal, double high) {
   return high;
 }
 
-// The length below which both lie with probability 0.95. The wider of the two goes first, where
-// Simpson's rule has to follow it.
+// The length exceeded with probability 0.05. The wider variable comes first, where Simpson's rule
+// has to resolve it.
 double length_quantile_95(Normal2 normal) {
   if (normal.std[0] < normal.std[1]) {
     std::swap(normal.std[0], normal.std[1]);
@@ -76,7 +76,7 @@ double length_quantile_95(Normal2 normal) {
   return root_95(normal, size + 6.0 * normal.std[0]);
 }
 
-// Of so large a squared length in units of its standard deviation: Hotelling's T² of two.
+// p-value of a squared length in units of its standard deviation: Hotelling's T² in two dimensions.
 double chance_of(double squared, double dof) {
   if (dof <= 0.0) return std::exp(-0.5 * squared);
   if (dof <= 1.0) return 1.0;

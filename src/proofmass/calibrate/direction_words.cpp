@@ -29,7 +29,7 @@ std::string direction_words(const Eigen::Vector3d& force) {
   Eigen::Index more = (main + 1) % 3, less = (main + 2) % 3;
   if (std::abs(up(less)) > std::abs(up(more))) std::swap(more, less);
   text += fmt::format(", {:.0f}° to {}", tilt_deg, name(more));
-  // Within 22.5° of an axis the axis alone is said.
+  // Within 22.5° of an axis only the axis is named.
   constexpr double aside = 0.41421356;
   if (std::abs(up(less)) > aside * std::abs(up(more))) text += " and " + name(less);
   return text;

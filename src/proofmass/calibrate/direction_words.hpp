@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <string>
 
-// How the sensor lies, and how to lay it, for a person.
+// Descriptions of the sensor's orientation, and instructions to set it, for a person.
 namespace proofmass::calibrate {
 
-/// "+z up", "+z up, 12° to +x", "−x up, 40° to +y and +z": of a force in the sensor's axes. Empty
-/// where it is zero.
+/// "+z up", "+z up, 12° to +x", "−x up, 40° to +y and +z": for a force in the sensor's axes. Empty
+/// if it is zero.
 [[nodiscard]] std::string direction_words(const Eigen::Vector3d& force);
 
 /// "lay it with +z straight up", "tilt it until −x and +y both point 45° above the horizontal":

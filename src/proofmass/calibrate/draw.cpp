@@ -6,8 +6,8 @@
 namespace proofmass::calibrate {
 
 double Draw::operator()(Distribution distribution, double dof) {
-  // Each kind takes two numbers, so that a change of one input leaves the others' draws in place.
-  // Logarithms want (0, 1].
+  // Each kind uses two numbers, so that a change of one input leaves the others' draws unchanged.
+  // Logarithms need (0, 1].
   const double u = 1.0 - random_.unit(), v = 1.0 - random_.unit();
   switch (distribution) {
     case Distribution::uniform:

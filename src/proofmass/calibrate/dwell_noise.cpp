@@ -13,7 +13,8 @@ namespace {
 using signal::AllanLevel;
 using Levels = std::vector<AllanLevel>;
 
-// One octave: differences of neighbours into the sums, their means into the front of `means`.
+// One octave: adds differences of neighbours to the sums, stores their means at the front of
+// `means`.
 void halve(std::vector<double>& means, double& squares, double& pairs) {
   const std::size_t half = means.size() / 2;
   for (std::size_t k = 0; k < half; ++k) {
@@ -29,15 +30,15 @@ Eigen::Vector3d shape(double m) {
   return {1.0 / m, 1.0, m};
 }
 
-// What one choice of terms makes of the levels.
+// Fit of one choice of terms to the levels.
 struct Strengths {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double score = 0.0;  // −2 ln L of chi-square variables, and the price of each term
 };
 
-// What a term more must gain in −2 ln L: what chance gives in one of twenty cases. Rests are short
-// and few, and a wander that only chance shows would be extrapolated to their whole length.
+// Required gain in −2 ln L for a further term: the 5 % significance level. Rests are short and few,
+// and spurious drift would be extrapolated to their whole length.
 constexpr double price = 3.84;
 
 // A variance from n pairs has the variance 2 σ⁴/n.
@@ -79,8 +80,8 @@ Strengths fit_strengths(const Levels& levels, const std::vector<Eigen::Index>& t
   return out;
 }
 
-// The mean over the choices by their weights exp(−score/2): a wander too weak to be seen with
-// certainty is neither left out nor taken at its face.
+// The mean over the choices by their weights exp(−score/2): uncertain drift is neither omitted nor
+// taken at face value.
 struct Averaged {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   double dof = 0.0;  // 2/var(ln v) at the dwell asked for
@@ -112,8 +113,8 @@ Averaged averaged(const Levels& levels, double dwell) {
   return out;
 }
 
-// Variance, over all positions between two steps, of the error that rounding leaves in a long mean:
-// ½ Σ_k (exp(−2π²k²ρ²)/(πk))², of a step of 1 and normal noise of standard deviation ρ.
+// Variance, over all positions between two steps, of the quantisation error of a long mean: ½ Σ_k
+// (exp(−2π²k²ρ²)/(πk))², for a step of 1 and normal noise of standard deviation ρ.
 double undithered(double noise) {
   constexpr double pi = std::numbers::pi;
   double sum = 0.0;
@@ -125,8 +126,8 @@ double undithered(double noise) {
   return sum;
 }
 
-// The noise before rounding by the variance of rounded samples, both in steps: these vary by the
-// noise and by what of 1/12 is not common to all of them.
+// The noise before quantisation from the variance of quantised samples, both in steps: these vary
+// by the noise and by the part of 1/12 that is not common to all of them.
 double noise_before_rounding(double variance) {
   double low = 0.0, high = std::sqrt(variance);
   for (int halving = 0; halving < 60; ++halving) {
@@ -137,9 +138,9 @@ double noise_before_rounding(double variance) {
   return low;
 }
 
-// What rounding leaves in the mean of a rest, however long: lsb²/12 without noise, and nothing
-// where noise spreads the readings over several steps. The noise is taken two standard deviations
-// less than it was found, since the error falls steeply with it.
+// Quantisation error of the mean of a rest of any length: lsb²/12 without noise, and zero if noise
+// spreads the samples over several steps. The noise is reduced by two standard deviations, since
+// the error falls steeply with it.
 double rounding_variance(const AllanLevel& single, double lsb) {
   if (!(lsb > 0.0)) return 0.0;
   if (single.variance == 0.0) return lsb * lsb / 12.0;
@@ -154,7 +155,7 @@ std::vector<AllanLevel> allan_levels(const std::vector<std::span<const double>>&
   std::vector<std::vector<double>> means;
   means.reserve(rests.size());
   for (const std::span<const double> rest : rests) {
-    // Differences are all that counts: an offset of 33 000 counts would only cost digits.
+    // Only differences are used: an offset of 33 000 counts would only cost digits.
     std::vector<double>& own = means.emplace_back(rest.begin(), rest.end());
     const double first = own.empty() ? 0.0 : own.front();
     for (double& value : own) value -= first;
@@ -180,7 +181,7 @@ DwellNoise fit_dwell_noise(View<AllanLevel> levels, double dwell, double lsb) {
   const bool silent =
       std::ranges::all_of(levels, [](const AllanLevel& l) { return l.variance == 0.0; });
   if (silent) {
-    // Only the steps are known, and they exactly.
+    // Only the quantisation is known, and exactly.
     out.dof = out.rounding > 0.0 ? levels.front().pairs : 0.0;
     return out;
   }

@@ -9,15 +9,15 @@
 
 namespace proofmass::calibrate {
 
-/// How well the mean of a rest is known, by the noise that all rests have in common.
+/// Uncertainty of the mean of a rest, from the noise common to all rests.
 struct DwellNoise {
   double white = 0.0;        ///< N², of the Allan variance N²/m over m samples
-  double flicker = 0.0;      ///< its part that does not hang on m
+  double flicker = 0.0;      ///< its part that does not depend on m
   double random_walk = 0.0;  ///< its part ∝ m
   double dof = 0.0;          ///< of the variance at the median dwell; 0: there is no noise to see
   double rounding = 0.0;     ///< what the noise does not average out of the steps: lsb²/12 of none
 
-  /// Of the mean over `samples`, in the reading's unit squared.
+  /// Variance of the mean over `samples`, in the output's unit squared.
   [[nodiscard]] double variance_of_mean(std::size_t samples) const;
 };
 
@@ -25,17 +25,22 @@ struct DwellNoise {
 ///
 ///     σ²(m) = ½ mean (ȳ_{2k+1} − ȳ_{2k})²
 ///
-/// over neighbouring means of m samples that do not overlap (Haar's wavelet), pooled over all
-/// rests, by non-negative least squares with weights from the fitted values; the strengths are the
-/// mean over the choices of terms (white noise with or without the others) by Akaike weights, of
-/// which each further term costs 3.84. Of a mean over the dwell the uncertainty is σ at the dwell:
-/// by what two rests of that length would differ, over √2. `rests` are the samples of one axis,
-/// rest by rest; NaN, infinities and spikes must have been taken out. `lsb` is the converter's
-/// step, 0 if it has none. Noise of ρ steps, normal, leaves of rounding a variance of lsb² ½ Σ_k
-/// (exp(−2π²k²ρ²)/(πk))² in every mean. Source: B. Widrow, I. Kollár, Quantization Noise (2008),
-/// for rounding; D. W. Allan, Proc. IEEE 54 (1966) 221; D. B. Percival, P.
-/// Guttorp, Long-memory processes, the Allan variance and wavelets (1994), for Haar's; S. T.
-/// Buckland, K. P. Burnham, N. H. Augustin, Biometrics 53 (1997) 603, for the weights. Cost: O(N).
+/// over neighbouring non-overlapping means of m samples (Haar wavelet), pooled over all rests.
+///
+/// - Method: non-negative least squares with weights from the fitted values; the coefficients are
+///   the mean over the choices of terms (white noise with or without the others) by Akaike weights,
+///   with a penalty of 3.84 for each further term.
+/// - The uncertainty of a mean over the dwell is σ at the dwell: the difference of two rests of
+///   that length, over √2.
+/// - `rests` are the samples of one axis, rest by rest; NaN, infinities and spikes must be removed
+///   first.
+/// - `lsb` is the quantisation step, 0 if none. Normal noise of ρ steps leaves a quantisation
+///   variance of lsb² ½ Σ_k (exp(−2π²k²ρ²)/(πk))² in every mean.
+///
+/// Source: B. Widrow, I. Kollár, Quantization Noise (2008), for rounding; D. W. Allan, Proc. IEEE
+/// 54 (1966) 221; D. B. Percival, P. Guttorp, Long-memory processes, the Allan variance and
+/// wavelets (1994), for the Haar wavelet; S. T. Buckland, K. P. Burnham, N. H. Augustin, Biometrics
+/// 53 (1997) 603, for the weights. Cost: O(N).
 [[nodiscard]] DwellNoise fit_dwell_noise(const std::vector<std::span<const double>>& rests,
                                          double lsb);
 
@@ -43,8 +48,8 @@ struct DwellNoise {
 [[nodiscard]] std::vector<signal::AllanLevel> allan_levels(
     const std::vector<std::span<const double>>& rests);
 
-/// The same from Allan variances that are there already, ascending, with the dwell in samples for
-/// which the degrees of freedom are told.
+/// fit_dwell_noise() from given Allan variances, ascending, with the dwell in samples to which the
+/// degrees of freedom refer.
 [[nodiscard]] DwellNoise fit_dwell_noise(View<signal::AllanLevel> levels, double dwell, double lsb);
 
 }  // namespace proofmass::calibrate

@@ -17,7 +17,7 @@ struct Quadric {
 
 enum class Shape { general, axis_parallel, sphere };
 
-// One row of the design: what multiplies the coefficients of the shape, d and c.
+// One row of the design: the factors of the coefficients of the shape, d and c.
 Eigen::VectorXd design_row(const Eigen::Vector3d& u, Shape shape) {
   const Eigen::Vector3d squares = u.cwiseAbs2();
   const Eigen::Vector4d linear(2.0 * u.x(), 2.0 * u.y(), 2.0 * u.z(), 1.0);

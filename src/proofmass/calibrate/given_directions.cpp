@@ -19,7 +19,7 @@ using Matrix3x12 = Eigen::Matrix<double, 3, 12>;
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
 constexpr double suspect_p = 0.01;   // after Bonferroni's correction
-constexpr double rounding_g = 1e-9;  // less than this contradicts nobody
+constexpr double rounding_g = 1e-9;  // smaller residuals do not count as contradictions
 constexpr std::ptrdiff_t fewest_given = 5;
 
 struct GivenPose {
@@ -36,8 +36,8 @@ struct State {
 };
 
 // With f = M (u − b) and n = f/|f|: e = (|f| − 1) r + (I − r rᵀ) n about r = R d, its derivatives
-// by p and by a small turn of R, and its covariance. A badly set position does not shorten f, as
-// the plain difference f − r would have it.
+// by p and by a small rotation of R, and its covariance. A position error does not shorten f, as it
+// would in the plain difference f − r.
 struct GivenTerm {
   Eigen::Vector3d e, up;
   Matrix3x12 J;
@@ -89,7 +89,7 @@ Eigen::Matrix4d spread_of(const std::vector<GivenPose>& poses) {
   return N;
 }
 
-// Whether those used are enough and do not lie in a plane.
+// Whether those used are enough and not coplanar.
 bool carry_parameters(const std::vector<GivenPose>& poses) {
   const auto used = std::ranges::count_if(poses, [](const GivenPose& pose) { return pose.used; });
   return used >= fewest_given &&
@@ -132,8 +132,8 @@ struct GivenFit {
   bool converged = false;
 };
 
-// One Gauss–Newton step with the weights of the state; the length of the step in units of what it
-// can be known to.
+// One Gauss–Newton step with the weights of the state; returns its length in units of the
+// uncertainty.
 double step(const std::vector<GivenPose>& poses, GivenFit& fit) {
   Matrix12 N = Matrix12::Zero();
   Eigen::Matrix<double, 12, 1> right = Eigen::Matrix<double, 12, 1>::Zero();
@@ -156,7 +156,7 @@ double step(const std::vector<GivenPose>& poses, GivenFit& fit) {
 }
 
 // Noise from the residuals along the directions, placement from those across: each sum of squares
-// has the degrees of freedom that the parameters leave it.
+// has its own remaining degrees of freedom.
 void estimate_variances(const std::vector<GivenPose>& poses, double noise_dof, GivenFit& fit) {
   double lengths = 0.0, along = 0.0, along_dof = 0.0, across = 0.0, across_noise = 0.0,
          across_dof = 0.0;
@@ -174,8 +174,8 @@ void estimate_variances(const std::vector<GivenPose>& poses, double noise_dof, G
     across_noise += term.across_variance * (1.0 - (hat.trace() - h_along) / 2.0);
     across_dof += 2.0 - (hat.trace() - h_along);
   }
-  // Where lengths alone do not determine the nine parameters, what is left along the directions is
-  // the curvature of badly set positions, not noise.
+  // If norms alone do not determine the nine parameters, the residual along the directions is the
+  // curvature of position errors, not noise.
   fit.scatter = scatter_of(along, lengths > 9.0 ? along_dof : 0.0, noise_dof);
   if (fit.scatter.dof > 0.0) fit.state.noise_factor = std::max(fit.scatter.factor, 1e-20);
   if (across_dof > 0.5)
@@ -197,13 +197,13 @@ GivenFit fit_given(const std::vector<GivenPose>& poses, const State& start, doub
   return fit;
 }
 
-// A pose's distance from the others, squared, in `parts` residuals out of a sum with `dof`.
+// A pose's squared distance from the others, in `parts` residuals out of a sum with `dof`.
 struct Contradiction {
   double parts;
   double dof, total = 0.0;
   std::vector<double> distance;
 
-  // Probability of so large a distance in any of the poses: Fisher's F of the deleted pose.
+  // p-value of the distance over all poses: F-test of the deleted pose.
   [[nodiscard]] double p(std::size_t worst) const {
     const double rest = total - distance[worst], rest_dof = dof - parts;
     if (!(distance[worst] > 0.0) || !(rest > 0.0) || !(rest_dof >= 1.0)) return 1.0;
@@ -212,7 +212,7 @@ struct Contradiction {
   }
 };
 
-// The pose that contradicts the others most, if it does: by its length alone or as a whole.
+// The pose that contradicts the others most, if significantly: by its norm alone or as a whole.
 std::optional<std::size_t> suspect_of(const std::vector<GivenPose>& poses, const GivenFit& fit) {
   Contradiction whole{3.0, static_cast<double>(fit.dof), 0.0, std::vector(poses.size(), 0.0)};
   Contradiction length{1.0, 0.0, 0.0, whole.distance};

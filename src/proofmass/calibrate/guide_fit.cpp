@@ -38,7 +38,7 @@ ForceReader GuideFit::reader() const {
 }
 
 NextPose GuideFit::next(View<Eigen::Vector3d> taken) const {
-  constexpr double least = 1e-12;  // of a variance in g²: noise that nobody knows is not zero
+  constexpr double least = 1e-12;  // of a variance in g²: unknown noise
   double squares = 0.0;
   for (const PoseResidual& pose : fit_.poses)
     squares += std::max(pose.predicted_std_mps2 * pose.predicted_std_mps2, least);

@@ -21,20 +21,20 @@ struct ForceReader {
   }
 };
 
-/// What the poses of a procedure that goes on tell so far. Gravity is the unit, so that what the
-/// readings are in does not matter.
+/// Fit to the poses of a procedure in progress. Gravity is the unit, so the unit of the output does
+/// not matter.
 class GuideFit {
  public:
-  /// nullopt where the poses do not carry a fit.
+  /// nullopt if the poses do not determine a fit.
   [[nodiscard]] static std::optional<GuideFit> of(View<Pose> poses, double noise_dof);
 
   [[nodiscard]] bool has_nine() const { return fit_.model == PoseModel::norm_9; }
-  /// The largest of bias, scale and angles' standard deviations, as an error at 1 g.
+  /// The largest standard deviation of bias, scale and angles, as an error at 1 g.
   [[nodiscard]] double error_g() const;
-  /// Of a reading, by the least sensitive axis.
+  /// Output at 1 g of the least sensitive axis.
   [[nodiscard]] double one_g() const;
   [[nodiscard]] ForceReader reader() const;
-  /// `up` is zero where no position is over.
+  /// `up` is zero if no position is left.
   [[nodiscard]] NextPose next(View<Eigen::Vector3d> taken) const;
   [[nodiscard]] const std::vector<PoseResidual>& poses() const { return fit_.poses; }
 
@@ -42,8 +42,8 @@ class GuideFit {
   explicit GuideFit(MultiPosition fit);
 
   MultiPosition fit_;
-  Parameters raw_;              ///< in the reading's unit
-  Parameters p_;                ///< with readings in units of the scale
+  Parameters raw_;              ///< in the output's unit
+  Parameters p_;                ///< with outputs in units of the scale
   ParameterMatrix covariance_;  ///< of p_
 };
 

@@ -11,7 +11,7 @@
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/running_rests.hpp"
 
-// What the procedures ask for, each in its own way; PoseGuide has what they share.
+// The specific part of each procedure; PoseGuide has the common part.
 namespace proofmass::calibrate {
 
 class GuidePlan {
@@ -21,22 +21,22 @@ class GuidePlan {
   GuidePlan& operator=(const GuidePlan&) = delete;
   virtual ~GuidePlan() = default;
 
-  /// What to do now.
+  /// Next instruction.
   [[nodiscard]] virtual std::string prompt() const = 0;
-  /// Why a new rest with this mean is not wanted; empty text: it is the one before, which nobody
-  /// moved. nullopt: it is.
+  /// Why a new rest with this mean is rejected; empty text: it is the previous one, not moved.
+  /// nullopt: accepted.
   [[nodiscard]] virtual std::optional<std::string> refusal(const Eigen::Vector3d& mean) const = 0;
-  /// Is the rest that is under way long enough?
+  /// Whether the current rest is long enough.
   [[nodiscard]] virtual RestVerdict judge(const signal::RunningRests& rests) = 0;
-  /// The last of the poses is new. Says what is to be said of it beside its own figures.
+  /// The last of the poses is new. Returns what to report in addition to its own values.
   [[nodiscard]] virtual std::vector<GuideStep> take(std::vector<Pose>& poses) = 0;
-  /// The rest that was under way ended after so long.
+  /// Message if the current rest ended after this time.
   [[nodiscard]] virtual std::string lost_words(double seconds) = 0;
   virtual void skip() = 0;
   [[nodiscard]] virtual bool done() const = 0;
-  /// How a reading lies: "+z up, 12° to +x", "at 29.8°"; empty where that is not known.
+  /// Orientation of a measurement: "+z up, 12° to +x", "at 29.8°"; empty if unknown.
   [[nodiscard]] virtual std::string place_words(const Eigen::Vector3d& mean) const = 0;
-  /// How far a reading is from what is asked for: "34° to go"; empty where that is not known.
+  /// Distance of a measurement from the requested position: "34° to go"; empty if unknown.
   [[nodiscard]] virtual std::string off_words(const Eigen::Vector3d& mean) const = 0;
   [[nodiscard]] virtual std::vector<double> angles_deg() const { return {}; }
 };

@@ -16,12 +16,12 @@ namespace {
 using Eigen::Index;
 using sensor::Coefficient;
 
-// Motion is seldom known better: a combination of unit columns shorter than this is no evidence.
+// Motion is seldom known better: a shorter combination of unit columns is not significant.
 constexpr double negligible = 1e-4;
-// What a relation weighs less than this is rounding.
+// A smaller weight in a relation is rounding.
 constexpr double negligible_weight = 1e-3;
 
-// From what people readily do without to what they want most.
+// From the least to the most important coefficient.
 constexpr std::array priority{
     Coefficient::Koo,     Coefficient::Kpp,  Coefficient::Kpo, Coefficient::Kio,
     Coefficient::Kspin,   Coefficient::Kang, Coefficient::Koq, Coefficient::K1_asym,
@@ -36,7 +36,7 @@ struct Echelon {
   std::vector<Index> pivots;
 };
 
-// Makes a row the next of the form, and clears the pivot's column of the others.
+// Makes a row the next of the form, and clears the pivot's column in the others.
 void reduce_by(Eigen::MatrixXd& null, Index done, Index row, Index column) {
   null.row(done).swap(null.row(row));
   null.row(done) /= null(done, column);
@@ -114,12 +114,12 @@ TiedTerms tied_terms(const Echelon& form,
   return tied;
 }
 
-// Of the term, in accelerations.
+// Degree of the term in accelerations.
 int degree_in_accel(Coefficient c) {
   return c == Coefficient::K1 ? 1 : sensor::info(c).power_of_g + 1;
 }
 
-// Columns of the design that are not zero, as far as accelerations' rounding goes.
+// Columns of the design that are not zero within rounding.
 std::vector<Index> excited_columns(const Eigen::MatrixXd& design,
                                    const std::vector<Coefficient>& coefficients,
                                    double unit_length) {
@@ -147,7 +147,7 @@ std::string_view term_text(Coefficient coefficient) {
   return text[static_cast<std::size_t>(coefficient)];
 }
 
-// "0.25 a_i": a term with its factor, which is left away where it is 1.
+// "0.25 a_i": a term with its factor, which is omitted where it is 1.
 std::string product_words(double factor, Coefficient coefficient) {
   const bool one = std::abs(factor - 1.0) < negligible_weight;
   const std::string figure = fmt::format("{:.4g}", one ? 1.0 : factor);

@@ -58,16 +58,16 @@ Status check(View<ModelRow> rows, const ModelFitOptions& options) {
   return Done{};
 }
 
-// y ≈ X β, both over the rows' standard deviations where they are stated.
+// y ≈ X β, both over the rows' standard deviations if they are stated.
 struct Linear {
   Eigen::MatrixXd X;
   Eigen::VectorXd y;
-  Eigen::VectorXd sigma;  ///< 1 where nothing is stated
+  Eigen::VectorXd sigma;  ///< 1 if not stated
   std::optional<Index> k1;
   double scale = 1.0;  ///< coefficients are β over this where K1 is not fitted
 };
 
-// K1's bracket of what is held, times K1 where that is held too.
+// K1's bracket for the held coefficients, times K1 if that is held too.
 ModelEquation held_part(const ModelFitOptions& options) {
   ModelEquation held = options.held;
   for (const Coefficient which : options.fitted) {
@@ -100,7 +100,7 @@ Linear linear_problem(View<ModelRow> rows, const ModelFitOptions& options) {
   return problem;
 }
 
-// The columns that are left when what the rows cannot tell is left out.
+// The columns that remain without those that the rows do not determine.
 std::vector<Index> told_columns(const Identifiability& found) {
   std::vector<Index> columns;
   for (std::size_t c = 0; c < found.excited.size(); ++c) {
@@ -112,7 +112,7 @@ std::vector<Index> told_columns(const Identifiability& found) {
   return columns;
 }
 
-// β and its covariance, without values for the columns left out.
+// β and its covariance, without values for the omitted columns.
 struct Solution {
   Eigen::VectorXd beta;
   Eigen::MatrixXd covariance;
@@ -182,8 +182,8 @@ void judge_residuals(const Linear& problem, const Solution& solution, ModelFit& 
                   fit.scatter, fit.test->p));
 }
 
-// How far a row is off a fit to the others, as a probability by chance; 1 where it alone carries a
-// term, or where the others do not agree with each other.
+// p-value of a row's deviation from a fit to the others; 1 if it alone determines a term, or if the
+// others do not agree with each other.
 double deletion_p(const Solution& solution, Index row, const ModelFit& fit) {
   constexpr double least_own = 1e-9, others_fit = 0.01;
   const double own = 1.0 - solution.leverage(row), left = static_cast<double>(fit.dof) - 1.0;
@@ -279,7 +279,7 @@ void fill_coefficients(const Linear& problem,
     const double value = solution.beta(at);
     if (group != found.tied.end()) {
       one.reason = fit.confounded[size_of(group - found.tied.begin())].words;
-      // Its combination stands in for K1, by which all others were divided.
+      // Its combination replaces K1, by which all others were divided.
       if (problem.k1 == at) fit.equation.K1 = value;
       continue;
     }

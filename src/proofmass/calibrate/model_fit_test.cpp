@@ -246,7 +246,7 @@ TEST(ModelFit, DoesNotTakeRoundingForExcitation) {
   EXPECT_FALSE(fit.find(delta_p)->value);
 }
 
-// Angles typed to three digits of g do not tell K2 from Kpp.
+// Angles typed to three digits of g do not determine K2 from Kpp.
 TEST(ModelFit, DoesNotTakeRoundedAccelerationsForEvidence) {
   std::vector<Motion> motions = tumble(24);
   for (Motion& motion : motions) {

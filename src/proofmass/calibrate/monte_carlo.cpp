@@ -27,8 +27,8 @@ Interval shortest(const std::vector<double>& ascending) {
   return {ascending[best], ascending[std::min(best + held, n - 1)]};
 }
 
-// Between which order statistics the true p-quantile lies in 95 % of cases: binomial, by its normal
-// approximation.
+// Order statistics between which the true p-quantile lies with 95 % probability: binomial, in
+// normal approximation.
 Interval quantile_limits(const std::vector<double>& ascending, double p) {
   const auto n = static_cast<double>(ascending.size());
   const double reach = 1.96 * std::sqrt(n * p * (1.0 - p));
@@ -51,7 +51,7 @@ Status check_inputs(View<Input> inputs, const Eigen::MatrixXd& correlation) {
   return check_correlation(correlation, inputs.size());
 }
 
-// Fills in one draw of all inputs; `root` is empty where they are independent.
+// Fills one draw of all inputs; `root` is empty if they are independent.
 void draw_inputs(View<Input> inputs,
                  const Eigen::MatrixXd& root,
                  Draw& draw,
@@ -61,11 +61,11 @@ void draw_inputs(View<Input> inputs,
   if (root.size() > 0) unit = (root * unit).eval();
 }
 
-// Half of the last of so many significant digits.
+// Half of the last significant digit.
 double tolerance_of(double std, int digits) {
   if (!(std > 0.0)) return 0.0;
   int exponent = static_cast<int>(std::floor(std::log10(std)));
-  // 0.0996 has, to two digits, one place less than its logarithm says.
+  // 0.0996 has, to two digits, one decimal place less than its logarithm indicates.
   if (std::round(std / std::pow(10.0, exponent - digits + 1)) >= std::pow(10.0, digits)) ++exponent;
   return 0.5 * std::pow(10.0, exponent - digits + 1);
 }

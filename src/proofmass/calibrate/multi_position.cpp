@@ -19,7 +19,7 @@ namespace proofmass::calibrate {
 namespace {
 
 constexpr double singular = 1e6;         // of a condition, where the noise does not decide
-constexpr double useless_error_g = 0.1;  // a figure no better than this is not known
+constexpr double useless_error_g = 0.1;  // a parameter with a larger error is not determined
 
 Status check(View<Pose> poses, const MultiPositionOptions& options) {
   if (!(options.gravity_mps2 > 0.0) || !std::isfinite(options.gravity_mps2))
@@ -32,7 +32,7 @@ Status check(View<Pose> poses, const MultiPositionOptions& options) {
   return Done{};
 }
 
-// The poses with variances to weigh them by: where the noise of any is not known, all count alike.
+// The poses with variances as weights: if the noise of any is unknown, all have equal weight.
 struct Weighable {
   std::vector<Pose> poses;
   double noise_dof;
@@ -51,7 +51,7 @@ Weighable weighable(View<Pose> poses, double noise_dof) {
   return out;
 }
 
-// A wander that is known beside noise that is not would have no scale.
+// Known drift with unknown noise would have no scale.
 NormData norm_data(const Weighable& weighed,
                    const ReadingScale& scale,
                    const MultiPositionOptions& options) {
@@ -85,7 +85,7 @@ double typical_variance(const PoseSelection& selection) {
   return *median(variances) * std::max(selection.scatter.factor, 1e-300);
 }
 
-// Whether the poses carry the parameters that were fitted.
+// Whether the poses determine the fitted parameters.
 bool carried(const PoseSelection& selection, const MultiPositionOptions& options) {
   const NormFit& fit = selection.fit;
   if (!(fit.condition < singular) || !fit.cofactor.allFinite()) return false;
@@ -100,7 +100,7 @@ struct NormCalibration {
   PoseSelection selection;
 };
 
-// Nine parameters where asked for or carried, else six.
+// Nine parameters if requested or determined, else six.
 Result<NormCalibration> choose(const NormData& data,
                                double noise_dof,
                                const MultiPositionOptions& options) {
@@ -135,8 +135,8 @@ Result<NormCalibration> choose(const NormData& data,
   PM_EXPECTS(false);
 }
 
-// The normalised parameters' sensitivity to the three angles that six parameters leave out: the
-// others give way as the residuals ask.
+// Sensitivity of the normalised parameters to the three angles omitted by six parameters: the
+// others adapt to the residuals.
 Eigen::Matrix<double, 9, 3> sensitivity_to_angles(const PoseSelection& selection) {
   const auto n = static_cast<Eigen::Index>(selection.fit.terms.size());
   Eigen::MatrixXd J(n, 9);
@@ -149,7 +149,7 @@ Eigen::Matrix<double, 9, 3> sensitivity_to_angles(const PoseSelection& selection
   return out;
 }
 
-// What the converter's steps make of the parameters' covariance.
+// Contribution of quantisation to the parameters' covariance.
 Eigen::MatrixXd by_resolution(const NormCalibration& norm,
                               std::vector<Pose> poses,
                               const ReadingScale& scale) {
@@ -221,7 +221,7 @@ std::vector<PoseResidual> residuals_of(const PoseSelection& selection,
   return out;
 }
 
-// With few positions more than parameters some are checked by no others.
+// With little redundancy some positions are not checked by others.
 void add_unchecked(MultiPosition& out) {
   constexpr double large = 15.0;  // of what noise does; among 18 well spread positions it is 6
   std::string positions;

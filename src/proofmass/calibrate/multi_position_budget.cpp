@@ -21,12 +21,12 @@ std::string unit_of(std::size_t k, std::string_view reading_unit) {
   return reading_unit == "m/s^2" ? "1" : fmt::format("{}/(m/s^2)", reading_unit);
 }
 
-// Every scale is measured against gravity: u(g) is a line of its budget even where it is 0.
+// Gravity is the reference of every scale: u(g) is a line of its budget even if it is 0.
 bool is_scale_by_gravity(const UncertaintyShare& share, std::size_t k) {
   return share.source == "gravity" && k >= 3 && k < 6;
 }
 
-// A share that is a single input's: its own standard uncertainty and the sensitivity to it.
+// A share due to a single input: its own standard uncertainty and the sensitivity to it.
 BudgetLine line_of_share(const UncertaintyShare& share,
                          const MultiPosition& fit,
                          std::size_t k,

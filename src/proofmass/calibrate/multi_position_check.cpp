@@ -32,7 +32,7 @@ Parameters type_b_errors(const std::vector<TypeBEffect>& effects, Draw& draw) {
   return sum;
 }
 
-// Student's t spreads wider than the standard uncertainty that the budget counts.
+// Student's t is wider than the standard uncertainty in the budget.
 double expected_std(const UncertaintyBudget& budget) {
   double variance = 0.0;
   for (const BudgetLine& line : budget.lines) {
@@ -49,8 +49,8 @@ bool std_is_finite(const UncertaintyBudget& budget) {
   });
 }
 
-// Ratio of standard deviations, and share inside, that so many draws of a right budget can give:
-// each test is made at 1 % over all parameters together.
+// Limits of the ratio of standard deviations, and of the coverage, for this number of draws of a
+// correct budget: each test is made at 1 % over all parameters together.
 struct Limits {
   double lowest_ratio, highest_ratio, least_inside;
 };
@@ -64,7 +64,7 @@ Limits limits_of(std::size_t draws, std::size_t parameters) {
           0.95 - z * std::sqrt(0.95 * 0.05 / n)};
 }
 
-// What counts as certain: a standard deviation that is rounding.
+// A standard deviation at rounding level counts as zero.
 double rounding_of(const MultiPosition& fit, std::size_t k) {
   constexpr double part = 1e-9;
   if (k >= 6) return part;
@@ -146,7 +146,7 @@ std::size_t place_of(const std::string& quantity) {
   return static_cast<std::size_t>(std::ranges::find(names, quantity) - names.begin());
 }
 
-// A column of draws for each parameter; NaN where one could not be calibrated.
+// A column of draws for each parameter; NaN if a draw could not be calibrated.
 std::array<std::vector<double>, 9> calibrated_draws(View<Pose> poses,
                                                     const MultiPositionOptions& options,
                                                     const MultiPosition& fit,

@@ -10,7 +10,7 @@
 #include "proofmass/calibrate/multi_position.hpp"
 #include "proofmass/calibrate/norm_model.hpp"
 
-// Sensors and positions drawn at random, by formulas of their own.
+// Random sensors and positions, by independent formulas.
 namespace proofmass::calibrate::test {
 
 inline constexpr double g = 9.80665;
@@ -49,12 +49,12 @@ inline Eigen::Vector3d drawn_direction(std::mt19937_64& random) {
 struct PoseDraw {
   std::size_t count = 24;
   double noise_mps2 = 1e-4 * g;    ///< of each axis of a mean
-  double claimed_mps2 = 1e-4 * g;  ///< what the covariances say; 0: nothing
+  double claimed_mps2 = 1e-4 * g;  ///< as stated in the covariances; 0: none
   double tilt_rad = 0.03;          ///< by which a position misses its direction, about each axis
 };
 
-/// Positions spread over the sphere in a spiral, each missing its place; `up` is where it was meant
-/// to be.
+/// Positions spread over the sphere in a spiral, each with a placement error; `up` is the nominal
+/// direction.
 inline std::vector<Pose> drawn_poses(const Parameters& truth,
                                      const PoseDraw& draw,
                                      std::mt19937_64& random) {

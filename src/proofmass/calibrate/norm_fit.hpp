@@ -8,7 +8,7 @@
 
 namespace proofmass::calibrate {
 
-/// Which of the nine parameters are free: the first six, with axes taken for orthogonal, or all.
+/// Which of the nine parameters are free: the first six, with orthogonal axes, or all.
 enum class NormParameters { six = 6, nine = 9 };
 
 struct NormFit {
@@ -27,23 +27,23 @@ struct NormFit {
   }
 };
 
-/// Least rᵀWr over the poses for which `used` holds, from `start`, W of residual_weights() at the
-/// solution (two rounds: it depends on it weakly). Every pose's covariance must be positive
+/// Minimises rᵀWr over the poses for which `used` holds, from `start`, with W of residual_weights()
+/// at the solution (two rounds: it depends on it weakly). Every pose's covariance must be positive
 /// definite. Errors: those of fit::fit_least_squares. Cost: O(poses) an iteration, and O(poses³) a
-/// round where they are not independent.
+/// round if they are not independent.
 [[nodiscard]] Result<NormFit> fit_norm(const NormData& data,
                                        const std::vector<bool>& used,
                                        NormParameters free,
                                        const Parameters& start);
 
-/// What a fit that is there already says of every pose at other parameters.
+/// The terms of every pose at other parameters.
 [[nodiscard]] std::vector<NormTerm> terms_of(View<NormalisedPose> poses, const Parameters& p);
 
-/// The same with Cauchy's loss, whose weights are 1/(1 + (r/2.385 s)²), s from the median of |r|.
-/// One bad pose in twelve does it no harm; from one in eight on they can pull it, all one way and
-/// far off the sooner. `kept` are those within 6 s.
-/// Source: P. W. Holland, R. E. Welsch, Robust regression using iteratively reweighted
-/// least-squares, Communications in Statistics A6 (1977) 813.
+/// Fit with Cauchy's loss, whose weights are 1/(1 + (r/2.385 s)²), s from the median of |r|. It
+/// tolerates one bad pose in twelve; from one in eight on they can bias it, most easily if all are
+/// far off in one direction. `kept` are those within 6 s. Source: P. W. Holland, R. E. Welsch,
+/// Robust regression using iteratively reweighted least-squares, Communications in Statistics A6
+/// (1977) 813.
 struct RobustStart {
   Parameters p;
   std::vector<bool> kept;
@@ -52,10 +52,9 @@ struct RobustStart {
                                        NormParameters free,
                                        const Parameters& start);
 
-/// Which `keep` poses lie closest to a fit to them alone: the least sum of so many Σ
-/// residual²/variance that descents from 60 subsets of as many poses as parameters find. The
-/// subsets are the same every time. Source: P. J. Rousseeuw, K. Van Driessen, Data Mining and
-/// Knowledge Discovery 12 (2006) 29.
+/// Least trimmed squares: the `keep` poses with the smallest Σ residual²/variance about a fit to
+/// them alone, found by descents from 60 minimal subsets. The subsets are deterministic. Source: P.
+/// J. Rousseeuw, K. Van Driessen, Data Mining and Knowledge Discovery 12 (2006) 29.
 [[nodiscard]] std::vector<bool> least_trimmed(View<NormalisedPose> poses,
                                               NormParameters free,
                                               const Parameters& start,

@@ -27,8 +27,8 @@ struct PhaseSpline {
   }
 };
 
-/// Over the points' range with so many intervals, by least squares; 2 or more points than intervals
-/// + 3 are wanted. Cost: O(points + intervals³).
+/// Least-squares spline over the points' range with `intervals` intervals; needs two more points
+/// than intervals + 3. Cost: O(points + intervals³).
 [[nodiscard]] PhaseSpline fit_spline(View<double> t_s, View<double> y, std::size_t intervals);
 
 }  // namespace proofmass::calibrate

@@ -7,17 +7,17 @@
 
 namespace proofmass::calibrate {
 
-/// What one accelerometer read while it lay still.
+/// Output of one accelerometer at rest in one position.
 struct Pose {
-  std::string label;                     ///< as the user named it; empty if he did not
-  std::optional<double> start_s, end_s;  ///< within the recording, where there is one
-  std::size_t samples = 0;               ///< behind the mean; 0 where only the mean is known
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< reading of x, y, z: m/s^2, V or counts
-  /// Of the mean, by noise alone, in the reading's unit squared; zero where nobody knows it.
+  std::string label;                               ///< as named by the user; may be empty
+  std::optional<double> start_s, end_s;            ///< within the recording, if there is one
+  std::size_t samples = 0;                         ///< in the mean; 0 if only the mean is known
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< output of x, y, z: m/s^2, V or counts
+  /// Covariance of the mean due to noise alone, in the output's unit squared; zero if unknown.
   Eigen::Matrix3d mean_covariance = Eigen::Matrix3d::Zero();
-  /// The part of its diagonal that the converter's steps make, in every mean however long.
+  /// The part of its diagonal due to quantisation, which averaging does not reduce.
   Eigen::Vector3d rounding_variance = Eigen::Vector3d::Zero();
-  /// Unit vector along the force (upwards) in the frame of the fixture, where it is given.
+  /// Unit vector along the force (upwards) in the frame of the fixture, if given.
   std::optional<Eigen::Vector3d> up;
 };
 

@@ -204,7 +204,7 @@ TEST(PoseGuide, BeginsAnewWhereARestEndsTooEarly) {
   EXPECT_NE(bench.last(GuideKind::redo)->text.find("It moved after"), std::string::npos);
   ASSERT_EQ(bench.guide.poses().size(), 2U);
   EXPECT_GE(*bench.guide.poses()[1].end_s - *bench.guide.poses()[1].start_s, 2.0);
-  EXPECT_GE(*bench.guide.poses()[1].start_s, 9.5);  // behind the knock
+  EXPECT_GE(*bench.guide.poses()[1].start_s, 9.5);  // behind the shock
 }
 
 TEST(PoseGuide, SaysTheSameHoweverTheSamplesAreCut) {
@@ -320,7 +320,7 @@ TEST(PoseGuide, StartsTheClockAnewWhereAStillSensorIsMoved) {
 }
 
 TEST(PoseGuide, SitsStillUntilTheFloorOfTheNoiseShows) {
-  // A level that wanders by steps of its own every 2 s shows a floor; white noise alone does not.
+  // A level that drifts by steps of its own every 2 s shows a floor; white noise alone does not.
   for (const bool wanders : {false, true}) {
     PoseGuide guide(options_of(GuideProcedure::still));
     Random random(3, "floor");

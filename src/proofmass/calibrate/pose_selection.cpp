@@ -156,7 +156,7 @@ std::vector<PoseSet> Choice::in_question() {
   return out;
 }
 
-// The mean over the fits that cannot be told apart.
+// The mean over the fits that are not separable.
 void average(PoseHypotheses& hypotheses, const std::vector<PoseSet>& alike, PoseSelection& now) {
   const auto count = static_cast<double>(alike.size());
   const Eigen::Index free = now.fit.cofactor.rows();

@@ -7,34 +7,34 @@
 
 #include "proofmass/calibrate/norm_fit.hpp"
 
-// What a fit says of every pose, and of errors that some of them may have.
+// Residual analysis of every pose, with possible errors of some of them.
 namespace proofmass::calibrate {
 
-/// Poses taken for bad, ascending.
+/// Bad poses, ascending.
 using PoseSet = std::vector<std::size_t>;
 
-/// Residuals of all poses, linear about a fit, with an unknown error in the length of some:
+/// Residuals of all poses, linearised about a fit, with an unknown error in the norm of some:
 ///
 ///     r = J dp + δ + noise,     Q = W − W J (Jᵀ W J)⁻¹ Jᵀ W.
 ///
 /// A set S of errors lowers the least sum rᵀQr by gᵀ Q_SS⁻¹ g with g = (Q r)_S, the errors being
-/// Q_SS⁻¹ g with the cofactors Q_SS⁻¹; to take one for unknown is to leave its pose out.
-/// Source: W. Baarda, A testing procedure for use in geodetic networks (1968); R. D. Cook, S.
-/// Weisberg, Residuals and Influence in Regression (1982), section 2.2.
+/// Q_SS⁻¹ g with the cofactors Q_SS⁻¹; an unknown error is equivalent to omitting its pose. Source:
+/// W. Baarda, A testing procedure for use in geodetic networks (1968); R. D. Cook, S. Weisberg,
+/// Residuals and Influence in Regression (1982), section 2.2.
 class PoseShifts {
  public:
   /// `terms` of all poses at `p`, which need not be a least-squares fit of them.
   PoseShifts(const NormData& data, const std::vector<NormTerm>& terms, NormParameters free);
 
-  /// The least sum of squares without these poses; absent where the others do not carry the
-  /// parameters, or as good as not.
+  /// The smallest sum of squares without these poses; absent if the others do not, or barely,
+  /// determine the parameters.
   [[nodiscard]] std::optional<double> rss_without(const PoseSet& out) const;
 
-  /// The model with the lengths of these poses unknown. rss_without(out) must be there.
+  /// The model with unknown norms of these poses. Requires rss_without(out).
   [[nodiscard]] PoseShifts without(const PoseSet& out) const;
 
-  /// Of the error of a pose, were it the only one: estimate and cofactor. Absent where the others
-  /// do not show it.
+  /// Error of a pose, if it were the only one: estimate and cofactor. Absent if the others do not
+  /// determine it.
   struct Shift {
     double value, cofactor;
   };

@@ -9,28 +9,28 @@
 #include "proofmass/calibrate/dwell_noise.hpp"
 #include "proofmass/signal/running_rests.hpp"
 
-// How long a rest must be.
+// Required length of a rest.
 namespace proofmass::calibrate {
 
 struct RestVerdict {
   bool enough = false;
   double seconds_left = 0.0;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();  ///< of the mean
-  double dof = 0.0;                                    ///< of these; 0: not known
+  double dof = 0.0;                                    ///< of these; 0: unknown
 };
 
-/// Judges rests by the noise that they all have in common (fit_dwell_noise).
+/// Evaluates rests by the noise common to all of them (fit_dwell_noise).
 class RestLength {
  public:
   RestLength(std::size_t axes, double shortest_s, double longest_s)
       : axes_(axes), shortest_s_(shortest_s), longest_s_(longest_s) {}
 
-  /// Enough is when the mean's standard deviation is target_std on every axis, or would not fall by
-  /// a twentieth in twice the time, as far as the rests tell that with ten degrees of freedom;
-  /// where there is no target, the shortest rest.
+  /// A rest is long enough if the mean's standard deviation is target_std on every axis, or would
+  /// not fall by a twentieth in twice the time, as far as the rests determine that with ten degrees
+  /// of freedom; without a target, the shortest rest.
   [[nodiscard]] RestVerdict judge(const signal::RunningRests& rests,
                                   std::optional<double> target_std) const;
-  /// Has the rest that is under way count for those to come.
+  /// Adds the current rest to those used for the noise.
   void keep(const signal::RunningRests& rests);
 
  private:

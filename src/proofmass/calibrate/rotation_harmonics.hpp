@@ -2,11 +2,11 @@
 
 #include <Eigen/Core>
 
-// The columns of the fit to a turning wheel, and a ripple of its speed.
+// Regressors of the fit to a rotating wheel, and a ripple of its speed.
 namespace proofmass::calibrate {
 
-/// B0, S1, C1, S2, C2, S3, C3, that of −(ω²/ω̄² − 1), S4, C4, S5, C5, S6, C6, and that of
-/// cos φ φ̇/√ω̄², which a delay of the sensor moves.
+/// B0, S1, C1, S2, C2, S3, C3, the coefficient of −(ω²/ω̄² − 1), S4, C4, S5, C5, S6, C6, and that of
+/// cos φ φ̇/√ω̄², which represents a delay of the sensor.
 inline constexpr Eigen::Index harmonic_count = 15;
 inline constexpr Eigen::Index square_speed_column = 7, delay_column = 14;
 inline constexpr int highest_harmonic = 6;
@@ -17,7 +17,7 @@ using Harmonics = Eigen::Matrix<double, harmonic_count, 1>;
   return n <= 3 ? 2 * n - 1 : 2 * n;
 }
 
-/// What the columns depend on.
+/// Variables of the columns.
 struct ColumnPoint {
   double phase = 0.0;                  ///< φ of the axis
   double relative_square_speed = 1.0;  ///< ω²/ω̄²

@@ -10,11 +10,10 @@
 #include "proofmass/calibrate/rotation_harmonics.hpp"
 #include "proofmass/calibrate/rotation_turns.hpp"
 
-// Passes over the samples of a wheel that turns: normal equations and the scatter of their
-// gradient.
+// Passes over the samples of a rotating wheel: normal equations and the scatter of their gradient.
 namespace proofmass::calibrate {
 
-/// What the passes go over, and where the fit stands.
+/// Input of the passes, and the current state of the fit.
 struct RotationState {
   View<RotationRecording> recordings;
   std::vector<SteadyTurns> sections;
@@ -36,7 +35,7 @@ struct RotationState {
   [[nodiscard]] Eigen::Index size() const {
     return harmonic_count * static_cast<Eigen::Index>(axes);
   }
-  /// Whether a harmonic is fitted: not the first axis's C1 where it defines the phase.
+  /// Whether a harmonic is fitted: not the first axis's C1 if it defines the phase.
   [[nodiscard]] bool fitted(Eigen::Index column) const {
     const Eigen::Index k = column % harmonic_count;
     if (k == square_speed_column) return speed_told;
@@ -56,7 +55,7 @@ struct RotationSample {
   double relative_speed = 0.0;         ///< φ̇/√ω̄², with its sign; with an encoder only
 };
 
-/// Fills in angle and speed, the ripple included.
+/// Sets angle and speed, including the ripple.
 void place(const RotationState& state, const RotationRecording& recording, RotationSample& sample);
 
 /// Calls f(recording, sample) for each sample of the steady sections.
@@ -74,12 +73,12 @@ void for_each_sample(const RotationState& state, F&& f) {
   }
 }
 
-/// Distance from the axle that r φ̈ acts on along an axis, in the unit of its term in ω²: along the
-/// first axis that of the second, with its sign turned. 0 where it is not determined.
+/// Distance from the axle on which r φ̈ acts along an axis, in the unit of its term in ω²: along the
+/// first axis that of the second, with its sign reversed. 0 if it is not determined.
 [[nodiscard]] double tangential_distance(const RotationState& state, std::size_t axis);
 
-/// An axis's columns, its residual and ∂E/∂θ at a sample; no number in the residual where the
-/// reading is none.
+/// An axis's columns, its residual and ∂E/∂θ at a sample; the residual is NaN without a
+/// measurement.
 struct AxisAt {
   Harmonics columns;
   double residual = 0.0, slope = 0.0;
@@ -104,7 +103,7 @@ struct RotationNormal {
 };
 [[nodiscard]] RotationNormal normal_equations(const RotationState& state);
 
-/// What eliminates the spline: δ = S⁻¹ (g − Σ cross H⁻¹ g_s).
+/// Elimination of the spline: δ = S⁻¹ (g − Σ cross H⁻¹ g_s).
 struct RotationSolver {
   Eigen::MatrixXd inverse;                   ///< S⁻¹; zero where a harmonic is not fitted
   std::vector<Eigen::MatrixXd> elimination;  ///< cross H⁻¹ of each section
@@ -112,8 +111,8 @@ struct RotationSolver {
 };
 [[nodiscard]] RotationSolver make_solver(const RotationState& state, const RotationNormal& normal);
 
-/// One step of Gauss and Newton; without `move_phase` the harmonics alone. Returns the largest
-/// change: of the phase in radians, of harmonics relative to S1.
+/// One Gauss–Newton step; without `move_phase` the harmonics alone. Returns the largest change: of
+/// the phase in radians, of harmonics relative to S1.
 double step(RotationState& state, bool move_phase);
 
 /// The gradient of each block of turns with the spline eliminated, times S⁻¹: one column a block.

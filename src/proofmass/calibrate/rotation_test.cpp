@@ -337,7 +337,7 @@ TEST(Rotation, DistinguishesADelayFromAMisalignmentAtTwoSpeedsOnly) {
   EXPECT_LT(stated[Q::misalignment].half_width_95, 1e-5);
 }
 
-// Its r ω² and r ω̇ once a turn are in the interval where one speed does not tell the radius.
+// Its r ω² and r ω̇ once a turn are in the interval where one speed does not determine the radius.
 TEST(Rotation, AllowsForTheRadiusOfARippleAtOneSpeed) {
   PlainWheel wheel;
   wheel.equations = {{.K1 = 1.0}, {.K1 = 1.0, .delta_o = 0.01}};

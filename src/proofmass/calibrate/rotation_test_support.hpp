@@ -12,7 +12,7 @@
 
 namespace proofmass::calibrate {
 
-/// A wheel made of nothing but the model equation and an angle as a function of time.
+/// A simulated wheel defined only by the model equation and an angle as a function of time.
 struct PlainWheel {
   std::vector<sensor::ModelEquation> equations{{.K1 = 0.0336}};  ///< of one axis or two
   std::function<double(double)> angle = [](double t) { return 1.152 * t + 0.7; };
@@ -20,13 +20,13 @@ struct PlainWheel {
   double radius_m = 0.0;
   double mounting_rad = 0.0;              ///< of the first axis, from the spoke
   double white = 0.0;                     ///< of each sample, unit of the output
-  double coloured = 0.0, memory_s = 1.0;  ///< first-order Markov noise beside it
+  double coloured = 0.0, memory_s = 1.0;  ///< additional first-order Markov noise
   unsigned seed = 1;
   bool give_angle = false;
   int hand = 1;  ///< −1: the second axis lags
 };
 
-/// f = gravity less acceleration in the wheel's frame, axis by axis.
+/// f = gravity minus acceleration in the wheel's frame, axis by axis.
 inline RotationRecording turned(const PlainWheel& wheel) {
   constexpr double g = standard_gravity_mps2, h = 1e-3;
   std::mt19937 random(wheel.seed);

@@ -5,7 +5,7 @@
 
 #include "proofmass/calibrate/rotation.hpp"
 
-// Where a recording of a turning wheel turns steadily, and its phase to begin with.
+// Steady intervals of a rotating wheel's recording, and its initial phase.
 namespace proofmass::calibrate {
 
 /// A run of steady turns.
@@ -21,12 +21,12 @@ struct FoundTurns {
   std::size_t turns = 0;  ///< steady or not
 };
 
-/// The angle of an encoder, counted on over its wraps of a turn.
+/// The unwrapped angle of an encoder.
 [[nodiscard]] std::vector<double> counted_on(View<double> angle_rad);
 
-/// Turns by the readings of the first axis, from one rise through their middle to the next (with a
-/// hysteresis of 0.8 of their amplitude), or by the encoder's angle (counted on). Adds to `found`
-/// the runs of at least 8 turns whose durations keep within 8 % of their neighbours', and in which
+/// Turns by the output of the first axis, from one rising crossing of its middle to the next (with
+/// a hysteresis of 0.8 of its amplitude), or by the encoder's angle (unwrapped). Adds to `found`
+/// the runs of at least 8 turns whose durations stay within 8 % of their neighbours', and in which
 /// no sample is more than a sixteenth of a turn from the next.
 void find_turns(const RotationRecording& recording, std::size_t number, FoundTurns& found);
 

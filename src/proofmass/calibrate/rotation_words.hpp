@@ -3,16 +3,16 @@
 #include "proofmass/calibrate/rotation.hpp"
 #include "proofmass/calibrate/rotation_pass.hpp"
 
-// What is said about a fit to a turning wheel.
+// Notes on a fit to a rotating wheel.
 namespace proofmass::calibrate {
 
-/// √2 rms of what an axis's fit leaves, over the amplitude of gravity's turn.
+/// √2 times the rms residual of an axis, over the amplitude of gravity.
 [[nodiscard]] double relative_residual(const RotationState& state, std::size_t axis);
 
-/// Why the recording may be no test on a bench.
+/// Why the recording may not be a bench test.
 void note_doubts(const RotationState& state, const RotationOptions& options, RotationFit& fit);
 
-/// The ripples that were found, and the effect of one that is put down to the sensor.
+/// The estimated ripples, and the effect of one attributed to the sensor.
 void note_ripples(const RotationOptions& options, RotationFit& fit);
 
 }  // namespace proofmass::calibrate

@@ -11,8 +11,8 @@
 #include "proofmass/calibrate/session_noise.hpp"
 #include "proofmass/core/chi_square.hpp"
 
-// Recordings of a sensor that is laid down by hand while its bias wanders, by a generator of its
-// own: flicker noise as relaxation processes an octave and a half apart, a walk as a sum of steps.
+// Recordings of a sensor placed by hand while its bias drifts, by an independent generator: flicker
+// noise as relaxation processes an octave and a half apart, a random walk as a sum of steps.
 namespace proofmass::calibrate::test {
 
 struct Session {
@@ -84,7 +84,7 @@ inline Recorded recorded(const Session& session, std::mt19937_64& random) {
     const Eigen::Vector3d force = g * drawn_direction(random);
     const auto dwell = static_cast<std::size_t>(rate_hz * even(random));
     out.rests.push_back({samples, samples + dwell - 1});
-    // Between two rests the hand moves it for 0.8 s, which says nothing.
+    // Between two rests the hand moves it for 0.8 s, which contains no information.
     for (std::size_t k = 0; k < dwell + 80; ++k, ++samples) {
       const Eigen::Vector3d wander = bias.next();
       sum += wander;

@@ -35,7 +35,7 @@ Sums sums_of(const std::vector<LinePoint>& points, const std::vector<double>& we
   return s;
 }
 
-// Weights hang on the slope, through the uncertainty of x: a few rounds settle it.
+// Weights depend on the slope, through the uncertainty of x: a few rounds settle it.
 SupplyLine fitted(const std::vector<LinePoint>& points) {
   constexpr int rounds = 5;
   const bool stated = std::ranges::all_of(

@@ -6,16 +6,16 @@
 
 namespace proofmass::calibrate {
 
-/// What the coefficients of the model follow from.
+/// Input of the coefficients.
 struct TumbleSolution {
   const TumbleDesign& design;
   const TumbleRegression& regression;
   const TumbleOptions& options;
-  double output_offset = 0.0;      ///< taken off all outputs before the regression
-  const Eigen::VectorXd& outputs;  ///< less that
+  double output_offset = 0.0;      ///< subtracted from all outputs before the regression
+  const Eigen::VectorXd& outputs;  ///< minus that
 };
 
-/// K1 g = S + 3 T, of the regression.
+/// K1 g = S + 3 T, from the regression.
 [[nodiscard]] double swing_of(const TumbleDesign& design, const Eigen::VectorXd& beta);
 
 /// Fills coefficients, covariance, shares and the bias in units of the output:

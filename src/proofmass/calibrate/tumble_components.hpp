@@ -5,17 +5,16 @@
 
 #include "proofmass/calibrate/tumble_regression.hpp"
 
-// Errors of a tumble whose sizes are assumed rather than known: how large the residuals allow them
-// to be.
+// Tumble errors of assumed size: the sizes allowed by the residuals.
 namespace proofmass::calibrate {
 
-/// Standard deviations: a factor on the noise of the outputs, the table's angle, the bias's wander.
+/// Standard deviations: a factor on the noise of the outputs, the table's angle, the bias drift.
 struct TumbleSizes {
   double noise = 1.0, indexing_rad = 0.0, drift = 0.0;
 };
 
-/// V = s² diag(noise_std²) + u² Σ v vᵀ + d² Z Zᵀ, v the levers of the settings, Z the shapes of the
-/// drift. Cost: O(rows · columns) a product.
+/// V = s² diag(noise_std²) + u² Σ v vᵀ + d² Z Zᵀ, v the sensitivities of the settings, Z the shapes
+/// of the drift. Cost: O(rows · columns) a product.
 class TumbleCovariance {
  public:
   TumbleCovariance(const TumbleErrors& errors, const TumbleSizes& sizes);
@@ -53,11 +52,14 @@ struct TumbleSolved {
                                         const TumbleErrors& errors,
                                         const TumbleSizes& sizes);
 
-/// The sizes to be used. Those that are assumed (errors.indexing_assumed, errors.drift_assumed)
-/// become the largest that the residuals allow (2 ln L 2.7 below its maximum, one-sided 95 %), but
-/// no larger than assumed; where the residuals ask for more than was assumed, the upper bound of
-/// 2 ln L 1 below the maximum. The factor on a stated noise is 1 unless χ² is beyond chance (p <
-/// 0.01) whatever the other sizes; a noise of 0 is of residuals that are zero.
+/// The sizes to use.
+///
+/// - Assumed sizes (errors.indexing_assumed, errors.drift_assumed) become the largest allowed by
+///   the residuals (2 ln L 2.7 below its maximum, one-sided 95 %), at most the assumed value.
+/// - If the residuals require more than assumed, the upper bound of 2 ln L 1 below the maximum.
+/// - The factor on a stated noise is 1 unless χ² is significant (p < 0.01) for all other sizes; a
+///   noise of 0 belongs to residuals that are zero.
+///
 /// Source: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545, restricted likelihood.
 [[nodiscard]] TumbleSizes find_sizes(const Eigen::MatrixXd& A,
                                      const Eigen::VectorXd& y,

@@ -10,7 +10,7 @@
 #include "proofmass/calibrate/tumble_model.hpp"
 #include "proofmass/core/view.hpp"
 
-// The columns that a set of positions carries.
+// The columns that a set of positions determines.
 namespace proofmass::calibrate {
 
 /// A column of the regression; the letters are those of fit_tumble().
@@ -34,11 +34,11 @@ enum class TumbleTerm {
 
 struct TumbleColumn {
   TumbleTerm term = TumbleTerm::up_down;
-  int plane = 0;             ///< 0: of all planes
-  std::size_t mounting = 0;  ///< of a cosine
+  int plane = 0;             ///< 0: all planes
+  std::size_t mounting = 0;  ///< for a cosine
 };
 
-/// The sensor as it sat on the table.
+/// The sensor's mounting on the table.
 struct TumbleMounting {
   int plane = 1;
   double mount_rad = 0.0;  ///< in [0, 2π)
@@ -46,9 +46,9 @@ struct TumbleMounting {
 
 /// Why a column is not in the fit.
 enum class LeftOut {
-  not_asked_for,   ///< the positions were not laid out for it
-  not_told_apart,  ///< the angles do not tell it from what is fitted
-  none_to_spare,   ///< no position would be over to judge by
+  not_asked_for,   ///< the positions were not designed for it
+  not_told_apart,  ///< the angles do not determine it from what is fitted
+  none_to_spare,   ///< no redundancy would remain
 };
 
 struct TumbleMissing {
@@ -66,7 +66,7 @@ struct TumbleDesign {
   std::vector<double> when;            ///< of each position, in seconds or places, from 0
   double span = 0.0;                   ///< of `when`
   bool in_time = false;                ///< `when` is in seconds
-  bool closed = false;                 ///< a position was visited again late enough
+  bool closed = false;                 ///< a position was revisited late enough
   double kelvin_span = 0.0;            ///< of the temperatures; 0 where they are not known
 
   [[nodiscard]] std::optional<std::size_t> find(TumbleTerm term,
@@ -75,14 +75,14 @@ struct TumbleDesign {
   [[nodiscard]] std::optional<LeftOut> why_not(TumbleTerm term, int plane = 0) const;
 };
 
-/// Shapes of a drift that is not straight: cos 2πt/span and sin 2πt/span of amplitude 1, which in
-/// one turn of the table are harmonics of its angle, and their multiples to the sixth of amplitude
-/// `higher`/n, as a step, a walk or an exponential has them. Where no position was visited again to
-/// show it, a straight line from −1 to 1 as well.
+/// Shapes of a nonlinear drift: cos 2πt/span and sin 2πt/span of amplitude 1, which in one turn of
+/// the table are harmonics of its angle, and their multiples up to the sixth with amplitude
+/// `higher`/n, as in a step, a random walk or an exponential. If no position was revisited, also a
+/// straight line from −1 to 1.
 [[nodiscard]] Eigen::MatrixXd drift_shapes(const TumbleDesign& design, double higher);
 
-/// Chooses the columns in the order of fit_tumble(). A position counts as visited again late enough
-/// where two visits within half a degree lie at least half of their mounting's time apart.
+/// Chooses the columns in the order of fit_tumble(). A position counts as revisited late enough if
+/// two visits within half a degree are at least half of their mounting's time apart.
 [[nodiscard]] TumbleDesign design_tumble(View<TumblePosition> positions,
                                          const std::array<double, 2>& phase_rad,
                                          bool noise_known);

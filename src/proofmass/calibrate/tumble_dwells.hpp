@@ -11,31 +11,31 @@
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/rests.hpp"
 
-// From a recording on a table that stands still in places to positions.
+// Positions from a recording on an indexed table.
 namespace proofmass::calibrate {
 
 struct SteadyAngleOptions {
   double rate_hz = 0.0;                   ///< 0: unknown
-  std::optional<double> shortest_s = {};  ///< absent: 0.5 s; where the rate is unknown, 20 samples
+  std::optional<double> shortest_s = {};  ///< absent: 0.5 s; 20 samples if the rate is unknown
 };
 
-/// The stretches in which the table's angle stays within a quarter of a degree and does not creep
-/// (means of the first and last third within 0.03°), less a twentieth at either end. Cost: O(N).
+/// Intervals in which the table's angle stays within a quarter of a degree and does not creep
+/// (means of the first and last third within 0.03°), minus a twentieth at either end. Cost: O(N).
 [[nodiscard]] std::vector<Dwell> steady_angles(View<double> angle_rad,
                                                const SteadyAngleOptions& options);
 
-/// Of each steady stretch the longest part in which the sensor lay still too: the table may still
-/// move, or the sensor ring, where the angle shown is that of the setting already. A stretch
-/// without such a part of six samples is left away.
+/// The longest part of each steady interval in which the sensor is at rest too: the table may still
+/// move, or the sensor ring, when the angle has already reached its setting. An interval without
+/// such a part of six samples is omitted.
 [[nodiscard]] std::vector<Dwell> at_rest(View<Dwell> steady, View<signal::Rest> rests);
 
 /// The mean of a channel over each dwell.
 struct DwellOutputs {
-  std::vector<double> mean, std;  ///< of each dwell; std of the mean, 0 where noise is not seen
+  std::vector<double> mean, std;  ///< of each dwell; std of the mean, 0 if no noise is visible
   double noise_dof = 0.0;         ///< see PoseMeans
 };
 
-/// `lsb`: the converter's step, 0 if there is none. Errors: those of pose_means.
+/// `lsb`: the quantisation step, 0 if none. Errors: those of pose_means.
 [[nodiscard]] Result<DwellOutputs> dwell_outputs(View<double> output,
                                                  View<Dwell> dwells,
                                                  double lsb = 0.0);

@@ -4,27 +4,27 @@
 
 #include "proofmass/calibrate/tumble_coefficients.hpp"
 
-// What the residuals of a tumble tell.
+// Residual analysis of a tumble.
 namespace proofmass::calibrate {
 
-/// Residuals with what a fit to the other positions would make of each,
+/// Residuals, and studentised deletion residuals,
 ///
-///     t = r/s(r) √((ν − 1)/(ν − (r/s(r))²))   with ν = dof, where sigma is of the residuals,
+///     t = r/s(r) √((ν − 1)/(ν − (r/s(r))²))   with ν = dof, if sigma is from the residuals,
 ///
-/// or r/s(r) of a stated noise. A position is suspect where so much would be chance in one of a
-/// hundred tests (Bonferroni's bound over the positions).
-/// Source: R. D. Cook, S. Weisberg, Residuals and Influence in Regression (1982), 2.2.
+/// or r/s(r) with a stated noise. A position is suspect if that is significant at 1 % (Bonferroni
+/// over the positions). Source: R. D. Cook, S. Weisberg, Residuals and Influence in Regression
+/// (1982), 2.2.
 void find_residuals(const TumbleSolution& solution, View<TumblePosition> positions, TumbleFit& fit);
 
-/// Against the stated noise, χ² or F; else against the scatter of repeated positions,
-/// F = ((rss − rss_r)/(ν − ν_r))/(rss_r/ν_r), rss_r about a level for each position that was
-/// visited (same angle, mounting and direction) and the drift. Absent where neither is there.
-/// Source: N. R. Draper, H. Smith, Applied Regression Analysis, 3rd ed. (1998), 2.1.
+/// Against the stated noise, χ² or F; else against the scatter of repeated positions, F = ((rss −
+/// rss_r)/(ν − ν_r))/(rss_r/ν_r), rss_r about a level for each position that was visited (same
+/// angle, mounting and direction) and the drift. Absent if neither is available. Source: N. R.
+/// Draper, H. Smith, Applied Regression Analysis, 3rd ed. (1998), 2.1.
 [[nodiscard]] std::optional<TumbleLackOfFit> find_lack_of_fit(const TumbleSolution& solution,
                                                               View<TumblePosition> positions,
                                                               const Eigen::VectorXd& outputs);
 
-/// The drift as fitted, or as the two visits of one position show it, or that it is not known.
+/// The drift as fitted, or from the two visits of one position, or unknown.
 [[nodiscard]] TumbleDrift find_drift(const TumbleSolution& solution,
                                      View<TumblePosition> positions,
                                      const TumbleFit& fit);

@@ -4,21 +4,21 @@
 #include <string>
 #include <string_view>
 
-// The nouns of the tumble test and what each of its coefficients is.
+// Definitions of the tumble test and its coefficients.
 namespace proofmass::calibrate {
 
-/// What one axis read while the table stood still.
+/// Output of one axis at one table setting.
 struct TumblePosition {
-  double angle_rad = 0.0;   ///< of the table
+  double angle_rad = 0.0;   ///< angle of the table
   double output = 0.0;      ///< m/s^2, V or counts
-  double output_std = 0.0;  ///< of the output by noise alone; 0 where nobody knows it
-  int direction = 0;        ///< +1: reached forwards, −1: backwards, 0: not said
-  double mount_rad = 0.0;   ///< by which the sensor was turned on the table
+  double output_std = 0.0;  ///< of the output, due to noise alone; 0 if unknown
+  int direction = 0;        ///< +1: approached forwards, −1: backwards, 0: not stated
+  double mount_rad = 0.0;   ///< rotation of the sensor on the table
   /// 1: the pendulous axis lies in the plane of rotation with the input axis; 2: the output axis.
   int plane = 1;
   std::optional<double> time_s = {};
-  std::optional<double> temperature = {};  ///< K, or °C: its differences count
-  std::string label = {};  ///< as the user named it: "row 7", "rest at 12 s"; may be empty
+  std::optional<double> temperature = {};  ///< K, or °C: only differences are used
+  std::string label = {};  ///< as named by the user: "row 7", "rest at 12 s"; may be empty
 };
 
 /// In the model equation
@@ -40,25 +40,25 @@ enum class TumbleQuantity {
   misalignment_p,  ///< δp = −C1/(K1 g)
   K2_minus_Koo,    ///< −2 C2/(K1 g²)
   Kio,             ///< 2 S2/(K1 g²)
-  drift,           ///< the bias's, per second or per position
-  temperature,     ///< the bias's, per kelvin
-  hysteresis,      ///< H/K1: output reached forwards less backwards
-  backlash,        ///< L/(K1 g): angle reached forwards less backwards
-  indexing_cos,    ///< a₁/(K1 g), the table's true angle less the indicated, times cos θ
+  drift,           ///< of the bias, per second or per position
+  temperature,     ///< of the bias, per kelvin
+  hysteresis,      ///< H/K1: output approached forwards minus backwards
+  backlash,        ///< L/(K1 g): angle approached forwards minus backwards
+  indexing_cos,    ///< a₁/(K1 g), the table's true minus indicated angle, times cos θ
   indexing_sin,    ///< b₁/(K1 g)
   indexing_cos2,   ///< a₂/(K1 g)
   indexing_sin2,   ///< b₂/(K1 g)
 };
 
-/// "K2_minus_Kpp": the name that documents use.
+/// "K2_minus_Kpp": the name used in documents.
 [[nodiscard]] std::string_view name_of(TumbleQuantity quantity);
 
-/// The power of acceleration in its unit: 1 for a bias, 0 for an angle, −1 for K2, −2 for K3.
-/// K1's unit is the output's per acceleration.
+/// Exponent of acceleration in its unit: 1 for a bias, 0 for an angle, −1 for K2, −2 for K3. K1's
+/// unit is the output's per acceleration.
 [[nodiscard]] int acceleration_power(TumbleQuantity quantity);
 
-/// Four readings a quarter turn apart, each that of the input axis at so many degrees from the
-/// horizontal: 90 is upwards.
+/// Four outputs a quarter turn apart, named by the input axis's angle from the horizontal in
+/// degrees: 90 is upwards.
 struct FourPoint {
   double E0 = 0.0, E90 = 0.0, E180 = 0.0, E270 = 0.0;
 };
@@ -77,15 +77,15 @@ struct FourPointResult {
 /// Source: IEEE Std 1293-2018, four-point tumble (by its published description).
 [[nodiscard]] FourPointResult four_point(const FourPoint& readings, double gravity_mps2);
 
-/// What a scale factor and a bias are taken out with, f = Ks (reading − offset).
+/// Scale factor and offset of the correction f = Ks (reading − offset).
 struct CorrectionFactors {
-  double offset = 0.0;              ///< (E0 + E180)/2, unit of the reading
+  double offset = 0.0;              ///< (E0 + E180)/2, unit of the output
   double scale = 1.0;               ///< Ks = nominal/measured scale factor
   double scale_factor_error = 0.0;  ///< measured/nominal − 1
 };
 
-/// From a four-point tumble and the nominal scale factor in output per m/s^2.
-/// Source: M. A. Lele, thesis (2010), 5.1.2, equations 5.1 and 5.2, with the units put right.
+/// Correction from a four-point tumble and the nominal scale factor in output per m/s^2. Source: M.
+/// A. Lele, thesis (2010), 5.1.2, equations 5.1 and 5.2, with corrected units.
 [[nodiscard]] CorrectionFactors correction_factors(const FourPoint& readings,
                                                    double gravity_mps2,
                                                    double nominal_scale);

@@ -4,14 +4,14 @@
 #include <cstddef>
 #include <vector>
 
-// Least squares with errors of two kinds: each position's own and those of the table's settings.
+// Least squares with two kinds of errors: each position's own and those of the table's settings.
 namespace proofmass::calibrate {
 
-/// What the positions may be wrong by.
+/// Errors of the positions.
 struct TumbleErrors {
-  Eigen::VectorXd noise_std;  ///< of each output; all 1 where it is not known
+  Eigen::VectorXd noise_std;  ///< of each output; all 1 if unknown
   bool noise_known = false;
-  double noise_dof = 0.0;            ///< 0: infinitely many
+  double noise_dof = 0.0;            ///< 0: infinite
   Eigen::VectorXd lever;             ///< output per radian of indexing: K1 g cos φ
   std::vector<std::size_t> setting;  ///< positions of one number share their error of indexing
   double indexing_std_rad = 0.0;
@@ -20,7 +20,7 @@ struct TumbleErrors {
   double drift_std = 0.0;      ///< of each shape's size, in the unit of the output
   bool drift_assumed = false;  ///< as indexing_assumed
 
-  /// Whether there is more than noise and stated errors of indexing.
+  /// Whether there are error components besides noise and stated indexing.
   [[nodiscard]] bool with_components() const {
     return indexing_assumed || (drift_std > 0.0 && drift.cols() > 0);
   }
@@ -37,7 +37,7 @@ struct TumbleRegression {
   Eigen::VectorXd residual_variance;    ///< of each residual, as expected
   Eigen::VectorXd deleted;              ///< each against a fit to the others, in its std
   double sigma = 0.0;                   ///< factor on noise_std; of unknown noise its std
-  double dof = 0.0;                     ///< of sigma; 0: infinitely many
+  double dof = 0.0;                     ///< of sigma; 0: infinite
   bool noise_known = false;
   double noise_dof = 0.0;   ///< of the stated noise
   double rss = 0.0;         ///< Σ residual²
@@ -50,10 +50,10 @@ struct TumbleRegression {
 ///
 ///     cov β = σ² (AᵀWA)⁻¹ + u² G (Σ v vᵀ) Gᵀ,   v the lever of one setting.
 ///
-/// Where noise is not known σ² = rss/(n − p), beside indexing by restricted likelihood
-/// (tumble_scatter.hpp); where it is, σ = 1, or √(χ²/(n − p)) if χ² is beyond chance.
-/// Where errors are assumed (with_components()) β is of generalised least squares, V with the sizes
-/// of find_sizes(). A must have full rank. Cost: O(n p²), with indexing O(settings · n · p).
+/// If the noise is unknown σ² = rss/(n − p), with indexing by restricted likelihood
+/// (tumble_scatter.hpp); if it is known, σ = 1, or √(χ²/(n − p)) if χ² is significant. If errors
+/// are assumed (with_components()) β comes from generalised least squares, V with the sizes of
+/// find_sizes(). A must have full rank. Cost: O(n p²), with indexing O(settings · n · p).
 [[nodiscard]] TumbleRegression regress_tumble(const Eigen::MatrixXd& A,
                                               const Eigen::VectorXd& y,
                                               const TumbleErrors& errors);

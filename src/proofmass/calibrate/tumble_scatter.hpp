@@ -5,7 +5,7 @@
 
 namespace proofmass::calibrate {
 
-/// Scatter of single positions beside errors that positions have in common.
+/// Scatter of single positions in addition to errors common to several positions.
 struct TumbleScatter {
   double sigma = 0.0;
   double dof = 0.0;  ///< of sigma²: 2/its relative variance, 1 at least
@@ -15,10 +15,10 @@ struct TumbleScatter {
 ///
 ///     |P y|² = tr P,   P = V⁻¹ − V⁻¹A (AᵀV⁻¹A)⁻¹ AᵀV⁻¹,   dof = σ⁴ tr P²,
 ///
-/// the vectors w having no position in common. Expects more rows than columns. Where the common
-/// errors explain the residuals to the last it is √(rss/(n − p)), which is then too large.
-/// Source: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545; S. R. Searle, G. Casella, C. E.
-/// McCulloch, Variance Components (1992), 6.6. Cost: O(n p²) a step, 60 steps.
+/// with vectors w that share no position. Expects more rows than columns. If the common errors
+/// explain the residuals completely it is √(rss/(n − p)), which is then too large. Source: H. D.
+/// Patterson, R. Thompson, Biometrika 58 (1971) 545; S. R. Searle, G. Casella, C. E. McCulloch,
+/// Variance Components (1992), 6.6. Cost: O(n p²) a step, 60 steps.
 [[nodiscard]] TumbleScatter restricted_scatter(const Eigen::MatrixXd& A,
                                                const Eigen::VectorXd& y,
                                                const std::vector<Eigen::VectorXd>& common);

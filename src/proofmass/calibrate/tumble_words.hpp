@@ -4,7 +4,7 @@
 
 #include "proofmass/calibrate/tumble_coefficients.hpp"
 
-// What is said of a tumble in words.
+// Sentences on a tumble.
 namespace proofmass::calibrate {
 
 /// Why a column is not in the fit: a sentence without its subject.
@@ -13,19 +13,19 @@ namespace proofmass::calibrate {
 /// Why no coefficient has a standard deviation.
 [[nodiscard]] std::string no_std_words(const TumbleDesign& design);
 
-/// Why one whose uncertainty is mostly scatter has none.
+/// Why a coefficient whose uncertainty is mostly scatter has no standard deviation.
 [[nodiscard]] std::string unseen_scatter_words();
 
-/// What the coefficient is in this test, exactly.
+/// Exact definition of the coefficient in this test.
 [[nodiscard]] std::string meaning_words(const TumbleCoefficient& coefficient,
                                         const TumbleDesign& design);
 
 [[nodiscard]] std::string unit_words(TumbleQuantity quantity, const TumbleSolution& solution);
 
-/// What errors of the table's angle look like, or how large they are.
+/// Effect of the table's angle errors, or their size.
 [[nodiscard]] TumbleIndexing indexing_words(const TumbleSolution& solution, const TumbleFit& fit);
 
-/// Notes what was assumed of the table's angles and of the drift, where nothing is stated.
+/// Notes the assumptions on the table's angles and on the drift, if nothing is stated.
 void add_assumptions(const TumbleSolution& solution, TumbleFit& fit);
 
 }  // namespace proofmass::calibrate

@@ -7,16 +7,16 @@
 
 namespace proofmass::calibrate {
 
-/// How the readings of a sensor follow the angle of the table that turns it about a horizontal
+/// Dependence of a sensor's output on the angle of the table that rotates it about a horizontal
 /// axis: mean = c + a sin θ + b cos θ, axis by axis, by least squares over the positions so far.
 class TurnedAxes {
  public:
-  /// one_g: what the axes read at 1 g, where that is known.
+  /// one_g: output of the axes at 1 g, if known.
   TurnedAxes(std::size_t axes, std::optional<double> one_g) : axes_(axes), given_one_g_(one_g) {}
 
   void add(double angle_rad, const Eigen::Vector3d& mean);
-  /// The angle at which the table gives this reading; nullopt where the positions do not tell yet,
-  /// or of one axis alone.
+  /// Angle of the table for this output; nullopt if the positions do not determine it yet, or with
+  /// one axis alone.
   [[nodiscard]] std::optional<double> angle_rad(const Eigen::Vector3d& mean) const;
   [[nodiscard]] std::optional<double> one_g() const;
 

@@ -9,7 +9,7 @@
 
 namespace proofmass::calibrate {
 
-/// What a type B contribution does to the nine parameters, in the order of
+/// Effect of a type B contribution on the nine parameters, in the order of
 /// MultiPosition::covariance.
 struct TypeBEffect {
   BudgetLine line;  ///< its sensitivity is that of the last parameter it acts on
@@ -19,8 +19,8 @@ struct TypeBEffect {
   [[nodiscard]] Eigen::Matrix<double, 9, 9> covariance() const;
 };
 
-/// Of the lines that act on a parameter which was estimated.
-/// Errors: invalid_argument (see add_type_b).
+/// Effects of the lines that act on an estimated parameter. Errors: invalid_argument (see
+/// add_type_b).
 [[nodiscard]] Result<std::vector<TypeBEffect>> effects_of(const MultiPosition& fit,
                                                           View<TypeB> lines,
                                                           std::string_view reading_unit);

@@ -249,7 +249,7 @@ double DifferenceVariances::squared_differences(const double* x,
 }
 
 // Differences of order d do not see polynomials below that order. Taken off what is still held,
-// they keep the integral small however long the series and however far it wanders.
+// they keep the integral small however long the series and however far it drifts.
 void DifferenceVariances::rebase() {
   const double slope = theta_ / static_cast<double>(since_rebase_);
   const auto now = static_cast<double>(points_ - 1);

@@ -83,9 +83,8 @@ VectorXd DriftEvidence::rise(double time_constant_s) const {
   const double rho = std::exp(-decay), one_less_rho = -std::expm1(-decay);
   const auto n = static_cast<double>(n_);
   const double rho_n = std::exp(-n * decay), one_less_rho_n = -std::expm1(-n * decay);
-  // Long after switching on nothing is left of an exponential, and e^(-start/T) is zero to a
-  // double: its shape within the recording stays in the columns, whatever its amplitude would have
-  // been.
+  // Long after power-on nothing is left of an exponential, and e^(-start/T) is zero to a double:
+  // its shape within the recording stays in the columns, whatever its amplitude would have been.
   constexpr double longest_ago = 30.0;  // in time constants
   const double first =
       -std::exp(-std::min(start_s_ / time_constant_s, longest_ago)) * one_less_rho / decay;

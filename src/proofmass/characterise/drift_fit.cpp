@@ -185,7 +185,7 @@ class DriftVerdict {
     fit.line_p = line.p;
   }
 
-  // All that fit as well, and the level at switching on that any of them gives.
+  // All that fit as well, and the level at power-on that any of them gives.
   void allow(const std::vector<const DriftTrial*>& as_good, double dof) {
     DriftFit& fit = out_.fit;
     std::vector<Interval95> levels;

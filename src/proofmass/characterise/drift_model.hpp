@@ -10,15 +10,15 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
 
-// What the bias of a sensor at rest can do, and what was found of it.
+// Models of the bias of a sensor at rest, and their fitted values.
 namespace proofmass::characterise {
 
-/// The deterministic part, t since switching on:
+/// The deterministic part, t since power-on:
 ///
 ///     y(t) = a2 + a1 (1 − e^(−t/T)) + a1' (1 − e^(−t/T')) + a3 t + Σ s_j [t ≥ t_j]
 ///
-/// or, where another shape than the exponential is as likely, a2 + a1 g(t/T) of drift_shapes.hpp;
-/// of the sine T is the period and a1' the amplitude of the cosine.
+/// or, if another shape is as likely as the exponential, a2 + a1 g(t/T) of drift_shapes.hpp; for
+/// the sine T is the period and a1' the amplitude of the cosine.
 enum class DriftShape {
   constant,               ///< a2
   line,                   ///< a2, a3
@@ -41,8 +41,8 @@ enum class DriftShape {
   return shape == DriftShape::line || shape == DriftShape::exponential_and_line;
 }
 
-/// A value, its standard deviation and its central 95 % interval; an end that the data do not
-/// bound is missing.
+/// A value, its standard deviation and its central 95 % interval; a missing end is not bounded by
+/// the data.
 struct Interval95 {
   double value = 0.0;
   double std = 0.0;
@@ -54,17 +54,17 @@ struct DriftStep {
   Uncertain size;
 };
 
-/// A shape that was tried, with the noise refitted beside it.
+/// A candidate shape, with the noise refitted.
 struct DriftCandidate {
   DriftShape shape = DriftShape::constant;
-  int parameters = 0;  ///< of shape and noise
+  int parameters = 0;  ///< for shape and noise
   double log_likelihood = 0.0;
-  double information_criterion = 0.0;  ///< Schwarz: −2 ln L + k ln n; the least is preferred
+  double information_criterion = 0.0;  ///< Schwarz: −2 ln L + k ln n; the smallest is preferred
   std::optional<double> time_constant_s;
   std::size_t steps = 0;
 };
 
-/// The noise of the block means that the fit took into account; none where not needed.
+/// Noise of the block means in the fit; each 0 if not needed.
 struct DriftNoise {
   double white = 0.0;        ///< N in u/√Hz
   double flicker = 0.0;      ///< B in u
@@ -74,40 +74,40 @@ struct DriftNoise {
   [[nodiscard]] double markov_std() const;  ///< q √(T/2) in u
 };
 
-/// How likely the time constant is: twice the loss in log-likelihood from the best one, all else
-/// fitted anew. 3.84 bounds the 95 % interval.
+/// Profile likelihood of the time constant: twice the loss in log-likelihood from the maximum, with
+/// all else refitted. 3.84 bounds the 95 % interval.
 struct ProfilePoint {
   double time_constant_s = 0.0;
   double deviance = 0.0;
 };
 
-/// The deterministic part with the covariance of what it is made of.
+/// The deterministic part with the covariance of its parameters.
 struct DriftCurve {
   DriftShape shape = DriftShape::constant;
   double a2 = 0.0, a1 = 0.0, time_constant_s = 0.0;
   double second_a1 = 0.0, second_time_constant_s = 0.0;
   double slope_per_s = 0.0;
   std::vector<DriftStep> steps;
-  /// Of [a2; a1; ln T; a1'; ln T'; a3; s_1 …], those that the shape has, in this order; of the sine
-  /// [a2; a1; a1'; ln T].
+  /// Covariance of those of [a2; a1; ln T; a1'; ln T'; a3; s_1 …] that the shape has, in this
+  /// order; for the sine of [a2; a1; a1'; ln T].
   Eigen::MatrixXd covariance;
 
   [[nodiscard]] double value(double t_s) const;
-  /// Of the curve, not of a reading: without noise.
+  /// Standard deviation of the curve, without measurement noise.
   [[nodiscard]] double std(double t_s) const;
   /// ∂y/∂ of each entry of the covariance at t.
   [[nodiscard]] Eigen::VectorXd gradient(double t_s) const;
 };
 
-/// The curve and what wanders beside it, at one time.
+/// State of curve and drift at one time.
 struct DriftState {
   double t_s = 0.0;
   Eigen::Vector3d wander = Eigen::Vector3d::Zero();  ///< random walk since 0, flicker, Markov
-  Eigen::MatrixXd covariance;  ///< of the entries of DriftCurve::covariance, then of the wander
+  Eigen::MatrixXd covariance;  ///< of the entries of DriftCurve::covariance, then of the drift
 };
 
-/// A curve that the recording allows, with what wanders beside it; `weight` by Akaike's criterion,
-/// of all that it allows 1.
+/// A curve consistent with the recording, with its drift; `weight` by Akaike's criterion, the sum
+/// over all possibilities is 1.
 struct DriftPossibility {
   DriftCurve curve;
   DriftNoise noise;
@@ -115,71 +115,71 @@ struct DriftPossibility {
   double weight = 1.0;
 };
 
-/// Why there is no time constant.
+/// Reason for the absence of a time constant.
 enum class DriftReason {
   identified,
-  no_warm_up,             ///< nothing an exponential explains that the noise does not
+  no_warm_up,             ///< the noise explains the recording as well as an exponential
   hidden_by_noise,        ///< amplitude not above the random walk or Markov noise
   steps,                  ///< steps explain the drift better
-  line,                   ///< a straight line explains it as well: T cannot be told
+  line,                   ///< a straight line explains it as well: T is not determined
   longer_than_record,     ///< T is not bounded within the record
   shorter_than_resolved,  ///< T at or below what the blocks resolve
-  begun_later,            ///< an exponential that would be long over, had it begun at switching on
-  shape_undetermined,     ///< a warm-up, but another shape fits it as well as the exponential
-  swing,                  ///< a slow sine explains it better than any warm-up
-  unexplained             ///< what is left is no noise: something else moves the bias
+  begun_later,  ///< an exponential that would have decayed long ago, had it begun at power-on
+  shape_undetermined,  ///< a warm-up, but another shape fits it as well as the exponential
+  swing,               ///< a slow sine explains it better than any warm-up
+  unexplained          ///< the residual is not noise: another cause changes the bias
 };
 
-/// What was found. Where no exponential is identified, the curve is the best of the shapes without
-/// one, or of all where the shape is not determined, and a1 and T are missing.
+/// Result of the fit. If no exponential is identified, the curve is the best shape without one, or
+/// the best of all if the shape is not determined, and a1 and T are absent.
 struct DriftFit {
   DriftCurve curve;
   DriftNoise noise;
   bool identified = false;
   DriftReason why = DriftReason::no_warm_up;
-  std::string reason;  ///< a sentence for people, without unit: figures are in the fields
+  std::string reason;  ///< a sentence for people, without units: values are in the fields
 
-  /// Where the shape is not determined, all that fit as well, the likeliest first.
+  /// If the shape is not determined, all shapes that fit as well, the most likely first.
   std::vector<DriftPossibility> possibilities;
 
-  Interval95 a2;                              ///< bias at switching on, over all possibilities
-  std::optional<Interval95> a1;               ///< where identified
-  std::optional<Interval95> time_constant_s;  ///< where identified
+  Interval95 a2;                              ///< bias at power-on, over all possibilities
+  std::optional<Interval95> a1;               ///< if identified
+  std::optional<Interval95> time_constant_s;  ///< if identified
   std::optional<Interval95> second_a1, second_time_constant_s, slope_per_s;
 
-  /// The exponential that fits best, identified or not, with what it gains over the best fit
-  /// without one: for people to look at, not to use.
+  /// The best-fitting exponential, identified or not, and its gain over the best fit without one:
+  /// for display, not for use.
   double best_time_constant_s = 0.0;
   double constant_deviance = 0.0, constant_p = 1.0;  ///< exponential against constant
   double line_deviance = 0.0, line_p = 1.0;          ///< exponential against straight line
-  /// With 95 % confidence there is no warm-up of this amplitude with T a fifth of the record.
+  /// 95 % upper limit of the amplitude of a warm-up with T a fifth of the record.
   double undetected_below = 0.0;
-  /// T is within these where it is not identified but bounded from one side.
+  /// One-sided bounds of T if it is not identified.
   std::optional<double> time_constant_above_s, time_constant_below_s;
 
   std::vector<ProfilePoint> profile;
   std::vector<DriftCandidate> candidates;  ///< best first
 
-  /// Where the bias stands at the end of the recording.
+  /// State of the bias at the end of the recording.
   DriftState end;
-  double block_s = 0.0;  ///< of the means that the fit is of
+  double block_s = 0.0;  ///< averaging time of the fitted means
 };
 
-/// Mean and standard deviation over the possibilities, one interval each, and the interval that
-/// holds all of theirs.
+/// Weighted mean and standard deviation over the possibilities, one interval each, and the interval
+/// that contains all of theirs.
 [[nodiscard]] Interval95 covering(View<Interval95> intervals, View<DriftPossibility> possibilities);
 
 /// The bias at a later time.
 struct DriftForecast {
   double t_s = 0.0;
-  Interval95 bias;    ///< curve and wander
+  Interval95 bias;    ///< curve and drift
   Interval95 change;  ///< since the end of the recording
 };
 
-/// y(t) and the 95 % band that curve, wander so far and the wander until then leave. Where the
-/// shape is not determined: the mean over the possibilities, and a band that holds the bands of
-/// all. Errors: not_observable (no warm-up is identified; the message says why), invalid_argument
-/// (t_s is before the recording's end).
+/// y(t) and its 95 % band from the uncertainty of the curve, the drift so far and the drift until
+/// then. If the shape is not determined: the mean over the possibilities, and a band that contains
+/// all their bands. Errors: not_observable (no warm-up is identified; the message states why),
+/// invalid_argument (t_s is before the recording's end).
 [[nodiscard]] Result<DriftForecast> forecast(const DriftFit& fit, double t_s);
 
 /// ½ b t² with the band of b.

@@ -106,7 +106,7 @@ TEST(DriftNoise, OfAMarkovTermHasItsStandardDeviation) {
   EXPECT_DOUBLE_EQ((DriftNoise{.markov = 0.5, .markov_time_constant_s = 32.0}).markov_std(), 2.0);
 }
 
-/// A warm-up that is known but for what wanders.
+/// A warm-up that is known but for what drifts.
 DriftFit known(const DriftNoise& noise, const Eigen::Vector3d& wander) {
   DriftFit fit;
   fit.curve = curve_of(DriftShape::exponential);
@@ -226,7 +226,7 @@ TEST(DriftForecast, HoldsNinetyFivePercentOfTwoThousandContinuations) {
   const double end_s = h * static_cast<double>(n), then_s = end_s + h * static_cast<double>(ahead);
   const auto truth = [&](double t_s) { return a2 - a1 * std::expm1(-t_s / T); };
   for (unsigned record = 0; record < records; ++record) {
-    // Steps of half a block, so that switching on, samples and the end are all on the walk.
+    // Steps of half a block, so that power-on, samples and the end are all on the walk.
     const Series walk = test::random_walk(K, 2.0 / h, 2 * (n + ahead), 2 * record);
     Series samples = test::sum_of({curve, test::white(N, 1.0 / h, n, 2 * record + 1)});
     for (std::size_t k = 0; k < n; ++k) samples[k] += walk[2 * k];

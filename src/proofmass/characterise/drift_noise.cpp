@@ -53,7 +53,7 @@ NoiseChoice::NoiseChoice(const DriftEvidence& evidence) : evidence_(evidence) {
   flicker_ = column(Term::flicker);
   // From where a block still shows it to where the record shows it but six times.
   const double shortest_s = 2.0 * evidence.block_s(), longest_s = evidence.duration_s() / 6.0;
-  // Of a few dozen values none can be told from a random walk.
+  // Of a few dozen values none can be distinguished from a random walk.
   constexpr Index fewest_values = 64;
   if (evidence.blocks() < fewest_values) return;
   for (int k = 0; k < markov_times; ++k) {
@@ -186,7 +186,7 @@ NoiseColumns NoiseChoice::choose(const VectorXd& z, const OrdinateMeans& means) 
     if (gain(both, chosen) > gain_for_time) chosen = std::move(*both);
   }
   // A walk that next to nothing speaks for is left out: kept, it would widen every interval. Beside
-  // another term that wanders it has to show more.
+  // another term that drifts it has to show more.
   const Option without = option(without_walk(chosen.columns), z, means);
   const double least =
       chosen.columns.terms.size() > base_.terms.size() ? gain_for_walk_beside : gain_for_walk;

@@ -22,7 +22,7 @@ struct NoiseColumns {
   [[nodiscard]] double strength(const OrdinateFit& fit, Term term) const;
 };
 
-/// Which noise a drift is told from.
+/// Which noise a drift is distinguished from.
 class NoiseChoice {
  public:
   explicit NoiseChoice(const DriftEvidence& evidence);

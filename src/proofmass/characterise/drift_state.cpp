@@ -18,9 +18,9 @@ using Eigen::VectorXd;
 constexpr std::array<Term, 3> wandering{Term::random_walk, Term::flicker, Term::markov};
 constexpr Index terms = 3;
 
-// Density of each wandering term at each ordinate, k = 0 first. There a random walk has none, as it
-// is counted from its own mean over the record until pinned; the others' are those of half the
-// lowest frequency.
+// Density of each drift term at each ordinate, k = 0 first. There a random walk has none, as it is
+// counted from its own mean over the record until pinned; the others' are those of half the lowest
+// frequency.
 MatrixXd wander_densities(const DriftEvidence& evidence, const DriftTrial& trial) {
   MatrixXd S = MatrixXd::Zero(evidence.blocks(), terms);
   for (std::size_t k = 0; k < trial.noise.terms.size(); ++k) {

@@ -70,8 +70,8 @@ inline DenseFit fit_dense(const Eigen::VectorXd& y, const DenseModel& model) {
   return fit;
 }
 
-/// Covariance of samples (k + ½) h after switching on: white noise and a random walk that is zero
-/// at switching on.
+/// Covariance of samples (k + ½) h after power-on: white noise and a random walk that is zero at
+/// power-on.
 inline Eigen::MatrixXd white_and_walk(double N, double K, double step_s, Eigen::Index n) {
   Eigen::MatrixXd V(n, n);
   for (Eigen::Index i = 0; i < n; ++i)

@@ -17,7 +17,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Two time constants nearer than this cannot be told from one.
+// Two time constants nearer than this cannot be determined from one.
 constexpr double least_ratio = 2.0;
 
 constexpr std::array<DriftShape, 4> first_shapes{DriftShape::constant, DriftShape::line,
@@ -91,7 +91,7 @@ void DriftTrials::add(DriftShape shape) {
   if (shape == DriftShape::two_exponentials &&
       std::abs(trial.at.log_times[0] - trial.at.log_times[1]) < std::log(least_ratio))
     return;
-  // Long after switching on a rival may differ from a line by less than the rounding of doubles.
+  // Long after power-on a rival may differ from a line by less than the rounding of doubles.
   if (is_rival(shape) && !std::isfinite(criterion(trial))) return;
   trials_.push_back(std::move(trial));
 }

@@ -233,7 +233,7 @@ TEST(EdfFromSampleToSample, HasClosedFormsAtOneSample) {
 
 TEST(EdfFromSampleToSample, TendsToThePapersWhereTauIsManySamples) {
   for (int alpha = 2; alpha >= -2; --alpha) {
-    if (alpha == 1) continue;  // Its variance hangs on the bandwidth.
+    if (alpha == 1) continue;  // Its variance depends on the bandwidth.
     EdfCase known{.alpha = alpha, .m = 1000, .phase_points = 20'000};
     const double paper = greenhall_riley_edf(known);
     known.sampled = true;

@@ -15,14 +15,13 @@ struct SlowWave {
   [[nodiscard]] double at(double time_s) const;
 };
 
-/// The vector that a coefficient of the cosine transform belongs to: number k of a stretch of n
-/// blocks.
+/// Basis vector of a cosine-transform coefficient: index k in a stretch of n blocks.
 struct CosineVector {
   std::size_t k = 0, n = 0;  ///< k = 0: none
   double start_s = 0.0, step_s = 0.0;
 
-  /// The coefficients of cos(2π f t), as real part, and of sin(2π f t), as imaginary part; f far
-  /// below 1/step_s.
+  /// Its products with cos(2π f t), real part, and sin(2π f t), imaginary part; f far below
+  /// 1/step_s.
   [[nodiscard]] std::complex<double> of_wave(double frequency_hz) const;
 };
 
@@ -30,12 +29,12 @@ struct CosineVector {
 struct CosineOrdinate {
   double frequency_hz = 0.0;
   double amplitude = 0.0;  ///< its square is a two-sided density, unit²/Hz
-  double of_ramp = 0.0;    ///< amplitude that a ramp of 1 unit/s has
+  double of_ramp = 0.0;    ///< amplitude of a ramp of 1 unit/s
   CosineVector vector = {};
 };
 
-/// The slow part of a series as means over blocks, gathered in one pass: blocks of one sample while
-/// the series is short, of up to 128 samples once it is long.
+/// The slow part of a series as block means, accumulated in one pass: blocks of one sample for a
+/// short series, of up to 128 samples for a long one.
 class BlockMeans {
  public:
   explicit BlockMeans(double rate_hz) : rate_hz_(rate_hz) {}
@@ -43,26 +42,25 @@ class BlockMeans {
   /// NaN is missing.
   void add(View<double> samples);
 
-  /// The rate as it is known at the end.
+  /// Sets the final rate.
   void set_rate(double rate_hz) { rate_hz_ = rate_hz; }
 
   [[nodiscard]] std::size_t block() const { return block_; }
 
-  /// Mean of each complete block, NaN where more than half of it is missing.
+  /// Mean of each complete block, NaN if more than half of it is missing.
   [[nodiscard]] std::vector<double> means() const;
 
-  /// The cosine transforms of the stretches between long gaps, frequency above zero, ascending
-  /// within each stretch, up to half the rate or, of blocks longer than a sample, to a quarter of
-  /// the blocks' rate, where their aliases end. A short gap is filled with the mean of its
-  /// neighbours and the densities made up for it.
+  /// Cosine transforms of the stretches between long gaps, frequency above zero, ascending within
+  /// each stretch. The upper limit is half the rate or, for blocks longer than a sample, a quarter
+  /// of the blocks' rate, where aliasing becomes significant. A short gap is filled with the mean
+  /// of its neighbours and the densities are corrected for it.
   ///
-  /// The transform of type II turns a random walk about any level exactly, and white noise, into
-  /// independent coefficients (its vectors are those of the second difference with free ends), and
-  /// nearly so any stationary noise: no window and no leakage, down to the lowest frequency
-  /// that the stretch holds.
-  /// Source: G. Strang, The discrete cosine transform, SIAM Review 41 (1999) 135; N. Ahmed,
-  /// T. Natarajan, K. R. Rao, IEEE Trans. Computers C-23 (1974) 90, on the Markov-1 process.
-  /// `wave` is taken out before. Cost: O(N log N) in the blocks.
+  /// The type II transform diagonalises a random walk about any level, and white noise, exactly
+  /// (its vectors are those of the second difference with free ends), and any stationary noise
+  /// approximately: no window and no leakage, down to the lowest frequency in the stretch. Source:
+  /// G. Strang, The discrete cosine transform, SIAM Review 41 (1999) 135; N. Ahmed, T. Natarajan,
+  /// K. R. Rao, IEEE Trans. Computers C-23 (1974) 90, on the Markov-1 process. `wave` is subtracted
+  /// first. Cost: O(N log N) in the blocks.
   [[nodiscard]] std::vector<CosineOrdinate> ordinates(const SlowWave& wave = {}) const;
 
   static constexpr std::size_t longest_block = 128;
@@ -74,8 +72,8 @@ class BlockMeans {
   double rate_hz_;
   std::size_t block_ = 1;
   std::vector<double> sums_;
-  std::vector<std::uint16_t> counts_;  ///< of valid samples, each block
-  double sum_ = 0.0;                   ///< of the block under way
+  std::vector<std::uint16_t> counts_;  ///< valid samples in each block
+  double sum_ = 0.0;                   ///< of the current block
   std::size_t valid_ = 0, taken_ = 0;
 };
 

@@ -10,37 +10,37 @@
 
 namespace proofmass::characterise {
 
-/// Terms to a τ that decimation leaves in long recordings.
+/// Terms per τ after decimation of long recordings.
 inline constexpr std::size_t least_decimated_overlap = 16;
 
-/// A noise analysis of samples as they come, for recordings longer than memory: deviation,
-/// spectrum, lines and coefficients in one pass. analyse_noise is a fold over it, with the events
-/// found before. Of the statistics those that are differences of the phase (adev … ohdev); the
-/// others need the whole record at once, and so do noise types by lag 1. Memory: ten bytes for
-/// every 128 samples and, of overlapping statistics, some hundred kilobytes; without overlap (adev,
-/// hdev) up to two or three times the longest τ.
+/// Online noise analysis for recordings longer than memory: deviation, spectrum, lines and
+/// coefficients in one pass. analyse_noise is a fold over it, after event detection.
+///
+/// - Statistics: only differences of the phase (adev … ohdev); the others need the whole record at
+///   once, as do noise types by lag 1.
+/// - Memory: ten bytes for every 128 samples and, for overlapping statistics, some hundred
+///   kilobytes; without overlap (adev, hdev) up to two or three times the longest τ.
 class NoiseAccumulator {
  public:
-  /// expected_samples sets the length of the spectrum's segments and how densely terms start; 0 if
-  /// not known, which is as for a long record. Options as of analyse_noise, of which kind,
-  /// exclude_events, lsb and progress are not read.
-  /// noise_type lag1 is taken as model.
+  /// expected_samples sets the length of the spectrum's segments and the spacing of terms; 0 if
+  /// unknown, treated as a long record. Options as in analyse_noise; kind, exclude_events, lsb and
+  /// progress are not used. noise_type lag1 is treated as model.
   explicit NoiseAccumulator(const NoiseOptions& options, std::size_t expected_samples = 0);
 
   /// NaN is missing.
   void add(View<double> samples);
 
-  /// The rate as it is known at the end, within a few per cent of that in the options: it scales
-  /// frequencies, densities and times.
+  /// Sets the final rate, within a few per cent of that in the options: it scales frequencies,
+  /// densities and times.
   void set_rate(double rate_hz);
 
-  /// Spectrum, lines, model and deviation; samples, duration and rate. May be asked at any time.
+  /// Spectrum, lines, model and deviation; samples, duration and rate. May be called at any time.
   [[nodiscard]] NoiseAnalysis finish() const;
 
-  /// The same without a deviation.
+  /// As finish(), without a deviation.
   [[nodiscard]] NoiseAnalysis finish_spectrum() const;
 
-  /// What the deviation is made of; nothing, of a statistic that is no difference.
+  /// Data of the deviation; empty for a statistic that is not a difference.
   [[nodiscard]] CurveVariances variances() const;
 
  private:

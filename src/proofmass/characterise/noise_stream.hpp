@@ -12,31 +12,32 @@
 
 namespace proofmass::characterise {
 
-/// What is only known of a stream once it has ended.
+/// Properties of a stream that are known only at its end.
 struct StreamEnd {
   double rate_hz = 0.0;            ///< over the whole duration; 0: as in the options
-  std::optional<double> lsb = {};  ///< step of the converter, in the series' unit, where known
+  std::optional<double> lsb = {};  ///< quantisation step, in the series' unit, if known
 };
 
-/// analyse_noise of a series that does not fit into memory, in one pass: the same figures, notes
-/// and refusals, but that knocks and steps are not looked for and lines not tested for being
-/// steady, which a note says, and that noise which is not stationary is not analysed by parts.
-/// Where the length
-/// is not known beforehand, segments and overlap are those of a long record. Memory: ten bytes for
-/// every 128 samples, and some megabytes.
+/// analyse_noise() in one pass, for a series that does not fit into memory. Same results, notes and
+/// errors, with these differences:
+///
+/// - shocks and steps are not detected and lines not tested for stationarity; a note reports it;
+/// - nonstationary noise is not analysed by parts;
+/// - if the length is unknown beforehand, segments and overlap are those of a long record.
+///
+/// Memory: ten bytes for every 128 samples, and some megabytes.
 class NoiseStream {
  public:
-  /// expected_samples: 0 if not known.
-  /// Errors: invalid_argument (as of analyse_noise; and what a whole record is needed for: the
-  /// statistics that are no overlapping differences, every τ, noise types by lag 1, leaving out
-  /// events, phase data), one line that says what to do instead.
+  /// expected_samples: 0 if unknown. Errors: invalid_argument (as in analyse_noise; and options
+  /// that need the whole record: statistics other than overlapping differences, every τ, noise
+  /// types by lag 1, event exclusion, phase data), one line that states the alternative.
   [[nodiscard]] static Result<NoiseStream> start(const NoiseOptions& options,
                                                  std::size_t expected_samples = 0);
 
-  /// The samples behind those added before, on an even grid; NaN is missing.
+  /// Adds the next samples, on an even grid; NaN is missing.
   void add(View<double> samples);
 
-  /// Errors: as of analyse_noise.
+  /// Errors: as in analyse_noise.
   [[nodiscard]] Result<NoiseAnalysis> finish(const StreamEnd& end = {});
 
  private:

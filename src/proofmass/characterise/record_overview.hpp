@@ -12,8 +12,8 @@
 
 namespace proofmass::characterise {
 
-/// A first look at a series that comes in pieces, and whether its noise can be the sensor's at all.
-/// NaN and infinities are missing.
+/// Overview of a series in blocks, with the checks whether its noise can be the sensor's. NaN and
+/// infinities are missing.
 class RecordOverview {
  public:
   void add(View<double> samples);
@@ -21,13 +21,13 @@ class RecordOverview {
   [[nodiscard]] std::size_t samples() const { return samples_; }
   [[nodiscard]] std::size_t missing() const { return missing_; }
   [[nodiscard]] double mean() const;
-  /// About the means of blocks short enough for drift not to count.
+  /// Standard deviation about the means of blocks short enough for drift to be negligible.
   [[nodiscard]] double short_term_std() const;
 
-  /// Errors: not_finite (no sample is a number), not_observable (they do not vary, vary beyond what
-  /// can be computed with, or vary by less than half a step of the converter).
+  /// Errors: not_finite (no sample is a number), not_observable (the samples are constant, vary
+  /// beyond the numerical range, or vary by less than half a quantisation step).
   [[nodiscard]] Status check_spread(std::optional<double> lsb) const;
-  /// Errors: not_observable (clipped). How much lies beside a rail is counted by a ValueTail.
+  /// Errors: not_observable (clipped). A ValueTail counts the samples next to a rail.
   [[nodiscard]] Status check_rails(std::optional<double> lsb) const;
 
  private:
@@ -36,7 +36,7 @@ class RecordOverview {
   };
   struct Extreme {
     double value = 0.0;
-    std::size_t count = 0;  ///< of samples that read exactly this
+    std::size_t count = 0;  ///< samples with exactly this value
   };
 
   void add_sums(View<double> samples);
@@ -45,13 +45,13 @@ class RecordOverview {
 
   std::size_t samples_ = 0, missing_ = 0;
   double total_ = 0.0, squares_ = 0.0, freedom_ = 0.0;
-  Sums block_;  ///< under way
+  Sums block_;  ///< current block
   Extreme low_{.value = std::numeric_limits<double>::infinity()};
   Extreme high_{.value = -std::numeric_limits<double>::infinity()};
   signal::ThinnedSample sample_;
   signal::ValueTail lowest_{signal::ValueTail::Side::lowest};
   signal::ValueTail highest_{signal::ValueTail::Side::highest};
-  std::vector<double> finite_;  ///< of the samples that are looked at
+  std::vector<double> finite_;  ///< finite values of the inspected samples
 };
 
 }  // namespace proofmass::characterise

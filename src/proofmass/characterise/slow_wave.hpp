@@ -15,7 +15,7 @@ namespace proofmass::characterise {
 [[nodiscard]] std::optional<SlowWave> best_slow_wave(const Search& search, double duration_s);
 
 /// The slope of evidence that a wave of this frequency was taken out of, with the uncertainty of a
-/// ramp fitted together with such a wave: of less than a period they are hardly to be told apart.
+/// ramp fitted together with such a wave: of less than a period they are hardly to be separated.
 [[nodiscard]] Uncertain slope_beside_wave(const Search& search, double frequency_hz);
 
 /// Whether a column is no longer needed once a wave is taken out.

@@ -10,29 +10,29 @@
 
 namespace proofmass::characterise {
 
-/// Whether the noise of a recording is the same from its beginning to its end.
+/// Whether the noise of a recording is constant from beginning to end.
 struct Stationarity {
-  bool tested = false;     ///< false: too short for any of the tests
-  bool stationary = true;  ///< also where the change is real but below `relevant_change`
-  double p = 1.0;          ///< that stationary noise departs as far, over all tests together
-  /// The test that departs most: differences of means over averaging_s, or the line at line_hz.
+  bool tested = false;     ///< false: too short for any test
+  bool stationary = true;  ///< also true if the change is significant but below `relevant_change`
+  double p = 1.0;          ///< p-value over all tests together
+  /// The most significant test: differences of means over averaging_s, or the line at line_hz.
   double averaging_s = 0.0;
   std::optional<double> line_hz;
-  /// Level there in equal parts of the recording, over its mean: 1.0, 1.0, 2.1, 2.0.
+  /// Its level in equal parts of the recording, over the mean: 1.0, 1.0, 2.1, 2.0.
   std::vector<double> relative_level;
 };
 
-/// Changes of the level by less, root mean square, are no reason to call the noise another.
+/// Smaller rms changes of the level are not considered relevant.
 inline constexpr double relevant_change = 0.01;
 
-/// Means over equal spans of a series of unknown length, as it comes: 128 to 256 spans, each twice
-/// as long as soon as there are more. NaN is missing.
+/// Means over equal spans of a series of unknown length, online: 128 to 256 spans, whose length
+/// doubles when there are more. NaN is missing.
 class EqualSpans {
  public:
   void add(double value);
-  /// Neighbours taken together.
+  /// Merges neighbouring spans.
   void halve();
-  /// Of the spans that are complete; NaN where one has no values.
+  /// Means of the complete spans; NaN for one without values.
   [[nodiscard]] std::vector<double> means() const;
   [[nodiscard]] std::size_t length() const { return length_; }
   [[nodiscard]] std::size_t count() const { return sums_.size(); }
@@ -42,27 +42,26 @@ class EqualSpans {
 
   std::vector<double> sums_, counts_;
   std::size_t length_ = 1;
-  std::size_t taken_ = 0;  ///< values of the last span; 0: it is complete
+  std::size_t taken_ = 0;  ///< values in the last span; 0: it is complete
 };
 
-/// Tests the variance at every octave of averaging times for changes over time, of samples as they
-/// come.
+/// Online test of the variance for changes over time, at every octave of averaging times.
 ///
-/// With d_k the differences of neighbouring means over m samples, not overlapping, m = 1, 2, 4 …
-/// (Haar wavelet coefficients: independent of one another in white noise and in a random walk,
-/// nearly so between) where lines have no part in them, the roots √|d_k| are nearly normal. They
-/// are averaged over 128 to 256 equal spans of the recording, fewer where neighbouring spans
-/// correlate: a span is as long as eight correlation lengths of the d_k, 2 Σ ρ². An analysis of
-/// variance compares 2, 4, 8, 16 and 32 equal parts of the recording. The scatter of the spans
-/// within the parts is the yardstick: heavy tails, rounding and correlation are in it. All
-/// probabilities are multiplied by the number of tests (Bonferroni); below 0.005 the noise is not
-/// stationary.
+/// - d_k are the differences of neighbouring non-overlapping means over m samples, m = 1, 2, 4 …
+///   (Haar wavelet coefficients: independent in white noise and in a random walk, nearly so in
+///   between). Where lines do not contribute, the roots √|d_k| are nearly normal.
+/// - They are averaged over 128 to 256 equal spans of the recording, fewer if neighbouring spans
+///   correlate: a span is as long as eight correlation lengths of the d_k, 2 Σ ρ².
+/// - An analysis of variance compares 2, 4, 8, 16 and 32 equal parts of the recording. Its
+///   reference is the scatter of the spans within the parts, which includes heavy tails, rounding
+///   and correlation.
+/// - All probabilities are multiplied by the number of tests (Bonferroni); below 0.005 the noise is
+///   not stationary.
 ///
 /// Source: D. B. Percival, A. T. Walden, Wavelet Methods for Time Series Analysis (2000), sections
 /// 8.6 and 9.6 (wavelet variance, homogeneity of variance); H. Levene, Robust tests for equality of
 /// variances, in: Contributions to Probability and Statistics (1960), for the analysis of variance
-/// of absolute values.
-/// NaN is missing. Cost: O(N). Memory: up to 100 kB an octave.
+/// of absolute values. NaN is missing. Cost: O(N). Memory: up to 100 kB an octave.
 class StationarityTest {
  public:
   /// One level over the recording, in spans.
@@ -77,7 +76,7 @@ class StationarityTest {
   [[nodiscard]] std::vector<Band> bands(double rate_hz,
                                         const std::vector<signal::SpectralLine>& lines) const;
 
-  /// The lines themselves are not tested: that takes the whole series.
+  /// The lines themselves are not tested: that needs the whole series.
   [[nodiscard]] Stationarity finish(double rate_hz,
                                     const std::vector<signal::SpectralLine>& lines) const;
 
@@ -87,7 +86,7 @@ class StationarityTest {
     std::size_t coefficients = 0;
     EqualSpans roots;
     Moments squares;
-    std::vector<double> beginning;  ///< of the differences: how they correlate
+    std::vector<double> beginning;  ///< of the differences, for their correlation
 
     [[nodiscard]] std::optional<double> add(double value);
   };
@@ -95,8 +94,8 @@ class StationarityTest {
   std::vector<Octave> octaves_;
 };
 
-/// The same of a whole series, and of the amplitude of every line: of the roots of the Fourier
-/// coefficients of blocks at its frequency.
+/// StationarityTest of a whole series, plus the amplitude of every line: of the roots of the
+/// Fourier coefficients of blocks at its frequency.
 [[nodiscard]] Stationarity test_stationarity(View<double> series,
                                              double rate_hz,
                                              const std::vector<signal::SpectralLine>& lines);

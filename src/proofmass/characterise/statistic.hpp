@@ -5,8 +5,8 @@
 
 namespace proofmass::characterise {
 
-/// A deviation of the Allan family. Source of all but the last: W. J. Riley, NIST SP 1065 (2008),
-/// section 5.2; of the last: F. Vernotte, M. Lenczner, P.-Y. Bourgeois, E. Rubiola, The parabolic
+/// A deviation of the Allan family. Source for all but the last: W. J. Riley, NIST SP 1065 (2008),
+/// section 5.2; for the last: F. Vernotte, M. Lenczner, P.-Y. Bourgeois, E. Rubiola, The parabolic
 /// variance (PVAR), IEEE Trans. UFFC 63 (2016) 611.
 enum class Statistic {
   adev,     ///< Allan, without overlap
@@ -23,19 +23,19 @@ enum class Statistic {
   pdev,     ///< parabolic
 };
 
-/// Whether it is a mean square of differences of the phase, which can be taken as samples come; the
+/// Whether it is a mean square of differences of the phase, which can be computed online; the
 /// others need the whole record at once.
 [[nodiscard]] constexpr bool is_difference(Statistic statistic) {
   return statistic <= Statistic::ohdev;
 }
 
-/// "oadev", as on the command line and in documents.
+/// "oadev", the name on the command line and in documents.
 [[nodiscard]] std::string_view name_of(Statistic statistic);
 
-/// "overlapping Allan deviation", as people say it.
+/// "overlapping Allan deviation", the name for people.
 [[nodiscard]] std::string_view title_of(Statistic statistic);
 
-/// nullopt if there is none of that name.
+/// nullopt for an unknown name.
 [[nodiscard]] std::optional<Statistic> parse_statistic(std::string_view name);
 
 }  // namespace proofmass::characterise

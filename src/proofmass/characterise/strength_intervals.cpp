@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 constexpr double quantile_95_two_sided = 3.841458820694124;  // of χ² with one degree of freedom
 constexpr double quantile_95_one_sided = 2.705543454095404;  // the square of 1.645
 constexpr double normal_95 = 1.6448536269514722, normal_975 = 1.9599639845400545;
-// A slope hangs on so few frequencies that its ratio is larger by chance than the theory of many
+// A slope depends on so few frequencies that its ratio is larger by chance than the theory of many
 // says: the squares of Student's t with 8 degrees of freedom for those of the normal quantiles.
 constexpr double ramp_two_sided = 5.318, ramp_one_sided = 3.458;
 

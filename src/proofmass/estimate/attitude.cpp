@@ -15,13 +15,13 @@ namespace {
 constexpr int N = inertial::states;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A knock at a rest pulls no harder than this many standard deviations.
+/// Limits the influence of a shock at a rest to this many standard deviations.
 constexpr Gate gate{.huber = 5.0};
 
-/// What the gyroscope may do in the hand or by its flicker without the rest being a turn.
+/// Rate due to the hand or flicker that is not a rotation within the rest.
 constexpr double idle_turn_radps = 2e-3;
 
-/// Whether the gyroscope reads its bias in the rest that begins at sample k.
+/// Whether the gyroscope measures its bias in the rest that begins at sample k.
 bool is_still(const AttitudeModel& model,
               std::size_t k,
               const NominalState& before,
@@ -45,7 +45,7 @@ Symmetric3 packed(const Mat<N, N>& cov, int at) {
           cov(at + 1, at + 1), cov(at + 1, at + 2), cov(at + 2, at + 2)};
 }
 
-/// The filter, each estimate becoming the nominal motion that the next step starts from.
+/// The filter, with each estimate as the nominal motion of the next step.
 void follow(AttitudeModel& model, Attitude& out) {
   FilterState<N> state;
   StepOf<AttitudeModel> step;
@@ -69,16 +69,16 @@ void follow(AttitudeModel& model, Attitude& out) {
   }
 }
 
-/// One pass of the smoother about the nominal motion, which it then moves.
+/// One pass of the smoother about the nominal motion, which it then updates.
 class Pass {
  public:
   explicit Pass(AttitudeModel& model) : model_(&model), errors_(model.size()) {}
 
-  /// What the last pass moved the motion by at sample k.
+  /// Correction by the last pass at sample k.
   [[nodiscard]] const InertialError& error(std::size_t k) const { return errors_[k]; }
 
-  /// Returns the largest tilt it moved by, rad. Heading does not count: what the readings do not
-  /// determine moves far without moving anything else.
+  /// Returns the largest tilt correction, rad. Heading does not count: it is not observable and may
+  /// change a lot without effect on anything else.
   template <class Forward, class Backward>
   double run(Forward&& forward, Backward&& backward) {
     smooth(*model_, FilterState<N>{model_->prior()}, gate, std::forward<Forward>(forward),
@@ -154,7 +154,7 @@ void take_motion(const AttitudeModel& model, Attitude& out) {
   }
 }
 
-/// Whether the last pass moved no attitude by more than a tenth of its standard deviation.
+/// Whether the last pass changed no attitude by more than a tenth of its standard deviation.
 bool has_settled(const AttitudeModel& model, const Pass& pass, const Attitude& out) {
   for (std::size_t k = 0; k < model.size(); ++k) {
     const Symmetric3& cov = out.attitude_cov_rad2[model.series().samples[k].row];
@@ -213,7 +213,7 @@ Result<Attitude> estimate_attitude(const InertialSeries& series,
   follow(model, out);
   Pass pass(model);
   const auto nothing = [](const auto&...) {};
-  // Gauss–Newton about squares its step, so that the pass after a step below this is the last.
+  // Gauss–Newton squares its step approximately, so the pass after a step below this is the last.
   constexpr double nearly_rad = 2e-3;
   constexpr int most_passes = 10;
   double tilt_rad = 1.0;

@@ -8,12 +8,13 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Of a level found from half a second in which the body may already move.
+/// Of the level from half a second, in which the body may already move.
 constexpr double level_std_rad = 0.3;
-/// How long a turn or a push lasts of which scale_std is a fraction.
+/// Duration of the rotation or push to which scale_std applies.
 constexpr double turn_s = 1.0, push_s = 0.3;
 
-/// One more reading, of an error's departure from the nominal motion; returns its h, which is zero.
+/// Adds a measurement of an error's departure from the nominal motion; returns its h, which is
+/// zero.
 InertialError& add_row(Readings<inertial::states, AttitudeModel::channels>& out,
                        double departure,
                        double variance) {
@@ -119,7 +120,7 @@ NominalState AttitudeModel::moved(const NominalState& before, std::size_t k) con
     out.v.setZero();
     return out;
   }
-  // Rate and force run straight from sample to sample; ω₁ × ω₂ is what a turn of the axis adds.
+  // Rate and force are linear between samples; ω₁ × ω₂ is due to the rotation of the axis.
   const Mat<3> w1 = a.rate - before.rate_bias, w2 = b.rate - before.rate_bias;
   const Mat<3> turn = 0.5 * b.dt_s * (w1 + w2) + square(b.dt_s) / 12.0 * cross(w1, w2);
   out.R = before.R * rotation_by(turn);

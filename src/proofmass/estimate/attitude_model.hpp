@@ -5,10 +5,10 @@
 #include "proofmass/estimate/attitude_series.hpp"
 #include "proofmass/estimate/kalman.hpp"
 
-// The error-state model behind estimate_attitude().
+// The error-state model used by estimate_attitude().
 namespace proofmass::estimate {
 
-/// Where each error sits in the state; three entries each.
+/// Indices of each error in the state; three entries each.
 namespace inertial {
 inline constexpr int attitude = 0, velocity = 3, position = 6, rate_bias = 9, accel_bias = 12;
 inline constexpr int states = 15;
@@ -16,7 +16,7 @@ inline constexpr int states = 15;
 
 using InertialError = Mat<inertial::states>;
 
-/// The motion about which errors are counted.
+/// The motion to which the errors are relative.
 struct NominalState {
   Mat<3, 3> R = Mat<3, 3>::Identity();  ///< R_world_sensor
   Mat<3> v = Mat<3>::Zero(), p = Mat<3>::Zero();
@@ -24,20 +24,20 @@ struct NominalState {
 
   /// exp(δθ×) R, v + δv, …
   void move_by(const InertialError& error);
-  /// What move_by() would have to be given to come from `from` to here.
+  /// The argument of move_by() that leads from `from` to this state.
   [[nodiscard]] InertialError less(const NominalState& from) const;
 };
 
-/// Errors about a nominal motion, one a sample, as a linear model of kalman.hpp.
+/// Errors about a nominal motion, one epoch a sample, as a linear model of kalman.hpp.
 class AttitudeModel {
  public:
   static constexpr int states = inertial::states, moving = states, channels = 10;
 
   AttitudeModel(const PreparedSeries& series, const AttitudeOptions& options);
 
-  /// Nominal motion, as long as the samples; the filter below sees errors about it.
+  /// Nominal motion, one entry a sample; the filter estimates errors about it.
   std::vector<NominalState> nominal;
-  /// By number of the rest: 0 where it is not used.
+  /// By index of the rest: 0 if it is not used.
   std::vector<unsigned char> rest_used;
 
   [[nodiscard]] std::size_t size() const { return series_->samples.size(); }
@@ -48,13 +48,13 @@ class AttitudeModel {
   [[nodiscard]] NominalState start(std::size_t k) const;
   /// The motion at sample k from that at k − 1, without noise.
   [[nodiscard]] NominalState moved(const NominalState& before, std::size_t k) const;
-  /// At the first sample, about the nominal motion.
+  /// Prior at the first sample, about the nominal motion.
   [[nodiscard]] Gaussian<states> prior() const;
 
   [[nodiscard]] Transition<states, states> transition(const InertialError& x, std::size_t k) const;
   void measure(const InertialError& x, std::size_t k, Readings<states, channels>& out) const;
   void reopen(Gaussian<states>&, std::size_t) const {}
-  /// How many of the readings of sample k are the sensors', and not bounds of the velocity.
+  /// Number of measurements at sample k from the sensors, without the bounds of the velocity.
   [[nodiscard]] int sensor_readings(std::size_t k) const { return at_rest(k) ? 6 : 0; }
 
  private:
@@ -67,8 +67,8 @@ class AttitudeModel {
   const PreparedSeries* series_;
   AttitudeOptions options_;
   std::vector<unsigned char> bounds_speed_;  ///< by sample
-  std::vector<std::size_t> reading_of_;      ///< by sample: 1 + number of its position, 0 none
-  double gravity_variance_ = 0.0;            ///< of one sample, of what all rests share
+  std::vector<std::size_t> reading_of_;      ///< by sample: 1 + index of its position, 0 none
+  double gravity_variance_ = 0.0;            ///< of one sample, of the part common to all rests
 };
 
 }  // namespace proofmass::estimate

@@ -51,7 +51,7 @@ double motion_variance(const Axes& axes, const std::vector<std::size_t>& rows) {
   return (squares - sum.cwiseAbs2() / n).sum() / (3.0 * n);
 }
 
-/// Puts in the rows between two that were read.
+/// Inserts the interpolated rows between two measured ones.
 class Filler {
  public:
   Filler(const InertialSeries& series, const std::vector<std::size_t>& rows)
@@ -74,7 +74,7 @@ class Filler {
     out.interpolated += b - a - 1;
     if (b == a + 1) return;
     for (std::size_t i = first; i < out.samples.size(); ++i) {
-      // An error that stands over the whole span T turns by its std times T: density variance · T.
+      // A constant error over the whole span T rotates by its std times T: density variance · T.
       out.samples[i].rate_doubt = rate_variance_ * span_s;
       out.samples[i].force_doubt = force_variance_ * span_s;
     }
@@ -82,7 +82,7 @@ class Filler {
 
  private:
   static Mat<3> mixed(const Axes& axes, std::array<std::size_t, 2> ends, double part) {
-    // At part = 1 the reading itself, to the last digit.
+    // At part = 1 the measurement itself, exactly.
     if (part >= 1.0) return at(axes, ends[1]);
     return (1.0 - part) * at(axes, ends[0]) + part * at(axes, ends[1]);
   }
@@ -105,8 +105,8 @@ void lay_rests(const std::vector<signal::Rest>& rests, PreparedSeries& out) {
 
 using SampleValue = Mat<3> InertialSample::*;
 
-/// τ σ²(τ) of Allan's variance over m samples at rest, mean over the axes; 0 where fewer than eight
-/// differences can be taken.
+/// τ σ²(τ) of the Allan variance over m samples at rest, mean over the axes; 0 for fewer than eight
+/// differences.
 double allan_density(const std::vector<InertialSample>& samples, SampleValue value, std::size_t m) {
   double squares = 0.0, time_s = 0.0, count = 0.0;
   for (std::size_t k = 0; k + 2 * m <= samples.size(); k += m) {
@@ -123,8 +123,8 @@ double allan_density(const std::vector<InertialSample>& samples, SampleValue val
   return count < 8.0 ? 0.0 : squares / count * time_s / count;
 }
 
-/// Density of white noise from the rests: the largest over 1 … 16 samples, so that a sensor which
-/// filters its own output is not taken for a quieter one. 0 where there are too few samples.
+/// Density of white noise from the rests: the largest over 1 … 16 samples, so that the filter in a
+/// sensor does not lower it. 0 with too few samples.
 double density_at_rest(const std::vector<InertialSample>& samples, SampleValue value) {
   double largest = 0.0;
   for (std::size_t m = 1; m <= 16; m *= 2)

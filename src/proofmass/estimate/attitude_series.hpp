@@ -5,18 +5,18 @@
 
 #include "proofmass/estimate/attitude.hpp"
 
-// The recording as the attitude filter takes it: stretches without gaps, rests, noise.
+// The recording prepared for the attitude filter: stretches without gaps, rests, noise.
 namespace proofmass::estimate {
 
-/// One sample of a stretch, read or interpolated.
+/// One sample of a stretch, measured or interpolated.
 struct InertialSample {
-  std::size_t row = 0;  ///< of the recording
-  double dt_s = 0.0;    ///< since the sample before; 0 at the start of a stretch
-  bool starts = false;  ///< a stretch
-  int rest = -1;        ///< number of the rest that it belongs to
+  std::size_t row = 0;  ///< in the recording
+  double dt_s = 0.0;    ///< since the previous sample; 0 at the start of a stretch
+  bool starts = false;  ///< a stretch starts here
+  int rest = -1;        ///< index of its rest
   bool enters_rest = false;
   Mat<3> rate = Mat<3>::Zero(), force = Mat<3>::Zero();
-  /// Densities of what interpolation leaves open, over the step that ends here.
+  /// Densities of the interpolation error over the step that ends here.
   double rate_doubt = 0.0, force_doubt = 0.0;
 };
 

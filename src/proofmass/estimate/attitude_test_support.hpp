@@ -10,7 +10,7 @@
 #include "proofmass/core/random.hpp"
 #include "proofmass/estimate/attitude.hpp"
 
-// A body that lies still, moves and turns, and lies still again, as two sensors read it.
+// A body that is at rest, moves and rotates, and is at rest again, as measured by two sensors.
 namespace proofmass::estimate::attitude_test {
 
 struct Body {
@@ -40,7 +40,7 @@ struct SensorErrors {
   std::uint64_t seed = 1;
 };
 
-/// Share of a move that is done at s in [0, 1], with its first two derivatives by s.
+/// Completed share of a move at s in [0, 1], with its first two derivatives by s.
 inline Mat<3> minimum_jerk(double s) {
   const double s2 = s * s, s3 = s2 * s;
   return {s3 * (10.0 - 15.0 * s + 6.0 * s2), s2 * (30.0 - 60.0 * s + 30.0 * s2),
@@ -92,8 +92,8 @@ inline Scene scene(const Body& body, const SensorErrors& errors) {
   return out;
 }
 
-/// Rotation vector of the estimate's error, in world axes, less the heading at the start, which is
-/// 0 by agreement.
+/// Rotation vector of the estimate's error, in world axes, minus the initial heading, which is 0 by
+/// definition.
 inline Mat<3> attitude_error(const Scene& scene, const Attitude& attitude, std::size_t k) {
   const Mat<3, 3> E0 = scene.truth.R.front() * rotation_of(attitude.quaternion.front()).transpose();
   const double heading = std::atan2(E0(1, 0) - E0(0, 1), E0(0, 0) + E0(1, 1));

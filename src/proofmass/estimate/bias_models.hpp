@@ -3,7 +3,7 @@
 #include "proofmass/estimate/linear_gaussian.hpp"
 #include "proofmass/sensor/warm_up.hpp"
 
-// The bias of a sensor as a state of any linear model, driven by the warm-up of its sensor file.
+// Bias of a sensor as a state of any linear model, driven by the warm-up of its sensor file.
 namespace proofmass::estimate {
 
 struct BiasOptions {
@@ -20,7 +20,7 @@ struct BiasOptions {
 /// exact discretisation of a first-order system with known input.
 struct BiasStep {
   double phi;
-  double settled;  ///< 1 − φ: what the known input is multiplied by
+  double settled;  ///< 1 − φ, factor of the known input
   double variance_m2ps4;
 };
 [[nodiscard]] BiasStep bias_step(const BiasOptions& options);
@@ -30,7 +30,7 @@ struct RandomWalkOptions {
   double bias_psd_m2ps5 = 0.0;  ///< two-sided density of the white noise that drives the walk, ≥ 0
 };
 
-/// The same of a bias that walks and settles nowhere, the limit T → ∞: φ = 1, w ~ N(0, q dt).
+/// One step of a bias that is a pure random walk, the limit T → ∞: φ = 1, w ~ N(0, q dt).
 [[nodiscard]] BiasStep random_walk_step(const RandomWalkOptions& options);
 
 struct GaussMarkovOptions {
@@ -39,19 +39,18 @@ struct GaussMarkovOptions {
   double bias_std_mps2 = 0.0;    ///< standard deviation of the stationary process, ≥ 0
 };
 
-/// The same of a bias that wanders about the level u with a standard deviation σ that does not
-/// change: φ = e^(−dt/T), w ~ N(0, σ² (1 − φ²)), which is the above with q = 2σ²/T.
+/// One step of a stationary Gauss–Markov bias about the level u with standard deviation σ: φ =
+/// e^(−dt/T), w ~ N(0, σ² (1 − φ²)), which is BiasStep with q = 2σ²/T.
 [[nodiscard]] BiasStep gauss_markov_step(const GaussMarkovOptions& options);
 
-/// What is known of the bias so long after switching on, before any reading: the mean is the
-/// warm-up's b(t), and `ε(0) = a2` with the input `u = a1 + a2` (WarmUp::settled_mps2()) follows
-/// it. Where a calibration of the warmed-up sensor is applied, the warm-up to give is its
-/// departure().
+/// Prior of the bias at a time after power-on, before any measurement. The mean is the warm-up's
+/// b(t); `ε(0) = a2` with the input `u = a1 + a2` (WarmUp::settled_mps2()) follows it. If a
+/// calibration of the warmed-up sensor is applied, pass the warm-up's departure().
 [[nodiscard]] Gaussian<1> bias_prior(const sensor::WarmUp& warm_up, double since_switch_on_s);
 
-/// The model with one state more, which is a bias, and one known input more, which is what the bias
-/// settles at: both come last. `read_by` says how the bias enters each channel, 1 where it adds to
-/// it, 0 where it does not. Several biases are several calls.
+/// The model extended by one state, a bias, and one known input, the level to which the bias
+/// settles; both come last. `read_by` is the sensitivity of each channel to the bias: 1 if it adds
+/// to the channel, 0 if not. For several biases, call repeatedly.
 template <int N, int M, int U>
 [[nodiscard]] LinearModel<N + 1, M, U + 1> with_bias(const LinearModel<N, M, U>& model,
                                                      const BiasStep& step,
@@ -73,10 +72,10 @@ template <int N, int M, int U>
 
 struct RestOptions {
   BiasOptions bias;
-  double accel_variance_m2ps4;  ///< variance of one reading
+  double accel_variance_m2ps4;  ///< variance of one measurement
 };
 
-/// The bias alone, as a sensor at rest reads it: z = ε + v.
+/// The bias alone, as measured by a sensor at rest: z = ε + v.
 [[nodiscard]] LinearModel<1, 1, 1> bias_model(const RestOptions& options);
 
 extern template LinearRun<1, 1> filter_linear(LinearSeries<1, 1, 1>,

@@ -110,7 +110,7 @@ TEST(WithBias, MakesTheModelOfMotionAndBias) {
   EXPECT_EQ(made.B, known.B);
 }
 
-/// Truth and readings as the model itself makes them, from a state drawn from the prior.
+/// Truth and measurements as the model itself makes them, from a state drawn from the prior.
 template <int N>
 struct Drawn {
   std::vector<Epoch<1, 1>> epochs;
@@ -144,7 +144,7 @@ Drawn<N> draw(const LinearModel<N, 1, 1>& model,
 }
 
 struct Judged {
-  double nis = 0.0;          ///< mean over readings
+  double nis = 0.0;          ///< mean over measurements
   double nees = 0.0;         ///< mean over runs, of the last state
   double worst_sigma = 0.0;  ///< greatest error of the bias over its standard deviation
   std::size_t readings = 0;

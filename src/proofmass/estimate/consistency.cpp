@@ -11,9 +11,9 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Of stretches, below which their scatter says nothing.
+/// Minimum number of stretches for a scatter.
 constexpr std::size_t fewest_stretches = 16;
-/// Beyond this an innovation is as wrong as can be; its square must stay finite.
+/// Innovations are clipped here; the square must stay finite.
 constexpr double furthest = 1e9;
 
 bool disagree(const std::vector<ChannelConsistency>& channels, Verdict all) {
@@ -26,7 +26,7 @@ double size_of(const ChannelConsistency& one) {
   return std::abs(std::log(std::max(one.remedy_factor, 1e-9)));
 }
 
-/// The channels taken together where they agree, else the gravest.
+/// The channels together if they agree, else the most severe.
 void conclude(Consistency& result) {
   const auto& channels = result.channels;
   const auto graver = [](const ChannelConsistency& a, const ChannelConsistency& b) {
@@ -113,7 +113,7 @@ std::vector<StretchScatter> InnovationTally::scatter(double rate_hz) const {
     length *= 2.0;
     if (level.count < fewest_stretches) break;
     const auto count = static_cast<double>(level.count);
-    // ⟨ν²⟩ comes of the same values: what is left to chance is 1/count − 1/n.
+    // ⟨ν²⟩ uses the same values: the remaining variance is 1/count − 1/n.
     const double dof = count * n / (n - count);
     stretches.push_back({.length_s = length / rate_hz,
                          .stretches = level.count,
@@ -134,7 +134,7 @@ ChannelConsistency InnovationTally::judge(const ConsistencyOptions& options,
     const Bounds bounds = mean_chi_square_95(figures.innovations);
     figures.nis_lower = bounds.lower;
     figures.nis_upper = bounds.upper;
-    // The gate of a channel says nothing of a sum over channels.
+    // The gate of a channel does not apply to a sum over channels.
     const double gate = unsigned_ > 0 ? std::numeric_limits<double>::infinity() : options.gate;
     figures.std_factor = ungated_std(figures.nis, gate);
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A level that wanders under white noise, followed by a filter that believes other figures.
+/// A level that drifts under white noise, followed by a filter that believes other figures.
 struct LocalLevel {
   double walk_std = 0.1, noise_std = 1.0;  ///< true, per step
   double believed_walk_std = 0.1, believed_noise_std = 1.0;
@@ -23,7 +23,7 @@ struct LocalLevel {
   std::size_t steps = 20000;
   std::uint64_t seed = 1;
   double outlier_share = 0.0;
-  double drift = 0.0;  ///< per step, of the readings
+  double drift = 0.0;  ///< per step, of the measurements
 };
 
 Consistency run(const LocalLevel& o) {

@@ -10,18 +10,18 @@ namespace proofmass::estimate {
 namespace {
 
 constexpr std::size_t fewest = 20;
-/// Factors of the standard deviation by which a band of 95 % holds 97 % or 93 %.
+/// Factors of the standard deviation for which a 95 % band has a coverage of 97 % or 93 %.
 constexpr double band_holds_97 = 0.9032, band_holds_93 = 1.0817;
-/// Sums over stretches that go a quarter too far, or not far enough.
+/// Sums over stretches that are a quarter too large, or too small.
 constexpr double too_far = 1.25;
-/// Sums that stay behind do harm only here: by f of a filter on a random walk the estimate scatters
-/// √((f + 1/f)/2) times as far as it need, and stays within what it states.
+/// Too small sums are harmful only below this: with f of a filter on a random walk, the estimate
+/// scatters √((f + 1/f)/2) times the optimum, and stays within its stated uncertainty.
 constexpr double far_behind = 1.0 / 3.0;
 constexpr double too_correlated = 0.2;
-/// A share of readings left out that no noise explains.
+/// A share of rejected measurements that no noise explains.
 constexpr double too_many_gated = 0.05;
 
-/// Of |N(0, 1)| below x.
+/// P(|N(0, 1)| < x).
 double share_within(double x) {
   return std::erf(x / std::numbers::sqrt2);
 }
@@ -33,7 +33,7 @@ double mean_square_within(double x) {
   return 1.0 - 2.0 * x * density / share_within(x);
 }
 
-/// Above or below 1 by more than chance, ratio ~ χ²(dof)/dof.
+/// Whether the ratio ~ χ²(dof)/dof departs from 1 significantly.
 bool significant(double ratio, double dof, double level) {
   return ratio > chi_square_quantile(1.0 - 0.5 * level, dof) / dof ||
          ratio < chi_square_quantile(0.5 * level, dof) / dof;
@@ -85,7 +85,7 @@ bool few_carry_it(const ChannelConsistency& figures) {
 }
 
 /// Which noise is off, with size = ln(s) and colour = ln(√V): √V s is the factor of what the state
-/// does over a stretch, hence of √Q, and s that of the readings' noise.
+/// does over a stretch, hence of √Q, and s that of the measurement noise.
 void set_remedy(ChannelConsistency& figures, double size, const Colour& colour) {
   const double process = size + colour.log_factor;
   const auto move = [&](Remedy what, double log_factor) {

@@ -8,23 +8,23 @@
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/estimate/steady_state.hpp"
 
-// The fixed-lag smoother of a model that does not change, in its steady state: the filter with
-// constant gains and a finite impulse response on its innovations, at constant cost.
+// Fixed-lag smoother of a time-invariant model in steady state: the filter with constant gains and
+// a finite impulse response on its innovations, at constant cost.
 namespace proofmass::estimate {
 
-/// The optimal fixed-lag smoother once the gains have settled, for readings that come at a constant
-/// rate with none missing:
+/// The optimal fixed-lag smoother with settled gains, for measurements at a constant rate with none
+/// missing:
 ///
 ///     y = z − H x⁻,   x̂[k|k] = x⁻ + K y,   x⁻[k+1] = F x̂[k|k] + B u,
 ///     x̂[k|k+L] = x̂[k|k] + Σ K_i y[k+i], i = 1 … L,   K_i = P⁺ Fᵀ Aᵀⁱ⁻¹ Hᵀ S⁻¹ = P⁻ Aᵀⁱ Hᵀ S⁻¹,
 ///
-/// A = F (I − K H). It starts as if it had run for ever, so its first states, for as long as
-/// SteadyState::slowest_steps and a few times that, are not the best there are: LiveFilter's are,
-/// for more work. Source: B. D. O. Anderson, J. B. Moore, Optimal Filtering (1979), section 7.3.
+/// with A = F (I − K H). The gains are in steady state from the first epoch, so the first states
+/// are suboptimal for a few times SteadyState::slowest_steps; LiveFilter is optimal there, at a
+/// higher cost. Source: B. D. O. Anderson, J. B. Moore, Optimal Filtering (1979), section 7.3.
 template <int N, int M, int U = 0>
 class ConstantGainLag {
  public:
-  /// `start` is what is expected at the first instant before its reading.
+  /// `start` is the predicted state at the first epoch, before its measurements.
   ConstantGainLag(const LinearModel<N, M, U>& model,
                   const SteadyState<N, M>& steady,
                   std::size_t lag,
@@ -32,14 +32,14 @@ class ConstantGainLag {
 
   [[nodiscard]] std::size_t lag() const { return taps_.size(); }
 
-  /// Takes one instant; `u` is the input over the step that ends there. False, and nothing done,
-  /// where a reading is missing or anything is not finite: this form has no answer to that.
-  /// Cost: O(N² + lag · N M).
+  /// Processes one epoch; `u` is the input over the step that ends there. Returns false, without
+  /// effect, if a measurement is missing or any value is not finite: this form cannot handle
+  /// either. Cost: O(N² + lag · N M).
   [[nodiscard]] bool step(const Mat<M>& z, const Mat<U>& u = Mat<U>::Zero());
 
-  /// x̂[k|k] of the last instant k; the start before the first.
+  /// x̂[k|k] of the last epoch k; `start` before the first.
   [[nodiscard]] const Mat<N>& filtered() const { return filtered_; }
-  /// x̂[k − lag|k]; nullopt in the first `lag` instants.
+  /// x̂[k − lag|k]; nullopt in the first `lag` epochs.
   [[nodiscard]] std::optional<Mat<N>> lagged() const;
   /// K_i, i = 1 … lag.
   [[nodiscard]] const Mat<N, M>& tap(std::size_t i) const {
@@ -48,7 +48,7 @@ class ConstantGainLag {
   }
 
  private:
-  /// One instant of the past: its filtered state and its innovation.
+  /// A past epoch: its filtered state and its innovation.
   struct Past {
     Mat<N> filtered;
     Mat<M> innovation;

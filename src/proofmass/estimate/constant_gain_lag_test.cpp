@@ -27,7 +27,7 @@ TEST(ConstantGainLag, HasTheTapsOfTheRiccatiLimit) {
 }
 
 /// Largest difference of the constant-gain form from the time-varying one, in standard deviations
-/// of the latter, over the instants from `from` on.
+/// of the latter, over the epochs from `from` on.
 template <int N, int M, int U>
 double apart(const LinearModel<N, M, U>& model,
              const Gaussian<N>& start,
@@ -94,7 +94,7 @@ TEST(ConstantGainLag, HasGainsForStatesWhoseVarianceHasNoLimit) {
     ASSERT_TRUE(constant.step(epochs[k].z));
     past.push_back(constant.filtered());
     if (k < 200 + lag) continue;
-    // What the later readings add; the filters' own difference is where they started.
+    // What the later measurements add; the filters' own difference is where they started.
     const Mat<3> added = *constant.lagged() - past[k - lag];
     const Mat<3> expected = varying[k - lag].mean - filtered[k - lag].mean;
     EXPECT_LT((added - expected).cwiseAbs().maxCoeff(), 1e-11) << "k = " << k;

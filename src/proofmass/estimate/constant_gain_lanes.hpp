@@ -2,17 +2,17 @@
 
 #include "proofmass/estimate/uniform_lanes.hpp"
 
-// uniform_lanes.hpp's loops where the gain has come to its limit: means alone.
+// uniform_lanes.hpp's loops at the steady-state gain: means alone.
 namespace proofmass::estimate::packed {
 
-/// A mean and y / S of each lane, where the gain is known and stays.
+/// A mean and y / S of each lane, with a known, constant gain.
 template <int N>
 struct alignas(64) LaneMean {
   LaneNumbers x[N];
   LaneNumbers y_S;
 };
 
-/// What a filter and smoother of constant gain need beside the model.
+/// Data of a constant-gain filter and smoother in addition to the model.
 template <int N>
 struct ConstantGain {
   double K[N];
@@ -24,8 +24,7 @@ struct ConstantGain {
 template <int N>
 struct ConstantGainKernels {
   using Model = StepModel<N>;
-  /// `x` is the mean of each lane, taken along. Where means are kept, (y / S)² is added to
-  /// `squares`.
+  /// `x` is the mean of each lane, updated. If means are stored, (y / S)² is added to `squares`.
   void (*filter)(const Model&,
                  const ConstantGain<N>&,
                  const double* z,
@@ -36,7 +35,7 @@ struct ConstantGainKernels {
   /// λ alone.
   void (*look_back)(
       const Model&, const ConstantGain<N>&, const LaneMean<N>* means, int count, LaneNumbers* l);
-  /// λ; the means become those given all readings.
+  /// λ; the means become those given all measurements.
   void (*smooth)(
       const Model&, const ConstantGain<N>&, LaneMean<N>* means, int count, LaneNumbers* l);
 };

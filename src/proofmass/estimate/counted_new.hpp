@@ -4,7 +4,7 @@
 
 namespace proofmass::estimate::test {
 
-/// How often this test program has asked for memory so far.
+/// Number of allocations by this test program so far.
 [[nodiscard]] std::size_t allocations();
 
 }  // namespace proofmass::estimate::test

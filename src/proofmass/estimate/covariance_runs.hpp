@@ -10,17 +10,17 @@
 
 namespace proofmass::estimate {
 
-/// Covariances of all instants of a run, each kept once for as long as it stays: where no entry
-/// has moved from the one kept by more than `tolerance` of its row's and column's standard
-/// deviations. A filter that has settled needs one for all the rest.
+/// Run-length-encoded covariances of all epochs of a run. A new one is stored only where an entry
+/// differs from the last stored one by more than `tolerance` of its row's and column's standard
+/// deviations. A settled filter needs one for the remaining epochs.
 template <int N>
 class CovarianceRuns {
  public:
   static constexpr double tolerance = 1e-11;
 
-  /// Instants that are told of.
+  /// Number of epochs.
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// Covariances that are kept.
+  /// Number of covariances stored.
   [[nodiscard]] std::size_t kept() const { return kept_.size(); }
 
   /// Cost: O(log kept()).
@@ -30,7 +30,7 @@ class CovarianceRuns {
     return kept_[static_cast<std::size_t>(after - first_.begin()) - 1];
   }
 
-  /// The same of the next `count` instants.
+  /// Appends the covariance of the next `count` epochs.
   void push(const Symmetric<N>& cov, std::size_t count = 1) {
     if (count == 0) return;
     if (kept_.empty() || !same(kept_.back(), cov)) {
@@ -40,7 +40,7 @@ class CovarianceRuns {
     size_ += count;
   }
 
-  /// What was pushed from the last instant to the first, in the order of time.
+  /// Restores time order after pushing from the last epoch to the first.
   void reverse() {
     for (std::size_t i = 0; i < first_.size(); ++i)
       first_[i] = size_ - (i + 1 < first_.size() ? first_[i + 1] : size_);

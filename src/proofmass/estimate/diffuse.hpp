@@ -9,16 +9,19 @@
 #include "proofmass/estimate/linear_series.hpp"
 #include "proofmass/estimate/start.hpp"
 
-// The filter after a start x[0] = proper + A δ of which δ is not known at all. Beside the ordinary
-// filter, which takes δ for 0, run what δ moves, X = ∂x̂/∂δ, and least squares for δ itself with no
-// prior, in square-root information form. Nothing large is ever subtracted from anything large, and
-// the result is that of κ → ∞ in Start, exactly.
+// Filter from a start x[0] = proper + A δ with δ entirely unknown. Three parts run together:
+//
+// - the ordinary filter, which assumes δ = 0;
+// - the sensitivity X = ∂x̂/∂δ;
+// - least squares for δ without a prior, in square-root information form.
+//
+// No large number is subtracted from another, and the result is exactly the limit κ → ∞ in Start.
 // Source: P. de Jong, The diffuse Kalman filter, Annals of Statistics 19 (1991) 1073; G. J.
 // Bierman, Factorization Methods for Discrete Sequential Estimation (1977), chapter V, for least
 // squares.
 namespace proofmass::estimate::detail {
 
-/// What the readings so far say of δ, in coordinates Tᵀδ of which the first `found` are
+/// Information on δ from the measurements so far, in coordinates Tᵀδ of which the first `found` are
 /// determined: L (Tᵀδ)[0…found) = right + N(0, I), L lower triangular.
 template <int N>
 struct DiffuseKnowledge {
@@ -36,19 +39,19 @@ struct DiffuseState {
   DiffuseKnowledge<N> knowledge;
 };
 
-/// One instant of a run.
+/// One epoch of a run.
 template <int N, int M>
 struct DiffuseStep {
-  Step<N, N, M> step;  ///< of the filter that takes δ for 0
-  Mat<N, N> moved;     ///< X after the readings
+  Step<N, N, M> step;  ///< step of the filter that assumes δ = 0
+  Mat<N, N> moved;     ///< X after the measurements
   DiffuseKnowledge<N> knowledge;
-  /// What the whole filter expected of each reading; the variance is infinite where the reading
-  /// determined a direction, and F_inf = hᵀ P∞ h then positive.
+  /// Innovation of each measurement in the complete filter and its variance; the variance is
+  /// infinite if the measurement determined a direction, and F_inf = hᵀ P∞ h is then positive.
   std::array<double, static_cast<std::size_t>(M)> innovation, expected, F_inf;
 };
 
-/// Turns the coordinates not yet determined so that the first of them is all that a reading with
-/// sensitivity `seen` (in δ) sees; returns how much it sees of it.
+/// Rotates the undetermined coordinates so that only the first of them affects a measurement with
+/// sensitivity `seen` (in δ); returns that sensitivity.
 template <int N>
 double turn_to(DiffuseKnowledge<N>& known, const Mat<N>& seen) {
   Mat<N> v = Mat<N>::Zero();
@@ -62,7 +65,7 @@ double turn_to(DiffuseKnowledge<N>& known, const Mat<N>& seen) {
   return size;
 }
 
-/// A row of least squares, `row` · Tᵀδ = right + N(0, 1), rotated into L; what is left of `right`
+/// Rotates a row of least squares, `row` · Tᵀδ = right + N(0, 1), into L. The remainder of `right`
 /// is the residual that the row adds, and `growth` = 1 + row (LᵀL)⁻¹ rowᵀ.
 struct Residual {
   double value, growth;
@@ -86,7 +89,7 @@ Residual rotate_in(DiffuseKnowledge<N>& known, Mat<N> row, double right) {
   return residual;
 }
 
-/// What the readings say of Tᵀδ; 0 where they say nothing.
+/// Estimate of Tᵀδ from the measurements; 0 where they contain no information.
 template <int N>
 [[nodiscard]] Mat<N> estimate_of(const DiffuseKnowledge<N>& known) {
   Mat<N> delta = Mat<N>::Zero();
@@ -95,7 +98,7 @@ template <int N>
   return delta;
 }
 
-/// The same row where it determines the next direction, of which it sees `size`.
+/// Adds a row that determines the next direction, with sensitivity `size`.
 template <int N>
 void append(DiffuseKnowledge<N>& known, const Mat<N>& row, double size, double right) {
   const int j = known.found++;
@@ -104,7 +107,7 @@ void append(DiffuseKnowledge<N>& known, const Mat<N>& row, double size, double r
   known.right(j) = right;
 }
 
-/// Whether a reading sees a direction that is not determined yet, by more than rounding.
+/// Whether a measurement depends on an undetermined direction by more than rounding.
 template <int N>
 [[nodiscard]] bool sees_new(const DiffuseState<N>& state, const Mat<N>& h, const Mat<N>& seen) {
   constexpr double rounding = 1e-10;
@@ -117,7 +120,7 @@ template <int N>
   return false;
 }
 
-/// One reading: into what is known of δ, judged there by the gate, and then into the filter.
+/// Processes one measurement: updates the estimate of δ, applies the gate, then updates the filter.
 template <int N, int M>
 void read_diffuse(DiffuseState<N>& state,
                   Reading<N> reading,
@@ -160,7 +163,7 @@ void read_diffuse(DiffuseState<N>& state,
   state.moved -= update.gain * seen.transpose();
 }
 
-/// Takes the state from epoch k − 1 to k (at k = 0: only its readings).
+/// Propagates the state from epoch k − 1 to k (at k = 0: only its measurements).
 template <int N, int M, int U>
 void advance_diffuse(const LinearSeries<N, M, U>& series,
                      std::size_t k,

@@ -6,21 +6,21 @@
 #include "proofmass/estimate/diffuse.hpp"
 #include "proofmass/estimate/symmetric.hpp"
 
-// Means and covariances to hand out after a diffuse start: finite where the readings determine
-// them, infinite where they do not.
+// Output means and covariances after a diffuse start: finite where the measurements determine them,
+// infinite where they do not.
 namespace proofmass::estimate::detail {
 
-/// How a state x̂ + X δ depends on δ.
+/// Dependence of a state x̂ + X δ on δ.
 template <int N>
 struct DiffusePart {
   Mat<N, N>
-      root;  ///< X T L⁻¹: what δ, as far as it is determined, adds to the covariance is its square
-  Mat<N> mean;     ///< and what it adds to the mean
-  Mat<N, N> open;  ///< X T of the directions not determined, in the first columns
+      root;  ///< X T L⁻¹; its square is what the determined part of δ adds to the covariance
+  Mat<N> mean;     ///< what the determined part of δ adds to the mean
+  Mat<N, N> open;  ///< X T of the undetermined directions, in the first columns
 };
 
-/// `moved` is X. Entries of `open` that are nothing but rounding are 0: what X was before hindsight
-/// (`filtered`) says how large rounding is, and hindsight of an undetermined direction is 0.
+/// `moved` is X. Entries of `open` at rounding level are set to 0. The rounding level comes from X
+/// before smoothing (`filtered`), since the smoother's adjoint of an undetermined direction is 0.
 template <int N>
 [[nodiscard]] DiffusePart<N> diffuse_part(const Mat<N, N>& moved,
                                           const Mat<N, N>& filtered,

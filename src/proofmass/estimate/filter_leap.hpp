@@ -6,15 +6,15 @@
 
 namespace proofmass::estimate::packed {
 
-/// Many steps of a filter with one reading each, as one: how P goes through all of them, whatever
-/// it is, and how an error of the mean does.
+/// Composition of many filter steps with one measurement each into one: how any P, and an error of
+/// the mean, pass through all of them.
 ///
 ///     Φ = A (I + P J)⁻¹,   P ← Φ P Aᵀ + C,   Λ₀ = J (I + P J)⁻¹
 ///
-/// J is the information that the readings hold on the state before the first step, C the covariance
-/// after the last where that state is known, A how the mean then hangs on it. Λ₀ is Hindsight's Λ
-/// before the first step, of these readings alone.
-/// Source: S. Särkkä, Á. F. García-Fernández, IEEE Trans. Automatic Control 66 (2021) 299.
+/// J is the information of the measurements on the state before the first step, C the covariance
+/// after the last if that state is known, A the dependence of the mean on it. Λ₀ is Hindsight's Λ
+/// before the first step, from these measurements alone. Source: S. Särkkä, Á. F. García-Fernández,
+/// IEEE Trans. Automatic Control 66 (2021) 299.
 template <int N>
 struct FilterLeap {
   Mat<N, N> A, C, J;
@@ -24,7 +24,7 @@ struct FilterLeap {
 template <int N>
 [[nodiscard]] FilterLeap<N> filter_leap(const LinearModel<N, 1>& model, std::size_t count);
 
-/// A leap from a given P. For N = 1 to 4.
+/// The composition applied to a given P. For N = 1 to 4.
 template <int N>
 struct LeapFrom {
   LeapFrom(const FilterLeap<N>& leap, const Mat<N, N>& before);

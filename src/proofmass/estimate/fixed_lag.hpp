@@ -7,26 +7,29 @@
 #include "proofmass/core/contract.hpp"
 #include "proofmass/estimate/fixed_point.hpp"
 
-// Fixed-lag smoother: every state given the readings up to so many instants after it, as they come.
+// Fixed-lag smoother: each state given the measurements up to a fixed number of epochs after it,
+// online.
 namespace proofmass::estimate {
 
-/// The last states of a run, each given all readings so far: a ring of fixed-point smoothers. Any
-/// steps, any readings missing; memory is fixed when it is made, and a step asks for none.
+/// The last states of a run, each given all measurements so far: a ring of fixed-point smoothers.
+/// Steps may be irregular and measurements missing. Memory is fixed at construction; a step does
+/// not allocate.
 ///
-/// The optimal one: the state `lag` instants ago is the fixed-interval smoother's at the end of the
-/// readings so far, or that state's first B entries. (Recursions that carry the filtered P and F −
-/// K H in the place of P⁻ and F (I − K H) are not.) Source: B. D. O. Anderson, J. B. Moore, Optimal
-/// Filtering (1979), section 7.3; J. B. Moore, Automatica 9 (1973) 163.
+/// The smoother is optimal: the state `lag` epochs ago, or its first B entries, equals the
+/// fixed-interval smoother's at the end of the measurements so far. (Recursions that use the
+/// filtered P and F − K H instead of P⁻ and F (I − K H) are not optimal.) Source: B. D. O.
+/// Anderson, J. B. Moore, Optimal Filtering (1979), section 7.3; J. B. Moore, Automatica 9 (1973)
+/// 163.
 template <int N, int B = N>
 class FixedLag {
  public:
   explicit FixedLag(std::size_t lag) : ring_(lag + 1) {}
 
   [[nodiscard]] std::size_t lag() const { return ring_.size() - 1; }
-  /// States held, lag() + 1 once that many instants have passed.
+  /// Number of states held; lag() + 1 after that many epochs.
   [[nodiscard]] std::size_t size() const { return std::min(pushed_, ring_.size()); }
 
-  /// One more instant. Cost: O(lag · B N (D + M)).
+  /// Appends an epoch. Cost: O(lag · B N (D + M)).
   template <int D, int M>
   void push(const Step<N, D, M>& step, int active = N) {
     const std::size_t newest = pushed_ % ring_.size();
@@ -36,7 +39,7 @@ class FixedLag {
     ++pushed_;
   }
 
-  /// The state `ago` < size() instants before the last, given all readings up to the last.
+  /// The state `ago` < size() epochs before the last, given all measurements up to the last.
   [[nodiscard]] const Gaussian<B>& state(std::size_t ago) const {
     PM_EXPECTS(ago < size());
     return ring_[(pushed_ - 1 - ago) % ring_.size()].x;
@@ -47,8 +50,8 @@ class FixedLag {
   std::size_t pushed_ = 0;
 };
 
-/// Runs filter and fixed-lag smoother over all instants of a model and calls visit(k, x) once for
-/// each, in rising k: x[k] given z[0] … z[k + lag], or given all where the model ends before.
+/// Runs filter and fixed-lag smoother over all epochs of a model and calls visit(k, x) once for
+/// each, in rising k: x[k] given z[0] … z[k + lag], or given all if the model ends before.
 template <StateSpaceModel Model, class Visit>
 void smooth_fixed_lag(const Model& model,
                       const FilterState<Model::states>& prior,

@@ -11,7 +11,7 @@ namespace {
 
 using test::distance;
 
-// Everything that smoother knows of instant k given the readings before `count`.
+// Everything that smoother knows of epoch k given the measurements before `count`.
 std::vector<Gaussian<3>> whole_interval(std::size_t count, const Gate& gate) {
   auto series = test::uneven_series(count);
   series.set_reopened(test::oscillator_prior().cov);

@@ -9,18 +9,19 @@
 #include "proofmass/core/contract.hpp"
 #include "proofmass/estimate/kalman.hpp"
 
-// Fixed-point smoother: the state at one instant of the past, better with every reading that comes.
+// Fixed-point smoother: the state at one past epoch, refined by every new measurement.
 namespace proofmass::estimate {
 
-/// A state of the past that goes on learning, or its first B entries. `cross` is the covariance of
-/// its error with the error of the present state, Σ = E[(x[j] − x̂[j]) (x[k] − x̂[k])ᵀ].
+/// A past state, or its first B entries, updated by later measurements. `cross` is the covariance
+/// of its error with the error of the present state, Σ = E[(x[j] − x̂[j]) (x[k] − x̂[k])ᵀ].
 template <int N, int B = N>
 struct PastState {
   Gaussian<B> x;                        ///< x[j] given z[0] … z[k]
   Mat<B, N> cross = Mat<B, N>::Zero();  ///< Σ
-  int active = B;                       ///< of its entries; those held learn nothing
+  int active = B;                       ///< entries that are estimated; the others are held
+                                        /// constant
 
-  /// The state at the present instant, after its readings: Σ = P.
+  /// The state at the present epoch, after its measurements: Σ = P.
   [[nodiscard]] static PastState from(const Gaussian<N>& filtered, int active = N) {
     if constexpr (B == N)
       return {filtered, filtered.cov, active};
@@ -31,15 +32,15 @@ struct PastState {
   }
 };
 
-/// Takes a past state from instant k − 1 to k, by what the filter's step to k did. Σ ← Σ Fᵀ, then
-/// for each reading, with the filter's K, y, S and row h,
+/// Updates a past state from epoch k − 1 to k with the filter's step to k. Σ ← Σ Fᵀ, then for each
+/// measurement, with the filter's K, y, S and row h,
 ///
 ///     x̂[j] ← x̂[j] + Σ hᵀ y / S,   P[j] ← P[j] − Σ hᵀ (Σ hᵀ)ᵀ / S,   Σ ← Σ (I − K h)ᵀ.
 ///
 /// Equal to the fixed-interval smoother of z[0] … z[k] at j, without an inverse. Like that
-/// smoother's, its covariance is a difference: where what was known at j is wider than what is
-/// known of it at last by 1e8 in standard deviation, nothing is left of it. Source: B. D. O.
-/// Anderson, J. B. Moore, Optimal Filtering (1979), section 7.2. Cost: O(B N (D + M)).
+/// smoother's, its covariance is a difference: no digit is left if the standard deviation at j
+/// shrinks by a factor of 1e8 or more. Source: B. D. O. Anderson, J. B. Moore, Optimal Filtering
+/// (1979), section 7.2. Cost: O(B N (D + M)).
 template <int N, int B, int D, int M>
 void learn(PastState<N, B>& past, const Step<N, D, M>& step) {
   past.cross.template leftCols<D>() =
@@ -55,9 +56,9 @@ void learn(PastState<N, B>& past, const Step<N, D, M>& step) {
   }
 }
 
-/// The states at some instants given every reading, in the order asked for, in one pass forward:
-/// memory for the points alone. Every point must be an instant of the model.
-/// Cost: the filter's, and O(N² (D + M)) for each point and each instant after it.
+/// The states at selected epochs given every measurement, in the order requested, in one forward
+/// pass; memory only for these points. Every point must be an epoch of the model. Cost: the
+/// filter's, plus O(N² (D + M)) for each point and each later epoch.
 template <StateSpaceModel Model>
 [[nodiscard]] std::vector<Gaussian<Model::states>> smooth_points(
     const Model& model,

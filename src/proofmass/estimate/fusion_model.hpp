@@ -5,10 +5,10 @@
 #include "proofmass/estimate/bias_models.hpp"
 #include "proofmass/estimate/motion_models.hpp"
 
-// A model that several accelerometers read at once.
+// A model measured by several accelerometers at once.
 namespace proofmass::estimate {
 
-/// Where each quantity sits in the state of fusion_model(): axis i of (x1, y1, x2, y2) has its
+/// Indices of each quantity in the state of fusion_model(): axis i of (x1, y1, x2, y2) has its
 /// position, velocity and acceleration at 3 i, 3 i + 1, 3 i + 2.
 namespace fusion {
 inline constexpr int axes = 4;
@@ -22,7 +22,8 @@ struct FusionModelOptions {
 };
 
 /// Two two-axis sensors in one filter of 14 states: position, velocity and acceleration of each
-/// axis, and a bias of the x axes and one of the y axes, whose levels are the known input u,
+/// axis, one bias of the x axes and one of the y axes. The levels to which the biases settle are
+/// the known input u.
 ///
 ///     z = (x1, y1, x2, y2),   z_i = a_i + ε_x or ε_y:   H has a row for each axis.
 ///

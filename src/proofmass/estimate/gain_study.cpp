@@ -12,11 +12,11 @@ constexpr double settled_within = 0.02;
 
 struct Limit {
   std::array<double, 3> gain{};
-  double variance = 0.0, predicted = 0.0;  // of the acceleration, after and before a reading
+  double variance = 0.0, predicted = 0.0;  // of the acceleration, after and before a measurement
 };
 
-// Fixed point of the covariances with the acceleration, one after the other: that of the
-// acceleration itself, then of the velocity with it, then of the position.
+// Fixed point of the covariances with the acceleration, one after the other: of the acceleration
+// itself, then of the velocity with it, then of the position.
 Limit limit_of(const GainStudyOptions& options, const LinearModel<3, 1>& model) {
   const double h = options.step_s, R = options.accel_variance_m2ps4, rho = model.Q(2, 2) / R;
   Limit limit;

@@ -69,7 +69,7 @@ TEST(GainStudy, ALongerStepMakesTheGainLargerAndTheEstimateWorse) {
     EXPECT_GT(effects[k].accel_std_mps2, effects[k - 1].accel_std_mps2);
     EXPECT_GT(effects[k].predicted_std_mps2, effects[k].accel_std_mps2);
   }
-  // k → 1 where readings are so rare that each stands alone.
+  // k → 1 where measurements are so rare that each stands alone.
   EXPECT_NEAR(effects.back().accel_std_mps2, 1.0, 0.1);
 }
 

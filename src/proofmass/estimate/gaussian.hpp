@@ -7,7 +7,7 @@ namespace proofmass::estimate {
 template <int Rows, int Cols = 1>
 using Mat = Eigen::Matrix<double, Rows, Cols>;
 
-/// What is known of a state at one instant.
+/// Mean and covariance of a state at one epoch.
 template <int N>
 struct Gaussian {
   Mat<N> mean = Mat<N>::Zero();

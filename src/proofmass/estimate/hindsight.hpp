@@ -6,28 +6,28 @@
 
 namespace proofmass::estimate {
 
-/// What all later readings say of the state at one instant, in the form of Bryson and Frazier:
-/// x̂[k|N] = x̂[k|k] − P λ, P[k|N] = P − P Λ P. Equal to Rauch, Tung and Striebel's smoother without
-/// the inverse of a covariance, so it stands where some states are constants or unobservable.
-/// Source: G. J. Bierman, Automatica 9 (1973) 519; S. Särkkä, Bayesian Filtering and Smoothing
-/// (2013), theorem 8.2, for the form it replaces.
+/// Information from all later measurements (adjoint λ, Λ) in the smoother of Bryson and Frazier:
+/// x̂[k|N] = x̂[k|k] − P λ, P[k|N] = P − P Λ P. Equal to the smoother of Rauch, Tung and Striebel
+/// without the inverse of a covariance, so it also holds where some states are constant or
+/// unobservable. Source: G. J. Bierman, Automatica 9 (1973) 519; S. Särkkä, Bayesian Filtering and
+/// Smoothing (2013), theorem 8.2, for the form it replaces.
 template <int N>
 struct Hindsight {
   Mat<N> lambda = Mat<N>::Zero();
   Mat<N, N> Lambda = Mat<N, N>::Zero();
-  int active = N;  ///< of the states; those held learn nothing
+  int active = N;  ///< number of estimated states; the others are held constant
 
   [[nodiscard]] Mat<N> mean(const Gaussian<N>& filtered) const {
     return filtered.mean - filtered.cov * lambda;
   }
-  /// Variance of gᵀ x given every reading.
+  /// Variance of gᵀ x given every measurement.
   [[nodiscard]] double variance(const Gaussian<N>& filtered, const Mat<N>& g) const {
     Mat<N> Pg = Mat<N>::Zero(), LPg = Mat<N>::Zero();
     symmetric_times(filtered.cov.data(), g.data(), Pg.data(), {active, N});
     symmetric_times(Lambda.data(), Pg.data(), LPg.data(), {active, N});
     return g.dot(Pg) - Pg.dot(LPg);
   }
-  /// Covariance of the first B states given every reading.
+  /// Covariance of the first B states given every measurement.
   template <int B>
   [[nodiscard]] Mat<B, B> cov(const Gaussian<N>& filtered) const {
     Mat<N, B> LP = Mat<N, B>::Zero();  // P is symmetric: its first rows are its first columns
@@ -38,7 +38,7 @@ struct Hindsight {
   }
 };
 
-/// Takes hindsight from after instant k's readings to before them.
+/// Takes the adjoint from after epoch k's measurements to before them.
 template <int N, int D, int M>
 void look_back_readings(Hindsight<N>& later, const Step<N, D, M>& step) {
   for (int i = step.count; i-- > 0;) {
@@ -52,7 +52,7 @@ void look_back_readings(Hindsight<N>& later, const Step<N, D, M>& step) {
   }
 }
 
-/// Takes hindsight from after instant k to after instant k − 1, through k's readings and step.
+/// Takes the adjoint from after epoch k to after epoch k − 1, through k's measurements and step.
 template <int N, int D, int M>
 void look_back(Hindsight<N>& later, const Step<N, D, M>& step) {
   look_back_readings(later, step);

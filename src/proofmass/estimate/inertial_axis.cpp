@@ -8,8 +8,8 @@ namespace {
 /// Random walk of the speed during a cruise: 1 cm/s in one second.
 constexpr double cruise_walk_m2ps3 = 1e-4;
 
-// ∫∫ of white noise N², of a walk q of the bias, and of an unknown acceleration that is one
-// constant over the step.
+// ∫∫ of white noise N², of a random walk q of the bias, and of an unknown acceleration constant
+// over the step.
 Mat<3, 3> motion_noise(const InertialEpoch& epoch, const InertialNoise& noise) {
   const double h = epoch.dt_s, h2 = h * h, h3 = h2 * h;
   const double N2 = noise.white_m2ps3 + noise.motion_lean_m2ps3, q = noise.motion_walk_m2ps5;

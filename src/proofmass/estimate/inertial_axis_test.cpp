@@ -70,7 +70,7 @@ TEST(InertialAxis, JoinedEpochsSayTheSame) {
   }
 }
 
-// The joint normal of all states, conditioned on all readings at once.
+// The joint normal of all states, conditioned on all measurements at once.
 TEST(InertialAxis, EqualsTheDenseBatchWithItsCovariancesAcrossTime) {
   const std::vector<InertialEpoch> epochs = some_epochs();
   const InertialAxis model{epochs, noise};

@@ -7,12 +7,13 @@
 
 #include "proofmass/estimate/relinearised.hpp"
 
-// Iterated extended filter: where readings bend within what is known of the state.
+// Iterated extended filter, for measurements that are nonlinear within the state's uncertainty.
 namespace proofmass::estimate {
 
 namespace detail {
 
-/// How unlikely a state is at instant k given its prediction and the readings, −2 ln p + constant.
+/// Negative log posterior of a state at epoch k given its prediction and the measurements, −2 ln p
+/// + constant.
 template <StateSpaceModel Model>
 [[nodiscard]] double unlikeliness(const Model& model,
                                   std::size_t k,
@@ -23,15 +24,18 @@ template <StateSpaceModel Model>
 
 }  // namespace detail
 
-/// advance() with the readings made linear again about what they give, until nothing changes: the
-/// most probable state given the prediction, by
+/// advance() with the measurements relinearised about the updated state until convergence: the most
+/// probable state given the prediction, by
 ///
-///     x⁽ⁱ⁺¹⁾ = x⁻ + K⁽ⁱ⁾ (z − h(x⁽ⁱ⁾) − H⁽ⁱ⁾ (x⁻ − x⁽ⁱ⁾)),   H⁽ⁱ⁾ = ∂h/∂x at x⁽ⁱ⁾,
+///     x⁽ⁱ⁺¹⁾ = x⁻ + K⁽ⁱ⁾ (z − h(x⁽ⁱ⁾) − H⁽ⁱ⁾ (x⁻ − x⁽ⁱ⁾)),   H⁽ⁱ⁾ = ∂h/∂x at x⁽ⁱ⁾.
 ///
-/// a step being halved that leads to a less probable state. Where that does not converge the
-/// instant is the plain extended filter's, and the result says so. With a gate steps are not
-/// halved: what it lets through is chosen anew each time. Source: B. M. Bell, F. W. Cathey, IEEE
-/// Trans. Automatic Control 38 (1993) 294. Cost: an advance() for each iteration.
+/// - A step that leads to a less probable state is halved.
+/// - Without convergence the epoch falls back to the plain extended filter, and the result reports
+///   it.
+/// - With a gate, steps are not halved: the gate selects measurements anew in each iteration.
+///
+/// Source: B. M. Bell, F. W. Cathey, IEEE Trans. Automatic Control 38 (1993) 294. Cost: an
+/// advance() for each iteration.
 template <StateSpaceModel Model>
 Iterated advance_iterated(const Model& model,
                           std::size_t k,
@@ -72,9 +76,9 @@ Iterated advance_iterated(const Model& model,
   return result;
 }
 
-/// How a run of the iterated filter went.
+/// Summary of a run of the iterated filter.
 struct IteratedFilter {
-  std::size_t unconverged = 0;  ///< instants, which are the plain extended filter's
+  std::size_t unconverged = 0;  ///< epochs that fell back to the plain extended filter
   int most_iterations = 0;
 };
 

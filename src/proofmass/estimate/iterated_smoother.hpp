@@ -8,14 +8,14 @@
 
 #include "proofmass/estimate/relinearised.hpp"
 
-// Iterated extended smoother: the most probable path of a model that is not linear.
+// Iterated extended smoother: the most probable trajectory of a nonlinear model.
 namespace proofmass::estimate {
 
-/// The negative logarithm of a path's probability density given every reading, up to a constant:
+/// Negative log probability density of a path given every measurement, up to a constant:
 ///
 ///     ½ |x[0] − m|²_P + ½ Σ |x[k] − f(x[k−1])|²_Q + ½ Σ (z − h(x[k]))² / R.
 ///
-/// Where Q or P has no inverse its range alone is counted. `path` has a state for each instant.
+/// If Q or P is singular, only its range counts. `path` has a state for each epoch.
 template <StateSpaceModel Model>
 [[nodiscard]] double objective(const Model& model,
                                const Gaussian<Model::states>& prior,
@@ -37,10 +37,10 @@ template <StateSpaceModel Model>
   return 0.5 * twice;
 }
 
-/// Every state given every reading, and how that was found.
+/// Every state given every measurement, and how the iteration ended.
 template <int N>
 struct IteratedPath {
-  std::vector<Gaussian<N>> states;  ///< the path, with the covariances of the last linear model
+  std::vector<Gaussian<N>> states;  ///< the path, with the covariances of the last linearisation
   Iterated how;
   double objective = 0.0;  ///< of the path, see objective()
 };
@@ -59,7 +59,7 @@ void smooth_into(const Model& model,
       });
 }
 
-/// Goes from `path` towards `to` as far as the objective does not rise, a power of a half.
+/// Moves from `path` towards `to`, halving the step until the objective does not rise.
 template <StateSpaceModel Model>
 double go_towards(const Model& model,
                   const Gaussian<Model::states>& prior,
@@ -78,14 +78,17 @@ double go_towards(const Model& model,
 
 }  // namespace detail
 
-/// The extended smoother, then again and again with motion and readings made linear about the path
-/// before: Gauss and Newton's method for the path of the highest posterior density, each step one
-/// linear smoother, halved where it leads to a less probable path. `iterations` counts smoothers;
-/// the first is the plain extended one. Where `how.converged` is false the path is the best found.
-/// With a gate steps are not halved: what it lets through is chosen anew each time.
+/// The extended smoother, repeated with motion and measurements relinearised about the previous
+/// path: the Gauss–Newton method for the path of highest posterior density.
+///
+/// - Each step is one linear smoother, halved if it leads to a less probable path.
+/// - `iterations` counts smoothers; the first is the plain extended one.
+/// - If `how.converged` is false, the path is the best found.
+/// - With a gate, steps are not halved: the gate selects measurements anew in each iteration.
+///
 /// Source: B. M. Bell, SIAM J. Optimization 4 (1994) 626; S. Särkkä, Bayesian Filtering and
 /// Smoothing (2013), section 9.1, for the extended smoother. Cost: a smoother for each iteration;
-/// memory O(instants).
+/// memory O(epochs).
 template <StateSpaceModel Model>
 [[nodiscard]] IteratedPath<Model::states> smooth_iterated(const Model& model,
                                                           const FilterState<Model::states>& prior,

@@ -8,14 +8,14 @@
 #include "proofmass/estimate/hindsight.hpp"
 #include "proofmass/estimate/kalman_filter.hpp"
 
-// The one fixed-interval smoother under every model of this module, linear or extended: the filter
-// of kalman_filter.hpp there, hindsight.hpp back.
+// The fixed-interval smoother under every model of this module, linear or extended: the filter of
+// kalman_filter.hpp forwards, hindsight.hpp backwards.
 namespace proofmass::estimate {
 
-/// There and back over `size` instants: advance(state, k, step) from each to the next, telling it
-/// to forward(k, step), then backward(k, step) in falling k. The way there keeps the state at every
-/// `chunk`-th instant; the way back runs each chunk again, so that memory is
-/// O(size / chunk + chunk) states and steps instead of one step for each instant.
+/// Forward and backward pass over `size` epochs: advance(state, k, step) and forward(k, step) for
+/// each, then backward(k, step) in falling k. The forward pass stores the state at every `chunk`-th
+/// epoch; the backward pass reruns each chunk, so that memory is O(size / chunk + chunk) states and
+/// steps instead of one step for each epoch.
 template <class Step, std::size_t chunk, class State, class Advance, class Forward, class Backward>
 void there_and_back(
     std::size_t size, State state, Advance&& advance, Forward&& forward, Backward&& backward) {
@@ -35,11 +35,12 @@ void there_and_back(
   }
 }
 
-/// Filter and fixed-interval smoother over all instants of a model, in the memory of
+/// Filter and fixed-interval smoother over all epochs of a model, in the memory of
 /// there_and_back().
 ///
-/// forward(k, step) is called in rising k, backward(k, step, hindsight) in falling k: hindsight is
-/// what instants after k say. Cost: two forward passes and one backward, O(instants · M · N²).
+/// forward(k, step) is called in rising k, backward(k, step, hindsight) in falling k; hindsight is
+/// the adjoint of the epochs after k. Cost: two forward passes and one backward, O(epochs · M ·
+/// N²).
 template <StateSpaceModel Model, class Forward, class Backward>
 void smooth(const Model& model,
             const FilterState<Model::states>& prior,

@@ -10,27 +10,27 @@
 #include "proofmass/estimate/dense_kernels.hpp"
 #include "proofmass/estimate/gaussian.hpp"
 
-// The one Kalman filter under every model of this module, linear or extended, with readings taken
-// one channel at a time.
+// The Kalman filter under every model of this module, linear or extended, with measurements
+// processed one channel at a time.
 //
-//   state     x[k] = f(x[k−1]) + w,   w ~ N(0, Q)     N-vector, of which the first D move
-//   readings  z[k] = h(x[k]) + v,     v ~ N(0, R)     up to M scalars, R diagonal
+//   state         x[k] = f(x[k−1]) + w,   w ~ N(0, Q)     N-vector, the first D are dynamic
+//   measurements  z[k] = h(x[k]) + v,     v ~ N(0, R)     up to M scalars, R diagonal
 //
-// A channel without a reading is left out, so one dead channel costs nothing but itself. Constants
-// and slow walks stand behind the D moving states: a prediction then costs O(D N) instead of O(N³).
+// A channel without a measurement is skipped, so a dead channel does not affect the others. Static
+// states (constants and slow random walks) follow the D dynamic ones: a prediction then costs O(D
+// N) instead of O(N³).
 namespace proofmass::estimate {
 
-/// One step of time: the predicted moving states, how they hang on the former ones, and the noise
-/// that came in.
+/// One time step: the predicted dynamic states, their Jacobian, and the process noise.
 template <int N, int D>
 struct Transition {
-  Mat<D> mean;  ///< f(x) of the moving states
-  Mat<D, D> F;  ///< ∂f/∂x among the moving states; the others neither move nor push
-  Mat<D, D> Q;  ///< process noise of the moving states
-  Mat<N> walk;  ///< variance added to each standing state; its first D are not read
+  Mat<D> mean;  ///< f(x) of the dynamic states
+  Mat<D, D> F;  ///< ∂f/∂x among the dynamic states; they do not depend on the static ones
+  Mat<D, D> Q;  ///< process noise of the dynamic states
+  Mat<N> walk;  ///< variance added to each static state; its first D entries are not used
 };
 
-/// One channel's reading and what the model makes of it at the predicted state.
+/// One channel's measurement and its prediction from the state.
 template <int N>
 struct Reading {
   double value;      ///< z
@@ -44,11 +44,11 @@ struct Readings {
   std::array<Reading<N>, static_cast<std::size_t>(M)> rows;
   int count = 0;
   /// How many of the last rows are pseudo-measurements: accepting one does not reset the gate's
-  /// count of rejected instants.
+  /// count of rejected epochs.
   int constraints = 0;
 };
 
-/// What a model offers: sizes, the step that leads to instant k, and the readings of instant k.
+/// Requirements of a model: sizes, the step that leads to epoch k, and the measurements of epoch k.
 template <class Model>
 concept StateSpaceModel = requires(const Model& model,
                                    const Mat<Model::states>& x,
@@ -61,8 +61,8 @@ concept StateSpaceModel = requires(const Model& model,
   model.reopen(lost, k);
 };
 
-/// How many of a model's states the filter runs on: all, unless the model says by active() that
-/// those from there on are held, without variance.
+/// Number of states that the filter estimates: all, unless the model's active() gives a count; the
+/// states from there on are held constant, without variance.
 template <StateSpaceModel Model>
 [[nodiscard]] int active_states(const Model& model) {
   if constexpr (requires { model.active(); })
@@ -71,23 +71,25 @@ template <StateSpaceModel Model>
     return Model::states;
 }
 
-/// What one channel's reading did to the state: all that the backward pass and the tests need.
+/// Effect of one measurement on the state: all that the backward pass and the tests need.
 template <int N>
 struct Update {
   Mat<N> h, gain;
   double innovation = 0.0;  ///< y = z − h(x̂)
-  double expected = 0.0;    ///< S = h P hᵀ + R, with the R that the model states
-  double variance = 0.0;    ///< S as used: larger where the reading lost weight
-  bool used = false;        ///< false: passed the gate's limit and was left out
+  double expected = 0.0;    ///< S = h P hᵀ + R, with the model's R
+  double variance = 0.0;    ///< S as used: larger if the measurement was down-weighted
+  bool used = false;        ///< false: rejected by the gate
   [[nodiscard]] double nis() const { return innovation * innovation / expected; }
 };
 
-/// What is done with readings that the model did not expect, ν = |y|/√S standard deviations off.
-/// Beyond `huber` they lose weight as huber/ν, so that none pulls harder than one just there;
-/// beyond `limit` they are left out. After `patience` instants in a row with nothing but such
-/// readings the filter has lost the state, not the sensor its mind: the model reopens the
-/// covariance and what comes is believed again. Source: P. J. Huber, Robust Statistics (1981),
-/// section 4.5.
+/// Treatment of unexpected measurements, with ν = |y|/√S:
+///
+/// - beyond `huber` they are down-weighted by huber/ν, which bounds their influence;
+/// - beyond `limit` they are rejected;
+/// - after `patience` consecutive epochs with only rejected measurements, the filter is assumed to
+///   have diverged: the model resets the covariance and measurements are accepted again.
+///
+/// Source: P. J. Huber, Robust Statistics (1981), section 4.5.
 struct Gate {
   double huber = std::numeric_limits<double>::infinity();
   double limit = std::numeric_limits<double>::infinity();
@@ -97,7 +99,7 @@ struct Gate {
 template <int N>
 struct FilterState {
   Gaussian<N> x;
-  int instants_gated = 0;  ///< in a row, up to now
+  int instants_gated = 0;  ///< consecutive, up to now
 };
 
 /// x̂[k|k−1] from x̂[k−1|k−1].
@@ -105,7 +107,7 @@ template <int N, int D>
 void predict(Gaussian<N>& x, const Transition<N, D>& step) {
   x.mean.template head<D>() = step.mean;
   const Mat<D, N> FP = step.F.lazyProduct(x.cov.template topRows<D>());
-  // Symmetric to the last bit: corrections do not reach what is not, and F would make it grow.
+  // Exactly symmetric: corrections do not reach the antisymmetric part, and F would make it grow.
   const Mat<D, D> FPF = FP.template leftCols<D>() * step.F.transpose();
   x.cov.template topLeftCorner<D, D>() = 0.5 * (FPF + FPF.transpose()) + step.Q;
   if constexpr (D < N) {
@@ -116,11 +118,11 @@ void predict(Gaussian<N>& x, const Transition<N, D>& step) {
   }
 }
 
-/// x̂ given one more reading: Kalman's gain, and P ← P − (P hᵀ)(P hᵀ)ᵀ / S, of which an entry and
-/// its mirror round alike; Joseph's form instead, in O(N³), where the start is diffuse. Cost:
-/// O(N²). `predicted` is h(x̂) at the state as it stands. States from `active` on are held: their
-/// variances and covariances are zero, and are not touched. Source: G. J. Bierman, Factorization
-/// Methods for Discrete Sequential Estimation (1977), section II.
+/// x̂ updated by one measurement: the Kalman gain, and P ← P − (P hᵀ)(P hᵀ)ᵀ / S, which rounds an
+/// entry and its mirror alike; with a diffuse start the Joseph form, in O(N³). Cost: O(N²).
+/// `predicted` is h(x̂) at the current state. States from `active` on are held: their variances and
+/// covariances are zero and are not changed. Source: G. J. Bierman, Factorization Methods for
+/// Discrete Sequential Estimation (1977), section II.
 template <int N>
 [[nodiscard]] Update<N> correct(Gaussian<N>& x,
                                 const Reading<N>& reading,
@@ -153,10 +155,10 @@ template <int N>
   return update;
 }
 
-/// One instant of a run: the state after its readings, and what led there.
+/// One epoch of a run: the state after its measurements, and how it was obtained.
 template <int N, int D, int M>
 struct Step {
-  Mat<D, D> F;  ///< of the transition to this instant; identity at the first
+  Mat<D, D> F;  ///< of the transition to this epoch; identity at the first
   std::array<Update<N>, static_cast<std::size_t>(M)> updates;
   int count = 0;
   Gaussian<N> filtered;
@@ -165,7 +167,8 @@ struct Step {
 template <StateSpaceModel Model>
 using StepOf = Step<Model::states, Model::moving, Model::channels>;
 
-/// Takes the state from instant k − 1 to k (at k = 0: only its readings) and says how in `step`.
+/// Propagates the state from epoch k − 1 to k (at k = 0: only its measurements) and records the
+/// step in `step`.
 template <StateSpaceModel Model>
 void advance(const Model& model,
              std::size_t k,
@@ -200,7 +203,7 @@ void advance(const Model& model,
   step.filtered = state.x;
 }
 
-/// Filters instants [first, last) from `state`, telling each to visit(k, step).
+/// Filters epochs [first, last) from `state` and calls visit(k, step) for each.
 template <StateSpaceModel Model, class Visit>
 void filter(const Model& model,
             std::size_t first,

@@ -8,14 +8,14 @@
 namespace proofmass::estimate::kalman_test {
 namespace {
 
-// Position and speed that move, a gain and an offset that stand, the offset walking: readings of
-// (1 + gain) · position + offset, and of the speed. Not linear, so only advance()'s own rules
+// Position and speed that move, a gain and an offset that stand, the offset walking: measurements
+// of (1 + gain) · position + offset, and of the speed. Not linear, so only advance()'s own rules
 // apply.
 struct Gauge {
   static constexpr int states = 4, moving = 2, channels = 2;
   std::size_t instants = 300;
   bool linear = false;
-  double jump_at = 1e9;  ///< instant from which the position reads 1000 more
+  double jump_at = 1e9;  ///< epoch from which the position reads 1000 more
 
   [[nodiscard]] std::size_t size() const { return instants; }
   [[nodiscard]] Transition<4, 2> transition(const Mat<4>& x, std::size_t k) const {
@@ -73,7 +73,7 @@ Path smoothed_in_chunks(const Gauge& model, const Gate& gate = {}) {
   return path;
 }
 
-// 300 instants are three chunks; the gate is awake, so its memory has to cross their borders too.
+// 300 epochs are three chunks; the gate is awake, so its memory has to cross their borders too.
 TEST(Smoother, InChunksIsTheSameAsInOnePiece) {
   Gauge model;
   model.jump_at = 120.0;
@@ -252,7 +252,7 @@ struct JumpingLevel {
 TEST(Gate, AfterItsPatienceTheFilterReopensAndFindsTheSignalAgain) {
   JumpingLevel model{std::vector<double>(100, 0.0)};
   for (std::size_t k = 50; k < 100; ++k) model.z[k] = 500.0;
-  model.z[52] = std::numeric_limits<double>::quiet_NaN();  // no reading is no evidence
+  model.z[52] = std::numeric_limits<double>::quiet_NaN();  // no measurement is no evidence
   const Gate gate{.huber = 3.0, .limit = 10.0, .patience = 8};
   std::vector<double> means;
   std::vector<int> used;
@@ -261,7 +261,7 @@ TEST(Gate, AfterItsPatienceTheFilterReopensAndFindsTheSignalAgain) {
     means.push_back(step.filtered.mean(0));
     used.push_back(step.count > 0 && step.updates[0].used ? 1 : 0);
   });
-  // Eight readings shut out: 50, 51, 53 … 58. The ninth is believed.
+  // Eight measurements shut out: 50, 51, 53 … 58. The ninth is believed.
   for (std::size_t k = 50; k <= 58; ++k) EXPECT_EQ(used[k], 0) << "k = " << k;
   EXPECT_NEAR(means[58], 0.0, 1e-9);
   EXPECT_EQ(used[59], 1);
@@ -279,7 +279,7 @@ TEST(Gate, OneOutlierNeitherMovesTheFilterNorRunsDownItsPatience) {
   EXPECT_LT(state.x.cov(0, 0), 0.01);
 }
 
-// Two readings far more precise than what was known: P − K S Kᵀ would lose all of P's digits.
+// Two measurements far more precise than what was known: P − K S Kᵀ would lose all of P's digits.
 TEST(Filter, APriorTenToTheSixteenTimesTheReadingsLosesNoDefiniteness) {
   Gaussian<2> x;
   x.cov << 1e16, 0.99e16, 0.99e16, 1e16;

@@ -9,11 +9,11 @@
 namespace proofmass::estimate {
 namespace {
 
-// 2⁶⁰ readings are more than there will ever be.
+// 2⁶⁰ measurements exceed any recording.
 constexpr std::size_t most_doublings = 60;
 constexpr double nothing = 1e-6;
 
-/// Orthonormal rows that span what the readings see: H, H F, H F² …
+/// Orthonormal rows that span the observable subspace: H, H F, H F² …
 Eigen::MatrixXd seen_rows(const Eigen::MatrixXd& F, const Eigen::MatrixXd& H) {
   const Eigen::Index n = F.rows();
   Eigen::MatrixXd V(n, n);
@@ -42,8 +42,8 @@ std::string readings(std::size_t count, double dt_s) {
 
 }  // namespace
 
-// Powers of A grow where nothing is seen, and rounding would bring that back: all is done on what
-// the readings see.
+// Powers of A grow in the unobservable subspace, and rounding would reintroduce it: everything is
+// computed in the observable one.
 LagGain::LagGain(const Parts& parts) {
   const Eigen::MatrixXd V = seen_rows(parts.F, parts.H);
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(parts.F.rows(), parts.F.rows());
@@ -73,7 +73,7 @@ Eigen::VectorXd LagGain::variance_reduction(std::size_t lag) const {
     sum += power.transpose() * sums_[j] * power;
     power = (powers_[j] * power).eval();
   }
-  // What is longer than all doublings together has converged.
+  // A lag longer than all doublings together has converged.
   if (lag >> sums_.size() != 0) sum = sums_.back();
   return reduction(sum);
 }
@@ -85,7 +85,8 @@ Eigen::VectorXd LagGain::variance_reduction() const {
 std::size_t LagGain::shortest(int state, double share) const {
   PM_EXPECTS(state >= 0 && state < effect_.rows() && share > 0.0 && share < 1.0);
   const double wanted = share * variance_reduction()(state);
-  // The most readings that are not yet enough, bit by bit: each one more takes more off.
+  // The largest insufficient number of measurements, bit by bit: each further one reduces the
+  // variance more.
   const Eigen::Index n = effect_.cols();
   std::size_t lag = 0;
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n), power = Eigen::MatrixXd::Identity(n, n);

@@ -7,11 +7,11 @@
 
 #include "proofmass/estimate/steady_state.hpp"
 
-// How long a fixed lag pays, told beforehand from the model: what waiting for so many readings more
-// takes off the variance of each state in the steady state.
+// Benefit of a fixed lag, computed from the model: the reduction of each state's steady-state
+// variance by waiting for further measurements.
 namespace proofmass::estimate {
 
-/// What waiting takes off. With A = F (I − K H),
+/// Reduction of the variance by a lag. With A = F (I − K H),
 ///
 ///     P⁺ − P[k|k+L] = P⁺ Λ_L P⁺,   Λ_L = Fᵀ (Σ Aᵀⁱ Hᵀ S⁻¹ H Aⁱ, i = 0 … L−1) F.
 ///
@@ -22,11 +22,11 @@ class LagGain {
   LagGain(const LinearModel<N, M, U>& model, const SteadyState<N, M>& steady)
       : LagGain(Parts{model.F, model.H, steady.gain, steady.innovation_variance, steady.seen}) {}
 
-  /// Of each state, `lag` readings after it. Cost: O(N³ ln lag).
+  /// Reduction for each state with `lag` later measurements. Cost: O(N³ ln lag).
   [[nodiscard]] Eigen::VectorXd variance_reduction(std::size_t lag) const;
-  /// The same when all is read that ever will be.
+  /// Reduction for each state with all future measurements.
   [[nodiscard]] Eigen::VectorXd variance_reduction() const;
-  /// The shortest lag that takes off `share` of that, in (0, 1), for one state.
+  /// The shortest lag that achieves `share` of the total reduction, in (0, 1), for one state.
   [[nodiscard]] std::size_t shortest(int state, double share) const;
 
  private:
@@ -38,23 +38,24 @@ class LagGain {
 
   /// By doubling: sums_[j] is the sum of the first 2ʲ terms, powers_[j] is A to the power 2ʲ.
   std::vector<Eigen::MatrixXd> sums_, powers_;
-  Eigen::MatrixXd effect_;  ///< P⁺ Fᵀ on what is seen
+  Eigen::MatrixXd effect_;  ///< P⁺ Fᵀ on the observable subspace
 };
 
-/// How long a lag pays for one state.
+/// Benefit of a lag for one state.
 struct StateLag {
-  double filter_variance = 0.0;        ///< without waiting
-  double interval_variance = 0.0;      ///< given every reading there will ever be
-  std::size_t lag_95 = 0, lag_99 = 0;  ///< readings to wait for 95 % and 99 % of what that gains
+  double filter_variance = 0.0;        ///< without lag
+  double interval_variance = 0.0;      ///< given all future measurements
+  std::size_t lag_95 = 0, lag_99 = 0;  ///< measurements to wait for 95 % and 99 % of the total gain
 };
 
 struct StateLagAdvice {
   std::optional<StateLag> lag;
-  std::string why_not;  ///< in words, where there is no advice
+  std::string why_not;  ///< in words, if there is no advice
 };
 
-/// Of each state. None where a state's variance has no limit (what is read does not show it), or
-/// where later readings say less than 1e-6 of its variance. Cost: O(N³) for some dozens of steps.
+/// Lag advice for each state. Absent if a state's variance has no limit (the state is not
+/// observable), or if later measurements reduce it by less than 1e-6. Cost: O(N³) for some dozens
+/// of steps.
 template <int N, int M, int U>
 [[nodiscard]] std::vector<StateLagAdvice> advise_lag(const LinearModel<N, M, U>& model,
                                                      const SteadyState<N, M>& steady);
@@ -75,8 +76,8 @@ std::vector<StateLagAdvice> advise_lag(const LinearModel<N, M, U>& model,
   return advice;
 }
 
-/// One line for a person, with a step of dt_s: "position: a lag of 9 readings (0.09 s) gets 95 %,
-/// 14 (0.14 s) 99 % of what all later readings give; the standard deviation falls by 33 %".
+/// One line of text, with a step of dt_s: "position: a lag of 9 readings (0.09 s) gets 95 %, 14
+/// (0.14 s) 99 % of what all later readings give; the standard deviation falls by 33 %".
 [[nodiscard]] std::string lag_words(const StateLagAdvice& advice,
                                     const std::string& state,
                                     double dt_s);

@@ -117,8 +117,8 @@ TEST(LagAdvice, HasNoneForWhatTheReadingsDoNotShow) {
   EXPECT_GT(advice[3].lag->lag_95, 100U);
 }
 
-// A number that stands still and drifts a little: P⁺ and P[k|∞] of the local level are known in
-// closed form, and each reading more brings the same share, (1 − K)², of what is left.
+// A number that is at rest and drifts a little: P⁺ and P[k|∞] of the local level are known in
+// closed form, and each measurement more brings the same share, (1 − K)², of what is left.
 TEST(LagAdvice, OfALocalLevelIsTheClosedForm) {
   LinearModel<1, 1> level;
   level.F << 1.0;
@@ -141,7 +141,8 @@ TEST(LagAdvice, OfALocalLevelIsTheClosedForm) {
             "later readings give; its standard deviation then falls by 23 %");
 }
 
-// An input-free state that the readings repeat each time: what comes later has no bearing on it.
+// An input-free state that the measurements repeat each time: what comes later has no bearing on
+// it.
 TEST(LagAdvice, HasNoneWhereLaterReadingsSayNothing) {
   LinearModel<1, 1> forgetful;
   forgetful.F << 0.0;

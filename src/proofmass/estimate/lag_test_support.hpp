@@ -11,8 +11,8 @@
 // Models and records for the tests of fixed-point, fixed-lag and live smoothing.
 namespace proofmass::estimate::test {
 
-/// A damped oscillator with a slow third state and an input. Dense in every matrix, so that no
-/// entry is idle.
+/// A damped oscillator with a slow third state and an input. All matrices are dense, so that every
+/// entry is tested.
 inline LinearModel<3, 2, 1> driven_oscillator(double dt_s) {
   const double c = std::exp(-0.2 * dt_s);
   LinearModel<3, 2, 1> m;
@@ -35,7 +35,7 @@ inline Gaussian<3> oscillator_prior() {
   return x;
 }
 
-/// Steps that are not alike, one channel missing, the other, both, and an outlier now and then.
+/// Irregular steps, with one channel missing, the other, both, and an occasional outlier.
 inline std::vector<Epoch<2, 1>> uneven_epochs(std::size_t count) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   Random random(7, "uneven epochs");
@@ -54,7 +54,8 @@ inline LinearSeries<3, 2, 1> uneven_series(std::size_t count) {
   return LinearSeries<3, 2, 1>::make(uneven_epochs(count), driven_oscillator).value();
 }
 
-/// Position and velocity driven by white acceleration, held over each step: the position is read.
+/// Position and velocity driven by white acceleration, constant over each step: the position is
+/// measured.
 inline LinearModel<2, 1> constant_velocity(double dt_s, double accel_variance, double variance) {
   LinearModel<2, 1> m;
   m.F << 1.0, dt_s, 0.0, 1.0;
@@ -65,10 +66,10 @@ inline LinearModel<2, 1> constant_velocity(double dt_s, double accel_variance, d
   return m;
 }
 
-/// Position, velocity and acceleration driven by white jerk of density 1 m²/s⁵, and a bias that
-/// forgets over 100 s and has a standard deviation of 0.07 m/s²; an accelerometer reads the sum of
-/// the last two. Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), sections
-/// 4.3 and 6.2.3.
+/// Position, velocity and acceleration driven by white jerk of density 1 m²/s⁵, and a Gauss–Markov
+/// bias with time constant 100 s and standard deviation 0.07 m/s²; an accelerometer measures the
+/// sum of the last two. Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001),
+/// sections 4.3 and 6.2.3.
 inline LinearModel<4, 1> biased_motion(double h) {
   const double phi = std::exp(-h / 100.0);
   LinearModel<4, 1> m;
@@ -82,13 +83,13 @@ inline LinearModel<4, 1> biased_motion(double h) {
   return m;
 }
 
-/// How far two states are apart, in standard deviations of the second.
+/// Difference of two states, in standard deviations of the second.
 template <int N>
 double distance(const Mat<N>& a, const Gaussian<N>& b) {
   return ((a - b.mean).array() / b.cov.diagonal().array().sqrt()).abs().maxCoeff();
 }
 
-/// How far two covariances are apart, entry by entry, in the standard deviations of the second.
+/// Difference of two covariances, entry by entry, in the standard deviations of the second.
 template <int N>
 double distance(const Mat<N, N>& A, const Mat<N, N>& B) {
   const Mat<N> std = B.diagonal().cwiseSqrt();

@@ -18,11 +18,11 @@ using Pair = double __attribute__((vector_size(16)));
   return pair;
 }
 
-/// How results are written: as ever; or past the caches, for what is too much to stay there anyway,
-/// which saves memory from being read before it is written over.
+/// How results are written: cached, or bypassing the caches for data too large for them, which
+/// avoids reading memory before it is overwritten.
 enum class Write { cached, streamed };
 
-/// `to` is a multiple of 16 bytes where streamed.
+/// `to` is a multiple of 16 bytes if streamed.
 template <Write write>
 [[gnu::always_inline]] inline void write_pair(const Pair& pair, double* to) {
 #if defined(__SSE2__)
@@ -34,14 +34,14 @@ template <Write write>
   std::memcpy(to, &pair, sizeof pair);
 }
 
-/// After the last streamed write, before anybody else is told of the results.
+/// Call after the last streamed write, before the results are published.
 inline void finish_streaming() {
 #if defined(__SSE2__)
   _mm_sfence();
 #endif
 }
 
-/// Count numbers of two neighbouring lanes, each lane's together.
+/// Count numbers of two neighbouring lanes; each lane's are contiguous.
 template <int Count, Write write>
 [[gnu::always_inline]] inline void part(const LaneNumbers* numbers,
                                         int lane,

@@ -14,38 +14,37 @@
 #include "proofmass/estimate/rauch_tung_striebel.hpp"
 #include "proofmass/estimate/start.hpp"
 
-// Linear Gaussian filter and smoother with known input, irregular time steps, missing readings and
-// a start of which nothing need be known (linear_series.hpp says the model, start.hpp the start).
+// Linear Gaussian filter and smoother with known input, irregular time steps, missing measurements
+// and an optionally diffuse start (linear_series.hpp defines the model, start.hpp the start).
 //
-// This is kalman.hpp's one filter and one smoother with all N states moving. A model that is not
-// linear needs nothing more: whatever satisfies StateSpaceModel (kalman.hpp) with a Transition
-// whose F and Readings whose h are Jacobians is the extended filter and its smoother; WheelModel is
-// one.
+// This is the filter and smoother of kalman.hpp with all N states dynamic. Nonlinear models use the
+// same code: any type that satisfies StateSpaceModel (kalman.hpp), with Jacobians as F of its
+// Transition and h of its Readings, gives the extended filter and smoother. WheelModel is one.
 namespace proofmass::estimate {
 
-/// How smooth_linear() goes back. Both give the same but for rounding.
+/// Backward pass of smooth_linear(). Both give the same result but for rounding.
 enum class Smoother {
-  /// Bryson and Frazier: no inverse, so constants, unobservable states and a singular Q are as good
-  /// as any others; the more exact where some states are not observable. P − P Λ P loses digits
-  /// where the filter is far less sure than the smoother: behind a gap of 10 s with position read,
-  /// 2·10⁻³ of a variance.
+  /// Bryson and Frazier: no inverse, so constants, unobservable states and a singular Q need no
+  /// special treatment; more exact where some states are not observable. P − P Λ P loses digits
+  /// where the filter is far less certain than the smoother: after a gap of 10 s with measured
+  /// position, 2·10⁻³ of a variance.
   bryson_frazier,
-  /// Rauch, Tung and Striebel: for comparison with others' results, and where readings are very
-  /// precise, a gap is long or the prior very wide.
+  /// Rauch, Tung and Striebel: for comparison with other implementations, and for very precise
+  /// measurements, long gaps or a very wide prior.
   rauch_tung_striebel,
 };
 
 struct LinearOptions {
-  /// Its patience is not used after a start that has diffuse directions: a filter without a prior
-  /// covariance has none to go back to.
+  /// Its `patience` is ignored after a start with diffuse directions: there is no prior covariance
+  /// to reset to.
   Gate gate = {};
   Smoother smoother = Smoother::bryson_frazier;
-  bool lag_one = false;  ///< whether LinearRun::lag_one is wanted, N² numbers an epoch
+  bool lag_one = false;  ///< whether to fill LinearRun::lag_one, N² numbers an epoch
 };
 
 namespace detail {
 
-/// What a diffuse start begins with.
+/// Initial state of a diffuse start.
 template <int N>
 [[nodiscard]] DiffuseState<N> begin(const Start<N>& start) {
   DiffuseState<N> state;
@@ -71,7 +70,7 @@ void smooth_proper(const LinearSeries<N, M, U>& series,
                    const Gaussian<N>& prior,
                    const Gate& gate,
                    LinearRun<N, M>& run) {
-  Mat<N, N> from_next;  // Λ⁻: what k + 1 and all later say, before the step back to k
+  Mat<N, N> from_next;  // Λ⁻: information from k + 1 and later, before the step back to k
   smooth(
       series, FilterState<N>{prior}, gate,
       [&](std::size_t k, const Step<N, N, M>& step) { note(series, k, step, run); },
@@ -87,7 +86,7 @@ void smooth_proper(const LinearSeries<N, M, U>& series,
       });
 }
 
-/// The same from a diffuse start: with δ = 0 as above, and then what all readings say of δ,
+/// smooth_linear() from a diffuse start: with δ = 0 as above, then corrected by the estimate of δ,
 ///     x̂[k|N] ← x̂[k|N] + X δ̂,   P[k|N] ← P[k|N] + X cov(δ) Xᵀ,   X = (I − P Λ) ∂x̂[k]/∂δ.
 template <int N, int M, int U>
 void smooth_diffuse(const LinearSeries<N, M, U>& series,
@@ -125,7 +124,7 @@ void smooth_diffuse(const LinearSeries<N, M, U>& series,
       });
 }
 
-/// How many of the first epochs leave a direction undetermined.
+/// Number of leading epochs with an undetermined direction.
 template <int N, int M>
 [[nodiscard]] std::size_t undetermined_epochs(const LinearRun<N, M>& run) {
   std::size_t k = 0;
@@ -135,9 +134,9 @@ template <int N, int M>
 
 }  // namespace detail
 
-/// Runs the filter. `start` describes the state at the first epoch, before its readings; a
-/// Gaussian<N> is one. Source: Särkkä (2013), theorem 4.2, one channel at a time; for a diffuse
-/// start see diffuse.hpp. Cost: O(epochs · (N³ + M N²)).
+/// Runs the filter. `start` describes the state at the first epoch, before its measurements; a
+/// Gaussian<N> is accepted. Source: Särkkä (2013), theorem 4.2, one channel at a time; for a
+/// diffuse start see diffuse.hpp. Cost: O(epochs · (N³ + M N²)).
 template <int N, int M, int U>
 [[nodiscard]] LinearRun<N, M> filter_linear(LinearSeries<N, M, U> series,
                                             const std::type_identity_t<Start<N>>& start,
@@ -161,14 +160,14 @@ template <int N, int M, int U>
   return run;
 }
 
-/// Filter and fixed-interval smoother: every state given every reading, in LinearStep::smoothed,
-/// and on request cov(x[k+1], x[k]) given every reading.
+/// Filter and fixed-interval smoother: every state given every measurement, in
+/// LinearStep::smoothed, and on request cov(x[k+1], x[k]) given every measurement.
 ///
 ///     x̂[k|N] = x̂ − P λ,   P[k|N] = P − P Λ P,   cov(x[k+1], x[k]|N) = (I − P⁻[k+1] Λ⁻[k+1]) F P
 ///
-/// with λ⁻, Λ⁻ what instant k + 1 and all later ones say, before the step back to k. Source:
-/// Bierman (1973), see kalman.hpp; or, when asked for, Rauch, Tung & Striebel (1965), see
-/// rauch_tung_striebel.hpp, which takes over where the start is determined.
+/// with λ⁻, Λ⁻ the adjoint from epoch k + 1 and later, before the step back to k. Source: Bierman
+/// (1973), see kalman.hpp; or, when requested, Rauch, Tung & Striebel (1965), see
+/// rauch_tung_striebel.hpp, which applies from the epoch at which the start is determined.
 template <int N, int M, int U>
 [[nodiscard]] LinearRun<N, M> smooth_linear(LinearSeries<N, M, U> series,
                                             const std::type_identity_t<Start<N>>& start,

@@ -83,7 +83,7 @@ TEST(LinearGaussian, SmootherEqualsBatchLeastSquaresOfEverything) {
   }
 }
 
-// Rauch, Tung and Striebel with the inverse, all channels of an instant at once.
+// Rauch, Tung and Striebel with the inverse, all channels of an epoch at once.
 struct Textbook {
   std::vector<Gaussian<3>> predicted, filtered, smoothed;
   double log_likelihood = 0.0, nis = 0.0;
@@ -243,7 +243,7 @@ TEST(LinearGaussian, NoEpochsGiveNoStepsAndLikelihoodOne) {
   EXPECT_EQ(run.log_likelihood, 0.0);
 }
 
-// One run drawn from the model itself: true states, and readings with a third of them missing.
+// One run drawn from the model itself: true states, and measurements with a third of them missing.
 struct Drawn {
   std::vector<Mat<3>> truth;
   std::vector<Epoch<2, 1>> epochs;
@@ -270,8 +270,8 @@ double nees(const Gaussian<3>& x, const Mat<3>& truth) {
   return error.dot(x.cov.llt().solve(error));
 }
 
-// Bar-Shalom, Li, Kirubarajan (2001), section 5.4.2: NEES over independent runs at one instant, NIS
-// over all instants, since innovations are white.
+// Bar-Shalom, Li, Kirubarajan (2001), section 5.4.2: NEES over independent runs at one epoch, NIS
+// over all epochs, since innovations are white.
 TEST(LinearGaussian, ErrorsAndInnovationsAreAsLargeAsTheCovariancesSay) {
   constexpr std::size_t runs = 200, count = 40;
   double filtered = 0.0, smoothed = 0.0, nis = 0.0;

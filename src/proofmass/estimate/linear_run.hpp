@@ -11,44 +11,46 @@
 #include "proofmass/estimate/linear_series.hpp"
 #include "proofmass/estimate/symmetric.hpp"
 
-// What a run of a linear model leaves behind.
+// Results of a run of a linear model.
 namespace proofmass::estimate {
 
-/// What the run says of one epoch.
+/// Results of one epoch.
 template <int N, int M>
 struct LinearStep {
   PackedGaussian<N> filtered;  ///< given z[0] … z[k]
-  PackedGaussian<N> smoothed;  ///< given every reading; filter_linear() leaves it as `filtered`
-  /// Channel i's reading less what all epochs before and channels 0 … i−1 of this one predict, and
-  /// the variance of that under the model: uncorrelated. NaN where there is no reading; an infinite
-  /// variance where the reading determined a diffuse direction.
+  PackedGaussian<N> smoothed;  ///< given every measurement; filter_linear() leaves it equal to
+                               /// `filtered`
+  /// Innovation of channel i given all earlier epochs and channels 0 … i−1 of this one, and its
+  /// variance under the model: uncorrelated. NaN without a measurement; the variance is infinite if
+  /// the measurement determined a diffuse direction.
   Mat<M> innovation, innovation_variance;
-  /// Channels read and let through by the gate, without those that determined a diffuse direction.
+  /// Channels measured and accepted by the gate, without those that determined a diffuse direction.
   int readings = 0;
-  /// Normalised innovation squared, yᵀ S⁻¹ y over these readings: χ² of so many degrees.
+  /// Normalised innovation squared, yᵀ S⁻¹ y over these measurements: χ² with `readings` degrees of
+  /// freedom.
   double nis = 0.0;
-  int diffuse_directions = 0;  ///< in which the readings so far say nothing
+  int diffuse_directions = 0;  ///< number not yet determined by the measurements
 };
 
 template <int N, int M>
 struct LinearRun {
   std::vector<LinearStep<N, M>> steps;
-  /// ln p of the readings let through, −½ Σ (ln 2π + ln S + y²/S). A reading that determines a
-  /// diffuse direction adds −½ ln F∞ (0 where F∞ = hᵀ A Aᵀ h = 1) and no ln 2π, as in the package
-  /// KFAS; Durbin & Koopman (2012), section 7.2.2, count ln 2π for it too: theirs is
-  /// `log_likelihood − ½ diffuse_readings ln 2π`, which moves no maximum.
+  /// ln p of the accepted measurements, −½ Σ (ln 2π + ln S + y²/S). A measurement that determines a
+  /// diffuse direction adds −½ ln F∞ (0 if F∞ = hᵀ A Aᵀ h = 1) and no ln 2π, as in the package
+  /// KFAS; Durbin & Koopman (2012), section 7.2.2, include ln 2π for it too: theirs is
+  /// `log_likelihood − ½ diffuse_readings ln 2π`, which does not change the maximum.
   double log_likelihood = 0.0;
   double nis = 0.0;  ///< sum over all epochs
   std::size_t readings = 0;
-  std::size_t diffuse_readings = 0;  ///< that determined a diffuse direction
-  /// [k] is cov(x[k+1], x[k]) given every reading, row of the later state first; one less than
-  /// epochs; empty unless asked for. Infinite where it is not determined.
+  std::size_t diffuse_readings = 0;  ///< number that determined a diffuse direction
+  /// [k] is cov(x[k+1], x[k]) given every measurement, row of the later state first; one less than
+  /// epochs; empty unless requested. Infinite where it is not determined.
   std::vector<Mat<N, N>> lag_one;
 };
 
 namespace detail {
 
-/// Counts one reading that the gate let through.
+/// Counts one measurement accepted by the gate.
 template <int N, int M>
 void count_reading(LinearStep<N, M>& out,
                    LinearRun<N, M>& run,

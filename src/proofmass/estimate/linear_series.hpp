@@ -10,42 +10,42 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/kalman.hpp"
 
-// A linear Gaussian model and the record it is run over.
+// A linear Gaussian model and the data it is run over.
 //
-//   state     x[k] = F x[k−1] + B u[k] + w,   w ~ N(0, Q)      N-vector, u a U-vector
-//   readings  z[k] = H x[k] + v,              v ~ N(0, diag R)  M-vector, NaN where there is none
+//   state         x[k] = F x[k−1] + B u[k] + w,   w ~ N(0, Q)       N-vector, u a U-vector
+//   measurements  z[k] = H x[k] + v,              v ~ N(0, diag R)  M-vector, NaN where missing
 //
 // Symbols follow S. Särkkä, Bayesian Filtering and Smoothing (2013), with F, H for its A, H.
 namespace proofmass::estimate {
 
-/// What leads from one epoch to the next and what is read there. F, Q and B belong to the step that
-/// ends at the epoch.
+/// The transition from one epoch to the next and the measurement there. F, Q and B belong to the
+/// step that ends at the epoch.
 template <int N, int M, int U = 0>
 struct LinearModel {
   Mat<N, N> F;                      ///< state transition
   Mat<N, N> Q;                      ///< process noise, positive semi-definite
   Mat<M, N> H;                      ///< measurement matrix
   Mat<M> R;                         ///< variance of each channel, positive
-  Mat<N, U> B = Mat<N, U>::Zero();  ///< what a known input does to the state
+  Mat<N, U> B = Mat<N, U>::Zero();  ///< effect of a known input on the state
 };
 
-/// One instant: how long after the one before, what was put in meanwhile, what was read.
+/// One epoch: the time since the previous one, the input meanwhile, the measurements.
 template <int M, int U = 0>
 struct Epoch {
-  double dt_s = 0.0;  ///< since the epoch before, ≥ 0; nothing moves on the way to the first
-  Mat<M> z;           ///< NaN where a channel has no reading
+  double dt_s = 0.0;  ///< since the previous epoch, ≥ 0; not used for the first
+  Mat<M> z;           ///< NaN where a channel is missing
   Mat<U> u = Mat<U>::Zero();  ///< known input over the step
 };
 
-/// Epochs with the models between them: what filter_linear() and smooth_linear() run over.
+/// Epochs with the models between them: the input of filter_linear() and smooth_linear().
 template <int N, int M, int U = 0>
 class LinearSeries {
  public:
   static constexpr int states = N, moving = N, channels = M;
   using Model = LinearModel<N, M, U>;
 
-  /// `model_at(dt_s)` gives the model of a step; it is asked again only where dt_s changes.
-  /// Errors: invalid_argument (a dt_s below 0 or not finite), not_finite (an infinite reading or
+  /// `model_at(dt_s)` gives the model of a step; it is called again only if dt_s changes. Errors:
+  /// invalid_argument (a dt_s below 0 or not finite), not_finite (an infinite measurement or
   /// input), not_positive_definite (a variance in R that is not positive), with the number of the
   /// epoch.
   template <class ModelAt>
@@ -64,8 +64,8 @@ class LinearSeries {
     return checked(std::move(series));
   }
 
-  /// One model for each epoch; dt_s is then not read. Errors: as above, and invalid_argument where
-  /// there are not as many models as epochs.
+  /// One model for each epoch; dt_s is not used. Errors: as above, and invalid_argument if the
+  /// numbers of models and epochs differ.
   [[nodiscard]] static Result<LinearSeries> make(std::vector<Epoch<M, U>> epochs,
                                                  std::vector<Model> models) {
     if (models.size() != epochs.size())
@@ -80,10 +80,11 @@ class LinearSeries {
   [[nodiscard]] std::size_t size() const { return epochs_.size(); }
   [[nodiscard]] const Model& model(std::size_t k) const { return models_[model_of_[k]]; }
 
-  /// What a lost filter goes back to (see Gate): its mean stays, its covariance is the prior's.
+  /// Covariance reset of a diverged filter (see Gate): its mean is kept, its covariance becomes the
+  /// prior's.
   void set_reopened(const Mat<N, N>& cov) { reopened_ = cov; }
 
-  // What kalman.hpp's StateSpaceModel asks for.
+  // Interface of StateSpaceModel (kalman.hpp).
 
   [[nodiscard]] Transition<N, N> transition(const Mat<N>& x, std::size_t k) const {
     const Model& m = model(k);
@@ -103,7 +104,7 @@ class LinearSeries {
     }
   }
 
-  /// Which channel gave the i-th reading of epoch k.
+  /// Channel of the i-th measurement of epoch k.
   [[nodiscard]] int channel_of(std::size_t k, int i) const {
     int channel = 0;
     for (; std::isnan(epochs_[k].z(channel)) || i-- > 0; ++channel) {

@@ -5,8 +5,8 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 
-// What the live analyses' columns are made of, and what their options have in common. Private to
-// the module's live*.
+// Components of the online analyses' columns, and their common options. Private to the module's
+// live*.
 namespace proofmass::estimate {
 
 [[nodiscard]] inline Channel live_column(const char* name, Quantity quantity, const char* symbol) {

@@ -9,31 +9,31 @@
 #include "proofmass/estimate/fixed_lag.hpp"
 #include "proofmass/estimate/linear_series.hpp"
 
-// The linear filter and its fixed-lag smoother as readings come, one instant at a time.
+// The linear filter and its fixed-lag smoother online, one epoch at a time.
 namespace proofmass::estimate {
 
-/// A filter that is fed. The equations are filter_linear()'s, which gives the same numbers to the
-/// last bit. Memory is fixed when it is made: a step asks for none, blocks on nothing and takes the
-/// same time however long it has run.
+/// Online filter. The equations are filter_linear()'s; results are bitwise identical. Memory is
+/// fixed at construction: a step does not allocate or block, and takes the same time however long
+/// the filter has run.
 template <int N, int M, int U = 0>
 class LiveFilter {
  public:
   struct Options {
     Gate gate = {};
-    std::size_t lag = 0;  ///< instants after which a state is given again, by lagged()
+    std::size_t lag = 0;  ///< epochs after which lagged() returns the smoothed state
   };
 
-  /// `prior` describes the state at the first epoch, before its readings.
+  /// `prior` describes the state at the first epoch, before its measurements.
   explicit LiveFilter(const Gaussian<N>& prior, const Options& options = {})
       : gate_(options.gate), state_{prior}, reopened_(prior.cov), window_(options.lag) {
     step_.filtered = prior;
     none();
   }
 
-  /// Takes one instant: through `model` to it, and its readings. At the first nothing moves. The
-  /// model may be another at each step; epoch.dt_s is what it was made for, and is not read here.
-  /// Errors: not_finite (an infinite reading, an input that is not finite), not_positive_definite
-  /// (a variance in R that is not positive); the filter then stands as it stood.
+  /// Processes one epoch: the transition of `model` to it, and its measurements. The first has no
+  /// transition. The model may differ at each step; epoch.dt_s is what it was made for, and is not
+  /// used here. Errors: not_finite (an infinite measurement, a non-finite input),
+  /// not_positive_definite (a variance in R that is not positive); the filter is then unchanged.
   /// Cost: O(N³ + M N²), and O(lag · N² (N + M)) with a lag.
   [[nodiscard]] Status step(const LinearModel<N, M, U>& model, const Epoch<M, U>& epoch) {
     if (epoch.z.array().isInf().any() || !epoch.u.allFinite())
@@ -48,29 +48,29 @@ class LiveFilter {
   }
 
   [[nodiscard]] std::size_t instants() const { return instants_; }
-  /// The state at the last instant given all readings so far; the prior before the first.
+  /// The state at the last epoch given all measurements so far; the prior before the first.
   [[nodiscard]] const Gaussian<N>& state() const { return step_.filtered; }
-  /// The state `lag` instants before the last given all readings so far; the oldest there is in the
-  /// first instants; null before the first and without a lag.
+  /// The state `lag` epochs before the last given all measurements so far; the oldest available in
+  /// the first epochs; null before the first and without a lag.
   [[nodiscard]] const Gaussian<N>* lagged() const {
     return window_.size() == 0 ? nullptr : &window_.state(window_.size() - 1);
   }
-  /// The states from the last back to that, for who wants them all.
+  /// All states from the last back to lagged().
   [[nodiscard]] const FixedLag<N>& window() const { return window_; }
 
-  /// Channel i's reading less what all instants before and channels 0 … i−1 of this one predict,
-  /// and the variance of that under the model. NaN where there was no reading.
+  /// Innovation of channel i given all earlier epochs and channels 0 … i−1 of this one, and its
+  /// variance under the model. NaN without a measurement.
   [[nodiscard]] const Mat<M>& innovation() const { return innovation_; }
   [[nodiscard]] const Mat<M>& innovation_variance() const { return innovation_variance_; }
-  /// Of the last instant: χ² with readings() degrees of freedom where the model is true.
+  /// NIS of the last epoch: χ² with readings() degrees of freedom if the model is correct.
   [[nodiscard]] double nis() const { return nis_; }
-  /// Channels read at the last instant and let through by the gate.
+  /// Channels measured at the last epoch and accepted by the gate.
   [[nodiscard]] int readings() const { return readings_; }
-  /// ln p of all readings let through so far.
+  /// ln p of all measurements accepted so far.
   [[nodiscard]] double log_likelihood() const { return log_likelihood_; }
 
  private:
-  /// One instant as a StateSpaceModel, of which 0 is the first and 1 any later.
+  /// One epoch as a StateSpaceModel; 0 is the first and 1 any later.
   struct Instant {
     static constexpr int states = N, moving = N, channels = M;
     const LinearModel<N, M, U>& model;

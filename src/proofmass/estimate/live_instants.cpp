@@ -13,11 +13,11 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Samples by which the rate is told where nobody says it.
+/// Samples used to estimate the rate if it is not given.
 constexpr std::size_t rate_samples = 64;
-/// Stamps behind the last that rise among themselves: after so many the clock was set back.
+/// Number of ascending stamps earlier than the last after which the clock counts as set back.
 constexpr std::size_t most_behind = 100;
-/// A mean ends where the next sample is so many steps away.
+/// A mean ends if the next sample is this many steps away.
 constexpr double longest_steps = 3.0;
 
 double value_of(const Block& samples, const std::optional<std::size_t>& channel, std::size_t row) {
@@ -88,11 +88,11 @@ bool LiveInstants::take(const Block& samples, std::size_t row) {
   last_time_s_ = time_s;
   sum_up(samples, row, time_s);
   if (in_mean_ < each_) return closed;
-  // Two at once do not come: where a mean was closed, `each_` is two at least.
+  // Never two at once: if a mean was closed, `each_` is at least two.
   return close();
 }
 
-/// Whether a stamp rises; one that does not is left out, until so many have come that the clock
+/// Whether a stamp ascends; otherwise the sample is dropped, until there are so many that the clock
 /// must have been set back.
 bool LiveInstants::follows(double time_s) {
   if (std::isfinite(time_s) && time_s > last_time_s_) {

@@ -12,10 +12,10 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/gaussian.hpp"
 
-// From blocks of samples to the instants that a live filter takes. Private to the module's live*.
+// From blocks of samples to the epochs of an online filter. Private to the module's live*.
 namespace proofmass::estimate {
 
-/// Three channels that belong together, and what they are.
+/// Three channels of one vector, and their kind.
 struct LiveVector {
   Triad channels;
   bool is_rate = false;  ///< a gyroscope's; else an accelerometer's
@@ -25,28 +25,27 @@ inline constexpr std::size_t most_live_vectors = 4;
 
 struct LiveInstant {
   double time_s = 0.0;
-  bool anew = false;  ///< the clock was set back: what came before stands on another time line
-  /// m/s² and rad/s, an axis without channel is 0; NaN where there is no reading that one can
-  /// believe.
+  bool anew = false;  ///< the clock was set back: earlier epochs are on another time line
+  /// m/s² and rad/s, an axis without channel is 0; NaN without a plausible measurement.
   std::array<Mat<3>, most_live_vectors> vectors{};
 
   [[nodiscard]] bool has(std::size_t vector) const { return !std::isnan(vectors[vector](0)); }
 };
 
 struct LiveClock {
-  double rate_hz = 0.0;         ///< of the samples; 0: told from the first of them
+  double rate_hz = 0.0;         ///< of the samples; 0: estimated from the first of them
   double most_rate_hz = 500.0;  ///< faster samples are averaged down to this
 };
 
-/// Screens samples, and averages so many that no more instants than `most_rate_hz` are left: at
-/// that rate and below every sample is an instant, there as soon as the sample is. A mean ends
-/// where samples are missing. What the blocks are cut like makes no difference.
+/// Screens samples, and averages them so that there are at most `most_rate_hz` epochs a second: at
+/// that rate and below every sample is an epoch, available immediately. A mean ends where samples
+/// are missing. The result does not depend on the block size.
 class LiveInstants {
  public:
   LiveInstants(std::vector<LiveVector> vectors, const LiveClock& clock);
 
-  /// Calls visit(const LiveInstant&) for each that is complete.
-  /// Errors: invalid_argument (channels that the block lacks, no time in it and no rate known).
+  /// Calls visit(const LiveInstant&) for each complete epoch. Errors: invalid_argument (channels
+  /// that the block lacks, neither time stamps nor a known rate).
   template <class Visit>
   [[nodiscard]] Status add(const Block& samples, Visit&& visit) {
     if (auto status = check(samples); !status) return status;
@@ -54,13 +53,13 @@ class LiveInstants {
       if (take(samples, row)) visit(static_cast<const LiveInstant&>(instant_));
     return Done{};
   }
-  /// The last mean, of fewer samples than the others.
+  /// The last mean, with fewer samples than the others.
   template <class Visit>
   void finish(Visit&& visit) {
     if (close()) visit(static_cast<const LiveInstant&>(instant_));
   }
 
-  /// Readings left out since it was asked last.
+  /// Notes on measurements dropped since the last call.
   [[nodiscard]] std::vector<Note> take_notes();
 
  private:
@@ -83,17 +82,17 @@ class LiveInstants {
 
   std::vector<LiveVector> vectors_;
   LiveClock clock_;
-  std::size_t each_ = 1;       ///< samples of a mean
-  std::size_t rows_seen_ = 0;  ///< while the rate is being learned
+  std::size_t each_ = 1;       ///< samples in a mean
+  std::size_t rows_seen_ = 0;  ///< while the rate is being estimated
   double first_time_s_ = 0.0;
 
   std::array<Sum, most_live_vectors> sums_{};
-  double time_sum_s_ = 0.0;  ///< less first_in_mean_s_ each
+  double time_sum_s_ = 0.0;  ///< minus first_in_mean_s_ each
   double first_in_mean_s_ = 0.0;
   std::size_t in_mean_ = 0;
   double last_time_s_ = -std::numeric_limits<double>::infinity();
-  double last_behind_s_ = 0.0;  ///< of the stamps that lie behind the last
-  std::size_t behind_ = 0;      ///< that rise among themselves
+  double last_behind_s_ = 0.0;  ///< of the stamps earlier than the last
+  std::size_t behind_ = 0;      ///< number of those that ascend
   bool anew_ = false, mean_is_anew_ = false;
   LiveInstant instant_;
 

@@ -8,10 +8,10 @@
 
 #include "proofmass/core/live_analysis.hpp"
 
-// What the tests of the live analyses share.
+// Shared by the tests of the online analyses.
 namespace proofmass::estimate::test {
 
-/// Samples as a recorder would hand them on.
+/// Samples as delivered by a recorder.
 struct Stream {
   std::vector<double> stamps_s;
   std::vector<std::vector<double>> channels;
@@ -26,7 +26,7 @@ struct Stream {
   }
 };
 
-/// What an analysis gives, fed in blocks of `piece` samples, and all it has to say.
+/// Output and messages of an analysis fed in blocks of `piece` samples.
 struct Fed {
   Rows rows;
   std::vector<Note> notes;
@@ -52,7 +52,7 @@ inline Fed feed(LiveAnalysis& analysis, const Stream& stream, std::size_t piece)
   return fed;
 }
 
-/// Equal to the last bit, NaN to NaN.
+/// Bitwise equal, NaN equal to NaN.
 inline bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return std::ranges::equal(
       a, b, [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
@@ -73,7 +73,7 @@ inline const std::vector<double>& column(const LiveAnalysis& analysis,
   return fed.rows.channels.at(static_cast<std::size_t>(at - columns.begin()));
 }
 
-/// An analysis and what it gave of a stream.
+/// An analysis and its output for a stream.
 struct Followed {
   std::unique_ptr<LiveAnalysis> live;
   Fed fed{};

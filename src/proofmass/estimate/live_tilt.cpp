@@ -93,7 +93,7 @@ class LiveTilt final : public LiveAnalysis {
     first_ = {};
   }
 
-  /// Says where the force cannot be that on a body under gravity.
+  /// Reports a force that is impossible for a body under gravity.
   void judge_force() {
     std::vector<double> norms;
     for (const LiveInstant& instant : first_)

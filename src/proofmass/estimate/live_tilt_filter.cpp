@@ -11,20 +11,20 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Over how long times the force tells what the base does at present: the stronger of the two
-/// counts, so that a slow acceleration is not forgotten while it passes through zero.
+/// Averaging times of the force's scatter, the base's acceleration: the larger of the two counts,
+/// so that a slow acceleration is not forgotten while it passes through zero.
 constexpr double memory_s = 6.0, long_memory_s = 30.0;
-/// What the base may do before the force has told, in m/s², and how fast that is forgotten.
+/// Initial acceleration of the base, in m/s², and its decay time.
 constexpr double unknown_accel_mps2 = 1.0, unknown_fade_s = 2.0;
-/// Over how long a time the force is averaged that it departs from, with and without gyroscope.
+/// Averaging time of the reference force, with and without gyroscope.
 constexpr double mean_memory_s = 2.0, free_mean_memory_s = 20.0;
-/// What no base is quieter than, relative to gravity, and no longer in one state than.
+/// Lower limits of the acceleration, relative to gravity, and of its correlation time.
 constexpr double least_accel = 2e-3, least_time_s = 0.05, longest_time_s = 2.0;
-/// Degrees of freedom of the scatter: as of base_accel().
+/// Degrees of freedom of the scatter, as in base_accel().
 constexpr double effective_dof = 10.0;
-/// Angular acceleration of a base without gyroscope at first, rad/s²/√Hz: that of a hand.
+/// Initial angular acceleration of a base without gyroscope, rad/s²/√Hz: that of a hand.
 constexpr double free_drive = 1.0;
-/// Over how long a time filters that take it for another are compared.
+/// Interval over which the parallel filters are compared.
 constexpr double predicted_s = 5.0;
 constexpr double apart_s = 0.1;
 
@@ -37,7 +37,7 @@ double step_of(const std::vector<LiveInstant>& instants) {
          static_cast<double>(instants.size() - 1);
 }
 
-/// White noise of one reading, by the differences of neighbours.
+/// White noise of one measurement, from the differences of neighbours.
 double difference_std(const std::vector<LiveInstant>& instants, std::size_t vector) {
   std::vector<double> differences;
   for (std::size_t k = 1; k < instants.size(); ++k)
@@ -48,7 +48,7 @@ double difference_std(const std::vector<LiveInstant>& instants, std::size_t vect
   return robust_std(differences).value_or(0.0) / std::numbers::sqrt2;
 }
 
-/// Gravity as these readings show it, where it can be gravity that they show.
+/// Norm of these measurements, if it can be that of gravity.
 double norm_of(const std::vector<LiveInstant>& instants, double gravity_mps2) {
   std::vector<double> norms;
   for (const LiveInstant& instant : instants)
@@ -119,7 +119,7 @@ void LiveTiltFilter::read(const LiveInstant& instant) {
   now_.rate_radps[1] = rate_over(before, rate, step_s, longest_bridge_s(usual_step_s_));
 }
 
-/// What the base does, by the force up to now.
+/// Estimates the base's acceleration from the force up to now.
 void LiveTiltFilter::follow_motion() {
   const Mat<3> bias = gyroscope_ ? Mat<3>(state_.x.mean.tail<3>()) : Mat<3>::Zero();
   const Mat<3> rate = gyroscope_ ? Mat<3>(now_.rate_radps[1] - bias) : bias;
@@ -132,7 +132,7 @@ void LiveTiltFilter::follow_motion() {
   long_scatter_.add(f, known_.gravity_mps2);
   correlation_.add(departure.mps2, usual_step_s_ / memory_s);
   double time_s = std::clamp(correlation_.time() * apart_s_, least_time_s, longest_time_s);
-  // As in base_accel(): what so few times leave open, and what the running mean has taken.
+  // As in base_accel(): the statistical uncertainty, and the part removed by the running mean.
   const double taken = 1.0 + time_s / (gyroscope_ ? mean_memory_s : free_mean_memory_s);
   const double wider = student_t_quantile(0.975, effective_dof) / 1.959964;
   motion_.accel_time_s = time_s * taken;
@@ -191,7 +191,7 @@ void LiveTiltBank::choose() {
   const double drive = filters_[0]->drive();
   const bool up = gain(1) > clear && drive < most;
   if (!up && !(gain(2) > clear && drive > least)) return;
-  // Whoever was right goes on in the middle, and the two others beside it.
+  // The better filter becomes the middle one, with the two others beside it.
   const std::size_t better = up ? 1 : 2, other = up ? 2 : 1;
   const double factor = up ? apart : 1.0 / apart;
   std::swap(filters_[0], filters_[better]);

@@ -11,16 +11,16 @@
 #include "proofmass/estimate/tilt_accel.hpp"
 #include "proofmass/estimate/tilt_model.hpp"
 
-// tilt_model.hpp's filter, fed. Private to the module's live_tilt*.
+// tilt_model.hpp's filter, online. Private to the module's live_tilt*.
 namespace proofmass::estimate {
 
-/// How long the base's acceleration hangs together: by the correlation of its departures with those
-/// a tenth of a second before.
+/// Correlation time of the base's acceleration, from the correlation of its departures with those a
+/// tenth of a second before.
 class RunningCorrelation {
  public:
   explicit RunningCorrelation(std::size_t instants_apart) : ring_(instants_apart) {}
   void add(const Mat<3>& departure, double weight);
-  /// In units of the distance; what hangs together for less than half of it counts as half of it.
+  /// In units of the distance, at least one half.
   [[nodiscard]] double time() const;
 
  private:
@@ -31,22 +31,22 @@ class RunningCorrelation {
 
 class LiveTiltFilter {
  public:
-  /// By what the first instants show; at least two of them.
+  /// Initialised from the first epochs; at least two of them.
   LiveTiltFilter(const std::vector<LiveInstant>& first, const LiveTiltOptions& options);
 
-  /// Takes one instant more. Allocates nothing.
+  /// Processes one epoch. Does not allocate.
   void step(const LiveInstant& instant);
 
-  /// Direction of gravity's reaction at the last instant, m/s².
+  /// Direction of gravity's reaction at the last epoch, m/s².
   [[nodiscard]] const Gaussian<3>& now() const { return window_.state(0); }
-  /// The same `lag_s` before; null as long as that lies before the first.
+  /// Gravity's reaction `lag_s` before; null if that is before the first epoch.
   [[nodiscard]] const Gaussian<3>* lagged() const {
     return window_.size() > window_.lag() ? &window_.state(window_.lag()) : nullptr;
   }
   [[nodiscard]] double lagged_time_s() const { return times_s_[instants_ % times_s_.size()]; }
   [[nodiscard]] double nis() const { return nis_; }
 
-  /// Takes the base's turning for so much stronger from here on.
+  /// Scales the assumed strength of the base's rotation from here on.
   void turn_more(double factor) { motion_.drive *= factor; }
   [[nodiscard]] double drive() const { return motion_.drive; }
   /// ln L of the innovations of the last seconds.
@@ -58,11 +58,11 @@ class LiveTiltFilter {
 
   bool gyroscope_;
   double usual_step_s_ = 0.01;
-  TiltInstants now_;  ///< two instants: 0 the first, 1 any later
+  TiltInstants now_;  ///< two epochs: 0 the first, 1 any later
   TiltKnown known_;
   TiltMotion motion_;
   BaseScatter scatter_, long_scatter_;
-  double unknown_ = 1.0;  ///< share that is left of what the base may do before the force has told
+  double unknown_ = 1.0;  ///< remaining share of the initial uncertainty of the base's acceleration
   RunningCorrelation correlation_;
   double apart_s_ = 0.1;
   FilterState<9> state_;
@@ -74,8 +74,8 @@ class LiveTiltFilter {
   double predicted_ = 0.0;
 };
 
-/// The filter; and without gyroscope two more beside it, which take the base's turning for √10
-/// times stronger and weaker. Where one of them has predicted the last seconds better all move.
+/// The filter; without gyroscope also two parallel ones that assume √10 times stronger and weaker
+/// rotation of the base. If one of them has predicted the last seconds better, all are shifted.
 class LiveTiltBank {
  public:
   LiveTiltBank(const std::vector<LiveInstant>& first, const LiveTiltOptions& options);

@@ -20,12 +20,12 @@ namespace proofmass::estimate {
 namespace {
 
 constexpr double patience_s = 10.0;          ///< for a first rest, before a note asks for one
-constexpr double longest_gathered_s = 60.0;  ///< of the motion that the axis is told from
+constexpr double longest_gathered_s = 60.0;  ///< of the motion that the axis is distinguished from
 constexpr double longest_gap_s = 60.0;       ///< over which a position is carried
 constexpr double longest_cruise_s = 10.0;
 constexpr double gap_steps = 2.5;
 constexpr double telling_turn_rad = 0.5 * rad_per_deg;
-/// By which a level wanders at rest where no sensor file says more, m/s²/√s.
+/// Drift of a level at rest without a sensor file, m/s²/√s.
 constexpr double usual_rest_walk = 3e-4;
 
 std::vector<Channel> track_columns() {
@@ -55,7 +55,7 @@ Status check(const LiveTrackOptions& options) {
   return options.axis ? check_live_axis(options.sensor, *options.axis) : Status(Done{});
 }
 
-/// That moves the level by so much.
+/// Tilt that changes the level by this amount.
 double turned_rad(double moved_m2ps4) {
   return std::sqrt(moved_m2ps4) / standard_gravity_mps2;
 }
@@ -97,7 +97,7 @@ class LiveTrack final : public LiveAnalysis {
     rests_.add(instant, [&](const LiveReading& reading) { follow(reading, out); });
   }
 
-  /// The clock was set back, which the instants have said.
+  /// The clock was set back, as reported by the epochs.
   void start_anew() {
     for (Note& note : rests_.take_notes()) notes_.push_back(std::move(note));
     rests_ = LiveTrackRests(options_.sensor);
@@ -151,9 +151,9 @@ class LiveTrack final : public LiveAnalysis {
         "the motion");
   }
 
-  /// A rest too short to be taken for one leaves what follows it without a place to count from.
+  /// A rest too short to be recognised leaves the following motion without a reference position.
   void say_what_was_left_out(double time_s) {
-    constexpr double worth_saying_s = 4.0;  // a rest is known as one after three
+    constexpr double worth_saying_s = 4.0;  // a rest is recognised after three
     if (unplaced_from_s_ && time_s - *unplaced_from_s_ > worth_saying_s)
       say("the position counts from 0 at the rest at " + at_second(time_s) +
           " s: before it the sensor was not still for three seconds, and what it did since " +
@@ -196,7 +196,7 @@ class LiveTrack final : public LiveAnalysis {
     for (const LiveReading& reading : std::exchange(gathered_, {})) filter(reading, out);
   }
 
-  /// With the rest that just ended, or, where the motion was gathered, the one before it.
+  /// From the rest that just ended or, if the motion was collected, the one before it.
   void begin() {
     const Mat<3> squares = axis_->cwiseAbs2();
     const double given_white = density(options_.figures.white_mps2_rthz, 0.0);
@@ -214,7 +214,7 @@ class LiveTrack final : public LiveAnalysis {
                     LiveLevel{level, squares.dot(level_variance_)});
   }
 
-  /// Of the instants; what stamps say may be anything.
+  /// Of the epochs; the stamps themselves may be arbitrary.
   [[nodiscard]] double most_rate_hz() const { return 1.5 * options_.most_rate_hz; }
 
   [[nodiscard]] double density(const std::array<std::optional<double>, 3>& figures,
@@ -236,9 +236,8 @@ class LiveTrack final : public LiveAnalysis {
     give(reading.time_s, filter_->row(), resting, out);
   }
 
-  /// A rest at which half of the speed would be left over, with the level unmoved, is taken for
-  /// motion at constant speed, though not for ever: where it was the velocity that was wrong, it
-  /// would stay so.
+  /// A rest at which half of the speed would remain, with an unchanged level, counts as motion at
+  /// constant speed, but not for ever: an erroneous velocity would persist.
   [[nodiscard]] bool is_doubtful(double time_s) {
     if (filter_->at_rest() || !filter_->is_cruising() ||
         turned_rad(moved_m2ps4()) > telling_turn_rad) {
@@ -253,7 +252,7 @@ class LiveTrack final : public LiveAnalysis {
     return time_s - *doubted_since_s_ < longest_cruise_s;
   }
 
-  /// How far the level moved since the rest before, squared, beyond noise.
+  /// Squared change of the level since the previous rest, beyond noise.
   [[nodiscard]] double moved_m2ps4() const {
     const LiveRest& rest = rests_.rest();
     const Mat<3> variance = rest.white_m2ps3 / rest.behind_level_s + level_variance_;
@@ -299,13 +298,13 @@ class LiveTrack final : public LiveAnalysis {
   std::vector<Channel> columns_ = track_columns();
   std::optional<double> began_s_;
   bool asked_ = false;
-  std::optional<double> unplaced_from_s_;  ///< since when readings have had no rest before them
-  double last_s_ = 0.0;                    ///< of the readings that were followed
+  std::optional<double> unplaced_from_s_;  ///< start of the measurements without a preceding rest
+  double last_s_ = 0.0;                    ///< of the measurements processed
 
   std::optional<Mat<3>> axis_;
-  std::optional<LiveReading> level_;  ///< of the last rest, at its last instant until it moves
+  std::optional<LiveReading> level_;  ///< of the last rest, at its last epoch until it moves
   Mat<3> level_white_m2ps3_ = Mat<3>::Zero(), level_variance_ = Mat<3>::Zero();
-  std::vector<LiveReading> gathered_;  ///< the motion that the axis is told from
+  std::vector<LiveReading> gathered_;  ///< the motion that determines the axis
   std::optional<LiveTrackFilter> filter_;
   std::optional<double> doubted_since_s_;
   double said_turn_rad_ = 0.0;

@@ -9,7 +9,7 @@
 #include "proofmass/estimate/live_track_rests.hpp"
 #include "proofmass/estimate/track_motion.hpp"
 
-// The direction of a live displacement. Private to the module's live_track*.cpp.
+// The direction of an online displacement. Private to the module's live_track*.cpp.
 namespace proofmass::estimate {
 
 /// Errors: invalid_argument (no direction, or one along an axis that the sensor lacks).
@@ -17,8 +17,8 @@ namespace proofmass::estimate {
 
 [[nodiscard]] Mat<3> unit_vector(const std::array<double, 3>& axis);
 
-/// In which a motion was fastest that was gathered from the rest before it, with its last instant
-/// and its level, to the one after it, or to now. Expects a reading at least.
+/// Direction of the highest speed in a motion, collected from the last epoch and the level of the
+/// rest before it to the rest after it, or to now. Expects at least one measurement.
 [[nodiscard]] FoundAxis axis_of_motion(const std::vector<LiveReading>& motion,
                                        const LiveReading& level,
                                        const Triad& sensor,

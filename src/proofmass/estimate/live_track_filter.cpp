@@ -12,9 +12,9 @@ namespace {
 using inertial_axis::position_m;
 using inertial_axis::velocity_mps;
 
-/// A knock or an outlier at rest pulls no harder than a reading three deviations off.
+/// Limits the influence of a shock or outlier at rest to that of three standard deviations.
 constexpr double resting_huber = 3.0;
-/// What an acceleration that nobody read may have been, at least, and for how long it stays.
+/// Minimum of an unmeasured acceleration, and its duration.
 constexpr double unread_accel_mps2 = 1.0, unread_time_s = 1.0;
 
 }  // namespace
@@ -78,8 +78,8 @@ InertialEpoch LiveTrackFilter::epoch_to(const LiveTrackInstant& instant, const L
   return epoch;
 }
 
-/// In a gap the acceleration is white over times longer than `unread_time_s`: one constant would
-/// be told by the next stop, and where the sensor went with it.
+/// In a gap the acceleration is white over times longer than `unread_time_s`: a constant one would
+/// be determined by the next stop, together with the displacement.
 InertialNoise LiveTrackFilter::noise_of(const InertialEpoch& epoch, bool gap) const {
   const double scale = scale_.scale();
   InertialNoise noise{
@@ -104,7 +104,8 @@ void LiveTrackFilter::leave() {
   has_gap_ = false;
 }
 
-/// The velocity left over says how much errs in motion, and with it how far this one may be off.
+/// The closure velocity determines the scale of the errors in motion, and thereby its own
+/// uncertainty.
 void LiveTrackFilter::arrive(const LiveLevel& rest) {
   const double elapsed_s = last_.time_s - left_s_;
   excess_variance_m2_ += rest.moved_m2ps4 * square(square(elapsed_s)) / 64.0;
@@ -116,9 +117,10 @@ void LiveTrackFilter::arrive(const LiveLevel& rest) {
   set_left_open((known + scale_.scale() * usual) * square(elapsed_s) / 12.0);
 }
 
-/// What a closure leaves open of the way since the last stop. Were all that errs white, ∫∫ of it
-/// given ∫ of it would have T²/12 times the variance of ∫; jumps and walks leave less. The states
-/// of the smoother's window lie behind: they can only be made less sure.
+/// Position uncertainty since the last stop that remains after a closure. If all errors were white,
+/// their ∫∫ given their ∫ would have T²/12 times the variance of ∫; jumps and random walks leave
+/// less. The states of the smoother's window are in the past: their uncertainty can only be
+/// increased.
 void LiveTrackFilter::set_left_open(double variance_m2) {
   const double variance = state_.x.cov(position_m, position_m);
   const double meant = left_variance_m2_ + variance_m2;

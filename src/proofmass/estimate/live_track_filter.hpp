@@ -9,8 +9,7 @@
 #include "proofmass/estimate/inertial_axis.hpp"
 #include "proofmass/estimate/live_track_scale.hpp"
 
-// The inertial filter along one axis, one instant at a time. Private to the module's
-// live_track*.cpp.
+// The inertial filter along one axis, one epoch at a time. Private to the module's live_track*.cpp.
 namespace proofmass::estimate {
 
 struct LiveTrackSetup {
@@ -19,13 +18,13 @@ struct LiveTrackSetup {
   double rest_speed_std_mps = 1e-4;
   double scale_std = 0.0;
   double longest_step_s = 0.0;  ///< a longer one is a gap
-  std::size_t lag = 0;          ///< instants
+  std::size_t lag = 0;          ///< epochs
 };
 
-/// What the sensor reads along the axis while it lies still.
+/// Level along the axis while the sensor is at rest.
 struct LiveLevel {
   double mps2 = 0.0, variance = 0.0;
-  /// Squared, in any direction: how far it moved since the rest before, beyond noise.
+  /// Squared, in any direction: its change since the previous rest, beyond noise.
   double moved_m2ps4 = 0.0;
 };
 
@@ -37,23 +36,23 @@ struct LiveTrackInstant {
 struct LiveTrackRow {
   Uncertain position_m, velocity_mps;
   double smoothed_time_s = 0.0;
-  Uncertain smoothed_position_m;  ///< NaN in the first `lag` instants
+  Uncertain smoothed_position_m;  ///< NaN in the first `lag` epochs
 };
 
-/// Position, velocity and bias from the last instant of a rest on.
+/// Position, velocity and bias from the last epoch of a rest on.
 class LiveTrackFilter {
  public:
   LiveTrackFilter(const LiveTrackSetup& setup,
                   const LiveTrackInstant& begin,
                   const LiveLevel& level);
 
-  /// `rest` is read where the sensor came to rest on the way here.
+  /// `rest` is used if the sensor came to rest during the step.
   void step(const LiveTrackInstant& instant, const LiveLevel& rest);
 
   [[nodiscard]] bool at_rest() const { return last_.resting; }
   [[nodiscard]] double time_s() const { return last_.time_s; }
-  /// Were this a stop, half of the speed would be left over, far beyond what is expected to be: at
-  /// constant speed nothing is felt either.
+  /// Whether half of the speed would remain at this stop, far more than expected: constant speed is
+  /// measured as rest.
   [[nodiscard]] bool is_cruising() const;
   [[nodiscard]] LiveTrackRow row() const;
 
@@ -79,8 +78,8 @@ class LiveTrackFilter {
   double left_s_ = 0.0, left_variance_m2_ = 0.0, fastest_mps_ = 0.0;
   bool has_gap_ = false;
 
-  double moved_s_ = 0.0, accel_square_ = 0.0;  ///< of all motion: its time, and ∫ (a − b)² dt
-  double excess_variance_m2_ = 0.0;            ///< of positions, by what the filter did not expect
+  double moved_s_ = 0.0, accel_square_ = 0.0;  ///< over all motion: its time, and ∫ (a − b)² dt
+  double excess_variance_m2_ = 0.0;            ///< of positions, due to unexpected closures
 };
 
 }  // namespace proofmass::estimate

@@ -8,11 +8,11 @@
 namespace proofmass::estimate {
 namespace {
 
-/// An end of a rest that is not settled for so long is taken for motion.
+/// An end of a rest that is undecided for longer counts as motion.
 constexpr double longest_doubt_s = 1.0;
 
-/// N² by the Allan variance of means over half a second, or as long as ten pairs tell; whatever
-/// correlates the noise within that is in it.
+/// N² from the Allan variance of means over half a second, or the longest time with ten pairs; it
+/// includes noise correlated within that time.
 double white_of(const std::vector<signal::AllanLevel>& levels, double step_s) {
   constexpr double longest_s = 0.5, fewest_pairs = 10.0;
   double white_m2ps3 = 0.0;
@@ -33,7 +33,7 @@ LiveTrackRests::LiveTrackRests(const Triad& sensor)
   if (sensor.z) axes_.push_back(2);
 }
 
-/// True: a block is full.
+/// Returns true if a block is complete.
 bool LiveTrackRests::take(const LiveInstant& instant) {
   const Mat<3>& accel = instant.vectors[0];
   std::array<double, 3> values{};
@@ -66,11 +66,12 @@ double LiveTrackRests::known_until_s() {
   return state.newest_s - state.until_s < longest_doubt_s ? state.until_s : state.newest_s;
 }
 
-/// False: its means scatter as no rest's did, so that it is a motion that was taken for noise.
+/// Returns false if its means scatter more than in any rest: it is motion that was classified as
+/// noise.
 bool LiveTrackRests::look_at_rest(const signal::RestState& state) {
   const Mat<3> white_m2ps3 = white_of_rest(state);
   constexpr double louder = 25.0;            // as a density: five times as a standard deviation
-  constexpr std::size_t most_refused = 512;  // blocks: what the search for rests remembers
+  constexpr std::size_t most_refused = 512;  // blocks: the memory of the rest search
   if (quietest_m2ps3_ > 0.0 && white_m2ps3.sum() > louder * quietest_m2ps3_ &&
       ++refused_ < most_refused)
     return false;

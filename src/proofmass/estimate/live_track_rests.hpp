@@ -9,11 +9,11 @@
 #include "proofmass/estimate/live_instants.hpp"
 #include "proofmass/signal/running_rests.hpp"
 
-// Whether the sensor lay still at an instant, as soon as it is known. Private to the module's
+// Whether the sensor was at rest at an epoch, as soon as it is determined. Private to the module's
 // live_track*.cpp.
 namespace proofmass::estimate {
 
-/// A reading of all axes, and whether the sensor lay still.
+/// A measurement of all axes, and whether the sensor was at rest.
 struct LiveReading {
   double time_s = 0.0;
   Mat<3> accel_mps2 = Mat<3>::Zero();
@@ -25,28 +25,28 @@ struct LiveRest {
   double since_s = 0.0, until_s = -1.0;
   Mat<3> level_mps2 = Mat<3>::Zero();
   Mat<3> white_m2ps3 = Mat<3>::Zero();  ///< N², of each axis
-  double behind_level_s = 0.0;          ///< time that the level is the mean of
+  double behind_level_s = 0.0;          ///< averaging time of the level
 };
 
-/// Holds instants back until it is known.
+/// Holds epochs back until that is determined.
 class LiveTrackRests {
  public:
   explicit LiveTrackRests(const Triad& sensor);
 
-  /// Calls visit(const LiveReading&) for those that are known by now, in their order.
+  /// Calls visit(const LiveReading&) for those determined by now, in their order.
   template <class Visit>
   void add(const LiveInstant& instant, Visit&& visit) {
     if (!take(instant)) return;
     release(known_until_s(), visit);
   }
-  /// What is still held; behind the last rest that is known it moves.
+  /// Visits the epochs still held; after the last known rest they count as motion.
   template <class Visit>
   void finish(Visit&& visit) {
     release(last_s_, visit);
   }
 
   [[nodiscard]] const LiveRest& rest() const { return rest_; }
-  /// Of the readings, lately; 0 before the second.
+  /// Recent step of the measurements; 0 before the second.
   [[nodiscard]] double step_s() const { return step_s_; }
   [[nodiscard]] std::vector<Note> take_notes();
 
@@ -68,12 +68,12 @@ class LiveTrackRests {
   }
 
   std::string name_;
-  std::vector<Eigen::Index> axes_;  ///< that there are
+  std::vector<Eigen::Index> axes_;  ///< axes present
   signal::RunningRests rests_;
   std::vector<LiveReading> held_;
   LiveRest rest_;
   double quietest_m2ps3_ = 0.0;  ///< N² of the quietest rest, over its axes
-  std::size_t refused_ = 0;      ///< blocks of what was too loud for a rest
+  std::size_t refused_ = 0;      ///< blocks too loud for a rest
   double last_s_ = 0.0, step_s_ = 0.0, steps_ = 0.0;
   bool any_ = false, stuck_ = false;
   std::vector<Note> notes_;

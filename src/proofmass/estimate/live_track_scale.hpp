@@ -5,34 +5,34 @@
 
 #include "proofmass/estimate/inertial_axis.hpp"
 
-// How much errs in motion, learned stop by stop. Private to the module's live_track*.cpp.
+// Online estimate of the errors in motion, from stop to stop. Private to the module's
+// live_track*.cpp.
 namespace proofmass::estimate {
 
-/// L, J and q of inertial_axis.hpp at scale 1. The middle of track_walk.hpp's prior is 1e-5 for
-/// each of them; here L has the most, for it leaves a position least sure.
+/// L, J and q of inertial_axis.hpp at scale 1. The median of track_walk.hpp's prior is 1e-5 for
+/// each of them; here L has the largest share, since it leaves the position least certain.
 inline constexpr double usual_lean_m2ps3 = 1e-5;
 inline constexpr double usual_jump_m2ps4 = 3e-6;
 inline constexpr double usual_walk_m2ps5 = 1e-6;
 
-/// What they do to a velocity that is integrated for so long, at scale 1.
+/// Their contribution to the variance of a velocity integrated for `elapsed_s`, at scale 1.
 [[nodiscard]] inline double usual_velocity_variance(double elapsed_s) {
   return elapsed_s *
          (usual_lean_m2ps3 + elapsed_s * (usual_jump_m2ps4 + elapsed_s * usual_walk_m2ps5 / 3.0));
 }
 
 /// The common scale of L, J and q. Its logarithm is normal about 0, with twice the standard
-/// deviation that track_walk.hpp has for a root; a closure weighs each value of a grid by its
-/// likelihood. track.hpp finds the three apart, which takes all closures again and again.
+/// deviation that track_walk.hpp has for a root; a closure weights each value of a grid by its
+/// likelihood. track.hpp estimates the three separately, which needs all closures repeatedly.
 class MotionScale {
  public:
   MotionScale();
 
-  /// A velocity was left over at a stop: its variance is `known` + scale · `usual`.
+  /// Adds a closure velocity at a stop: its variance is `known` + scale · `usual`.
   void learn(double velocity_mps, double known, double usual);
-  /// That gives such velocities an interval of 1.96 standard deviations that holds 95 % of the
-  /// mixture.
+  /// Scale for which 1.96 standard deviations of a closure contain 95 % of the mixture.
   [[nodiscard]] double scale() const { return scale_; }
-  /// The posterior's middle, in the logarithm.
+  /// Median of the posterior, in the logarithm.
   [[nodiscard]] double middle() const { return middle_; }
 
  private:

@@ -17,15 +17,15 @@
 namespace proofmass::estimate {
 namespace {
 
-/// The longest stretch that a start is looked for in.
+/// The longest interval used for the initialisation.
 constexpr double longest_start_s = 20.0;
-/// A change of speed by this share shows where the sensors are, if it is watched for so long.
+/// A speed change by this share determines the lever arms, if observed for this long.
 constexpr double telling_change = 0.25, watch_change_s = 2.0;
-/// The same is due at once where the places leave more than this of the angle open.
+/// Repeated at once if the lever arms leave more than this uncertainty of the angle.
 constexpr double open_angle_rad = 0.1, least_pause_s = 0.5;
-/// From where a search begins to where the filter runs on what it found.
+/// Time from the beginning of a search to the use of its result.
 constexpr double search_s = 1.0;
-/// How long a search that failed waits for the next, at most.
+/// Maximum pause after a failed search.
 constexpr double longest_pause_s = 60.0;
 
 std::vector<Channel> wheel_columns() {
@@ -56,7 +56,7 @@ Status check(const LiveWheelOptions& options) {
   return check_live_times({options.rate_hz, options.start_s, options.lag_s, options.most_rate_hz});
 }
 
-/// The last that was given out: what the turns are counted on from.
+/// The last row output, from which the turns are counted.
 struct LastRow {
   double time_s = 0.0;
   std::optional<double> angle_rad{};
@@ -136,8 +136,8 @@ class LiveWheel final : public LiveAnalysis {
     gathered_from_rad_ = filter_->angle_rad();
   }
 
-  /// Without a filter: enough is gathered. With one: the wheel has turned round since, or its speed
-  /// has changed while nobody knew the sensors' places.
+  /// Without a filter: enough samples are collected. With one: the wheel has made a full turn, or
+  /// its speed has changed before the sensors' lever arms were known.
   [[nodiscard]] bool is_due() {
     const double now_s = gathered_.back().time_s;
     if (!filter_) return now_s - gathered_.front().time_s >= options_.start_s;
@@ -152,8 +152,8 @@ class LiveWheel final : public LiveAnalysis {
     return now_s - changed_s_ >= watch_change_s;
   }
 
-  /// The search takes about a second of a processor, and samples do not wait for it. What it found
-  /// is used from a fixed time on, however long it took, so that the rows are always the same.
+  /// The search takes about a second of a processor, and samples do not wait for it. Its result is
+  /// used from a fixed time on, however long it took, so that the rows are reproducible.
   void look() {
     looked_s_ = gathered_.back().time_s;
     look_pause_s_ = filter_ ? std::min(2.0 * look_pause_s_, longest_pause_s) : least_pause_s;
@@ -194,7 +194,7 @@ class LiveWheel final : public LiveAnalysis {
     notes_.push_back(note);
   }
 
-  /// A search that failed costs as much as one that does not: the next waits twice as long.
+  /// A failed search costs as much as a successful one: the pause before the next doubles.
   void wait(const Error* why) {
     notes_.push_back(
         {Severity::warning, "no wheel found up to " + at_second(gathered_.back().time_s) + " s" +
@@ -204,13 +204,13 @@ class LiveWheel final : public LiveAnalysis {
     forget();
   }
 
-  /// Filters what was gathered, and gives what was not given yet.
+  /// Filters the collected samples, and outputs the rows not yet output.
   void run_from(const LiveWheelStart& start, Rows& out) {
     const double span_s = gathered_.back().time_s - gathered_.front().time_s;
     const double rate_hz = static_cast<double>(gathered_.size() - 1) / span_s;
     filter_.emplace(start, static_cast<std::size_t>(std::lround(options_.lag_s * rate_hz)),
                     options_.wheel.alignment_std_rad);
-    double apart_rad = 0.0;  // of the new filter and what was given, at the last such instant
+    double apart_rad = 0.0;  // between the new filter and the output, at the last row
     for (std::size_t k = 0; k < gathered_.size(); ++k) {
       const double time_s = gathered_[k].time_s;
       filter_->step(gathered_[k]);
@@ -229,7 +229,7 @@ class LiveWheel final : public LiveAnalysis {
     if (options_.wheel.radius_m) filter_->use_radius(*options_.wheel.radius_m);
   }
 
-  /// One of two filters of the same samples has slipped, and which does not show.
+  /// One of two filters of the same samples has slipped; which one is not observable.
   void say_slipped(double apart_rad) {
     const double turns = std::max(std::round(std::abs(apart_rad) / rad_per_turn), 1.0);
     turns_std_rad_ += turns * rad_per_turn;
@@ -241,8 +241,8 @@ class LiveWheel final : public LiveAnalysis {
                           " s fit both counts, and turns may be lost"});
   }
 
-  /// No accelerometer tells one turn from the next: counts on from what was given for the first
-  /// instant, or is nearest to where the wheel was last seen.
+  /// Accelerometers do not determine whole turns: continues from the output at the first epoch, or
+  /// the nearest to the last known angle.
   void count_on(double time_s) {
     turned_rad_ = 0.0;
     if (!last_.angle_rad) return;
@@ -273,14 +273,14 @@ class LiveWheel final : public LiveAnalysis {
   LiveInstants instants_;
   std::vector<Channel> columns_ = wheel_columns();
   std::optional<LiveWheelFilter<S>> filter_;
-  std::vector<LiveInstant> gathered_;  ///< to find the wheel in
+  std::vector<LiveInstant> gathered_;  ///< for the search
   std::future<Result<LiveWheelStart>> search_;
-  double adopt_s_ = 0.0;           ///< when what is found is used
+  double adopt_s_ = 0.0;           ///< when the search result is used
   std::vector<double> given_rad_;  ///< the angle given for each of them; NaN: none yet
   bool gathering_ = true, saw_turn_ = false;
-  double slowest_radps_ = 0.0, fastest_radps_ = 0.0;  ///< since the wheel was found
+  double slowest_radps_ = 0.0, fastest_radps_ = 0.0;  ///< since initialisation
   double looked_s_ = 0.0, look_pause_s_ = least_pause_s;
-  double changed_s_ = 0.0;          ///< up to when the speed had not changed
+  double changed_s_ = 0.0;          ///< time until which the speed was constant
   double gathered_from_rad_ = 0.0;  ///< the filter's angle at the first of them, or a later one
   double pause_s_, resume_s_ = -std::numeric_limits<double>::infinity();
   LastRow last_;

@@ -6,23 +6,23 @@
 namespace proofmass::estimate {
 namespace {
 
-/// The gate of wheel_gate; what it does when it stays shut, notice_surprise() does here.
+/// wheel_gate without its patience, which notice_surprise() replaces.
 constexpr Gate live_gate{wheel_gate.huber, wheel_gate.limit, std::numeric_limits<int>::max()};
 
-/// How long readings are gathered before the noise is judged by them.
+/// Interval over which the noise is estimated.
 constexpr double stretch_s = 1.0;
-/// Factor between the noise of the rivals and the filter's own.
+/// Ratio of the alternative noise to the filter's own.
 constexpr double rival_factor = 3.1622776601683795;
-/// A smoothed mean NIS beyond this is no chance: the wheel does what the noise did not expect.
+/// A smoothed mean NIS beyond this is significant: the motion exceeds the noise model.
 constexpr double surprising = 4.0;
 constexpr double surprise_instants = 10.0;
-/// Beyond half of gravity, squared, an innovation is a lost phase rather than a shaken hub.
+/// An innovation beyond half of gravity, squared, is a lost phase rather than vibration of the hub.
 constexpr double most_shaking2 = 0.25;
-/// White jerk of a wheel that is handled, rad²/s⁵: what the noise rises to at once.
+/// White jerk of a wheel turned by hand, rad²/s⁵: the level to which the noise is raised at once.
 constexpr double lively_jerk_psd = 100.0;
-/// Between these the noise is moved about.
+/// Limits of the motion noise.
 constexpr double least_jerk_psd = 1e-4, most_jerk_psd = 1e4, least_bias_walk_psd = 2e-5;
-/// The angle is anybody's guess beyond this.
+/// Above this the angle is lost.
 constexpr double lost_std_rad = 0.8;
 void scale_motion(WheelNoise& noise, double factor) {
   noise.jerk_psd = std::clamp(noise.jerk_psd * factor, least_jerk_psd, most_jerk_psd);
@@ -31,7 +31,7 @@ void scale_motion(WheelNoise& noise, double factor) {
 
 template <int N>
 void widen_motion(Gaussian<N>& x) {
-  // More of the same, independent of what was known: covariances with the past stay true.
+  // Additional uncertainty, independent of the state: covariances with the past stay valid.
   for (int i = 0; i < wheel::moving; ++i) x.cov(i, i) *= 4.0;
 }
 
@@ -78,9 +78,9 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelStart& start,
   rivals_[1] = {1.0 / rival_factor, main_};
 }
 
-/// Not as the prior leaves the constants, which would let them swallow the first motion, but twice
-/// as uncertain as they were found: the filter meets the same readings once more. Nor more than
-/// that prior, and the places stay held.
+/// The constants get twice their estimated standard deviation, since the filter processes the same
+/// measurements again; at most their prior's, which would absorb the first motion. The lever arms
+/// stay held.
 template <int S>
 void LiveWheelFilter<S>::narrow_constants(const Eigen::MatrixXd& found_cov) {
   constexpr int first = wheel::first_of(0), count = wheel::standing(S) - places;
@@ -113,8 +113,8 @@ void LiveWheelFilter<S>::read(const LiveInstant& instant) {
   }
 }
 
-/// Of the readings at this instant. What is not known of ω² and α, times what is not known of a
-/// place, is noise that no slope shows.
+/// For the measurements at this epoch. The product of the uncertainties of ω² or α and of a lever
+/// arm is noise not covered by the Jacobian.
 template <int S>
 void LiveWheelFilter<S>::set_variance() {
   const double w = main_.x.mean(wheel::speed);
@@ -134,7 +134,7 @@ void LiveWheelFilter<S>::advance_all() {
   for (std::size_t m = 0; m < moved_.size(); ++m) {
     Moved& moved = moved_[m];
     if (std::abs(moved.state.x.mean(wheel::angle) - main_.x.mean(wheel::angle)) > 1.0)
-      seat(static_cast<int>(m));  // it has slipped, and tells nothing any more
+      seat(static_cast<int>(m));  // it has slipped and contains no information
     advance(model_, k, live_gate, moved.state, other_step_);
     for (int i = 0; i < other_step_.count; ++i)
       moved.innovations[static_cast<std::size_t>(i)] =
@@ -168,7 +168,7 @@ void LiveWheelFilter<S>::step(const LiveInstant& instant) {
   if (time_s_ - stretch_start_s_ >= stretch_s) end_stretch();
 }
 
-/// Of the angle at this instant, before its readings.
+/// Of the angle at this epoch, before its measurements.
 template <int S>
 double LiveWheelFilter<S>::predicted_std_rad() const {
   const auto to = model_.transition(main_.x.mean, 1);
@@ -178,7 +178,7 @@ double LiveWheelFilter<S>::predicted_std_rad() const {
       to.Q(wheel::angle, wheel::angle));
 }
 
-/// What the innovations say of the readings' noise, and of the motion's.
+/// Updates measurement noise and motion noise from the innovations.
 template <int S>
 void LiveWheelFilter<S>::judge() {
   int channel = 0;
@@ -235,7 +235,7 @@ void LiveWheelFilter<S>::loosen() {
   forget_stretch();
 }
 
-/// What the stretch so far says of the noise no longer counts.
+/// Discards the noise statistics of the current interval.
 template <int S>
 void LiveWheelFilter<S>::forget_stretch() {
   for (Rival& rival : rivals_) {
@@ -247,7 +247,7 @@ void LiveWheelFilter<S>::forget_stretch() {
   stretch_start_s_ = time_s_;
 }
 
-/// The readings' variance goes half of the way (in logarithm) to what the stretch says.
+/// The measurement variance moves half way (in logarithm) to the interval's estimate.
 template <int S>
 void LiveWheelFilter<S>::adapt_variance(std::size_t sensor) {
   const Noise said = noise_[sensor];

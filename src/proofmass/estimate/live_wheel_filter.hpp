@@ -10,10 +10,10 @@
 #include "proofmass/estimate/fixed_lag.hpp"
 #include "proofmass/estimate/live_wheel_start.hpp"
 
-// The filters that run on a live wheel, side by side. Private to the module's live_wheel*.
+// The parallel filters of an online wheel. Private to the module's live_wheel*.
 namespace proofmass::estimate {
 
-/// What is given out for an instant.
+/// Output for one epoch.
 struct LiveWheelRow {
   Uncertain angle_rad{}, speed_radps{};
   double smoothed_time_s = std::numeric_limits<double>::quiet_NaN();
@@ -30,17 +30,17 @@ class LiveWheelFilter {
   LiveWheelFilter(const LiveWheelFilter&) = delete;
   LiveWheelFilter& operator=(const LiveWheelFilter&) = delete;
 
-  /// Takes one instant more. Allocates nothing.
+  /// Processes one epoch. Does not allocate.
   void step(const LiveInstant& instant);
-  /// Holds the sensors at this distance from the axle, once the start has been filtered.
+  /// Sets the sensors' distance from the axle, once the initial samples have been filtered.
   void use_radius(double radius_m);
-  /// Well enough that the speed may change.
+  /// Whether the lever arms are known well enough for the speed to change.
   [[nodiscard]] bool knows_places() const;
-  /// Of the angle, for want of knowing them.
+  /// Angle uncertainty due to the lever arms.
   [[nodiscard]] double places_std_rad() const { return std::sqrt(places_variance()(0)); }
 
   [[nodiscard]] LiveWheelRow row() const;
-  /// Not to be saved by more noise: the wheel has to be looked for anew.
+  /// Diverged beyond covariance inflation: the wheel must be reinitialised.
   [[nodiscard]] bool is_lost() const { return lost_; }
   [[nodiscard]] double angle_rad() const { return main_.x.mean(wheel::angle); }
   [[nodiscard]] double speed_radps() const { return main_.x.mean(wheel::speed); }
@@ -48,20 +48,20 @@ class LiveWheelFilter {
  private:
   using Model = WheelModel<S>;
   static constexpr int places = 2 * S;
-  /// How far a place is moved to see what it does. What is read is linear in it.
+  /// Perturbation of a lever arm. The measurement is linear in it.
   static constexpr double place_step_m = 1e-3;
-  /// The same with one coordinate of the places moved, and what it says of the readings.
+  /// The filter with one coordinate of the lever arms perturbed, and its fit to the measurements.
   struct Moved {
     FilterState<states> state;
     std::array<double, static_cast<std::size_t>(2 * S)> innovations{};
   };
-  /// Other noise, and how much better it predicts the readings of this stretch.
+  /// Alternative noise parameters, and their gain in predicting the measurements of this interval.
   struct Rival {
     double factor = 1.0;
     FilterState<states> state{};
     double log_likelihood = 0.0;
   };
-  /// Of one sensor's readings in a stretch, as of settle_variance().
+  /// Noise statistics of one sensor's measurements in an interval, as in settle_variance().
   struct Noise {
     double innovation2 = 0.0, explained = 0.0, readings = 0.0;
   };
@@ -85,11 +85,11 @@ class LiveWheelFilter {
   [[nodiscard]] Mat<2> places_variance() const;
 
   std::vector<WheelPlane> planes_;
-  WheelReadings now_;  ///< two instants: 0 the first, 1 any later; each sensor has one row
+  WheelReadings now_;  ///< two epochs: 0 the first, 1 any later; each sensor has one row
   Model model_;
   std::size_t instants_ = 0;
   double time_s_ = 0.0;
-  std::array<double, 2> variance_m2ps4_;  ///< of each sensor's readings
+  std::array<double, 2> variance_m2ps4_;  ///< of each sensor's measurements
   double alignment_variance_rad2_ = 0.0, delay_std_s_ = 0.0;
 
   FilterState<states> main_;

@@ -4,11 +4,11 @@
 
 #include "proofmass/estimate/live_wheel_filter.hpp"
 
-// Where the sensors sit on the wheel: what a filter that runs learns of it.
+// Online estimation of the sensors' lever arms.
 namespace proofmass::estimate {
 
-/// The radius in place of what was believed of a sensor that may be anywhere: the sensor is on its
-/// circle or, as long as the readings do not show on which side, within it.
+/// Replaces the prior of the lever arm by the given radius: the sensor is on its circle or, while
+/// the measurements do not show on which side, within it.
 template <int S>
 void LiveWheelFilter<S>::use_radius(double radius_m) {
   const double within_m = std::max(radius_m / std::numbers::sqrt2, 2e-4);
@@ -25,7 +25,7 @@ void LiveWheelFilter<S>::use_radius(double radius_m) {
   }
 }
 
-/// Whether it is clear on which side of the axle a sensor is.
+/// Whether the side of the axle on which a sensor is mounted is determined.
 template <int S>
 bool LiveWheelFilter<S>::shows_place(int sensor) const {
   const double found2 = main_.x.mean.template segment<2>(first_place + 2 * sensor).squaredNorm();
@@ -42,7 +42,7 @@ bool LiveWheelFilter<S>::knows_places() const {
   return true;
 }
 
-/// What each innovation could be, not knowing the places: y(p + δ) = y − slopeᵀ δ.
+/// Each innovation as a function of the lever arms: y(p + δ) = y − slopeᵀ δ.
 template <int S>
 void LiveWheelFilter<S>::expect() {
   for (std::size_t c = 0; c < static_cast<std::size_t>(step_.count); ++c) {
@@ -55,8 +55,8 @@ void LiveWheelFilter<S>::expect() {
   }
 }
 
-/// A reading `residual` = slopeᵀ (p − p̂) + noise. What hangs on the places moves with them, as the
-/// filters beside this one tell.
+/// A measurement `residual` = slopeᵀ (p − p̂) + noise. States that depend on the lever arms are
+/// updated with them, with the sensitivities from the parallel filters.
 template <int S>
 void LiveWheelFilter<S>::learn_place(const Mat<places>& slope, double residual, double variance) {
   const Mat<places> across = places_cov_ * slope;
@@ -72,7 +72,7 @@ void LiveWheelFilter<S>::learn_place(const Mat<places>& slope, double residual, 
   for (Rival& rival : rivals_) rival.state.x.mean += change;
 }
 
-/// Of angle and speed, for want of knowing the places.
+/// Uncertainty of angle and speed due to the lever arms.
 template <int S>
 Mat<2> LiveWheelFilter<S>::places_variance() const {
   Mat<2, places> slope;

@@ -9,7 +9,7 @@
 namespace proofmass::estimate {
 namespace {
 
-/// The start is looked for at this rate at most: fast enough for the fastest wheel it looks for.
+/// Maximum rate of the initialisation: sufficient for the fastest wheel.
 constexpr double seek_rate_hz = 200.0;
 
 double rate_of(const std::vector<LiveInstant>& instants) {
@@ -17,7 +17,7 @@ double rate_of(const std::vector<LiveInstant>& instants) {
   return static_cast<double>(instants.size() - 1) / span_s;
 }
 
-/// One sensor's part, `each` instants averaged; a mean of anything missing is missing.
+/// One sensor's samples, averaged over `each` epochs; a mean with a missing sample is missing.
 WheelSensor sensor_of(const std::vector<LiveInstant>& instants,
                       std::size_t index,
                       const Triad& channels,
@@ -67,11 +67,11 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveInstant>& instants,
     sensors.push_back(sensor_of(instants, s, options.sensors[s], each));
   WheelOptions wheel = options.wheel;
   wheel.clocks_shared = true;
-  wheel.radius_m.reset();  // of which the filter makes better use, while it learns the places
+  wheel.radius_m.reset();  // used better by the filter itself
   auto singles = fit_singles(sensors, wheel);
   if (!singles) return singles.error();
   Pair pair = std::move(singles).value();
-  pair.clocks.offset_s.value = 0.0;  // the instants are both sensors'
+  pair.clocks.offset_s.value = 0.0;  // the epochs are both sensors'
   Joint joint;
   if (count == 2)
     joint = fit_jointly(sensors, pair, wheel);

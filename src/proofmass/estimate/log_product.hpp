@@ -6,7 +6,7 @@
 
 namespace proofmass::estimate::packed {
 
-/// ln of a product of many positive numbers, with one logarithm in all.
+/// ln of a product of many positive numbers, with a single logarithm.
 class LogProduct {
  public:
   void multiply(double factor) {
@@ -14,7 +14,7 @@ class LogProduct {
     mantissa_ = std::frexp(mantissa_ * factor, &exponent);
     exponent_ += exponent;
   }
-  /// factor to the power of count.
+  /// Multiplies by factor to the power of count.
   void multiply(double factor, std::size_t count) {
     powers_ += static_cast<double>(count) * std::log(factor);
   }

@@ -112,14 +112,14 @@ void solve(const Dense& L, Matrix& X) {
   }
 }
 
-/// The readings of one instant that are there.
+/// The available measurements of one epoch.
 struct Present {
   Dense H, R;
-  Vector y;  // less what is predicted
+  Vector y;  // minus the prediction
   std::vector<Index> channels;
 };
 
-/// What the instants' readings do, as the way back needs it; 0 in channels without a reading.
+/// Data of the epochs' corrections for the backward pass; 0 in channels without a measurement.
 struct Corrections {
   std::vector<double> K;            // states × channels
   std::vector<double> S_inverse_H;  // channels × states
@@ -132,7 +132,7 @@ struct Corrections {
   }
 };
 
-/// Runs forwards, keeping the gains where somebody goes back.
+/// Runs forwards, storing the gains if there is a backward pass.
 class Pass {
  public:
   Pass(const MatrixSeries& series, const MatrixOutput& output, bool keeps)
@@ -157,7 +157,7 @@ class Pass {
     return Done{};
   }
 
-  /// Each state given all readings, in place of that given those up to its instant.
+  /// Each state given all measurements, instead of those up to its epoch.
   void back(const Progress& progress) {
     start_back();
     for (std::size_t k = series_.size(); k-- > 0;) {
@@ -168,7 +168,7 @@ class Pass {
     }
   }
 
-  /// The same given those up to `lag` instants later.
+  /// Each state given the measurements up to `lag` epochs later.
   void back_by(std::size_t lag, const Progress& progress) {
     const std::size_t last = series_.size() - 1;
     for (std::size_t k = 0; k <= last; ++k) {
@@ -201,7 +201,7 @@ class Pass {
     P_ += at(series_.Q, k, N, N);
   }
 
-  /// Of instant k, and NaN for the others in the output.
+  /// Measurements of epoch k; NaN for the others in the output.
   [[nodiscard]] Present present(std::size_t k) {
     const int N = series_.states, M = series_.channels;
     const double* z = series_.z.data() + k * channels();
@@ -306,7 +306,7 @@ class Pass {
     P = 0.5 * (smoothed + smoothed.transpose());
   }
 
-  /// λ and Λ through the readings of instant k and the step before them.
+  /// λ and Λ through the measurements of epoch k and the step before them.
   void look_back(std::size_t k) {
     const int N = series_.states;
     const std::size_t first = k * states() * channels();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// Three states, two channels, matrices that change from instant to instant, readings missing.
+// Three states, two channels, matrices that change from epoch to epoch, measurements missing.
 struct Drawn {
   static constexpr int N = 3, M = 2;
   std::size_t size;

@@ -22,7 +22,7 @@ LinearModel<N, 1> model_of(const MatrixSeries& series) {
   return model;
 }
 
-/// Each instant's covariance, whole, from those that are kept where they change.
+/// Each epoch's covariance, whole, from those that are kept where they change.
 template <int N>
 void spread(const CovarianceRuns<N>& covariances, std::span<double> out) {
   constexpr std::size_t entries = static_cast<std::size_t>(N) * N;

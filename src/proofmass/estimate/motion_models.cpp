@@ -17,7 +17,7 @@ double second_exponential(double x) {
   return sum;
 }
 
-/// What an acceleration of 1 has become after s: displacement, velocity, itself.
+/// Response to a unit acceleration after s: displacement, velocity, acceleration.
 Mat<3> after_unit_accel(double s, double tau) {
   const double x = s / tau;
   return {s * s * second_exponential(x), -tau * std::expm1(-x), std::exp(-x)};
@@ -30,8 +30,8 @@ Mat<3, 3> singer_transition(double dt, double tau) {
   return F;
 }
 
-/// ∫ g(s) g(s)ᵀ ds over a step of no more than τ, by Gauss and Legendre's rule of eight points,
-/// which leaves 1e-17 of it.
+/// ∫ g(s) g(s)ᵀ ds over a step of at most τ, by eight-point Gauss–Legendre quadrature, with a
+/// relative error of 1e-17.
 Mat<3, 3> singer_integral(double dt, double tau) {
   constexpr std::array<double, 4> nodes = {0.1834346424956498, 0.5255324099163290,
                                            0.7966664774136267, 0.9602898564975363};

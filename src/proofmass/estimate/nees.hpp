@@ -5,25 +5,25 @@
 
 #include "proofmass/core/chi_square.hpp"
 
-// Whether stated covariances are true, by runs against a known truth.
+// Tests stated covariances with runs against a known truth.
 namespace proofmass::estimate {
 
-/// eᵀ P⁻¹ e, the normalised estimation error squared: chi-square of as many degrees of freedom as
-/// there are states, where P is true. P positive definite.
+/// eᵀ P⁻¹ e, the normalised estimation error squared: chi-square with as many degrees of freedom as
+/// states, if P is correct. P positive definite.
 [[nodiscard]] double normalised_error_squared(const Eigen::VectorXd& error,
                                               const Eigen::MatrixXd& cov);
 
-/// Between what the mean of it over independent runs lies in 95 % of cases: M = 50 runs of n = 4
-/// states give [3.25, 4.82]. Instants of one run are not independent, and may not be counted so.
-/// Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 5.4.2.
+/// 95 % limits of its mean over independent runs: M = 50 runs of n = 4 states give [3.25, 4.82].
+/// Epochs of one run are not independent and must not be counted as runs. Source: Bar-Shalom, Li,
+/// Kirubarajan, Estimation with Applications (2001), section 5.4.2.
 [[nodiscard]] Bounds mean_nees_95(std::size_t runs, std::size_t states);
 
-/// Between what the share of `runs` independent runs whose error lies inside a band lies in at
-/// least 95 % of cases, where the band holds with probability p: quantiles of the binomial
-/// distribution. 1000 runs of a band of 95 %: [0.936, 0.963]. Cost: O(runs).
+/// Limits that contain, with at least 95 % probability, the share of `runs` independent runs whose
+/// error lies inside a band of coverage p: quantiles of the binomial distribution. 1000 runs of a
+/// 95 % band: [0.936, 0.963]. Cost: O(runs).
 [[nodiscard]] Bounds share_inside_95(std::size_t runs, double p);
 
-/// Errors over independent runs against the covariances stated for them.
+/// Errors over independent runs compared with their stated covariances.
 struct NeesTally {
   std::size_t runs = 0;
   std::size_t states = 0;

@@ -3,8 +3,8 @@
 #include "proofmass/estimate/packed_kalman.hpp"
 #include "proofmass/estimate/uniform_lanes.hpp"
 
-// Every loop over lanes is written as one lane's work on numbers of its own: that is the form which
-// the compiler turns into vectors.
+// Every loop over lanes is written as one lane's work on its own numbers, the form that the
+// compiler vectorises.
 namespace proofmass::estimate::packed {
 
 template <int Count>

@@ -26,8 +26,8 @@ void pack(const Mat<N, N>& P, double (&out)[Symmetric<N>::entries]) {
     for (int j = 0; j <= i; ++j) out[Symmetric<N>::index(i, j)] = 0.5 * (P(i, j) + P(j, i));
 }
 
-/// Joseph's form of correct_cov, for a P so much wider than the reading that differences of its
-/// entries hold little of the answer.
+/// Joseph form of correct_cov, for a P so much wider than the measurement that differences of its
+/// entries lose their digits.
 template <int N>
 [[gnu::noinline]] void correct_wide(const StepModel<N>& m,
                                     const double (&before)[Symmetric<N>::entries],
@@ -38,7 +38,7 @@ template <int N>
   pack<N>(I_Kh * dense<N>(before) * I_Kh.transpose() + m.R * gain * gain.transpose(), P);
 }
 
-/// Whether P − P Λ P is so much less than P that the difference holds little of it.
+/// Whether P − P Λ P is so much smaller than P that the difference loses its digits.
 template <int N>
 [[gnu::always_inline]] inline bool lost(const double (&filtered)[Symmetric<N>::entries],
                                         const double (&smoothed)[Symmetric<N>::entries]) {
@@ -50,10 +50,9 @@ template <int N>
   return any;
 }
 
-/// Rauch, Tung and Striebel's covariance as a sum of squares, which loses nothing where P is wide:
+/// Rauch–Tung–Striebel covariance as a sum of squares, which loses no digits if P is wide:
 ///     P[k|N] = (I − G F) P (I − G F)ᵀ + G (Q + P[k+1|N]) Gᵀ,   G = P Fᵀ (F P Fᵀ + Q)⁻¹.
-/// Leaves `smoothed` as it is where that inverse does not exist. Returns whether `smoothed` was any
-/// different.
+/// Leaves `smoothed` unchanged if that inverse does not exist. Returns whether `smoothed` changed.
 template <int N>
 [[gnu::noinline]] bool smooth_wide(const StepModel<N>& m,
                                    const double (&filtered)[Symmetric<N>::entries],
@@ -62,7 +61,7 @@ template <int N>
   const Mat<N, N> F =
       Eigen::Map<const Eigen::Matrix<double, N, N, N == 1 ? 0 : Eigen::RowMajor>>(&m.F[0][0]);
   const Mat<N, N> P = dense<N>(filtered), predicted = F * P * F.transpose() + dense<N>(m.Q);
-  // In units of the standard deviations, or pivots would be chosen by the units of the states.
+  // Scaled by the standard deviations, so that pivots do not depend on the units of the states.
   const Mat<N> scale = predicted.diagonal().cwiseSqrt().cwiseInverse();
   const Mat<N, N> scaled = scale.asDiagonal() * predicted * scale.asDiagonal();
   const Mat<N, N> FP = scale.asDiagonal() * F * P;
@@ -81,7 +80,7 @@ template <int Count>
   each<Count>([&](auto i) __attribute__((always_inline)) { to[i()] = from[i()]; });
 }
 
-/// P, x and K given the reading z. Returns y / S and 1 / S.
+/// P, x and K given the measurement z. Returns y / S and 1 / S.
 template <int N, Pattern S>
 [[gnu::always_inline]] inline std::pair<double, double> read(const StepModel<N>& m,
                                                              double z,

@@ -4,10 +4,10 @@
 
 #include "proofmass/estimate/packed_model.hpp"
 
-// packed_kalman.hpp's equations, one instant after another.
+// packed_kalman.hpp's equations, one epoch after another.
 namespace proofmass::estimate::packed {
 
-/// x̂ and P after an instant.
+/// x̂ and P after an epoch.
 template <int N>
 struct State {
   double P[Symmetric<N>::entries];
@@ -16,8 +16,8 @@ struct State {
 
 template <int N>
 struct PlainKernels {
-  /// Filters on from `state` over z[0] … z[count − 1], NaN where there is no reading; rows, where
-  /// given, are told each instant. `moves`: a step leads to the first instant.
+  /// Filters from `state` over z[0] … z[count − 1], NaN without a measurement; rows, if given,
+  /// receive each epoch. `moves`: a step leads to the first epoch.
   void (*filter)(const StepModel<N>&,
                  const double* z,
                  std::size_t count,
@@ -25,9 +25,9 @@ struct PlainKernels {
                  State<N>& state,
                  Row<N>* rows);
   /// Takes `later` from after the last row to before the first; x and P of the rows become those
-  /// given all readings.
+  /// given all measurements.
   void (*smooth)(const StepModel<N>&, Row<N>* rows, std::size_t count, Later<N>& later);
-  /// The same of λ and the means alone.
+  /// λ and the means alone.
   void (*smooth_means)(const StepModel<N>&, Row<N>* rows, std::size_t count, Later<N>& later);
 };
 

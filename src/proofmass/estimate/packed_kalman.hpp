@@ -2,10 +2,10 @@
 
 #include "proofmass/estimate/packed_model.hpp"
 
-// The equations of kalman.hpp on packed covariances, for a model that stays the same and has one
-// channel: each is written once, on plain numbers, and is run either on one instant after another
-// (packed_filter.cpp) or side by side on many (uniform_lanes.cpp). What a model's zeros and ones
-// save is known when it is compiled (Pattern).
+// The equations of kalman.hpp on packed covariances, for a time-invariant model with one channel.
+// Each is written once, on plain numbers, and runs either on one epoch after another
+// (packed_filter.cpp) or side by side on many (uniform_lanes.cpp). Zeros and ones of the model are
+// exploited at compile time (Pattern).
 namespace proofmass::estimate::packed {
 
 /// x ← F x + offset

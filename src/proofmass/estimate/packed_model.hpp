@@ -6,17 +6,17 @@
 #include "proofmass/estimate/linear_series.hpp"
 #include "proofmass/estimate/symmetric.hpp"
 
-// What packed_kalman.hpp's equations work on, and what is known of it when they are compiled.
+// Data of packed_kalman.hpp's equations, and what is known of it at compile time.
 namespace proofmass::estimate::packed {
 
-/// Which entries of F (row i, column j: bit i N + j) and of h (bit j) are 0 or 1 in every model
-/// that a kernel is for, and whether all of `offset` is 0. Entries not claimed may be anything.
+/// Entries of F (row i, column j: bit i N + j) and of h (bit j) that are 0 or 1 in every model of a
+/// kernel, and whether all of `offset` is 0. Other entries are arbitrary.
 struct Pattern {
   unsigned F_zero = 0, F_one = 0, h_zero = 0, h_one = 0;
   bool no_offset = false;
 };
 
-/// What a step of a model with one channel is made of; `offset` is B u of an input that stays.
+/// One step of a model with one channel; `offset` is B u of a constant input.
 template <int N>
 struct StepModel {
   double F[N][N];
@@ -39,7 +39,7 @@ template <int N, int U>
   return out;
 }
 
-/// Whether a pattern's claims hold of a model.
+/// Whether a model has a pattern.
 template <int N>
 [[nodiscard]] constexpr bool fits(const Pattern& pattern, const StepModel<N>& model) {
   const auto agrees = [](unsigned claimed, int bit, double entry, double value) {
@@ -57,7 +57,7 @@ template <int N>
   return true;
 }
 
-/// States that no reading of such a model sees, now or later: Λ and λ are 0 there.
+/// States not observable by any measurement of the model: Λ and λ are 0 there.
 template <int N>
 [[nodiscard]] constexpr unsigned unseen(const Pattern& pattern) {
   constexpr unsigned all = (1U << N) - 1U;
@@ -69,8 +69,8 @@ template <int N>
   return ~seen & all;
 }
 
-/// One instant of a filter: x̂ and P after its reading, K, y / S and 1 / S (all three 0 where there
-/// is no reading).
+/// One epoch of a filter: x̂ and P after its measurement, K, y / S and 1 / S (all three 0 without a
+/// measurement).
 template <int N>
 struct Row {
   static constexpr int entries = Symmetric<N>::entries;
@@ -80,9 +80,9 @@ struct Row {
   double y_S, per_S;
 };
 
-/// What later readings say of a state: λ and Λ of hindsight.hpp, and the covariance of the instant
-/// after given all readings. `wide`: behind a wide P, Λ has lost digits that the covariances of
-/// earlier instants still need.
+/// Information on a state from later measurements: λ and Λ of hindsight.hpp, and the covariance of
+/// the next epoch given all measurements. `wide`: after a wide P, Λ has lost digits that the
+/// covariances of earlier epochs still need.
 template <int N>
 struct Later {
   double L[Symmetric<N>::entries];
@@ -117,7 +117,7 @@ constexpr bool claimed(unsigned mask, int bit) {
   return (mask >> bit & 1U) != 0U;
 }
 
-/// A sum of which it is known at compile time whether it has a term yet.
+/// A sum for which it is known at compile time whether it has a term yet.
 struct Sum {
   double value = 0.0;
   bool empty = true;
@@ -127,7 +127,7 @@ struct Sum {
   }
 };
 
-/// sum += factor · value, where `zero` or `one` say what factor is.
+/// sum += factor · value, where `zero` or `one` state the value of factor.
 template <bool zero, bool one>
 [[gnu::always_inline]] constexpr void add_product(Sum& sum, double factor, double value) {
   if constexpr (zero)

@@ -4,10 +4,10 @@
 
 #include "proofmass/estimate/packed_model.hpp"
 
-// The patterns that kernels are compiled for, the narrower before the wider.
+// The patterns of the compiled kernels, narrower ones first.
 namespace proofmass::estimate::packed {
 
-/// Position, velocity and acceleration in a chain, and behind them a state that only keeps itself.
+/// Position, velocity and acceleration in a chain, followed by a state that depends only on itself.
 template <int N>
 [[nodiscard]] constexpr Pattern chain(unsigned h_zero, unsigned h_one) {
   Pattern chain{0, 0, h_zero, h_one, true};
@@ -20,7 +20,7 @@ template <int N>
   return chain;
 }
 
-/// The acceleration is read, or the position.
+/// The acceleration is measured, or the position.
 template <int N>
 inline constexpr std::array<Pattern, 1> patterns{Pattern{}};
 template <>
@@ -30,7 +30,7 @@ template <>
 inline constexpr std::array<Pattern, 3> patterns<4>{chain<4>(0b0011, 0b1100),
                                                     chain<4>(0b1110, 0b0001), Pattern{}};
 
-/// Which of them is the first that fits the model; the last fits any.
+/// The first that fits the model; the last fits any.
 template <int N>
 [[nodiscard]] constexpr std::size_t pattern_of(const StepModel<N>& model) {
   std::size_t i = 0;

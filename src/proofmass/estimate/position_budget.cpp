@@ -10,7 +10,7 @@
 namespace proofmass::estimate {
 namespace {
 
-// Variance over B² of flicker's mean over a time, weighed as double integration weighs it.
+// Variance over B² of flicker's mean over a time, weighted as in double integration.
 double flicker_share(double t_s) {
   constexpr double hour_s = 3600.0, periods = 10.0, weighed = 1.75;
   const double longest_s = std::max(hour_s, periods * t_s);

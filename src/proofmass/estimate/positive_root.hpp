@@ -8,8 +8,8 @@
 namespace proofmass::estimate {
 
 /// The lower triangular L with L Lᵀ = A, for a symmetric positive semi-definite A: a column is zero
-/// where nothing but rounding is left of its pivot. Reads the lower triangle. Source: G. H. Golub,
-/// C. F. Van Loan, Matrix Computations (2013), section 4.2.8. Cost: O(N³).
+/// if only rounding remains of its pivot. Reads the lower triangle. Source: G. H. Golub, C. F. Van
+/// Loan, Matrix Computations (2013), section 4.2.8. Cost: O(N³).
 template <int N>
 [[nodiscard]] Mat<N, N> positive_root(const Mat<N, N>& A) {
   constexpr double rounding = 4 * N * std::numeric_limits<double>::epsilon();
@@ -28,7 +28,7 @@ template <int N>
   return L;
 }
 
-/// An X with L Lᵀ X = B, where there is one: of a singular L the entries that it leaves open are 0.
+/// A solution X of L Lᵀ X = B, if one exists; for a singular L the undetermined entries are 0.
 template <int N, int Columns>
 [[nodiscard]] Mat<N, Columns> solve_root(const Mat<N, N>& L, Mat<N, Columns> B) {
   const auto divided = [&](double sum, int i) { return L(i, i) > 0.0 ? sum / L(i, i) : 0.0; };

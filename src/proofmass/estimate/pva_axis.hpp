@@ -11,40 +11,43 @@
 #include "proofmass/estimate/kalman.hpp"
 #include "proofmass/estimate/motion_models.hpp"
 
-// Motion along one axis, from rest to rest, with the accelerometers as readings. Private to the
+// Motion along one axis, from rest to rest, with the accelerometers as measurements. Private to the
 // module's track*.cpp.
 //
 //     moving   p' = v,   v' = a − l,   a' = j       j white of density q, l of density L
 //     at rest  p' = 0,   v = 0,   a = 0
 //     always   z_i = a + c + b_i + n_i
 //
-// b_i is the bias of sensor i, which walks or settles. c is what all sensors err by in motion, as
-// gravity leans into the axis: it walks in motion and jumps where one begins or ends, and a warm-up
-// does not make it settle. l is the share of a that is no acceleration but rocking.
+// - b_i is the bias of sensor i, a random walk or settling exponentially.
+// - c is the error common to all sensors in motion, such as the component of gravity along the
+//   axis: a random walk in motion, with a jump at the beginning and the end of one; it does not
+//   settle with a warm-up.
+// - l is the part of a that is rocking instead of acceleration.
 //
-// Between two samples a runs straight, for a sensor's own filter leaves little beside:
+// Between two samples a is linear, since the sensor's own filter leaves little else:
 //
 //     a ← a + w,   v ← v + h a + h w/2,   p ← p + h v + h² a/2 + h² w/6,   w of variance q h.
 //
-// White jerk proper would add q h³/12 to the variance of v in each step, as much as the noise of
-// the readings in a smooth motion, and no sensor that is added could take it away. Over a step
-// longer than `longest_step_s` it does.
+// Continuous white jerk would add q h³/12 to the variance of v in each step, as much as the
+// measurement noise in a smooth motion, and no additional sensor could reduce it. It is added over
+// a step longer than `longest_step_s`.
 namespace proofmass::estimate {
 
-/// One accelerometer along the axis, less its level at the first rest.
+/// One accelerometer along the axis, minus its level at the first rest.
 struct PvaSensor {
-  View<double> accel_mps2;                              ///< NaN where there is no reading
-  double variance_m2ps4 = 1.0;                          ///< of one reading, positive
-  double walk_m2ps5 = 0.0;                              ///< density of what drives the bias
-  std::optional<double> warm_up_time_s = std::nullopt;  ///< in which it forgets; absent: it walks
+  View<double> accel_mps2;      ///< NaN where missing
+  double variance_m2ps4 = 1.0;  ///< of one measurement, positive
+  double walk_m2ps5 = 0.0;      ///< density of the noise that drives the bias
+  /// Time constant of the bias; absent: random walk.
+  std::optional<double> warm_up_time_s = std::nullopt;
 };
 
-/// What happens at one sample and on the way to it; NaN where nothing is read.
+/// Constraints at one sample and during the step to it; NaN without a measurement.
 struct PvaSample {
-  bool resting = false;  ///< on the way here, and here
+  bool resting = false;  ///< during the step, and at the sample
   bool arrives = false;  ///< at a rest, from motion
-  bool jumps = false;    ///< c does, on the way here
-  double velocity_std_mps = std::numeric_limits<double>::quiet_NaN();  ///< of the reading v = 0
+  bool jumps = false;    ///< c jumps during the step
+  double velocity_std_mps = std::numeric_limits<double>::quiet_NaN();  ///< of the measurement v = 0
   double position_m = std::numeric_limits<double>::quiet_NaN();
   double position_variance = 0.0;
 };
@@ -57,7 +60,7 @@ struct PvaNoise {
   double rest_speed_std_mps = 1e-3;
 };
 
-/// As many sensors as there are, up to S; the others have no readings.
+/// Up to S sensors; the others have no measurements.
 template <int S>
 class PvaAxis {
  public:
@@ -77,7 +80,7 @@ class PvaAxis {
   [[nodiscard]] std::size_t sensors() const { return sensors_.size(); }
   [[nodiscard]] double time_s(std::size_t k) const { return time_s_[k]; }
   [[nodiscard]] const PvaSample& sample(std::size_t k) const { return samples_[k]; }
-  /// Whether the first sensor reads anything at sample k.
+  /// Whether the first sensor has a measurement at sample k.
   [[nodiscard]] bool reads(std::size_t k) const { return !std::isnan(sensors_[0].accel_mps2[k]); }
 
   [[nodiscard]] Transition<states, states> transition(const State& x, std::size_t k) const {
@@ -125,7 +128,7 @@ class PvaAxis {
       add(sample.position_m, sample.position_variance, State::Unit(pva::position_m));
   }
 
-  /// Which channel gave the i-th reading of sample k.
+  /// Channel of the i-th measurement of sample k.
   [[nodiscard]] int channel_of(std::size_t k, int i) const {
     for (std::size_t s = 0; s < sensors_.size(); ++s)
       if (!std::isnan(sensors_[s].accel_mps2[k]) && i-- == 0) return static_cast<int>(s);
@@ -134,7 +137,7 @@ class PvaAxis {
 
   void reopen(Gaussian<states>&, std::size_t) const {}
 
-  /// At the first sample: p = 0, all else hardly known; c is counted from there.
+  /// Prior at the first sample: p = 0, all else nearly unknown; c is relative to this sample.
   [[nodiscard]] FilterState<states> start(double speed_std_mps) const {
     constexpr double accel_std = 10.0;
     FilterState<states> state;

@@ -8,15 +8,15 @@
 
 namespace proofmass::estimate::detail {
 
-/// Rauch, Tung and Striebel's smoother over the epochs from `first` on of a filtered run:
+/// Rauch–Tung–Striebel smoother over the epochs of a filtered run from `first` on:
 ///
 ///     x⁻ = F x̂[k] + B u[k+1],  P⁻ = F P Fᵀ + Q,  G = P Fᵀ (P⁻)⁻¹
 ///     x̂[k|N] = x̂[k] + G (x̂[k+1|N] − x⁻),  P[k|N] = P + G (P[k+1|N] − P⁻) Gᵀ
 ///     cov(x[k+1], x[k]|N) = P[k+1|N] Gᵀ
 ///
-/// Where P⁻ is singular, G is one of the gains that serve. A step where the gate reopened the state
-/// is taken as any other. Source: H. E. Rauch, F. Tung, C. T. Striebel, AIAA Journal 3 (1965) 1445;
-/// Särkkä (2013), theorem 8.2, with the known input.
+/// If P⁻ is singular, G is one of the possible gains. A step with a covariance reset is treated as
+/// any other. Source: H. E. Rauch, F. Tung, C. T. Striebel, AIAA Journal 3 (1965) 1445; Särkkä
+/// (2013), theorem 8.2, with the known input.
 template <int N, int M, int U>
 void smooth_back_by_gains(const LinearSeries<N, M, U>& series,
                           std::size_t first,

@@ -12,8 +12,8 @@
 #include "proofmass/estimate/reference_smoother_test_support.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 
-// The job that smoothers are compared by: position, velocity and acceleration driven by white jerk
-// of density 1, an accelerometer whose bias is a Gauss–Markov process of 100 s, 200 readings a
+// The benchmark problem of the smoothers: position, velocity and acceleration driven by white jerk
+// of density 1, an accelerometer whose bias is a Gauss–Markov process of 100 s, 200 measurements a
 // second with a standard deviation of 0.02.
 namespace proofmass::estimate::test {
 
@@ -22,7 +22,7 @@ enum class Measured { acceleration, position };
 struct ReferenceCase {
   std::size_t instants;
   Measured measured;
-  bool missing = false;  ///< a tenth of the readings at random, and 1 s at a stretch
+  bool missing = false;  ///< a tenth of the measurements at random, and one gap of 1 s
   Smoother smoother = Smoother::bryson_frazier;
 };
 

@@ -8,9 +8,9 @@
 
 #include "proofmass/estimate/linear_series.hpp"
 
-// The textbook in 128 bits: Joseph's filter, Rauch, Tung and Striebel's smoother with its inverse,
-// and generalised least squares with a flat prior. Slow, plain, and with 34 digits, so that it need
-// not be clever to be right to all digits of a double.
+// Textbook reference in 128 bits: the filter in Joseph form, the Rauch–Tung–Striebel smoother with
+// its inverse, and generalised least squares with a flat prior. Slow and simple; with 34 digits it
+// is accurate to all digits of a double.
 namespace proofmass::estimate::test {
 
 __extension__ using Quad = __float128;
@@ -106,7 +106,7 @@ inline QuadMatrix::Inverse QuadMatrix::inverse() const {
   return out;
 }
 
-/// One instant in 128 bits.
+/// One epoch in 128 bits.
 struct QuadGaussian {
   QuadMatrix mean, cov;
 };
@@ -116,7 +116,7 @@ struct QuadRun {
   std::vector<QuadMatrix> lag_one;  ///< [k] of x[k+1], x[k]
 };
 
-/// Joseph's filter, one channel at a time, and Rauch, Tung and Striebel's smoother.
+/// Filter in Joseph form, one channel at a time, and Rauch–Tung–Striebel smoother.
 template <int N, int M, int U>
 [[nodiscard]] QuadRun quad_smoother(const LinearSeries<N, M, U>& series,
                                     const std::vector<Epoch<M, U>>& epochs,
@@ -168,9 +168,9 @@ struct QuadBatch {
   double log_likelihood = 0.0;  ///< diffuse, by the package KFAS's convention
 };
 
-/// Generalised least squares over the first `count` epochs: the information that readings, steps
-/// and the start (zero mean; no variance where nothing is known) put on all states, inverted. The
-/// likelihood is ∫ p(readings | start) over the states of which nothing is known, with density 1.
+/// Generalised least squares over the first `count` epochs: the information on all states from
+/// measurements, steps and the start (zero mean; infinite variance of the diffuse states),
+/// inverted. The likelihood is ∫ p(measurements | start) over the diffuse states, with density 1.
 template <int N, int M, int U>
 [[nodiscard]] QuadBatch least_squares(const LinearSeries<N, M, U>& series,
                                       const std::vector<Epoch<M, U>>& epochs,

@@ -6,20 +6,22 @@
 
 #include "proofmass/estimate/kalman.hpp"
 
-// What iterated_filter.hpp and iterated_smoother.hpp share: models made linear about given states,
-// and how far a state has moved.
+// Shared by iterated_filter.hpp and iterated_smoother.hpp: models linearised about given states,
+// and the change of a state.
 namespace proofmass::estimate {
 
 struct IterateOptions {
-  int iterations = 30;       ///< at most; 1 is the plain extended filter or smoother
-  double tolerance = 1e-10;  ///< largest change of a state, in its standard deviations, to stop at
+  int iterations = 30;  ///< maximum; 1 is the plain extended filter or smoother
+  /// Convergence limit: largest change of a state, in its standard deviations.
+  double tolerance = 1e-10;
 };
 
-/// How iterations ended.
+/// Result of the iteration.
 struct Iterated {
   bool converged = false;
   int iterations = 0;
-  double change = 0.0;  ///< the last one's largest, in standard deviations of that state
+  /// Largest change in the last iteration, in standard deviations of that state.
+  double change = 0.0;
 };
 
 namespace detail {
@@ -27,7 +29,7 @@ namespace detail {
 template <StateSpaceModel Model>
 using ReadingsOf = Readings<Model::states, Model::channels>;
 
-/// Readings made linear about `at`, for the state x.
+/// Measurements linearised about `at`, for the state x.
 template <StateSpaceModel Model>
 void measure_about(const Model& model,
                    const Mat<Model::states>& at,
@@ -41,12 +43,12 @@ void measure_about(const Model& model,
   }
 }
 
-/// A model whose motion is its own, and whose readings are those of one state, or none.
+/// A model with its own motion, whose measurements are linearised about one state, or absent.
 template <StateSpaceModel Model>
 struct ReadAbout {
   static constexpr int states = Model::states, moving = Model::moving, channels = Model::channels;
   const Model& model;
-  const Mat<states>* at;  ///< null: no readings
+  const Mat<states>* at;  ///< null: no measurements
 
   [[nodiscard]] std::size_t size() const { return model.size(); }
   [[nodiscard]] int active() const { return active_states(model); }
@@ -60,7 +62,7 @@ struct ReadAbout {
   void reopen(Gaussian<states>& x, std::size_t k) const { model.reopen(x, k); }
 };
 
-/// A model made linear about a path, which has a state for each instant.
+/// A model linearised about a path, which has a state for each epoch.
 template <StateSpaceModel Model>
 struct LinearAbout {
   static constexpr int states = Model::states, moving = Model::moving, channels = Model::channels;
@@ -81,7 +83,7 @@ struct LinearAbout {
   void reopen(Gaussian<states>& x, std::size_t k) const { model.reopen(x, k); }
 };
 
-/// Σ (z − h(x))² / R at instant k.
+/// Σ (z − h(x))² / R at epoch k.
 template <StateSpaceModel Model>
 [[nodiscard]] double misfit(const Model& model, const Mat<Model::states>& x, std::size_t k) {
   ReadingsOf<Model> readings;
@@ -94,7 +96,7 @@ template <StateSpaceModel Model>
   return sum;
 }
 
-/// dᵀ A⁻¹ d of a positive semi-definite A; what d has where A has nothing is passed over.
+/// dᵀ A⁻¹ d of a positive semi-definite A; components of d outside A's range are ignored.
 template <int N>
 [[nodiscard]] double squared_distance(Mat<N, N> A, Mat<N> d) {
   const Mat<N> whole = A.diagonal();
@@ -111,7 +113,8 @@ template <int N>
   return sum;
 }
 
-/// The largest move of a state in its standard deviations; one without variance does not move.
+/// The largest change of a state in its standard deviations; a state without variance does not
+/// change.
 template <int N>
 [[nodiscard]] double largest_change(const Mat<N>& from, const Gaussian<N>& to) {
   double largest = 0.0;

@@ -4,7 +4,7 @@
 
 #include "proofmass/estimate/gaussian.hpp"
 
-// Rotations in space, with Eigen/Core alone.
+// Rotations in space; depends on Eigen/Core only.
 namespace proofmass::estimate {
 
 /// [a]×, with [a]× b = a × b.
@@ -19,15 +19,15 @@ namespace proofmass::estimate {
 /// φ with exp([φ]×) = R, |φ| ≤ π.
 [[nodiscard]] Mat<3> rotation_vector(const Mat<3, 3>& R);
 
-/// The (w, x, y, z) of R that lies on the side of `beside`, so that a series of them is continuous.
-/// Source: S. W. Shepperd, J. Guidance and Control 1 (1978) 223.
+/// The quaternion (w, x, y, z) of R with the sign nearest to `beside`, so that a series is
+/// continuous. Source: S. W. Shepperd, J. Guidance and Control 1 (1978) 223.
 [[nodiscard]] std::array<double, 4> quaternion_of(const Mat<3, 3>& R,
                                                   const std::array<double, 4>& beside);
 
 /// The matrix of a quaternion (w, x, y, z) of unit length.
 [[nodiscard]] Mat<3, 3> rotation_of(const std::array<double, 4>& quaternion);
 
-/// The nearest rotation to a matrix that has drifted from one by rounding.
+/// The nearest rotation to a matrix with accumulated rounding errors.
 [[nodiscard]] Mat<3, 3> orthonormal(const Mat<3, 3>& R);
 
 }  // namespace proofmass::estimate

@@ -4,8 +4,8 @@
 
 #include "proofmass/estimate/gaussian.hpp"
 
-// Rotations of columns, which leave A Aᵀ as it is: what square-root filters are made of. Source:
-// Golub & Van Loan, Matrix Computations (2013), section 5.1.8.
+// Givens rotations of columns, which preserve A Aᵀ: the building block of square-root filters.
+// Source: Golub & Van Loan, Matrix Computations (2013), section 5.1.8.
 namespace proofmass::estimate::detail {
 
 /// Rotates columns i and j of A so that A(row, j) = 0 and A(row, i) ≥ 0.

@@ -26,7 +26,7 @@ void AuxiliaryTally::add(double residual, double variance) {
   }
 }
 
-// The longest stretches of which there are still enough hold the correlation best.
+// The longest stretches that are still numerous enough include the correlation best.
 std::optional<Uncertain> AuxiliaryTally::mean_square() const {
   constexpr std::size_t enough = 32;
   std::optional<Uncertain> found;

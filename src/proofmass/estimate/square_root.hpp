@@ -12,27 +12,27 @@
 #include "proofmass/estimate/rotations.hpp"
 #include "proofmass/estimate/square_root_evidence.hpp"
 
-// The linear filter and smoother carried by a root of the covariance, P = S Sᵀ with S lower
-// triangular: for records whose readings are so much more precise than what is known before, or so
-// unlike each other, that a covariance in 53 bits has lost the small directions or is no covariance
-// any more. Everything is a rotation of columns or a sum of squares, so P cannot lose its
-// definiteness, and half the digits suffice. Two to four times the arithmetic of smooth_linear().
-// Source: P. G. Kaminski, A. E. Bryson, S. F. Schmidt, IEEE Transactions on Automatic Control 16
-// (1971) 727; N. A. Carlson, AIAA Journal 11 (1973) 1259, for one reading at a time.
+// Linear filter and smoother with a root of the covariance, P = S Sᵀ with S lower triangular. For
+// data in which a covariance in 53 bits loses the small directions or its definiteness:
+// measurements much more precise than the prior, or of very different precision. All operations are
+// rotations of columns or sums of squares, so P stays definite, and half the digits suffice. Two to
+// four times the arithmetic of smooth_linear(). Source: P. G. Kaminski, A. E. Bryson, S. F.
+// Schmidt, IEEE Transactions on Automatic Control 16 (1971) 727; N. A. Carlson, AIAA Journal 11
+// (1973) 1259, for sequential measurements.
 namespace proofmass::estimate {
 
-/// What filter_linear() and smooth_linear() leave behind, and with it the roots themselves: the
-/// covariances in `run` are their squares, rounded.
+/// Results of filter_linear() and smooth_linear(), and the roots themselves: the covariances in
+/// `run` are their squares, rounded.
 template <int N, int M>
 struct SquareRootRun {
   LinearRun<N, M> run;
-  std::vector<Mat<N, N>> filtered_root, smoothed_root;  ///< lower triangular, one an epoch
+  std::vector<Mat<N, N>> filtered_root, smoothed_root;  ///< lower triangular, one for each epoch
 };
 
 namespace detail {
 
-/// x̂ and S given one more reading: the rotations that turn (√R, hᵀS) into (√S, 0), last column
-/// first so that S stays triangular, turn (0, S) into (K √S, S⁺).
+/// Updates x̂ and S with one measurement: the rotations that turn (√R, hᵀS) into (√S, 0), last
+/// column first so that S stays triangular, turn (0, S) into (K √S, S⁺).
 template <int N>
 [[nodiscard]] Update<N> correct_root(Mat<N>& mean,
                                      Mat<N, N>& root,
@@ -64,7 +64,7 @@ template <int N>
   return PackedGaussian<N>::of({mean, root * root.transpose()});
 }
 
-/// The filter, telling each instant to visit(k, step, root).
+/// The filter; calls visit(k, step, root) for each epoch.
 template <int N, int M, int U, class Visit>
 void run_square_root(const LinearSeries<N, M, U>& series,
                      const Gaussian<N>& prior,
@@ -104,8 +104,8 @@ void run_square_root(const LinearSeries<N, M, U>& series,
 
 }  // namespace detail
 
-/// Runs the filter from a prior, which has no diffuse direction; a root needs none, since a
-/// variance of 1e20 costs it no digits. Cost: O(epochs · N² (N + M)).
+/// Runs the filter from a prior. There are no diffuse directions; a root does not need them, since
+/// a variance of 1e20 costs no digits. Cost: O(epochs · N² (N + M)).
 template <int N, int M, int U>
 [[nodiscard]] SquareRootRun<N, M> filter_square_root(const LinearSeries<N, M, U>& series,
                                                      const Gaussian<N>& prior,
@@ -121,12 +121,12 @@ template <int N, int M, int U>
   return out;
 }
 
-/// Filter and fixed-interval smoother, equal to smooth_linear(), with lag-one covariances: the
-/// filter's root and, backwards, least squares of what later readings say, put together by
+/// Filter and fixed-interval smoother, equal to smooth_linear(), with lag-one covariances. Combines
+/// the filter's root with a backward least-squares form of the later measurements:
 ///
 ///     x̂[k|N] = x̂ + S ŵ,   P[k|N] = S (I + Sᵀ Ω S)⁻¹ Sᵀ,   Ω = Σ u uᵀ of the evidence after k
 ///
-/// without forming Ω. No recursion runs on what it gives, so errors do not add up. Source: D. C.
+/// without forming Ω. No recursion uses its own output, so errors do not accumulate. Source: D. C.
 /// Fraser, J. E. Potter, IEEE Transactions on Automatic Control 14 (1969) 387, for two filters;
 /// Bierman (1977), chapters V and X, for least squares by rotations.
 template <int N, int M, int U>

@@ -8,15 +8,16 @@
 #include "proofmass/estimate/positive_root.hpp"
 #include "proofmass/estimate/rotations.hpp"
 
-// The way back of the square-root smoother: what later readings say, as least squares.
+// Backward pass of the square-root smoother: information from later measurements, as least squares.
 namespace proofmass::estimate::detail {
 
-/// What later readings say of the state as rows of least squares, uᵀ x = ζ + N(0, 1), each a column
-/// (u, ζ).
+/// Information on the state from later measurements as rows of least squares, uᵀ x = ζ + N(0, 1),
+/// each a column (u, ζ).
 template <int N>
 using Evidence = Mat<N + 1, N>;
 
-/// Takes evidence on x[k] from after its readings to before: a row h/√R, z/√R for each used.
+/// Takes evidence on x[k] from after its measurements to before: a row h/√R, z/√R for each one
+/// used.
 template <int N, int M, int U>
 void add_readings(Evidence<N>& later,
                   const LinearSeries<N, M, U>& series,
@@ -36,8 +37,8 @@ void add_readings(Evidence<N>& later,
   later = array.template leftCols<N>();
 }
 
-/// Takes evidence on x[k] to evidence on x[k−1], where x[k] = F x[k−1] + B u + √Q ω: the rows that
-/// are left when ω ~ N(0, I) is eliminated. `step` is the transition of the state 0.
+/// Takes evidence on x[k] to evidence on x[k−1], with x[k] = F x[k−1] + B u + √Q ω: the rows that
+/// remain when ω ~ N(0, I) is eliminated. `step` is the transition of the state 0.
 template <int N>
 void step_back(Evidence<N>& later, const Transition<N, N>& step, const Mat<N, N>& root_Q) {
   const Mat<N, N> u = later.template topRows<N>();
@@ -50,15 +51,15 @@ void step_back(Evidence<N>& later, const Transition<N, N>& step, const Mat<N, N>
   later = array.template bottomRightCorner<N + 1, N>();
 }
 
-/// x[k] = x̂ + S w and ω between it and x[k+1], given all readings: (ω, w) ~ N(L⁻ᵀ y, (L Lᵀ)⁻¹).
+/// x[k] = x̂ + S w and ω between it and x[k+1], given all measurements: (ω, w) ~ N(L⁻ᵀ y, (L Lᵀ)⁻¹).
 template <int N>
 struct Joint {
   Mat<N> mean;
   Mat<N, 2 * N> now, next;  ///< roots of the covariances of x[k] and x[k+1], not triangular
 };
 
-/// Least squares of ω = 0 + N(0, I), w = 0 + N(0, I) and the evidence on x[k+1]. The identity in it
-/// keeps L's diagonal at 1 or above, so nothing is divided by what is small.
+/// Least squares of ω = 0 + N(0, I), w = 0 + N(0, I) and the evidence on x[k+1]. The identity keeps
+/// L's diagonal at 1 or above, so there is no division by a small number.
 template <int N>
 [[nodiscard]] Joint<N> joint(const Gaussian<N>& x,
                              const Mat<N, N>& root,
@@ -85,7 +86,7 @@ template <int N>
   return {x.mean + now * y, now, next};
 }
 
-/// By channel of those read, the variance with which a reading was used; NaN where it was not.
+/// Variance with which each channel's measurement was used; NaN if it was not.
 template <int N, int M>
 [[nodiscard]] Mat<M> variances_used(const Step<N, N, M>& step, const Readings<N, M>& readings) {
   Mat<M> out = Mat<M>::Constant(std::numeric_limits<double>::quiet_NaN());

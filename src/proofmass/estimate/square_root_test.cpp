@@ -103,7 +103,7 @@ TEST(SquareRoot, OfConstantsWithoutNoiseIsExact) {
           .run;
   for (const auto& step : run.steps) {
     EXPECT_NEAR(step.smoothed.mean(0), 0.75,
-                1e-15);  // three readings and a prior, all of variance 4
+                1e-15);  // three measurements and a prior, all of variance 4
     EXPECT_NEAR(step.smoothed.mean(1), 0.375, 1e-15);
     EXPECT_NEAR(step.smoothed.cov(0, 0), 1.0, 1e-15);
     EXPECT_NEAR(step.smoothed.cov(1, 0), 0.5, 1e-15);

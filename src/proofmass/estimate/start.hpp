@@ -6,13 +6,13 @@
 
 namespace proofmass::estimate {
 
-/// What is known of the state at the first epoch, before its readings:
+/// Distribution of the state at the first epoch, before its measurements:
 ///
 ///     x[0] ~ N(mean, cov + κ A Aᵀ),   κ → ∞, exactly.
 ///
-/// The first `directions` columns of A are those in which nothing at all is known; the readings
-/// determine them, one direction a reading. No large number stands in for κ, so no digit is lost to
-/// one. A Gaussian is a start with no such direction.
+/// The first `directions` columns of A are the diffuse directions; the measurements determine them,
+/// one direction per measurement. No large number approximates κ, so no digit is lost. A Gaussian
+/// is a start without diffuse directions.
 ///
 ///     Start<2> nothing_known = Start<2>::diffuse();      // level and slope of a trend
 ///     Start<3> at_rest = Start<3>::diffuse({0}, {.mean = …, .cov = …});  // position alone
@@ -23,14 +23,14 @@ namespace proofmass::estimate {
 template <int N>
 struct Start {
   Gaussian<N> proper;                   ///< all but the diffuse part
-  Mat<N, N> basis = Mat<N, N>::Zero();  ///< A; columns from `directions` on are not read
-  int directions = 0;                   ///< in which nothing is known, 0 … N
+  Mat<N, N> basis = Mat<N, N>::Zero();  ///< A; columns from `directions` on are not used
+  int directions = 0;                   ///< number of diffuse directions, 0 … N
 
-  // A Gaussian is meant to be taken wherever a start is.
+  // Implicit: a Gaussian is accepted wherever a start is.
   Start(const Gaussian<N>& known) : proper(known) {}  // NOLINT(google-explicit-constructor)
   Start() = default;
 
-  /// Nothing known of any state.
+  /// All states diffuse.
   [[nodiscard]] static Start diffuse() {
     Start start;
     start.basis.setIdentity();
@@ -38,9 +38,9 @@ struct Start {
     return start;
   }
 
-  /// Nothing known of these states (each named once); of the others what `known` says. Rows and
-  /// columns of known.cov that belong to these states are not read; known.mean is where their
-  /// numbers start.
+  /// The listed states (each once) are diffuse; the others are distributed as `known`. Rows and
+  /// columns of known.cov that belong to the listed states are not used; known.mean is their
+  /// numerical origin.
   [[nodiscard]] static Start diffuse(std::initializer_list<int> states,
                                      const Gaussian<N>& known = {}) {
     Start start(known);

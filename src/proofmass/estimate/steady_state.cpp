@@ -18,8 +18,8 @@ struct Dense {
   MatrixXd F, Q, H, R;
 };
 
-/// What each state moves by in a few steps, 1 where nothing drives it: in such units a model of any
-/// step length is made of numbers near 1.
+/// Typical change of each state in a few steps, 1 if it is not driven: in these units the entries
+/// of a model with any step length are near 1.
 VectorXd natural_units(const Dense& m) {
   VectorXd moved = VectorXd::Zero(m.F.rows());
   MatrixXd power = MatrixXd::Identity(m.F.rows(), m.F.rows());
@@ -28,14 +28,14 @@ VectorXd natural_units(const Dense& m) {
   return moved.unaryExpr([](double q) { return q > 0.0 ? std::sqrt(q) : 1.0; });
 }
 
-/// w less what it has along the columns of `basis`, to full precision.
+/// w minus its components along the columns of `basis`, to full precision.
 VectorXd without(const MatrixXd& basis, Eigen::Index columns, VectorXd w) {
   for (int twice = 0; twice < 2; ++twice)
     w -= basis.leftCols(columns) * (basis.leftCols(columns).transpose() * w);
   return w;
 }
 
-/// An orthonormal basis, first of what the readings see, then of what they do not.
+/// An orthonormal basis, first of the observable subspace, then of its complement.
 struct Staircase {
   MatrixXd basis;
   Eigen::Index seen = 0;
@@ -51,7 +51,7 @@ Staircase staircase(const Dense& m) {
   };
   for (Eigen::Index i = 0; i < m.H.rows(); ++i) add(m.H.row(i).transpose());
   for (Eigen::Index j = 0; j < out.seen; ++j) add(m.F.transpose() * out.basis.col(j));
-  // Axes that are wholly unseen stay as they are, to the last bit.
+  // Entirely unobservable axes stay exactly as they are.
   for (Eigen::Index have = out.seen; have < n; ++have) {
     VectorXd best = VectorXd::Zero(n);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -67,7 +67,8 @@ MatrixXd symmetrised(const MatrixXd& A) {
   return 0.5 * (A + A.transpose());
 }
 
-/// Whether no entry of A moved by more than rounding, each against its row's and column's diagonal.
+/// Whether no entry of A changed by more than rounding, relative to its row's and column's
+/// diagonal.
 bool settled(const MatrixXd& A, const MatrixXd& before) {
   for (Eigen::Index i = 0; i < A.rows(); ++i)
     for (Eigen::Index j = 0; j < A.cols(); ++j)
@@ -75,7 +76,7 @@ bool settled(const MatrixXd& A, const MatrixXd& before) {
   return true;
 }
 
-/// X = Σ Bⁱ C Dⁱ, the solution of X = B X D + C, in doubled sums; nothing where it has none.
+/// X = Σ Bⁱ C Dⁱ, the solution of X = B X D + C, by doubled sums; nullopt if there is none.
 std::optional<MatrixXd> doubled_sum(MatrixXd B, const MatrixXd& C, MatrixXd D) {
   MatrixXd X = C;
   for (int j = 0; j < most_doublings; ++j) {
@@ -89,7 +90,7 @@ std::optional<MatrixXd> doubled_sum(MatrixXd B, const MatrixXd& C, MatrixXd D) {
   return std::nullopt;
 }
 
-/// −1 / ln of the largest modulus of A's eigenvalues; infinite where it is not below 1.
+/// −1 / ln of the largest modulus of A's eigenvalues; infinite if it is not below 1.
 double slowest_steps(MatrixXd A) {
   double log_norm = 0.0;  // of A's power before it was scaled, over the power
   double power = 1.0;
@@ -103,7 +104,7 @@ double slowest_steps(MatrixXd A) {
   return log_norm < -1e-12 ? -1.0 / log_norm : std::numeric_limits<double>::infinity();
 }
 
-/// Riccati's limit P⁻ of an observed pair, by doubling.
+/// Riccati limit P⁻ of an observable pair, by doubling.
 MatrixXd riccati_limit(const Dense& m) {
   const Eigen::Index n = m.F.rows();
   const MatrixXd I = MatrixXd::Identity(n, n);
@@ -122,7 +123,7 @@ MatrixXd riccati_limit(const Dense& m) {
   return P;
 }
 
-/// The blocks of a model in the staircase's basis: d what is seen, u what is not.
+/// The blocks of a model in the staircase's basis: d observable, u not.
 struct Split {
   Dense d;
   MatrixXd F_ud, F_uu, Q_ud, Q_uu;
@@ -139,8 +140,8 @@ Split split(const Dense& m, const Staircase& stairs) {
           Q.bottomRightCorner(u, u)};
 }
 
-/// The variance of what is unseen, driven by C each step, and how much of it is left of itself
-/// after so many steps that anything which dies away has: both of the same number of steps.
+/// Variance of the unobservable part, driven by C each step, and the remainder of its initial value
+/// after so many steps that any decaying component has vanished: both for the same number of steps.
 struct Unseen {
   MatrixXd P, left;
 };

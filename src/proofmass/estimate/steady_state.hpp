@@ -8,31 +8,31 @@
 #include "proofmass/estimate/linear_series.hpp"
 #include "proofmass/estimate/symmetric.hpp"
 
-// What the filter and the smoother of a model come to that has one step length and no reading
-// missing: gains and covariances of a long recording, without running through it.
+// Steady state of the filter and the smoother of a model with one step length and no missing
+// measurements: gains and covariances of a long recording, without running through it.
 namespace proofmass::estimate {
 
-/// The limits, as the readings go on for ever. In a model of acceleration alone the gains of
-/// position and velocity have a limit and their variances have none: P is then kept for the states
-/// that have one, and entries of any other are 0.
+/// Limits for a long run. In a model of acceleration alone the gains of position and velocity have
+/// limits but their variances do not. P is kept only for the states with a limit; the entries of
+/// the others are 0.
 ///
 ///     P⁻ = F P⁺ Fᵀ + Q,  S = H P⁻ Hᵀ + R,  K = P⁻ Hᵀ S⁻¹,  P⁺ = (I − K H) P⁻
 ///     Λ = Fᵀ ((I − K H)ᵀ Λ (I − K H) + Hᵀ S⁻¹ H) F,        P[k|N] = P⁺ − P⁺ Λ P⁺
 template <int N, int M>
 struct SteadyState {
-  Mat<N, M> gain = Mat<N, M>::Zero();                 ///< K, of all channels of an instant at once
+  Mat<N, M> gain = Mat<N, M>::Zero();                 ///< K, of all channels of an epoch at once
   Mat<M, M> innovation_variance = Mat<M, M>::Zero();  ///< S
   std::array<bool, static_cast<std::size_t>(N)>
       has_limit{};                             ///< whether a state's variance has one
   Symmetric<N> predicted, filtered, smoothed;  ///< P⁻, P⁺, P[k|N] far from both ends
-  Symmetric<N> Lambda;                         ///< Λ of hindsight.hpp, after an instant
-  /// P⁺ Π, where Π projects on what the readings see: x̂[k|N] = x̂[k|k] − P⁺ Π λ. All entries have a
-  /// limit.
+  Symmetric<N> Lambda;                         ///< Λ of hindsight.hpp, after an epoch
+  /// P⁺ Π, where Π projects on the observable subspace: x̂[k|N] = x̂[k|k] − P⁺ Π λ. All entries have
+  /// a limit.
   Mat<N, N> seen = Mat<N, N>::Zero();
-  double slowest_steps = 0.0;  ///< slowest time constant of the filter's error in what is seen
+  double slowest_steps = 0.0;  ///< slowest time constant of the filter's observable error
   bool all_have_limits = false;
 
-  /// A state's variance before the reading, after it, and given all readings.
+  /// A state's variance before the measurement, after it, and given all measurements.
   [[nodiscard]] std::optional<double> predicted_variance(int i) const { return of(predicted, i); }
   [[nodiscard]] std::optional<double> filtered_variance(int i) const { return of(filtered, i); }
   [[nodiscard]] std::optional<double> smoothed_variance(int i) const { return of(smoothed, i); }
@@ -59,15 +59,18 @@ struct SteadyParts {
 
 }  // namespace detail
 
-/// The states are first split by a staircase into what the readings see and what they do not; of
-/// what is seen, P⁻ comes by doubling (j steps of it are 2ʲ of the filter's), of the rest by
-/// doubled sums. A state has a limit where what it holds of the unseen dies away by itself.
-/// Errors: not_finite; not_positive_definite (a variance in R is not positive); not_observable
-/// where even the gains have no limit: something unseen grows faster than the filter forgets, or
-/// something seen is constant and not driven, so that it is known ever better.
-/// Source: E. K.-W. Chu, H.-Y. Fan, W.-W. Lin, C.-S. Wang, Int. J. Control 77 (2004) 767, for the
-/// doubling; P. Van Dooren, IEEE Trans. Automatic Control 26 (1981) 111, for the staircase.
-/// Cost: O(N³) a doubling, 10 to 40 of them.
+/// A staircase form first splits the states into an observable and an unobservable part.
+///
+/// - Observable part: P⁻ by doubling (j steps of it are 2ʲ of the filter's).
+/// - Unobservable part: doubled sums. A state has a limit if its unobservable component decays by
+///   itself.
+///
+/// Errors: not_finite; not_positive_definite (a variance in R is not positive); not_observable if
+/// even the gains have no limit: an unobservable component grows faster than the filter forgets, or
+/// an observable one is constant and not driven, so that its variance tends to 0. Source: E. K.-W.
+/// Chu, H.-Y. Fan, W.-W. Lin, C.-S. Wang, Int. J. Control 77 (2004) 767, for the doubling; P. Van
+/// Dooren, IEEE Trans. Automatic Control 26 (1981) 111, for the staircase. Cost: O(N³) a doubling,
+/// 10 to 40 of them.
 template <int N, int M, int U>
 [[nodiscard]] Result<SteadyState<N, M>> steady_state(const LinearModel<N, M, U>& model) {
   const Result<detail::SteadyParts> parts =

@@ -8,13 +8,13 @@
 
 namespace proofmass::estimate {
 
-/// A symmetric matrix kept once: its lower triangle row by row, (0,0) (1,0) (1,1) (2,0) …
+/// A symmetric matrix in packed form: its lower triangle row by row, (0,0) (1,0) (1,1) (2,0) …
 template <int N>
 struct Symmetric {
   static constexpr int entries = N * (N + 1) / 2;
   std::array<double, static_cast<std::size_t>(entries)> lower{};
 
-  /// Where (i, j) and (j, i) stand in `lower`.
+  /// Position of (i, j) and (j, i) in `lower`.
   [[nodiscard]] static constexpr std::size_t index(int i, int j) {
     return static_cast<std::size_t>(i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i);
   }
@@ -46,20 +46,20 @@ struct Symmetric {
   bool operator==(const Symmetric&) const = default;
 };
 
-/// A Gaussian as a run keeps it: (N + 3) N / 2 numbers instead of N² + N.
+/// A Gaussian in packed form: (N + 3) N / 2 numbers instead of N² + N.
 template <int N>
 struct PackedGaussian {
   Mat<N> mean = Mat<N>::Zero();
-  Symmetric<N> cov;  ///< infinite where the readings do not determine it (see Start)
+  Symmetric<N> cov;  ///< infinite where not determined by the measurements (see Start)
 
-  /// Whether the readings say anything of state i; where not, its mean says nothing.
+  /// Whether the measurements determine state i; if not, its mean has no meaning.
   [[nodiscard]] bool determined(int i) const { return std::isfinite(cov(i, i)); }
 
   [[nodiscard]] static PackedGaussian of(const Gaussian<N>& full) {
     return {full.mean, Symmetric<N>::of(full.cov)};
   }
   [[nodiscard]] Gaussian<N> dense() const { return {mean, cov.dense()}; }
-  // Whoever wants a Gaussian may have one.
+  // Implicit conversion.
   operator Gaussian<N>() const { return dense(); }  // NOLINT(google-explicit-constructor)
 };
 

@@ -23,7 +23,7 @@ void follow(const TiltRecord& record, const TiltOptions& options, TiltSolution& 
   if (options.progress) options.progress("fitting the noise", 0.0);
   const bool gyroscope = has_rates(record);
   Mat<3> rate_bias = Mat<3>::Zero();
-  // A biased gyroscope's turning would pass for acceleration: once more without its bias.
+  // The rotation of a biased gyroscope would count as acceleration: repeated without its bias.
   for (int round = 0; round < (gyroscope ? 2 : 1); ++round) {
     constexpr double without_s = 20.0, bias_unknown_s = 2.0, bias_known_s = 10.0;
     const double mean_memory_s = !gyroscope   ? without_s

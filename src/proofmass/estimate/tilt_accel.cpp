@@ -11,16 +11,16 @@
 namespace proofmass::estimate {
 namespace {
 
-// Over how long a time the force tells what the base does at present: so many correlation times,
-// that few enough weights hang on the very readings that they are for.
+// Averaging time of the force's scatter, in correlation times: long enough that few weights depend
+// on the measurements to which they apply.
 constexpr double memory_times = 60.0, least_memory_s = 2.0, most_memory_s = 20.0;
 // Degrees of freedom of the scatter: the three axes share the error of the running mean and of τ.
 constexpr double effective_dof = 10.0;
-// What no base is quieter than while it moves, relative to gravity.
+// Lower limit of the acceleration in motion, relative to gravity.
 constexpr double least_accel = 2e-3;
 constexpr double longest_s = 2.0;
 
-// Departures of the force, turned back into one frame that stands still: what autocorrelates.
+// Departures of the force, rotated to one static frame for the autocorrelation.
 struct Departures {
   std::vector<Mat<3>> vectors;
   std::vector<double> time_s;
@@ -47,8 +47,7 @@ double correlation_time(const Departures& found, double step_s) {
   return longest_s;
 }
 
-// (tr S⁸)^(1/8), which is the largest where it stands out and 3^(1/8) times that where all are
-// equal.
+// (tr S⁸)^(1/8): the largest eigenvalue if it dominates, 3^(1/8) times that if all are equal.
 double largest_eigenvalue(const Mat<3, 3>& S) {
   const double size = S.trace();
   if (!(size > 0.0)) return 0.0;
@@ -69,7 +68,7 @@ BaseAccel base_accel_over(const TiltInstants& instants,
   std::vector<double> steps, differences;
   const Mat<3>* last = nullptr;
   const Mat<3, 3> least = square(least_accel * known.gravity_mps2) * Mat<3, 3>::Identity();
-  // What the first seconds show holds from the start on.
+  // The estimate of the first seconds applies from the start on.
   double early_s = 0.0;
   for (std::size_t k = 0; k < instants.step_s.size() && early_s < memory_s; ++k) {
     const double h = instants.step_s[k];
@@ -117,7 +116,7 @@ void BaseScatter::turn(double step_s, const Mat<3>& rate_radps) {
     mean_ = R * mean_;
     scatter_.sum = R * scatter_.sum * R.transpose();
   } else {
-    begun_ = false;  // nothing carries the mean over
+    begun_ = false;  // no mean is carried over the gap
   }
 }
 
@@ -158,11 +157,11 @@ BaseAccel base_accel(const TiltInstants& instants,
       base_accel_over(instants, rate_bias, known, least_memory_s, mean_memory_s);
   const double memory_s = std::clamp(memory_times * first.time_s, least_memory_s, most_memory_s);
   BaseAccel out = base_accel_over(instants, rate_bias, known, memory_s, mean_memory_s);
-  // The running mean has taken its share of the slow part: M/(M + τ) is left.
+  // The running mean has removed part of the slow component: M/(M + τ) is left.
   const double taken = 1.0 + out.time_s / mean_memory_s;
   out.time_s *= taken;
-  // A scatter over so few correlation times is Student's, not Gauss's; with gyroscope the largest
-  // eigenvalue is taken for all directions, which is wide enough.
+  // A scatter over so few correlation times follows Student's t; with gyroscope the largest
+  // eigenvalue in all directions is wide enough.
   const double wider =
       instants.rate_radps.empty() ? student_t_quantile(0.975, effective_dof) / 1.959964 : 1.0;
   for (Mat<3, 3>& cov : out.cov_m2ps4) cov *= wider * wider * taken;

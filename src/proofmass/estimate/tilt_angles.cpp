@@ -8,7 +8,7 @@
 namespace proofmass::estimate {
 namespace {
 
-// Beyond it an angle's standard deviation to first order says nothing any more.
+// Beyond it the first-order standard deviation of an angle is meaningless.
 constexpr double largest_std_rad = 0.5;
 
 double std_along(const Mat<3>& gradient, const Mat<3, 3>& cov) {
@@ -21,13 +21,14 @@ std::string degrees(double angle_rad) {
   return text + "." + std::to_string(static_cast<long>(tenths) % 10) + " degrees";
 }
 
-// asin(f/g) and its standard deviation; absent where the axis is too near the vertical to tell.
+// asin(f/g) and its standard deviation; absent if the axis is too near the vertical.
 std::optional<Uncertain> elevation(double force, double variance, const Uncertain& gravity) {
   const double sine = force / gravity.value;
   if (!(std::abs(sine) < 1.0)) return std::nullopt;
   const double cosine = std::sqrt(1.0 - sine * sine);
   const double std = std::hypot(std::sqrt(variance), sine * gravity.std) / (gravity.value * cosine);
-  // The sine turns over at the vertical: within two standard deviations of it there are two angles.
+  // The sine is not monotonic at the vertical: within two standard deviations of it there are two
+  // solutions.
   if (std > largest_std_rad || cosine < 2.0 * std) return std::nullopt;
   return Uncertain{std::asin(sine), std};
 }
@@ -48,7 +49,7 @@ std::optional<Inclination> inclination_of(const Mat<3>& f, const Mat<3, 3>& cov)
   f.cwiseAbs().maxCoeff(&axis);
   const Eigen::Index a = (axis + 1) % 3, b = (axis + 2) % 3;
   const double across = std::hypot(f(a), f(b)), squares = f.squaredNorm();
-  // Along the lean; where there is none any direction across the axis will do.
+  // Along the inclination; without one, any direction across the axis.
   Mat<3> lean = Mat<3>::Unit(a);
   if (across > 0.0) lean = (f(a) * Mat<3>::Unit(a) + f(b) * Mat<3>::Unit(b)) / across;
   const double size = std::abs(f(axis));
@@ -71,7 +72,7 @@ std::optional<Inclination> inclination_of(const Mat<3>& f, const Mat<3, 3>& cov)
 TiltAngles angles_of(const Mat<3>& force, const Mat<3, 3>& cov) {
   const double norm = force.norm();
   TiltAngles out;
-  // A sensor that falls, or says nothing, has no direction of gravity in it.
+  // A sensor in free fall, or without signal, has no direction of gravity.
   constexpr double least = 1e-100;
   if (!(norm > least)) {
     out.why_no_roll = out.why_no_pitch = "the readings leave the direction open";
@@ -88,7 +89,7 @@ TiltAngles angles_of(const Mat<3>& force, const Mat<3, 3>& cov) {
       out.elevation_rad[static_cast<std::size_t>(i)] = Uncertain{std::atan2(force(i), across), std};
   }
   const double across = std::hypot(force.y(), force.z());
-  Mat<3> gradient{-across, 0.0, force.x()};  // where x is upright, any direction across it
+  Mat<3> gradient{-across, 0.0, force.x()};  // if x is vertical, any direction across it
   if (across > 0.0)
     gradient = {-across, force.x() * force.y() / across, force.x() * force.z() / across};
   const double std = std_along(gradient, cov) / (norm * norm);

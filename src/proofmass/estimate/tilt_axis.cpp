@@ -32,7 +32,7 @@ Status check(const AxisTiltRecord& record, AxisTiltSolution& solution) {
   return Done{};
 }
 
-// The angle counted on from turn to turn, so that a filter may follow it.
+// The unwrapped angle, for the filter.
 std::vector<double> unwrapped(const std::vector<double>& angle_rad) {
   constexpr double turn = 2.0 * std::numbers::pi;
   std::vector<double> out(angle_rad);

@@ -35,7 +35,7 @@ AxisInstants head_of(const AxisInstants& all) {
   return {head(all.step_s), head(all.rate_radps), head(all.angle_rad)};
 }
 
-// What is usual, from the scatter of neighbouring angles.
+// Usual values, from the scatter of neighbouring angles.
 Logs usual(const AxisInstants& instants) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < instants.angle_rad.size(); ++k)
@@ -93,7 +93,7 @@ FilterState<3> AxisTiltModel::start() const {
   const auto first =
       std::ranges::find_if(instants_.angle_rad, [](double angle) { return std::isfinite(angle); });
   state.x.mean(0) = first == instants_.angle_rad.end() ? 0.0 : *first;
-  // Any angle is as likely as any other; the reading itself is what then narrows it.
+  // Flat prior of the angle, which the measurement itself then narrows.
   state.x.cov.diagonal() = Mat<3>(square(std::numbers::pi / std::sqrt(3.0)),
                                   square(rate_bias_std_radps_), square(noise_.motion_std_rad));
   return state;

@@ -10,12 +10,12 @@
 namespace proofmass::estimate {
 
 struct AxisInstants {
-  std::vector<double> step_s;      ///< to this instant from the one before; 0 at the first
+  std::vector<double> step_s;      ///< to this epoch from the previous one; 0 at the first
   std::vector<double> rate_radps;  ///< mean over the step to it; NaN: unknown
-  std::vector<double> angle_rad;   ///< NaN where there is no reading
+  std::vector<double> angle_rad;   ///< NaN where missing
 };
 
-/// States θ, b, d and the reading z = θ + d of tilt_axis.hpp.
+/// States θ, b, d and the measurement z = θ + d of tilt_axis.hpp.
 class AxisTiltModel {
  public:
   static constexpr int states = 3, moving = 3, channels = 1;
@@ -36,18 +36,18 @@ class AxisTiltModel {
   double rate_bias_std_radps_, rate_scale_std_, usual_rate_radps_ = 0.0;
 };
 
-/// ln L of the innovations, those beyond the gate by Huber's loss.
+/// ln L of the innovations, with Huber's loss beyond the gate.
 [[nodiscard]] double axis_log_likelihood(const AxisInstants& instants,
                                          const AxisTiltNoise& noise,
                                          const AxisTiltOptions& options);
 
-/// Figures of largest likelihood, each held to a factor of some hundred about what is usual (a
-/// normal prior of the logarithm, standard deviation 3). Of long recordings the first 20 000
-/// instants count.
+/// Maximum-likelihood parameters, each with a normal prior of its logarithm about a usual value
+/// (standard deviation 3, a factor of some hundred). For long recordings the first 20 000 epochs
+/// are used.
 [[nodiscard]] AxisTiltNoise fit_axis_noise(const AxisInstants& instants,
                                            const AxisTiltOptions& options);
 
-/// The gate of every pass: readings lose weight beyond three standard deviations.
+/// Gate of every pass: measurements are down-weighted beyond three standard deviations.
 inline constexpr Gate axis_gate{.huber = 3.0};
 
 }  // namespace proofmass::estimate

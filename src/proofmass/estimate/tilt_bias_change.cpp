@@ -12,13 +12,13 @@
 namespace proofmass::estimate {
 namespace {
 
-// Where no stability is stated: as good as never does a bias return to where it was.
+// Without a stated stability: a bias almost never returns exactly to its previous value.
 constexpr double prior_of_none = 0.1, prior_of_stated = 0.9;
 constexpr double least_change_mps2 = 0.2e-3 * standard_gravity_mps2;
 constexpr double most_change_mps2 = 60e-3 * standard_gravity_mps2;
 constexpr std::size_t most_rests = 16;
 
-// Sizes of the change with what they weigh: the usual one, then a grid even in the logarithm.
+// Sizes of the change with their weights: the usual one, then a grid even in the logarithm.
 struct Size {
   double std_mps2, weight;
 };
@@ -52,7 +52,7 @@ double log_likelihood(const Eigen::VectorXd& off, const Eigen::MatrixXd& cov) {
          Eigen::MatrixXd(root.matrixL()).diagonal().array().log().sum();
 }
 
-// Half of the width that holds 95 % of a mixture of normal distributions about 0.
+// Half width of the central 95 % of a zero-mean mixture of normal distributions.
 double half_width(const std::array<Size, 32>& sizes, double known_variance) {
   double low = 0.0, high = 0.0;
   for (const Size& size : sizes)

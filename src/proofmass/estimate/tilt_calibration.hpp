@@ -7,20 +7,20 @@
 
 namespace proofmass::estimate {
 
-/// What the uncertainty of a calibration leaves in the force that it gives,
+/// Force uncertainty due to the uncertainty of a calibration,
 ///
 ///     f = T u,  u = (reading − bias) / scale:      ∂f/∂bias_i = −T e_i / scale_i,
 ///     ∂f/∂scale_i = −T e_i u_i / scale_i,   ∂f/∂α_yz = −u_y e_x,  ∂f/∂α_zy = u_z e_x,  ∂f/∂α_zx =
 ///     −u_z e_y.
 ///
-/// Covariances are its own or, where it has none, those of figures that are independent; with few
-/// degrees of freedom they are widened to what holds 95 % of Student's t at 1.96 standard
-/// deviations. Absent where no figure has a standard deviation.
+/// Covariances are the calibration's or, without any, those of independent parameters; with few
+/// degrees of freedom they are widened so that 1.96 standard deviations contain 95 % of Student's
+/// t. Absent if no parameter has a standard deviation.
 class CalibrationSpread {
  public:
   [[nodiscard]] static std::optional<CalibrationSpread> of(const sensor::Calibration& calibration);
 
-  /// (m/s²)², of a force in m/s².
+  /// (m/s²)², for a force in m/s².
   [[nodiscard]] Mat<3, 3> at(const Mat<3>& force) const;
 
  private:
@@ -29,8 +29,8 @@ class CalibrationSpread {
   Mat<9, 9> cov_ = Mat<9, 9>::Zero();
 };
 
-/// Standard deviation of the bias from one session to another, rms of the axes that state it;
-/// nullopt where none does.
+/// Standard deviation of the bias between sessions, rms of the axes that state it; nullopt if none
+/// does.
 [[nodiscard]] std::optional<double> stability_mps2(const sensor::Calibration& calibration);
 
 }  // namespace proofmass::estimate

@@ -10,10 +10,10 @@
 namespace proofmass::estimate {
 namespace {
 
-// What the norm of a calibrated sensor's readings at rest varies by from one attitude to another.
+// Variation with attitude of the norm of a calibrated sensor's measurements at rest.
 constexpr double calibrated_norm_std_mps2 = 5e-3;
 
-// Standard deviation of white noise as strong at low frequency as the longest rest shows.
+// Standard deviation of white noise with the low-frequency density of the longest rest.
 Mat<3> rest_std(const std::array<std::vector<double>, 3>& axes,
                 const TiltSolution& solution,
                 double least) {

@@ -4,11 +4,11 @@
 
 #include "proofmass/estimate/tilt_model.hpp"
 
-// From a record to what the filter of a moving base takes. Private to the module's tilt*.cpp.
+// From a record to the input of the moving-base filter. Private to the module's tilt*.cpp.
 namespace proofmass::estimate {
 
-/// A rate over a step: the mean of its ends, or the one that there is; NaN, unknown, over a longer
-/// one than that.
+/// Rate over a step: the mean of its ends, or the only one available; NaN (unknown) over a longer
+/// step.
 [[nodiscard]] Mat<3> rate_over(const Mat<3>& before,
                                const Mat<3>& now,
                                double step_s,
@@ -19,12 +19,12 @@ namespace proofmass::estimate {
 /// Steps, forces and rates.
 [[nodiscard]] TiltInstants instants_of(const TiltRecord& record, const TiltSolution& solution);
 
-/// Takes readings that a logger wrote again and again until the next came for one, and says how
-/// many it took out. They are told by whole rows that repeat, in motion, where noise alone would
-/// keep them apart.
+/// Merges measurements that a logger repeated until the next one arrived, and returns the number
+/// removed. They are identified by repeated whole rows in motion, where noise alone would make them
+/// differ.
 [[nodiscard]] std::size_t drop_held(TiltInstants& instants);
 
-/// Gravity's norm, the noise at rest, and how fast the base usually turns.
+/// Gravity's norm, the noise at rest, and the base's usual rotation rate.
 [[nodiscard]] TiltKnown known_of(const TiltRecord& record,
                                  const TiltOptions& options,
                                  const TiltSolution& solution,

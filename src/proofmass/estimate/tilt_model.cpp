@@ -10,12 +10,12 @@
 namespace proofmass::estimate {
 namespace {
 
-// How exactly the norm is known at the start, relative: far below what tilts.
+// Relative uncertainty of the norm at the start: far below that of the tilt.
 constexpr double norm_std = 2e-3;
-// What a rest may creep: rad in the root of a second.
+// Attitude creep during a rest, rad/√s.
 constexpr double creep_rad_rts = 1e-5;
 
-// |g|² 1 − g gᵀ: the variance across g of a turn with unit variance about every axis.
+// |g|² 1 − g gᵀ: the variance across g of a rotation with unit variance about every axis.
 Mat<3, 3> across(const Mat<3>& g) {
   return g.squaredNorm() * Mat<3, 3>::Identity() - g * g.transpose();
 }
@@ -78,7 +78,7 @@ Transition<9, 9> TiltModel::transition(const Mat<9>& x, std::size_t k) const {
     step.Q.bottomRightCorner<3, 3>() =
         square(known_.rate_bias_walk_radps_rts) * h * Mat<3, 3>::Identity();
   const double phi = rests || rested ? 0.0 : std::exp(-h / motion_.accel_time_s);
-  // An acceleration that stands in the world turns in the sensor as gravity does.
+  // A constant acceleration in world axes rotates in the sensor axes as gravity does.
   const Mat<3, 3> R = phi * step.F.topLeftCorner<3, 3>();
   step.mean.segment<3>(3) = R * x.segment<3>(3);
   step.F.block<3, 3>(3, 3) = R;
@@ -128,7 +128,8 @@ FilterState<9> TiltModel::start_about(const Mat<3>& g) const {
   const bool rests = !instants_.resting.empty() && instants_.resting.front() != 0;
   Mat<3, 3> accel = Mat<3, 3>::Zero();
   if (!rests) accel = instants_.accel_cov_m2ps4.front();
-  // The reading that the start was taken from is read once more: so wide that it counts once.
+  // The measurement used for the start is processed again: the prior is so wide that it counts
+  // once.
   const double wide = 100.0 * (accel.trace() / 3.0 + square(motion_.reading_std_mps2) +
                                known_.rest_std_mps2.cwiseAbs2().maxCoeff());
   state.x.cov.topLeftCorner<3, 3>() =

@@ -13,7 +13,7 @@
 namespace proofmass::estimate {
 namespace {
 
-// Smoothers in a row, each made linear about the path of the one before.
+// Consecutive smoothers, each linearised about the previous path.
 constexpr int gyroscope_passes = 3;
 
 void set(TiltSolution& solution, std::size_t k, const TiltAngles& angles, bool smoothed) {
@@ -110,7 +110,7 @@ Mat<3> rate_bias_of(const TiltInstants& instants,
 
 namespace {
 
-// What the filter says, instant by instant.
+// The filter's results, epoch by epoch.
 class FilterNotes {
  public:
   FilterNotes(const TiltInstants& instants,
@@ -155,7 +155,7 @@ class FilterNotes {
   ConsistencyCheck check_;
 };
 
-// What is said last, of the last sample.
+// Final results, at the last sample.
 void set_final(const Mat<9>& mean,
                const Mat<9, 9>& cov,
                const ForceSpread& spread,
@@ -188,7 +188,8 @@ void run_tilt(const TiltInstants& instants,
   motion.log_likelihood = tilt_log_likelihood(instants, known, motion);
   FilterNotes notes(instants, model, spread, solution);
   std::vector<Mat<9>> path(model.size()), next(model.size());
-  // Without gyroscope the Jacobian is that of a slow turn: good enough to filter by, not to search.
+  // Without gyroscope the Jacobian is that of a slow rotation: sufficient for filtering, not for
+  // iteration.
   const int passes = motion.gyroscope ? gyroscope_passes : 1;
   const auto progress = [&](int pass) {
     if (options.progress) options.progress("smoothing", static_cast<double>(pass) / passes);

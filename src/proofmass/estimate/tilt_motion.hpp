@@ -3,25 +3,25 @@
 #include "proofmass/estimate/tilt_accel.hpp"
 #include "proofmass/estimate/tilt_model.hpp"
 
-// The moving base: noise figures from the data, then filter and smoother. Private to tilt*.cpp.
+// The moving base: noise parameters from the data, then filter and smoother. Private to tilt*.cpp.
 namespace proofmass::estimate {
 
-/// The gate of every pass: readings lose weight beyond three standard deviations.
+/// Gate of every pass: measurements are down-weighted beyond three standard deviations.
 inline constexpr Gate tilt_gate{.huber = 3.0};
 
-/// White noise of a common gyroscope, where no rest shows its own.
+/// White noise of a typical gyroscope, if no rest shows its own.
 inline constexpr double usual_rate_noise_radps_rthz = 1e-3;
 
-/// ln L of one instant's first `readings` innovations, those beyond the gate by Huber's loss.
+/// ln L of one epoch's first `readings` innovations, with Huber's loss beyond the gate.
 [[nodiscard]] double tilt_log_likelihood(const StepOf<TiltModel>& step, int readings);
 
-/// The same of the accelerometer's in motion, all instants together.
+/// ln L of the accelerometer's innovations in motion, all epochs together.
 [[nodiscard]] double tilt_log_likelihood(const TiltInstants& instants,
                                          const TiltKnown& known,
                                          const TiltMotion& motion);
 
-/// The figures that the filter runs on: those of base_accel, the gyroscope's noise as rests show it
-/// or a common one's, and without gyroscope the angular acceleration of largest likelihood.
+/// The filter's parameters: those of base_accel, the gyroscope's noise from rests or a typical
+/// value, and without gyroscope the maximum-likelihood angular acceleration.
 [[nodiscard]] TiltMotion fit_tilt_motion(const TiltInstants& instants,
                                          const TiltKnown& known,
                                          const BaseAccel& accel,

@@ -30,7 +30,7 @@ Status check_lengths(const TiltRecord& record, std::size_t& samples) {
   return Done{};
 }
 
-// Refuses what cannot be the force on a body under gravity, by its median norm.
+// Rejects a median norm that is impossible for the force on a body under gravity.
 Status check_force(const TiltRecord& record, const TiltOptions& options, TiltSolution& solution) {
   std::vector<double> norms;
   for (std::size_t k = 0; k < solution.samples; ++k) {
@@ -92,7 +92,7 @@ std::optional<TiltRecord> without_unbelievable(const TiltRecord& record, std::ve
 
 std::string decimal(double value, int decimals) {
   char text[32];
-  // Figures that no sensor gives are not spelt out digit by digit.
+  // Implausible values are not written out digit by digit.
   constexpr double longest = 1e7;
   const auto format =
       std::abs(value) < longest ? std::chars_format::fixed : std::chars_format::scientific;

@@ -10,35 +10,35 @@
 #include "proofmass/estimate/tilt.hpp"
 #include "proofmass/signal/rests.hpp"
 
-// What a record holds, and whether tilt can be told from it. Private to the module's tilt*.cpp.
+// Content of a record, and whether tilt is observable from it. Private to the module's tilt*.cpp.
 namespace proofmass::estimate {
 
-/// All three channels of the gyroscope are there.
+/// Whether all three channels of the gyroscope are present.
 [[nodiscard]] bool has_rates(const TiltRecord& record);
 
-/// Three axes at one sample; NaN where an axis is not there or not finite.
+/// Three axes at one sample; NaN for a missing or non-finite axis.
 [[nodiscard]] Mat<3> vector_at(const std::array<std::vector<double>, 3>& axes, std::size_t k);
 
-/// A copy of the record in which readings outside any sensor's range are NaN, and a note with their
-/// number. nullopt if there are none, or if they are the majority: then the unit is wrong, which
-/// check_record() reports.
+/// A copy of the record in which measurements outside any sensor's range are NaN, and a note with
+/// their number. nullopt if there are none, or if they are the majority: then the unit is wrong,
+/// which check_record() reports.
 [[nodiscard]] std::optional<TiltRecord> without_unbelievable(const TiltRecord& record,
                                                              std::vector<Note>& notes);
 
-/// Sets samples, axes and unusable, and notes the latter.
-/// Errors: as of estimate_tilt; not_observable where the median force cannot be gravity's.
+/// Sets samples, axes and unusable, and notes the latter. Errors: as for estimate_tilt;
+/// not_observable if the median force cannot be gravity's.
 [[nodiscard]] Status check_record(const TiltRecord& record,
                                   const TiltOptions& options,
                                   TiltSolution& solution);
 
-/// Whether the base moves. Errors: not_observable, too_few_samples where it does and cannot be
-/// followed.
+/// Whether the base moves. Errors: not_observable, too_few_samples if it does but cannot be
+/// estimated.
 [[nodiscard]] Result<bool> is_moving(const TiltRecord& record,
                                      const TiltOptions& options,
                                      const signal::RestSearch& found,
                                      const TiltSolution& solution);
 
-/// A number with so many decimals, for sentences.
+/// A number with this many decimals, for sentences.
 [[nodiscard]] std::string decimal(double value, int decimals = 2);
 
 }  // namespace proofmass::estimate

@@ -16,14 +16,14 @@ namespace {
 
 constexpr std::size_t batches = 40;
 
-// What moves readings across the codes of a converter.
+// Dither: causes of transitions between the codes of a converter.
 struct Dither {
   double noise = 0.0;  ///< variance of its Gaussian part, steps²
-  double sine = 0.0;   ///< amplitude of a sine beside it, in steps
+  double sine = 0.0;   ///< amplitude of an additional sine, in steps
 };
 
-// By variance and fourth moment, less what rounding adds to them (Sheppard): a sine of amplitude A
-// has the fourth cumulant −3 A⁴/8, noise none. A sine counts where it is beyond chance.
+// From variance and fourth moment, corrected for quantisation (Sheppard): a sine of amplitude A has
+// the fourth cumulant −3 A⁴/8, noise none. A sine counts if it is significant.
 Dither dither_of(const std::vector<double>& values, double step) {
   const Moments all = moments(values);
   const double raw = square(all.std() / step), variance = std::max(0.0, raw - 1.0 / 12.0);
@@ -38,8 +38,8 @@ Dither dither_of(const std::vector<double>& values, double step) {
   return out;
 }
 
-// By what factor the variance of a mean exceeds that of independent values: 1 + 2 Σ ρ_k over the
-// pairs of lags that come out positive, where the first is beyond chance.
+// Ratio of the variance of a mean to that of independent values: 1 + 2 Σ ρ_k over the positive
+// pairs of lags, if the first is significant.
 double correlated(const std::vector<double>& means) {
   const Moments all = moments(means);
   const auto count = static_cast<double>(means.size());
@@ -71,7 +71,7 @@ double rounding_variance(std::vector<double> values, double step) {
   const double hidden = step * step / 12.0;
   const Dither dither = dither_of(values, step);
   std::ranges::sort(values);
-  // Where nearly all are of two codes, noise far below the step may swing across their border.
+  // If nearly all values have two codes, noise far below the step may cross their border.
   constexpr double nearly_all = 0.998;
   std::size_t most = 0;
   for (std::size_t first = 0, end = 0; first < values.size(); ++first) {

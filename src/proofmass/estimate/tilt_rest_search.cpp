@@ -22,8 +22,8 @@ Mat<5> legendre(double t) {
       .finished();
 }
 
-// Mean square of what a polynomial of fourth degree leaves of one axis, over half as much again at
-// either end.
+// Mean square residual of one axis about a fourth-degree polynomial, over an interval extended by
+// half its length at either end.
 double left_of_polynomial(View<double> axis, const signal::Rest& rest) {
   const std::size_t half = (rest.last - rest.first + 1) / 2;
   const std::size_t from = rest.first - std::min(rest.first, half),
@@ -33,7 +33,7 @@ double left_of_polynomial(View<double> axis, const signal::Rest& rest) {
   };
   Mat<5, 5> normal = Mat<5, 5>::Zero();
   Mat<5> sums = Mat<5>::Zero();
-  std::optional<double> offset;  // keeps the squares from losing digits
+  std::optional<double> offset;  // subtracted to keep the squares precise
   double count = 0.0, squares = 0.0;
   for (std::size_t k = from; k <= to; ++k)
     if (std::isfinite(axis[k])) {
@@ -49,14 +49,14 @@ double left_of_polynomial(View<double> axis, const signal::Rest& rest) {
   return std::max(0.0, squares - sums.dot(positive_inverse(normal) * sums)) / count;
 }
 
-// What the level of a sensor at rest may wander by: 2 mg, that of a poor MEMS accelerometer over
-// minutes. `sure`: standard deviations of a block's mean beside it.
+// Drift of the level of a sensor at rest: 2 mg, that of a poor MEMS accelerometer over minutes.
+// `sure`: additional standard deviations of a block's mean.
 constexpr double wander_mps2 = 2e-3 * standard_gravity_mps2, sure = 4.0;
 
-// The level of one axis over a rest, block by block; NaN where a block holds no reading.
+// The level of one axis over a rest, block by block; NaN for a block without measurements.
 struct BlockLevels {
   std::vector<double> means;
-  double room = 0.0;  // by how much a block may depart from the mean of those before it
+  double room = 0.0;  // allowed departure of a block from the mean of the previous ones
   double sum = 0.0, count = 0.0;
 
   void begin() { sum = count = 0.0; }
@@ -70,8 +70,8 @@ struct BlockLevels {
   }
 };
 
-// Noise of a block's mean by second differences, which a steady change leaves out, or that of white
-// readings if it is more.
+// Noise of a block's mean from second differences, which eliminate a steady change, or that of
+// white measurements if larger.
 double noise_of_means(const std::vector<double>& means, double white) {
   std::vector<double> bends;
   for (std::size_t b = 2; b < means.size(); ++b)
@@ -91,7 +91,7 @@ BlockLevels levels_of(
   return out;
 }
 
-// The parts of a rest over which the levels stand. A block is lost at either side of a cut.
+// The parts of a rest with constant levels. A block is lost at either side of a cut.
 void add_standing(const signal::Rest& rest,
                   std::size_t block,
                   std::size_t shortest,

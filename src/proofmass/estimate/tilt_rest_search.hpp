@@ -3,17 +3,17 @@
 #include "proofmass/estimate/tilt.hpp"
 #include "proofmass/signal/rests.hpp"
 
-// Where the base lay still. Private to the module's tilt*.cpp.
+// Where the base was at rest. Private to the module's tilt*.cpp.
 namespace proofmass::estimate {
 
-/// The stretches in which the accelerometer lay still and its level stood. A search by loudness
-/// lets a slow motion within a rest pass for drift; here a rest is cut where the mean of half a
-/// second departs from that of the rest before it by more than noise and what a sensor at rest
-/// wanders by.
+/// Intervals in which the accelerometer was at rest with a constant level. A search by noise level
+/// accepts a slow motion within a rest as drift; here a rest is split where the mean of half a
+/// second departs from that of the rest before it by more than noise and the drift of a sensor at
+/// rest.
 [[nodiscard]] signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options);
 
-/// Of a moving base: leaves out quiet stretches that go over smoothly into what is before and after
-/// them, as the crest of a slow acceleration does. A rest begins or ends at an edge.
+/// For a moving base: drops quiet intervals that join smoothly to their neighbours, such as the
+/// crest of a slow acceleration. A rest begins or ends abruptly.
 void drop_smooth_rests(const TiltRecord& record, signal::RestSearch& found);
 
 }  // namespace proofmass::estimate

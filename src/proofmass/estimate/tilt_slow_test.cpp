@@ -113,7 +113,7 @@ TEST(TiltCoverage, WithASensorFileOfAnotherSessionIsAtLeastNinetyThreePercentWhe
   }
 }
 
-// Shares of instants 2 s apart, of roll and pitch together.
+// Shares of epochs 2 s apart, of roll and pitch together.
 struct Shares {
   double smoothed, filtered;
 };

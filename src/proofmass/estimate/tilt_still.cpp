@@ -15,7 +15,7 @@ void put(const std::optional<Uncertain>& angle, double& value, double& std) {
   std = angle ? angle->std : no_value;
 }
 
-// Variance of white readings whose mean over the rest is as good as that of the readings.
+// Variance of white measurements with the same uncertainty of the mean over the rest.
 Mat<3> noise_of_one(const TiltRecord& record, const TiltRest& rest) {
   Mat<3> out = Mat<3>::Zero();
   for (std::size_t i = 0; i < 3; ++i) {

@@ -4,7 +4,7 @@
 
 #include "proofmass/estimate/tilt_rest.hpp"
 
-// A base at rest, and what rests say of the sensor. Private to the module's tilt*.cpp.
+// A static base, and the sensor errors shown by rests. Private to the module's tilt*.cpp.
 namespace proofmass::estimate {
 
 /// Fills the solution's rests with the angles over each.
@@ -13,18 +13,18 @@ void find_rests(const TiltRecord& record,
                 const std::vector<signal::Rest>& found,
                 TiltSolution& solution);
 
-/// The direction of a force as that of the vertical at one sample.
+/// Sets the vertical at one sample from a force.
 void set_up(TiltSeries& series, std::size_t k, const Mat<3>& force);
 
-/// Notes what the norm of the force at rest says of the calibration. Without one, a norm that is
-/// not gravity's shows the size of the sensor's errors; with one, by how much the biases may have
-/// changed since (tilt_bias_change.hpp). Returns whether the options' bias_std_mps2 became it.
+/// Compares the norm of the force at rest with gravity. Without a calibration, the difference shows
+/// the size of the sensor's errors; with one, the possible change of the biases since then
+/// (tilt_bias_change.hpp). Returns whether it set the options' bias_std_mps2.
 bool judge_norm(TiltOptions& options, TiltSolution& solution);
 
 /// An empty series of the record's length, with its rests.
 void make_series(const TiltRecord& record, TiltSolution& solution);
 
-/// The series of a still base: the mean of the rest so far, and that of the rest.
+/// The series of a static base: the mean of the rest so far, and that of the whole rest.
 void fill_still(const TiltRecord& record, const TiltOptions& options, TiltSolution& solution);
 
 }  // namespace proofmass::estimate

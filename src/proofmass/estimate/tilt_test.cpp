@@ -51,7 +51,7 @@ TEST(Tilt, AtRestCountsCorrelatedNoise) {
   EXPECT_NEAR(std::sqrt(mean.variance), 20.0 / std::sqrt(20000.0), 0.3 * 20.0 / std::sqrt(20000.0));
 }
 
-// Forty batches of values that hang together over a fifth of the stretch.
+// Forty batches of values that are correlated over a fifth of the stretch.
 TEST(Tilt, AtRestCountsWhatWandersFromBatchToBatch) {
   Random random(31, "wander");
   double squares = 0.0, variances = 0.0;

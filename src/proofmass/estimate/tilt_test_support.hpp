@@ -12,7 +12,7 @@
 
 namespace proofmass::estimate {
 
-/// The reading of a perfect accelerometer at rest.
+/// Output of a perfect accelerometer at rest.
 inline Mat<3> force_at(double roll_rad, double pitch_rad, double gravity_mps2 = 9.80665) {
   return gravity_mps2 * Mat<3>(-std::sin(pitch_rad), std::cos(pitch_rad) * std::sin(roll_rad),
                                std::cos(pitch_rad) * std::cos(roll_rad));
@@ -34,7 +34,7 @@ inline TiltRecord still_record(const Mat<3>& force,
   return record;
 }
 
-/// A base that turns and is shaken or swayed, and what is true of it.
+/// A base that rotates and is shaken or swayed, and its true motion.
 struct MovingBase {
   TiltRecord record;
   std::vector<Mat<3>> up;  ///< gravity's reaction in sensor axes, m/s²

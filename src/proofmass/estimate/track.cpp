@@ -15,8 +15,8 @@
 namespace proofmass::estimate {
 namespace {
 
-// Twice integrated from the first sample, less the level of the first rest; a missing reading is
-// taken for the one before.
+// Double integral from the first sample, minus the level of the first rest; a missing measurement
+// repeats the previous one.
 struct DoubleIntegral {
   std::vector<double> position_m, velocity_mps;
 };
@@ -44,7 +44,7 @@ struct Course {
   View<double> position_m, velocity_mps;
 };
 
-// The path is that of the velocity: a filter's position also jumps where it is put right.
+// The path length uses the velocity: a filter's position also jumps at corrections.
 TrackMethod method_of(View<double> time_s, const Course& course, View<double> std, double factor) {
   const View<double> position = course.position_m, velocity = course.velocity_mps;
   TrackMethod method;
@@ -59,8 +59,8 @@ TrackMethod method_of(View<double> time_s, const Course& course, View<double> st
   return method;
 }
 
-// N² t³/3 of the noise, q t⁵/20 of the walk, σ² t⁴/4 of the level that is taken off, over the time
-// from the first motion on.
+// N² t³/3 from the noise, q t⁵/20 from the random walk, σ² t⁴/4 from the subtracted level, over the
+// time from the first motion on.
 double free_variance(const InertialNoise& noise, double level_variance, double t) {
   const double t2 = t * t, t3 = t2 * t;
   return (noise.white_m2ps3 + noise.motion_lean_m2ps3) * t3 / 3.0 +
@@ -68,7 +68,7 @@ double free_variance(const InertialNoise& noise, double level_variance, double t
          (level_variance + noise.motion_jump_m2ps4) * t2 * t2 / 4.0;
 }
 
-// How far double integration drifts: from when the sensor first moves.
+// Uncertainty of double integration, from the first motion on.
 double free_std(const TrackSignal& signal, const AxisRun& run) {
   double begin_s = signal.time_s.front(), level_variance = 100.0;
   if (!signal.stops.rests.empty()) {
@@ -81,7 +81,7 @@ double free_std(const TrackSignal& signal, const AxisRun& run) {
   return std::sqrt(free_variance(run.noise, level_variance, signal.time_s.back() - begin_s));
 }
 
-// From the noise at rest alone, before the motion is looked at.
+// From the noise at rest alone, independent of the motion.
 TrackBudget budget_of(const TrackSignal& signal, const AxisRun& quiet) {
   TrackBudget budget;
   budget.white_mps2_rthz = std::sqrt(quiet.noise.white_m2ps3);
@@ -152,7 +152,7 @@ void judge(const TrackSignal& signal,
   add_findings(signal, options, solution);
 }
 
-// Nobody has said when it stood still.
+// The user has not stated the static intervals.
 bool rests_are_in_doubt(const TrackOptions& options) {
   return options.still.empty() && !options.only_end_rests;
 }
@@ -198,7 +198,7 @@ Result<TrackSolution> track_without_gyro(const TrackSensor& sensor,
   return solution;
 }
 
-// A bound: the velocity is off by its standard deviation all the way from one turn to the next.
+// An upper bound: the velocity is off by its standard deviation from one turning point to the next.
 std::vector<double> covariance_by_velocity(const TrackSeries& series,
                                            const std::vector<std::size_t>& samples) {
   const std::size_t n = samples.size();

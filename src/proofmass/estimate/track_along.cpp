@@ -13,7 +13,7 @@
 namespace proofmass::estimate {
 namespace {
 
-// Along an axis between those of the sensor, the warm-up of its largest component counts.
+// For an axis between the sensor's, the warm-up of its largest component is used.
 std::optional<double> warm_up_along(const std::array<std::optional<double>, 3>& time_s,
                                     const std::array<double, 3>& axis) {
   const auto largest = std::max_element(
@@ -83,7 +83,8 @@ std::string formatted(const char* format, double value) {
   return buffer;
 }
 
-// Slope of one axis of a further sensor over the first sensor's reading along the motion.
+// Regression slope of one axis of a further sensor on the first sensor's measurement along the
+// motion.
 struct Slope {
   double value = 0.0, std = 0.0;
 };
@@ -106,8 +107,8 @@ Slope slope_of(View<double> along, View<double> other, const std::vector<PvaSamp
   return {xy / xx, std::sqrt(left / (xx * (count - 1.0)))};
 }
 
-// In motion, parallel sensors read the same: the slope of one over the other along the axis is 1
-// but for the scales, and along axes across it 0 whatever the scales are.
+// In motion, parallel sensors measure the same: the regression slope is 1 along the axis but for
+// the scales, and 0 across it for any scales.
 Status check_parallel(const SensorAlong& first,
                       const SensorAlong& other,
                       const ParallelAccelerometer& sensor,
@@ -139,7 +140,7 @@ Status check_parallel(const SensorAlong& first,
       .at(other.name);
 }
 
-// A turn lies within a sample of where it is said to be.
+// A turning point is within a sample of the stated time.
 double turn_std_mps(const PvaTask& task, View<double> accel, std::size_t k) {
   const double h = k > 0 ? task.signal.time_s[k] - task.signal.time_s[k - 1] : 0.0;
   const double slip_mps = std::isnan(accel[k]) ? 0.0 : std::abs(accel[k]) * h;

@@ -8,12 +8,12 @@
 #include "proofmass/estimate/pva_axis.hpp"
 #include "proofmass/estimate/track_pva.hpp"
 
-// What each accelerometer of a track reads along its axis. Private to the module's track*.cpp.
+// Measurements of each accelerometer along the track's axis. Private to the module's track*.cpp.
 namespace proofmass::estimate {
 
 struct SensorAlong {
   std::string name;
-  std::vector<double> accel_mps2;  ///< less its level at the first rest; NaN: no reading
+  std::vector<double> accel_mps2;  ///< less its level at the first rest; NaN: no measurement
   double level_mps2 = 0.0;
   double white_m2ps3 = 0.0, walk_m2ps5 = 0.0;  ///< N², and the density of what drives the bias
   std::optional<double> warm_up_time_s;
@@ -23,7 +23,7 @@ struct SensorAlong {
   }
 };
 
-/// Of the model fused all, the task's own first; else that alone.
+/// For the model `fused` all sensors, the task's own first; else that one alone.
 struct SensorsAlong {
   std::vector<SensorAlong> all;
   std::vector<PvaSample> samples;

@@ -5,10 +5,10 @@
 // The track of a sensor with a gyroscope. Private to the module's track*.cpp.
 namespace proofmass::estimate {
 
-/// Position by the error-state filter and smoother of attitude.hpp, which turns the readings into
-/// the world and takes gravity out; along the direction in which it moved farthest. Fills all of
-/// `solution` but what track.cpp works out of its series.
-/// Errors: as estimate_attitude(); not_observable where a gap parts the record.
+/// Position by the error-state filter and smoother of attitude.hpp, which rotates the measurements
+/// to world axes and subtracts gravity; along the direction of the largest displacement. Fills all
+/// of `solution` except what track.cpp derives from its series. Errors: as estimate_attitude();
+/// not_observable if a gap splits the record.
 [[nodiscard]] Result<bool> track_carried(const TrackSensor& sensor,
                                          const TrackSignal& signal,
                                          const TrackReadings& readings,

@@ -51,7 +51,7 @@ void add_differences(const std::vector<double>& means, std::size_t m, AllanSum& 
 
 constexpr double block_length_s = 0.5;
 
-// By which readings differ at least, where they do; 0 where they never do.
+// Smallest nonzero difference between measurements; 0 if there is none.
 double smallest_step(View<double> accel) {
   double step = 0.0;
   for (std::size_t k = 1; k < accel.size(); ++k) {
@@ -80,12 +80,12 @@ LevelNoise level_noise(View<double> accel, const std::vector<signal::Rest>& rest
   const double white = noise.sample_std_mps2 * noise.sample_std_mps2 /
                        static_cast<double>(std::max<std::size_t>(noise.block, 1));
   if (!(noise.sample_std_mps2 > 0.0)) {
-    // Readings that do not change at rest are off by their step, however many there are.
+    // The error of constant measurements at rest is their step, however many there are.
     const double step = smallest_step(accel);
     noise.variance_m2ps4 = std::max(step * step / 12.0, 1e-18);
     return noise;
   }
-  // A scatter of few differences says less than that of the samples.
+  // With fewer differences, the scatter of the samples is used.
   constexpr std::size_t enough = 8;
   const double n = static_cast<double>(std::min(one.count, enough)) / enough;
   noise.variance_m2ps4 =
@@ -123,8 +123,8 @@ class EpochBuilder {
     if (out_.knots.empty() || out_.knots.back() != last) out_.knots.push_back(last);
   }
 
-  // By trapezoids: the acceleration is taken to run straight from reading to reading. Samples
-  // without one are passed over, unless `must`: something else is read there.
+  // By trapezoids: the acceleration is linear between measurements. Samples without one are
+  // skipped, unless `must`: another quantity is measured there.
   void move_to(std::size_t k, bool must = false) {
     const bool known = !std::isnan(signal_.accel_mps2[k]);
     const bool end = k == 0 || k + 1 == signal_.time_s.size();
@@ -169,7 +169,7 @@ class EpochBuilder {
     InertialEpoch& epoch = out_.epochs.back();
     bool reads = false;
     if (turn_ < readings_.turns.size() && readings_.turns[turn_] <= sample) {
-      // The turn lies within a sample of where it is said to be.
+      // The turning point is within a sample of the stated time.
       const double slip_mps = std::abs(last_accel_.value_or(0.0)) * epoch.dt_s;
       epoch.velocity_std_mps = std::hypot(readings_.rest_speed_std_mps, slip_mps);
       while (turn_ < readings_.turns.size() && readings_.turns[turn_] <= sample) ++turn_;
@@ -189,7 +189,7 @@ class EpochBuilder {
     out_.epochs.back().arrives_at_rest = out_.epochs.size() > 1;
     knot();
     for (std::size_t first = rest.first; first < rest.last;) {
-      // What is left beyond the last whole block goes with it.
+      // The remainder after the last whole block is added to it.
       std::size_t last = std::min(first + noise_.block, rest.last);
       if (rest.last - last < noise_.block) last = rest.last;
       push_block(first, last);

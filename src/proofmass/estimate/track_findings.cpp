@@ -105,7 +105,7 @@ void tell_of_alternatives(TrackSolution& solution) {
                           "--still FILE, or --rests ends"});
 }
 
-// What errs in motion but not at rest is mostly gravity, as the sensor leans.
+// Errors in motion that are absent at rest are mostly gravity, as the sensor tilts.
 void tell_of_leaning(const TrackOptions& options, TrackSolution& solution) {
   constexpr double noticed_rad = 1.0 * degree;
   const MotionErrorFigures& error = solution.motion_error;

@@ -19,7 +19,7 @@ double log_normal_density(double x, double std) {
   return -0.5 * (x * x / (std * std) + std::log(2.0 * std::numbers::pi * std * std));
 }
 
-/// Of the logarithm of a stretch's noise over that of the quietest.
+/// Density of the logarithm of an interval's noise over that of the quietest.
 double log_loudness_density(double log_ratio, QuietStretch kind) {
   constexpr double same_std = 0.1;
   const bool rests = kind == QuietStretch::rest;
@@ -58,7 +58,7 @@ std::vector<StretchKnots> stretches_in(const std::vector<InertialEpoch>& knots) 
   return found;
 }
 
-/// What a stretch may be instead of a rest: its level is that of a neighbour, or it is not.
+/// Alternatives to a rest: its level equals that of a neighbour, or it does not.
 std::vector<QuietStretch> other_kinds(const std::vector<StretchKnots>& stretches) {
   constexpr double wander_mps2 = 0.02;
   std::vector<QuietStretch> kinds(stretches.size(), QuietStretch::cruise);
@@ -79,8 +79,8 @@ void make_cruise(const StretchKnots& stretch,
   for (std::size_t k = stretch.first; k < stretch.end; ++k) knots[k].cruising = true;
 }
 
-/// The readings are integrated instead of telling the bias; returns the logarithm of their density
-/// about a level of their own, of which as many count as without_middles() leaves of a rest.
+/// Integrates the measurements instead of using them as bias measurements; returns the log density
+/// about a level of their own, for as many as without_middles() keeps of a rest.
 double make_plateau(const StretchKnots& stretch, std::vector<InertialEpoch>& knots) {
   constexpr double accel_std_mps2 = 0.5;
   constexpr std::size_t counted = 6;
@@ -101,7 +101,7 @@ double make_plateau(const StretchKnots& stretch, std::vector<InertialEpoch>& kno
   return log_density;
 }
 
-/// Of the readings, given what each stretch is.
+/// Log evidence of the measurements, given the type of each interval.
 double log_evidence_of(const std::vector<QuietStretch>& kinds,
                        const std::vector<StretchKnots>& stretches,
                        const std::vector<InertialEpoch>& knots,
@@ -126,7 +126,7 @@ double log_evidence_of(const std::vector<QuietStretch>& kinds,
 
 constexpr std::size_t most_doubtful = 16;
 
-/// The stretches beside the velocities that were left over.
+/// The intervals next to closure velocities.
 std::vector<std::size_t> doubtful(const std::vector<Closure>& closures, std::size_t stretches) {
   constexpr double left_over_share = 0.25, least_mps = 0.05;
   std::vector<bool> is_doubtful(stretches, false);
@@ -142,9 +142,8 @@ std::vector<std::size_t> doubtful(const std::vector<Closure>& closures, std::siz
   return found;
 }
 
-/// Which of the candidates are no rests if the velocities left over add up from one to the next, as
-/// they do where the sensor never stands: those at more than a quarter of the highest such speed,
-/// and all plateaus.
+/// Candidates that are not rests if the closure velocities accumulate, as they do if the sensor
+/// never stops: those at more than a quarter of the highest such speed, and all plateaus.
 std::uint32_t by_summed_velocities(const std::vector<Closure>& closures,
                                    const std::vector<StretchKnots>& stretches,
                                    const std::vector<InertialEpoch>& knots,
@@ -168,8 +167,9 @@ std::uint32_t by_summed_velocities(const std::vector<Closure>& closures,
   return mask;
 }
 
-/// Climbs from each start to a likeliest combination, by one or two stretches at a time, and keeps
-/// what it has seen: the combinations beside the likeliest, and its opposite, are among them.
+/// Climbs from each start to a most likely combination, by one or two intervals at a time, and
+/// stores all combinations visited, which include the neighbours of the most likely one, and its
+/// opposite.
 template <class LogPosterior>
 class Climb {
  public:
@@ -216,7 +216,7 @@ void drop_plateaus(TrackSignal& signal) {
     return;
   const std::vector<RestLevel> levels = rest_levels(signal);
   const auto agree = [&](const RestLevel& a, const RestLevel& b) {
-    // An uncalibrated sensor reads gravity longer or shorter in another position.
+    // An uncalibrated sensor measures another norm of gravity in another orientation.
     constexpr double bias_mps2 = 0.5, wander_mps2 = 0.02;
     const double sine2 = std::max(0.0, 1.0 - std::pow(a.cosine_to(b), 2));
     return std::abs(a.length_mps2 - b.length_mps2) <=

@@ -55,7 +55,7 @@ JerkDensity likeliest_jerk(PvaAxis<1> axis, double speed_std_mps) {
       Ld = at(d = a + golden * (b - a));
     }
   }
-  // The vertex of the parabola through three points tells the curvature too.
+  // The vertex of the parabola through three points also gives the curvature.
   constexpr double step = 0.05;
   const double x = 0.5 * (a + b), low = at(x - step), mid = at(x), high = at(x + step);
   const double slope = (high - low) / (2.0 * step), bend = (high - 2.0 * mid + low) / (step * step);

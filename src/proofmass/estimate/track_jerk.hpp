@@ -2,18 +2,18 @@
 
 #include "proofmass/estimate/pva_axis.hpp"
 
-// How hard a motion jerks. Private to the module's track*.cpp.
+// Jerk density of a motion. Private to the module's track*.cpp.
 namespace proofmass::estimate {
 
 struct JerkDensity {
-  double psd_m2ps5 = 1.0;  ///< to be used
+  double psd_m2ps5 = 1.0;  ///< value to use
   double std_m2ps5 = 0.0;
-  bool told = false;  ///< by the readings: they have a maximum
+  bool told = false;  ///< the likelihood has a maximum
 };
 
-/// The density of white jerk that maximises the likelihood of the readings, all other noise as it
-/// stands in `axis`; its std is θ/√(−∂²L/∂ln θ²). By a scan over 18 decades and a golden section.
-/// Cost: about thirty passes of the filter.
+/// The white-jerk density that maximises the likelihood of the measurements, with all other noise
+/// as in `axis`; its std is θ/√(−∂²L/∂ln θ²). By a scan over 18 decades and a golden section. Cost:
+/// about thirty passes of the filter.
 [[nodiscard]] JerkDensity likeliest_jerk(PvaAxis<1> axis, double speed_std_mps);
 
 }  // namespace proofmass::estimate

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double speed_at_start_mps = 10.0;
 constexpr double gap_steps = 2.5;          // a longer step between samples is a gap
-constexpr double carried_mps2_rts = 3e-3;  // walk with which the axis is looked for
+constexpr double carried_mps2_rts = 3e-3;  // random walk used in the search for the axis
 
 }  // namespace
 
@@ -28,8 +28,8 @@ std::optional<double> density_along(const std::array<std::optional<double>, 3>& 
 
 namespace {
 
-// Of one reading by white noise, from third differences, which smooth motion hardly enters; half of
-// them may be anything. 0 where there are few.
+// White noise of one measurement, from third differences, which suppress smooth motion; robust
+// against outliers in half of them. 0 if there are few.
 double sample_std(View<double> accel, const std::vector<unsigned char>& wanted) {
   constexpr std::size_t few = 50;
   std::vector<double> differences;
@@ -40,9 +40,9 @@ double sample_std(View<double> accel, const std::vector<unsigned char>& wanted) 
   return robust_std(differences).value_or(0.0) / std::sqrt(20.0);
 }
 
-// Two-sided density of what shakes in motion alone, if it is white.
+// Two-sided density of the vibration in motion, if it is white.
 double shaking_density(View<double> accel, const std::vector<signal::Rest>& rests, double rate_hz) {
-  constexpr double clear = 1.1;  // beyond what chance makes of the two
+  constexpr double clear = 1.1;  // beyond the statistical scatter of the two
   std::vector<unsigned char> resting(accel.size(), 0), moving(accel.size(), 1);
   for (const signal::Rest& rest : rests)
     for (std::size_t k = rest.first; k <= rest.last; ++k) resting[k] = 1, moving[k] = 0;
@@ -117,7 +117,7 @@ FoundAxis farthest_axis(const std::vector<std::vector<double>>& velocity,
 
 FoundAxis farthest_axis(const TrackSignal& signal, const TrackReadings& readings) {
   TrackReadings own = readings;
-  own.fixes.clear();  // they lie along an axis that is not known yet
+  own.fixes.clear();  // they refer to an axis that is not known yet
   std::vector<std::vector<double>> velocity;
   for (const std::vector<double>& accel : signal.accel_mps2) {
     AxisRun run = prepare_axis(signal, accel, own, {});

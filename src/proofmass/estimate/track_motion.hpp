@@ -7,10 +7,11 @@
 #include "proofmass/estimate/track_epochs.hpp"
 #include "proofmass/estimate/track_signal.hpp"
 
-// The filter and the smoother over the readings along one axis. Private to the module's track*.cpp.
+// The filter and the smoother over the measurements along one axis. Private to the module's
+// track*.cpp.
 namespace proofmass::estimate {
 
-/// One axis' readings with all that a run over them needs.
+/// One axis's measurements with all data of a run over them.
 struct AxisRun {
   AxisEpochs made;
   LevelNoise level;
@@ -19,12 +20,12 @@ struct AxisRun {
   double longest_step_s = 0.0;  ///< between samples; a longer one is a gap
 };
 
-/// Densities that a sensor file knows, of one axis.
+/// Densities from a sensor file, for one axis.
 struct AxisNoise {
   std::optional<double> white_mps2_rthz, walk_mps2_rts;
 };
 
-/// A density along the axis, of figures for each of the sensor's; absent where one is.
+/// Density along the axis, from those of the sensor's axes; absent if one is.
 [[nodiscard]] std::optional<double> density_along(
     const std::array<std::optional<double>, 3>& figures, const std::array<double, 3>& axis);
 
@@ -45,10 +46,11 @@ struct FoundAxis {
   double share = 1.0;
 };
 
-/// Along which the smoothed velocity has most of its square; its largest component is positive.
+/// Direction with the largest mean square of the smoothed velocity; its largest component is
+/// positive.
 [[nodiscard]] FoundAxis farthest_axis(const TrackSignal& signal, const TrackReadings& readings);
 
-/// The same of velocities that are known, one vector an axis of the three.
+/// The direction for given velocities, one vector for each of the three axes.
 [[nodiscard]] FoundAxis farthest_axis(const std::vector<std::vector<double>>& velocity_mps,
                                       View<double> time_s,
                                       const std::vector<std::size_t>& axes);

@@ -67,7 +67,7 @@ FusedSensor fused_sensor(const SensorAlong& sensor,
           {end_m, std::hypot(alone.smoothed.position_std_m.back(), scale_std * end_m)}};
 }
 
-// What all sensors err by in motion, told by how far their mean misses the stops.
+// Common error of all sensors in motion, from the closure errors of their mean.
 struct CommonError {
   double share_std = 1.0;  // √Σw²: of errors that each sensor has for itself, one in the mean
   PvaNoise noise;
@@ -92,7 +92,7 @@ CommonError common_error(const PvaTask& task,
       mean[k] += one.accel_mps2[k] / one.white_m2ps3;
       weights += 1.0 / one.white_m2ps3;
     }
-    mean[k] /= weights;  // NaN where none reads
+    mean[k] /= weights;  // NaN without any measurement
   }
   AxisRun run = prepare_axis(task.signal, mean, task.readings, {});
   found.figures = motion_error(join_epochs(run.made.epochs, run.made.knots), run.noise, run.start);
@@ -127,7 +127,7 @@ void fuse(const PvaTask& task,
     track.sensors.push_back(fused_sensor(*all[i], alone, fused.bias_mps2[i], solution.scale_std));
     best = std::min(best, track.sensors.back().displacement_m.std);
   }
-  solution.scale_std *= common.share_std;  // each sensor's scale errs for itself
+  solution.scale_std *= common.share_std;  // the sensors' scale errors are independent
   take(std::move(fused), solution);
   solution.factor_95 = common.figures.factor_95;
   solution.motion_error = {std::sqrt(common.figures.walk_m2ps5),

@@ -22,7 +22,7 @@ PvaSeries of_size(std::size_t size) {
   return {zeros, zeros, zeros, zeros};
 }
 
-// What the innovations of the forward filter tell.
+// Innovation statistics of the forward filter.
 template <int S>
 class Judge {
  public:
@@ -59,7 +59,7 @@ class Judge {
   }
 
  private:
-  // The first readings only say where bias and acceleration start.
+  // The first measurements only determine the initial bias and acceleration.
   static constexpr std::size_t start_samples = 2;
 
   static std::vector<std::string> channels(std::vector<std::string> names) {

@@ -10,7 +10,7 @@
 // track*.cpp.
 namespace proofmass::estimate {
 
-/// One entry a sample.
+/// One entry for each sample.
 struct PvaSeries {
   std::vector<double> position_m, position_std_m, velocity_mps, velocity_std_mps;
 };

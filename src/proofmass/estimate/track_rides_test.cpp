@@ -30,7 +30,7 @@ TEST(TrackRides, ACartAtConstantSpeedDoesNotRest) {
   EXPECT_LT(held.rms_m(), 0.2);
 }
 
-// A frame at constant speed is no other than one at rest.
+// A frame at constant speed is exactly one at rest.
 TEST(TrackRides, WhereARecordingBeginsUnderWayThereIsNoFigureButAlternatives) {
   Draw draw(3);
   const rides::RideRecord made = rides::record(rides::begun_under_way(draw), draw);
@@ -68,7 +68,7 @@ TEST(TrackRides, SlowStrokesBetweenShortRestsAreNoRests) {
   EXPECT_LT(held.rms_m(), 0.03);
 }
 
-// What shakes in motion alone may be aliased, and then it is in what the readings integrate to.
+// What shakes in motion alone may be aliased, and then it is in what the measurements integrate to.
 TEST(TrackRides, WhatShakesInMotionAloneIsInTheBand) {
   const auto held = rides::held_by([](Draw& draw) { return rides::lift(draw, 1, 6.0); }, 1, 12);
   EXPECT_EQ(held.given, 12);

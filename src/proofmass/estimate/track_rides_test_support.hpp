@@ -11,8 +11,8 @@
 
 #include "proofmass/estimate/track.hpp"
 
-// Rides of lifts, carts and slides, drawn at random, whose truth is the position itself: the
-// readings are its second differences at 1 kHz.
+// Random rides of lifts, carts and slides with known true positions: the measurements are second
+// differences at 1 kHz.
 namespace proofmass::estimate::rides {
 
 class Draw {
@@ -32,7 +32,7 @@ class Draw {
 };
 
 /// The speed changes to `to_mps` within `duration_s`: the acceleration rises and falls along half
-/// cosines that take `eased` of the time together, and is constant between.
+/// cosines that take `eased` of the time together, and is constant in between.
 struct Leg {
   double duration_s, to_mps, eased = 0.4;
 };
@@ -42,7 +42,7 @@ struct Ride {
   std::vector<Leg> legs;
   std::size_t axis = 2;
   double noise_mps2 = 0.03;
-  double moving_noise_mps2 = 0.0;  ///< beside it, where the speed is not 0
+  double moving_noise_mps2 = 0.0;  ///< additional noise while the speed is not 0
 };
 
 struct RideRecord {
@@ -50,9 +50,9 @@ struct RideRecord {
   double displacement_m = 0.0;
 };
 
-/// Share of the speed's change that is done at the share s of a leg.
+/// Completed share of the speed change at the share s of a leg.
 inline double done(double s, double eased) {
-  // Mean of a step that is eased in and of one that is eased out, by integrating the profile.
+  // Mean of a step with ease-in and one with ease-out, by integrating the profile.
   constexpr int steps = 200;
   static thread_local std::vector<double> table;
   static thread_local double of = -1.0;
@@ -202,7 +202,7 @@ inline Ride slow_strokes(Draw& draw) {
   return ride;
 }
 
-/// How the intervals of many recordings hold the truth.
+/// Coverage of the intervals over many recordings.
 struct Held {
   int recordings = 0, given = 0, held = 0, wrong = 0;  ///< wrong: off by more than 5 std
   double squares = 0.0;                                ///< of the errors, m²

@@ -28,7 +28,7 @@ std::vector<signal::Rest> stops_of(const std::vector<signal::Rest>& stops,
   return rests;
 }
 
-// Of what the alternatives say, how probable it is that the displacement is as by the first.
+// Probability, over the alternatives, that the displacement equals that of the first.
 double probability_of_first(const std::vector<TrackAlternative>& alternatives) {
   constexpr double same = 2.0;  // standard deviations
   const Uncertain& first = alternatives.front().displacement_m;
@@ -40,7 +40,7 @@ double probability_of_first(const std::vector<TrackAlternative>& alternatives) {
   return sum;
 }
 
-// What each of several readings of the quiet stretches makes of the displacement.
+// Displacement for each interpretation of the quiet intervals.
 std::vector<TrackAlternative> alternatives_of(TrackSignal signal,
                                               const std::vector<StopHypothesis>& hypotheses,
                                               const TrackOptions& options) {
@@ -64,8 +64,8 @@ std::vector<TrackAlternative> alternatives_of(TrackSignal signal,
   return alternatives;
 }
 
-// Whether the readings look like jerk with the loud and the short ones of the stops left out; then
-// they are.
+// Whether the measurements resemble jerk without the loud and the short stops; if so, these are
+// removed.
 bool leaves_jerk(TrackSignal& signal, const TrackOptions& options, Result<AlongAxis>& solved) {
   if (options.take_as_acceleration || signal.gravity == GravityContent::present) return false;
   TrackSignal quiet = signal;

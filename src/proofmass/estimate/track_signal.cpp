@@ -33,14 +33,14 @@ double norm(const std::array<double, 3>& v) {
   return std::hypot(v[0], v[1], v[2]);
 }
 
-// Median length of the rests' levels.
+// Median norm of the rests' levels.
 std::optional<double> resting_norm(const TrackSignal& signal) {
   std::vector<double> norms;
   for (const signal::Rest& rest : signal.stops.rests) norms.push_back(norm(level_of(signal, rest)));
   return signal.axes.size() == 3 ? median(norms) : std::nullopt;
 }
 
-// Three axes at rest read gravity, nothing, or something that is no m/s².
+// At rest three axes measure gravity, zero, or values that are not in m/s².
 Result<GravityContent> gravity_content(double norm_mps2, double gravity_mps2) {
   const double share = norm_mps2 / gravity_mps2;
   if (std::abs(share - 1.0) < 0.1) return GravityContent::present;
@@ -116,7 +116,7 @@ namespace {
 double noise_of(const TrackSignal& signal, const signal::Rest& rest) {
   double squares = 0.0;
   for (const auto& axis : signal.accel_mps2) {
-    // Differences, for a level that wanders is no noise; of which half may be anything.
+    // Differences, since a drifting level is not noise; robust against outliers in half of them.
     std::vector<double> differences;
     for (std::size_t k = rest.first + 1; k <= rest.last; ++k)
       differences.push_back(axis[k] - axis[k - 1]);
@@ -165,7 +165,7 @@ std::vector<signal::Rest> quiet_rests(const TrackSignal& signal) {
 
 namespace {
 
-// Range of the velocity that a rest's readings integrate to, less their mean.
+// Range of the velocity integrated from a rest's measurements minus their mean.
 double velocity_range(const TrackSignal& signal, View<double> accel, const signal::Rest& rest) {
   const double mean = moments(accel.subspan(rest.first, rest.last - rest.first + 1)).mean;
   double v = 0.0;
@@ -191,7 +191,7 @@ bool may_hide_motion(const TrackSignal& signal) {
     return std::any_of(
         signal.stops.rests.begin(), signal.stops.rests.end(), [&](const signal::Rest& rest) {
           const double length_s = signal.time_s[rest.last] - signal.time_s[rest.first];
-          // White noise integrates to σ √(T/rate); its range is some 1.25 of that.
+          // White noise integrates to σ √(T/rate); its range is about 1.25 of that.
           const double usual = noise.sample_std_mps2 * std::sqrt(length_s / signal.rate_hz);
           return velocity_range(signal, axis, rest) > far_beyond * usual;
         });
@@ -232,9 +232,9 @@ Window window_of(const TrackSeries& series,
           part(series.velocity_mps), part(position)};
 }
 
-// The position with every rest put to 0 that lies there within three standard deviations: where no
-// stop checks the velocity for long, an error of the level that nobody sees carries it away by the
-// cubic that leaves the velocity at both ends as it is.
+// The position with every rest within three standard deviations of 0 set to 0. If no stop checks
+// the velocity for long, an undetected error of the level adds a cubic that leaves the velocity at
+// both ends unchanged.
 std::vector<double> closed_at_rests(const TrackSignal& signal, const TrackSeries& series) {
   constexpr double within = 3.0;
   std::vector<double> position = series.position_m;

@@ -26,8 +26,8 @@ std::vector<double> along(const TrackSignal& signal, const std::array<double, 3>
   return out;
 }
 
-// Between the two ends of a gap the position runs as a cubic with their velocities, and may be off
-// by what an unknown acceleration does that is 0 at both ends.
+// Between the two ends of a gap the position is a cubic with their velocities, with the uncertainty
+// of an unknown acceleration that is 0 at both ends.
 void bridge(const AxisEpochs::Gap& gap, TrackSeries& series) {
   const std::size_t a = gap.first > 0 ? gap.first - 1 : gap.first, b = gap.last + 1;
   const double h = series.time_s[b] - series.time_s[a];

@@ -6,10 +6,10 @@
 #include "proofmass/estimate/track_motion.hpp"
 #include "proofmass/estimate/track_walk.hpp"
 
-// The track along one axis, by the rests that the signal has. Private to the module's track*.cpp.
+// The track along one axis, for given rests. Private to the module's track*.cpp.
 namespace proofmass::estimate {
 
-/// Axis, readings and errors of motion, and what filter and smoother make of them.
+/// Axis, measurements and errors of motion, with the results of filter and smoother.
 struct AlongAxis {
   FoundAxis axis;
   std::vector<double> accel_mps2;
@@ -20,7 +20,7 @@ struct AlongAxis {
   Consistency consistency;
 };
 
-/// Errors: invalid_argument (an axis of no length, or where the sensor has none).
+/// Errors: invalid_argument (an axis of zero length, or along a missing sensor axis).
 [[nodiscard]] Result<AlongAxis> solve(const TrackSignal& signal, const TrackOptions& options);
 
 /// The sample nearest to a time.
@@ -29,10 +29,10 @@ struct AlongAxis {
 /// Rests, turns and fixes by sample.
 [[nodiscard]] TrackReadings readings_of(const TrackSignal& signal, const TrackOptions& options);
 
-/// Everything that is told of the readings before they are integrated.
+/// All properties of the measurements that do not need integration.
 [[nodiscard]] TrackSolution described(const TrackSignal& signal, const TrackOptions& options);
 
-/// Fills what is told of every sample.
+/// Fills the results of every sample.
 void fill_series(const TrackSignal& signal,
                  const AxisRun& run,
                  const AxisPass& pass,

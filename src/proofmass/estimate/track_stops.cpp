@@ -16,7 +16,7 @@ namespace {
 // Means and scatter of the axes over blocks of samples.
 struct Blocks {
   std::size_t length = 0;
-  std::vector<double> scatter;  // root of the sum over axes; NaN without readings
+  std::vector<double> scatter;  // root of the sum over axes; NaN without measurements
   std::vector<std::array<double, 3>> mean;
 };
 
@@ -60,8 +60,8 @@ std::vector<signal::Rest> united(std::vector<signal::Rest> rests) {
   return out;
 }
 
-// Means of the axes over blocks of a quarter of a second of each rest, NaN where a block has no
-// reading, and how far such means scatter where the sensor is at rest.
+// Means of the axes over blocks of a quarter of a second of each rest, NaN for a block without
+// measurements, and the scatter of such means at rest.
 struct RestMeans {
   std::size_t length = 0;  // of a block, in samples
   std::vector<std::vector<std::array<double, 3>>> of_rest;
@@ -87,8 +87,8 @@ void add_spreads(const std::vector<std::array<double, 3>>& means,
   }
 }
 
-// Of a block's mean, by white noise alone: from differences, which a slow motion leaves as they
-// are.
+// Standard deviation of a block's mean from white noise alone: from differences, which a slow
+// motion does not affect.
 double white_std(View<double> axis, const std::vector<signal::Rest>& rests, std::size_t length) {
   Moments squares;
   for (const signal::Rest& rest : rests)
@@ -110,8 +110,8 @@ RestMeans rest_means(View<View<double>> axes,
         mean[a] = mean_of(axes[a].subspan(k, out.length));
     }
   }
-  // The fiftieth part that scatters least is at rest, if anything is; it scatters by less than all
-  // that rests would.
+  // The fiftieth with the smallest scatter is at rest, if anything is; selection makes its scatter
+  // smaller than that of all rests.
   constexpr double share = 0.02, dof = spread_blocks - 1.0;
   const double least = std::sqrt(chi_square_quantile(share, dof) / dof);
   for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -159,7 +159,7 @@ std::vector<SteadyPart> parts_of(const RestMeans& found, std::size_t rest) {
   const auto& means = found.of_rest[rest];
   const auto runs = steady_runs(means, found.std);
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    // Beside a departure a block may hold the motion's beginning or end.
+    // A block next to a departure may contain the beginning or end of the motion.
     SteadyPart part{rest, runs[r][0] + (r == 0 ? 0 : 1),
                     runs[r][1] - (r + 1 == runs.size() ? 0 : 1)};
     if (part.end <= part.first) continue;
@@ -179,8 +179,8 @@ bool same_level(const SteadyPart& one, const SteadyPart& other, const std::array
   return true;
 }
 
-// Of the parts of one rest those at the level that most blocks of `near`, the rests around it,
-// have: the others are motion at an acceleration that stays for a while.
+// Of the parts of one rest keeps those at the level of most blocks of `near`, the rests around it:
+// the others are motion at temporarily constant acceleration.
 void keep_usual_level(std::span<const SteadyPart> near,
                       const std::array<double, 3>& std,
                       std::vector<SteadyPart>& parts) {
@@ -199,7 +199,7 @@ void keep_usual_level(std::span<const SteadyPart> near,
   });
 }
 
-// Whether the block at one end of a rest departs from the two seconds beside it.
+// Whether the block at one end of a rest departs from the neighbouring two seconds.
 bool end_departs(View<View<double>> axes,
                  const RestMeans& found,
                  const signal::Rest& end,
@@ -217,8 +217,8 @@ bool end_departs(View<View<double>> axes,
   return false;
 }
 
-// Next to motion a rest ends where the motion begins to show, a block at a time: a velocity that is
-// not 0 there is that of the whole motion.
+// Next to motion a rest ends where the motion becomes visible, a block at a time: a non-zero
+// velocity there is that of the whole motion.
 signal::Rest without_onset(View<View<double>> axes, const RestMeans& found, signal::Rest rest) {
   const std::size_t length = found.length, reach = spread_blocks * length;
   const auto is_long = [&] { return rest.last - rest.first + 1 >= 4 * length; };
@@ -292,7 +292,7 @@ std::vector<signal::Rest> quiet_stretches(View<View<double>> axes,
            distance(blocks.mean[end], blocks.mean[i]) <= limit)
       ++end;
     if (end == i) continue;
-    // Next to motion a block may hold its beginning.
+    // Next to motion a block may contain its beginning.
     const std::size_t first = i == 0 ? 0 : i + 1, last = end == n ? n : end - 1;
     if (last > first && static_cast<double>((last - first) * length) >= shortest_s * rate_hz)
       rests.push_back({first * length, last == n ? axes[0].size() - 1 : last * length - 1});

@@ -30,7 +30,7 @@ Motions motions_of(const TrackSolution& solution) {
   return usual ? turning_points(p, solution.rests, std::max(0.05 * travel, 0.5 * *usual)) : all;
 }
 
-// Uncertainty of differences of positions at the turns.
+// Uncertainty of differences of positions at the turning points.
 class TurnCovariance {
  public:
   TurnCovariance(std::vector<double> row_by_row, std::size_t n, double scale_std)
@@ -40,7 +40,7 @@ class TurnCovariance {
     const double variance = at(i, i) + at(j, j) - 2.0 * at(i, j);
     return std::hypot(std::sqrt(std::max(0.0, variance)), scale_std_ * length_m);
   }
-  // Of the turn at i + 1 against the mean of the two beside it.
+  // Variance of the turning point at i + 1 relative to the mean of its two neighbours.
   [[nodiscard]] double of_mean(std::size_t i, double out_m, double back_m) const {
     const double variance = at(i + 1, i + 1) +
                             0.25 * (at(i, i) + at(i + 2, i + 2) + 2.0 * at(i, i + 2)) -
@@ -55,7 +55,7 @@ class TurnCovariance {
   double scale_std_;
 };
 
-// The mean of both ways, but where one is half as long again the shorter's.
+// The mean of both ways, or the shorter one if the other is half as long again.
 Uncertain length_of(const Uncertain& a, const Uncertain& b, double std_of_mean) {
   const double one = std::abs(a.value), other = std::abs(b.value);
   if (std::max(one, other) <= 1.5 * std::min(one, other)) return {0.5 * (one + other), std_of_mean};
@@ -75,7 +75,7 @@ Stroke stroke_of(const std::vector<std::size_t>& turns,
   return stroke;
 }
 
-// Sum of the swings, each with its sign: linear in the positions of the turns.
+// Sum of the signed swings: linear in the positions of the turning points.
 double path_std(const Motions& motions,
                 const std::vector<std::vector<double>>& swings,
                 const TurnCovariance& cov,

@@ -5,11 +5,10 @@
 
 #include "proofmass/estimate/track.hpp"
 
-// From a smoothed position to strokes. Private to the module's track*.cpp.
+// Strokes from a smoothed position. Private to the module's track*.cpp.
 namespace proofmass::estimate {
 
-/// Covariance of the smoothed positions at some samples, row by row, m²; empty where it is too much
-/// to work out.
+/// Covariance of the smoothed positions at some samples, row by row, m²; empty if too expensive.
 using PositionCovarianceAt = std::function<std::vector<double>(const std::vector<std::size_t>&)>;
 
 struct Strokes {
@@ -17,9 +16,9 @@ struct Strokes {
   std::optional<double> path_std_m;
 };
 
-/// Turns the position round where it swings by more than half the median of all swings beyond a
-/// twentieth of the travel; a swing and the next make a stroke, there and back. A stroke within
-/// twice its own standard deviation is none.
+/// The position reverses where its swing exceeds half the median of all swings beyond a twentieth
+/// of the travel; a swing and the next make a stroke, there and back. A stroke within twice its own
+/// standard deviation is ignored.
 [[nodiscard]] Strokes find_strokes(const TrackSolution& solution,
                                    const PositionCovarianceAt& covariance);
 

@@ -94,7 +94,7 @@ TEST(Track, CountsThereAndBackWithoutARestBetweenAsOneStroke) {
   }
 }
 
-// Where a harmonic motion turns, its acceleration stands still for a moment.
+// Where a harmonic motion turns, its acceleration is at rest for a moment.
 TEST(Track, TakesNoTurningPointForARest) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Carriage carriage{.strokes_m = {0.5, -0.5, 0.5, -0.5},

@@ -12,7 +12,7 @@
 
 namespace proofmass::estimate {
 
-/// A sensor that is carried along a line from rest to rest, each stroke with least jerk.
+/// A sensor carried along a line from rest to rest, with minimum-jerk strokes.
 struct Carriage {
   std::vector<double> strokes_m{0.4, -0.4, 0.4, -0.4};
   double stroke_s = 1.5, dwell_s = 2.0;
@@ -64,7 +64,7 @@ inline CarriageRecord record(const Carriage& carriage) {
     const double T = carriage.stroke_s, n = T * carriage.rate_hz;
     for (double k = 0.0; k < n; k += 1.0) {
       const auto [p, v, a] = stroke_shape(k / n, carriage.harmonic);
-      // A sensor of finite bandwidth reads half of a force that sets in at a sample.
+      // A sensor of finite bandwidth measures half of a force that starts at a sample.
       const double onset = carriage.harmonic && !std::exchange(moving, true) ? 0.5 : 1.0;
       push(from + length * p, length * v / T, onset * length * a / (T * T));
     }
@@ -72,7 +72,7 @@ inline CarriageRecord record(const Carriage& carriage) {
     if (!carriage.harmonic) rest(carriage.dwell_s);
   }
   if (carriage.harmonic) {
-    // Nor does the force end at once.
+    // The force does not end abruptly either.
     for (std::size_t i = 0; i < 3; ++i)
       out.sensor.accel_mps2[i].back() += 0.5 * carriage.direction[i] * out.accel_mps2.back();
     rest(carriage.dwell_s);

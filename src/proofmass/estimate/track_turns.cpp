@@ -7,10 +7,10 @@
 namespace proofmass::estimate {
 namespace {
 
-// What a pass over the epochs keeps of each asked for.
+// Data stored by a pass for each requested epoch.
 struct KeptEpoch {
   Gaussian<3> filtered;
-  Mat<3, 3> from_last = Mat<3, 3>::Identity();  // Φ since the one kept before
+  Mat<3, 3> from_last = Mat<3, 3>::Identity();  // Φ since the previous stored one
   Hindsight<3> later;
 };
 

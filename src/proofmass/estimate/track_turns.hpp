@@ -7,7 +7,7 @@
 #include "proofmass/estimate/inertial_axis.hpp"
 #include "proofmass/estimate/track.hpp"
 
-// From the smoothed position to strokes. Private to the module's track*.cpp.
+// Strokes from the smoothed position. Private to the module's track*.cpp.
 namespace proofmass::estimate {
 
 /// Covariance of the smoothed positions at some epochs, from the filter's and the smoother's
@@ -15,9 +15,9 @@ namespace proofmass::estimate {
 ///
 ///     cov(x[j], x[k] | N) = P[j|j] Φᵀ (I − Λ P[k|k]),   Φ = Π_{i=j+1…k} (I − K H) F,
 ///
-/// with Λ the hindsight after k. Source: derived from A. E. Bryson, M. Frazier's form; compare
-/// P. de Jong, M. J. MacKinnon, Covariances for smoothed estimates in state space models,
-/// Biometrika 75 (1988) 601.
+/// with Λ the adjoint after k. Source: derived from A. E. Bryson, M. Frazier's form; compare P. de
+/// Jong, M. J. MacKinnon, Covariances for smoothed estimates in state space models, Biometrika 75
+/// (1988) 601.
 struct PositionCovariance {
   std::vector<double> position_m;
   std::vector<double> row_by_row;  ///< size² entries, m²
@@ -29,18 +29,18 @@ struct PositionCovariance {
                                                     const InertialStart& start,
                                                     const std::vector<std::size_t>& at);
 
-/// Samples at which a position turns round, where it started and where it ended included, for each
-/// motion between two rests; a swing shorter than `least_m` is none.
+/// Samples at which the position reverses, including its start and end, for each motion between two
+/// rests; a swing shorter than `least_m` is ignored.
 [[nodiscard]] std::vector<std::vector<std::size_t>> turning_points(
     View<double> position_m, const std::vector<signal::Rest>& rests, double least_m);
 
 struct SwingPair {
-  std::size_t out;    ///< number of the swing
+  std::size_t out;    ///< index of the swing
   bool back = false;  ///< the next swing is its way back
 };
 
-/// The swings of one motion, two and two: there and back. Of an odd number the first or the last
-/// has no partner, whichever leaves the others more alike.
+/// The swings of one motion in pairs, there and back. With an odd number the first or the last has
+/// no partner, whichever makes the others more similar.
 [[nodiscard]] std::vector<SwingPair> pair_swings(View<double> lengths_m);
 
 }  // namespace proofmass::estimate

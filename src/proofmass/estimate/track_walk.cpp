@@ -39,7 +39,7 @@ struct GridPoint {
   double variance = 0.0, log_weight = 0.0;
 };
 
-// Nothing at all three times in four, else normal in the logarithm of the root.
+// Zero three times in four, else normal in the logarithm of the root.
 std::vector<GridPoint> grid(double step) {
   constexpr double center = -2.5, std = 0.7, first = -4.5, last = 0.5;
   constexpr double none = 0.75;
@@ -55,7 +55,7 @@ std::vector<GridPoint> grid(double step) {
   return points;
 }
 
-// Of the rocking; nine tenths of the weight of nothing are on what shakes being white.
+// Grid of the rocking; nine tenths of the weight of zero are on white vibration.
 std::vector<GridPoint> lean_grid(double step, double shaking_m2ps3) {
   std::vector<GridPoint> points = grid(step);
   if (shaking_m2ps3 <= 0.0) return points;
@@ -105,7 +105,7 @@ double mixture_factor(View<double> weight, View<double> variance) {
 
 namespace {
 
-/// The score of every point of the grid, its prior weight added to the logarithm.
+/// The score of every point of the grid, plus its log prior weight.
 struct GridScores {
   std::vector<double> weight, closure;
   std::vector<std::array<double, 3>> at;

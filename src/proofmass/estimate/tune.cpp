@@ -114,7 +114,7 @@ TuneProblem problem_of(const std::vector<TuneSeries>& series,
 
 // --- what one group comes to ---------------------------------------------------------------------
 
-// An unknown on its way, and what became of it.
+// Current value of an unknown, and its status.
 struct Candidate {
   TuneUnknown unknown;
   TunedParameter found;
@@ -163,7 +163,7 @@ class Fit {
   [[nodiscard]] const std::vector<Candidate>& candidates() const { return candidates_; }
 
  private:
-  // Those still unknown, with their place in the problem.
+  // The remaining unknowns, with their index in the problem.
   template <class Work>
   void each(Work&& work) {
     for (std::size_t k = 0; k < problem_.unknowns.size(); ++k) work(candidate_of(k), k);
@@ -200,7 +200,7 @@ class Fit {
     }
   }
 
-  // Whether an unknown may be zero: no time constant, and not the last noise.
+  // Whether an unknown may be zero: not a time constant, and not the last noise.
   [[nodiscard]] bool may_vanish(std::size_t k) const {
     const TuneRole role = problem_.parameter(k).role;
     if (role == TuneRole::time_constant) return false;
@@ -208,8 +208,8 @@ class Fit {
     return std::isfinite(rest.log_likelihood());
   }
 
-  // Leaves out the noise whose absence costs least, if it costs less than chance does; a Markov
-  // bias, two parameters, before any other, because one of endless memory is a random walk too.
+  // Drops the noise whose omission costs least, if the cost is not significant; a Markov bias, two
+  // parameters, before any other, because one of infinite correlation time is a random walk too.
   bool drop_one() {
     constexpr double certain = 0.1;
     const double best = problem_.log_likelihood();
@@ -233,7 +233,7 @@ class Fit {
     return false;
   }
 
-  // A Markov bias of no size has no time constant.
+  // A Markov bias of zero variance has no time constant.
   static void drop_time_constants(TuneProblem& problem) {
     const View<TuneParameter> parameters = parameters_of(problem.model());
     for (std::size_t k = problem.unknowns.size(); k-- > 0;) {
@@ -253,7 +253,7 @@ class Fit {
     if (found.role == TuneRole::markov_std) {
       found.reason += ": white noise and a random walk say as much";
     } else {
-      // One-sided, hence 90 % of both sides.
+      // One-sided, hence 90 % two-sided.
       found.upper_95 = profile_limit(problem_, {.unknown = k,
                                                 .upwards = true,
                                                 .drop = chi_square_quantile(0.90, 1.0),

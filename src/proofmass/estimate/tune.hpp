@@ -13,18 +13,18 @@
 #include "proofmass/estimate/consistency.hpp"
 #include "proofmass/estimate/tune_model.hpp"
 
-// Noise figures of a filter's model from the recording that it is to run on.
+// Noise parameters of a filter's model, estimated from the recording to be filtered.
 namespace proofmass::estimate {
 
-/// One channel. Each segment starts anew, knowing nothing: the rests of a recording, say.
+/// One channel. Each segment has a diffuse start: for example the rests of a recording.
 struct TuneSeries {
   std::string name;
   double rate_hz = 1.0;
-  std::vector<View<double>> segments;  ///< evenly sampled, NaN where a reading is missing
-  std::vector<double> starts_s = {};   ///< of each segment; empty: one behind the other
+  std::vector<View<double>> segments;  ///< evenly sampled, NaN where missing
+  std::vector<double> starts_s = {};   ///< of each segment; empty: consecutive
 };
 
-/// A parameter held at a value: of all channels.
+/// A parameter held at a value in all channels.
 struct FixedParameter {
   std::string name;
   double value = 0.0;
@@ -33,8 +33,8 @@ struct FixedParameter {
 struct TuneOptions {
   TuneModel model = TuneModel::rest;
   std::vector<FixedParameter> fixed = {};
-  std::vector<std::string> shared = {};  ///< names of parameters that all channels have in common
-  /// Where to start instead of at the Allan deviation: by name, of all channels.
+  std::vector<std::string> shared = {};  ///< names of parameters common to all channels
+  /// Initial values by name, for all channels, instead of the Allan deviation.
   std::vector<FixedParameter> start = {};
   int em_steps = 4;
   Progress progress = {};
@@ -42,33 +42,34 @@ struct TuneOptions {
 
 enum class TuneVerdict {
   identified,
-  not_observable,  ///< the data go with zero, or with any value: see `reason`
+  not_observable,  ///< the data are consistent with zero, or with any value: see `reason`
   fixed,
 };
 
 struct TunedParameter {
   std::string name;
   TuneRole role = TuneRole::reading;
-  int channel_power = 1;  ///< of the unit, see TuneParameter
+  int channel_power = 1;  ///< exponent of the channel's unit, see TuneParameter
   double second_power = 0.0;
   std::optional<std::size_t> series;  ///< absent: shared by all
   TuneVerdict verdict = TuneVerdict::identified;
-  std::optional<Uncertain> value;  ///< std 0 of a fixed one
+  std::optional<Uncertain> value;  ///< std 0 if fixed
   std::optional<double> lower_95, upper_95;
-  std::string reason;                     ///< where there is no value
-  std::optional<double> record_needed_s;  ///< about how long a record would tell it
-  double start = 0.0, after_em = 0.0;     ///< on the way
+  std::string reason;  ///< if there is no value
+  /// Approximate length of a record that would determine it.
+  std::optional<double> record_needed_s;
+  double start = 0.0, after_em = 0.0;  ///< initial and intermediate values
 };
 
-/// What one channel comes to.
+/// Result of one channel.
 struct TunedSeries {
   std::string name;
-  std::vector<double> values;  ///< of the model's parameters as used, one not observable being 0
-  TuneSystem system;           ///< with them
+  std::vector<double> values;  ///< the model's parameters as used; one that is not observable is 0
+  TuneSystem system;           ///< with these values
   double log_likelihood = 0.0;
   std::size_t readings = 0, missing = 0;
   double rate_hz = 0.0, duration_s = 0.0;
-  /// Of all segments; NaN where there is no reading, and at the start of each.
+  /// All segments; NaN where missing, and at the start of each.
   std::vector<double> time_s, innovation, variance;
 };
 
@@ -76,37 +77,37 @@ struct Tuning {
   TuneModel model = TuneModel::rest;
   std::vector<TunedParameter> parameters;
   std::vector<TunedSeries> series;
-  double log_likelihood = 0.0;            ///< of all channels
-  std::vector<double> em_log_likelihood;  ///< before each step and behind the last
-  int iterations = 0;                     ///< of the maximisation
+  double log_likelihood = 0.0;            ///< sum of all channels
+  std::vector<double> em_log_likelihood;  ///< before each step and after the last
+  int iterations = 0;                     ///< iterations of the maximisation
   double gradient = 0.0;                  ///< largest |∂L/∂ ln θ| at the end
   bool converged = false;
 };
 
-/// Finds the parameters of the model by maximum likelihood: a start from the Allan variance (and
-/// where that cannot tell, from a grid), steps of expectation–maximisation, a quasi-Newton search
-/// with the exact gradient, Newton's last steps.
+/// Finds the parameters of the model by maximum likelihood: a start from the Allan variance (or, if
+/// that is not conclusive, from a grid), steps of expectation–maximisation, a quasi-Newton search
+/// with the exact gradient, final Newton steps.
 ///
 ///     std = θ √(H⁻¹)ⱼⱼ,   H = −∂²L/∂ln θ²  by differences of the gradient;
-///     interval_95: θ e^(±1.96 √(H⁻¹)ⱼⱼ), or where that is wider than ±20 %, where twice the loss
-///     in log-likelihood, all else fitted anew, stays below 3.84.
+///     interval_95: θ e^(±1.96 √(H⁻¹)ⱼⱼ), or if that is wider than ±20 %, where twice the loss
+///     in log-likelihood, with all others refitted, stays below 3.84.
 ///
-/// A noise whose absence costs less than 3.84 in twice the log-likelihood is not told from zero: it
-/// has no value but an upper 95 % limit (2.71), and the others are fitted without it. Channels are
-/// fitted each by itself unless they share a parameter.
+/// A noise whose omission costs less than 3.84 in twice the log-likelihood is not distinguishable
+/// from zero: it has no value but an upper 95 % limit (2.71), and the others are fitted without it.
+/// Channels are fitted separately unless they share a parameter.
 ///
 /// Source: J. Durbin, S. J. Koopman (2012), chapter 7; EM: R. H. Shumway, D. S. Stoffer, J. Time
-/// Series Anal. 3 (1982) 253. Errors: invalid_argument (a name that the model does not have, a
-/// value that cannot be), too_few_samples (fewer than 10 readings of a channel), not_observable (a
-/// channel whose readings are all equal), not_finite (an infinite reading). Cost: 20 to 80 passes
-/// over the data.
+/// Series Anal. 3 (1982) 253. Errors: invalid_argument (a name that the model does not have, an
+/// impossible value), too_few_samples (fewer than 10 measurements of a channel), not_observable (a
+/// channel whose measurements are all equal), not_finite (an infinite measurement). Cost: 20 to 80
+/// passes over the data.
 [[nodiscard]] Result<Tuning> tune(const std::vector<TuneSeries>& series,
                                   const TuneOptions& options);
 
-/// Whether the filter, with the figures found, errs as far as it says.
+/// Consistency check of the filter with the estimated parameters.
 [[nodiscard]] Consistency consistency_of(const Tuning& tuning);
 
-/// Puts the channels of a tuning of its own behind those of `all`, both of one model.
+/// Appends the channels of another tuning of the same model to `all`.
 void append(Tuning& all, Tuning more);
 
 }  // namespace proofmass::estimate

@@ -20,7 +20,7 @@ TuneProblem without(const TuneProblem& problem, std::size_t unknown, double valu
 }
 
 std::optional<double> profile_limit(const TuneProblem& at_maximum, const ProfileSide& side) {
-  // A noise can be that much larger than one that vanishes, a time constant not.
+  // A noise that vanishes can be larger by that factor, a time constant cannot.
   const bool noise = at_maximum.parameter(side.unknown).role != TuneRole::time_constant;
   const double farthest = noise ? 45.0 : 12.0;
   constexpr double close_enough = 5e-3;

@@ -69,7 +69,7 @@ bool has_markov(TuneModel model) {
   return model == TuneModel::rest_markov || model == TuneModel::pva_bias;
 }
 
-// Of F and of the noise that a density of one brings in by the one that drives the last state.
+// Sets F and the noise of unit density that drives the last state.
 void set_chain(TuneSystem& system, double h, TuneMatrix& driven) {
   if (system.states == 1) {
     driven(0, 0) = h;
@@ -144,7 +144,7 @@ TuneSystem system_of(TuneModel model, View<double> values, double step_s) {
   system.diffuse = markov ? 1 : n;
   system.F.diagonal().head(n).setOnes();
   system.by_log.assign(parameters.size(), TuneDerivative{});
-  // A white reading noise given as a density has the variance N² / h.
+  // White measurement noise given as a density has the variance N² / h.
   const double per_reading = parameters[0].second_power == 0.5 ? 1.0 / step_s : 1.0;
   set_variance(parameters[0], values[0], per_reading, system.R, system.by_log[0].R);
   if (!markov) {

@@ -20,7 +20,7 @@ std::size_t count_readings(const std::vector<const TuneSeries*>& series) {
   return count;
 }
 
-// One step of Newton's where the surface is a cap and the step goes uphill.
+// One Newton step if the surface is concave and the step goes uphill.
 bool newton_step(TuneProblem& problem) {
   const TuneProblem::Slope at = problem.slope();
   const Eigen::MatrixXd H = information(problem);

@@ -8,7 +8,7 @@
 #include "proofmass/estimate/tune.hpp"
 #include "proofmass/estimate/tune_score.hpp"
 
-// The likelihood of some channels as a function of the logarithms of what is not known.
+// The likelihood of some channels as a function of the logarithms of the unknowns.
 namespace proofmass::estimate {
 
 /// One unknown: a parameter of one channel, or of several that share it.
@@ -22,7 +22,7 @@ class TuneProblem {
   TuneProblem(TuneModel model, std::vector<const TuneSeries*> series);
 
   std::vector<TuneUnknown> unknowns;
-  /// Of each series, every parameter; what is unknown is overwritten by set().
+  /// Every parameter of each series; unknowns are overwritten by set().
   std::vector<std::vector<double>> values;
 
   [[nodiscard]] TuneModel model() const { return model_; }
@@ -37,13 +37,13 @@ class TuneProblem {
 
   [[nodiscard]] TuneSystem system(std::size_t series) const;
   [[nodiscard]] double log_likelihood() const;
-  /// Over the first so many samples of each segment.
+  /// Over the first `most` samples of each segment.
   [[nodiscard]] TuneScore forward_score(std::size_t most) const;
 
   struct Slope {
     double log_likelihood = 0.0;
     std::vector<double> gradient;                    ///< by the logarithm of each unknown
-    std::vector<std::size_t> readings, transitions;  ///< that each unknown is seen in
+    std::vector<std::size_t> readings, transitions;  ///< that depend on each unknown
   };
   [[nodiscard]] Slope slope() const;
   [[nodiscard]] std::size_t readings() const { return readings_; }
@@ -54,8 +54,8 @@ class TuneProblem {
   std::size_t readings_ = 0;
 };
 
-/// One step of expectation–maximisation for the white noises; a Markov bias stays as it is. As
-/// E[w wᵀ] follows from the score, it is θ ← θ (1 + 2/(n rank) ∂L/∂ln θ) for each variance θ of n
+/// One step of expectation–maximisation for the white noises; a Markov bias is unchanged. As E[w
+/// wᵀ] follows from the score, it is θ ← θ (1 + 2/(n rank) ∂L/∂ln θ) for each variance θ of n
 /// vectors. Never lowers the likelihood. Returns that before the step.
 double em_step(TuneProblem& problem);
 
@@ -65,7 +65,7 @@ struct TuneMaximum {
   bool converged = false;
 };
 
-/// Climbs to the next maximum; polished, to the last digits by Newton's steps.
+/// Maximises locally; with `polished`, to machine precision by Newton steps.
 TuneMaximum maximise(TuneProblem& problem, bool polished = true);
 
 /// −∂²L/∂ln θ², by central differences of the gradient.

@@ -16,8 +16,8 @@ using Vec = Eigen::Matrix<double, N, 1>;
 template <int N>
 using Square = Eigen::Matrix<double, N, N>;
 
-// One reading as the backward pass needs it. Without one, and where it ended a diffuse direction,
-// weight and weighted are zero; without one, the gain too.
+// One measurement as needed by the backward pass. Without one, and where it ended a diffuse
+// direction, weight and weighted are zero; without one, the gain too.
 template <int N>
 struct Trace {
   Vec<N> gain;
@@ -29,7 +29,7 @@ template <int N>
 struct State {
   Vec<N> x = Vec<N>::Zero();
   Square<N> P, Pinf;
-  int diffuse = 0;  // directions in which nothing is known yet
+  int diffuse = 0;  // number of remaining diffuse directions
 };
 
 template <int N>
@@ -59,7 +59,7 @@ class Pass {
     if (state.diffuse > 0) state.Pinf = symmetric(F_ * state.Pinf * F_.transpose());
   }
 
-  // Takes the reading in and says what it did; false where its variance is not positive.
+  // Processes the measurement and records its effect; false if its variance is not positive.
   bool correct(double z, State<N>& state, Trace<N>& trace, TuneScore& score) const {
     trace = {Vec<N>::Zero(), 0.0, 0.0};
     if (std::isnan(z)) return true;
@@ -85,8 +85,7 @@ class Pass {
     return true;
   }
 
-  // What later readings say: λ, Λ of the state after step k become those before its reading.
-  // Returns u² − D.
+  // Adjoint: λ, Λ of the state after step k become those before its measurement. Returns u² − D.
   double look_back(const Trace<N>& trace, Vec<N>& r, Square<N>& L) const {
     const Vec<N> LK = L * trace.gain;
     const double u = trace.weighted - trace.gain.dot(r);
@@ -132,7 +131,7 @@ class Pass {
   Vec<N> h_;
 };
 
-// The first reading of a diffuse level: what comes before says nothing.
+// The first measurement of a diffuse level: earlier data contain no information.
 std::size_t first_reading(View<double> series) {
   std::size_t k = 0;
   while (k < series.size() && std::isnan(series[k])) ++k;
@@ -169,7 +168,7 @@ struct Nothing {
 template <int N>
 struct KeepTrace {
   std::vector<Trace<N>> traces;
-  std::vector<Vec<N>> x;  // filtered, where asked for
+  std::vector<Vec<N>> x;  // filtered, if requested
   std::vector<Square<N>> P;
   bool states = false;
   void before(std::size_t, const Pass<N>&, const State<N>&) {}

@@ -72,7 +72,7 @@ TEST_P(EveryModel, HasTheGradientThatDifferencesHave) {
   }
 }
 
-// Q(2h) = F Q Fᵀ + Q, and the same of the readings that a sample in two leaves out.
+// Q(2h) = F Q Fᵀ + Q, and the same of the measurements that a sample in two leaves out.
 TEST_P(EveryModel, TwoShortStepsAreALongOne) {
   const TuneSystem once = system_of(GetParam(), some_values(GetParam()), 0.2);
   const TuneSystem twice = system_of(GetParam(), some_values(GetParam()), 0.4);

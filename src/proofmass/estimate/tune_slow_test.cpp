@@ -10,7 +10,7 @@ namespace {
 
 struct Truth {
   std::size_t samples;
-  double step_variance;  // of readings with variance 1
+  double step_variance;  // of measurements with variance 1
   int runs;
 };
 

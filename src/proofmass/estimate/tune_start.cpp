@@ -30,7 +30,7 @@ void add_differences(const std::vector<double>& values, Differences& into) {
   }
 }
 
-// What the grid has beside R and Q, each relative to them.
+// Values of the grid besides R and Q, each relative to them.
 struct StartCandidate {
   double Q_over_R;      // of the first state, a sample
   double second = 0.0;  // as the model takes it
@@ -64,7 +64,7 @@ std::vector<StartCandidate> grid(TuneModel model, const LevelNoise& noise) {
   return {};
 }
 
-// The variance, or density, that a parameter's value stands for.
+// The variance, or density, of a parameter's value.
 double value_of(const TuneParameter& parameter, double variance) {
   return parameter.variance_power() == 2 ? std::sqrt(variance) : variance;
 }
@@ -96,13 +96,13 @@ std::vector<double> values_of(TuneModel model,
 void set_values(TuneProblem& problem, const std::vector<std::vector<double>>& values) {
   for (std::size_t k = 0; k < problem.unknowns.size(); ++k) {
     const TuneUnknown& unknown = problem.unknowns[k];
-    double logs = 0.0;  // what is shared starts at the geometric mean
+    double logs = 0.0;  // a shared parameter starts at the geometric mean
     for (const std::size_t s : unknown.series) logs += std::log(values[s][unknown.parameter]);
     problem.set(k, std::exp(logs / static_cast<double>(unknown.series.size())));
   }
 }
 
-// Whether all noises are unknown, so that one factor for all of them may be set by itself.
+// Whether all noises are unknown, so that a common factor can be set separately.
 bool is_scalable(const TuneProblem& problem) {
   std::size_t noises = 0;
   for (const TuneParameter& parameter : parameters_of(problem.model())) {
@@ -168,7 +168,7 @@ Status set_start(TuneProblem& problem) {
     LevelNoise noise = allan_start(*series);
     noise.R = std::max(noise.R, 1e-3 * noise.Q);
     noise.Q = std::max(noise.Q, 1e-8 * noise.R);
-    if (!(noise.R > 0.0)) noise = {1.0, 1.0};  // unit noises, which the scale makes right
+    if (!(noise.R > 0.0)) noise = {1.0, 1.0};  // unit noises, to be scaled
     noises.push_back(noise);
   }
   constexpr std::size_t most_samples = 20'000;

@@ -6,16 +6,16 @@
 namespace proofmass::estimate {
 
 /// Two white noises of a series from its Allan variance over blocks of m = 1, 2, 4, … samples,
-/// σ²(m) = R/m + Q (2m² + 1)/(6m): variances of a reading and of what the level moves in a sample.
-/// Source: IEEE Std 952-1997, annex C, of discrete samples. Cost: O(N).
+/// σ²(m) = R/m + Q (2m² + 1)/(6m): variances of a measurement and of the level's change per sample.
+/// Source: IEEE Std 952-1997, annex C, for discrete samples. Cost: O(N).
 struct LevelNoise {
   double R = 0.0, Q = 0.0;
 };
 [[nodiscard]] LevelNoise allan_start(const TuneSeries& series);
 
-/// Sets every unknown to the best of a few starts: at the Allan variance, and, where that cannot
-/// tell all of them, on a grid; each brought to the scale of the readings, which has a closed form.
-/// Errors: not_observable (the readings follow the model without any noise).
+/// Sets every unknown to the best of a few starts: at the Allan variance and, if that does not
+/// determine all of them, on a grid; each scaled to the measurements in closed form. Errors:
+/// not_observable (the measurements follow the model without any noise).
 [[nodiscard]] Status set_start(TuneProblem& problem);
 
 }  // namespace proofmass::estimate

@@ -6,8 +6,8 @@
 namespace proofmass::estimate::packed {
 namespace {
 
-/// The filter over the chunk, from `x` before it, without keeping anything but its end. Says
-/// whether all readings are there.
+/// The filter over the chunk, from `x` before it, storing only its end. Returns whether all
+/// measurements are present.
 template <int N>
 bool filter_ends(Work<N>& work, const Chunk<N>& chunk, LaneNumbers* x) {
   LaneNumbers unused{};
@@ -19,8 +19,8 @@ bool filter_ends(Work<N>& work, const Chunk<N>& chunk, LaneNumbers* x) {
   return true;
 }
 
-/// The same from the right beginnings: the means of each instant, and what the readings say of the
-/// model.
+/// The filter from the correct initial means: the means of each epoch, and the likelihood of the
+/// measurements.
 template <int N>
 void filter_means(Work<N>& work, const Chunk<N>& chunk, bool laid_out, LaneNumbers* x) {
   LaneNumbers squares{};
@@ -65,7 +65,8 @@ bool filter_constant_gain(Work<N>& work, const Chunk<N>& chunk, State<N>& state)
   Mat<N> x = column(state.x);
   set_lane<N>(x, 0, end);
   if (!filter_ends(work, chunk, end)) return false;
-  // All lanes but the first began with the mean 0: what they began with in truth is added.
+  // All lanes but the first started with the mean 0: the effect of their true initial mean is
+  // added.
   for (int l = 0; l < lanes; ++l) {
     set_lane<N>(x, l, begin);
     if (work.options.smooth) work.output.means[instant(chunk.first, l, 0)] = x;

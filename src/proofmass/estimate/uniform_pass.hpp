@@ -17,19 +17,19 @@
 // The three passes of run_uniform(), a chunk of the recording at a time.
 namespace proofmass::estimate::packed {
 
-/// Instants that one lane's numbers are moved at a time, of a lane, and of all lanes. A lane's is
-/// not a power of two, or lanes would share sets of the cache.
+/// Epochs of one lane moved at a time, epochs in a lane, and in all lanes. A lane's length is not a
+/// power of two, to avoid cache-set conflicts between lanes.
 inline constexpr std::size_t together = 8, blocks = 31, lane_length = blocks * together;
 inline constexpr std::size_t chunk_length = lane_length * lanes;
-/// Instants of a lane that are written one after another.
+/// Consecutive epochs of a lane written together.
 inline constexpr std::size_t run_length = 62;
 static_assert(lane_length % run_length == 0);
-/// The first chunk's, in which a filter forgets a wide start.
+/// Length of the first chunk, in which a filter forgets a wide start.
 inline constexpr std::size_t head_length = 1024;
 
 enum class Pass { one_by_one, side_by_side, constant_gain };
 
-/// A stretch of the recording, and the filter after the instant before it.
+/// A stretch of the recording, and the filter's state at the epoch before it.
 template <int N>
 struct Chunk {
   std::size_t first = 0, count = 0;
@@ -37,7 +37,7 @@ struct Chunk {
   Pass pass = Pass::one_by_one;
 };
 
-/// What the steady state gives to a pass of constant gain.
+/// Steady-state data of a constant-gain pass.
 template <int N>
 struct Steady {
   SteadyState<N, 1> limit;
@@ -46,14 +46,14 @@ struct Steady {
   double tolerance;      ///< rounding's share in gains that have settled
 };
 
-/// Sums over the readings of a run.
+/// Sums over the measurements of a run.
 struct Score {
   double nis = 0.0;
   LogProduct R_S;  ///< Π R / S
   std::size_t readings = 0;
 };
 
-/// A run: what is given, what is known beforehand, where results go, and room to work in.
+/// A run: its input, precomputed data, output and workspace.
 template <int N>
 struct Work {
   StepModel<N> model{};
@@ -72,10 +72,10 @@ struct Work {
   std::vector<Row<N>> rows;             // of a chunk, one by one
   std::vector<LaneRow<N>> lane_rows;    // of a chunk, side by side
   std::vector<LaneMean<N>> lane_means;  // of a chunk, at constant gain
-  std::vector<double> lane_z;           // of a chunk, the lanes' readings of an instant together
+  std::vector<double> lane_z;           // of a chunk, the lanes' measurements of an epoch together
 };
 
-/// Where lane l's instant t stands.
+/// Where lane l's epoch t stands.
 [[nodiscard]] inline std::size_t instant(std::size_t first, int lane, std::size_t t) {
   return first + static_cast<std::size_t>(lane) * lane_length + t;
 }
@@ -84,9 +84,9 @@ struct Work {
 template <int N>
 [[nodiscard]] std::optional<Steady<N>> settle(const LinearModel<N, 1>& model);
 
-/// Whether what the readings see of P, and so every gain from here on, has come to its limit. Each
-/// entry is judged by itself and relatively; steps from one instant to the next would say nothing,
-/// since a slow mode's are always small.
+/// Whether what the measurements see of P, and so every gain from here on, has come to its limit.
+/// Each entry is judged by itself and relatively; steps from one epoch to the next would say
+/// nothing, since a slow mode's are always small.
 template <int N>
 [[nodiscard]] bool gains_settled(const Steady<N>& steady, const Mat<N, N>& P);
 
@@ -94,7 +94,7 @@ template <int N>
 template <int N>
 [[nodiscard]] bool settled(const Symmetric<N>& limit, const Mat<N, N>& P, double tolerance);
 
-/// The lanes' readings of `together` instants from t on into lane_z. Says whether all are there.
+/// The lanes' measurements of `together` epochs from t on into lane_z. Says whether all are there.
 template <int N>
 [[nodiscard]] bool lay_out(Work<N>& work, const Chunk<N>& chunk, std::size_t t);
 
@@ -118,8 +118,8 @@ void write_pairs(std::size_t first, std::span<T> out, const Numbers& numbers) {
     }
 }
 
-/// The lanes' numbers of a chunk into `out`, one T of Count numbers an instant; `numbers(t)` are
-/// the lanes'.
+/// The lanes' numbers of a chunk into `out`, one T of Count numbers an epoch; `numbers(t)` are the
+/// lanes'.
 template <int Count, class T, class Numbers>
 void write_lanes(std::size_t first, std::span<T> out, const Numbers& numbers) {
   constexpr std::size_t too_much_bytes = std::size_t{8} << 20U;
@@ -155,9 +155,9 @@ void set_lane(const Mat<N>& from, int lane, LaneNumbers* to) {
   for (int i = 0; i < N; ++i) to[i][lane] = from(i);
 }
 
-/// Each pass's filter takes `state` from before the chunk to its end; where no smoother follows,
-/// it writes the results. filter_side_by_side() and filter_constant_gain() say false, and leave all
-/// as it was, where readings are missing or lanes do not end where the next begins. The smoothers
+/// Each pass's filter takes `state` from before the chunk to its end; where no smoother follows, it
+/// writes the results. filter_side_by_side() and filter_constant_gain() say false, and leave all as
+/// it was, where measurements are missing or lanes do not end where the next begins. The smoothers
 /// take `later` from the chunk's end to before it, running the filter again, and write the results.
 template <int N>
 void filter_one_by_one(Work<N>& work, const Chunk<N>& chunk, State<N>& state);

@@ -8,8 +8,8 @@ namespace {
 template <int N>
 using Leaps = std::vector<LeapFrom<N>>;
 
-/// The leap of each lane, one from where the one before ends; P of each lane's beginning to
-/// `state`.
+/// The composition of each lane, each from the end of the previous one; P of each lane's beginning
+/// to `state`.
 template <int N>
 Leaps<N> leap_through(const Work<N>& work, const Chunk<N>& chunk, LaneState<N>& state) {
   Leaps<N> leaps;
@@ -23,8 +23,8 @@ Leaps<N> leap_through(const Work<N>& work, const Chunk<N>& chunk, LaneState<N>& 
   return leaps;
 }
 
-/// Whether the chunk begins with a covariance that shrinks a lot: there digits are lost that only
-/// the pass of one instant after another brings back.
+/// Whether the chunk begins with a strongly shrinking covariance: the digits lost there are
+/// recovered only by the pass of one epoch after another.
 template <int N>
 bool begins_wide(const Chunk<N>& chunk, const Leaps<N>& leaps) {
   for (int i = 0; i < N; ++i)
@@ -32,7 +32,7 @@ bool begins_wide(const Chunk<N>& chunk, const Leaps<N>& leaps) {
   return false;
 }
 
-/// Whether each lane ends with the covariance that the next began with.
+/// Whether each lane ends with the covariance with which the next began.
 template <int N>
 bool closes(const Leaps<N>& leaps, const LaneState<N>& end) {
   constexpr double tolerance = 1e-10;
@@ -93,8 +93,8 @@ void keep_covariances(Work<N>& work) {
   }
 }
 
-/// The filter over the chunk, from `state` before it; rows are kept where asked for. Says whether
-/// all readings are there.
+/// The filter over the chunk, from `state` before it; rows are stored on request. Returns whether
+/// all measurements are present.
 template <int N>
 bool filter_lanes(Work<N>& work, const Chunk<N>& chunk, LaneState<N>& state, bool keep) {
   work.lane_rows.resize(lane_length);
@@ -128,7 +128,8 @@ bool filter_side_by_side(Work<N>& work, const Chunk<N>& chunk, State<N>& state) 
   if (!filter_lanes(work, chunk, lane, !work.options.smooth)) return false;
   if (!closes(leaps, lane)) return false;
 
-  // All lanes but the first began with the mean 0: what they began with in truth is added.
+  // All lanes but the first started with the mean 0: the effect of their true initial mean is
+  // added.
   LaneNumbers begin[N];
   Mat<N> x = column(chunk.start.x);
   for (int l = 0; l < lanes; ++l) {

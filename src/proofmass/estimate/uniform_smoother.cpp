@@ -57,13 +57,13 @@ Status check_readings(const Work<N>& work, const Chunk<N>& chunk) {
       "instant " + std::to_string(chunk.first + static_cast<std::size_t>(infinite - z.begin())));
 }
 
-/// Filters a chunk by the fastest pass that it allows, and notes which.
+/// Filters a chunk by the fastest applicable pass, and records it.
 template <int N>
 Status filter_chunk(Work<N>& work, Chunk<N>& chunk, State<N>& state) {
   chunk.pass = pass_of(work, chunk);
   if (chunk.pass == Pass::constant_gain && filter_constant_gain(work, chunk, state)) return Done{};
   if (chunk.pass == Pass::side_by_side && filter_side_by_side(work, chunk, state)) return Done{};
-  // Infinite readings end up here: they are no more complete than missing ones.
+  // Infinite measurements end up here: they are no more complete than missing ones.
   chunk.pass = Pass::one_by_one;
   const Status fine = check_readings(work, chunk);
   if (fine) filter_one_by_one(work, chunk, state);

@@ -9,20 +9,20 @@
 #include "proofmass/estimate/covariance_runs.hpp"
 #include "proofmass/estimate/linear_series.hpp"
 
-// Filter and smoother of long recordings whose step is constant and which have one channel: what
-// filter_linear() and smooth_linear() give, as fast as memory takes it.
+// Filter and smoother of long recordings with a constant step and one channel: the results of
+// filter_linear() and smooth_linear(), at memory bandwidth.
 //
-//   x[k] = F x[k−1] + d + w,   z[k] = h x[k] + v,   z[k] NaN where there is no reading
+//   x[k] = F x[k−1] + d + w,   z[k] = h x[k] + v,   z[k] NaN where missing
 //
-// Which of three passes a stretch of the recording goes through is seen from the recording:
-//   one by one       its beginning, stretches with readings missing, what is left over at the end
-//   side by side     complete stretches, cut into lanes that run together; covariances at the
-//   lanes'
-//                    beginnings come from the composition of filtering elements, so they are exact
-//   constant gain    complete stretches after the gains have reached their limit
-//   (steady_state.hpp),
-//                    where covariances have a limit too or are not asked for
-// A gap leads back to the first, and from there on again.
+// One of three passes is selected for each stretch of the recording:
+//
+// - one by one: the beginning, stretches with missing measurements, the remainder at the end;
+// - side by side: complete stretches, cut into lanes that run in parallel. Covariances at the
+//   lanes' beginnings come from the composition of filtering elements, so they are exact;
+// - constant gain: complete stretches after the gains have reached their limit (steady_state.hpp),
+//   if covariances have a limit too or are not requested.
+//
+// A gap returns to the first pass.
 namespace proofmass::estimate {
 
 enum class Covariances {
@@ -33,31 +33,31 @@ enum class Covariances {
 
 template <int N>
 struct UniformOptions {
-  bool smooth = true;  ///< false: the filter's states, given what was read so far
+  bool smooth = true;  ///< false: filtered states, given the measurements so far
   Covariances covariances = Covariances::where_they_change;
   bool innovations = false;
-  Mat<N> input = Mat<N>::Zero();  ///< d: B u of an input that stays
+  Mat<N> input = Mat<N>::Zero();  ///< d: B u of a constant input
 };
 
-/// Where results go, each as long as the recording or empty. Memory that has been written to before
-/// is faster than new memory.
+/// Output arrays, each as long as the recording or empty. Memory that has been written to before is
+/// faster than new memory.
 template <int N>
 struct UniformOutput {
   std::span<Mat<N>> means = {};
   std::span<Symmetric<N>> covariances = {};
-  std::span<double> innovation = {};  ///< NaN where there is no reading
+  std::span<double> innovation = {};  ///< NaN where missing
   std::span<double> innovation_variance = {};
 };
 
-/// What a run says of the whole recording.
+/// Summary of a run.
 template <int N>
 struct UniformSummary {
   CovarianceRuns<N> covariances;  ///< for Covariances::where_they_change
-  double log_likelihood = 0.0;    ///< of the readings, as in LinearRun
-  double nis = 0.0;               ///< Σ y² / S: χ² of `readings` degrees
+  double log_likelihood = 0.0;    ///< of the measurements, as in LinearRun
+  double nis = 0.0;               ///< Σ y² / S: χ² with `readings` degrees of freedom
   std::size_t readings = 0;
-  // Instants that each pass has taken. The smoother's: where the covariances it is asked for still
-  // move, it takes a stretch side by side that the filter took at constant gain.
+  // Epochs processed by each pass, in the smoother. While the requested covariances still change,
+  // it processes a stretch side by side that the filter processed at constant gain.
   std::size_t one_by_one = 0, side_by_side = 0, constant_gain = 0;
 
   [[nodiscard]] std::string passes() const {
@@ -66,15 +66,13 @@ struct UniformSummary {
   }
 };
 
-/// Runs over `z` into the caller's memory. `prior` describes the state at the first instant, before
-/// its reading. For N = 1 to 4. The output's means have to be there, its covariances if they are
-/// asked for everywhere. Memory besides: O(1), and O(N²) for each 4000 instants, and what
-/// covariances are kept.
-/// Errors: not_finite (an infinite reading or a model that holds what is no number),
-/// not_positive_definite (R not positive).
-/// Source: Särkkä (2013), theorem 4.2, and Bierman (1973) as in kalman.hpp; S. Särkkä, Á. F.
-/// García-Fernández, IEEE Trans. Automatic Control 66 (2021) 299, for the composition.
-/// Cost: O(N³) an instant.
+/// Runs over `z` into the caller's memory. `prior` describes the state at the first epoch, before
+/// its measurement. For N = 1 to 4. The output's means are required, its covariances if they are
+/// requested everywhere. Additional memory: O(1), plus O(N²) for each 4000 epochs, plus the stored
+/// covariances. Errors: not_finite (an infinite measurement or a model with a NaN or infinity),
+/// not_positive_definite (R not positive). Source: Särkkä (2013), theorem 4.2, and Bierman (1973)
+/// as in kalman.hpp; S. Särkkä, Á. F. García-Fernández, IEEE Trans. Automatic Control 66 (2021)
+/// 299, for the composition. Cost: O(N³) an epoch.
 template <int N, int U>
 [[nodiscard]] Result<UniformSummary<N>> run_uniform(const LinearModel<N, 1, U>& model,
                                                     const Gaussian<N>& prior,
@@ -82,7 +80,7 @@ template <int N, int U>
                                                     const UniformOptions<N>& options,
                                                     const UniformOutput<N>& output);
 
-/// Results in memory of their own.
+/// Results with their own memory.
 template <int N>
 struct UniformRun {
   std::vector<Mat<N>> means;
@@ -90,13 +88,13 @@ struct UniformRun {
   std::vector<double> innovation, innovation_variance;
   UniformSummary<N> summary;
 
-  /// Covariance at instant k, wherever it was kept.
+  /// Covariance at epoch k, wherever it is stored.
   [[nodiscard]] const Symmetric<N>& covariance(std::size_t k) const {
     return covariances.empty() ? summary.covariances.at(k) : covariances[k];
   }
 };
 
-/// run_uniform() into memory of its own.
+/// run_uniform() into newly allocated memory.
 template <int N, int U>
 [[nodiscard]] Result<UniformRun<N>> smooth_uniform(const LinearModel<N, 1, U>& model,
                                                    const Gaussian<N>& prior,

@@ -243,7 +243,7 @@ TEST(UniformSmoother, KeepsItsDigitsBehindAGapAndAWideStart) {
 }
 
 // A filter that takes small steps of P for its limit freezes this bias's variance 5 % off, and
-// leaves it there: with a time constant of 100 s and 200 readings a second each step is small.
+// leaves it there: with a time constant of 100 s and 200 measurements a second each step is small.
 TEST(UniformSmoother, DoesNotFreezeWhatStillMovesSlowly) {
   const auto model = position_read(with_bias_model());
   Gaussian<4> start = prior<4>();

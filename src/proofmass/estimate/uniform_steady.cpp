@@ -19,7 +19,7 @@ std::optional<Steady<N>> settle(const LinearModel<N, 1>& model) {
   Mat<N, N> decay = model.F - limit->gain * (model.H * model.F);
   for (std::size_t left = lane_length; left > 0; left /= 2, decay = (decay * decay).eval())
     if (left % 2 == 1) steady.lane_decay = (steady.lane_decay * decay).eval();
-  // Rounding of a step, and what is left of it after so many.
+  // Rounding error of a step, and its remainder after many.
   steady.tolerance =
       std::clamp(8.0 * std::numeric_limits<double>::epsilon() * limit->slowest_steps, 1e-12, 1e-10);
   return steady;

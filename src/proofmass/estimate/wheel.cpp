@@ -29,8 +29,8 @@ Status check(const std::vector<WheelSensor>& sensors, const WheelOptions& option
   return check_wheel(sensors.size(), options);
 }
 
-/// Path along the circle in radians: every way there and back counts, the noise at rest does not. A
-/// turning point is one that the angle has left by four standard deviations and a thousandth.
+/// Path along the circle in radians: every reversal counts, the noise at rest does not. A turning
+/// point is one from which the angle has departed by four standard deviations and a thousandth.
 double angular_path_rad(const WheelSeries& series) {
   double path = 0.0, turned_at = series.angle_rad.front(), furthest = turned_at;
   double way = 0.0;  // +1, −1; 0 while none is clear
@@ -156,7 +156,7 @@ void add_sensor(const WheelSensor& sensor,
                                 "took the most level of the sensor's axes (--spin-axis)"});
 }
 
-/// Instants at which the gate shut out every channel there was, in stretches.
+/// Epochs at which the gate rejected every available channel, as intervals.
 void add_gated(WheelSolution& solution) {
   const WheelSeries& series = solution.series;
   bool open = false;
@@ -216,7 +216,7 @@ void judge_turns(const WheelFit& fit, const std::string& where, WheelSolution& s
            "cannot be distinguished"});
 }
 
-/// A wheel that shakes is most likely under a vehicle, whose speeding up leans on the apparent
+/// A wheel that vibrates is most likely on a vehicle, whose acceleration tilts the apparent
 /// gravity.
 void note_travel(const WheelReadings& readings, WheelSolution& solution) {
   if (readings.given_rolling_radius_m || !readings.shakes) return;
@@ -236,7 +236,7 @@ void note_travel(const WheelReadings& readings, WheelSolution& solution) {
            " degrees of the angle open meanwhile; --rolling-radius narrows it (0 for a bench)"});
 }
 
-/// Errors: invalid_argument (a radius so far from the recording's that its unit must be another).
+/// Errors: invalid_argument (a radius so far from the recording's that its unit must be wrong).
 Status check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolution& solution) {
   constexpr double another_unit = 20.0;
   for (std::size_t s = 0; s < fit.free_radius_m.size(); ++s) {
@@ -259,7 +259,7 @@ Status check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolut
   return Done{};
 }
 
-/// Per sample and axis, at rest or at the quietest.
+/// Per sample and axis, at rest or in the quietest part.
 double noise_mps2(const WheelReadings& readings, std::size_t sensor) {
   std::vector<double> variance;
   for (const WheelInstant& instant : readings.instants)

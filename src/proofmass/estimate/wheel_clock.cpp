@@ -16,7 +16,7 @@ double interpolated(const std::vector<double>& x, const std::vector<double>& y, 
   return std::lerp(y[i - 1], y[i], (at - x[i - 1]) / (x[i] - x[i - 1]));
 }
 
-/// The first's times on a grid of 20 Hz for which the second, shifted, has readings too.
+/// The first's times on a grid of 20 Hz at which the shifted second has measurements too.
 std::vector<double> common_times(const WheelMotion& first,
                                  const WheelMotion& second,
                                  double offset_s) {
@@ -94,7 +94,7 @@ Slope slope_of(const std::vector<double>& speed, const std::vector<double>& diff
 Result<ClockFit> fit_clocks(const WheelMotion& first,
                             const WheelMotion& second,
                             bool clocks_shared) {
-  // Stamps that both begin at nought look like one clock and need not be: the speeds tell.
+  // Stamps that both begin at zero look like one clock but need not be: the speeds decide.
   constexpr double same_speed_radps = 0.3;
   const double apart = speed_mismatch(first, second, 0.0);
   if (apart > same_speed_radps * same_speed_radps) {

@@ -6,16 +6,16 @@
 
 #include "proofmass/estimate/wheel_passes.hpp"
 
-// What coloured innovations make of the bands. Private to the module's wheel_*.cpp.
+// Effect of coloured innovations on the bands. Private to the module's wheel_*.cpp.
 //
-// The filter's covariances hold for white innovations. Where the road or the hand colours them, the
-// information of a figure is not the sum over the readings: the scores h ν / S of a stretch add up
-// instead of cancelling. Their sums over blocks say how much wider the band is. Source: the
-// "sandwich" of P. J. Huber, Proc. 5th Berkeley Symp. 1 (1967) 221, with blocks as of H. R.
-// Künsch, Ann. Statist. 17 (1989) 1217.
+// The filter's covariances hold for white innovations. If the road or the hand colours them, the
+// information on a parameter is not the sum over the measurements: the scores h ν / S of an
+// interval accumulate instead of averaging out. Their sums over blocks give the inflation of the
+// band. Source: the "sandwich" of P. J. Huber, Proc. 5th Berkeley Symp. 1 (1967) 221, with blocks
+// as in H. R. Künsch, Ann. Statist. 17 (1989) 1217.
 namespace proofmass::estimate {
 
-/// Squares of block sums of one score, over the sum of its squares: 1 where it is white.
+/// Mean square of block sums of one score, over the mean of its squares: 1 if it is white.
 class BlockVariance {
  public:
   void add(double score) {
@@ -26,17 +26,18 @@ class BlockVariance {
     blocks_ += sum_ * sum_;
     sum_ = 0.0;
   }
-  /// Never below 1: what cancels better than chance is no gain to count on.
+  /// Never below 1: a smaller value is not used to narrow the band.
   [[nodiscard]] double ratio() const { return own_ > 0.0 ? std::max(1.0, blocks_ / own_) : 1.0; }
 
  private:
   double sum_ = 0.0, own_ = 0.0, blocks_ = 0.0;
 };
 
-/// The scores of the constants (all that stands, from wheel::first_of(0) on) summed over blocks: of
-/// a reading z at the smoothed state, h (z − ẑ)/R. The smoothed residual over R is Σ⁻¹ times the
-/// whole misfit, Σ the covariance of readings with the motion integrated out, so that these are the
-/// scores of the marginal likelihood. Source: S. J. Koopman, Biometrika 80 (1993) 117.
+/// The scores of the constants (all static states, from wheel::first_of(0) on) summed over blocks:
+/// for a measurement z at the smoothed state, h (z − ẑ)/R. The smoothed residual over R is Σ⁻¹
+/// times the whole misfit, Σ the covariance of measurements with the motion integrated out, so that
+/// these are the scores of the marginal likelihood. Source: S. J. Koopman, Biometrika 80 (1993)
+/// 117.
 template <int S>
 class ScoreBlocks {
  public:
@@ -44,7 +45,7 @@ class ScoreBlocks {
 
   explicit ScoreBlocks(double block_s) : block_s_(block_s) {}
 
-  /// Readings at the smoothed state, of an instant no later than the last added.
+  /// Measurements at the smoothed state, of an epoch no later than the last added.
   void add(double time_s, const Readings<wheel::states(S), WheelModel<S>::channels>& readings) {
     if (time_s < end_s_) {
       end_block();
@@ -99,7 +100,7 @@ class AngleColour {
     }
   }
 
-  /// By which the standard deviation of an angle of this variance grows.
+  /// Inflation factor for an angle of this variance.
   [[nodiscard]] double factor(double variance_rad2) const {
     const double each = information_ / static_cast<double>(std::max<std::size_t>(instants_, 1));
     const double averaged = std::max(1.0, 1.0 / (each * variance_rad2));

@@ -8,8 +8,8 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Of the covariance that a figure had beforehand, the share of the standard deviation above which
-/// the recording has not told it.
+/// Ratio of posterior to prior standard deviation above which the recording does not determine a
+/// value.
 constexpr double untold = 0.5;
 
 std::optional<Uncertain> told(const WheelFit& fit, int at, double offset = 0.0) {
@@ -27,11 +27,10 @@ void describe_place(const WheelFit& fit, int at, WheelSensorFit& sensor) {
   const Eigen::Vector2d outward = r / radius, forward(-outward(1), outward(0));
   const double std = std::sqrt(outward.dot(cov * outward));
   const double across = std::sqrt(forward.dot(cov * forward)) / radius;
-  // Five standard deviations: of a sensor at the axle, nothing but error is hardly ever that far
-  // out.
+  // Five standard deviations: a sensor at the axle is hardly ever estimated that far out by chance.
   if (across < 0.2) sensor.mounting_rad = Uncertain{-std::atan2(r(1), r(0)), across};
-  // Without a radius given, stricter than for the rest: the size of a vector is never below zero,
-  // so a poor one looks large.
+  // Without a given radius, stricter than for the rest: the norm of a vector is never below zero,
+  // so an uncertain one looks large.
   const double most = fit.given_radius_m
                           ? fit.given_radius_m->std
                           : 0.5 * untold * std::sqrt(fit.constants_prior_cov(at, at));
@@ -40,7 +39,7 @@ void describe_place(const WheelFit& fit, int at, WheelSensorFit& sensor) {
 
 enum class Kind { bias, scale, skew, phase, place };
 
-/// One of the constants of a fit: whose, what, and along which axis.
+/// One of the constants of a fit: its sensor, type and axis.
 struct Constant {
   std::size_t sensor = 0;
   Kind kind = Kind::bias;
@@ -102,7 +101,7 @@ std::string sentence(const Eigen::VectorXd& direction,
   for (std::size_t i = 0; i < constants.size(); ++i)
     any_bias = any_bias || (constants[i].kind == Kind::bias && share(i) >= 0.3);
   for (std::size_t i = 0; i < constants.size(); ++i) {
-    // On a fast wheel a little way from the axle weighs as much as all the bias that is believed.
+    // On a fast wheel a small offset from the axle has the effect of the whole prior bias.
     const bool trades = any_bias && constants[i].kind == Kind::place;
     if (share(i) < (trades ? 0.05 : 0.3)) continue;
     names.push_back(name_of(constants[i]));
@@ -150,7 +149,7 @@ void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSe
 
 std::vector<std::string> say_not_observable(const WheelFit& fit,
                                             const std::vector<WheelSensorFit>& sensors) {
-  // Ripple and gyroscope are nuisances here.
+  // Ripple and gyroscope are nuisance parameters here.
   const int count = static_cast<int>(sensors.size());
   const Eigen::Index own = wheel::ripple(count) - wheel::first_of(0),
                      places_at = wheel::places(count) - wheel::first_of(0);
@@ -159,7 +158,7 @@ std::vector<std::string> say_not_observable(const WheelFit& fit,
     if (i < own || i >= places_at) shown.push_back(i);
   const Eigen::MatrixXd cov = fit.constants_cov(shown, shown);
   Eigen::VectorXd scale = fit.constants_prior_cov.diagonal()(shown).cwiseSqrt().cwiseInverse();
-  // A radius that was given is known, however little the recording adds to it.
+  // A given radius is known, however little the recording adds to it.
   const auto places = static_cast<Eigen::Index>(2 * sensors.size());
   scale.tail(places) = scale.tail(places).cwiseMin(1.0 / short_way_prior.place_m);
   const SymmetricEigen axes = symmetric_eigen(scale.asDiagonal() * cov * scale.asDiagonal());

@@ -21,7 +21,7 @@ void resize(WheelSeries& series, std::size_t size) {
   series.channels_gated.resize(size);
 }
 
-/// Of each sensor: along u, along v and, of a gyroscope, about the axle.
+/// Channels of each sensor: along u, along v and, with a gyroscope, about the axle.
 template <int S>
 std::size_t channels_each(const WheelModel<S>& model) {
   return model.with_gyro ? 3 : 2;
@@ -73,7 +73,7 @@ void note_backward(const WheelModel<S>& model,
   fit.track.path.moving[k] = mean.template head<wheel::moving>();
 }
 
-/// Between the first instant and the last, from the state after the last.
+/// Between the first epoch and the last, from the state after the last.
 template <int S>
 Uncertain turns_in(const WheelModel<S>& model, const Gaussian<wheel::states(S)>& end) {
   Mat<wheel::states(S)> first = end.mean;
@@ -86,9 +86,9 @@ Uncertain turns_in(const WheelModel<S>& model, const Gaussian<wheel::states(S)>&
           std::sqrt(std::max(slope.dot(end.cov * slope), 0.0)) / rad_per_turn};
 }
 
-/// The extended filter as it would run on calibrated sensors: the motion unknown at the start, the
-/// constants as the whole recording tells them for its first instant, as well as it does at its
-/// last.
+/// The extended filter as it would run on calibrated sensors: the initial motion unknown, the
+/// constants with the estimates of the whole recording at its first epoch and the uncertainty at
+/// its last.
 template <int S>
 void filter_calibrated(const WheelModel<S>& model,
                        const WheelPrior& prior,
@@ -107,7 +107,7 @@ void filter_calibrated(const WheelModel<S>& model,
   });
 }
 
-/// Doubts less than half a second apart are one.
+/// Ambiguous intervals less than half a second apart are merged.
 void add_doubt(std::size_t k,
                const Gaussian<wheel::moving>& predicted,
                const std::vector<double>& time_s,
@@ -125,7 +125,7 @@ void add_doubt(std::size_t k,
   doubt.predicted = predicted;
 }
 
-/// What filter and smoother say with the places held where they were found.
+/// Results of filter and smoother with the lever arms held at their estimates.
 template <int S>
 WheelFit smooth_at_places(const WheelReadings& readings,
                           const Settled<S>& settled,
@@ -221,10 +221,10 @@ Run run_at(const WheelModel<S>& model, const WheelPrior& prior) {
   return run;
 }
 
-/// What the figures leave open that the passes hold: the places, the delay of the sensors' filters
-/// and the radius that the wheel rolls on, of which the last two show reliably in no likelihood.
-/// The whole is smoothed again with the figure a share of its standard deviation off, and the
-/// differences are drawn out to one.
+/// Contribution of the parameters that the passes hold: the lever arms, the delay of the sensors'
+/// filters and the rolling radius; the last two are not reliably determined by any likelihood. The
+/// smoother is repeated with the parameter changed by a share of its standard deviation, and the
+/// differences are extrapolated linearly.
 template <int S>
 class HeldFigures {
  public:
@@ -236,16 +236,16 @@ class HeldFigures {
         base_(run_at(model(), settled.prior)),
         base_places_(places_of(model())) {}
 
-  /// False where a run's angle goes another way than the fit's, however small the step: the
-  /// differences mean nothing then, and the fit is spoilt.
+  /// Returns false if a run's angle slips relative to the fit's, however small the step: the
+  /// differences are then meaningless, and the fit invalid.
   [[nodiscard]] bool add_to(WheelFit& fit) const {
     return add_places(fit) && add(&WheelModel<S>::delay_s, readings_.delay_s.std, fit) &&
            add(&WheelModel<S>::rolling_radius_m, readings_.rolling_radius_m.std, fit);
   }
 
  private:
-  /// Along each principal direction of their covariance, not a standard deviation at once: where
-  /// the recording hardly shows the places, that is no small step.
+  /// Along each principal direction of their covariance, by less than a standard deviation: if the
+  /// recording hardly determines the lever arms, that is not a small step.
   [[nodiscard]] bool add_places(WheelFit& fit) const {
     constexpr double longest_step_m = 2e-3;
     const SymmetricEigen axes = symmetric_eigen(settled_.places_cov);
@@ -261,7 +261,7 @@ class HeldFigures {
     return true;
   }
 
-  /// The places are found anew under the other figure.
+  /// The lever arms are estimated anew with the changed parameter.
   [[nodiscard]] bool add(double WheelModel<S>::* figure, double std, WheelFit& fit) const {
     if (!(std > 0.0)) return true;
     const auto moved = [&](double share) {
@@ -281,7 +281,7 @@ class HeldFigures {
     return places_by_levers(model, levers_, settled_.prior, settled_.belief).mean;
   }
 
-  /// Whether the run's angle goes another way.
+  /// Whether the run's angle slips.
   [[nodiscard]] bool slips(const Run& run) const {
     constexpr double slip_rad = 0.5;
     return !std::ranges::equal(run.angle_rad, base_.angle_rad,
@@ -326,9 +326,9 @@ class HeldFigures {
   Places base_places_;
 };
 
-/// Adds what the held figures leave open, from runs on the averaged readings, since differences are
-/// smooth, or on all of them where those slip. Where these slip too the recording has shown nothing
-/// of the constants, and the angle is as late as the delay is uncertain.
+/// Adds the contribution of the held parameters, from runs on the averaged measurements, since
+/// differences are smooth, or on all of them if those slip. If these slip too, the recording does
+/// not determine the constants, and the angle has the uncertainty of the delay.
 template <int S>
 void add_held_figures(const Settled<S>& settled,
                       const WheelReadings& averaged,
@@ -357,9 +357,9 @@ void add_held_figures(const Settled<S>& settled,
   fit = std::move(with);
 }
 
-/// Gravity is what scales and places are measured with: were it larger by a part, the scales would
-/// be smaller and the places larger by that part, the angle the same. `believed` is the share of
-/// the places' information that came from their prior, which no gravity moves.
+/// Gravity is the reference of scales and lever arms: if it is larger by a fraction, the scales are
+/// smaller and the lever arms larger by that fraction, the angle unchanged. `believed` is the share
+/// of the lever arms' information from their prior, which does not depend on gravity.
 template <int S>
 void add_gravity_uncertainty(const WheelReadings& readings,
                              const Eigen::MatrixXd& believed,
@@ -375,7 +375,7 @@ void add_gravity_uncertainty(const WheelReadings& readings,
   fit.constants_cov += change * change.transpose();
 }
 
-/// How many readings may be averaged before the wheel turns a twentieth of a radian meanwhile.
+/// Number of measurements that may be averaged before the wheel turns by a twentieth of a radian.
 std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack& track) {
   double fastest = 0.0;
   for (const Mat<wheel::moving>& at : track.path.moving)
@@ -385,7 +385,7 @@ std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack&
   return static_cast<std::size_t>(std::clamp(0.05 * readings.rate_hz() / fastest, 1.0, most));
 }
 
-/// A track of the averaged readings, on the time line of all of them.
+/// A track of the averaged measurements, on the time line of all of them.
 WheelTrack spread_track(const WheelTrack& track,
                         const WheelReadings& averaged,
                         const WheelReadings& readings) {
@@ -401,8 +401,7 @@ WheelTrack spread_track(const WheelTrack& track,
   return out;
 }
 
-/// Gives each reading the variance that its average was found to have, times what averaging took
-/// off.
+/// Assigns each measurement the estimated variance of its average, times the averaging factor.
 void spread_variance(const WheelReadings& averaged, std::size_t each, WheelReadings& readings) {
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
     readings.sensors[s].speed_variance =
@@ -432,8 +431,8 @@ WheelFit fit_sensors(WheelReadings& readings,
   WheelTrack coarse_track = spread_track(track, readings, coarse);
   const int rounds = S == 1 && depth == FitDepth::whole ? 4 : 2;
   Settled<S> settled = settle_rounds<S>(coarse, coarse_track, belief, rounds, progress);
-  // A warm-up is no random walk: it drifts fastest at the start, where the turns begin to be
-  // counted.
+  // A warm-up is not a random walk: it drifts fastest at the start, where the count of turns
+  // begins.
   settled.noise.bias_walk_psd *= 3.0;
   improve(coarse, settled, coarse_track);
   settled.prior.beginning = coarse_track.beginning;

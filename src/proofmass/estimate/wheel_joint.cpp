@@ -10,14 +10,13 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Above this share of unexplained readings there is no wheel turning in gravity to be seen.
+/// Above this share of unexplained measurements no wheel rotating in gravity is visible.
 constexpr double not_a_wheel = 0.5;
-/// Rows of two sensors this close share one instant: 50 rad/s move the phase by 0.25 mrad
-/// meanwhile.
+/// Rows of two sensors this close share one epoch: 50 rad/s move the phase by 0.25 mrad meanwhile.
 constexpr double same_instant_s = 5e-6;
 
-/// A pole that is given is good to a tenth, as resistors and capacitors are. One that is not may be
-/// anywhere between two corners, each octave as likely.
+/// A given pole is accurate to a tenth, as resistors and capacitors are. Otherwise it is
+/// log-uniform between two corners.
 Uncertain delay_of(const WheelOptions& options, double rate_hz) {
   const auto delay_s = [](double corner_hz) { return 1.0 / (rad_per_turn * corner_hz); };
   if (options.bandwidth_hz) {
@@ -70,22 +69,22 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
   return readings;
 }
 
-/// Nothing is believed of the places but their size.
+/// A prior of the lever arms with only their size.
 PlacesPrior anywhere(std::size_t sensors, double std_m) {
   const auto count = static_cast<Eigen::Index>(2 * sensors);
   return {Eigen::VectorXd::Zero(count), Eigen::MatrixXd::Identity(count, count) * (std_m * std_m)};
 }
 
-/// Whether the recording shows in which of its own directions the sensor sits.
+/// Whether the recording determines the direction of the lever arm in the sensor's axes.
 bool shows_direction(const WheelFit& fit, Eigen::Index at) {
   const double trace = fit.constants_cov.block<2, 2>(at, at).trace();
   return fit.constants.segment<2>(at).squaredNorm() > 25.0 * trace;
 }
 
-/// With the radius given, each sensor is on its circle; where on it is left to the recording, since
-/// at one speed a turn of that direction is a bias. Where the recording does not show the
-/// direction, the sensor may be anywhere within, as far from the middle along each axis as a
-/// circle's points are.
+/// With the radius given, each sensor is on its circle; its direction comes from the recording,
+/// since at one speed a rotation of that direction is equivalent to a bias. If the recording does
+/// not determine it, the sensor may be anywhere within, with the variance along each axis of the
+/// points on a circle.
 PlacesPrior on_circles(const WheelFit& free, std::size_t sensors, const Uncertain& radius_m) {
   PlacesPrior prior =
       anywhere(sensors, std::max(radius_m.value / std::numbers::sqrt2, radius_m.std));
@@ -105,7 +104,7 @@ Uncertain radius_in(const WheelFit& fit, std::size_t sensors, std::size_t sensor
   const auto at = fit.constants.size() - static_cast<Eigen::Index>(2 * (sensors - sensor));
   const Eigen::Vector2d place = fit.constants.segment<2>(at);
   const Eigen::Matrix2d cov = fit.constants_cov.block<2, 2>(at, at);
-  // A sensor found at the axle is out in no direction, and as uncertain as in its worst.
+  // A sensor estimated at the axle has no defined direction, and the uncertainty of its worst one.
   const double widest = std::sqrt(symmetric_eigen(cov).values.maxCoeff());
   if (place.norm() < widest) return {place.norm(), widest};
   const Eigen::Vector2d outward = place.normalized();
@@ -136,8 +135,8 @@ double top_speed_radps(const WheelFit& fit) {
   return top;
 }
 
-/// Whether the settled fit explains much less than the track that it began with: a variance that
-/// grows with the misfit can talk a filter out of following the wheel.
+/// Whether the final fit explains much less than its initial track: a variance that grows with the
+/// misfit can decouple a filter from the wheel.
 bool has_lost(const WheelFit& fit, const WheelTrack& begun) {
   return fit.track.lost > 0.1 + 1.5 * begun.lost;
 }
@@ -161,7 +160,7 @@ Result<Single> fit_single(const WheelSensor& sensor,
     followed = true;
     single.fit = fit_with_radius(single.readings, track, depth, options);
     if (top_speed_radps(single.fit) > fastest || has_lost(single.fit, track)) continue;
-    // A fit that explains more but is unsure of its turns outweighs a sure one.
+    // A fit that explains more but whose turns are uncertain outweighs a certain one.
     const bool explains_less = unsure && unsure->fit.track.lost < single.fit.track.lost;
     if (single.fit.doubts.empty() &&
         !(explains_less && std::abs(unsure->fit.turns.value - single.fit.turns.value) > 0.5))
@@ -228,7 +227,7 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
     pair.singles.push_back(std::move(single).value());
   }
   if (pair.singles.size() == 1) return pair;
-  // Less than a hundredth of a turn shows no way.
+  // Less than a hundredth of a turn does not determine the direction.
   const double way = pair.singles[0].fit.turns.value * pair.singles[1].fit.turns.value;
   if (way < -1e-4 && !options.spin_axis) {
     Prepared other = pair.singles[1].prepared;
@@ -241,8 +240,8 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
                                  options.clocks_shared);
   if (!clocks) return clocks.error().at("two sensors");
   pair.clocks = *clocks;
-  // On one clock an offset has to show clearly before the stamps are called wrong, and it does not
-  // where an angle was lost.
+  // With a shared clock an offset must be clearly significant before the stamps are declared wrong,
+  // which it is not if an angle was lost.
   const bool lost = !pair.singles[0].fit.doubts.empty() || !pair.singles[1].fit.doubts.empty();
   if (options.clocks_shared && (lost || std::abs(pair.clocks.offset_s.value) <
                                             std::max(5.0 * pair.clocks.offset_s.std, 2e-4)))

@@ -7,11 +7,11 @@
 #include "proofmass/estimate/wheel_fit.hpp"
 #include "proofmass/estimate/wheel_plane.hpp"
 
-// From what the sensors wrote down to their fits: each alone, then both in one filter. Private to
-// the module's wheel*.cpp and live_wheel*.cpp.
+// From the sensors' data to their fits: each alone, then both in one filter. Private to the
+// module's wheel*.cpp and live_wheel*.cpp.
 namespace proofmass::estimate {
 
-/// A sensor made ready for the filter.
+/// A sensor prepared for the filter.
 struct Prepared {
   Screened screened;
   WheelPlane plane;
@@ -23,17 +23,19 @@ struct Single {
   WheelFit fit;
 };
 
-/// The single fits of a pair, the second seen from the side from which both turn the same way.
+/// The single fits of a pair, the second with its axis reversed if needed so that both rotate in
+/// the same direction.
 struct Pair {
   std::vector<Single> singles;
   ClockFit clocks;
 };
 
-/// Each sensor alone, and how the second lies to the first. Errors: as of estimate_wheel().
+/// Each sensor alone, and the second's phase relative to the first. Errors: as for
+/// estimate_wheel().
 [[nodiscard]] Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors,
                                        const WheelOptions& options);
 
-/// Both sensors in one filter, started from what each alone found.
+/// Both sensors in one filter, started from the single fits.
 struct Joint {
   WheelReadings readings;
   WheelFit fit;
@@ -46,10 +48,10 @@ struct Joint {
 /// (u, v) of each sensor.
 [[nodiscard]] Eigen::VectorXd places_in(const WheelFit& fit, std::size_t sensors);
 
-/// Of the radius that was given.
+/// Standard deviation of the given radius.
 [[nodiscard]] double radius_std_m(const WheelOptions& options);
 
-/// Whether the options can be followed, for so many sensors.
+/// Checks the options for this number of sensors.
 [[nodiscard]] Status check_wheel(std::size_t sensors, const WheelOptions& options);
 
 }  // namespace proofmass::estimate

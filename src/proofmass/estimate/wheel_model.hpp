@@ -7,50 +7,52 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/kalman.hpp"
 
-// The state-space model of accelerometers on a wheel that turns about a level axle.
+// State-space model of accelerometers on a wheel that turns about a level axle.
 //
 // Each sensor has two axes u, v in the plane of the wheel, v a quarter turn ahead of u. With φ the
-// angle of u from the horizontal, r = (r_u, r_v) the place of the sensor as seen in its own axes,
-// ω and α speed and acceleration of the wheel, and a_h = −ρ α the axle's acceleration where the
-// wheel rolls on a radius ρ (0 on a bench),
+// angle of u from the horizontal, r = (r_u, r_v) the sensor's lever arm in its own axes, ω and α
+// speed and acceleration of the wheel, and a_h = −ρ α the axle's acceleration for a wheel that
+// rolls on a radius ρ (0 on a bench),
 //
 //   f_u = g sin φ + a_h cos φ − ω² r_u − α r_v
 //   f_v = g cos φ − a_h sin φ − ω² r_v + α r_u
 //   z_u = (1 + s_u)(f_u + κ f_v) + b_u,   z_v = (1 + s_v)(f_v + κ f_u) + b_v,
 //
 // with biases b, scale errors s and a skew κ of the two axes. Sensor 1 has φ = θ, the wheel's
-// angle; sensor 2 has φ = θ + μ. A common turn of both axes of sensor 1 against the wheel's marks
-// is in no reading, and so in no state. Nor is ρ: a_h shifts the apparent gravity by −ρ α / g,
-// which is what a shift of φ does. Source: kinematics of a rigid body in a plane; for two opposite
-// sensors with parallel axes, M. A. Lele (2010), section 4.4, with α = a_t / R.
+// angle; sensor 2 has φ = θ + μ.
 //
-// What drives a wheel ripples with its angle (unbalance, bearing, gear). The state's angle Θ and
-// speed Ω are those without the ripple; the wheel's own are
+// Not observable, hence no states: a common rotation of both axes of sensor 1 against the wheel's
+// marks, and ρ, since a_h shifts the apparent gravity by −ρ α / g, as a shift of φ does. Source:
+// kinematics of a rigid body in a plane; for two opposite sensors with parallel axes, M. A. Lele
+// (2010), section 4.4, with α = a_t / R.
+//
+// The drive torque has a ripple that depends on the angle (unbalance, bearing, gear). The state's
+// angle Θ and speed Ω exclude the ripple; the wheel's own are
 //
 //   θ = Θ + Σ (c_n sin nΘ − s_n cos nΘ) / n,   ω = dθ/dt = Ω (1 + Σ c_n cos nΘ + s_n sin nΘ).
 //
-// A ripple once a turn looks like a scale error or a skew, by ω² r: without it as a nuisance the
-// readings would seem to tell those, and the place, at one speed.
+// A ripple once per turn resembles a scale error or a skew, by ω² r: without the ripple as a
+// nuisance parameter, scale, skew and lever arm would appear to be observable at one speed.
 //
-// A sensor's filter shows the motion of τ earlier. What turns about the sensor, gravity and hub, it
-// delays by atan(ω τ) instead of ω τ and weakens by the cosine of that (one pole). Its gyroscope,
-// where it has one, reads (1 + s_g) ω + b_g about the axle, as late.
+// A sensor's filter delays the motion by τ. Rotating quantities (gravity and hub acceleration) are
+// delayed by atan(ω τ) instead of ω τ and attenuated by the cosine of that (one pole). Its
+// gyroscope, if any, measures (1 + s_g) ω + b_g about the axle, with the same delay.
 namespace proofmass::estimate {
 
-/// Where each quantity sits in the state; what belongs to a sensor counts from first_of(sensor).
+/// Indices of each quantity in the state; those of a sensor are relative to first_of(sensor).
 namespace wheel {
 inline constexpr int angle = 0, speed = 1, accel = 2, jerk = 3, moving = 4;
-/// The angle at the first instant rides along as a constant, so that the turns since then have
-/// their variance from one covariance.
+/// The angle at the first epoch is kept as a constant state, so that one covariance gives the
+/// variance of the turns since then.
 inline constexpr int start = 4;
-inline constexpr int bias = 0, scale = 2, skew = 4;  ///< of a sensor, from first_of on
+inline constexpr int bias = 0, scale = 2, skew = 4;  ///< of a sensor, relative to first_of
 
 [[nodiscard]] constexpr int first_of(int sensor) {
   return 5 + 5 * sensor;
 }
-/// Of the second sensor against the first.
+/// Phase of the second sensor against the first.
 inline constexpr int phase = first_of(2);
-inline constexpr int ripple_orders = 4;  ///< (c, s) of each
+inline constexpr int ripple_orders = 4;  ///< (c, s) for each
 [[nodiscard]] constexpr int ripple(int sensors) {
   return first_of(sensors) + (sensors - 1);
 }
@@ -58,46 +60,48 @@ inline constexpr int ripple_orders = 4;  ///< (c, s) of each
 [[nodiscard]] constexpr int gyro(int sensors) {
   return ripple(sensors) + 2 * ripple_orders;
 }
-/// The places come last: once found they are held, and the filter runs on the states before them.
+/// The lever arms come last: once found they are held, and the filter runs on the states before
+/// them.
 [[nodiscard]] constexpr int places(int sensors) {
   return gyro(sensors) + 2 * sensors;
 }
 [[nodiscard]] constexpr int states(int sensors) {
   return places(sensors) + 2 * sensors;
 }
-/// What stands from first_of(0) on: the sensors' constants, the phase, the places.
+/// Static states from first_of(0) on: the sensors' constants, the phase, the lever arms.
 [[nodiscard]] constexpr int standing(int sensors) {
   return states(sensors) - first_of(0);
 }
 }  // namespace wheel
 
-/// What the filter is told of the noise; found from the recording by tune_wheel().
+/// Noise parameters of the filter; estimated from the recording by tune_wheel().
 struct WheelNoise {
-  /// Two-sided densities of what drives the motion: white jerk, rad²/s⁵, for speeds that change
-  /// roughly, and white snap, rad²/s⁷, for those that change smoothly.
+  /// Two-sided densities of the motion noise: white jerk, rad²/s⁵, for irregular speeds, and white
+  /// snap, rad²/s⁷, for smooth ones.
   double jerk_psd = 1.0, snap_psd = 0.0;
-  double bias_walk_psd = 0.0;  ///< of each bias, (m/s²)²/s
+  double bias_walk_psd = 0.0;  ///< random walk of each bias, (m/s²)²/s
 };
 
-/// Orders 1 and 2 are always there, being those that look like scale, skew and bias.
+/// Orders 1 and 2 are always included, as they resemble scale, skew and bias.
 using RippleOrders = std::array<int, wheel::ripple_orders>;
 inline constexpr RippleOrders first_orders{1, 2, 3, 4};
 inline constexpr int highest_order = 12;
 
-/// Of each part of the ripple, 1/s: a tenth of a per cent within ten seconds.
+/// Random walk of each part of the ripple, 1/s: a tenth of a per cent within ten seconds.
 inline constexpr double ripple_walk_psd = 1e-7;
-/// Of a gyroscope's bias, (rad/s)²/s, and scale, 1/s: 0.06 deg/s and 0.3 % within ten seconds, for
-/// axes that lean, a frame that turns, and what gravity and shaking do to it. A gyroscope tells the
-/// count and bridges what is spoilt; it is no better than this against gravity.
+/// Random walk of a gyroscope's bias, (rad/s)²/s, and scale, 1/s: 0.06 deg/s and 0.3 % within ten
+/// seconds, for inclined axes, a turning frame, and its sensitivity to gravity and vibration. A
+/// gyroscope resolves the count and bridges disturbed intervals; against gravity it has no more
+/// weight than this.
 inline constexpr double gyro_bias_walk_psd = 1e-7, gyro_scale_walk_psd = 1e-6;
 
-/// The readings of one sensor in the plane of the wheel, SI.
+/// Measurements of one sensor in the plane of the wheel, SI.
 struct PlanarReadings {
-  std::vector<double> u_mps2, v_mps2;  ///< NaN where there is no reading
-  std::vector<double> variance_m2ps4;  ///< of each reading, both axes alike
-  /// Of a gyroscope about the axle, NaN where there is none; empty without one.
+  std::vector<double> u_mps2, v_mps2;  ///< NaN where missing
+  std::vector<double> variance_m2ps4;  ///< of each measurement, both axes alike
+  /// Gyroscope rate about the axle, NaN where missing; empty without one.
   std::vector<double> speed_radps{};
-  double speed_variance = 0.0;  ///< of each, rad²/s²
+  double speed_variance = 0.0;  ///< variance of each, rad²/s²
   std::size_t saturated_speeds = 0;
 
   [[nodiscard]] bool has(std::size_t row) const {
@@ -105,34 +109,39 @@ struct PlanarReadings {
   }
 };
 
-/// What an earlier pass found. The readings are made linear about its constants; about its motion
-/// only during the first turn and where the filter's own prediction is half a radian away, which is
-/// a filter that slips. The prediction owes nothing to the reading it meets; a smoothed motion
-/// does, and columns of the Jacobian that share their noise with the readings bias what is fitted
-/// to them.
+/// Result of an earlier pass, about which the measurements are linearised:
+///
+/// - about its constants always;
+/// - about its motion only during the first turn and where the filter's own prediction differs by
+///   half a radian, which is a cycle slip.
+///
+/// The prediction is independent of the current measurement. A smoothed motion is not, and Jacobian
+/// columns whose noise correlates with the measurements bias the fit.
 struct WheelPath {
   std::vector<Mat<wheel::moving>> moving;
-  Eigen::VectorXd standing;  ///< in the state's order from wheel::first_of(0) on
+  Eigen::VectorXd standing;  ///< in the state's order, from wheel::first_of(0) on
 };
 
-/// What a place meets at an instant: the squares of the speed and the accelerations of a path, each
-/// averaged over a turn. The place's columns in the Jacobian are ω² and α, known only through the
-/// readings themselves; a filter that took such noisy columns for exact would find information
-/// where there is none, and what ripples within a turn tells a place by what the motion's model
-/// makes of the ripple. What the averages tell is how the mean force changes with the speed.
+/// Coefficients of the lever arms at each epoch: the squared speed and the acceleration of a path,
+/// each averaged over a turn. The lever arms' columns in the Jacobian are ω² and α, known only
+/// through the measurements themselves. A filter that takes these noisy columns as exact overstates
+/// the information, and ripple within a turn would determine a lever arm through the motion model.
+/// The averages leave only the change of the mean force with speed.
 using WheelLevers = std::vector<Mat<2>>;
 
-/// One instant of the merged time line and the row of each sensor that was read then.
+/// One epoch of the merged time line and the row of each sensor measured then.
 struct WheelInstant {
   static constexpr std::int64_t no_row = -1;
-  double dt_s = 0.0;  ///< since the instant before
+  double dt_s = 0.0;  ///< since the previous epoch
   std::array<std::int64_t, 2> row{no_row, no_row};
-  bool stands = false;  ///< the readings around keep their values, see mark_standing()
+  /// Wheel static: the measurements around keep their values, see mark_standing().
+  bool stands = false;
 };
 
-/// A wheel whose readings keep their values for this long stands: its speed is 0 with this standard
-/// deviation. On a wheel that rolls, an angle that runs away from rest ever faster leaves the
-/// direction of the readings as it is, gravity's turn being made up by the hub's acceleration.
+/// A wheel whose measurements are constant for this long is static: its speed is 0 with this
+/// standard deviation. On a rolling wheel, an angle that departs from rest with growing speed
+/// leaves the direction of the measurements unchanged, because the hub's acceleration compensates
+/// gravity's rotation.
 inline constexpr double standing_stretch_s = 0.5, standing_speed_radps = 0.05;
 
 template <int Sensors>
@@ -144,27 +153,27 @@ struct WheelModel {
   using State = Mat<states>;
 
   double gravity_mps2 = 0.0;      ///< its component in the plane of the wheel
-  double rolling_radius_m = 0.0;  ///< ρ; 0 for an axle that stands
-  double phase_rad = 0.0;         ///< of sensor 2; its state is the departure from this
+  double rolling_radius_m = 0.0;  ///< ρ; 0 for a fixed axle
+  double phase_rad = 0.0;         ///< of sensor 2; its state is the difference from this
   double delay_s = 0.0;           ///< τ, of both sensors' filters
   WheelNoise noise;
   const std::vector<WheelInstant>* instants = nullptr;
   std::array<const PlanarReadings*, 2> readings{};
   const WheelPath* about = nullptr;  ///< nullptr: the plain extended filter
 
-  /// Instants, from the first, at which the readings are linear about the path: until gravity has
-  /// gone round once, angle, biases and scales stand for each other, and slopes at a prediction
-  /// that is a tenth of a radian off would make the filter certain of what no later reading can
-  /// undo.
+  /// Number of leading epochs at which the measurements are linearised about the path. Until
+  /// gravity has rotated once, angle, biases and scales are not separable, and a Jacobian at a
+  /// prediction that is off by a tenth of a radian would make the filter overconfident
+  /// irreversibly.
   std::size_t first_turn = 0;
 
-  const WheelLevers* levers = nullptr;  ///< for places that are not held, with `about`
+  const WheelLevers* levers = nullptr;  ///< for lever arms that are estimated, with `about`
 
-  bool places_held = false;            ///< they have no variance and learn nothing
-  bool with_ripple = false;            ///< otherwise there is none
+  bool places_held = false;            ///< they have no variance and are not updated
+  bool with_ripple = false;            ///< otherwise the ripple is 0
   RippleOrders orders = first_orders;  ///< of the ripple, cycles a turn
   bool with_gyro = false;
-  bool sensors_stand = false;  ///< biases and gyroscopes do not walk
+  bool sensors_stand = false;  ///< constant biases and gyroscope parameters
 
   [[nodiscard]] std::size_t size() const { return instants->size(); }
   [[nodiscard]] int active() const {
@@ -173,7 +182,7 @@ struct WheelModel {
     return with_ripple ? wheel::gyro(Sensors) : wheel::ripple(Sensors);
   }
 
-  /// The wheel's own motion, with the slopes of angle, speed and acceleration by the state.
+  /// The wheel's own motion, with the derivatives of angle, speed and acceleration by the state.
   struct Motion {
     double angle, speed, accel;
     State by_angle, by_speed, by_accel;
@@ -210,8 +219,8 @@ struct WheelModel {
     return now;
   }
 
-  /// The motion of τ earlier, which the sensors show. Speed and places would otherwise be out of
-  /// step with gravity, whose phase shows the ripple; once a turn that looks like a skew.
+  /// The motion τ earlier, as the sensors measure it. Otherwise speed and lever arms would be out
+  /// of phase with gravity, whose phase shows the ripple; once per turn that resembles a skew.
   [[nodiscard]] Motion motion_shown(const State& x) const {
     State earlier = x;
     for (const int i : {wheel::angle, wheel::speed, wheel::accel}) earlier(i) -= delay_s * x(i + 1);
@@ -257,13 +266,13 @@ struct WheelModel {
     return step;
   }
 
-  /// Whether instant k has the readings of a sensor.
+  /// Whether epoch k has measurements of a sensor.
   [[nodiscard]] bool has_readings(std::size_t sensor, std::size_t k) const {
     const std::int64_t row = (*instants)[k].row[sensor];
     return row != WheelInstant::no_row && readings[sensor]->has(static_cast<std::size_t>(row));
   }
 
-  /// Whether instant k has the gyroscope's reading of a sensor that was read.
+  /// Whether epoch k has the gyroscope measurement of a sensor.
   [[nodiscard]] bool has_speed(std::size_t sensor, std::size_t k) const {
     if (!with_gyro || readings[sensor]->speed_radps.empty()) return false;
     return !std::isnan(
@@ -303,8 +312,8 @@ struct WheelModel {
     if ((*instants)[k].stands && (*instants)[k].dt_s > 0.0) read_standing(x, k, out);
   }
 
-  /// Gives up what is believed of the motion, not of the sensors: called when the gate has shut
-  /// everything out for a while. Begins again from the path where there is one.
+  /// Covariance reset of the motion, not of the sensors' constants: called after the gate has
+  /// rejected everything for a while. Restarts from the path if there is one.
   void reopen(Gaussian<states>& x, std::size_t k) const {
     if (about != nullptr) x.mean.template head<moving>() = about->moving[k];
     const Mat<moving> open(1.0, 100.0, 100.0, 100.0);  // (1 rad)², (10 rad/s)², …
@@ -319,14 +328,14 @@ struct WheelModel {
   [[nodiscard]] State state_about(const State& x, std::size_t k) const {
     State at = x;
     const bool slips = std::abs(x(wheel::angle) - about->moving[k](wheel::angle)) > 0.5;
-    // Places that are not held would at first outweigh gravity, and turn the angle.
+    // Lever arms that are estimated would at first outweigh gravity, and rotate the angle.
     if (k < first_turn || slips || levers != nullptr) at.template head<moving>() = about->moving[k];
     at.template tail<wheel::standing(Sensors)>() = about->standing;
     if (places_held) at.template tail<2 * Sensors>() = x.template tail<2 * Sensors>();
     return at;
   }
 
-  /// One measurement of no speed in each standing_stretch_s, shared out by time.
+  /// One zero-speed measurement in each standing_stretch_s, distributed over time.
   void read_standing(const State& x, std::size_t k, Readings<states, channels>& out) const {
     out.constraints = 1;
     auto& row = out.rows[static_cast<std::size_t>(out.count++)];
@@ -366,7 +375,8 @@ struct WheelModel {
     const double turn_v = -g * sin_phi - hub * cos_phi;  // ∂f_v/∂φ
     const double fu = -turn_v - w * w * ru - al * rv;
     const double fv = turn_u - w * w * rv + al * ru;
-    // By the speed: through the centripetal force, and through what turns, less late and weaker.
+    // By the speed: through the centripetal force, and through the rotating force, which is less
+    // delayed and attenuated.
     const double sooner = delay_s * (1.0 - weaker2), fade = late * delay_s * weaker2;
     const double by_w_u = -2.0 * w * ru + sooner * turn_u + fade * turn_v;
     const double by_w_v = -2.0 * w * rv + sooner * turn_v - fade * turn_u;
@@ -381,7 +391,7 @@ struct WheelModel {
     du(place) = dv(place + 1) = -lever(0);
     du(place + 1) = -lever(1);
     dv(place) = lever(1);
-    // Through scale, skew and bias to what is read.
+    // Through scale, skew and bias to the measurement.
     const double su = 1.0 + x(at + wheel::scale), sv = 1.0 + x(at + wheel::scale + 1);
     const double skew = x(at + wheel::skew);
     auto& u = out.rows[static_cast<std::size_t>(out.count++)];
@@ -398,7 +408,7 @@ struct WheelModel {
   }
 };
 
-// One instant of the filter and of the smoother, compiled once, in wheel_model.cpp.
+// One epoch of the filter and of the smoother, compiled once, in wheel_model.cpp.
 extern template void advance(const WheelModel<1>&,
                              std::size_t,
                              const Gate&,

@@ -20,7 +20,7 @@ int place_of(int sensors, int s) {
   return wheel::places(sensors) + 2 * s;
 }
 
-/// A model with one instant at which every sensor was read.
+/// A model with one epoch at which every sensor was read.
 template <int S>
 struct OneInstant {
   std::vector<WheelInstant> instants{WheelInstant{0.01, {0, S == 2 ? 0 : WheelInstant::no_row}}};
@@ -257,8 +257,8 @@ TEST(WheelModel, OnlyTheBiasesWalk) {
   }
 }
 
-// About a path the readings are linear in the constants, exactly, and their slope owes nothing to
-// what the filter makes of them.
+// About a path the measurements are linear in the constants, exactly, and their slope owes nothing
+// to what the filter makes of them.
 TEST(WheelModel, AboutAPathTheConstantsEnterLinearly) {
   Normal normal(5);
   OneInstant<1> instant(0.0, 0.0);
@@ -281,8 +281,8 @@ TEST(WheelModel, AboutAPathTheConstantsEnterLinearly) {
   }
 }
 
-// A filter shows what was τ earlier: readings of a rippling wheel through a delay are, but for the
-// weakening of what turns, those of the undelayed wheel τ before.
+// A filter shows what was τ earlier: measurements of a rippling wheel through a delay are, but for
+// the weakening of what turns, those of the undelayed wheel τ before.
 TEST(WheelModel, ADelayShowsTheMotionOfEarlier) {
   Normal normal(6);
   OneInstant<1> instant(0.0, 0.0);

@@ -6,9 +6,8 @@ namespace {
 
 constexpr double fewest_readings = 20.0;
 
-/// Sums over one stretch of a sensor's readings: squared innovations, and the part of them that the
-/// state's own uncertainty explains. What is left is the noise of the readings there, at least
-/// `least`.
+/// Sums over one interval of a sensor's measurements: squared innovations, and the part explained
+/// by the state's own uncertainty. The remainder is the measurement noise there, at least `least`.
 struct NoiseStretch {
   double innovation2 = 0.0, explained = 0.0, readings = 0.0, least = 0.0;
   [[nodiscard]] double variance() const {
@@ -16,8 +15,8 @@ struct NoiseStretch {
   }
 };
 
-/// A variance over time: its logarithm linear between the middles of stretches, or one figure for
-/// all where the stretches scatter no more than estimates of one figure do.
+/// A variance over time: its logarithm linear between the middles of intervals, or one value for
+/// all if their scatter does not exceed the statistical one.
 class VarianceProfile {
  public:
   VarianceProfile(const std::vector<NoiseStretch>& stretches, double length_s) {
@@ -50,8 +49,8 @@ class VarianceProfile {
   }
 
  private:
-  /// A stretch takes the worst of itself and its neighbours: where quiet turns to shaking within
-  /// one, an average of the two would make the first knocks look impossible.
+  /// Each interval takes the maximum of itself and its neighbours: where vibration begins within
+  /// one, an average of the two would reject the first shocks.
   void widen() {
     const std::vector<double> own = log_variance_;
     for (std::size_t i = 0; i < own.size(); ++i) {
@@ -65,8 +64,8 @@ class VarianceProfile {
   bool steady_ = true;
 };
 
-/// The channels of instant k that belong to each sensor stand in the order in which measure() wrote
-/// them: two for each sensor that was read.
+/// The channels of epoch k that belong to each sensor, in the order written by measure(): two for
+/// each sensor measured.
 template <int S>
 void gather(const WheelReadings& readings,
             std::size_t k,
@@ -82,7 +81,7 @@ void gather(const WheelReadings& readings,
     for (int axis = 0; axis < 2; ++axis, ++channel) {
       const auto& u = step.updates[static_cast<std::size_t>(channel)];
       if (!u.used) continue;
-      // What the gate let pass with little weight says little of the noise.
+      // Strongly down-weighted measurements contain little information on the noise.
       stretches[s]->innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
       stretches[s]->explained += u.expected - readings.sensors[s].variance_m2ps4[at];
       stretches[s]->readings += 1.0;
@@ -97,10 +96,10 @@ void gather(const WheelReadings& readings,
   }
 }
 
-/// The variance of white noise in the readings by their third differences, which a wheel that turns
-/// little from reading to reading hardly shows in; 0 where it turns more than a tenth of a radian.
-/// Innovations alone would let a filter that follows every reading find no noise at all, and then
-/// believe each of them. A third difference of white noise has 1 + 9 + 9 + 1 times its variance.
+/// Variance of white noise in the measurements from their third differences, to which a slowly
+/// rotating wheel contributes little; 0 if it turns by more than a tenth of a radian. With
+/// innovations alone, a filter that follows every measurement would find no noise, and then
+/// overweight each of them. A third difference of white noise has 1 + 9 + 9 + 1 times its variance.
 double least_variance(const PlanarReadings& sensor, double rate_hz, const WheelPath& path) {
   constexpr double smooth_rad = 0.1, gain = 20.0;
   for (const Mat<wheel::moving>& at : path.moving)
@@ -138,7 +137,7 @@ std::optional<double> variance_along_gravity(const std::vector<Misfit>& misfits)
   return square(of_normal * *median(sizes));
 }
 
-/// Residuals of a sensor's readings about the model's path, by stretches of length_s.
+/// Residuals of a sensor's measurements about the model's path, by stretches of length_s.
 template <int S>
 std::vector<std::vector<Misfit>> misfits_of(const WheelModel<S>& model,
                                             const WheelReadings& readings,
@@ -174,8 +173,8 @@ bool shows_shaking(const std::vector<double>& variance_m2ps4, double rate_hz) {
 }
 
 /// Sets the lower bound of the variance in a sensor's stretches from the residuals along gravity,
-/// which no rotation of the wheel explains: it moves the readings perpendicular to gravity. Returns
-/// whether the hub vibrates.
+/// which no rotation of the wheel explains: it moves the measurements perpendicular to gravity.
+/// Returns whether the hub vibrates.
 template <int S>
 bool set_least(const WheelModel<S>& model,
                const WheelReadings& readings,
@@ -188,15 +187,14 @@ bool set_least(const WheelModel<S>& model,
     const auto variance = variance_along_gravity(misfits[i]);
     if (!variance) continue;
     all.push_back(*variance);
-    // Less one standard deviation of a variance from a median: its efficiency is 37 %.
+    // Minus one standard deviation of a variance from a median: its efficiency is 37 %.
     const double scatter = std::sqrt(2.0 / (0.37 * static_cast<double>(misfits[i].size())));
     stretches[i].least = *variance * std::max(0.0, 1.0 - scatter);
   }
   return shows_shaking(all, readings.rate_hz());
 }
 
-/// Between these the motion's noise is looked for. A bias that walked faster could stand for
-/// gravity.
+/// Search limits of the motion noise. A bias that drifted faster could replace gravity.
 constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e5, 1e8, 1e-4};
 
 }  // namespace
@@ -264,7 +262,7 @@ Excerpt<S> liveliest(const WheelModel<S>& model, const WheelPrior& prior) {
 
 namespace {
 
-/// Climbs from `best`: each figure in turn by steps of a shrinking factor.
+/// Climbs from `best`: each parameter in turn by steps of a shrinking factor.
 template <class Likelihood>
 TunedNoise climb(const Likelihood& likelihood, const WheelNoise& start, double first_factor) {
   TunedNoise best{start, likelihood(start)};
@@ -297,7 +295,8 @@ TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt, double fir
   WheelNoise start = model.noise;
   start.snap_psd = std::max(start.snap_psd, lowest.snap_psd);
   const TunedNoise rough = climb(likelihood, start, first_factor);
-  // The likelihood has two hills, a motion driven by jerk and one by snap; the way between is low.
+  // The likelihood has two maxima, a motion driven by jerk and one by snap, with low values in
+  // between.
   WheelNoise other = rough.noise;
   const bool by_jerk = rough.noise.jerk_psd > rough.noise.snap_psd;
   (by_jerk ? other.snap_psd : other.jerk_psd) =

@@ -8,21 +8,21 @@
 
 #include "proofmass/estimate/wheel_fit.hpp"
 
-// Passes of the filter over a wheel's readings that every step of the fit makes. Private to the
+// Filter passes over a wheel's measurements, shared by all steps of the fit. Private to the
 // module's wheel_*.cpp.
 namespace proofmass::estimate {
 
 inline constexpr Gate wheel_gate{.huber = 3.0, .limit = 12.0, .patience = 40};
 
-/// Places of the sensors, (u, v) of each, m.
+/// Lever arms of the sensors, (u, v) of each, m.
 using Places = Eigen::VectorXd;
 
-/// What is believed before the recording speaks.
+/// Prior, before the data.
 struct WheelPrior {
   Beginning beginning;
   ConstantsPrior spread;
   std::optional<Places> places{};       ///< held there
-  std::optional<PlacesPrior> belief{};  ///< of places that are not held; else spread.place_m
+  std::optional<PlacesPrior> belief{};  ///< of lever arms that are estimated; else spread.place_m
 };
 
 template <int S>
@@ -42,7 +42,7 @@ WheelModel<S> wheel_model(const WheelReadings& readings, const WheelNoise& noise
   return model;
 }
 
-/// Puts the sensors' constants back to what is believed of them.
+/// Resets the sensors' constants to their prior.
 template <int S>
 void reset_constants(const WheelPrior& prior, Gaussian<wheel::states(S)>& x) {
   constexpr int count = wheel::standing(S), places = wheel::places(S);
@@ -74,7 +74,7 @@ void reset_constants(const WheelPrior& prior, Gaussian<wheel::states(S)>& x) {
     variance.template segment<2 * S>(places).setConstant(spread.place_m * spread.place_m);
 }
 
-/// The state before the first reading. The start angle stands twice in it, with one variance.
+/// The state before the first measurement. The start angle is in it twice, with one variance.
 template <int S>
 FilterState<wheel::states(S)> prior_state(const WheelPrior& prior) {
   FilterState<wheel::states(S)> state;
@@ -91,8 +91,8 @@ FilterState<wheel::states(S)> prior_state(const WheelPrior& prior) {
   return state;
 }
 
-/// How well a forward run predicts. `lost`, of LostShare, judges runs of different noise figures
-/// alike: a run that has the wheel's phase scores near 0, one that has lost it above a half.
+/// Prediction quality of a forward run. `lost`, from LostShare, compares runs with different noise
+/// parameters: a run with the correct phase scores near 0, a run that has lost it above a half.
 struct WheelScore {
   double lost = 0.0;
   double log_likelihood = 0.0;
@@ -111,7 +111,7 @@ class LostShare {
       ++readings_;
     }
   }
-  /// 1 where there were no readings.
+  /// 1 without measurements.
   [[nodiscard]] double share() const {
     return readings_ > 0 ? sum_ / static_cast<double>(readings_) : 1.0;
   }
@@ -121,7 +121,7 @@ class LostShare {
   std::size_t readings_ = 0;
 };
 
-/// Huber's ρ of ν standard deviations, with what is gated no dearer than the gate's limit.
+/// Huber's ρ of ν standard deviations, at most that of the gate's limit.
 [[nodiscard]] inline double surprise(double off) {
   constexpr double huber = wheel_gate.huber;
   if (off <= huber) return off * off;
@@ -148,7 +148,7 @@ WheelScore score_run(const WheelModel<S>& model,
   return {1.0, -std::numeric_limits<double>::infinity()};
 }
 
-/// Smooths and keeps the trajectory; returns the state after the last instant.
+/// Smooths and stores the trajectory; returns the state after the last epoch.
 template <int S>
 Gaussian<wheel::states(S)> trace_path(const WheelModel<S>& model,
                                       const FilterState<wheel::states(S)>& prior,
@@ -167,12 +167,12 @@ Gaussian<wheel::states(S)> trace_path(const WheelModel<S>& model,
   return end;
 }
 
-/// Sets each reading's variance from the innovations around it.
+/// Sets each measurement's variance from the neighbouring innovations.
 template <int S>
 void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings);
 
-/// A part of the recording to tune on: all of it, or of a long one the stretch of 20 000 instants
-/// in which the speed changes most, with the filter's state at its beginning.
+/// A part of the recording to tune on: all of it or, if it is long, the interval of 20 000 epochs
+/// with the largest speed change, with the filter's state at its beginning.
 template <int S>
 struct Excerpt {
   std::size_t first = 0, last = 0;
@@ -187,14 +187,14 @@ struct TunedNoise {
   double log_likelihood = 0.0;
 };
 
-/// The motion's noise figures of maximum likelihood on the excerpt: each in turn by steps of a
-/// shrinking factor, from `first_factor` down.
+/// Maximum-likelihood motion noise on the excerpt: each parameter in turn by steps of a shrinking
+/// factor, from `first_factor` down.
 template <int S>
 [[nodiscard]] TunedNoise tune_noise(WheelModel<S> model,
                                     const Excerpt<S>& excerpt,
                                     double first_factor);
 
-/// The levers of a path on the readings' time line.
+/// The levers of a path on the measurements' time line.
 [[nodiscard]] WheelLevers levers_of(const WheelPath& path, const WheelReadings& readings);
 
 struct FoundPlaces {
@@ -203,26 +203,26 @@ struct FoundPlaces {
   double log_likelihood = 0.0;
 };
 
-/// The sensors' places of maximum likelihood, all else integrated out by the filter. What ripples
-/// within a turn speaks for a place only as far as white jerk and snap are true of it, so this is
-/// where to begin, and no measure of what is known.
+/// Maximum-likelihood lever arms, with all else integrated out by the filter. Ripple within a turn
+/// informs a lever arm only as far as the white jerk and snap model holds, so this is an initial
+/// value, not a measure of certainty.
 template <int S>
 [[nodiscard]] FoundPlaces likeliest_places(const WheelModel<S>& model,
                                            const Excerpt<S>& excerpt,
                                            WheelPrior prior,
                                            const PlacesPrior& belief);
 
-/// The sensors' places as states beside everything else, about a path: as far as they show in how
-/// the mean force changes with the speed.
+/// Lever arms as additional states, about a path: as far as the change of the mean force with speed
+/// shows them.
 template <int S>
 [[nodiscard]] FoundPlaces places_by_levers(WheelModel<S> model,
                                            const WheelLevers& levers,
                                            WheelPrior prior,
                                            const PlacesPrior& belief);
 
-/// By which the standard deviations of all that stands grow where the innovations are coloured:
-/// P⁻¹-weighted scores in blocks of a fortieth, a twentieth and a tenth of the recording, the
-/// shortest of a second at least; the most of these. At least 1.
+/// Inflation factor of the standard deviations of all static states if the innovations are
+/// coloured: P⁻¹-weighted scores in blocks of a fortieth, a twentieth and a tenth of the recording,
+/// the shortest of a second at least; the maximum of these. At least 1.
 template <int S>
 [[nodiscard]] Eigen::VectorXd widening(WheelModel<S> model,
                                        const WheelLevers& levers,

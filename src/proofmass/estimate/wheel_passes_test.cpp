@@ -61,7 +61,7 @@ TEST(WheelLevers, OfASteadyWheelAreItsSquaredSpeedAndNoAcceleration) {
   }
 }
 
-// The mean of (ω + α t)² over a window that lies evenly about an instant is ω² + α² h² / 3; with a
+// The mean of (ω + α t)² over a window that lies evenly about an epoch is ω² + α² h² / 3; with a
 // row more on one side it moves by ω α times a step.
 TEST(WheelLevers, OfARampAreMeansOverTheTurnAboutEachInstant) {
   const Ramp ramp(10.0, 30.0);
@@ -85,8 +85,8 @@ TEST(WheelLevers, OfAWheelThatShakesAreMeansOverThreeSeconds) {
               w * w + std::pow(ramp.accel_radps2 * 1.5, 2) / 3.0, 0.1);
 }
 
-/// Variance of the sum of scores, over the sum of their variances, of readings whose misfit is an
-/// AR(1) sequence of unit variance.
+/// Variance of the sum of scores, over the sum of their variances, of measurements whose misfit is
+/// an AR(1) sequence of unit variance.
 double score_ratio(double coefficient) {
   constexpr int count = 40'000;
   constexpr double rate_hz = 100.0, block_s = 2.0;
@@ -114,7 +114,7 @@ TEST(ScoreBlocks, GiveTheVarianceOfASumOfWhiteAndOfColouredScores) {
   EXPECT_NEAR(score_ratio(0.8), 9.0, 3.0);
 }
 
-/// Readings of a sensor on the axle of a wheel at 1.5 rad/s, at 40 Hz for a minute.
+/// Measurements of a sensor on the axle of a wheel at 1.5 rad/s, at 40 Hz for a minute.
 struct SlowWheel {
   static constexpr double rate_hz = 40.0, speed_radps = 1.5, noise_mps2 = 0.01;
   WheelReadings readings;
@@ -138,8 +138,8 @@ struct SlowWheel {
 };
 
 // With process noise far above the wheel's, the filter follows every reading and its innovations
-// show no measurement noise. The variance must not fall below the readings' own: this lost a wheel
-// at 14 rpm within an hour.
+// show no measurement noise. The variance must not fall below the measurements' own: this lost a
+// wheel at 14 rpm within an hour.
 TEST(SettleVariance, IsNotUnderestimatedUnderLargeProcessNoise) {
   SlowWheel slow;
   const auto model = held_model<1>(slow.readings, {.jerk_psd = 1e4}, slow.path);
@@ -149,7 +149,7 @@ TEST(SettleVariance, IsNotUnderestimatedUnderLargeProcessNoise) {
               0.2 * SlowWheel::noise_mps2);
 }
 
-// No motion of the wheel changes the readings along gravity, so those show a hub that shakes
+// No motion of the wheel changes the measurements along gravity, so those show a hub that shakes
 // however closely the filter follows.
 TEST(SettleVariance, SeesAHubThatShakes) {
   SlowWheel slow;
@@ -181,7 +181,7 @@ TEST(MarkStanding, IsAWheelWhoseReadingsKeepTheirValues) {
   const auto& instants = slow.readings.instants;
   EXPECT_TRUE(std::none_of(instants.begin(), instants.begin() + 1000,
                            [](const WheelInstant& instant) { return instant.stands; }));
-  // 1400 instants at rest, less the stretch in which the wheel stops and a false alarm rate of 5 %.
+  // 1400 epochs at rest, less the stretch in which the wheel stops and a false alarm rate of 5 %.
   EXPECT_GE(std::ranges::count(instants, true, &WheelInstant::stands), 1260);
 }
 

@@ -45,8 +45,8 @@ Eigen::MatrixXd hessian_of(const Function& f, const Places& x, const Places& ste
   return hessian;
 }
 
-/// Inverse of −hessian, no direction known worse than the worst beforehand; that also keeps the
-/// steps going up.
+/// Inverse of −hessian, with no direction less certain than the worst of the prior; that also keeps
+/// the steps going up.
 std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& hessian,
                                                    double least_information) {
   if (!hessian.allFinite()) return std::nullopt;
@@ -57,8 +57,8 @@ std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& hessia
 
 }  // namespace
 
-/// Newton's steps up the likelihood, halved where they overshoot; the curvature is taken anew only
-/// where a step has been long.
+/// Newton steps on the likelihood, halved if they overshoot; the curvature is recomputed only after
+/// a long step.
 template <int S>
 FoundPlaces likeliest_places(const WheelModel<S>& model,
                              const Excerpt<S>& excerpt,
@@ -76,8 +76,8 @@ FoundPlaces likeliest_places(const WheelModel<S>& model,
   };
   FoundPlaces found{*prior.places, Eigen::MatrixXd::Identity(2 * S, 2 * S) / least_information};
   double best = likelihood(found.mean);
-  // Far from the truth the surface is ragged; where the recording says little, the truth is near
-  // what was believed.
+  // Far from the truth the surface is irregular; if the recording contains little information, the
+  // truth is near the prior.
   if (const double value = likelihood(belief.mean); !(best >= value)) {
     best = value;
     found.mean = belief.mean;
@@ -107,7 +107,7 @@ FoundPlaces likeliest_places(const WheelModel<S>& model,
     const Places own = found.cov.diagonal().cwiseSqrt().cwiseMax(1e-6).cwiseMin(0.05);
     curved = (own.array() < 3.0 * step.array()).all() && (step.array() < 3.0 * own.array()).all();
     if (curved && (gain < 0.01 || !(value >= best))) break;
-    // Where no way leads up, the differences were taken over more than the surface's own scale.
+    // If no direction leads up, the differences were taken over more than the surface's own scale.
     step = value >= best ? own : Places(0.2 * step);
   }
   found.log_likelihood = best;
@@ -129,7 +129,7 @@ WheelLevers levers_of(const WheelPath& path, const WheelReadings& readings) {
   WheelLevers levers(size);
   for (std::size_t k = 0; k < size; ++k) {
     const double turn_s = rad_per_turn / std::abs(path.moving[k](wheel::speed));
-    // As much before as behind, also near the ends.
+    // Symmetric about the epoch, also near the ends.
     const double half_s = std::min({0.5 * std::clamp(turn_s, shortest_s, longest_s),
                                     time_s[k] - time_s.front(), time_s.back() - time_s[k]});
     const auto from = static_cast<std::size_t>(
@@ -143,7 +143,7 @@ WheelLevers levers_of(const WheelPath& path, const WheelReadings& readings) {
 
 namespace {
 
-/// For a pass that has the places as states beside everything else.
+/// For a pass with the lever arms as additional states.
 template <int S>
 FilterState<wheel::states(S)> free_places(WheelModel<S>& model,
                                           const WheelLevers& levers,
@@ -198,7 +198,7 @@ Eigen::VectorXd widening(WheelModel<S> model,
       });
   const Eigen::VectorXd variance = after.diagonal();
   Eigen::VectorXd widened = Eigen::VectorXd::Ones(count);
-  // What was believed has its part of the variance, P P₀⁻¹ P; nothing is believed of what has none.
+  // The prior contributes P P₀⁻¹ P to the variance; a direction without variance has no prior.
   Eigen::VectorXd believed(count);
   const Eigen::VectorXd own = before.diagonal();
   for (int i = 0; i < count; ++i) believed(i) = own(i) > 0.0 ? 1.0 / own(i) : 0.0;

@@ -11,8 +11,8 @@ struct Planar {
   double u = 0.0, v = 0.0;
 };
 
-/// Mean over the sensors of what `see` makes of each one's last reading, at every instant; a sensor
-/// keeps its last reading until its next. NaN until all have been read.
+/// Mean over the sensors of `see` applied to each one's last measurement, at every epoch; a sensor
+/// keeps its last measurement until its next. NaN until all have one.
 template <class See, class Visit>
 void at_each_instant(const WheelReadings& readings, See&& see, Visit&& visit) {
   std::array<Planar, 2> seen;
@@ -44,8 +44,8 @@ std::vector<double> atan2_angle(const WheelReadings& readings) {
   at_each_instant(
       readings,
       [&](std::size_t s, Planar f) {
-        // Sensor 2 sees the phase θ + μ; turning its vector back by μ gives what sensor 1 would
-        // see.
+        // Sensor 2 sees the phase θ + μ; rotating its vector back by μ gives what sensor 1 would
+        // measure.
         if (s == 0) return f;
         return Planar{f.u * cos_phase - f.v * sin_phase, f.u * sin_phase + f.v * cos_phase};
       },
@@ -88,7 +88,8 @@ std::vector<double> double_integral_angle(const WheelReadings& readings,
   at_each_instant(
       readings,
       [&](std::size_t s, Planar f) {
-        // A turn α moves a mass at (r_u, r_v) with α (−r_v, r_u): its part along that, over r².
+        // An angular acceleration α moves a mass at (r_u, r_v) with α (−r_v, r_u): its component
+        // along that, over r².
         const double ru = places(static_cast<Eigen::Index>(2 * s));
         const double rv = places(static_cast<Eigen::Index>(2 * s + 1));
         return Planar{(f.v * ru - f.u * rv) / (ru * ru + rv * rv), 0.0};

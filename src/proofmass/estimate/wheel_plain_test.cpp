@@ -11,7 +11,7 @@ using test::Drive;
 using test::Mount;
 using test::rpm;
 
-/// Readings of sensors whose x and y are the plane's u and v, all rows on one clock.
+/// Measurements of sensors whose x and y are the plane's u and v, all rows on one clock.
 WheelReadings planar(const Drive& drive, const std::vector<Mount>& mounts, double rate_hz) {
   WheelReadings readings;
   for (const Mount& mount : mounts) {

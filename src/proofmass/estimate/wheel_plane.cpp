@@ -16,8 +16,8 @@ double component(const WheelSensor& sensor, std::size_t axis, std::size_t row) {
   return values.empty() ? 0.0 : values[row];
 }
 
-/// The longest rising subsequence of the stamps: a stamp far ahead costs itself and not all that
-/// come after it. Source: C. Schensted, Canadian Journal of Mathematics 13 (1961) 179. Cost: O(N
+/// The longest ascending subsequence of the stamps: a stamp far ahead is dropped itself, not all
+/// that follow it. Source: C. Schensted, Canadian Journal of Mathematics 13 (1961) 179. Cost: O(N
 /// log N).
 std::vector<bool> rising(const std::vector<double>& time_s) {
   constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
@@ -77,8 +77,8 @@ WheelPlane plane_about(const Axis& axis) {
   return plane;
 }
 
-/// Medians of the force over stretches of a twentieth of a second, in shorter recordings of a tenth
-/// of the rows: shaking and single bad rows fall out, turning stays.
+/// Medians of the force over intervals of a twentieth of a second, in shorter recordings over a
+/// tenth of the rows: vibration and single bad rows are suppressed, rotation is not.
 Eigen::MatrixX3d averaged(const WheelSensor& sensor, const std::vector<std::size_t>& rows) {
   const double span_s = sensor.time_s[rows.back()] - sensor.time_s[rows.front()];
   const double rate_hz = span_s > 0.0 ? static_cast<double>(rows.size()) / span_s : 0.0;
@@ -96,8 +96,8 @@ Eigen::MatrixX3d averaged(const WheelSensor& sensor, const std::vector<std::size
   return medians;
 }
 
-/// Draws in what lies further outside the middle nine tenths of a column than those are wide, so
-/// that no few bad stretches can turn the axis.
+/// Clips values that lie further outside the middle nine tenths of a column than those are wide, so
+/// that a few bad intervals cannot rotate the axis.
 void limit(Eigen::MatrixX3d& means) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const View<double> column(means.col(axis).data(), static_cast<std::size_t>(means.rows()));
@@ -126,7 +126,7 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
   const SymmetricEigen spread =
       symmetric_eigen(centred.transpose() * centred / static_cast<double>(means.rows()));
   const double least = std::max(spread.values(0), 0.0), next = spread.values(1);
-  // 0.3 m/s² of spread: gravity that has turned by some 25 degrees. Less may be shaking.
+  // 0.3 m/s² of spread: gravity rotated by some 25 degrees. Less may be vibration.
   if (next < 16.0 * least || next < 0.09) {
     if (spread.values(2) < 1.0) return assume_plane(means);
     return Error{
@@ -139,8 +139,8 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
   return plane_about(axis);
 }
 
-/// Readings that stay at a channel's largest value for three rows or more: the end of the
-/// gyroscope's range. A channel that never changes is all of that, and tells nothing either.
+/// Measurements at a channel's largest value for three rows or more: the end of the gyroscope's
+/// range. A constant channel is all of that, and contains no information either.
 std::vector<bool> saturated(const std::vector<double>& rate_radps) {
   double most = 0.0;
   for (const double rate : rate_radps)
@@ -153,7 +153,7 @@ std::vector<bool> saturated(const std::vector<double>& rate_radps) {
   return out;
 }
 
-/// The gyroscope's readings about the axle, with a first variance from how they scatter.
+/// The gyroscope's measurements about the axle, with an initial variance from their scatter.
 void add_speeds(const WheelSensor& sensor,
                 const Screened& screened,
                 const WheelPlane& plane,
@@ -269,7 +269,7 @@ Uncertain gravity_in_plane(const WheelPlane& plane,
                            bool axial_read,
                            double gravity_mps2,
                            double tilt_std_rad) {
-  constexpr double tilted_part = 0.1;  // of all axles; these lie anyhow
+  constexpr double tilted_part = 0.1;  // of all axles; these have any tilt
   const double read = axial_read ? plane.axial_mps2 : 0.0;
   const double level2 = std::pow(tilt_std_rad * gravity_mps2, 2);
   const double bias2 = std::pow(ConstantsPrior{}.bias_mps2, 2), read2 = level2 + bias2;

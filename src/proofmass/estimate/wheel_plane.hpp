@@ -9,12 +9,12 @@
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/estimate/wheel_model.hpp"
 
-// From what a sensor wrote down to readings in the plane of its wheel.
+// From a sensor's data to measurements in the plane of its wheel.
 namespace proofmass::estimate {
 
 using Axis = std::array<double, 3>;
 
-/// Which rows of a sensor can be used, and for each stretch of those that cannot, why.
+/// The usable rows of a sensor, and the reason for each interval of unusable ones.
 struct Screened {
   std::vector<bool> usable;
   std::vector<Stretch> rejected;
@@ -25,34 +25,35 @@ struct Screened {
 inline constexpr double beyond_belief_mps2 = 1000.0 * standard_gravity_mps2;
 inline constexpr double beyond_belief_radps = 1e4;
 
-/// Why no accelerometer can have meant this: not finite, beyond 1000 g, denormal (below 1e-30 and
-/// not 0: bits that were no number), all axes exactly 0. nullptr if one can.
+/// Why a measurement is implausible: not finite, beyond 1000 g, denormal (below 1e-30 and not 0:
+/// not a valid number), all axes exactly 0. nullptr if it is plausible.
 [[nodiscard]] const char* why_unbelievable(const Axis& accel_mps2);
 
-/// Leaves out rows that are unbelievable, or whose time does not rise.
+/// Drops rows that are implausible, or whose time does not ascend.
 [[nodiscard]] Screened screen_rows(const WheelSensor& sensor);
 
 /// The plane of the wheel in a sensor's axes: u, v span it, v a quarter turn ahead of u about
 /// `axis`.
 struct WheelPlane {
   Axis axis{}, u{}, v{};
-  bool assumed = false;     ///< the wheel hardly turned: any level axis would do as well
-  double axial_mps2 = 0.0;  ///< mean force along the axis: gravity's, where the axle is not level
+  bool assumed = false;  ///< the wheel hardly turned: any level axis fits as well
+  /// Mean force along the axis: gravity's component, if the axle is not level.
+  double axial_mps2 = 0.0;
 };
 
-/// The axis along which the force changes least: gravity turns about it and the centripetal force
-/// is square to it. Its sign is that of its largest component, so that it lies near +x, +y or +z; u
-/// is the next sensor axis in the order x, y, z, x, made square to it. Errors: too_few_samples
-/// (fewer than 10 usable rows), invalid_argument (`given` has length 0), not_observable (the force
-/// changes along one direction only).
+/// The axis along which the force changes least: gravity rotates about it and the centripetal force
+/// is orthogonal to it. Its sign is that of its largest component, so that it lies near +x, +y or
+/// +z; u is the next sensor axis in the order x, y, z, x, orthogonalised to it. Errors:
+/// too_few_samples (fewer than 10 usable rows), invalid_argument (`given` has length 0),
+/// not_observable (the force changes along one direction only).
 
 [[nodiscard]] Result<WheelPlane> find_plane(const WheelSensor& sensor,
                                             const Screened& screened,
                                             const std::optional<Axis>& given);
 
-/// Gravity's part in the plane of the wheel, m/s². A mean force along the axis is the axle's tilt
-/// or the sensor's bias: nine axles in ten are level but for `tilt_std_rad`, the tenth lies anyhow.
-/// `axial_read` is false for a sensor of two axes, which shows nothing of the tilt.
+/// Gravity's component in the plane of the wheel, m/s². A mean force along the axis is the axle's
+/// tilt or the sensor's bias: nine axles in ten are level within `tilt_std_rad`, the tenth has any
+/// tilt. `axial_read` is false for a two-axis sensor, which does not measure the tilt.
 [[nodiscard]] Uncertain gravity_in_plane(const WheelPlane& plane,
                                          bool axial_read,
                                          double gravity_mps2,

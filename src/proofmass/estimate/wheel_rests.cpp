@@ -8,7 +8,7 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Least-squares line through evenly spaced values, and how they scatter.
+/// Least-squares line through evenly spaced values, and their scatter.
 struct Line {
   double slope = 0.0, slope_std = 0.0;        ///< a step
   double residual_std = 0.0, step_std = 0.0;  ///< about the line; by third differences
@@ -37,7 +37,7 @@ Line line_through(const std::vector<double>& values) {
   return line;
 }
 
-/// Whether an axis keeps its value over `span_s`.
+/// Whether an axis is constant over `span_s`.
 bool is_still(const std::vector<double>& axis, double span_s, double gravity_mps2) {
   constexpr double scatter_ratio = 1.5, most_scatter_mps2 = 1.0;
   const Line line = line_through(axis);
@@ -99,7 +99,7 @@ void mark_standing(WheelReadings& readings) {
     mark(first, k + 1);
     first = k + 1;
   }
-  // What is left at the end is judged with as much before it as makes a whole stretch.
+  // The remainder at the end is tested together with enough earlier samples for a whole interval.
   const auto before =
       std::ranges::lower_bound(time_s, time_s.back() - standing_stretch_s) - time_s.begin();
   if (first < time_s.size()) mark(static_cast<std::size_t>(before), time_s.size());

@@ -2,12 +2,12 @@
 
 #include "proofmass/estimate/wheel_fit.hpp"
 
-// Where a wheel stands still. Private to the module's wheel_*.cpp.
+// Static intervals of a wheel. Private to the module's wheel_*.cpp.
 namespace proofmass::estimate {
 
-/// Sets WheelInstant::stands. A wheel stands for half a second or longer where each axis of each
-/// sensor keeps its value: a straight line through the readings has no slope that a speed of
-/// 0.05 rad/s would give it, and they scatter about the line as they do from one to the next.
+/// Sets WheelInstant::stands. A wheel is static for half a second or longer if each axis of each
+/// sensor is constant: a straight line through the measurements has no slope as large as a speed of
+/// 0.05 rad/s would cause, and their scatter about the line equals that between neighbours.
 void mark_standing(WheelReadings& readings);
 
 }  // namespace proofmass::estimate

@@ -10,7 +10,7 @@ namespace proofmass::estimate {
 namespace {
 
 constexpr double least_probability = 0.01;
-constexpr double widest_turns = 2.0;  // standard deviation; beyond it there are too many to list
+constexpr double widest_turns = 2.0;  // standard deviation; beyond it there are too many candidates
 constexpr std::size_t most_doubts = 4;
 
 using Weights = std::map<int, double>;  // by the turns more than the fit's
@@ -23,7 +23,7 @@ void measure(Gaussian<wheel::moving>& state, int which, double value, double std
   state.cov -= gain * with.transpose();
 }
 
-/// The turns that one doubt leaves open; empty where they are too many.
+/// The possible turns of one ambiguous interval; empty if there are too many.
 Weights weights_of(const WheelDoubt& doubt, const WheelSeries& series) {
   const std::size_t k = doubt.widest;
   Gaussian<wheel::moving> state = doubt.predicted;
@@ -42,7 +42,7 @@ Weights weights_of(const WheelDoubt& doubt, const WheelSeries& series) {
   return weights;
 }
 
-/// Of the sum of two independent numbers of turns.
+/// Distribution of the sum of two independent numbers of turns.
 Weights sum_of(const Weights& a, const Weights& b) {
   Weights sum;
   for (const auto& [n, weight] : a)

@@ -8,10 +8,11 @@
 namespace proofmass::estimate {
 namespace {
 
-/// One standard deviation of each part of the ripple, about zero: a wheel by hand or by a motor.
+/// Prior standard deviation of each part of the ripple, about zero: a wheel driven by hand or by a
+/// motor.
 constexpr double ripple_share = 0.02;
 
-/// What may be believed of the constants, by how far the wheel turns.
+/// Prior of the constants, depending on how far the wheel turns.
 ConstantsPrior prior_for(const WheelPath& path) {
   const auto angle = [](const Mat<wheel::moving>& at) { return at(wheel::angle); };
   const auto [lowest, highest] = std::ranges::minmax_element(path.moving, {}, angle);
@@ -21,8 +22,8 @@ ConstantsPrior prior_for(const WheelPath& path) {
   return prior;
 }
 
-/// The belief with its mean moved to where a place may be, along the directions in which little was
-/// believed.
+/// The prior with its mean moved to a candidate lever arm, along the directions in which it is
+/// wide.
 PlacesPrior moved_where_open(const PlacesPrior& belief, const Places& to) {
   PlacesPrior moved = belief;
   const SymmetricEigen axes = symmetric_eigen(belief.cov);
@@ -32,7 +33,7 @@ PlacesPrior moved_where_open(const PlacesPrior& belief, const Places& to) {
   return moved;
 }
 
-/// Least squares of one order's (c, s) on what a path leaves of the readings.
+/// Least squares of one order's (c, s) on the residuals of a path.
 struct RippleFit {
   Mat<2, 2> information = Mat<2, 2>::Zero();
   Mat<2> score = Mat<2>::Zero();
@@ -41,7 +42,7 @@ struct RippleFit {
     information += h * h.transpose();
     score += h * residual;
   }
-  /// By how much it lowers the sum of squares.
+  /// Reduction of the sum of squares.
   [[nodiscard]] double explained() const {
     const double cc = information(0, 0), cs = information(0, 1), ss = information(1, 1);
     const double determinant = cc * ss - cs * cs;
@@ -51,8 +52,8 @@ struct RippleFit {
   }
 };
 
-/// One round: the readings' variance, the motion's noise and the sensors' places, all about the
-/// path found so far.
+/// One iteration: the measurements' variance, the motion noise and the sensors' lever arms, all
+/// about the current path.
 template <int S>
 Settled<S> settle(WheelReadings& readings,
                   const WheelTrack& track,
@@ -110,7 +111,7 @@ RippleOrders orders_in(const WheelReadings& readings, const WheelPath& path) {
       for (int i = 0; i < out.count - out.constraints; ++i) {
         const auto& row = out.rows[static_cast<std::size_t>(i)];
         for (std::size_t o = 0; o < tried.size(); ++o)
-          // Beyond half a cycle from reading to reading an order looks like another.
+          // Beyond half a cycle between measurements an order is aliased.
           if (tried[o] * turned < std::numbers::pi)
             fits[static_cast<std::size_t>(tried[o])].add(
                 row.h.template segment<2>(at + 2 * static_cast<int>(o)), row.value - row.predicted);

@@ -2,25 +2,25 @@
 
 #include "proofmass/estimate/wheel_passes.hpp"
 
-// The rounds in which noise, ripple, places and path of a wheel settle about each other. Private to
-// the module's wheel_*.cpp.
+// Alternating estimation of noise, ripple, lever arms and path of a wheel. Private to the module's
+// wheel_*.cpp.
 namespace proofmass::estimate {
 
-/// What the rounds end with.
+/// Result of the iteration.
 template <int S>
 struct Settled {
   WheelNoise noise;
   WheelPrior prior;
   Eigen::MatrixXd places_cov;
-  Eigen::VectorXd widened;  ///< of all that stands, see widening()
-  PlacesPrior belief;       ///< of the places, about where they are likeliest
+  Eigen::VectorXd widened;  ///< of all static states, see widening()
+  PlacesPrior belief;       ///< of the lever arms, about their maximum likelihood
   double log_likelihood = 0.0;
 };
 
-/// How many instants a path has before it is a turn away from its start.
+/// Number of epochs of a path before it is a turn away from its start.
 [[nodiscard]] std::size_t instants_of_first_turn(const WheelPath& path);
 
-/// The model of the settled passes: linear about a path, the places held.
+/// The model of the final passes: linearised about a path, with the lever arms held.
 template <int S>
 [[nodiscard]] WheelModel<S> held_model(const WheelReadings& readings,
                                        const WheelNoise& noise,
@@ -33,16 +33,16 @@ template <int S>
   return model;
 }
 
-/// Orders 1 and 2 and the two others, up to highest_order, that explain most of what a path
-/// without ripple leaves of the readings.
+/// Orders 1 and 2 and the two others, up to highest_order, that explain most of the residual of a
+/// path without ripple.
 template <int S>
 [[nodiscard]] RippleOrders orders_in(const WheelReadings& readings, const WheelPath& path);
 
-/// Moves the track to the smoother's under the settled figures.
+/// Updates the track to the smoother's with the current parameters.
 template <int S>
 void improve(const WheelReadings& readings, const Settled<S>& settled, WheelTrack& track);
 
-/// Rounds until the likelihood has settled, at most `most`.
+/// Iterates until the likelihood converges, at most `most` times.
 template <int S>
 [[nodiscard]] Settled<S> settle_rounds(WheelReadings& readings,
                                        WheelTrack& track,

@@ -15,7 +15,7 @@ using test::Mount;
 using test::rpm;
 
 /// Position, speed and acceleration, of which the position is read: after the first reading it is
-/// known 1e16 times better than the rest, and what is predicted hangs on the speed alone.
+/// known 1e16 times better than the rest, and what is predicted depends on the speed alone.
 struct ReadPosition {
   static constexpr int states = 4, moving = 3, channels = 1;
   LinearModel<3, 1> pva =

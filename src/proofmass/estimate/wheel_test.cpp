@@ -214,7 +214,7 @@ TEST(EstimateWheel, AnUnknownDelayCostsTurnsOnlyWhereTheSpeedChanges) {
   EXPECT_GT(turns_std(at_speed, {}), 3.0 * turns_std(at_speed, known));
 }
 
-// Readings of a pole at 20 Hz, by its differential equation at 60 kHz.
+// Measurements of a pole at 20 Hz, by its differential equation at 60 kHz.
 TEST(EstimateWheel, ABandwidthThatIsGivenTakesTheDelayOutOfTheAngle) {
   const Drive steady{{0.3, 60 * rpm}, {{8.0, 60 * rpm}}};
   Mount mount;

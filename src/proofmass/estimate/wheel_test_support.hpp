@@ -12,14 +12,13 @@
 
 #include "proofmass/estimate/wheel.hpp"
 
-// Recordings of wheels made in the tests, by kinematics written on the complex plane: nothing of
-// wheel_model.hpp is in them.
+// Test recordings of wheels, by kinematics in the complex plane, independent of wheel_model.hpp.
 namespace proofmass::estimate::test {
 
 constexpr double pi = std::numbers::pi;
 constexpr double rpm = 2.0 * pi / 60.0;
 
-/// Normal deviates that are the same on every platform (std::normal_distribution is not).
+/// Normal deviates that are identical on every platform (std::normal_distribution is not).
 class Normal {
  public:
   explicit Normal(std::uint64_t seed) : bits_(seed) {}
@@ -37,7 +36,7 @@ struct Turning {
   double angle_rad = 0.0, speed_radps = 0.0, accel_radps2 = 0.0;
 };
 
-/// The speed goes to `to_radps` within `duration_s`, along half a cosine.
+/// The speed changes to `to_radps` within `duration_s`, along half a cosine.
 struct Stage {
   double duration_s = 0.0, to_radps = 0.0;
 };
@@ -79,15 +78,15 @@ struct Drive {
   }
 };
 
-/// One sensor, as it sits and as it errs. `x y z` are its own axes.
+/// One sensor with its mounting and errors. `x y z` are its own axes.
 struct Mount {
   std::complex<double> place_m{0.1, 0.0};  ///< in the wheel's axes
   double turned_rad = 0.0;                 ///< its u against the wheel's first axis
   std::array<double, 2> bias_mps2{}, scale{1.0, 1.0};
   double skew_rad = 0.0;
   double noise_mps2 = 0.02;
-  double warm_up_mps2 = 0.0, warm_up_s = 20.0;  ///< both biases move by so much, exponentially
-  /// Where the wheel's u, v and axle point in the sensor's axes.
+  double warm_up_mps2 = 0.0, warm_up_s = 20.0;  ///< exponential change of both biases
+  /// Directions of the wheel's u, v and axle in the sensor's axes.
   std::array<std::array<double, 3>, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   double clock_offset_s = 0.0;
   bool two_axes = false;
@@ -96,11 +95,11 @@ struct Mount {
 struct Site {
   double gravity_mps2 = standard_gravity_mps2;
   double axle_tilt_rad = 0.0;     ///< of the axle from level
-  double rolling_radius_m = 0.0;  ///< 0: the axle stands
+  double rolling_radius_m = 0.0;  ///< 0: fixed axle
 };
 
-/// Specific force in the sensor's true u, v: that of a point at p on the complex plane is
-/// p̈ + i g with p = p₀ exp(iθ), turned into the sensor's axes.
+/// Specific force in the sensor's true u, v: that of a point at p in the complex plane is p̈ + i g
+/// with p = p₀ exp(iθ), rotated to the sensor's axes.
 inline std::complex<double> force(const Turning& now, const Mount& mount, const Site& site) {
   using namespace std::complex_literals;
   const std::complex<double> turn = std::polar(1.0, now.angle_rad);
@@ -111,7 +110,7 @@ inline std::complex<double> force(const Turning& now, const Mount& mount, const 
   return (p_ddot + 1i * g) * std::conj(turn * std::polar(1.0, mount.turned_rad));
 }
 
-/// The two readings less noise.
+/// The two measurements without noise.
 inline std::array<double, 2> reading(const std::complex<double>& f, const Mount& mount) {
   return {mount.scale[0] * (f.real() + mount.skew_rad * f.imag()) + mount.bias_mps2[0],
           mount.scale[1] * (f.imag() + mount.skew_rad * f.real()) + mount.bias_mps2[1]};
@@ -150,7 +149,7 @@ inline std::array<std::array<double, 3>, 3> tilted(double about_z, double about_
            {cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx}}};
 }
 
-/// A row as broken transfers leave it.
+/// A row as corrupted by a broken transfer.
 inline void spoil(WheelSensor& sensor, std::size_t row, double value) {
   for (auto& axis : sensor.accel_mps2)
     if (!axis.empty()) axis[row] = value;

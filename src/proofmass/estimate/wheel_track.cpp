@@ -7,16 +7,16 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Constants are held close while the phase is still being found: a free bias would swallow it.
+/// Constants have a tight prior while the phase is being found: a free bias would absorb it.
 constexpr ConstantsPrior seeking_prior{0.3, 0.03, 0.01, 0.5, 0.15};
 
 struct Seek {
-  double accel_std_mps2;  ///< of a reading at 120 Hz
+  double accel_std_mps2;  ///< of a measurement at 120 Hz
   WheelNoise noise;
 };
 
-/// Noise figures to follow a wheel with when nothing is known yet, from a car's wheel on the road
-/// to a bench that hardly shakes. The first that keeps the phase is taken.
+/// Noise parameters for tracking a wheel without prior knowledge, from a car's wheel on the road to
+/// a bench with little vibration. The first set that keeps the phase is used.
 constexpr std::array<Seek, wheel_seeks> seeks{
     Seek{1.5, {20.0, 0.0, 1e-7}}, Seek{3.0, {100.0, 0.0, 1e-7}}, Seek{1.5, {500.0, 0.0, 1e-7}},
     Seek{0.5, {200.0, 0.0, 1e-7}}};
@@ -29,7 +29,7 @@ void set_variance(WheelReadings& readings, double accel_std_mps2) {
     sensor.variance_m2ps4.assign(sensor.u_mps2.size(), variance);
 }
 
-/// Mean gravity phase of the first few readings.
+/// Mean gravity phase of the first few measurements.
 double first_phase(const PlanarReadings& sensor) {
   double u = 0.0, v = 0.0;
   int seen = 0;
@@ -42,7 +42,7 @@ double first_phase(const PlanarReadings& sensor) {
   return std::atan2(u, v);
 }
 
-/// From rest outwards: 0, 1.5, −1.5, 3, −3 … rad/s, up to what the rate can follow.
+/// From rest outwards: 0, 1.5, −1.5, 3, −3 … rad/s, up to the limit set by the rate.
 std::vector<double> speeds_to_try(double rate_hz, double step_radps) {
   std::vector<double> speeds{0.0};
   const double top = std::min(fastest_radps(rate_hz), 120.0);
@@ -69,7 +69,7 @@ Beginning seek_beginning(const WheelReadings& readings, const WheelNoise& noise)
                                 0.7 * speed_step_radps};
       const auto prior = prior_state<1>({candidate, seeking_prior, {}});
       const double lost = score_run(model, prior, 0, last).lost;
-      // A later candidate has to be clearly better: at rest, many explain little.
+      // A later candidate must be clearly better: at rest, many explain little.
       if (lost >= 0.95 * best_lost) continue;
       best_lost = lost;
       best = candidate;
@@ -80,8 +80,8 @@ Beginning seek_beginning(const WheelReadings& readings, const WheelNoise& noise)
 }  // namespace
 
 double WheelReadings::rate_hz() const {
-  // The mean step, not the median: rows that arrive in packets bear nearly equal stamps. Gaps are
-  // left out.
+  // The mean step, not the median: rows that arrive in packets have nearly equal stamps. Gaps are
+  // excluded.
   constexpr double gap_share = 0.01, gap_factor = 5.0;
   std::vector<double> steps;
   steps.reserve(instants.size());
@@ -164,7 +164,7 @@ WheelTrack find_track(WheelReadings& readings, std::size_t first) {
     const Beginning beginning = seek_beginning(readings, seek.noise);
     const auto prior = prior_state<1>({beginning, seeking_prior, {}});
     const double lost = score_run(model, prior, 0, model.size()).lost;
-    // What follows every shake predicts a little better, and is no better for it.
+    // A filter that follows every vibration predicts slightly better without being better.
     if (lost >= 0.6 * best_lost) continue;
     best_lost = lost;
     best = {beginning, seek.noise, {}, lost};

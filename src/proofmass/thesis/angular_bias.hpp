@@ -12,12 +12,12 @@
 // Section 5.1.2: the four-point tumble test of the x and y axes at 3.3 V.
 namespace proofmass::thesis {
 
-/// One output over the positions.
+/// One output at all positions.
 struct TumbleChannel {
   std::string name;
-  Unit unit;                        ///< of the outputs
-  std::vector<double> output, std;  ///< at each position; std NaN where it is not known
-  double noise_dof = 0.0;           ///< behind std; 0: known for certain
+  Unit unit;                        ///< unit of the outputs
+  std::vector<double> output, std;  ///< at each position; std NaN if unknown
+  double noise_dof = 0.0;           ///< degrees of freedom of std; 0: infinite
 };
 
 struct TumbleRecord {
@@ -27,8 +27,8 @@ struct TumbleRecord {
   std::vector<TumbleChannel> channels;
 };
 
-/// The rig's first sensor on a table, 0° to 360° in steps of 90°, in volts: bias and scale factor
-/// as table 5.1 has them.
+/// The rig's first sensor on a table, 0° to 360° in steps of 90°, in volts, with the bias and scale
+/// factor of table 5.1.
 [[nodiscard]] Result<TumbleRecord> simulate_tumble(std::uint64_t seed, double gravity_mps2);
 
 /// Figures 5.4, 5.5 and 5.6, table 5.1.

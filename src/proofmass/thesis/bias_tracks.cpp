@@ -134,7 +134,7 @@ BiasTrack track_by_thesis(const Readings& readings, const PlainFit& fit) {
   return track_of(readings, filter_linear(*series, start), &LinearStep::filtered);
 }
 
-/// Two-sided density of the white noise that drives all that wanders, over short times.
+/// Two-sided density of the white noise that drives all that drifts, over short times.
 double wander_psd_m2ps5(const characterise::DriftNoise& noise, double duration_s) {
   double psd = noise.random_walk * noise.random_walk + noise.markov * noise.markov;
   if (noise.flicker > 0.0) {

@@ -4,7 +4,7 @@
 
 #include "proofmass/thesis/item.hpp"
 
-// Section 2.4.1: what a bias costs.
+// Section 2.4.1: the position error caused by a bias.
 namespace proofmass::thesis {
 
 /// Table 2.1.

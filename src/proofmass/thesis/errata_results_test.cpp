@@ -73,7 +73,7 @@ std::array<double, 2> amplitude_and_lag_deg(double q, double R) {
   prior.cov.diagonal().setConstant(100.0);
   const std::vector models(epochs.size(), model);
   const auto run = filter_linear(estimate::LinearSeries<3, 1>::make(epochs, models).value(), prior);
-  // Two instants of a sine of known frequency tell it.
+  // Two epochs of a sine of known frequency tell it.
   const double a = run.steps[499].filtered.mean(2), b = run.steps[500].filtered.mean(2);
   const double s = std::sin(99.8), c = std::cos(99.8), s1 = std::sin(100.0), c1 = std::cos(100.0);
   const double det = s * c1 - c * s1, in = (a * c1 - c * b) / det, quad = (s * b - s1 * a) / det;

@@ -14,10 +14,10 @@
 #include "proofmass/thesis/static_bias.hpp"
 #include "proofmass/thesis/wheel_runs.hpp"
 
-// The whole programme of the thesis, from its first table to its last.
+// The whole programme of the thesis, from the first table to the last.
 namespace proofmass::thesis {
 
-/// What was recorded on a user's own rig; what is absent is simulated.
+/// Recordings from a user's own rig; those absent are simulated.
 struct OwnRecordings {
   std::optional<StaticRecord> still;
   std::optional<TumbleRecord> tumble;
@@ -26,7 +26,7 @@ struct OwnRecordings {
 
 struct ProgrammeOptions {
   std::uint64_t seed = 1;
-  std::size_t seeds = 50;             ///< simulated runs at each speed, behind the bands
+  std::size_t seeds = 50;             ///< simulated runs at each speed, for the bands
   double static_duration_s = 7200.0;  ///< of the simulated test at rest
   double gravity_mps2 = standard_gravity_mps2;
   Progress progress = {};
@@ -34,15 +34,15 @@ struct ProgrammeOptions {
 
 struct Programme {
   std::vector<Item> items = {};  ///< in the order of the thesis
-  /// Of "static", "tumble" and "wheel" those of which no recording was given.
+  /// Those of "static", "tumble" and "wheel" without a recording.
   std::vector<std::string> simulated = {};
 };
 
-/// Runs it: on what was recorded, and else on the simulated rig. The same recordings, options and
-/// seed give the same items.
+/// Runs the programme on the recordings, or else on the simulated rig. The same recordings, options
+/// and seed give the same items.
 ///
-/// Errors: those of the analyses, with the recording's name; invalid_argument (options).
-/// Cost: about 20 s of one processor where all is simulated; independent parts run at once.
+/// Errors: those of the analyses, with the recording's name; invalid_argument (options). Cost:
+/// about 20 s of one processor if all is simulated; independent parts run in parallel.
 [[nodiscard]] Result<Programme> run_programme(const OwnRecordings& own,
                                               const ProgrammeOptions& options);
 

@@ -18,7 +18,7 @@ using Series = std::vector<double>;
 /// Samples with their times.
 struct Picked {
   double rate_hz;
-  double start_s;  ///< since switching on
+  double start_s;  ///< since power-on
   View<double> values_mps2;
   [[nodiscard]] double t_s(std::size_t k) const {
     return start_s + static_cast<double>(k) / rate_hz;

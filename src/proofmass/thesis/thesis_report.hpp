@@ -12,15 +12,15 @@
 namespace proofmass::thesis {
 
 struct ThesisReport {
-  std::vector<std::string> inputs;  ///< files, as the user named them
+  std::vector<std::string> inputs;  ///< files, as named by the user
   std::uint64_t seed = 1;           ///< of the simulation
   std::size_t runs = 0;             ///< simulated at each speed
-  std::vector<Note> notes = {};     ///< of reading
+  std::vector<Note> notes = {};     ///< from reading the files
   Programme programme = {};
 };
 
-/// Each table and figure of the thesis beside ours, by chapter: items[] of {id, title, thesis,
-/// ours, note}. It refers to the report, which must outlive it.
+/// Each table and figure of the thesis compared with ours, by chapter: items[] of {id, title,
+/// thesis, ours, note}. It refers to the report, which must outlive it.
 [[nodiscard]] report::Document describe(const ThesisReport& report);
 
 }  // namespace proofmass::thesis

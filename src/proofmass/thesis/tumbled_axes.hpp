@@ -42,7 +42,7 @@ struct TumbledAxis {
   /// Mean of the positions of the first plane at this angle of the table, within half a degree; std
   /// 0 where their noise is not known; absent: there is none.
   [[nodiscard]] std::optional<Uncertain> mean_at(double angle_rad) const;
-  /// A coefficient's value; 0 where the positions do not tell it.
+  /// A coefficient's value; 0 where the positions do not determine it.
   [[nodiscard]] double value_of(calibrate::TumbleQuantity quantity) const;
 };
 

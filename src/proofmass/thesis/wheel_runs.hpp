@@ -13,29 +13,28 @@
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/thesis/item.hpp"
 
-// Sections 5.4 to 5.6: the turning wheel, by the thesis's filter and by the wheel's own model.
+// Sections 5.4 to 5.6: the rotating wheel, with the thesis's filter and with the wheel's own model.
 namespace proofmass::thesis {
 
-/// What is known of an axis's bias before the run: at the first sample b, later
-/// b + rise (1 − e^(−t/T)).
+/// Prior of an axis's bias before the run: at the first sample b, later b + rise (1 − e^(−t/T)).
 struct KnownBias {
-  Uncertain start_mps2 = {0.0, 0.3};  ///< of a sensor that nobody has calibrated
+  Uncertain start_mps2 = {0.0, 0.3};  ///< of an uncalibrated sensor
   double rise_mps2 = 0.0;
   double time_constant_s = 70.0;  ///< T
 };
 
-/// One run at one speed. Without a truth the smoothed wheel model stands in for it, with its band.
+/// One run at one speed. Without a truth the smoothed wheel model replaces it, with its band.
 struct WheelRecord {
   std::string source;  ///< the file, or "simulated"
   bool simulated = false;
   std::vector<estimate::WheelSensor> sensors;  ///< one or two
   bool clocks_shared = true;
-  /// Of each sensor from the axle; absent: as the wheel model finds it, if it does.
+  /// Distance of each sensor from the axle; absent: as estimated by the wheel model, if it is.
   std::optional<double> radius_m = 0.1;
-  double speed_radps = 0.0;                         ///< set; 0: not known
+  double speed_radps = 0.0;                         ///< as set; 0: unknown
   std::vector<std::array<KnownBias, 2>> bias = {};  ///< of each sensor's x and y; empty: unknown
-  /// Of the first sensor's x axis above the horizontal, at the first sensor's samples; empty: not
-  /// known.
+  /// Angle of the first sensor's x axis above the horizontal, at the first sensor's samples; empty:
+  /// unknown.
   std::vector<double> true_angle_rad = {}, true_speed_radps = {}, true_accel_radps2 = {};
 };
 
