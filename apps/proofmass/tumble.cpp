@@ -123,7 +123,7 @@ ChannelTumble analysed(const TumbleReadings& readings,
                         .fit = {},
                         .refused = {}};
   if (!axis.swings()) {
-    channel.refused = "the output " + axis.words + ", and a tumble about it tells nothing of it";
+    channel.refused = "the output " + axis.words + ", and a tumble about it does not excite it";
     return channel;
   }
   channel.positions = positions_of(readings, output, axis);

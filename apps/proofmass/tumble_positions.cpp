@@ -161,7 +161,7 @@ TumblePart read_rests(const Recording& recording,
   const auto [dwells, angles] = settings_of(recording, columns, command, before);
   if (dwells.size() < 2)
     throw Failure(bad_input,
-                  fmt::format("{}: the table's angle stands still in {}: expected two or more",
+                  fmt::format("{}: the table's angle is constant in {}: expected two or more",
                               recording.source, report::count_words(dwells.size(), "place")));
   TumblePart part;
   part.rests = dwells.size();
@@ -289,7 +289,7 @@ TumbleReadings tumble_readings(const TumbleCommand& command, std::vector<Note>& 
   all.source = rests == 0               ? "a table of " + count + " positions"
                : !command.rests.empty() ? count + " listed rests of a recording"
                : command.angles_deg.empty()
-                   ? count + " places in which the recorded angle stands still"
+                   ? count + " intervals in which the recorded angle is constant"
                    : count + " rests of a recording, their angles given";
   return all;
 }

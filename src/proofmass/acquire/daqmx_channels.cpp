@@ -37,7 +37,7 @@ Status add_range(std::string_view text, const std::string& device, std::vector<s
     std::string_view last = text.substr(colon + 1);
     if (last.starts_with(stem)) last.remove_prefix(stem.size());
     to = number_of(last);
-    if (!to) return bad(text, "no number behind the colon");
+    if (!to) return bad(text, "no number after the colon");
   }
   const unsigned count = (*from > *to ? *from - *to : *to - *from) + 1;
   if (out.size() + count > most_channels)

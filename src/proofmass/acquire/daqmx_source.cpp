@@ -86,7 +86,7 @@ class Listener {
     const double missing = std::max(std::round(silent_s * task_->rate_hz()), 1.0);
     lost_ = std::max(static_cast<std::uint64_t>(missing), lost.value_or(0));
     const std::string count = lost ? fmt::format("{} rows that the card took", *lost)
-                                   : "rows whose number the driver does not tell";
+                                   : "rows whose number the driver does not report";
     tell({Severity::bad, fmt::format("{}: {} are lost; the task was started anew, and by the "
                                      "host's clock {:.0f} rows are missing",
                                      words, count, missing)});

@@ -99,7 +99,7 @@ class LayoutReader {
           fmt::format("fields=: {}: expected a type: u8 i8 u16 i16 u24 i24 u32 i32 u64 i64 "
                       "f32 f64 pad crc8 crc16 crc16-modbus crc32",
                       type));
-    if (names.empty()) return invalid(fmt::format("fields=: {}: expected names behind it", type));
+    if (names.empty()) return invalid(fmt::format("fields=: {}: expected names after it", type));
     for (const std::string_view name : names) {
       layout_.fields.push_back(
           {std::string(name), found->kind, layout_.bytes, found->bytes, big_endian});

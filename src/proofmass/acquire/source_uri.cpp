@@ -28,7 +28,7 @@ Result<std::string> decoded(std::string_view text) {
                                     ? std::from_chars(from, from + 2, byte, 16)
                                     : std::from_chars_result{from, std::errc::invalid_argument};
     if (problem != std::errc{} || end != from + 2)
-      return invalid(fmt::format("{}: expected two hexadecimal figures behind %", text));
+      return invalid(fmt::format("{}: expected two hexadecimal digits after %", text));
     out += static_cast<char>(byte);
     i += 2;
   }
@@ -146,7 +146,7 @@ Result<HostPort> parse_host_port(std::string_view text) {
   const char* const end = port.data() + port.size();
   const auto [stop, problem] = std::from_chars(port.data() + 1, end, number);
   if (port.front() != ':' || problem != std::errc{} || stop != end || number == 0)
-    return invalid(fmt::format("{}: expected a port from 1 to 65535 behind the host", text));
+    return invalid(fmt::format("{}: expected a port from 1 to 65535 after the host", text));
   out.port = number;
   return out;
 }

@@ -34,7 +34,7 @@ Result<std::unique_ptr<Source>> open_stdin(SourceUri& uri, const OpenOptions& op
   if (!uri.place().empty())
     return Error{
         Errc::invalid_argument,
-        fmt::format("stdin:{}: expected nothing behind the colon but settings", uri.place())};
+        fmt::format("stdin:{}: expected nothing but settings after the colon", uri.place())};
   if (const Status known = uri.nothing_unknown(); !known) return known.error();
   SourceHead head;
   head.recording.source = uri.text();

@@ -120,7 +120,7 @@ std::string words(const Confounded& found,
   std::string relations;
   for (const std::string& one : found.relations) relations += (relations.empty() ? "" : ", ") + one;
   return fmt::format(
-      "{} cannot be told apart: in every row {} (accelerations in g); choose {} of them, or add {}",
+      "{} are not separable: in every row {} (accelerations in g); choose {} of them, or add {}",
       listed(found.coefficients), relations, number_word(found.determined),
       is_between_functions_of_input(group, coefficients) ? "rows with other values of a_i"
                                                          : "rows in which that does not hold");

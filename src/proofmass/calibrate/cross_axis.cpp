@@ -119,7 +119,8 @@ Result<CrossAxis> cross_axis_sensitivity(const Eigen::Vector2d& ratio,
     result.value = Uncertain{size - across / (2.0 * size), std::sqrt(std::max(along, 0.0))};
   } else {
     result.reason = fmt::format(
-        "the cross-axis sensitivity is not told from zero (p = {:.2g}): it is below {:.3g} with "
+        "the cross-axis sensitivity is not distinguishable from zero (p = {:.2g}): it is below "
+        "{:.3g} with "
         "95 % confidence",
         result.p, result.upper_95);
   }

@@ -251,10 +251,11 @@ Status k1_is_told(const Linear& problem,
   if (std == 0.0 || student_t_p(t, fit.std_stated ? 1e9 : static_cast<double>(fit.dof)) < chance) {
     return Done{};
   }
-  return Error{Errc::not_observable,
-               fmt::format("K1 = {} with standard deviation {} cannot be told from zero, and all "
-                           "other coefficients are relative to it",
-                           compact(k1, 3), compact(std, 3))};
+  return Error{
+      Errc::not_observable,
+      fmt::format("K1 = {} with standard deviation {} cannot be distinguished from zero, and all "
+                  "other coefficients are relative to it",
+                  compact(k1, 3), compact(std, 3))};
 }
 
 void fill_coefficients(const Linear& problem,

@@ -208,7 +208,7 @@ TEST(ModelFit, SaysThatFourPositionsDoNotShowOddTermsBesideTheScaleFactor) {
   const ModelFit fit = fit_model_equation(rows, options).value();
   ASSERT_EQ(fit.confounded.size(), 1U);
   EXPECT_EQ(fit.confounded[0].words,
-            "K1 and K3 cannot be told apart: in every row a_i³ = a_i (accelerations in g); choose "
+            "K1 and K3 are not separable: in every row a_i³ = a_i (accelerations in g); choose "
             "one of them, or add rows with other values of a_i");
   EXPECT_EQ(fit.confounded[0].combinations.at(0).name, "K1 (1 + 96.17 K3)");
   EXPECT_NEAR(fit.confounded[0].combinations[0].value.value, 2.0, 1e-6);

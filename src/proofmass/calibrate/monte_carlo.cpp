@@ -89,7 +89,8 @@ std::string words(const GumValidation& found, const UncertaintyBudget& budget, s
     case Agreement::cannot_tell:
       break;
   }
-  return "The draws are too few to tell whether Monte Carlo confirms the budget: " + ends + ".";
+  return "The draws are too few to determine whether Monte Carlo confirms the budget: " + ends +
+         ".";
 }
 
 }  // namespace

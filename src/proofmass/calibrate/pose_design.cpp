@@ -51,7 +51,7 @@ std::string unresolved(const Eigen::MatrixXd& information) {
       words.emplace_back(names[static_cast<std::size_t>(k)]);
   }
   if (words.size() == 1) return "do not determine " + words.front();
-  return fmt::format("do not tell {} apart", joined(words));
+  return fmt::format("do not separate {}", joined(words));
 }
 
 Eigen::VectorXd errors_at_1g(const Eigen::MatrixXd& covariance, const Parameters& p) {

@@ -17,7 +17,7 @@ using Eigen::Index;
 using Q = RotationQuantity;
 
 constexpr std::string_view one_speed =
-    "radius and radial bias cannot be told apart at one speed: record a second speed";
+    "radius and radial bias are not separable at one speed: record a second speed";
 
 // A quantity's value and its derivatives by the harmonics of its axis.
 struct Derived {
@@ -171,8 +171,9 @@ void fill_radius(const RotationState& state,
   if (!length) {
     radius.reason = length.error().message;
   } else if (!length->value) {
-    radius.reason = fmt::format("the radius is not told from zero: it is below {:.3g} m (95 %)",
-                                length->upper_95);
+    radius.reason =
+        fmt::format("the radius is not distinguishable from zero: it is below {:.3g} m (95 %)",
+                    length->upper_95);
   } else {
     radius.value = length->value;
     radius.half_width_95 = normal_factor * length->value->std;

@@ -69,7 +69,7 @@ TEST(Rotation, DoesNotTellRadiusFromBiasAtOneSpeed) {
   wheel.radius_m = 0.1;
   const RotationFit fit = fit_of({turned(wheel)});
   const std::string reason =
-      "radius and radial bias cannot be told apart at one speed: record a second speed";
+      "radius and radial bias are not separable at one speed: record a second speed";
   EXPECT_FALSE(fit.radius.value);
   EXPECT_EQ(fit.radius.reason, reason);
   EXPECT_EQ(fit.axes[0][Q::K0].reason, reason);
@@ -386,7 +386,7 @@ TEST(Rotation, DoubtsAWheelWhoseAxleMoves) {
   }
   const RotationFit fit = fit_of({recording});
   ASSERT_FALSE(fit.doubts.empty());
-  EXPECT_NE(fit.doubts[0].find("whose axle stands still"), std::string::npos);
+  EXPECT_NE(fit.doubts[0].find("whose axle is stationary"), std::string::npos);
   for (std::size_t k = 0; k < recording.time_s.size(); ++k) {
     recording.axes[0][k] += 8.0 * std::sin(17.0 * recording.time_s[k]);
   }

@@ -22,7 +22,7 @@ void note_doubts(const RotationState& state, const RotationOptions& options, Rot
     if (left > much) {
       fit.doubts.push_back(fmt::format(
           "axis {}: {:.0f} % of the readings' swing does not follow gravity's turn: a test wants a "
-          "wheel on a bench, whose axle stands still",
+          "wheel on a bench, whose axle is stationary",
           axis + 1, 100.0 * left));
     }
     const auto& k1 = fit.axes[axis][RotationQuantity::K1].value;

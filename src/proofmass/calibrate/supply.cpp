@@ -103,7 +103,7 @@ std::string words_of(const SupplyAxis& axis, char name, const std::string& readi
                   figure(axis.fraction.value, axis.fraction.std, axis.zero.std_known, factor), unit,
                   compact(factor * axis.expected_fraction, 4), unit, volts ? "was" : "were");
   if (!axis.ratiometric)
-    return fmt::format("{}: {}; whether it follows its supply cannot be told", name, facts);
+    return fmt::format("{}: {}; whether it follows its supply is undetermined", name, facts);
   if (*axis.ratiometric) return fmt::format("{} follows its supply: {}", name, facts);
   const auto still = [](const Uncertain& slope, const SupplyLine& line) {
     const auto p = p_of(slope.value, slope.std, line);
@@ -259,7 +259,7 @@ AtSupply at_supply(const SupplyDependence& found, std::size_t axis, double suppl
   out.scale = Uncertain{scale, std::abs(scale) * log_scale.std};
   out.bias = at(it.zero, supply_v);
   if (!it.log_scale.std_known || !it.zero.std_known)
-    out.reason = "two calibrations without uncertainties do not tell how sure this is";
+    out.reason = "two calibrations without uncertainties do not determine its uncertainty";
   return out;
 }
 

@@ -130,7 +130,7 @@ TEST(FitSupply, OfTwoSuppliesSaysThatThereIsNoRedundancy) {
   const auto unsure = fit_supply(bare).value();
   EXPECT_FALSE(unsure.axes[0]->scale_p);
   EXPECT_FALSE(unsure.axes[0]->ratiometric);
-  EXPECT_NE(unsure.axes[0]->words.find("cannot be told"), std::string::npos);
+  EXPECT_NE(unsure.axes[0]->words.find("undetermined"), std::string::npos);
   EXPECT_FALSE(at_supply(unsure, 0, 3.1).reason.empty());
 }
 

@@ -27,7 +27,7 @@ Status check(View<TumblePosition> positions, const TumbleOptions& options) {
   if (positions.size() < 2)
     return Error{Errc::too_few_samples,
                  fmt::format("{} positions: scale factor and bias need two, the input axis up and "
-                             "down; four or more tell the rest",
+                             "down; four or more determine the rest",
                              positions.size())};
   constexpr std::size_t most = 5000;
   if (positions.size() > most)
@@ -103,7 +103,7 @@ Status check_swing(const TumbleSolution& solution, double largest_output) {
   const auto sine = design.find(TumbleTerm::sine);
   if (!sine || !design.find(TumbleTerm::up_down))
     return Error{Errc::not_observable,
-                 "scale factor and bias cannot be told apart: the input axis has to point up in "
+                 "scale factor and bias are not separable: the input axis has to point up in "
                  "one position and down in another"};
   const TumbleRegression& regression = solution.regression;
   const double swing = swing_of(design, regression.beta);

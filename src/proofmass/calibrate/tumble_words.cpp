@@ -43,19 +43,22 @@ std::string not_told_words(TumbleTerm term) {
     case TumbleTerm::square:
       return "there are not positions enough both upright and level";
     case TumbleTerm::product:
-      return "at these angles sin 2φ is 0 or cannot be told from the other terms: add positions "
+      return "at these angles sin 2φ is 0 or cannot be distinguished from the other terms: add "
+             "positions "
              "between the quarters";
     case TumbleTerm::cube:
-      return "at these angles sin 3φ cannot be told from sin φ: add positions between the quarters";
+      return "at these angles sin 3φ cannot be distinguished from sin φ: add positions between the "
+             "quarters";
     case TumbleTerm::third_cosine:
-      return "at these angles cos 3φ cannot be told from cos φ: add positions between the quarters";
+      return "at these angles cos 3φ cannot be distinguished from cos φ: add positions between the "
+             "quarters";
     case TumbleTerm::indexing_cos2:
     case TumbleTerm::indexing_sin2:
       return "an error twice a turn stays the same when the sensor is mounted turned by 180°: "
              "mount "
              "it turned by 90° as well";
     default:
-      return "these positions cannot tell it from the other terms";
+      return "these positions do not separate it from the other terms";
   }
 }
 
@@ -181,9 +184,9 @@ std::string meaning_words(const TumbleCoefficient& coefficient, const TumbleDesi
     case Q::misalignment_p:
       return plane_words("δp, the table's zero and the mounting in it", plane, design);
     case Q::K2_minus_Kpp:
-      return "K2 − Kpp: no tumble in this plane can tell them apart";
+      return "K2 − Kpp: no tumble in this plane separates them";
     case Q::K2_minus_Koo:
-      return "K2 − Koo: no tumble in this plane can tell them apart";
+      return "K2 − Koo: no tumble in this plane separates them";
     case Q::Kip:
       return "cross-axis term of input and pendulous axis";
     case Q::Kio:

@@ -147,7 +147,7 @@ Status read_distribution(const std::vector<std::string_view>& parts, TypeB& line
   }
   if (line.distribution == Distribution::student_t && line.dof == 0.0)
     return Error{Errc::invalid_argument,
-                 "expected the degrees of freedom behind student-t: NAME,TARGET,VALUE "
+                 "expected the degrees of freedom after student-t: NAME,TARGET,VALUE "
                  "UNIT,student-t,DOF"};
   return Done{};
 }

@@ -106,7 +106,8 @@ void note_model(NoiseAnalysis& analysis) {
   if (ambiguous(model.random_walk) || ambiguous(model.flicker))
     analysis.notes.push_back(
         {Severity::warning,
-         "there is slow noise beyond the white, but this recording is too short to tell flicker "
+         "there is slow noise beyond the white, but this recording is too short to separate "
+         "flicker "
          "from random walk: the simpler reading is given, its interval reaches down to zero"});
 }
 

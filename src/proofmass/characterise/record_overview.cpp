@@ -101,11 +101,12 @@ Status RecordOverview::check_spread(std::optional<double> lsb) const {
   if (!lsb) return Done{};
   const double added = *lsb * *lsb / 12.0, least = 0.25 * *lsb * *lsb;
   if (spread * spread - added >= least) return Done{};
-  return Error{Errc::not_observable,
-               fmt::format("the readings spread by {:.2f} steps of the converter, of which the "
-                           "steps themselves make 0.29: noise below half a step cannot be told "
-                           "from rounding: record with a finer converter or more gain",
-                           spread / *lsb)};
+  return Error{
+      Errc::not_observable,
+      fmt::format("the readings spread by {:.2f} steps of the converter, of which the "
+                  "steps themselves make 0.29: noise below half a step is not "
+                  "distinguishable from rounding: record with a finer converter or more gain",
+                  spread / *lsb)};
 }
 
 // Noise thins out towards its extremes. Where the very last value comes up more often than all that

@@ -175,7 +175,7 @@ void say(const AttitudeModel& model, const std::vector<signal::Rest>& rests, Att
     if (reached[r] == 0)
       use.why_not = "none of its samples has a reading of both sensors";
     else if (!use.used)
-      use.why_not = "the gyroscope turns while the accelerometer stands still";
+      use.why_not = "the gyroscope turns while the accelerometer is at rest";
     any = any || use.used;
     out.rests.push_back(std::move(use));
   }
@@ -189,7 +189,7 @@ void say(const AttitudeModel& model, const std::vector<signal::Rest>& rests, Att
   if (out.stretches.size() > 1)
     out.notes.push_back(
         {Severity::warning, std::to_string(out.stretches.size() - 1) +
-                                " gaps: heading, velocity and position start afresh behind each"});
+                                " gaps: heading, velocity and position restart after each"});
   if (!out.converged)
     out.notes.push_back({Severity::warning,
                          "the smoothed attitude had not settled when the iteration was stopped"});

@@ -13,8 +13,7 @@ namespace proofmass::estimate::detail {
 /// Dependence of a state x̂ + X δ on δ.
 template <int N>
 struct DiffusePart {
-  Mat<N, N>
-      root;  ///< X T L⁻¹; its square is what the determined part of δ adds to the covariance
+  Mat<N, N> root;  ///< X T L⁻¹; its square is what the determined part of δ adds to the covariance
   Mat<N> mean;     ///< what the determined part of δ adds to the mean
   Mat<N, N> open;  ///< X T of the undetermined directions, in the first columns
 };

@@ -32,8 +32,8 @@ struct LinearModel {
 /// One epoch: the time since the previous one, the input meanwhile, the measurements.
 template <int M, int U = 0>
 struct Epoch {
-  double dt_s = 0.0;  ///< since the previous epoch, ≥ 0; not used for the first
-  Mat<M> z;           ///< NaN where a channel is missing
+  double dt_s = 0.0;          ///< since the previous epoch, ≥ 0; not used for the first
+  Mat<M> z;                   ///< NaN where a channel is missing
   Mat<U> u = Mat<U>::Zero();  ///< known input over the step
 };
 

@@ -45,9 +45,9 @@ enum class MatrixPass {
 
 /// Output arrays; the length of each follows from the number of epochs.
 struct MatrixOutput {
-  std::span<double> mean{};        ///< epochs × states
-  std::span<double> cov{};         ///< epochs × states × states
-  std::span<double> innovation{};  ///< z − H x⁻, epochs × channels; NaN without a measurement
+  std::span<double> mean{};            ///< epochs × states
+  std::span<double> cov{};             ///< epochs × states × states
+  std::span<double> innovation{};      ///< z − H x⁻, epochs × channels; NaN without a measurement
   std::span<double> innovation_cov{};  ///< H P⁻ Hᵀ + R, × channels; NaN without a measurement
 };
 

@@ -25,9 +25,9 @@ struct PvaOptions {
 [[nodiscard]] LinearModel<3, 1> pva_model(const PvaOptions& options);
 
 struct SingerOptions {
-  double dt_s = 0.0;               ///< time between samples, not negative
-  double maneuver_time_s = 0.0;    ///< τ, correlation time of the acceleration, positive
-  double maneuver_std_mps2 = 0.0;  ///< σ, stationary standard deviation of the acceleration, ≥ 0
+  double dt_s = 0.0;                  ///< time between samples, not negative
+  double maneuver_time_s = 0.0;       ///< τ, correlation time of the acceleration, positive
+  double maneuver_std_mps2 = 0.0;     ///< σ, stationary standard deviation of the acceleration, ≥ 0
   double accel_variance_m2ps4 = 0.0;  ///< variance of one accelerometer measurement
 };
 

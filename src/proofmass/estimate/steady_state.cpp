@@ -220,7 +220,7 @@ Result<SteadyParts> steady_parts(const MatrixXd& F,
   const MatrixXd W = s.d.H * s.d.F;
   const auto L =
       doubled_sum((keep * s.d.F).transpose(), W.transpose() * S_inverse * W, keep * s.d.F);
-  if (!L) return no_limit("what later readings tell of a state does not settle");
+  if (!L) return no_limit("the information of later measurements does not converge");
 
   const MatrixXd T = D * stairs.basis, O = stairs.basis.leftCols(d);
   const MatrixXd left = stairs.basis.rightCols(u) * unseen.left;

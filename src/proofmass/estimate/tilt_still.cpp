@@ -76,7 +76,7 @@ bool judge_norm(TiltOptions& options, TiltSolution& solution) {
         {Severity::warning,
          "at rest the force departs from gravity by " + decimal(off) +
              " m/s^2, and nothing says how well the sensor is calibrated: each axis is taken to be "
-             "off by as much; a sensor file tells better"});
+             "off by as much; a sensor file gives a better value"});
   } else {
     solution.notes.push_back(
         {Severity::warning,

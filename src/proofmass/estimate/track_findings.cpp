@@ -78,7 +78,7 @@ void tell_of_turning(TrackSolution& solution) {
     solution.notes.push_back(
         {Severity::warning,
          text("between two rests the sensor turned by %.2g deg: gravity leans into the axis, which "
-              "the band holds as far as the rests show it; gyroscope channels would tell it",
+              "the band holds as far as the rests show it; gyroscope channels would determine it",
               *solution.turned_rad / degree)});
 }
 
@@ -117,7 +117,7 @@ void tell_of_leaning(const TrackOptions& options, TrackSolution& solution) {
   solution.notes.push_back(
       {Severity::warning,
        text("in motion the readings err by some %.2g m/s^2, as if the sensor leaned by %.2g deg: "
-            "take the figures as rough; a gyroscope would tell",
+            "the figures are approximate; a gyroscope would resolve it",
             accel, lean_rad / degree)});
 }
 
@@ -137,7 +137,8 @@ Error no_stop(const TrackSignal& signal) {
   return {Errc::not_observable,
           (signal.stops.why_none.empty() ? std::string("the sensor never lay still")
                                          : signal.stops.why_none) +
-              "; without a rest the bias cannot be told from motion: let the sensor lie still for "
+              "; without a rest the bias cannot be distinguished from motion: let the sensor lie "
+              "still for "
               "2 s before and after, say where it stood with --still FILE, or give positions with "
               "--fixes FILE"};
 }
@@ -146,7 +147,8 @@ Error hidden_motion() {
   return {
       Errc::not_observable,
       "nearly all of the recording looks like rest, yet its readings integrate to a velocity far "
-      "beyond what their noise does: slow motion cannot be told from drift; say when the sensor "
+      "beyond what their noise does: slow motion cannot be distinguished from drift; say when the "
+      "sensor "
       "stood still with --still FILE"};
 }
 

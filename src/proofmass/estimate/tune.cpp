@@ -293,7 +293,7 @@ class Fit {
         found.value = Uncertain{value, value * log_std_[k]};
       } else {
         found.verdict = TuneVerdict::not_observable;
-        found.reason = "the likelihood does not hang on it";
+        found.reason = "not identifiable: the likelihood does not depend on it";
       }
     });
   }

@@ -112,14 +112,13 @@ std::string sentence(const Eigen::VectorXd& direction,
   }
   const std::string whose = one_sensor ? sensors[sensor].name : "the two sensors";
   if (place && radius_given)
-    return "in which direction from the axle " + whose + (one_sensor ? " sits" : " sit") +
-           " does not show at one speed, and leaves the biases open by omega^2 R: record a second "
-           "speed";
+    return "the mounting azimuth and the biases of " + whose +
+           " are not separable at one speed (omega^2 R): record a second speed";
   const std::string what = joined(names) + " of " + whose;
-  if (place && bias) return what + " cannot be told apart at one speed: record a second speed";
+  if (place && bias) return what + " are not separable at one speed: record a second speed";
   if (place)
     return what + " does not show at this speed: the centripetal force is too small; turn faster";
-  return what + (names.size() > 1 ? " cannot be told apart" : " cannot be told") +
+  return what + (names.size() > 1 ? " are not separable" : " is not identifiable") +
          " from this recording: let the wheel turn at least one whole turn";
 }
 

@@ -19,7 +19,7 @@ struct Trend {
   Bounds slope_95;
   double p = 1.0;              ///< of no dependence
   bool within_sensors = true;  ///< false: no sensor was measured at two x, so that sensors' own
-                               ///< differences and the dependence cannot be told apart
+                               ///< differences and the dependence are not separable
 };
 
 /// Least squares with a level for each sensor and one slope for all: y_ij = a_i + b x_ij + e_ij.

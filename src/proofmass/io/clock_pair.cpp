@@ -168,7 +168,7 @@ Result<ClockPair> compare_clocks(View<double> base_s, View<double> other_s) {
   const double offset_s = other_s[rows.front()] - base_s[rows.front()];
   std::vector<BlockPoint> points = blocks_of(base_s, other_s, rows, offset_s);
   if (!(points.back().x > points.front().x))
-    return Error{Errc::not_observable, "the clock stands still"};
+    return Error{Errc::not_observable, "the clock does not advance"};
   const Line line = robust_line(points);
   ClockPair out;
   out.offset_s = offset_s + line.level - line.slope * line.middle;

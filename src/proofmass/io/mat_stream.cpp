@@ -93,7 +93,7 @@ Status MatStream::finish() {
   std::array<char, 1> beyond;
   inflater_->read(beyond);
   if (inflater_->complete) return Done{};
-  return corrupt(position_, "the variable's compressed data are damaged, or go on behind it");
+  return corrupt(position_, "the variable's compressed data are damaged, or continue after it");
 }
 
 std::uint64_t MatStream::most() const {

@@ -30,7 +30,7 @@ Result<TdmsLeadIn> take_tdms_lead_in(TdmsCursor& cursor, std::uint64_t at, std::
   lead.is_unfinished = next == ~std::uint64_t{0};
   lead.end = at + TdmsLeadIn::bytes + std::min(next, room);
   if (lead.is_complete && raw > next)
-    return at_byte(at, "a segment's values would begin behind its end");
+    return at_byte(at, "a segment's values would begin after its end");
   lead.raw_at = at + TdmsLeadIn::bytes + std::min(raw, room);
   return lead;
 }

@@ -195,7 +195,7 @@ class ChunkReader {
     const std::uint64_t rest = header_.bytes % header_.row_bytes();
     if (rest != 0 && !header_.claimed_bytes)
       header_.notes.push_back(
-          {Severity::warning, fmt::format("byte {}: {} bytes behind the last sample are less than "
+          {Severity::warning, fmt::format("byte {}: {} bytes after the last sample are less than "
                                           "a sample: passed over",
                                           header_.begin + header_.bytes - rest, rest)});
     return Done{};

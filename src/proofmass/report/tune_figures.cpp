@@ -59,7 +59,7 @@ Figure gain_figure(const estimate::TuneStudy& study) {
   Figure figure{.title = study.channel + ": gain against time",
                 .description =
                     "What share of a reading's surprise the filter takes for "
-                    "acceleration: it falls from one to a limit that hangs on Q/R alone, "
+                    "acceleration: it falls from one to a limit that depends on Q/R alone, "
                     "the sooner the larger Q is. A dot marks where it stays within 2 %.",
                 .x = {.label = "Time (s)", .scale = AxisScale::log},
                 .y = {.label = "Gain of acceleration", .min = 0.0, .max = 1.05}};
@@ -105,7 +105,7 @@ Figure step_figure(const estimate::TuneStudy& study) {
   Figure figure{.title = study.channel + ": standard deviation against the step",
                 .description =
                     "Of the acceleration, once the gain has settled: readings further "
-                    "apart, each as noisy, tell less.",
+                    "apart, each as noisy, determine less.",
                 .x = {.label = "Step (s)", .scale = AxisScale::log},
                 .y = {.label = "Standard deviation of acceleration", .scale = AxisScale::log},
                 .height = 240.0};

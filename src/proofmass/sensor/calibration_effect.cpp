@@ -89,7 +89,8 @@ Result<Side> side_of(const Calibration& mine, const Calibration& other, ErrorOf 
     below->value -= std / below->unit.to_si;
     const auto high = error(up), low = error(down);
     if (!high || !low)
-      return Error{Errc::invalid_argument, "a scale is not told from 0 by its standard deviation"};
+      return Error{Errc::invalid_argument,
+                   "a scale is not distinguishable from 0 by its standard deviation"};
     side.columns[k] = {0.5 * (high->matrix - low->matrix), 0.5 * (high->offset - low->offset)};
   }
   return side;

@@ -43,7 +43,7 @@ Note note_on_clipping(const ChannelAudit& channel) {
   switch (channel.clipping) {
     case Clipping::before_noise:
       return {Severity::bad,
-              fmt::format("{}: {} at a limit of {} with noise added behind it: clipped before the "
+              fmt::format("{}: {} at a limit of {} with noise added after it: clipped before the "
                           "converter or a filter",
                           channel.name, samples, limits_of(channel, 4))};
     case Clipping::soft:

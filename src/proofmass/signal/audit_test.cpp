@@ -194,7 +194,7 @@ TEST(Clipping, IsSeenBelowNoiseThatWasAddedBehindIt) {
   EXPECT_NEAR(static_cast<double>(found.channels[0].clipped), static_cast<double>(at_limit),
               0.02 * static_cast<double>(at_limit));
   EXPECT_TRUE(found.is_bad());
-  EXPECT_NE(notes_of(found).find("with noise added behind it"), std::string::npos);
+  EXPECT_NE(notes_of(found).find("with noise added after it"), std::string::npos);
 }
 
 TEST(Clipping, IsSeenWhereTheRangeBendsTheSignal) {

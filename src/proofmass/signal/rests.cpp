@@ -65,9 +65,9 @@ RestSearch find_rests(View<View<double>> axes, const RestOptions& options) {
 
   std::optional<RestNoise> noise = find_rest_noise(blocks);
   if (!noise) {
-    search.why_none =
-        fmt::format("{} usable samples are too few to tell the noise of the sensor from motion",
-                    std::ranges::count(blocks.there, 1));
+    search.why_none = fmt::format(
+        "{} usable samples are too few to distinguish the noise of the sensor from motion",
+        std::ranges::count(blocks.there, 1));
     return search;
   }
   if (noise->unrest >= 1.0) {

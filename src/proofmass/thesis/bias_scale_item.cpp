@@ -57,7 +57,7 @@ void put(const TumbledAxis& axis, TumbleQuantity quantity, Finding& finding) {
   if (!axis.ideal)
     finding.reason = "The outputs are in a unit of which no nominal zero and scale are known.";
   else if (found == nullptr || !found->value)
-    finding.reason = found == nullptr ? "The positions do not tell it." : found->reason;
+    finding.reason = found == nullptr ? "The positions do not determine it." : found->reason;
   else if (!found->std)
     finding.reason = fmt::format("{} {}, but without a standard deviation: {}",
                                  report::significant((*found->value - as.less) / as.unit.to_si, 4),

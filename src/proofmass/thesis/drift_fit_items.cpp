@@ -212,7 +212,8 @@ Item fit_item(const StaticTest& test) {
   item.note +=
       "Units: we take m/s², in which −0.21 is 21.4 mg, the size of table 5.1's 19.8 and 22.4 mg. "
       "Once warm a1 + a2 = 0.04 m/s² (4.1 mg) would be left, so those are figures of a cold sensor "
-      "or of another axis. T cannot be told: 70 s means that 95 % is reached after 3.5 min, while "
+      "or of another axis. T is not identifiable: 70 s means that 95 % is reached after 3.5 min, "
+      "while "
       "section 5.1.1 has the bias stable after a few seconds; 70 samples down-sampled to 40 Hz, "
       "1.75 s, would fit that.";
   item.note += plain_error_words(test) + without_warm_up_words(test, at);

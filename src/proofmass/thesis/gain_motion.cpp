@@ -51,7 +51,7 @@ void add_errors(const ReadingErrors& errors, const std::string& axis, std::vecto
 }
 
 std::vector<Finding> tuned_findings(const TunedReadings& found, const GainStudyOptions& options) {
-  const char* why = "These readings cannot tell it from zero.";
+  const char* why = "These measurements do not distinguish it from zero.";
   return {{.key = "tuned_r",
            .label = fmt::format("R that the readings of x themselves show; put in: {}",
                                 report::compact(options.accel_variance_m2ps4, 3)),
@@ -75,7 +75,8 @@ std::string tuned_words(const TunedReadings& found) {
                              report::with_std(*found.accel_variance_m2ps4),
                              report::with_std(*found.jerk_psd_m2ps5));
   return all +
-         "From these readings alone the verb tune cannot tell the motion from noise, and says so; "
+         "From these readings alone the verb tune cannot distinguish the motion from noise, and "
+         "reports it; "
          "its R "
          "then holds the variance of both.";
 }
@@ -120,12 +121,12 @@ Item readings_item(const Half& half, std::uint64_t seed) {
               : "So it does follow, at a distance; with four times the noise none follows closely.",
           fixed(x_errors.filtered.value / x_errors.reading.value, 2), tuned_words(from_readings)),
       .findings = {{.key = "amplitude",
-                    .label = "Amplitude of sin t behind the filter",
+                    .label = "Amplitude of sin t after the filter",
                     .si_unit = "",
                     .shown = {.symbol = "%", .to_si = 0.01},
                     .ours = exact(response.amplitude)},
                    {.key = "delay",
-                    .label = "Delay of sin t behind the filter",
+                    .label = "Delay of sin t after the filter",
                     .si_unit = "s",
                     .shown = shown_seconds,
                     .ours = exact(response.delay_s)}},

@@ -133,7 +133,8 @@ Item settling_item(const Half& half) {
           fixed(response.time_constant_s, 2),
           fixed(std::sqrt(study.instants.back().variance[0]), 0)),
       .note = fmt::format(
-          "Gain and covariance hang on Q, R and the step and on no reading, so there is nothing "
+          "Gain and covariance depend on Q, R and the step and on no measurement, so there is "
+          "nothing "
           "disordered in them. The thesis does not say what it calls settled, nor the unit of Q. "
           "Its {} s are {} time constants of the filter; the other case's are as many, so the "
           "two go together if Q is the density of the jerk and settled means to about 0.1 %. "

@@ -90,7 +90,8 @@ Item kalman_gain_item(const FirstTurn& turn,
       said(Uncertain{std::sqrt(variance), 0.0}, kind::milli_g), report::fixed(gain.front(), 3),
       report::fixed(gain.back(), 3), said(Uncertain{std::sqrt(slow), 0.0}, kind::milli_g));
   item.note =
-      "The limit is k = (√(ρ² + 4ρ) − ρ)/2 with ρ = W Δ/R and hangs on no reading. A gain of 0.1 "
+      "The limit is k = (√(ρ² + 4ρ) − ρ)/2 with ρ = W Δ/R and depends on no measurement. A gain of "
+      "0.1 "
       "says "
       "that R was set far above the sensor's noise, or that the gain shown is another state's; "
       "it is no sign that the filter \"converges to the true value\".";

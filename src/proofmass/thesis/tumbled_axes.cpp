@@ -129,7 +129,7 @@ Result<TumbledAxes> analyse_tumble(const TumbleRecord& record, double gravity_mp
     const TumbleChannel& channel = record.channels[k];
     if (!axes[k].swings()) {
       out.refused.push_back(channel.name + ": the output " + axes[k].words +
-                            ", and a tumble about it tells nothing of it.");
+                            ", and a tumble about it does not excite it.");
       continue;
     }
     std::optional<TumbledAxis>& place = follows_sine(axes[k]) ? out.x : out.y;
