@@ -13,8 +13,8 @@
 namespace proofmass::calibrate {
 namespace {
 
-constexpr double again_rad = 10.0 * rad_per_deg;   // nearer to another is that position again
-constexpr double unmoved_rad = 1.5 * rad_per_deg;  // nearer to the last is nobody's doing
+constexpr double again_rad = 10.0 * rad_per_deg;  // closer to another counts as that position again
+constexpr double unmoved_rad = 1.5 * rad_per_deg;  // closer to the previous counts as not moved
 
 /// Faces, edges and corners of a cube, in this order.
 std::vector<Eigen::Vector3i> sides() {
@@ -101,7 +101,7 @@ std::optional<std::string> MultiPositionPlan::refusal(const Eigen::Vector3d& mea
     which = k;
   }
   if (!reader_) {
-    // A radian is half the largest distance there is; that of the first two is all that is known.
+    // A radian is half the largest possible distance; from the first two no more is known.
     double widest = 0.0;
     for (const Pose& one : poses_)
       for (const Pose& other : poses_) widest = std::max(widest, (one.mean - other.mean).norm());
@@ -164,7 +164,7 @@ void MultiPositionPlan::choose_next() {
     next_words_ = next.words;
     return;
   }
-  // As long as nobody knows how the poses lie, they are taken for those that were asked for.
+  // While the poses' orientations are unknown, the requested ones are assumed.
   std::size_t unseen = reader_ ? 0 : poses_.size();
   constexpr double apart_rad = 25.0 * rad_per_deg;
   for (const Eigen::Vector3i& side : sides()) {

@@ -21,7 +21,7 @@ Parameters widened(View<double> free) {
   return p;
 }
 
-// The poses that take part, and the root of their residuals' weights: W = root rootᵀ.
+// The poses used, and the root of their residuals' weights: W = root rootᵀ.
 struct Whitened {
   std::vector<const NormalisedPose*> poses;
   bool independent;
@@ -77,7 +77,7 @@ fit::LeastSquaresProblem problem_of(const Whitened& data,
 
 constexpr fit::LeastSquaresOptions known_variance{.unit_variance = true, .search_again = false};
 
-// What a finished descent says of every pose.
+// Residual statistics of every pose after a finished descent.
 NormFit judged(const NormData& data,
                const std::vector<bool>& used,
                const fit::LeastSquaresFit& fit) {
@@ -91,13 +91,13 @@ NormFit judged(const NormData& data,
   Eigen::VectorXd r(static_cast<Eigen::Index>(out.terms.size()));
   for (Eigen::Index k = 0; k < r.size(); ++k)
     r(k) = out.terms[static_cast<std::size_t>(k)].residual;
-  // Those not used have no weight, but may have no finite residual either.
+  // Those not used have no weight, but may have non-finite residuals.
   r = r.array().isFinite().select(r, 0.0);
   out.rss = residual_weights(data, out.terms, used).times(r).col(0).dot(r);
   return out;
 }
 
-// One step of Gauss and Newton's, with the variances of where it starts.
+// One Gauss–Newton step, with the variances at its start.
 Parameters newton_step(View<NormalisedPose> poses,
                        View<double> weights,
                        NormParameters free,
@@ -128,7 +128,7 @@ std::vector<double> squares_of(View<NormalisedPose> poses, const Parameters& p) 
   return out;
 }
 
-// The so many smallest: their weights 1, those of the others 0, and their sum.
+// The `keep` smallest: their weights 1, those of the others 0, and their sum.
 double weigh_smallest(const std::vector<double>& squares,
                       std::size_t keep,
                       std::vector<double>& weights) {
@@ -180,7 +180,7 @@ RobustStart robust_start(View<NormalisedPose> poses, NormParameters free, const 
   constexpr int rounds = 12;
   constexpr double cauchy = 2.385, far = 6.0, std_of_median = 1.4826;
   const auto n = static_cast<double>(poses.size());
-  // The median of residuals that were fitted is small by the parameters' share.
+  // The median of fitted residuals is reduced by the parameters' share.
   const double shrunk = std::sqrt(n / (n - static_cast<double>(free)));
   RobustStart out{start, std::vector<bool>(poses.size(), true)};
   std::vector<double> size(poses.size()), weights(poses.size(), 1.0);

@@ -22,11 +22,11 @@ std::optional<ReadingScale> reading_scale(View<Pose> poses, double gravity_mps2)
     low = low.cwiseMin(pose.mean);
     high = high.cwiseMax(pose.mean);
   }
-  // Halves first: the sum of two readings may be beyond the largest number.
+  // Halves first: the sum of two values may overflow.
   const Eigen::Vector3d center = low / 2.0 + high / 2.0;
   Eigen::Vector3d half = high / 2.0 - low / 2.0;
   if (!(half.maxCoeff() > 0.0)) return std::nullopt;
-  // An axis that never left its place says nothing of its own size.
+  // An axis with constant output does not determine its own range.
   half = (half.array() > 1e-3 * half.maxCoeff()).select(half, half.maxCoeff());
   return ReadingScale{center, half, gravity_mps2};
 }

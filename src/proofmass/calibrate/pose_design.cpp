@@ -79,7 +79,7 @@ NextPose next_pose(const Eigen::MatrixXd& information,
     const NormalisedPose pose{p.head<3>() + back * up, Eigen::Matrix3d::Zero()};
     const Eigen::VectorXd j = norm_term(p, pose).gradient.head(free);
     const double variance = j.dot(covariance * j);
-    // Opposite positions can be worth the same: a hair's breadth decides nothing.
+    // Opposite positions can be equivalent: rounding must not decide.
     if (!(variance > widest * (1.0 + 1e-9))) continue;
     widest = variance;
     best.up = up;

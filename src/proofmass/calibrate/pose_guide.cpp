@@ -67,9 +67,9 @@ struct PoseGuide::State {
   std::vector<Pose> poses;
   bool prompted = false;
   double now_s = 0.0;
-  /// Where the rest that is looked at ended when it was looked at last; absent while it moves.
+  /// Last known end of the current rest; absent while the sensor moves.
   std::optional<double> seen_until_s;
-  bool open = false;  ///< that rest is wanted, and not long enough yet
+  bool open = false;  ///< that rest is accepted, but not long enough yet
   double open_since_s = 0.0;
   RestVerdict verdict;
 };

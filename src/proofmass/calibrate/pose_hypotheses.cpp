@@ -6,9 +6,9 @@
 namespace proofmass::calibrate {
 namespace {
 
-constexpr std::size_t kept_of_all = 8;      // linear candidates that are worth a fit
+constexpr std::size_t kept_of_all = 8;      // linear candidates to be fitted
 constexpr std::size_t most_alike = 60;      // fits to sets that explain the residuals as well
-constexpr std::size_t most_of_pairs = 400;  // poses, of which all pairs are tried
+constexpr std::size_t most_of_pairs = 400;  // poses up to which all pairs are tried
 constexpr double unfit = 1e6;               // of a condition
 
 struct Scored {
@@ -128,7 +128,7 @@ std::vector<PoseSet> PoseHypotheses::alike(const PoseSet& best, double rss) {
   const PoseShifts point = shifts(*fit);
   std::vector<Scored> all =
       best.size() <= 2 ? every_set(point, best.size()) : neighbours(point, best);
-  // What is not linear is small: twice the distance leaves room for it.
+  // The nonlinear part is small: twice the distance leaves room for it.
   std::erase_if(
       all, [&](const Scored& one) { return one.rss > 2.0 * rss - fit->rss || one.out == best; });
   std::vector<PoseSet> out{best};

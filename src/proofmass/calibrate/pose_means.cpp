@@ -19,7 +19,7 @@ std::vector<double> sound_values(View<double> samples, double lsb) {
   std::vector<double> out;
   const std::optional<double> middle = median(samples);
   if (!middle) return out;
-  // Where most samples are the same, steps of the converter are no spikes.
+  // If most samples are equal, quantisation steps are not spikes.
   const double width = spike * std::max(*robust_std(samples), lsb);
   out.reserve(samples.size());
   for (const double value : samples) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double suspect_p = 0.01;     // after Bonferroni's correction
 constexpr double tell_apart = 9.0;     // three standard deviations
-constexpr double rounding_g = 1e-9;    // less than this contradicts nobody
+constexpr double rounding_g = 1e-9;    // smaller residuals do not count as contradictions
 constexpr double noticed_stds = 4.13;  // see the header
 constexpr double largest_F = 1e12;     // beyond which there is no probability left
 
@@ -30,11 +30,11 @@ class Choice {
   Choice(PoseHypotheses& hypotheses, std::size_t poses, const SelectionOptions& options)
       : hypotheses_(hypotheses), poses_(poses), options_(options) {}
 
-  /// The fewest poses without which the others agree.
+  /// The smallest set of poses without which the others agree.
   PoseSet fewest();
 
-  /// None of them, and each that may be bad, where the residuals leave that open: no pose is
-  /// suspect, but chance alone explains them in one of twenty cases at most.
+  /// The empty set, and each possibly bad pose, if ambiguous: no pose is suspect, but the residuals
+  /// are significant at 5 %.
   std::vector<PoseSet> in_question();
 
   Scatter scatter_without(const PoseSet& out) {
@@ -43,7 +43,7 @@ class Choice {
   }
 
  private:
-  // Probability of so much a lower sum by chance, against the noise of what remains.
+  // p-value of the reduction of the sum, against the remaining noise.
   double chance(const PoseSet& from, const PoseSet& to, double noise_dof);
   bool worth_fitting(const PoseSet& from, std::size_t size);
   std::optional<PoseSet> larger(const PoseSet& from, std::size_t size);
@@ -72,7 +72,7 @@ double Choice::chance(const PoseSet& from, const PoseSet& to, double noise_dof) 
   return sets * fisher_f_p(F, extra, scatter.dof);
 }
 
-// What is far from any suspicion needs no fits.
+// Sets far from significance are not fitted.
 bool Choice::worth_fitting(const PoseSet& from, std::size_t size) {
   constexpr double far = 0.1;
   const NormFit& before = *hypotheses_.without(from);
@@ -91,8 +91,8 @@ bool Choice::worth_fitting(const PoseSet& from, std::size_t size) {
 std::optional<PoseSet> Choice::larger(const PoseSet& from, std::size_t size) {
   if (!worth_fitting(from, size)) return std::nullopt;
   const std::vector<PoseSet> sets = hypotheses_.best(size);
-  // Where the noise is larger than stated, two at once are soon found that agree with it: these are
-  // judged by the residuals that remain alone.
+  // If the noise is larger than stated, two are easily found that agree with the stated one: sets
+  // of two are tested by the remaining residuals alone.
   const double noise_dof = size == from.size() + 1 ? options_.noise_dof : 0.0;
   if (sets.empty() || chance(from, sets.front(), noise_dof) >= suspect_p) return std::nullopt;
   return sets.front();
@@ -103,7 +103,7 @@ bool Choice::explained(const PoseSet& out) {
   return test ? test->p >= suspect_p : !hypotheses_.suspicious();
 }
 
-// More than two: the trimmed ones, less those that do not contradict the others after all.
+// More than two: the trimmed ones, without those that do not contradict the others after all.
 std::optional<PoseSet> Choice::many(const PoseSet& from) {
   const auto free = static_cast<std::size_t>(options_.free);
   if (poses_ < free + 4) return std::nullopt;
@@ -134,7 +134,7 @@ PoseSet Choice::fewest() {
   PoseSet out;
   while (out.size() < 2) {
     std::optional<PoseSet> next = larger(out, out.size() + 1);
-    // Two that pull against each other may hide as long as one of them stays.
+    // Two that compensate each other may be hidden while one of them stays.
     if (!next && out.empty()) next = larger(out, 2);
     if (!next) break;
     out = *next;
@@ -156,7 +156,7 @@ std::vector<PoseSet> Choice::in_question() {
   return out;
 }
 
-// The mean over the fits that are not separable.
+// The mean over the fits that are not distinguishable.
 void average(PoseHypotheses& hypotheses, const std::vector<PoseSet>& alike, PoseSelection& now) {
   const auto count = static_cast<double>(alike.size());
   const Eigen::Index free = now.fit.cofactor.rows();
@@ -190,7 +190,7 @@ std::pair<PoseSet, PoseSet> in_all_and_some(const std::vector<PoseSet>& sets) {
   return {std::move(all), std::move(doubtful)};
 }
 
-// Each pose by the others, those of `out` having no part.
+// Tests each pose against the others, without those of `out`.
 void judge(const PoseShifts& shifts, const PoseSet& out, double noise_dof, PoseSelection& now) {
   const PoseShifts rest = shifts.without(out);
   const auto dof = static_cast<double>(now.fit.dof());
@@ -226,7 +226,7 @@ Scatter scatter_of(double rss, double dof, double noise_dof) {
 
 namespace {
 
-// A fit that the poses do not carry says nothing of any of them.
+// A fit that the poses do not determine gives no information on any of them.
 PoseSelection without_search(const NormData& data, const NormFit& fit, PoseSelection now) {
   const std::size_t n = data.poses.size();
   now.fit = fit;

@@ -5,7 +5,7 @@
 namespace proofmass::calibrate {
 namespace {
 
-// Of what a pose weighs by itself: with less left the others do not check it.
+// Relative to a pose's own weight: with less left the others do not check it.
 constexpr double least_redundancy = 1e-6;
 
 // A square root of a positive inverse: root rootᵀ = A⁻¹.

@@ -29,13 +29,13 @@ double free_parameters(const MultiPosition& fit) {
   return fit.model == PoseModel::norm_6 ? 6.0 : 9.0;
 }
 
-// The variance of |f| by a covariance of the mean.
+// The variance of |f| from a covariance of the mean.
 double length_variance(const Vector3d& force, const Matrix3d& correction, const Matrix3d& of_mean) {
   const Vector3d n = correction.transpose() * force.normalized();
   return n.dot(of_mean * n);
 }
 
-// By what the variances of the means have to be multiplied so that they explain the residuals.
+// Factor on the variances of the means with which they explain the residuals.
 double scatter_factor(const std::vector<Pose>& used,
                       const std::vector<double>& residuals,
                       const DrawnFrom& from,
@@ -58,7 +58,7 @@ Vector3d three_normal(Draw& draw) {
   return {x, y, z};
 }
 
-// Of all poses, where their means are not independent.
+// For all poses, if their means are not independent.
 Eigen::Matrix3Xd drawn_noise(const DrawnFrom& from, Draw& draw) {
   if (from.axis_roots[0].size() == 0) return {};
   const auto n = static_cast<Eigen::Index>(from.poses.size());
@@ -76,7 +76,7 @@ Vector3d turned(const Vector3d& v, const Vector3d& by_rad) {
   return angle > 0.0 ? Vector3d(Eigen::AngleAxisd(angle, by_rad / angle) * v) : v;
 }
 
-// The covariances of the means from one pose to the next, times what the residuals ask for.
+// The covariances between the means of different poses, times the factor required by the residuals.
 void draw_between(const MultiPositionOptions& options,
                   const MultiPosition& fit,
                   double factor,
@@ -109,8 +109,8 @@ DrawnFrom drawn_from(View<Pose> poses,
     if (!fit.poses[k].used) continue;
     from.poses.push_back(poses[k]);
     if (!known) from.poses.back().mean_covariance = Matrix3d::Identity();
-    // Six positions are drawn about the directions that they were taken for: those that they read
-    // hold the placement already.
+    // Six positions are drawn about their nominal directions: the measured ones already include the
+    // placement error.
     const bool exact = fit.model == PoseModel::six_position && poses[k].up;
     from.forces_mps2.emplace_back(exact ? Vector3d(fit.gravity_mps2 * poses[k].up->normalized())
                                         : fit.poses[k].force_mps2);

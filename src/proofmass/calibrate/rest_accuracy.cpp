@@ -40,7 +40,7 @@ double scatter_of(const MultiPosition& fit) {
   return explained ? by_noise : std::max(by_noise, by_residuals);
 }
 
-// Of |f| by the parameters, where a reading at rest points upwards along `up`.
+// Gradient of |f| by the parameters, for a measurement at rest with `up` upwards.
 Eigen::Matrix<double, 1, 9> gradient(const MultiPosition& fit, const Eigen::Vector3d& up) {
   const Parameters p(fit.estimate.data());
   const Eigen::Vector3d force = fit.gravity_mps2 * up;
@@ -48,7 +48,7 @@ Eigen::Matrix<double, 1, 9> gradient(const MultiPosition& fit, const Eigen::Vect
   return norm_term(p, {p.head<3>() + back * force, Eigen::Matrix3d::Zero()}).gradient;
 }
 
-// Mean over the sphere of j jᵀ, with which that of j C jᵀ is the trace of a product.
+// Mean over the sphere of j jᵀ, with which the mean of j C jᵀ is the trace of a product.
 ParameterMatrix mean_square_gradient(const MultiPosition& fit) {
   ParameterMatrix mean = ParameterMatrix::Zero();
   for (int k = 0; k < directions; ++k) {

@@ -59,7 +59,7 @@ Status check(View<RotationRecording> recordings, const RotationOptions& options)
   return Done{};
 }
 
-// Whether the encoder's angle grows over a section, or falls.
+// Whether the encoder's angle increases over a section.
 double sense_of(const SteadyTurns& section, const std::vector<double>& angle_rad) {
   double first = std::numeric_limits<double>::quiet_NaN(), last = first;
   for (std::size_t k = section.first; k <= section.last; ++k) {
@@ -70,7 +70,7 @@ double sense_of(const SteadyTurns& section, const std::vector<double>& angle_rad
   return last < first ? -1.0 : 1.0;
 }
 
-// Phase by the turns.
+// Initial phase from the turns.
 void start_phase(RotationState& state, const RotationOptions& options) {
   constexpr double most_intervals = 300.0;
   for (const SteadyTurns& section : state.sections) {
@@ -89,9 +89,9 @@ void start_phase(RotationState& state, const RotationOptions& options) {
   }
 }
 
-// ω̄², whether ω² varies enough to tell a radius, and each section's speed.
+// ω̄², whether ω² varies enough to determine a radius, and each section's speed.
 void judge_speed(RotationState& state, RotationFit& fit) {
-  constexpr double least_spread = 0.1;  // of ω², relative; less is easily a drift's
+  constexpr double least_spread = 0.1;  // of ω², relative; less may be drift
   double sum = 0.0, squares = 0.0, count = 0.0;
   std::vector<double> by_section(state.sections.size()), samples(state.sections.size());
   std::vector<double> speed(state.sections.size());
@@ -123,7 +123,7 @@ double phase_of(const Harmonics& h) {
   return std::atan2(h(2), h(1));
 }
 
-// Turns each axis's phase so that it reads K1 sin φ; errors where two axes are not square.
+// Shifts each axis's phase so that its output is K1 sin φ; errors if two axes are not orthogonal.
 Status settle_phase(RotationState& state) {
   const auto whole_quarters = [](double phase) { return quarter * std::round(phase / quarter); };
   const double first = phase_of(state.harmonics[0]);
@@ -136,7 +136,7 @@ Status settle_phase(RotationState& state) {
                                "each other in the plane of the wheel",
                                apart / rad_per_deg)};
     }
-    // A second axis that lags is one that leads on a wheel that turns the other way.
+    // A second axis that lags is one that leads on a wheel that rotates in the other direction.
     if (apart < 0.0) {
       state.direction = -1.0;
       state.offset[0] = std::numbers::pi - state.offset[0];
@@ -160,7 +160,7 @@ Status follows_gravity(const RotationState& state) {
   return Done{};
 }
 
-// Passes of Gauss and Newton; how many, and whether they came to an end.
+// Gauss–Newton iterations; their number, and whether they converged.
 void iterate(RotationState& state, RotationFit& fit) {
   constexpr int most = 40;
   constexpr double still = 1e-10;
@@ -174,7 +174,7 @@ void iterate(RotationState& state, RotationFit& fit) {
   }
 }
 
-// The start's ω̄² was that of the turns' beginnings; the fitted one is better.
+// The initial ω̄² was that of the turns' beginnings; the fitted one is better.
 void refer_to_fitted_speed(RotationState& state, RotationFit& fit) {
   if (state.angle_given) return;
   const int before = fit.iterations;
@@ -187,7 +187,7 @@ void refer_to_fitted_speed(RotationState& state, RotationFit& fit) {
   fit.iterations += before;
 }
 
-// The encoder shows how the speed varies within the turn, and r ω² and r ω̇ with it.
+// The encoder gives the speed variation within the turn, and thereby r ω² and r ω̇.
 void fit_with_measured_ripples(RotationState& state, RotationFit& fit) {
   measure_ripples(state);
   const int before = fit.iterations;
@@ -226,7 +226,7 @@ Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
   start_phase(state, options);
   judge_speed(state, fit);
   judge_delay(state);
-  // Harmonics against the phase as it is, the phase turned, and harmonics again.
+  // Harmonics for the current phase, the phase shifted, and harmonics again.
   step(state, false);
   if (const Status status = settle_phase(state); !status) return status.error();
   state.phase_defined = !state.angle_given;

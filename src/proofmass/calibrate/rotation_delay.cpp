@@ -25,7 +25,7 @@ SpeedMoments speed_moments(const RotationState& state) {
   return {mean, squares / count - mean * mean};
 }
 
-// Puts the first harmonics right for a known delay.
+// Corrects the first harmonics for a known delay.
 void correct(double phase_rad, Index from, RotationEstimate& estimate) {
   const double gain = 1.0 + 0.5 * phase_rad * phase_rad;
   estimate.harmonics.segment<2>(from + 1) *= gain;

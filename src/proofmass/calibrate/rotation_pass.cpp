@@ -25,7 +25,7 @@ RotationNormal empty_normal(const RotationState& state) {
   return normal;
 }
 
-// What is not fitted stands alone with a one, so that the rest can be inverted as it is.
+// Sets unfitted terms to a unit diagonal, so that the matrix stays invertible.
 void leave_out_unfitted(const RotationState& state, Eigen::MatrixXd& H) {
   for (Index k = 0; k < state.size(); ++k) {
     if (state.fitted(k)) continue;

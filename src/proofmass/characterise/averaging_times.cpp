@@ -9,7 +9,7 @@
 namespace proofmass::characterise {
 namespace {
 
-// The longest m with a term at all; samples is one less than there are phase points.
+// The longest m with at least one term; samples is one less than the number of phase points.
 std::size_t longest(Statistic statistic, std::size_t samples) {
   switch (statistic) {
     case Statistic::totdev:
@@ -28,7 +28,7 @@ std::size_t longest(Statistic statistic, std::size_t samples) {
   }
 }
 
-// At most five leading bits, so that all but them can be left to decimation.
+// At most five leading bits, so that the remaining factor is left to decimation.
 std::size_t with_few_bits(double m) {
   double unit = 1.0;
   while (m >= 32.0 * unit) unit *= 2.0;
@@ -103,7 +103,7 @@ std::vector<std::size_t> averaging_factors(const TauGrid& grid,
     last = std::min(last, static_cast<std::size_t>(static_cast<double>(samples) / ratio));
   }
   std::vector<std::size_t> factors = wanted(grid, last, tau0_s);
-  // Theo1 takes even factors only, and is no statistic below ten.
+  // Theo1 is defined for even factors only, from ten on.
   if (statistic == Statistic::theo1) {
     for (std::size_t& m : factors) m += m % 2;
     std::erase_if(factors, [](std::size_t m) { return m < 10; });

@@ -12,8 +12,8 @@ namespace {
 double total_bias(int alpha, double tau_per_T) {
   if (alpha == -1) return 1.0 - tau_per_T / (3.0 * std::numbers::ln2);
   if (alpha == -2) return 1.0 - 0.75 * tau_per_T;
-  // Of the differences 2 m reach beyond the ends, where a point counts twice: of white phase noise
-  // their variance is 10 where that of the others is 6.
+  // 2 m of the differences extend beyond the ends, where a point counts twice: for white phase
+  // noise their variance is 10 instead of 6.
   if (alpha == 2) return 1.0 + 4.0 / 3.0 * tau_per_T;
   if (alpha == 1) return 1.0 + 0.87 * tau_per_T;
   return 1.0;
@@ -33,7 +33,7 @@ double hadamard_total_bias(int alpha, std::size_t m) {
   return bias[static_cast<std::size_t>(-alpha)];
 }
 
-// Of white phase noise each of the m/2 terms has the variance 4/(m/2 − δ), the first 6/(m/2).
+// For white phase noise each of the m/2 terms has the variance 4/(m/2 − δ), the first 6/(m/2).
 double theo1_bias_of_white_phase(std::size_t m) {
   double sum = 1.0 / static_cast<double>(m);
   for (std::size_t k = 1; k <= m / 2; ++k) sum += 1.0 / static_cast<double>(k);

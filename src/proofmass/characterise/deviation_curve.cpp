@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t longest_filled_gap = 8;
 
-// The longest stretch without a long gap, its short ones filled by straight lines.
+// The longest stretch without a long gap, with short gaps interpolated linearly.
 std::vector<double> longest_stretch(View<double> series) {
   std::size_t best_first = 0, best_end = 0, first = series.size(), last = 0;
   for (std::size_t k = 0; k < series.size(); ++k) {
@@ -44,7 +44,7 @@ std::vector<double> longest_stretch(View<double> series) {
   return stretch;
 }
 
-// x, the integral of the stretch less its mean, which is taken off lest it drown the rest.
+// x, the integral of the stretch minus its mean, which would otherwise dominate.
 std::vector<double> phase_of(View<double> stretch, double tau0_s) {
   double mean = 0.0;
   for (const double y : stretch) mean += y / static_cast<double>(stretch.size());
@@ -90,14 +90,14 @@ std::size_t place(int alpha) {
 AlphaShares shares_at(const NoiseModelFit& model, double tau_s) {
   AlphaShares shares{};
   shares[place(2)] = model.allan_variance(Term::quantisation, tau_s);
-  // Below the time constant of its filter white noise is correlated like a random walk.
+  // Below the time constant of its filter, white noise is correlated like a random walk.
   const double filter_s =
       model.bandwidth_hz ? 1.0 / (2.0 * std::numbers::pi * model.bandwidth_hz->value) : 0.0;
   shares[place(tau_s < filter_s ? -2 : 0)] += model.allan_variance(Term::white, tau_s);
   shares[place(-1)] = model.allan_variance(Term::flicker, tau_s);
   shares[place(-2)] += model.allan_variance(Term::random_walk, tau_s);
   if (model.markov) {
-    // The top of its curve stands at 1.89 T.
+    // The maximum of its curve is at 1.89 T.
     const bool rising = tau_s < 1.89 * model.markov->time_constant_s.value;
     shares[place(rising ? -2 : 0)] += model.allan_variance(Term::markov, tau_s);
   }
@@ -130,8 +130,8 @@ double share_of_terms(const CurveVariances& from, const EdfCase& known, std::siz
   return std::min(1.0, static_cast<double>(terms) / static_cast<double>(all));
 }
 
-// Of the total variance at few samples to a τ the published fit has up to a third too many. There
-// it is the overlapping Allan variance with some terms more.
+// For the total variance at few samples per τ the published fit is up to a third too high. There it
+// is the overlapping Allan variance with a few more terms.
 double total_edf_of_few_samples(const CurveVariances& from,
                                 std::size_t m,
                                 const AlphaShares& shares) {

@@ -8,7 +8,7 @@
 namespace proofmass::characterise {
 namespace {
 
-// Sums side by side, so that one addition need not wait for the one before.
+// Parallel sums, so that additions do not wait for each other.
 constexpr std::size_t lanes = 16;
 using Lanes = std::array<double, lanes>;
 

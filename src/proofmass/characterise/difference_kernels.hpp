@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
-// The loops in which nearly all the time of a deviation curve goes, compiled for the vector units
-// of several processors and chosen when the program starts. No fused multiply-add and a fixed order
-// of summation: every processor gets the same digits.
+// Inner loops of a deviation curve, compiled for the vector units of several processors and
+// selected at program start. No fused multiply-add and a fixed order of summation: results are
+// identical on every processor.
 namespace proofmass::characterise {
 
 /// Σ (x[i+2m] − 2 x[i+m] + x[i])² over i = 0 … n − 1.

@@ -11,13 +11,13 @@
 namespace proofmass::characterise {
 namespace {
 
-// So short that a chunk and what it is compared with stay in the first cache.
+// So short that a chunk and its comparison data stay in the first-level cache.
 constexpr std::size_t chunk = 2048;
-// Points of a decimated level that are worth a round over its factors.
+// Minimum number of points of a decimated level for a pass over its factors.
 constexpr std::size_t batch = 256;
-// Between two subtractions of what the differences do not see.
+// Interval between subtractions of polynomials invisible to the differences.
 constexpr std::size_t rebase_every = 1 << 16;
-// A term may lack one in so many of its samples.
+// At most one in this many samples of a term may be missing.
 constexpr std::size_t missing_share = 16;
 
 bool is_modified(Statistic statistic) {
@@ -37,7 +37,7 @@ double divisor(Statistic statistic, double m) {
   return (order_of(statistic) == 2 ? 2.0 : 6.0) * m * m;
 }
 
-// How often a factor may be halved and still start so many terms in a τ.
+// How often a factor may be halved with this many terms per τ.
 std::size_t level_of(std::size_t m, std::size_t least_overlap) {
   std::size_t level = 0;
   while (m % 2 == 0 && m / 2 >= least_overlap) {
@@ -48,8 +48,7 @@ std::size_t level_of(std::size_t m, std::size_t least_overlap) {
 }
 
 bool all_finite(View<double> samples) {
-  // One infinity or NaN makes the sum of x·0 a NaN; the loop has no branch, and no sum waits long
-  // for the one before.
+  // One infinity or NaN makes the sum of x·0 a NaN; the loop is branch-free with parallel sums.
   std::array<double, 8> sums{};
   std::size_t k = 0;
   for (; k + sums.size() <= samples.size(); k += sums.size())
@@ -120,7 +119,7 @@ void DifferenceVariances::add_complete(View<double> samples) {
   const std::size_t before = level.points.size();
   level.points.resize(before + samples.size());
   double* point = level.points.data() + before;
-  // Copies, which stay in registers where members might be what `point` points at.
+  // Copies, which stay in registers, as members might alias the target of `point`.
   double theta = theta_, big_theta = big_theta_;
   const double offset = offset_;
   if (is_modified(statistic_)) {
@@ -150,9 +149,9 @@ void DifferenceVariances::add_one(double y) {
   started_ = true;
 }
 
-// The samples of a gap, on the line from the last one before it to the first one behind it.
+// The samples of a gap, interpolated linearly between its neighbours.
 void DifferenceVariances::close_gap(double next) {
-  // Until the first one is missing, nobody keeps count.
+  // Counting starts with the first missing sample.
   if (missing_ == 0) {
     for (Level& level : levels_) level.missing.assign(level.points.size(), 0);
   }
@@ -179,8 +178,7 @@ void DifferenceVariances::append_point() {
   ++points_;
 }
 
-// Takes the points that have come into the terms that they complete, level after level, as far as
-// there are enough to be worth the trouble.
+// Completes terms with the new points, level after level, once there are enough of them.
 void DifferenceVariances::process(std::size_t worth) {
   levels_.front().newest = points_ - 1;
   for (std::size_t k = 0; k < levels_.size(); ++k) {
@@ -209,7 +207,7 @@ void DifferenceVariances::decimate(const Level& from, Level& to) const {
   to.fresh += count;
 }
 
-// Drops the points that no later term needs, now and then.
+// Drops points that no later term needs, occasionally.
 void DifferenceVariances::forget(Level& level) {
   if (level.points.size() < 2 * level.span + 2 * chunk) return;
   const auto old = static_cast<std::ptrdiff_t>(level.points.size() - level.span);
@@ -248,8 +246,8 @@ double DifferenceVariances::squared_differences(const double* x,
                                    : squared_third_differences(x, factor.spacing, n);
 }
 
-// Differences of order d do not see polynomials below that order. Taken off what is still held,
-// they keep the integral small however long the series and however far it drifts.
+// Differences of order d are invariant to polynomials below that order. These are subtracted from
+// the stored points to keep the integral small for any length and drift of the series.
 void DifferenceVariances::rebase() {
   const double slope = theta_ / static_cast<double>(since_rebase_);
   const auto now = static_cast<double>(points_ - 1);

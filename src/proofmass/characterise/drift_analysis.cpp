@@ -42,12 +42,12 @@ void report_progress(const DriftOptions& options, double fraction) {
 
 struct BlockMean {
   double mean = missing_value;
-  double off_middle = 0.0;  // of the samples that are there, in blocks
+  double off_middle = 0.0;  // mean position of the available samples, in blocks
 };
 
-// NaN where half of a block or more is missing.
+// NaN if half of a block or more is missing.
 BlockMean mean_of(View<double> block) {
-  // About its first value, so that a level far from zero takes no digits.
+  // Relative to its first value, so that a level far from zero costs no digits.
   double first = 0.0, sum = 0.0, places = 0.0, count = 0.0;
   for (std::size_t k = 0; k < block.size(); ++k) {
     if (!std::isfinite(block[k])) continue;
@@ -61,10 +61,10 @@ BlockMean mean_of(View<double> block) {
   return {first + sum / count, places / (count * size) - 0.5};
 }
 
-// Means of so many samples each; what is left at the end is less than a block. Where samples are
-// missing the mean is brought to the middle of its block along the slope between its neighbours, as
-// the start of a warm-up is steep; where only a few blocks are touched they are left out instead,
-// which is exact.
+// Means of `size` samples each; an incomplete block at the end is dropped. With missing samples the
+// mean is moved to the middle of its block along the slope between its neighbours, since the start
+// of a warm-up is steep; if only a few blocks are affected they are dropped instead, which is
+// exact.
 std::vector<double> means_of(View<double> series, std::size_t block) {
   std::vector<BlockMean> found(series.size() / block);
   for (std::size_t j = 0; j < found.size(); ++j)
@@ -92,8 +92,7 @@ std::vector<double> means_of(View<double> series, std::size_t block) {
   return means;
 }
 
-// The fit squares its means, and the squares of those: it needs some that vary, by figures whose
-// fourth power is one.
+// The fit uses fourth powers of the means: they must vary, within the numerical range.
 Status check_means(View<double> means) {
   constexpr double least = 1e-60, most = 1e60;
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -111,7 +110,7 @@ Status check_means(View<double> means) {
   return Done{};
 }
 
-// As many blocks as the fit can use; fewer where many of them are missing, of which each costs a
+// As many blocks as the fit can use; fewer if many of them are missing, each of which costs a
 // column.
 std::size_t block_length(View<double> series) {
   constexpr std::size_t most_blocks = 2048, few_blocks = 512, many_missing = 48;
@@ -124,7 +123,7 @@ std::size_t block_length(View<double> series) {
   return length(missing > many_missing ? few_blocks : most_blocks);
 }
 
-// The least and greatest mean of so many samples in each of up to 1000 stretches.
+// Minimum and maximum mean of `size` samples in each of up to 1000 stretches.
 Envelope envelope_of(View<double> series, std::size_t scale, const DriftOptions& options) {
   constexpr std::size_t buckets = 1000;
   const std::vector<double> averaged = scale > 1 ? means_of(series, scale) : std::vector<double>();
@@ -167,7 +166,7 @@ double take_curve_out(std::vector<double>& series,
   return std::sqrt(squares / count);
 }
 
-// Knocks go missing; steps stay, as they are drift.
+// Shocks are marked missing; steps stay, as they are drift.
 std::vector<double> without_knocks(View<double> series, DriftAnalysis& analysis) {
   std::vector<double> kept(series.begin(), series.end());
   analysis.knocks = signal::find_events(series, {analysis.rate_hz});
@@ -188,7 +187,8 @@ void examine_residuals(DriftAnalysis& analysis,
                        const DriftOptions& options) {
   analysis.whiteness = signal::test_whiteness_at_scales(residuals, analysis.rate_hz,
                                                         fitted_parameters(analysis.fit.curve));
-  // At the sampling interval, and where the tests say the most: at the longest scales but one.
+  // At the sampling interval, and where the tests are most informative: at the longest scales but
+  // one.
   std::vector<double> scales{1.0 / analysis.rate_hz};
   for (const signal::WhitenessTest& test : analysis.whiteness)
     if (test.scale_s > 1.5 / analysis.rate_hz) scales.push_back(test.scale_s);
@@ -244,7 +244,7 @@ Result<DriftAnalysis> analyse_drift(View<double> series, const DriftOptions& opt
   analysis.block_mean = means_of(kept, block);
   const Sampling sampling{options.rate_hz, block};
   analysis.block_s = sampling.step_s();
-  // A mean of samples is that over a time which begins half a step before the first of them.
+  // The mean of samples covers a time that begins half a step before the first of them.
   constexpr double half_a_sample = 0.5;
   const auto evidence = DriftEvidence::make(
       analysis.block_mean, sampling, options.since_switch_on_s - half_a_sample / options.rate_hz);

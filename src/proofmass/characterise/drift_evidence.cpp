@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Each gap on the line between the blocks beside it, so that the transform has no needless edge.
+// Interpolates each gap linearly, to avoid edges in the transform.
 void fill(std::vector<double>& values) {
   std::size_t last = values.size();  // last block that is there
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -70,7 +70,7 @@ Result<DriftEvidence> DriftEvidence::make(View<double> block_means,
   for (std::size_t j = 0; j < evidence.missing_.size(); ++j) {
     const double middle =
         start_s + (static_cast<double>(evidence.missing_[j]) + 0.5) * evidence.block_s();
-    // An impulse's transform is what weighs the ordinates there, but for the density's factor.
+    // An impulse's transform is the weight of the ordinates there, up to the density's factor.
     evidence.dummies_.col(static_cast<Index>(j)) = evidence.at(middle) * evidence.block_s();
   }
   return evidence;
@@ -83,8 +83,8 @@ VectorXd DriftEvidence::rise(double time_constant_s) const {
   const double rho = std::exp(-decay), one_less_rho = -std::expm1(-decay);
   const auto n = static_cast<double>(n_);
   const double rho_n = std::exp(-n * decay), one_less_rho_n = -std::expm1(-n * decay);
-  // Long after power-on nothing is left of an exponential, and e^(-start/T) is zero to a double:
-  // its shape within the recording stays in the columns, whatever its amplitude would have been.
+  // Long after power-on e^(-start/T) underflows to zero: the columns keep the exponential's shape
+  // within the recording, whatever its amplitude would have been.
   constexpr double longest_ago = 30.0;  // in time constants
   const double first =
       -std::exp(-std::min(start_s_ / time_constant_s, longest_ago)) * one_less_rho / decay;
@@ -104,9 +104,8 @@ VectorXd DriftEvidence::rise_by_log_time(double time_constant_s) const {
          (2.0 * step);
 }
 
-// The mean over few samples exactly, of many by Gauss and Legendre's four nodes. From the 16th
-// block on the middle serves: of what bends no faster than ln t it is off by t²|ẍ|/(24 · 16²) ≤
-// 1/6000.
+// The exact mean over few samples; over many by four-node Gauss–Legendre. From the 16th block on
+// the midpoint is used: for curvature up to that of ln t the error is t²|ẍ|/(24 · 16²) ≤ 1/6000.
 VectorXd DriftEvidence::of(const std::function<double(double)>& curve) const {
   constexpr std::array nodes{0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
                              0.9305681557970263};

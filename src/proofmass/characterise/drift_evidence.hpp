@@ -11,15 +11,15 @@
 
 namespace proofmass::characterise {
 
-/// The means over successive blocks as the coefficients k = 0 … n − 1 of a cosine transform, of
-/// which each is independent of the others whatever the noise at rest is made of (BlockMeans), and
-/// the same of all that drift can be made of. A squared coefficient is a two-sided density.
+/// Cosine-transform coefficients k = 0 … n − 1 of the means over successive blocks, and of all
+/// components of a drift. The coefficients are independent for any noise at rest (BlockMeans); a
+/// squared coefficient is a two-sided density.
 ///
-/// A missing block holds a value that does not matter and has a column of its own, whose
-/// coefficient is fitted: that gives the least squares, and the restricted likelihood, of the
-/// blocks that are there. Source: D. Harville, J. Amer. Statist. Assoc. 72 (1977) 320, section 3;
-/// M. S. Bartlett, Some examples of statistical methods of research in agriculture, J. Roy.
-/// Statist. Soc. Suppl. 4 (1937) 137, for the device.
+/// A missing block holds an arbitrary value and has its own column, whose coefficient is fitted:
+/// that gives the least squares, and the restricted likelihood, of the available blocks. Source: D.
+/// Harville, J. Amer. Statist. Assoc. 72 (1977) 320, section 3; M. S. Bartlett, Some examples of
+/// statistical methods of research in agriculture, J. Roy. Statist. Soc. Suppl. 4 (1937) 137, for
+/// the device.
 class DriftEvidence {
  public:
   /// Errors: too_few_samples (fewer than 12 blocks, or more than half of them missing).
@@ -40,24 +40,24 @@ class DriftEvidence {
   }
   [[nodiscard]] const std::vector<std::size_t>& missing() const { return missing_; }
 
-  /// Of the data.
+  /// Ordinates of the data.
   [[nodiscard]] const Eigen::VectorXd& ordinates() const { return z_; }
-  /// Those at k ≥ 1: what a level has no part in.
+  /// Those at k ≥ 1, which do not depend on the level.
   [[nodiscard]] Eigen::VectorXd contrasts() const { return z_.tail(n_ - 1); }
-  /// Of one column for each missing block.
+  /// One column for each missing block.
   [[nodiscard]] const Eigen::MatrixXd& dummies() const { return dummies_; }
-  /// Of 1 − e^(−t/T), and of its derivative by ln T.
+  /// Ordinates of 1 − e^(−t/T), and of its derivative by ln T.
   [[nodiscard]] Eigen::VectorXd rise(double time_constant_s) const;
   [[nodiscard]] Eigen::VectorXd rise_by_log_time(double time_constant_s) const;
-  /// Of any curve of the time, as means over blocks: over their samples where these are few.
+  /// Ordinates of any curve of the time, as means over blocks: over their samples if these are few.
   [[nodiscard]] Eigen::VectorXd of(const std::function<double(double)>& curve) const;
-  /// Of t / duration.
+  /// Ordinates of t / duration.
   [[nodiscard]] const Eigen::VectorXd& line() const { return line_; }
-  /// Of a step of height 1 at the beginning of a block.
+  /// Ordinates of a step of height 1 at the beginning of a block.
   [[nodiscard]] Eigen::VectorXd step(std::size_t block) const;
-  /// Weights of the ordinates in the value at a time of the series that they transform.
+  /// Weights of the ordinates in the value at a time of the transformed series.
   [[nodiscard]] Eigen::VectorXd at(double t_s) const;
-  /// The blocks that coefficients transform.
+  /// The block values of the given coefficients.
   [[nodiscard]] std::vector<double> series(const Eigen::VectorXd& ordinates) const;
 
  private:
@@ -68,7 +68,7 @@ class DriftEvidence {
   Sampling sampling_;
   double start_s_;
   std::vector<std::size_t> missing_;
-  std::vector<double> sines_;                ///< of multiples of π/2n, a whole turn
+  std::vector<double> sines_;                ///< of multiples of π/2n, a full turn
   Eigen::VectorXd half_sine_, half_cosine_;  ///< of π k/2n
   Eigen::VectorXd z_, line_;
   Eigen::MatrixXd dummies_;

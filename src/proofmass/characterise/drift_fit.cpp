@@ -27,7 +27,7 @@ Interval95 interval(double value, double std, double dof) {
   return {value, std, value - reach, value + reach};
 }
 
-// Of a time constant by its logarithm.
+// Interval of a time constant from its logarithm.
 Interval95 log_interval(double value, double std_of_log, double dof) {
   const Interval95 of_log = interval(std::log(value), std_of_log, dof);
   return {value, value * std_of_log, std::exp(*of_log.lower_95), std::exp(*of_log.upper_95)};
@@ -185,7 +185,7 @@ class DriftVerdict {
     fit.line_p = line.p;
   }
 
-  // All that fit as well, and the level at power-on that any of them gives.
+  // All shapes that fit as well, and the level at power-on for each.
   void allow(const std::vector<const DriftTrial*>& as_good, double dof) {
     DriftFit& fit = out_.fit;
     std::vector<Interval95> levels;
@@ -208,27 +208,27 @@ class DriftVerdict {
            DriftTrials::clear_margin;
   }
 
-  // Whether a shape that is no exponential is clearly better.
+  // Whether a non-exponential shape is clearly better.
   [[nodiscard]] bool outdone() const {
     return std::ranges::any_of(
         trials_.rivals(), [&](const DriftTrial* rival) { return beats(*rival, exponential_); });
   }
 
-  // What a shape that is no exponential makes of an exponential that all else speaks for. The
-  // exponential has to be clearly better than each by both criteria: by Schwarz's, too, where it
-  // has more parameters, which in a random walk bend with it.
+  // Verdict on an otherwise identified exponential by comparison with other shapes. It must be
+  // clearly better than each by both criteria: by Schwarz's too, where it has more parameters,
+  // which adapt to a random walk.
   [[nodiscard]] DriftReason by_shape() const {
     const std::vector<const DriftTrial*> rivals = trials_.rivals();
     const auto beaten = [&](const DriftTrial* rival) { return beats(exponential_, *rival); };
     if (std::ranges::all_of(rivals, beaten)) return DriftReason::identified;
-    // A sine alone is no warm-up.
+    // A sine alone is not a warm-up.
     const std::vector<const DriftTrial*> as_good = trials_.as_good();
     return as_good.size() == 1 && as_good.front()->at.shape == DriftShape::sine
                ? DriftReason::swing
                : DriftReason::shape_undetermined;
   }
 
-  // The exponential beside a line has to be needed beside it.
+  // The exponential in addition to a line must be significant.
   [[nodiscard]] bool significant() const {
     if (exponential_.at.shape == DriftShape::exponential_and_line)
       return trials_.test(exponential_, DriftShape::line).p < DriftTrials::level;
@@ -247,9 +247,9 @@ class DriftVerdict {
       return trials_.plain_test(trials_.of(DriftShape::exponential)).p < DriftTrials::level
                  ? DriftReason::hidden_by_noise
                  : DriftReason::no_warm_up;
-    // What spans fewer is a few odd blocks at the beginning; of a short table fewer are no oddity.
+    // A shorter one is a few odd blocks at the beginning; in a short table it is not odd.
     constexpr double most_blocks = 10.0, share = 1.0 / 24.0, line_level = 0.05;
-    constexpr double longest_ago = 10.0;  // of e^-10 of its amplitude no recording shows anything
+    constexpr double longest_ago = 10.0;  // no recording shows e^-10 of its amplitude
     const double fewest = std::min(most_blocks, share * static_cast<double>(evidence_.blocks()));
     if (evidence_.start_s() > longest_ago * T.value) return DriftReason::begun_later;
     if (!T.lower_95 || T.value < fewest * evidence_.block_s())
@@ -273,7 +273,7 @@ class DriftVerdict {
         log_interval(fit.curve.second_time_constant_s, std::sqrt(C(4, 4)), dof);
   }
 
-  // Whether the noise can be what the fit took it for.
+  // Whether the noise is consistent with the fitted model.
   [[nodiscard]] bool explained(const DriftTrial& trial) {
     constexpr double impossible = 1e-6;
     filter(trial);
@@ -284,7 +284,7 @@ class DriftVerdict {
     return !test || std::min(test->ljung_box_p, test->periodogram_p) >= impossible;
   }
 
-  // Of what is left the Wiener filter keeps all but the white share.
+  // The Wiener filter keeps all of the residual but its white share.
   void filter(const DriftTrial& trial) {
     const MatrixXd columns = whole_columns(evidence_, trial.at);
     const Index rest = columns.rows() - 1, own = columns.cols() - evidence_.dummies().cols();

@@ -55,7 +55,7 @@ struct Horizon {
 DriftForecast forecast_of(const DriftPossibility& one, const Horizon& horizon) {
   const DriftNoise& noise = one.noise;
   const double ahead_s = horizon.t_s - one.end.t_s;
-  // A random walk and flicker stay where they are on average, a Markov process relaxes to zero.
+  // A random walk and flicker keep their expectation, a Markov process relaxes to zero.
   const double kept = noise.markov > 0.0 ? std::exp(-ahead_s / noise.markov_time_constant_s) : 0.0;
   const double growth = noise.random_walk * noise.random_walk * ahead_s +
                         flicker_growth(noise.flicker, ahead_s, horizon.block_s) +

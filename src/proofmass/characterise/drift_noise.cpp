@@ -51,9 +51,9 @@ NoiseChoice::NoiseChoice(const DriftEvidence& evidence) : evidence_(evidence) {
   white_ = with({}, Term::white);
   base_ = with(white_, Term::random_walk);
   flicker_ = column(Term::flicker);
-  // From where a block still shows it to where the record shows it but six times.
+  // From the shortest visible in a block to a sixth of the record.
   const double shortest_s = 2.0 * evidence.block_s(), longest_s = evidence.duration_s() / 6.0;
-  // Of a few dozen values none can be distinguished from a random walk.
+  // With a few dozen values it is not distinguishable from a random walk.
   constexpr Index fewest_values = 64;
   if (evidence.blocks() < fewest_values) return;
   for (int k = 0; k < markov_times; ++k) {
@@ -105,7 +105,7 @@ NoiseColumns NoiseChoice::kept(const NoiseColumns& columns, const OrdinateFit& f
     if (columns.terms[k] == Term::markov)
       some.markov_time_constant_s = columns.markov_time_constant_s;
   }
-  // Of data without any noise the white one is kept, at nothing.
+  // For noiseless data the white term is kept, at zero.
   if (some.terms.empty()) {
     some.P = columns.P.leftCols(1);
     some.terms = {columns.terms.front()};
@@ -121,7 +121,7 @@ NoiseChoice::Option NoiseChoice::option(NoiseColumns columns,
   return {std::move(columns), std::move(fit)};
 }
 
-// With a Markov term of the likeliest time constant, where there is a chance of one.
+// With a Markov term of the most likely time constant, if it can be significant.
 std::optional<NoiseChoice::Option> NoiseChoice::with_markov(const Option& beside,
                                                             const VectorXd& z,
                                                             const OrdinateMeans& means) const {
@@ -144,7 +144,7 @@ std::optional<NoiseChoice::Option> NoiseChoice::with_markov(const Option& beside
     least = found;
     best = k;
   }
-  // To a twentieth: the strength makes up for what is left.
+  // To a twentieth: the strength compensates for the rest.
   constexpr double tolerance = 0.05;
   const Bracket bracket{std::log(markov_times_s_[best > 0 ? best - 1 : 0]),
                         std::log(markov_times_s_[std::min(best + 1, markov_times_s_.size() - 1)]),
@@ -155,7 +155,7 @@ std::optional<NoiseChoice::Option> NoiseChoice::with_markov(const Option& beside
   return option(with(beside.columns, Term::markov, std::exp(log_time)), z, means, start);
 }
 
-// With flicker, where there is a chance of it.
+// With flicker, if it can be significant.
 std::optional<NoiseChoice::Option> NoiseChoice::with_flicker(const Option& beside,
                                                              const VectorXd& z,
                                                              const OrdinateMeans& means) const {
@@ -170,8 +170,8 @@ NoiseColumns NoiseChoice::choose(const VectorXd& z, const OrdinateMeans& means) 
   const auto gain = [](const std::optional<Option>& more, const Option& than) {
     return more ? 2.0 * (more->fit.log_likelihood - than.fit.log_likelihood) : 0.0;
   };
-  // Whether there is more than white noise and a walk asks for proof; what it is, once there is, is
-  // the likelier by Akaike's criterion.
+  // Any noise beyond white noise and a random walk must be significant; the choice between the
+  // candidates is by Akaike's criterion.
   std::optional<Option> flicker = with_flicker(chosen, z, means);
   std::optional<Option> markov = with_markov(chosen, z, means);
   const double of_flicker = gain(flicker, chosen), of_markov = gain(markov, chosen);
@@ -185,8 +185,8 @@ NoiseColumns NoiseChoice::choose(const VectorXd& z, const OrdinateMeans& means) 
     std::optional<Option> both = with_markov(chosen, z, means);
     if (gain(both, chosen) > gain_for_time) chosen = std::move(*both);
   }
-  // A walk that next to nothing speaks for is left out: kept, it would widen every interval. Beside
-  // another term that drifts it has to show more.
+  // A random walk with almost no evidence is dropped, since it would widen every interval. In
+  // addition to another drift term it needs more evidence.
   const Option without = option(without_walk(chosen.columns), z, means);
   const double least =
       chosen.columns.terms.size() > base_.terms.size() ? gain_for_walk_beside : gain_for_walk;

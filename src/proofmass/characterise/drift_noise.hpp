@@ -10,36 +10,36 @@
 
 namespace proofmass::characterise {
 
-/// The terms of which the noise beside a drift is made, as columns of densities at k ≥ 1.
+/// Noise terms of a drift, as columns of densities at k ≥ 1.
 struct NoiseColumns {
   Eigen::MatrixXd P;
   std::vector<Term> terms;  ///< of each column
   double markov_time_constant_s = 0.0;
 
-  /// So many parameters does the noise have.
+  /// Number of parameters of the noise.
   [[nodiscard]] int parameters() const;
-  /// Strength of a term in a fit; 0 if it is none of the columns.
+  /// Strength of a term in a fit; 0 if it has no column.
   [[nodiscard]] double strength(const OrdinateFit& fit, Term term) const;
 };
 
-/// Which noise a drift is distinguished from.
+/// Selection of the noise model of a drift.
 class NoiseChoice {
  public:
   explicit NoiseChoice(const DriftEvidence& evidence);
 
-  /// White noise and a random walk, which cannot be left out before it is known whether they can.
+  /// White noise and a random walk, which are always present before the selection.
   [[nodiscard]] const NoiseColumns& base() const { return base_; }
 
   [[nodiscard]] const NoiseColumns& white() const { return white_; }
 
   /// White noise and a random walk, with flicker, with first-order Markov noise or with both:
-  /// flicker where that gains 6 in twice the log-likelihood and a Markov term where that gains 16,
-  /// as in noise_fit.hpp, of the two the likelier; less those that come out at nothing. Of terms
-  /// that explain as much the random walk is kept: over the length of the recording it costs the
-  /// most, so that an interval errs on the safe side.
+  /// flicker if it gains 6 in twice the log-likelihood, a Markov term if it gains 16, as in
+  /// noise_fit.hpp, the more likely of the two; without those estimated as zero. Of terms that
+  /// explain as much, the random walk is kept: over the length of the recording it contributes
+  /// most, so the interval is conservative.
   [[nodiscard]] NoiseColumns choose(const Eigen::VectorXd& z, const OrdinateMeans& means) const;
 
-  /// A choice with white noise and random walk put back.
+  /// A choice with white noise and random walk added back.
   [[nodiscard]] NoiseColumns with_base(const NoiseColumns& columns) const;
 
   /// Without the columns whose strength is zero.

@@ -21,7 +21,7 @@ double bound_95(double dof) {
   return (dof + 1.0) * std::log1p(t * t / dof);
 }
 
-// Of the variance C_ii of a parameter: u = X̃ C e_i gives ∂C_ii/∂θ_j = Σ u² P_j/S², and the
+// For the variance C_ii of a parameter: u = X̃ C e_i gives ∂C_ii/∂θ_j = Σ u² P_j/S², and the
 // strengths have the information ½ Σ P_i P_j/S².
 double satterthwaite(const DriftTrial& trial, const MatrixXd& X, const MatrixXd& C, Index i) {
   constexpr double least = 2.0, most = 1e6;
@@ -35,14 +35,14 @@ double satterthwaite(const DriftTrial& trial, const MatrixXd& X, const MatrixXd&
   return dof > least ? std::min(dof, most) : least;  // nothing known of it, too
 }
 
-// From `best` in steps to where the loss reaches its bound; none before `limit`.
+// From `best` in steps to where the loss reaches its bound; nullopt beyond `limit`.
 struct Way {
   double best, step, limit, bound;
 };
 
 std::optional<double> crossing(const Way& way, const std::function<double(double)>& loss) {
   const auto [best, first_step, limit, bound] = way;
-  // The root of the loss is nearly straight.
+  // The root of the loss is nearly linear.
   const double root_bound = std::sqrt(bound);
   const auto root = [&](double place) {
     return std::sqrt(std::max(0.0, loss(place))) - root_bound;
@@ -93,7 +93,7 @@ DriftProfile::DriftProfile(const DriftEvidence& evidence, const DriftTrial& tria
   slope_ = covariance(first, 0) / (covariance(0, 0) * trial.fit.coefficients(0));
 }
 
-// What is lost with all that is linear, and the noise, fitted anew.
+// Loss with all linear parameters, and the noise, refitted.
 double DriftProfile::loss(const Held& held, const ShapeAt& at) const {
   VectorXd z = evidence_.contrasts();
   OrdinateMeans means{linear_columns(evidence_, at), adjusting_};
@@ -105,7 +105,7 @@ double DriftProfile::loss(const Held& held, const ShapeAt& at) const {
   return 2.0 * (top_ - fit.log_likelihood);
 }
 
-// The same, at the best of the time constants that are free.
+// Loss at the best of the free time constants.
 double DriftProfile::least_loss(const Held& held, const ShapeAt& at, std::size_t first_free) const {
   if (first_free >= at.log_times.size()) return loss(held, at);
   constexpr double standard_deviations = 3.0, tolerance = 0.05;

@@ -9,16 +9,16 @@
 
 namespace proofmass::characterise {
 
-/// Intervals of an exponential's amplitude and time constant by adjusted profile likelihood: what
-/// twice the log-likelihood loses when the value is held and all else fitted anew, the strengths of
-/// the noise too. Of terms of the noise that came out at nothing none is brought back.
+/// Intervals of an exponential's amplitude and time constant by adjusted profile likelihood: the
+/// loss in twice the log-likelihood when the value is held and all else refitted, including the
+/// noise strengths. Noise terms estimated as zero are not added back.
 ///
-/// The loss is counted up to (ν + 1) ln(1 + t²/ν), t the 97.5 % quantile of Student's distribution:
-/// what bounds the mean of normal values whose variance is known to ν degrees of freedom, 3.84
-/// where that is many. Of a drift in a random walk of which the record shows few independent pieces
-/// it is 4 to 6. ν is Satterthwaite's, 2 v²/var(v) of the variance v of the value given the
-/// strengths. Source: as of fit_ordinates; S. S. Wilks, Ann. Math. Statist. 9 (1938) 60; F. E.
-/// Satterthwaite, Biometrics Bull. 2 (1946) 110.
+/// The loss is bounded by (ν + 1) ln(1 + t²/ν), t the 97.5 % quantile of Student's distribution:
+/// the bound for the mean of normal values whose variance has ν degrees of freedom, 3.84 for large
+/// ν, 4 to 6 for a drift in a random walk with few independent parts in the record. ν is
+/// Satterthwaite's, 2 v²/var(v) of the variance v of the value given the strengths. Source: as for
+/// fit_ordinates; S. S. Wilks, Ann. Math. Statist. 9 (1938) 60; F. E. Satterthwaite, Biometrics
+/// Bull. 2 (1946) 110.
 class DriftProfile {
  public:
   DriftProfile(const DriftEvidence& evidence, const DriftTrial& trial);
@@ -28,14 +28,14 @@ class DriftProfile {
   /// Loss with the first amplitude held.
   [[nodiscard]] double of_amplitude(double amplitude) const;
 
-  /// Degrees of freedom to which the noise behind the amplitude is known.
+  /// Degrees of freedom of the amplitude's noise.
   [[nodiscard]] double amplitude_dof() const { return amplitude_dof_; }
 
-  /// Ends that the range of time constants does not reach are missing.
+  /// Ends outside the range of time constants are absent.
   [[nodiscard]] Interval95 time_constant(double std_of_log) const;
   [[nodiscard]] Interval95 amplitude(double std) const;
 
-  /// The loss at time constants about the interval, ascending.
+  /// The loss at time constants around the interval, ascending.
   [[nodiscard]] std::vector<ProfilePoint> points(const Interval95& interval) const;
 
  private:

@@ -5,7 +5,7 @@
 
 #include "proofmass/characterise/drift_model.hpp"
 
-// Warm-ups that are no exponential, and the slow swing that looks like one.
+// Non-exponential warm-ups, and the slow oscillation that resembles one.
 namespace proofmass::characterise {
 
 /// Shapes that compete with the exponential for a drift, τ their scale:
@@ -27,13 +27,13 @@ inline constexpr std::array rival_shapes{DriftShape::square_root, DriftShape::lo
 
 [[nodiscard]] bool is_exponential(DriftShape shape);
 
-/// How many columns of a shape, line and steps apart, depend on its scales.
+/// Number of columns of a shape, without line and steps, that depend on its scales.
 [[nodiscard]] std::size_t amplitudes_of(DriftShape shape);
 
-/// How many scales it has: time constants, or the τ of a rival.
+/// Number of its scales: time constants, or the τ of a rival.
 [[nodiscard]] std::size_t scales_of(DriftShape shape);
 
-/// A column of a rival at t, 0 before t = 0 but for the sine; and its derivative by ln τ.
+/// A column of a rival at t, 0 before t = 0 except for the sine; and its derivative by ln τ.
 struct RivalColumn {
   DriftShape shape = DriftShape::logarithm;
   std::size_t column = 0;

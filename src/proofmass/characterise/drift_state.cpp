@@ -49,8 +49,8 @@ MatrixXd rival_jacobian(const DriftEvidence& evidence,
   return J;
 }
 
-// Derivatives of the mean's ordinates, k = 0 first, by what the curve's covariance is of, the level
-// apart, and then by the missing blocks.
+// Derivatives of the mean's ordinates, k = 0 first, by the parameters of the curve's covariance,
+// without the level, and then by the missing blocks.
 MatrixXd curve_jacobian(const DriftEvidence& evidence, const DriftTrial& trial) {
   const MatrixXd columns = whole_columns(evidence, trial.at);
   if (is_rival(trial.at.shape)) return rival_jacobian(evidence, trial, columns);
@@ -88,7 +88,7 @@ Functionals functionals(const DriftEvidence& evidence,
   const VectorXd start = evidence.at(evidence.start_s()), end = evidence.at(evidence.end_s());
   Functionals out{VectorXd::Zero(count), MatrixXd::Zero(count, count),
                   MatrixXd::Zero(count, J.cols())};
-  // Level: what is left at k = 0, which holds the stationary terms' means too.
+  // Level: the residual at k = 0, which also contains the stationary terms' means.
   const double to_level = start(0), white = trial.noise.strength(trial.fit, Term::white);
   out.value(0) = to_level * residual(0);
   out.covariance(0, 0) = to_level * to_level * (white * white + S.row(0).sum());
@@ -97,7 +97,7 @@ Functionals functionals(const DriftEvidence& evidence,
     out.covariance(0, 2 + j) = out.covariance(2 + j, 0) = -to_level * end(0) * S(0, j);
     out.covariance(2 + j, 2 + j) = end(0) * end(0) * S(0, j);
   }
-  // All others at k ≥ 1: weight and density of each, and what the data say of it.
+  // All others at k ≥ 1: weight and density of each, and its estimate.
   MatrixXd weight(rest, count - 1), weighted(rest, count - 1);
   weight << start.tail(rest), end.tail(rest).replicate(1, terms);
   weighted << S.col(0).tail(rest), S.bottomRows(rest);
@@ -114,8 +114,9 @@ Functionals functionals(const DriftEvidence& evidence,
   return out;
 }
 
-// The walk before the recording, and what each term does between the last block's mean and its end:
-// ∫∫ of the increments is K² h/3 for a walk, as for a Markov process slower than a block.
+// The random walk before the recording, and the change of each term between the last block's mean
+// and its end: ∫∫ of the increments is K² h/3 for a random walk, as for a Markov process slower
+// than a block.
 void add_unseen(const DriftEvidence& evidence, const DriftTrial& trial, MatrixXd& of_values) {
   const DriftNoise noise = noise_of(trial);
   const double third = evidence.block_s() / 3.0, K = noise.random_walk;

@@ -10,7 +10,7 @@
 #include "proofmass/characterise/noise_test_support.hpp"
 #include "proofmass/core/linalg.hpp"
 
-// Warm-ups of known parameters, and what is known of them in the time domain, by dense matrices.
+// Warm-ups with known parameters, and their time-domain solution by dense matrices.
 namespace proofmass::characterise::test {
 
 /// a1 (1 − e^(−t/T)), sampled at t = (k + ½)/rate.
@@ -32,7 +32,7 @@ inline Series level(double value, std::size_t n) {
   return Series(n, value);
 }
 
-/// Evidence of the means over so many samples each.
+/// Evidence of means over this many samples each.
 inline DriftEvidence evidence_of(const Series& samples,
                                  const Sampling& sampling,
                                  double start_s = 0.0) {
@@ -53,7 +53,7 @@ struct DenseFit {
   Eigen::MatrixXd covariance;              ///< of the coefficients
   Eigen::MatrixXd inverse;                 ///< V⁻¹
   Eigen::VectorXd residual;                ///< y − X b
-  double restricted_log_likelihood = 0.0;  ///< but for a constant
+  double restricted_log_likelihood = 0.0;  ///< up to a constant
 };
 
 /// −½ [ln |V| + ln |XᵀV⁻¹X| + eᵀV⁻¹e], generalised least squares in the time domain.

@@ -19,8 +19,8 @@ constexpr int most_rounds = 12;
 constexpr double settled = 1e-3;  // in ln T: a tenth of what any recording can tell
 constexpr std::size_t most_steps = 32;
 
-// Where a scale is looked for: a logarithm with a τ below a block is ln t, and a sine of more than
-// two periods in the record looks like no warm-up.
+// Range of a scale: a logarithm with a τ below a block is ln t, and a sine with more than two
+// periods in the record does not resemble a warm-up.
 TimeRange scale_range(const DriftEvidence& evidence, DriftShape shape) {
   if (is_exponential(shape)) return time_range(evidence);
   const double record_s = evidence.duration_s();
@@ -28,7 +28,7 @@ TimeRange scale_range(const DriftEvidence& evidence, DriftShape shape) {
   return {0.25 * evidence.block_s(), 10.0 * record_s};
 }
 
-// Columns that the scales move, at these scales.
+// Columns that depend on the scales, at these scales.
 MatrixXd varying_columns(const DriftEvidence& evidence, DriftShape shape, View<double> log_times) {
   MatrixXd columns(evidence.blocks(), static_cast<Index>(amplitudes_of(shape)));
   for (std::size_t k = 0; k < amplitudes_of(shape); ++k) {
@@ -43,7 +43,7 @@ MatrixXd varying_columns(const DriftEvidence& evidence, DriftShape shape, View<d
   return columns;
 }
 
-// Linear columns that no time constant moves.
+// Linear columns independent of the time constants.
 MatrixXd fixed_columns(const DriftEvidence& evidence, const ShapeAt& at) {
   const Index line = has_line(at.shape) ? 1 : 0, steps = static_cast<Index>(at.step_blocks.size());
   MatrixXd columns(evidence.blocks(), line + steps + evidence.dummies().cols());
@@ -64,7 +64,7 @@ OrdinateMeans restricted(const DriftEvidence& evidence, const ShapeAt& at) {
   return {linear_columns(evidence, at), tangent_columns(evidence, at)};
 }
 
-// The time constants that fit best where the noise has the density S.
+// The best-fitting time constants for noise of density S.
 std::vector<double> best_times(const DriftEvidence& evidence,
                                const ShapeAt& at,
                                const VectorXd& S) {
@@ -87,11 +87,11 @@ std::vector<double> best_times(const DriftEvidence& evidence,
   return found ? found->alpha : at.log_times;
 }
 
-// Noise and time constants in turn until neither moves.
+// Alternates noise and time constants until convergence.
 OrdinateFit settle(const DriftEvidence& evidence, ShapeAt& at, const MatrixXd& P, OrdinateFit fit) {
   for (int round = 0; round < most_rounds; ++round) {
     fit = fit_ordinates(evidence.contrasts(), P, restricted(evidence, at), fit.strength);
-    // A shape that is a line to within the rounding of doubles leaves no density to weigh by.
+    // A shape that is a line within rounding leaves no density for weights.
     const bool is_fitted = fit.density.allFinite() && fit.density.minCoeff() > 0.0;
     if (at.log_times.empty() || !is_fitted) break;
     const std::vector<double> times = best_times(evidence, at, fit.density);
@@ -104,7 +104,8 @@ OrdinateFit settle(const DriftEvidence& evidence, ShapeAt& at, const MatrixXd& P
   return fit_ordinates(evidence.contrasts(), P, restricted(evidence, at), fit.strength);
 }
 
-// The most likely of a grid of time constants; of two, the second beside the best single one.
+// The most likely of a grid of time constants; for two, the second in addition to the best single
+// one.
 void start_times(const DriftEvidence& evidence, const MatrixXd& P, ShapeAt& at) {
   const std::size_t wanted = scales_of(at.shape);
   constexpr std::size_t points = 14;
@@ -142,9 +143,8 @@ void add_steps(const DriftEvidence& evidence, ShapeAt& at, const MatrixXd& P, Or
   }
 }
 
-// By the likelihood itself. White noise and a random walk stand beside every shape, so that no
-// shape is preferred for doing without the walk; more than these only where they pay for
-// themselves.
+// By the likelihood itself. White noise and a random walk are part of every shape, so that no shape
+// is preferred for the lack of a random walk; further terms only if they are significant.
 DriftCandidate candidate_of(const DriftEvidence& evidence,
                             const NoiseChoice& choice,
                             const DriftTrial& trial) {
@@ -152,7 +152,7 @@ DriftCandidate candidate_of(const DriftEvidence& evidence,
   candidate.shape = trial.at.shape;
   candidate.steps = trial.at.step_blocks.size();
   if (!trial.at.log_times.empty()) candidate.time_constant_s = std::exp(trial.at.log_times.front());
-  // Of a step its place counts too.
+  // The position of a step counts as a parameter too.
   const std::size_t varying = amplitudes_of(trial.at.shape) + trial.at.log_times.size();
   const int of_shape =
       1 + static_cast<int>(varying + 2 * candidate.steps) + (has_line(trial.at.shape) ? 1 : 0);
@@ -186,7 +186,7 @@ void put_in_order(DriftTrial& trial) {
 }  // namespace
 
 TimeRange time_range(const DriftEvidence& evidence) {
-  // Of a short table each value counts: a half of it may be settled.
+  // In a short table each value counts: half of it may be settled.
   constexpr double most_blocks = 2.0, share = 1.0 / 30.0;
   const double blocks = std::min(most_blocks, share * static_cast<double>(evidence.blocks()));
   return {blocks * evidence.block_s(), 10.0 * evidence.duration_s()};

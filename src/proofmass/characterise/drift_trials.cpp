@@ -17,7 +17,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Two time constants nearer than this cannot be determined from one.
+// Two time constants closer than this are not distinguishable from one.
 constexpr double least_ratio = 2.0;
 
 constexpr std::array<DriftShape, 4> first_shapes{DriftShape::constant, DriftShape::line,
@@ -29,8 +29,8 @@ bool has_exponential(const DriftTrial& trial) {
   return is_exponential(trial.at.shape);
 }
 
-// How far the whitened exponential travels over the unit sphere, what is fitted anyway projected
-// out, as T runs through its range.
+// Length of the path of the whitened exponential over the unit sphere, with the fitted columns
+// projected out, as T runs through its range.
 double path_length(const DriftEvidence& evidence, const MatrixXd& fitted, const VectorXd& density) {
   constexpr int places = 60;
   const TimeRange range = time_range(evidence);
@@ -51,8 +51,8 @@ double path_length(const DriftEvidence& evidence, const MatrixXd& fitted, const 
   return length;
 }
 
-// The exponential of a trial against the shape without it: what the best of several noises leaves
-// to be gained.
+// Tests the exponential of a trial against the shape without it: the gain under the best of several
+// noises.
 GainTest against(const DriftEvidence& evidence,
                  const DriftTrial& trial,
                  DriftShape without,
@@ -86,12 +86,12 @@ DriftTrials::DriftTrials(const DriftEvidence& evidence) : evidence_(evidence), c
 
 void DriftTrials::add(DriftShape shape) {
   DriftTrial trial = try_shape(evidence_, choice_, shape);
-  // Without a step found it is the constant again; two that are as good as one say nothing more.
+  // Without a detected step it is the constant again; two equal ones add nothing.
   if (shape == DriftShape::steps && trial.at.step_blocks.empty()) return;
   if (shape == DriftShape::two_exponentials &&
       std::abs(trial.at.log_times[0] - trial.at.log_times[1]) < std::log(least_ratio))
     return;
-  // Long after power-on a rival may differ from a line by less than the rounding of doubles.
+  // Long after power-on a rival may equal a line within rounding.
   if (is_rival(shape) && !std::isfinite(criterion(trial))) return;
   trials_.push_back(std::move(trial));
 }

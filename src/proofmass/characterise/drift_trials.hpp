@@ -9,15 +9,14 @@
 
 namespace proofmass::characterise {
 
-/// Twice what one model gains over another in log-likelihood, and the probability of as much by
-/// chance.
+/// Gain of one model over another in twice the log-likelihood, and its p-value.
 struct GainTest {
   double deviance = 0.0, p = 1.0;
 };
 
-/// All shapes, fitted, each with its own noise: constant, line, steps where there are any, an
-/// exponential, and where the one explains anything, one with a line, two of them, and their rivals
-/// (drift_shapes.hpp). The evidence has to outlive it.
+/// All shapes, fitted, each with its own noise: constant, line, steps if there are any, an
+/// exponential and, if that explains anything, one with a line, two of them, and their rivals
+/// (drift_shapes.hpp). The evidence must outlive it.
 class DriftTrials {
  public:
   explicit DriftTrials(const DriftEvidence& evidence);
@@ -25,15 +24,15 @@ class DriftTrials {
   /// Level of the test against no exponential.
   static constexpr double level = 0.01;
 
-  /// Constant, line or exponential, which there always are.
+  /// Constant, line or exponential, which are always present.
   [[nodiscard]] const DriftTrial& of(DriftShape shape) const;
 
-  /// The best of those with an exponential, or of constant, line and steps. A shape that asks for
-  /// more than those before it has to show strong evidence of it: a criterion lower by 6 (R. E.
+  /// The best of those with an exponential, or of constant, line and steps. A shape with more
+  /// parameters than the previous ones must have strong evidence: a criterion lower by 6 (R. E.
   /// Kass, A. E. Raftery, J. Amer. Statist. Assoc. 90 (1995) 773).
   [[nodiscard]] const DriftTrial& best(bool exponential) const;
 
-  /// Those that are no exponential but may look like one; none where there is no drift at all.
+  /// Non-exponential shapes that may resemble one; none without drift.
   [[nodiscard]] std::vector<const DriftTrial*> rivals() const;
 
   /// Exponentials, rivals and the line that fit as well as the best of them, the best first: within
@@ -42,12 +41,12 @@ class DriftTrials {
 
   static constexpr double clear_margin = 4.0;
 
-  /// The exponential of a trial against the constant or line that is left without it, under the
-  /// best of three noises: that of the trial, that which suits the shape without, and white noise
-  /// with a random walk; p as of drift_fit.hpp.
+  /// Tests the exponential of a trial against the constant or line that remains without it, with
+  /// the best of three noises: that of the trial, that of the shape without it, and white noise
+  /// with a random walk; p as in drift_fit.hpp.
   [[nodiscard]] GainTest test(const DriftTrial& trial, DriftShape without) const;
 
-  /// Against the constant with white noise alone, as a plain fit takes it to be.
+  /// Test against the constant with white noise alone, as a plain fit assumes.
   [[nodiscard]] GainTest plain_test(const DriftTrial& trial) const;
 
   /// Best first.

@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 constexpr double least_pivot = 1e-200;  // of columns that are zero
 
 struct Candidate {
-  double drift = 0.0;   // M, of the white variance
+  double drift = 0.0;   // M, relative to the white variance
   double memory = 1.0;  // in blocks
   double prior = 1.0;
   double loss = 0.0, white_variance = 0.0;
@@ -36,7 +36,7 @@ struct BlockAverages {
   [[nodiscard]] double eta_xi() const { return g * (1.0 - phi); }
 };
 
-// What of each column the columns before it do not explain: the pivots of elimination.
+// The part of each column not explained by the previous ones: the pivots of elimination.
 VectorXd pivots(MatrixXd A) {
   VectorXd found(A.rows());
   const VectorXd size = A.diagonal();

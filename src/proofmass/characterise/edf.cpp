@@ -51,7 +51,7 @@ double s_x(const PowerLaw& law, double t, double F) {
   t = std::abs(t);
   if (t * F < 100.0)
     return F * F * (2.0 * s_w(law, t) - s_w(law, t - 1.0 / F) - s_w(law, t + 1.0 / F));
-  // The three terms would cancel to nothing: the series of their difference in 1/F instead.
+  // The three terms would cancel: the series of their difference in 1/F instead.
   return -derivative_of_s_w(law, t, 2) - derivative_of_s_w(law, t, 4) / (12.0 * F * F);
 }
 
@@ -65,8 +65,8 @@ double digamma_above_half(double k) {
   return std::log(k) + u * (1.0 / 24.0 - u * (7.0 / 960.0 - u * 31.0 / 8064.0)) - steps;
 }
 
-/// s_x, to a factor, of what has the spectrum (2 sin(π f τ0))^−order from sample to sample, m
-/// samples to a unit of t.
+/// s_x, up to a factor, for the spectrum (2 sin(π f τ0))^−order from sample to sample, m samples to
+/// a unit of t.
 double s_x_sampled(int order, double t, double m) {
   t = std::abs(t);
   if (order == 0) return t * m < 0.25 ? 1.0 : 0.0;
@@ -79,7 +79,7 @@ double s_x_sampled(int order, double t, double m) {
   return product;
 }
 
-/// s_x of one power law in the case given.
+/// s_x of one power law for these parameters.
 struct PhaseCovariance {
   PhaseCovariance(const EdfCase& known, int alpha)
       : law(alpha),
@@ -113,7 +113,7 @@ double s_z(const PhaseCovariance& s_x_at, double t, int d) {
   return sum + weight * s_x_at(t);
 }
 
-/// How many terms there are, and how many of them start within one τ.
+/// The number of terms, and of those that start within one τ.
 struct Overlap {
   double terms;    ///< M
   double per_tau;  ///< S
@@ -130,7 +130,7 @@ double edf_of(const Overlap& overlap, int d, Correlation correlation) {
   };
   double sum = 1.0 + term(J);
   for (double j = 1.0; j < J;) {
-    // ρ has kinks at whole τ. Away from them it is smooth, and one lag speaks for its neighbours.
+    // ρ has kinks at whole τ. Away from them it is smooth, and one lag represents its neighbours.
     const double tau_before = std::floor(j / S);
     const double to_kink = std::min(j - tau_before * S, (tau_before + 1.0) * S - j);
     const double block = std::min(1.0 + std::floor(to_kink / 16.0), J - j);
@@ -196,8 +196,8 @@ double theo1_edf(int alpha, double N, double r) {
   }
 }
 
-/// The autocorrelation of the weights that a term of the parabolic variance puts on 2m phases, at
-/// lags 0 … 2m − 1.
+/// The autocorrelation of the weights of a parabolic-variance term on 2m phases, at lags 0 … 2m −
+/// 1.
 std::vector<double> parabolic_kernel(std::size_t m) {
   std::vector<double> weights(2 * m);
   for (std::size_t k = 0; k < m; ++k) {
@@ -214,7 +214,7 @@ std::vector<double> parabolic_kernel(std::size_t m) {
 double parabolic_edf(int alpha, std::size_t m, std::size_t phase_points) {
   PM_EXPECTS(phase_points > 2 * m);
   if (m == 1) return greenhall_riley_edf({.alpha = alpha, .m = 1, .phase_points = phase_points});
-  // Coarser samples change ρ(t) little beyond some dozens to a τ.
+  // Coarser sampling hardly changes ρ(t) beyond some dozens per τ.
   const std::size_t points_per_tau = std::min<std::size_t>(m, 48);
   const auto F = static_cast<double>(points_per_tau);
   const double scale = F / static_cast<double>(m);
@@ -238,7 +238,7 @@ double parabolic_edf(int alpha, std::size_t m, std::size_t phase_points) {
   return edf_of(overlap, 2, [&](double t) { return covariance(t) / variance; });
 }
 
-/// The differences that a statistic squares, where it does nothing else.
+/// The differences squared by a statistic that does nothing else.
 EdfCase differences_of(Statistic statistic, std::size_t m, std::size_t phase_points) {
   const bool plain = statistic == Statistic::adev || statistic == Statistic::hdev;
   return {.d = statistic == Statistic::hdev || statistic == Statistic::ohdev ? 3 : 2,
@@ -248,7 +248,7 @@ EdfCase differences_of(Statistic statistic, std::size_t m, std::size_t phase_poi
           .modified = statistic == Statistic::mdev || statistic == Statistic::tdev};
 }
 
-/// The statistic whose edf stands in where the fit of a total one was not made; itself elsewhere.
+/// The statistic whose edf is substituted outside the fit of a total one; otherwise itself.
 Statistic stand_in(Statistic statistic, int alpha, std::size_t m) {
   switch (statistic) {
     case Statistic::totdev:

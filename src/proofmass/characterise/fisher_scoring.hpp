@@ -5,20 +5,20 @@
 
 namespace proofmass::characterise {
 
-/// How far a climb goes.
+/// Termination of an ascent.
 struct ClimbLimits {
   int most_steps = 60;
   double least_gain;  ///< in log-likelihood: a step that gains less is the last
 };
 
-/// Fisher scoring uphill from θ: each step goes towards what the problem's `scored` asks for at a
-/// state, halved until the log-likelihood does not fall. A problem has
+/// Fisher scoring ascent from θ: each step goes towards the problem's `scored` at a state, halved
+/// until the log-likelihood does not fall. A problem has
 ///
 ///     State at(θ) const                with a member log_likelihood
 ///     Eigen::VectorXd scored(State) const
 ///
-/// `state` has to be that of `theta`. Source: R. I. Jennrich, P. F. Sampson, Technometrics 18
-/// (1976) 11, for variance components.
+/// `state` must be that of `theta`. Source: R. I. Jennrich, P. F. Sampson, Technometrics 18 (1976)
+/// 11, for variance components.
 template <class Problem, class State>
 void climb(const Problem& problem,
            const ClimbLimits& limits,

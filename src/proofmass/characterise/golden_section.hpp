@@ -2,7 +2,7 @@
 
 namespace proofmass::characterise {
 
-/// Where to look for a minimum, and how closely.
+/// Search interval and tolerance of a minimum.
 struct Bracket {
   double low = 0.0, high = 0.0, tolerance = 0.0;
 };
@@ -11,8 +11,8 @@ struct Least {
   double place = 0.0, value = 0.0;
 };
 
-/// The least value of a function with one minimum in the bracket.
-/// Source: J. Kiefer, Proc. Amer. Math. Soc. 4 (1953) 502.
+/// The minimum of a function that is unimodal in the bracket. Source: J. Kiefer, Proc. Amer. Math.
+/// Soc. 4 (1953) 502.
 template <class Function>
 [[nodiscard]] Least least_between(Bracket bracket, const Function& f) {
   constexpr double golden = 0.6180339887498949;

@@ -12,7 +12,7 @@
 namespace proofmass::characterise {
 namespace {
 
-// As many blocks of one sample fit before the blocks grow.
+// Maximum number of single-sample blocks.
 constexpr std::size_t most_blocks = std::size_t{1} << 16;
 constexpr std::size_t shortest_stretch = 16;
 constexpr std::size_t neighbours = 8;
@@ -27,7 +27,7 @@ std::size_t end_of_gap(View<double> means, std::size_t from) {
   return from;
 }
 
-// Parts between gaps that are too long to be filled.
+// Parts between gaps too long to be filled.
 std::vector<Stretch> stretches(View<double> means) {
   const std::size_t longest_gap = std::max<std::size_t>(neighbours, means.size() / 200);
   std::vector<Stretch> parts;
@@ -63,7 +63,7 @@ double mean_of_neighbours(View<double> values, std::size_t gap, std::size_t behi
   return sum / static_cast<double>(count);
 }
 
-// The stretch with its gaps filled, less its mean; `share` is that of the blocks that are there.
+// The stretch with its gaps filled, minus its mean; `share` is that of the available blocks.
 std::vector<double> filled(View<double> means, double& share) {
   std::vector<double> values(means.begin(), means.end());
   std::size_t missing = 0;
@@ -90,8 +90,8 @@ double ramp_amplitude(std::size_t k, std::size_t n, double step_s) {
          (2.0 * sine * sine);
 }
 
-// The longest length up to n that a fast transform likes: no prime factor above 13. Of stretches of
-// some thousand blocks it cuts off about one in a hundred at most.
+// The longest length up to n suitable for a fast transform: no prime factor above 13. For stretches
+// of some thousand blocks it cuts off about one in a hundred at most.
 std::size_t smooth_length(std::size_t n) {
   const auto rest = [](std::size_t m) {
     for (const std::size_t prime : {2U, 3U, 5U, 7U, 11U, 13U})
@@ -104,7 +104,7 @@ std::size_t smooth_length(std::size_t n) {
 
 constexpr std::size_t lanes = 8;
 
-// Of a whole number of lanes, side by side.
+// For a whole number of lanes, in parallel.
 double sum_of(View<double> samples) {
   std::array<double, lanes> sums{};
   for (std::size_t k = 0; k < samples.size(); k += lanes)
@@ -157,7 +157,7 @@ void BlockMeans::add(View<double> samples) {
   std::size_t k = 0;
   while (k < samples.size()) {
     if (taken_ == 0 && block_ % lanes == 0 && k + block_ <= samples.size()) {
-      // A sum is finite if all that is in it is: no need to ask of each sample.
+      // A sum is finite if all its terms are: samples need no separate check.
       const double sum = sum_of(samples.subspan(k, block_));
       if (std::isfinite(sum)) {
         sum_ = sum;

@@ -8,13 +8,13 @@
 namespace proofmass::characterise {
 namespace {
 
-// Up to here every term is taken; beyond, sixteen or more to a τ.
+// Up to this length every term is used; beyond, sixteen or more per τ.
 constexpr std::size_t decimate_above = std::size_t{1} << 20;
-// Of a recording of unknown length: three thousand years at a kilohertz.
+// Assumed length of a recording of unknown length: three thousand years at a kilohertz.
 constexpr std::size_t any_length = std::size_t{1} << 46;
-// A spectrum is averaged over at least so many segments, as long as these keep 64 samples.
+// Minimum number of segments in an averaged spectrum, as long as these have 64 samples.
 constexpr std::size_t segments_wanted = 16, shortest_segment = 64;
-// Short enough that what one accumulator has read is still in the cache for the next.
+// Short enough that the data stay in the cache from one accumulator to the next.
 constexpr std::size_t chunk = 8192;
 
 std::size_t segment_for(std::size_t samples, std::size_t longest) {
@@ -32,7 +32,7 @@ std::vector<std::size_t> factors_for(const NoiseOptions& options, std::size_t sa
   return averaging_factors(options.taus, options.statistic, samples, 1.0 / options.rate_hz);
 }
 
-// A spectrum made at another rate.
+// A spectrum computed for another rate.
 signal::Spectrum at_rate(signal::Spectrum spectrum, double rate_hz) {
   if (spectrum.rate_hz == rate_hz) return spectrum;
   const double scale = rate_hz / spectrum.rate_hz;

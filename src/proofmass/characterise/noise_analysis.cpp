@@ -30,8 +30,8 @@ Status check(View<double> series, const NoiseOptions& options) {
   return Done{};
 }
 
-// Knocks and the edges of steps go missing. At a step the record is drawn apart, by a gap so long
-// that no term and no transform reaches across: how high the step was need not be known.
+// Shocks and the edges of steps are marked missing. At a step the record is split by a gap so long
+// that no term and no transform spans it: the step's height need not be known.
 std::vector<double> without_events(View<double> series,
                                    const std::vector<signal::Event>& events,
                                    double rate_hz) {

@@ -5,7 +5,7 @@
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/core/result.hpp"
 
-// What a noise analysis refuses, of a whole series and of one that comes in pieces.
+// Checks of a noise analysis, for a whole series and for one in blocks.
 namespace proofmass::characterise {
 
 inline constexpr std::size_t fewest_noise_samples = 3;
@@ -15,7 +15,7 @@ inline constexpr std::size_t fewest_noise_samples = 3;
 
 [[nodiscard]] Error too_few_samples(std::size_t samples);
 
-/// Of a curve without a point.
+/// Error for a curve without points.
 [[nodiscard]] Error no_time_fits(const NoiseOptions& options, std::size_t samples);
 
 }  // namespace proofmass::characterise

@@ -15,14 +15,14 @@
 namespace proofmass::characterise {
 namespace {
 
-// Of fewer samples the likelihood ratio's intervals are too narrow.
+// With fewer samples the likelihood ratio's intervals are too narrow.
 constexpr std::size_t fewest_samples = 100;
 constexpr std::size_t fewest_groups = 12;
-// Of a wave's two amplitudes and its frequency: a random walk or
-// flicker noise gains as much in one recording in hundreds; what gains less is a doubt.
+// For a wave's two amplitudes and its frequency: a random walk or flicker noise gains as much in
+// one recording in hundreds; a smaller gain is inconclusive.
 constexpr double wave_gain = 30.0;
 
-// A search that has come to its end, and what its filters are.
+// A finished search, and its filters.
 struct Fitted {
   Search search;
   std::optional<Uncertain> bandwidth_hz = {}, time_constant_s = {};
@@ -40,8 +40,8 @@ Fitted fitted(GroupedEvidence grouped, double duration_s) {
   return found;
 }
 
-// Twice the log-likelihood that a wave gains, each term that it makes superfluous counted as what
-// it would have had to gain.
+// Gain of a wave in twice the log-likelihood, with each term that it replaces counted at its own
+// required gain.
 double gain_of_wave(const Fitted& plain, const Fitted& with_wave, const SlowWave& wave) {
   std::vector<int> active = with_wave.search.active;
   if (!plain.search.markov_s) active = without(std::move(active), column_of_markov);
@@ -67,7 +67,7 @@ bool has_slow_terms(const Search& search) {
   return std::ranges::any_of(search.active, is_slow);
 }
 
-// Takes a wave out of the evidence where that explains it better than noise does.
+// Subtracts a wave from the evidence if it explains that better than noise.
 std::optional<SlowChange> take_wave_out(NoiseEvidence evidence, Fitted& found) {
   if (!has_slow_terms(found.search)) return std::nullopt;
   const auto wave = best_slow_wave(found.search, evidence.duration_s);
@@ -79,7 +79,7 @@ std::optional<SlowChange> take_wave_out(NoiseEvidence evidence, Fitted& found) {
   return described(*wave, found.search.fit.slope, evidence.duration_s, true);
 }
 
-// Of the slow terms that a wave explains as well the interval reaches down to 0.
+// The interval of slow terms that a wave explains as well is extended to 0.
 void doubt_slow_terms(const Fitted& found, NoiseModelFit& model) {
   if (!has_slow_terms(found.search)) return;
   const auto wave = best_slow_wave(found.search, model.duration_s);

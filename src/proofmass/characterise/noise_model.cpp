@@ -13,8 +13,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// σ²(τ) τ / S(0) of an exponentially correlated process of time constant T.
-// Source: IEEE Std 952-1997, annex C; by its series where τ ≪ T would cancel.
+// σ²(τ) τ / S(0) of an exponentially correlated process of time constant T. Source: IEEE Std
+// 952-1997, annex C; by its series for τ ≪ T, to avoid cancellation.
 double relaxation_share(double tau_s, double time_constant_s) {
   const double x = tau_s / time_constant_s;
   if (x < 1e-3) return x * x / 3.0 * (1.0 - 0.75 * x);
@@ -41,7 +41,7 @@ double NoiseModelFit::allan_variance(Term term, double tau_s) const {
       return 2.0 * std::numbers::ln2 / pi * square(flicker.value);
     case Term::random_walk:
       if (random_walk.value == 0.0) return 0.0;  // an empty model has no rate either
-      // Of a walk in steps of 1/rate: what one sample spans is not yet a walk.
+      // For a random walk in steps of 1/rate: within one sample it is not yet a random walk.
       return square(random_walk.value) * (tau_s / 3.0 + 1.0 / (6.0 * tau_s * rate_hz * rate_hz));
     case Term::markov:
       break;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t fewest_samples_of_part = 200;
 constexpr double differs_p = 0.001;
 
-// Whether the coefficient is another in some parts than in others.
+// Whether the coefficient differs between the parts.
 bool differs(const std::vector<NoisePart>& parts, Coefficient NoiseModelFit::* which) {
   double weights = 0.0, sum = 0.0, count = 0.0;
   for (const NoisePart& part : parts) {

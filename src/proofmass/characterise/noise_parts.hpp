@@ -5,16 +5,16 @@
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/core/view.hpp"
 
-// How the figures of noise that is not stationary move within a recording.
+// Variation of nonstationary noise within a recording.
 namespace proofmass::characterise {
 
-/// The model of each of eight equal parts, of four where an eighth is too short for one; empty
-/// where a quarter is.
+/// The model of each of eight equal parts, or of four if an eighth is too short; empty if a quarter
+/// is.
 [[nodiscard]] std::vector<NoisePart> noise_of_parts(View<double> series,
                                                     const NoiseOptions& options);
 
-/// Widens the intervals of those coefficients that differ between the parts by more than chance
-/// (χ² of their differences at one in a thousand) to span those of the parts, with their standard
+/// Widens the intervals of those coefficients that differ significantly between the parts (χ² of
+/// their differences at one in a thousand) to span those of the parts, with their standard
 /// deviations; the values stay those of the whole recording.
 void widen_to_parts(const std::vector<NoisePart>& parts, NoiseModelFit& model);
 

@@ -18,9 +18,9 @@ constexpr std::array linear_terms{Term::quantisation, Term::white, Term::flicker
 
 constexpr double shape_gain = 16.0;
 
-// How much more the densities scatter about the model than they should: Σ ν/2 (p/S − 1)² has mean 1
-// and variance 2 + 12/ν a group, being that of a gamma variable. Groups of few degrees of freedom
-// are so skew that they could say anything, and are not asked.
+// Excess scatter of the densities about the model: Σ ν/2 (p/S − 1)² has mean 1 and variance 2 +
+// 12/ν for a group, being that of a gamma variable. Groups of few degrees of freedom are too skewed
+// and are excluded.
 Misfit find_misfit(const Search& search) {
   constexpr double enough_dof = 10.0, improbable = 1e-4;
   const Eigen::ArrayXd dof = search.likelihood.dof();
@@ -47,8 +47,8 @@ struct Shape {
   double time_constant_s = 0.0, log_likelihood = 0.0;
 };
 
-// The time constant in [low, high] of greatest likelihood, `set` putting a shape in place; a rough
-// one where it cannot come to gain what is needed.
+// The maximum-likelihood time constant in [low, high], with `set` installing a shape; approximate
+// if the required gain is out of reach.
 template <class Set>
 Shape best_time_constant(
     Search& search, double low_s, double high_s, double needed, const Set& set) {
@@ -132,8 +132,8 @@ Search begin_search(GroupedEvidence evidence) {
   return search;
 }
 
-// Departures of a real spectrum run smoothly over about a third of an octave, which is eight
-// groups: they say one thing, not eight.
+// Departures of a real spectrum are smooth over about a third of an octave, which is eight groups:
+// they count as one, not as eight.
 Misfit weigh_misfit(Search& search) {
   constexpr double groups_that_go_together = 8.0;
   const Misfit misfit = find_misfit(search);

@@ -8,7 +8,7 @@
 #include "proofmass/characterise/whittle.hpp"
 #include "proofmass/core/quantity.hpp"
 
-// Which terms, filters and correlation times a recording needs.
+// Selection of the terms, filters and correlation times required by a recording.
 namespace proofmass::characterise {
 
 /// Columns of the likelihood: those of Term, the white one possibly filtered.
@@ -21,20 +21,20 @@ inline constexpr int column_of_markov = static_cast<int>(Term::markov);
   return column != column_of_quantisation && column != column_of_white;
 }
 
-/// Twice the log-likelihood that a term has to gain: χ² of one degree of freedom at 98.6 %. Of the
-/// three terms that white noise does not have, one is then taken in by chance in about one
-/// recording in fifty (the boundary halves it).
+/// Required gain of a term in twice the log-likelihood: χ² with one degree of freedom at 98.6 %.
+/// One of the three non-white terms is then accepted by chance in about one recording in fifty (the
+/// boundary halves it).
 inline constexpr double needed_gain = 6.0;
-/// The same of a ramp: a slope depends on so few frequencies that its ratio is larger by chance
-/// than the theory of many says.
+/// Required gain of a ramp: a slope depends on so few frequencies that asymptotic theory
+/// understates its chance gain.
 inline constexpr double needed_gain_of_ramp = 9.0;
 
-/// A fit in progress: the likelihood, with the shapes chosen so far, and the terms still in.
+/// A fit in progress: the likelihood, with the current shapes and terms.
 struct Search {
   GroupedEvidence evidence;
   WhittleLikelihood likelihood;
-  std::vector<int> all{0, 1, 2, 3};  ///< that the recording may hold
-  std::vector<int> active = all;     ///< that it is taken to hold
+  std::vector<int> all{0, 1, 2, 3};  ///< candidates
+  std::vector<int> active = all;     ///< included
   std::optional<double> pole_s;      ///< time constant of the white term's filter
   std::optional<double> markov_s;
   WhittleFit fit = {};
@@ -53,34 +53,34 @@ struct Search {
   }
 };
 
-/// With the terms whose shape is known.
+/// Starts with the terms of known shape.
 [[nodiscard]] Search begin_search(GroupedEvidence evidence);
 
-/// Lets the white term roll off, if the spectrum asks for it: the bandwidth in Hz.
+/// Adds a roll-off of the white term, if significant: the bandwidth in Hz.
 [[nodiscard]] std::optional<Uncertain> find_bandwidth(Search& search);
 
-/// Takes exponentially correlated noise in, if the spectrum asks for it: its time constant in s.
+/// Adds exponentially correlated noise, if significant: its time constant in s.
 [[nodiscard]] std::optional<Uncertain> find_markov(Search& search, double duration_s);
 
 struct Misfit {
   double relative = 0.0;  ///< root mean square of p/S − 1 beyond the scatter of p
-  double p = 1.0;         ///< probability of so much scatter if the model is the noise
+  double p = 1.0;         ///< p-value of the scatter under the model
 };
 
-/// Lowers the weight of what the model cannot be expected to meet.
+/// Reduces the weight of data that the model cannot be expected to fit.
 Misfit weigh_misfit(Search& search);
 
-/// A filter that the weights no longer ask for goes again.
+/// Drops the bandwidth term if it is no longer significant.
 void reconsider_bandwidth(Search& search, std::optional<Uncertain>& bandwidth_hz);
 
-/// Leaves quantisation noise out where a filter of another bandwidth does without it: next to a
-/// roll-off near half the rate either passes for a part of the other.
+/// Drops quantisation noise if a filter of another bandwidth replaces it: near a roll-off at half
+/// the rate the two are similar.
 void reconsider_quantisation(Search& search, std::optional<Uncertain>& bandwidth_hz);
 
-/// Leaves out the term that is missed least, until each that is left is needed.
+/// Drops the least significant term, until all remaining ones are needed.
 void eliminate(Search& search);
 
-/// The columns but for one.
+/// The columns without one.
 [[nodiscard]] std::vector<int> without(std::vector<int> columns, int column);
 
 }  // namespace proofmass::characterise

@@ -28,7 +28,7 @@ Error whole_only(const std::string& what, const std::string& instead) {
                       what, instead)};
 }
 
-// Times that were asked for may be of any number of samples, also such as no halving shortens.
+// Requested times may be any number of samples, including those not shortened by halving.
 Status check_times(const NoiseOptions& options, std::size_t expected_samples) {
   if (options.taus.kind != TauGrid::Kind::given) return Done{};
   for (const double tau_s : options.taus.times_s) {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-// Noise of known coefficients, by recipes that owe nothing to the code under test.
+// Noise with known coefficients, by methods independent of the code under test.
 namespace proofmass::characterise::test {
 
 using Series = std::vector<double>;
@@ -37,7 +37,7 @@ inline Series white(double N, double rate_hz, std::size_t n, unsigned seed) {
   return scaled(normals(n, seed), N * std::sqrt(rate_hz));
 }
 
-/// Q (w[k+1] − w[k]) / τ0: the rate of a phase that is read with independent errors.
+/// Q (w[k+1] − w[k]) / τ0: the rate of a phase measured with independent errors.
 inline Series quantisation(double Q, double rate_hz, std::size_t n, unsigned seed) {
   Series w = normals(n + 1, seed);
   for (std::size_t k = 0; k < n; ++k) w[k] = w[k + 1] - w[k];

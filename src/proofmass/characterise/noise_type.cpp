@@ -25,7 +25,7 @@ double mean_of(View<double> z) {
   return std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size());
 }
 
-/// Takes away the least-squares parabola, one orthogonal polynomial after the other.
+/// Subtracts the least-squares parabola, one orthogonal polynomial after the other.
 void remove_parabola(std::vector<double>& z) {
   const auto n = static_cast<double>(z.size());
   const double middle = 0.5 * (n - 1.0);
@@ -46,7 +46,7 @@ void remove_parabola(std::vector<double>& z) {
   take_away([=](double t) { return t * t - mean_square; });
 }
 
-/// NaN where z does not vary.
+/// NaN if z is constant.
 double lag1_autocorrelation(View<double> z) {
   const double mean = mean_of(z);
   double lagged = 0.0;

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 constexpr double ordinates_converged = 1e-6;  // in log-likelihood, where 1.92 bounds an interval
 
-// All that follows from a density.
+// All quantities that depend on a density.
 struct State {
   ArrayXd S;
   VectorXd coefficients;
@@ -69,7 +69,7 @@ class Ordinates {
     return state;
   }
 
-  // What the squares of the ordinates are expected to be: of the fitted part, its uncertainty too.
+  // Expected squares of the ordinates, including the uncertainty of the fitted part.
   [[nodiscard]] VectorXd expected_squares(const State& state) const {
     VectorXd p = state.residual.square().matrix();
     if (means_.adjusting.cols() > 0)
@@ -80,14 +80,14 @@ class Ordinates {
     return p;
   }
 
-  // Fisher scoring: the strengths that fit the expected squares with weights 1/(2 S²).
+  // Fisher scoring: the least-squares strengths for the expected squares with weights 1/(2 S²).
   [[nodiscard]] VectorXd scored(const State& state) const {
     const VectorXd weight = (0.5 / state.S.square()).matrix();
     const MatrixXd WP = weight.asDiagonal() * P_;
     return non_negative_minimiser(P_.transpose() * WP, WP.transpose() * expected_squares(state));
   }
 
-  // A first guess: the mean of neighbouring squares.
+  // Initial estimate: the mean of neighbouring squares.
   [[nodiscard]] ArrayXd rough() const {
     constexpr Index reach = 4;
     const ArrayXd p = z_.array().square();
@@ -146,7 +146,7 @@ double promised_gain(const VectorXd& z,
     const MatrixXd own = X.transpose() * (weight.asDiagonal() * X);
     information -= shared.dot(positive_inverse(own) * shared);
   }
-  // A column that the others make up can add nothing.
+  // A column spanned by the others adds nothing.
   constexpr double least_share = 1e-9;
   if (information <= least_share * weighted.dot(column)) return 0.0;
   return score * score / information;

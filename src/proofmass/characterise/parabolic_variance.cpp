@@ -14,8 +14,8 @@ namespace {
 ///
 ///     L[i+1] = L[i] + A[i] − (m+1)/2 x[i] − (m−1)/2 x[i+m],   A[i] = Σ_{k<m} x[i+k],
 ///
-/// begun afresh, and counted from another origin, every m places, so that rounding errors stay
-/// those of m operations.
+/// restarted with a new origin every m positions, so that rounding errors stay those of m
+/// operations.
 std::vector<double> moments_about_middle(View<double> x, std::size_t m) {
   const double middle = 0.5 * (static_cast<double>(m) - 1.0);
   std::vector<double> L(x.size() - m + 1);

@@ -15,13 +15,12 @@
 namespace proofmass::characterise {
 namespace {
 
-// c²/std(c²) at which a term is identified with 95 % probability: the root of the gain that the fit
-// asks for (noise_search.hpp) and the quantile. The gain of a slow term is skew, being that of few
-// coefficients, and by simulation less is enough.
+// c²/std(c²) at which a term is identified with 95 % probability: the root of the gain required by
+// the fit (noise_search.hpp) plus the quantile. The gain of a slow term is skewed, since it depends
+// on few coefficients, and by simulation less is enough.
 const double needed_ratio_of_fast = std::sqrt(needed_gain) + 1.644854;
 constexpr double needed_ratio_of_slow = 1.959964 + 1.644854;
-// By how much the root of a ramp's gain has to be expected above the root of what it needs: by
-// simulation.
+// Required margin of the expected root of a ramp's gain over its threshold: by simulation.
 constexpr double ramp_margin = 0.6;
 constexpr double longest = 1e4;  // times the recording
 constexpr double step = 1.06;    // between the lengths that are tried
@@ -57,8 +56,8 @@ Shapes shapes_of(const NoiseModelFit& model, std::size_t count) {
   return shapes;
 }
 
-// The shortest length that tells `strength` of column `which` from zero; the columns `in` are the
-// model's.
+// The shortest length at which `strength` of column `which` is distinguishable from zero; the
+// columns `in` are the model's.
 std::optional<double> length_for(const Shapes& shapes,
                                  std::vector<Eigen::Index> in,
                                  Eigen::Index which,
@@ -87,7 +86,7 @@ std::optional<double> length_for(const Shapes& shapes,
     const double variance = positive_inverse(length_s(row) * rate[row])(place, place);
     return strength >= needed_ratio * std::sqrt(variance);
   };
-  // The first rows have too few values to tell so many terms apart.
+  // The first rows have too few values to separate so many terms.
   std::size_t too_short = 2 * in.size(), enough = rate.size() - 1;
   if (!tells(enough)) return std::nullopt;
   while (enough - too_short > 1) {
@@ -97,8 +96,8 @@ std::optional<double> length_for(const Shapes& shapes,
   return length_s(enough);
 }
 
-// The groups of a recording of some length, their densities not yet known: the first coefficients
-// one by one, the others in groups.
+// The groups of a recording of some length, without densities: the first coefficients one by one,
+// the others in groups.
 std::vector<SpectralGroup> groups_of(double length_s, double rate_hz) {
   std::vector<SpectralGroup> groups;
   const double spacing_hz = 0.5 / length_s, last_hz = 0.5 * rate_hz;
@@ -115,9 +114,9 @@ std::vector<SpectralGroup> groups_of(double length_s, double rate_hz) {
   return groups;
 }
 
-// Twice the log-likelihood that the fit is expected to lose by doing without a ramp in a recording
-// of length T: the densities being what they are expected to be, R² 8 T³/(π k)⁴ the ramp's at every
-// odd ordinate, the strengths of all terms are free to explain them.
+// Expected loss in twice the log-likelihood without a ramp in a recording of length T: with
+// expected densities, R² 8 T³/(π k)⁴ the ramp's at every odd ordinate, and the strengths of all
+// terms free to explain them.
 double loss_without_ramp(const NoiseModelFit& model,
                          std::size_t count,
                          double slope,
@@ -143,7 +142,7 @@ double loss_without_ramp(const NoiseModelFit& model,
   return 2.0 * (top - likelihood.maximise(all).log_likelihood);
 }
 
-// The shortest length at which that is enough, by bisection.
+// The shortest sufficient length, by bisection.
 std::optional<double> length_for_ramp(const NoiseModelFit& model, std::size_t count, double slope) {
   const double enough = square(std::sqrt(needed_gain_of_ramp) + ramp_margin);
   const auto shows = [&](double length_s) {
@@ -164,7 +163,7 @@ double size_of(const Coefficient& coefficient) {
   return coefficient.verdict == Verdict::identified ? coefficient.value : coefficient.upper_95;
 }
 
-// What the recording at hand did not show cannot be promised from a shorter one.
+// What this recording did not show cannot be expected from a shorter one.
 void note_length(Coefficient& coefficient, std::optional<double> length_s, double duration_s) {
   if (length_s && coefficient.verdict == Verdict::not_observable)
     length_s = std::max(*length_s, duration_s);

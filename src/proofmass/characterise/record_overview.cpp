@@ -36,7 +36,7 @@ void RecordOverview::add_sums(View<double> samples) {
     for (const double sample : samples.first(count)) {
       if (!std::isfinite(sample)) continue;
       if (sums.count == 0.0) sums.first = sample;
-      // About the block's first sample, so that an offset takes no digits.
+      // Relative to the block's first sample, so that an offset costs no digits.
       const double departure = sample - sums.first;
       sums.sum += departure;
       sums.squares += departure * departure;
@@ -85,13 +85,13 @@ double RecordOverview::short_term_std() const {
   return freedom > 0.0 ? std::sqrt(std::max(0.0, squares_ + last) / freedom) : 0.0;
 }
 
-// Noise of half a step is what still makes rounding a white noise of its own, of variance step²/12:
+// With noise of half a step or more, quantisation is additional white noise of variance step²/12:
 // B. Widrow, I. Kollár, Quantization Noise (2008), section 4.
 Status RecordOverview::check_spread(std::optional<double> lsb) const {
   if (missing_ == samples_) return Error{Errc::not_finite, "no sample is a number"};
   const double spread = short_term_std();
   if (!(spread > 0.0)) return Error{Errc::not_observable, "the samples do not vary"};
-  // The likelihood divides by squares of squares.
+  // The likelihood divides by fourth powers.
   constexpr double least_spread = 1e-60, most_spread = 1e60;
   if (spread < least_spread || spread > most_spread)
     return Error{Errc::not_observable,
@@ -109,8 +109,8 @@ Status RecordOverview::check_spread(std::optional<double> lsb) const {
                   spread / *lsb)};
 }
 
-// Noise thins out towards its extremes. Where the very last value comes up more often than all that
-// lies beside it, the converter, or the sensor, could go no further.
+// The density of noise falls towards its extremes. If the extreme value is more frequent than all
+// values near it, the converter, or the sensor, is saturated.
 Status RecordOverview::check_rails(std::optional<double> lsb) const {
   constexpr double beside_share = 0.02, times = 1.3;
   constexpr std::size_t fewest = 10;

@@ -56,13 +56,13 @@ Status check(View<Run> runs) {
   return Done{};
 }
 
-// Of the samples k with from_s <= k / rate < to_s.
+// Samples k with from_s <= k / rate < to_s.
 struct Range {
   std::size_t begin, end;
 };
 
 Range range_of(const Run& run, double from_s, double to_s) {
-  // An end that falls on a sample must not depend on the last digit of the product.
+  // An end on a sample must not depend on the last digit of the product.
   const auto index = [&](double t_s) {
     const double k = std::ceil(t_s * run.rate_hz - 1e-6);
     return std::min(static_cast<std::size_t>(std::max(k, 0.0)), run.series.size());
@@ -76,7 +76,7 @@ double mean_of_finite(const Eigen::VectorXd& values) {
   return m.count > 0 ? m.mean : nothing;
 }
 
-// Alternating means: exact at once where nothing is missing.
+// Alternating means: exact after one step without missing values.
 void fit_two_ways(RunBlocks& of) {
   of.common = Eigen::VectorXd::Zero(of.means.rows());
   of.level = Eigen::VectorXd::Zero(of.means.cols());

@@ -12,18 +12,17 @@ struct RunBlocks {
   double block_s = 0.0;
   Eigen::MatrixXd means;   ///< a row a block, a column a run; NaN where half a block is missing
   Eigen::VectorXd level;   ///< of each run
-  Eigen::VectorXd common;  ///< what all runs share, a value a block, of mean zero
+  Eigen::VectorXd common;  ///< common to all runs, a value a block, of mean
 };
 
-/// The blocks that the noise is fitted to; those of RunBlocks are a multiple of them.
+/// The blocks of the noise fit; the number of RunBlocks is a multiple.
 inline constexpr int noise_blocks = 64;
 
-/// Up to 2048 blocks of at least four samples, and the least squares of means = level + common.
+/// Up to 2048 blocks of at least four samples, and the least-squares fit of means = level + common.
 /// Errors: those of compare_runs.
 [[nodiscard]] Result<RunBlocks> run_blocks(View<Run> runs);
 
-/// means − level − common over noise_blocks blocks, those that are missing between their
-/// neighbours.
+/// means − level − common over noise_blocks blocks, with missing ones interpolated.
 [[nodiscard]] Eigen::MatrixXd residuals(const RunBlocks& of);
 
 /// Mean of the finite samples of a run from_s <= t < to_s; NaN where there is none.

@@ -35,7 +35,8 @@ double generalised_covariance(const RunNoiseTerm& term, double t) {
   return 0.0;
 }
 
-// Of means over `window` whose begins are `gap` apart, up to a constant that contrasts do not see.
+// Covariance of means over `window` whose starts are `gap` apart, up to a constant that cancels in
+// contrasts.
 double mean_covariance(const RunNoiseTerm& term, double gap, double window) {
   return (2.0 * generalised_covariance(term, gap) - generalised_covariance(term, gap + window) -
           generalised_covariance(term, gap - window)) /
@@ -157,7 +158,7 @@ RunNoise fit_run_noise(const MatrixXd& residuals, double duration_s) {
   for (const std::vector<int>& choice : choices) {
     const WhittleFit fit = likelihood.maximise(choice);
     const VectorXd strengths = fit.strength(choice);
-    // What has shrunk to nothing is the choice without it, which has been tried.
+    // A term that has shrunk to zero is the choice without it, which is also tried.
     constexpr double nothing = 1e-3;
     const VectorXd shares =
         strengths.cwiseProduct(ordinates(Eigen::all, choice).colwise().mean().transpose());

@@ -40,7 +40,7 @@ double p_of(double between, double sample, double degrees, View<VarianceEstimate
   return std::min(p, 1.0);
 }
 
-// The least variance between runs at which the p above reaches the one asked for.
+// The smallest variance between runs at which the p above reaches the given one.
 double between_at(double p, double sample, double degrees, View<VarianceEstimate> within) {
   const auto reached = [&](double between) { return p_of(between, sample, degrees, within) >= p; };
   if (reached(0.0)) return 0.0;
@@ -77,7 +77,7 @@ RunScatter run_scatter(View<double> values, View<VarianceEstimate> within) {
   scatter.within_std = std::sqrt(variance);
   scatter.p = p_of(0.0, sample, degrees, within);
   const double lower = std::sqrt(between_at(0.025, sample, degrees, within));
-  // Runs that by chance agree better than their noise allows do not prove that they are the same.
+  // Runs that agree better than their noise predicts do not prove that they are the same.
   const double upper = std::sqrt(between_at(0.975, std::max(sample, variance), degrees, within));
   scatter.between_std.value = std::sqrt(std::max(0.0, sample - variance));
   scatter.between_std.std = (upper - lower) / (2.0 * 1.959964);
@@ -99,7 +99,7 @@ RunTrend run_trend(View<double> values) {
   const double left = std::max(0.0, m.squares - products * trend.per_run.value);
   trend.per_run.std = std::sqrt(left / (n - 2.0) / spread);
   const double t = std::abs(trend.per_run.value) / trend.per_run.std;
-  // A straight line to the last digit has no scatter, and a level neither slope nor scatter.
+  // An exact straight line has no scatter, and a constant neither slope nor scatter.
   if (!std::isfinite(t)) {
     trend.p = trend.per_run.value == 0.0 ? 1.0 : 0.0;
     return trend;

@@ -5,8 +5,8 @@
 
 namespace proofmass::characterise {
 
-/// What values of three runs or more scatter beyond the variance within that all of them have, of
-/// which the weights make one.
+/// Excess scatter of the values of three runs or more beyond their common variance within the runs,
+/// whose weights sum to one.
 [[nodiscard]] RunScatter run_scatter(View<double> values, View<VarianceEstimate> within);
 
 /// Σ weight · value.
@@ -17,7 +17,8 @@ struct RunTrend {
   double p = 1.0;  ///< two-sided
 };
 
-/// Of three values or more against their number, by least squares, std by their scatter about it.
+/// Trend of three values or more against their number, by least squares, std from their scatter
+/// about it.
 [[nodiscard]] RunTrend run_trend(View<double> values);
 
 }  // namespace proofmass::characterise

@@ -38,7 +38,7 @@ Result<std::vector<RunLevel>> levels_of(View<Run> runs, const RunBlocks& blocks,
   return levels;
 }
 
-// One of the three figures of each run, with the uncertainty that the noise gives all of them.
+// One of the three values of each run, with the uncertainty from the common noise.
 RunScatter scatter_of(std::vector<RunLevel>& runs,
                       Uncertain RunLevel::* figure,
                       View<VarianceEstimate> within) {
@@ -80,7 +80,7 @@ std::vector<double> means_of(const RunSet& set) {
   return values;
 }
 
-// Beyond five robust standard deviations; of fewer than six runs these say nothing.
+// Beyond five robust standard deviations; not defined for fewer than six runs.
 void add_outliers(RunSet& set) {
   if (set.runs.size() < 6) return;
   const std::vector<double> values = means_of(set);
@@ -103,7 +103,7 @@ void add_noisy(RunSet& set, const Eigen::MatrixXd& left, const RunNoise& noise) 
   const Eigen::MatrixXd z = cosine_coefficients(left);
   const auto count = static_cast<double>(left.cols()), degrees = static_cast<double>(z.rows());
   for (Index i = 0; i < left.cols(); ++i) {
-    // The mean over the runs, which is taken off, has its part of each.
+    // The subtracted mean over the runs contains a part of each.
     const double statistic =
         (z.col(i).array().square() / expected.array()).sum() * count / (count - 1.0);
     if (chi_square_p(statistic, degrees) > 0.001 / count || statistic < 2.0 * degrees) continue;

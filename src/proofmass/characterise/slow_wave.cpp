@@ -93,7 +93,7 @@ std::optional<SlowWave> best_slow_wave(const Search& search, double duration_s) 
 
 Uncertain slope_beside_wave(const Search& search, double frequency_hz) {
   Uncertain slope = fitted_wave(search, search.fit.density, frequency_hz).slope_per_s;
-  // The wave has been taken out: the slope that is left is the fit's.
+  // The wave has been subtracted: the remaining slope is the fit's.
   slope.value = search.fit.slope;
   return slope;
 }

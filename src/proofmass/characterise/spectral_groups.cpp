@@ -7,16 +7,17 @@
 namespace proofmass::characterise {
 namespace {
 
-// So many of a transform's first coefficients stand for themselves, and carry the ramp.
+// Number of a transform's first coefficients kept single, which contain the ramp.
 constexpr std::size_t single = 48;
-// Width of a group over its frequency: the density of f^−2 noise is even in it to 0.1 %.
+// Width of a group over its frequency: the density of f^−2 noise is linear in it to 0.1 %.
 constexpr double relative_width = 0.03;
 // The averaged spectrum is used where it is smooth within its window: from its eighth bin.
 constexpr double first_bin = 8.0;
-// Below, its bins have too few degrees of freedom to be worth more than the transform's.
+// Below, its bins have too few degrees of freedom to be better than the transform's.
 constexpr std::size_t least_averaged = 12;
-// Of shorter segments the last bins, which are not used, and the ends of the record, which the
-// window lowers, are too large a share: quantisation noise shows most in the highest frequencies.
+// With shorter segments the last bins, which are not used, and the ends of the record, which the
+// window attenuates, are too large a share: quantisation noise is most visible at the highest
+// frequencies.
 constexpr std::size_t shortest_averaged = 512;
 // Neighbouring bins of a Hann window correlate by 4/9, next ones by 1/36: a bin's share of
 // independent degrees of freedom. Source: Percival & Walden (1993), section 6.10.
@@ -55,8 +56,8 @@ bool in_any(const std::vector<signal::SpectralLine>& lines, double frequency_hz,
   });
 }
 
-// By plain least squares: beyond the coefficients that carry the ramp, where it falls with the
-// square of their number, what this leaves of it is below the noise.
+// By plain least squares: beyond the coefficients that contain the ramp, where it falls with the
+// square of their number, the remaining error is below the noise.
 double rough_slope(const std::vector<CosineOrdinate>& ordinates) {
   double cross = 0.0, own = 0.0;
   for (const CosineOrdinate& ordinate : ordinates) {
@@ -98,7 +99,7 @@ void group_transform(const NoiseEvidence& evidence, double below_hz, GroupedEvid
 void group_averaged(const NoiseEvidence& evidence, double from_hz, GroupedEvidence& grouped) {
   const signal::Spectrum& spectrum = evidence.spectrum;
   Grouping grouping(grouped.groups);
-  // The last bin has half the degrees of freedom, and its neighbour's window reaches beyond it.
+  // The last bin has half the degrees of freedom, and its neighbour's window extends beyond it.
   for (std::size_t k = 0; k + 2 < spectrum.frequency_hz.size(); ++k) {
     const double f = spectrum.frequency_hz[k];
     if (f < from_hz) continue;

@@ -8,14 +8,14 @@
 
 namespace proofmass::characterise {
 
-/// The evidence as groups of neighbouring densities, with how each came about.
+/// The evidence as groups of neighbouring densities, with the origin of each.
 struct GroupedEvidence {
-  std::vector<SpectralGroup> groups;  ///< those that a ramp reaches first
+  std::vector<SpectralGroup> groups;  ///< those affected by a ramp first
   std::size_t slow = 0;  ///< so many are of the cosine transform, the rest of the averaged spectrum
   Sampling slow_sampling, fast_sampling;
   double bin_hz = 0.0;  ///< of the averaged spectrum
 
-  /// Density of a shape in group g, the averaged spectrum's seen through its window.
+  /// Density of a shape in group g; for the averaged spectrum including its window.
   template <class Shape>
   [[nodiscard]] double seen(std::size_t g, const Shape& shape) const {
     const double f = groups[g].frequency_hz;

@@ -21,7 +21,7 @@ constexpr std::array<std::size_t, 5> partitions{2, 4, 8, 16, 32};
 constexpr std::size_t longest_line_block = 4096;
 constexpr double significant_p = 0.005;
 
-// Correlation of neighbours among the spans, about the mean of four; −1/4 of independent ones.
+// Correlation of neighbouring spans, about the mean of four; −1/4 for independent ones.
 double neighbour_correlation(const std::vector<double>& spans) {
   double products = 0.0, squares = 0.0;
   for (std::size_t s = 0; s + 4 <= spans.size(); s += 4) {
@@ -33,10 +33,10 @@ double neighbour_correlation(const std::vector<double>& spans) {
   return squares > 0.0 ? products / squares : 0.0;
 }
 
-// 2 Σ ρ² over the lags: by how much the variance of a mean of squares exceeds that of independent
-// ones, so that of n coefficients n/(1 + this) are independent. Up to twice the first lag at which
-// no correlation is seen, since one that oscillates passes through zero.
-// Source: M. S. Bartlett, Suppl. J. Roy. Statist. Soc. 8 (1946) 27.
+// 2 Σ ρ² over the lags: the excess variance of a mean of squares over that of independent ones, so
+// that n/(1 + this) of n coefficients are independent. Up to twice the first lag without
+// significant correlation, since an oscillating one passes through zero. Source: M. S. Bartlett,
+// Suppl. J. Roy. Statist. Soc. 8 (1946) 27.
 double excess_correlation(const std::vector<double>& differences) {
   const auto n = static_cast<double>(differences.size());
   const std::vector<double> correlation =
@@ -51,8 +51,8 @@ double excess_correlation(const std::vector<double>& differences) {
   return 2.0 * sum;
 }
 
-// As long spans as are independent of one another: noise far slower than the differences, behind a
-// filter of several poles, is correlated from one short span to the next.
+// Spans long enough to be independent: noise far slower than the differences, after a filter of
+// several poles, is correlated between short spans.
 std::vector<double> independent_means(EqualSpans spans, double excess_correlation) {
   constexpr double lengths_of_correlation = 8.0, uncorrelated = 0.0;
   const double shortest = lengths_of_correlation * excess_correlation;
@@ -95,14 +95,14 @@ std::optional<Parts> compare_parts(const std::vector<double>& spans, std::size_t
   Parts found;
   found.p = fisher_f_p(between / within, dof_between, dof_within);
   const double each = static_cast<double>(all.count) / static_cast<double>(count);
-  // A root of a level changes by half as much as the level.
+  // The relative change of a root is half that of the level.
   found.change = 2.0 * std::sqrt(std::max(0.0, between - within) / each) / all.mean;
   for (const Moments& part : parts) found.means.push_back(square(part.mean / all.mean));
   return found;
 }
 
-// A sine beats with the differences' own steps: where lines have a good part in the variance, they
-// are tested in its place.
+// A sine beats with the differences' own steps: if lines contribute much of the variance, they are
+// tested instead.
 bool belongs_to_lines(double tau_s,
                       double allan_variance,
                       const std::vector<signal::SpectralLine>& lines) {
@@ -169,7 +169,7 @@ void EqualSpans::add(double value) {
   taken_ = (taken_ + 1) % length_;
 }
 
-// Where a last span has no other to be taken together with, it is begun.
+// A last span without a partner is continued.
 void EqualSpans::halve() {
   const std::size_t pairs = sums_.size() / 2;
   const bool odd = sums_.size() % 2 == 1;
@@ -195,7 +195,7 @@ std::vector<double> EqualSpans::means() const {
   return means;
 }
 
-// The mean of the pair, where this value completes one.
+// The mean of the pair, if this value completes one.
 std::optional<double> StationarityTest::Octave::add(double value) {
   if (!first_of_pair) {
     first_of_pair = value;

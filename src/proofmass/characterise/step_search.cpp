@@ -26,7 +26,7 @@ FoundStep find_step(const DriftEvidence& evidence,
       const Eigen::VectorXd shared = WX.transpose() * s;
       information -= shared.dot(inverse * shared);
     }
-    // What is fitted already makes up this step: a missing block, or the same step.
+    // The fitted columns already span this step: a missing block, or the same step.
     constexpr double least_share = 1e-6;
     if (information < least_share * whole) continue;
     const double score = s.dot(weighted);

@@ -7,14 +7,14 @@
 
 namespace proofmass::characterise {
 
-/// Where one step more would gain the most.
+/// The most significant further step.
 struct FoundStep {
   std::size_t block = 0;  ///< its first block
-  double gain = 0.0;      ///< twice what it adds to the log-likelihood
+  double gain = 0.0;      ///< its gain in twice the log-likelihood
 };
 
-/// Of all places two blocks or more from the ends, with what is fitted already and noise of density
-/// S. Cost: O(n² columns).
+/// Searches all positions two blocks or more from the ends, given the fitted columns and noise of
+/// density S. Cost: O(n² columns).
 [[nodiscard]] FoundStep find_step(const DriftEvidence& evidence,
                                   const Eigen::MatrixXd& fitted,
                                   const Eigen::VectorXd& density);

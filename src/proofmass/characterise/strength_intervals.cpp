@@ -15,18 +15,18 @@ using Eigen::VectorXd;
 constexpr double quantile_95_two_sided = 3.841458820694124;  // of χ² with one degree of freedom
 constexpr double quantile_95_one_sided = 2.705543454095404;  // the square of 1.645
 constexpr double normal_95 = 1.6448536269514722, normal_975 = 1.9599639845400545;
-// A slope depends on so few frequencies that its ratio is larger by chance than the theory of many
-// says: the squares of Student's t with 8 degrees of freedom for those of the normal quantiles.
+// A slope depends on so few frequencies that asymptotic theory understates its chance ratio: the
+// squares of Student's t with 8 degrees of freedom instead of those of the normal quantiles.
 constexpr double ramp_two_sided = 5.318, ramp_one_sided = 3.458;
 
-// So that a search for the end of an interval ends itself, whatever the data.
+// Bounds the search for the end of an interval, for any data.
 constexpr int most_doublings = 200;
 
 struct Bracket {
   double inside, outside;
 };
 
-// Where a loss that grows like a square reaches a quantile: regula falsi (Illinois) on its root.
+// Solves for a quantile of a loss that grows quadratically: regula falsi (Illinois) on its root.
 template <class Loss>
 double crossing(const Loss& loss, Bracket bracket, double quantile) {
   const auto height = [&](double at) { return std::sqrt(loss(at)) - std::sqrt(quantile); };
@@ -47,7 +47,7 @@ double crossing(const Loss& loss, Bracket bracket, double quantile) {
   return b;
 }
 
-// What the density changes by, for a small relative change of each time constant that was fitted.
+// Change of the density for a small relative change of each fitted time constant.
 std::vector<VectorXd> changes_of_shape(const Search& search) {
   constexpr double step = 0.01;
   std::vector<VectorXd> changes;
@@ -64,7 +64,7 @@ std::vector<VectorXd> changes_of_shape(const Search& search) {
   return changes;
 }
 
-// Covariance of some strengths, the time constants being uncertain too.
+// Covariance of some strengths, including the uncertainty of the time constants.
 Eigen::MatrixXd covariance_of(const Search& search, const std::vector<int>& columns_in) {
   const std::vector<VectorXd> changes = changes_of_shape(search);
   const auto n = static_cast<Index>(columns_in.size());
@@ -76,7 +76,7 @@ Eigen::MatrixXd covariance_of(const Search& search, const std::vector<int>& colu
   return positive_inverse(search.likelihood.information_on(search.fit, X)).topLeftCorner(n, n);
 }
 
-// The column last of those that were kept.
+// The column last among those kept.
 std::vector<int> kept_with(const Search& search, int column) {
   std::vector<int> kept = without(search.active, column);
   kept.push_back(column);
@@ -88,7 +88,7 @@ double variance_of(const Search& search, int column) {
   return covariance(covariance.rows() - 1, covariance.cols() - 1);
 }
 
-// By how much the variance of a strength grows for the time constants having been fitted.
+// Growth of the variance of a strength due to the fitted time constants.
 double widening(const Search& search, int column) {
   if (!search.pole_s && !search.markov_s) return 1.0;
   const Eigen::MatrixXd known =
@@ -96,10 +96,9 @@ double widening(const Search& search, int column) {
   return std::max(1.0, variance_of(search, column) / known(known.rows() - 1, known.cols() - 1));
 }
 
-// Twice the log-likelihood lost by holding one strength at a value, all others free, those too that
-// were left out: what they could have taken its place belongs to its uncertainty. The loss is
-// counted from the likelihood of the terms that were kept, which the free ones may exceed by
-// chance.
+// Loss in twice the log-likelihood with one strength held at a value and all others free, including
+// dropped ones: what they could explain instead belongs to its uncertainty. The loss is relative to
+// the likelihood of the terms kept, which the free ones may exceed by chance.
 class Profile {
  public:
   Profile(const Search& search, int column)
@@ -118,7 +117,7 @@ class Profile {
     return 2.0 * std::max(0.0, top_.log_likelihood - at);
   }
 
-  // Where the loss reaches a quantile: above the top, or below it (0 if it does not get there).
+  // Where the loss reaches a quantile: above the maximum, or below it (0 if it does not).
   [[nodiscard]] double upper(double quantile) const {
     double inside = top(), outside = inside + scale_ * std::sqrt(quantile);
     for (int k = 0; k < most_doublings && loss(outside) < quantile; ++k) {
@@ -149,8 +148,8 @@ class Profile {
   double scale_ = 0.0;
 };
 
-// Twice the log-likelihood lost by a slope, all terms free to explain the recording with it, those
-// too that were left out: a random walk too weak to be seen for itself looks like a slope.
+// Loss in twice the log-likelihood with a given slope and all terms free, including dropped ones: a
+// random walk too weak to be identified resembles a slope.
 class SlopeProfile {
  public:
   explicit SlopeProfile(const Search& search) : search_(search), top_(log_likelihood(slope())) {}
@@ -161,7 +160,7 @@ class SlopeProfile {
     return 2.0 * std::max(0.0, top_ - log_likelihood(at));
   }
 
-  // Above the slope that was found (direction 1) or below it (−1).
+  // Above the estimated slope (direction 1) or below it (−1).
   [[nodiscard]] double end(double direction, double quantile) const {
     double inside = slope();
     double step = direction * std::sqrt(quantile * search_.fit.slope_variance);

@@ -75,7 +75,7 @@ void set_crowds(TemperatureBlocks& of, const std::vector<double>& sorted) {
     const double to = std::min(block.temperature_k + half, of.highest_k);
     const auto within =
         std::ranges::upper_bound(sorted, to) - std::ranges::lower_bound(sorted, from);
-    // At the ends of the range half the window is empty by necessity.
+    // At the ends of the range half the window is necessarily empty.
     block.crowd = std::max(static_cast<double>(within) * 2.0 * half / (to - from), floor);
     sum += 1.0 / block.crowd;
   }
@@ -100,7 +100,7 @@ std::vector<double> slopes(const std::vector<TemperatureBlock>& blocks, std::siz
   return found;
 }
 
-// Of one block's temperature, from second differences, in which what is slow cancels.
+// Noise of one block's temperature, from second differences, in which slow changes cancel.
 double thermometer_std(const std::vector<TemperatureBlock>& blocks) {
   std::vector<double> bends;
   for (std::size_t b = 1; b + 1 < blocks.size(); ++b) {
@@ -126,7 +126,7 @@ void set_sweeps(TemperatureBlocks& of) {
     for (const double s : slope) speed += std::abs(s) / static_cast<double>(slope.size());
     const auto r = static_cast<double>(reach);
     const double doubt = 3.0 * std_k / std::sqrt(r * (r + 1.0) * (2.0 * r + 1.0) / 3.0);
-    // A longer reach is steadier, but rounds off the turns.
+    // A longer reach is less noisy, but smooths the reversals.
     if (doubt > 0.5 * speed) continue;
     mark_sweeps(slope, std::max(doubt, 0.2 * speed), of);
     return;

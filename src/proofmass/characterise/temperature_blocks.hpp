@@ -9,7 +9,7 @@
 
 namespace proofmass::characterise {
 
-/// A stretch of time with its means.
+/// An interval of time with its means.
 struct TemperatureBlock {
   std::size_t begin = 0, end = 0;  ///< samples
   double place = 0.0;              ///< its number, missing ones counted
@@ -32,23 +32,24 @@ struct TemperatureBlocks {
   [[nodiscard]] double span_k() const { return highest_k - lowest_k; }
 };
 
-/// Up to 256 of equal length, of at least 8 samples; one counts where half its samples have both.
+/// Up to 256 blocks of equal length, of at least 8 samples; one counts if half its samples have
+/// both.
 [[nodiscard]] TemperatureBlocks temperature_blocks(View<double> series,
                                                    View<double> temperature_k,
                                                    double rate_hz);
 
-/// Orthogonal over the blocks' temperatures, each counting 1/crowd, up to `degree`.
-/// Source: G. E. Forsythe, J. SIAM 5 (1957) 74.
+/// Orthogonal over the blocks' temperatures, each with weight 1/crowd, up to `degree`. Source: G.
+/// E. Forsythe, J. SIAM 5 (1957) 74.
 [[nodiscard]] OrthogonalPolynomials orthogonal_polynomials(const TemperatureBlocks& of, int degree);
 
-/// Means of the polynomials over the samples of each block, one row a block: of a curve, the block
-/// has the mean of what it says of the samples and not what it says of their mean.
+/// Means of the polynomials over the samples of each block, one row a block: the mean of the curve
+/// over the samples, not the curve at their mean.
 [[nodiscard]] Eigen::MatrixXd block_means(const OrthogonalPolynomials& basis,
                                           const TemperatureBlocks& blocks,
                                           View<double> series,
                                           View<double> temperature_k);
 
-/// By 24 equal parts of the range and by sweep, those that have any.
+/// By 24 equal parts of the range and by sweep, without empty ones.
 [[nodiscard]] std::vector<TemperaturePoint> temperature_points(const TemperatureBlocks& blocks);
 
 }  // namespace proofmass::characterise

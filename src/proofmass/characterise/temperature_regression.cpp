@@ -23,7 +23,7 @@ VectorXd solved(const MatrixXd& normal, Index causes) {
          normal.col(normal.cols() - 1).head(causes);
 }
 
-// The rows of each fold: contiguous stretches that weigh the same, dealt out in turn.
+// The rows of each fold: contiguous intervals of equal weight, assigned in turn.
 std::vector<std::vector<Index>> rows_of_folds(const VectorXd& crowds) {
   std::vector<std::vector<Index>> rows(folds);
   const double total = crowds.cwiseInverse().sum();
@@ -37,9 +37,9 @@ std::vector<std::vector<Index>> rows_of_folds(const VectorXd& crowds) {
   return rows;
 }
 
-// Mean square of what each fold's blocks depart from what all others foretell, by fold and degree.
-// With P = V⁻¹ and residuals r from a curve, a fold f given the others departs by P_ff⁻¹ (P r)_f,
-// of covariance P_ff⁻¹; and without f, XᵀPX is less by (PX)_fᵀ P_ff⁻¹ (PX)_f.
+// Mean square prediction error of each fold's blocks from all others, by fold and degree. With P =
+// V⁻¹ and residuals r from a curve, the prediction error of a fold f given the others is P_ff⁻¹ (P
+// r)_f, of covariance P_ff⁻¹; and without f, XᵀPX is less by (PX)_fᵀ P_ff⁻¹ (PX)_f.
 MatrixXd fold_scores(const TemperatureProblem& problem) {
   const MatrixXd PX = problem.inverse * problem.columns;
   const MatrixXd all = problem.columns.transpose() * PX;
@@ -95,7 +95,7 @@ TemperatureCurve fit_curve(const TemperatureProblem& problem, int degree) {
   TemperatureCurve curve;
   curve.values = A * problem.columns.rightCols(1);
   curve.covariance = problem.noise.white_variance * A * A.transpose();
-  // The level asked for is that of the recording: its drift is about its own mean.
+  // The level is that of the recording: its drift is about its own mean.
   A.row(problem.level).array() -= 1.0 / static_cast<double>(X.rows());
   curve.covariance += A * problem.drift * A.transpose();
   return curve;
@@ -116,7 +116,7 @@ std::vector<DegreeScore> cross_validate(const TemperatureProblem& problem) {
 }
 
 int chosen_degree(const TemperatureProblem& problem, const std::vector<DegreeScore>& scores) {
-  // Of a recording without noise the last digits would be all that differs.
+  // For a noiseless recording only the last digits would differ.
   const double rounding = 1e-14 * scores.front().score;
   int degree = 0;
   for (const DegreeScore& score : scores) {

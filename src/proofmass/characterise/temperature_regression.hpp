@@ -11,13 +11,13 @@ namespace proofmass::characterise {
 
 inline constexpr double normal_975 = 1.959964;  ///< quantile of the normal distribution
 
-/// What the regressions have in common. The columns are hysteresis (or not), p0 … of the highest
-/// degree, y: so the first ones serve a lower degree, too.
+/// Common data of the regressions. The columns are hysteresis (optional), p0 … of the highest
+/// degree, y, so that the first ones also serve a lower degree.
 struct TemperatureProblem {
   Eigen::MatrixXd columns;
   Eigen::VectorXd crowds;
   DriftingNoise noise;
-  Eigen::MatrixXd drift;    ///< covariance of the noise less its white part
+  Eigen::MatrixXd drift;    ///< covariance of the noise without its white part
   Eigen::MatrixXd inverse;  ///< V⁻¹ of the weights
   Eigen::Index level = 0;   ///< column of p0
   int most_degree = 0;
@@ -26,7 +26,7 @@ struct TemperatureProblem {
 };
 
 struct TemperatureCurve {
-  Eigen::VectorXd values;  ///< of hysteresis (or not), b_0, b_1, …
+  Eigen::VectorXd values;  ///< of hysteresis (optional), b_0, b_1, …
   Eigen::MatrixXd covariance;
 };
 
@@ -39,7 +39,7 @@ struct TemperatureCurve {
 /// By degree, ascending from 0.
 [[nodiscard]] std::vector<DegreeScore> cross_validate(const TemperatureProblem& problem);
 
-/// The rule of one standard error, and then only what stands out of its own interval.
+/// The rule of one standard error, then only terms significant by their own interval.
 [[nodiscard]] int chosen_degree(const TemperatureProblem& problem,
                                 const std::vector<DegreeScore>& scores);
 

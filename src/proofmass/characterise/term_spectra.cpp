@@ -43,7 +43,7 @@ double random_walk(double omega, const Sampling& sampling) {
 }
 
 // Sums over D neighbours of an exponentially correlated process of variance 1: their variance, and
-// their covariance with the next sum, ρ times which is that with the one behind.
+// their covariance with the next sum; that with the one after is ρ times it.
 struct RelaxationSums {
   double phi, one_less_phi, rho, one_less_rho, own, across;
 };

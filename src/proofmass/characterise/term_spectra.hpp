@@ -5,10 +5,10 @@
 #include "proofmass/characterise/noise_model.hpp"
 
 // Two-sided power spectral densities, in unit²/Hz, of the terms of the noise model with coefficient
-// 1, as sampled: what a recording can show of them.
+// 1, after sampling.
 namespace proofmass::characterise {
 
-/// How the series that a spectrum is of came about: means over so many samples.
+/// Averaging of the series of a spectrum: means over `block` samples.
 struct Sampling {
   double rate_hz = 0.0;   ///< of the samples
   std::size_t block = 1;  ///< samples averaged to one value
@@ -29,8 +29,9 @@ struct Sampling {
 /// Term::markov needs its time constant: relaxation_density.
 [[nodiscard]] double term_density(Term term, double frequency_hz, const Sampling& sampling);
 
-/// Density of an exponentially correlated process, sampled and averaged, of density 1 at frequency
-/// zero: 1 / (1 + (2π f T)²) but for aliases; the closed form of the means' autocovariance.
+/// Density of an exponentially correlated process, sampled and averaged, with density 1 at
+/// frequency zero: 1 / (1 + (2π f T)²) except for aliases; the closed form of the means'
+/// autocovariance.
 [[nodiscard]] double relaxation_density(double time_constant_s,
                                         double frequency_hz,
                                         const Sampling& sampling);

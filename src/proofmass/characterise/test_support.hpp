@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-// What the tests of this module share: the published data set of SP 1065 and Stable32's results.
+// Shared by the tests of this module: the published data set of SP 1065 and Stable32's results.
 namespace proofmass::characterise::test {
 
 /// 1001 phases of the generator n' = 16807 n mod 2³¹ − 1 from 1234567890, rates n/(2³¹ − 1).
@@ -38,7 +38,7 @@ inline std::vector<double> phase_of_white_rates(std::size_t points,
   return x;
 }
 
-/// Empty where the folder is not there.
+/// Empty if the folder does not exist.
 inline std::filesystem::path stable32_folder() {
   std::filesystem::path data = std::filesystem::path(PROOFMASS_SOURCE_DIR) / ".." / "shared/data";
   if (const char* given = std::getenv("PROOFMASS_DATA")) data = given;
@@ -49,8 +49,8 @@ inline std::filesystem::path stable32_folder() {
 struct Stable32Row {
   std::size_t m = 0;
   int alpha = 0;
-  double lower = 0.0, deviation = 0.0, upper = 0.0;  ///< limits 0 where none were asked for
-  bool doubtful = false;  ///< commented out by those who published the table
+  double lower = 0.0, deviation = 0.0, upper = 0.0;  ///< limits 0 if not requested
+  bool doubtful = false;  ///< commented out by the publishers of the table
   double terms = 0.0;
 };
 
@@ -69,7 +69,7 @@ inline std::vector<Stable32Row> read_stable32_table(const std::filesystem::path&
   return rows;
 }
 
-/// The phase record that the tables are of.
+/// The phase record of the tables.
 inline std::vector<double> stable32_phase() {
   std::vector<double> x;
   std::ifstream in(stable32_folder() / "PHASE.DAT");

@@ -12,11 +12,11 @@ namespace proofmass::characterise {
 namespace {
 
 /// Σ (ends − x[l] − y[−l])² w[l] over l = 0 … n − 1, compiled for the vector units of several
-/// processors: the time of a curve goes here.
+/// processors: the hot loop of a curve.
 PM_VECTOR_CLONES
 double weighted_squares(
     const double* x, const double* y, const double* w, double ends, std::ptrdiff_t n) {
-  // Sums side by side, so that one addition need not wait for the one before.
+  // Parallel sums, so that additions do not wait for each other.
   constexpr std::ptrdiff_t lanes = 16;
   std::array<double, lanes> sums{};
   std::ptrdiff_t l = 0;

@@ -10,8 +10,8 @@
 namespace proofmass::characterise {
 namespace {
 
-/// C[k] = Σ_{i<k} v[i], k = 0 … v.size(), of the values less the line through the first and the
-/// last, without which the sums would drown in what the statistic does not see.
+/// C[k] = Σ_{i<k} v[i], k = 0 … v.size(), of the values minus the line through the first and the
+/// last, which would otherwise dominate the sums although the statistic is invariant to it.
 void accumulate_less_line(View<double> v, std::vector<double>& C) {
   const double slope = (v.back() - v[0]) / static_cast<double>(v.size() - 1);
   C.resize(v.size() + 1);
@@ -20,8 +20,8 @@ void accumulate_less_line(View<double> v, std::vector<double>& C) {
     C[i + 1] = C[i] + ((v[i] - v[0]) - slope * static_cast<double>(i));
 }
 
-/// A stretch of 3m values, less its slope, between its mirror images: w[−1−k] = w[k] and
-/// w[3m+k] = w[3m−1−k].
+/// A stretch of 3m values, minus its slope, between its mirror images: w[−1−k] = w[k] and w[3m+k] =
+/// w[3m−1−k].
 class MirroredStretch {
  public:
   explicit MirroredStretch(std::size_t m)
@@ -33,7 +33,7 @@ class MirroredStretch {
   /// Σ (W[j+2m] − 2 W[j+m] + W[j])² over j = −3m … 3m − 1, where W[j] is the sum of m values from
   /// w[j] on; C: the 3m + 1 cumulative sums of the stretch, from any origin.
   ///
-  /// By symmetry j and 3m − j, and j and −3m − j, give the same: j = −3m/2 … 3m/2 will do.
+  /// By symmetry j and 3m − j, and j and −3m − j, give the same: j = −3m/2 … 3m/2 suffices.
   double sum_of_squares(const double* C) {
     mirror(C);
     const std::size_t count = 2 * side_ + 1;
@@ -69,7 +69,7 @@ class MirroredStretch {
   std::vector<double> sums_;      ///< cumulative sums of w[−side] … w[3m−1+side]
 };
 
-/// Mean square of the second differences of means of m values, over all places in each mirrored
+/// Mean square of the second differences of means of m values, over all positions in each mirrored
 /// stretch of 3m and over the stretches.
 PhaseVariance mirrored_mean_square(View<double> values, std::size_t m) {
   const std::size_t places = values.size() - 3 * m + 1;

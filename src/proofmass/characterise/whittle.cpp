@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// In log-likelihood: far below what an interval could show.
+// In log-likelihood: far below the resolution of an interval.
 constexpr double whittle_converged = 1e-8;
 
 MatrixXd chosen(const MatrixXd& columns, const std::vector<int>& active) {
@@ -47,7 +47,7 @@ WhittleLikelihood::WhittleLikelihood(std::vector<SpectralGroup> groups, MatrixXd
   rough_ = smoothed();
 }
 
-// A first guess of S: the mean over a factor of two in frequency to either side.
+// Initial estimate of S: the mean over a factor of two in frequency to either side.
 ArrayXd WhittleLikelihood::smoothed() const {
   const ArrayXd p = expected_densities({});
   ArrayXd S(p.size());
@@ -77,8 +77,8 @@ WhittleLikelihood::Ramp WhittleLikelihood::ramp(const ArrayXd& S) const {
   return {(weighted * amplitude_.head(ramp_rows_)).sum() / information, 1.0 / information};
 }
 
-// What the densities without the ramp are expected to be, given that its slope is uncertain: the
-// expectation step that leads to the restricted likelihood's maximum.
+// Expected densities without the ramp, given the uncertainty of its slope: the expectation step
+// towards the maximum of the restricted likelihood.
 ArrayXd WhittleLikelihood::expected_densities(const Ramp& ramp) const {
   ArrayXd p = raw_;
   if (ramp_rows_ > 0 && ramp.variance > 0.0) {
@@ -106,7 +106,7 @@ double WhittleLikelihood::log_likelihood(const ArrayXd& S) const {
   return ramp_rows_ > 0 ? data + 0.5 * std::log(found.variance) : data;
 }
 
-// One problem of maximise(): the columns that move, and the density that does not.
+// One problem of maximise(): the free columns, and the fixed density.
 struct WhittleLikelihood::Ascent {
   struct State {
     ArrayXd S;

@@ -6,11 +6,10 @@
 
 #include "proofmass/core/view.hpp"
 
-// What the statistics that need the whole phase record at once have in common.
+// Shared by the statistics that need the whole phase record at once.
 namespace proofmass::characterise {
 
-/// x[i] − x[0] − i (x[N−1] − x[0]) / (N−1): what is left keeps its digits in sums. At least 2
-/// points.
+/// x[i] − x[0] − i (x[N−1] − x[0]) / (N−1), which keeps its digits in sums. At least 2 points.
 [[nodiscard]] inline std::vector<double> without_mean_rate(View<double> phase) {
   const double slope = (phase.back() - phase[0]) / static_cast<double>(phase.size() - 1);
   std::vector<double> x(phase.size());
@@ -19,9 +18,8 @@ namespace proofmass::characterise {
   return x;
 }
 
-/// Samples from the start of one term to that of the next, where a term costs m operations and may
-/// start at any of N samples: 1 while N m is at most 4·10⁷; beyond, as many as keep the cost there,
-/// but at most m/16.
+/// Stride between the starts of terms, if a term costs m operations and may start at any of N
+/// samples: 1 while N m is at most 4·10⁷; beyond, as many as keep the cost there, but at most m/16.
 ///
 /// In simulated records of 20 m, 16 terms to a τ kept 99 % or more of full overlap's degrees of
 /// freedom with white and random-walk rates (m = 64). With white phase, whose neighbouring terms
