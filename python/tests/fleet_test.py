@@ -41,7 +41,7 @@ def test_each_recording_is_done_and_the_odd_sensor_stands_out(tray):
 def test_errors_name_options_and_have_the_kind_of_the_commands_status(tray):
     with pytest.raises(pm.FileError, match="holds no results"):
         pm.fleet.summary("nowhere")
-    with pytest.raises(pm.Error, match="rate="):
-        pm.fleet.run("noise", "manifest.csv", "results", rate="x")
+    with pytest.raises(pm.Error, match="rate_hz="):
+        pm.fleet.run("noise", "manifest.csv", "results", rate_hz="x")
     with pytest.raises(pm.Error, match="by=: of noise alone"):
         pm.fleet.run("inspect", "manifest.csv", "results", by="sensor")
