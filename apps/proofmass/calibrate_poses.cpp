@@ -9,13 +9,11 @@
 #include "exit_status.hpp"
 #include "input.hpp"
 #include "listed_rests.hpp"
-#include "proofmass/calibrate/pose_means.hpp"
+#include "proofmass/calibrate/recording_poses.hpp"
 #include "proofmass/io/direction_label.hpp"
 #include "proofmass/io/pose_table.hpp"
 #include "proofmass/sensor/calibration.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
-#include "proofmass/signal/channel_audit.hpp"
-#include "proofmass/signal/rests.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -42,20 +40,20 @@ std::optional<Eigen::Vector3d> vector_of(const std::optional<std::array<double, 
   return Eigen::Vector3d(up->data());
 }
 
-// The unit in which the poses of a unit are kept.
-Unit si_of(const Unit& unit, const std::string& file) {
-  switch (unit.quantity) {
-    case Quantity::acceleration:
-      return *parse_unit("m/s^2");
-    case Quantity::voltage:
-      return *parse_unit("V");
-    case Quantity::counts:
-      return unit;
-    default:
-      throw Failure(usage, fmt::format("{}: the readings are in {}: expected an acceleration, a "
-                                       "voltage or counts: give --unit",
-                                       file, unit.symbol.empty() ? "no known unit" : unit.symbol));
-  }
+// With the flags that help.
+Failure failure_of(const Error& error, const std::string& file) {
+  const std::string message = error.at(file).message;
+  if (error.code == Errc::invalid_argument)
+    return {usage, message + ": choose its three channels with --channel, their unit with --unit"};
+  if (error.code == Errc::not_observable)
+    return {bad_input, message + "; give the rests with --rests FILE"};
+  return {status_of(error, Stage::reading), message, error.code};
+}
+
+template <class T>
+T need_of_file(Result<T> result, const std::string& file) {
+  if (!result) throw failure_of(result.error(), file);
+  return std::move(result).value();
 }
 
 FilePoses table_poses(const Recording& recording,
@@ -70,7 +68,7 @@ FilePoses table_poses(const Recording& recording,
   out.file = {.file = file, .origin = PoseOrigin::table, .poses = table.rows.size()};
   if (table.rows.empty()) return out;
   const Unit& given = table.rows.front().unit;
-  out.unit = si_of(given, file);
+  out.unit = need_of_file(calibrate::pose_unit(given), file);
   bool known = true;
   for (const io::PoseRow& row : table.rows) {
     Pose& pose = out.poses.emplace_back();
@@ -94,22 +92,6 @@ FilePoses table_poses(const Recording& recording,
   if (known && out.noise_dof == 0.0) out.noise_dof = 1e6;
   if (!known) out.noise_dof = 0.0;
   return out;
-}
-
-// The three channels of the only accelerometer.
-Triad triad_of(const Recording& recording) {
-  const std::vector<Triad> triads = accelerometer_triads(recording);
-  std::string names;
-  for (const Triad& triad : triads) names += (names.empty() ? "" : ", ") + triad.name;
-  if (triads.size() == 1 && triads.front().axes() == 3) return triads.front();
-  if (triads.size() > 1) {
-    throw Failure(usage, fmt::format("{}: {} accelerometers ({}), expected one: choose its three "
-                                     "channels with --channel",
-                                     recording.source, triads.size(), names));
-  }
-  throw Failure(usage, recording.source +
-                           ": no accelerometer with three axes found: name its channels x, y and "
-                           "z, or choose them with --channel");
 }
 
 std::vector<Dwell> listed(const Recording& recording, const std::string& list) {
@@ -142,52 +124,29 @@ std::vector<Dwell> labelled(const Recording& recording, std::vector<Note>& notes
   return rests;
 }
 
-std::vector<Dwell> found(const Recording& recording,
-                         const std::array<View<double>, 3>& axes,
-                         const CalibrateCommand& command) {
-  const signal::RestSearch search = signal::find_rests(
-      axes, {.rate_hz = recording.time.rate_hz, .shortest_s = command.shortest_rest_s});
-  if (search.rests.empty()) {
-    throw Failure(bad_input, fmt::format("{}: no rest found: {}; give them with --rests FILE",
-                                         recording.source, search.why_none));
-  }
-  std::vector<Dwell> rests;
-  rests.reserve(search.rests.size());
-  for (const signal::Rest& rest : search.rests) rests.push_back({rest.first, rest.last});
-  return rests;
-}
-
 struct Rests {
-  std::vector<Dwell> dwells;
-  PoseOrigin origin;
+  std::vector<Dwell> dwells;  // empty: to be found
+  PoseOrigin origin = PoseOrigin::found;
 };
 
 Rests rests_of(const Recording& recording,
-               const std::array<View<double>, 3>& axes,
                const CalibrateCommand& command,
                std::vector<Note>& notes) {
   if (!command.rests.empty()) return {listed(recording, command.rests), PoseOrigin::listed};
   std::vector<Dwell> named = labelled(recording, notes);
   if (!named.empty()) return {std::move(named), PoseOrigin::labelled};
-  return {found(recording, axes, command), PoseOrigin::found};
-}
-
-void set_times(const Recording& recording, const std::vector<Dwell>& rests, FilePoses& out) {
-  for (std::size_t k = 0; k < rests.size(); ++k) {
-    out.poses[k].start_s = recording.time.at(rests[k].first);
-    out.poses[k].end_s = recording.time.at(rests[k].last);
-  }
+  return {};
 }
 
 // Where the sensor file to be written says that a channel holds the supply, the voltages are those
 // that the reference supply would have given.
 std::optional<double> bring_to_reference_supply(const std::string& sensor_file,
-                                                const Triad& triad,
                                                 Recording& recording) {
   if (sensor_file.empty() || !std::filesystem::exists(sensor_file)) return std::nullopt;
   const sensor::SensorFile file = need(sensor::read_sensor_file(sensor_file), Stage::reading);
   const sensor::Electrical& electrical = file.model.electrical;
   if (electrical.supply_channel.empty() || !electrical.reference_supply) return std::nullopt;
+  const Triad triad = need_of_file(calibrate::only_accelerometer(recording), recording.source);
   const bool volts = recording.channels[*triad.x].unit.quantity == Quantity::voltage;
   if (!volts) return std::nullopt;
   const Status done = sensor::bring_to_reference_supply(electrical, triad, recording);
@@ -206,38 +165,21 @@ FilePoses recording_poses(Recording recording,
   }
   Recording& read = one.front();
   notes.insert(notes.end(), read.notes.begin(), read.notes.end());
-  const Triad triad = triad_of(read);
-  std::array<View<double>, 3> axes;
-  std::array<double, 3> lsb{};
   FilePoses out;
   if (command.supplies_v.empty())
-    out.reference_supply_v = bring_to_reference_supply(command.update_sensor, triad, read);
-  std::size_t k = 0;
-  for (const auto& index : {triad.x, triad.y, triad.z}) {
-    Channel& channel = read.channels[*index];
-    const Unit si = si_of(channel.unit, read.source);
-    if (k > 0 && si.symbol != out.unit.symbol)
-      throw Failure(usage, read.source + ": the three axes are in different units: give --unit");
-    out.unit = si;
-    if (channel.unit.quantity != Quantity::counts)
-      for (double& value : channel.values) value = channel.unit.si(value);
-    axes[k] = channel.values;
-    lsb[k] = signal::find_lsb(axes[k]).value_or(0.0);
-    ++k;
-  }
-  const Rests rests = rests_of(read, axes, command, notes);
-  calibrate::PoseMeans means = need(
-      [&] {
-        auto result = calibrate::pose_means(axes, rests.dwells, lsb);
-        return result ? result : Result<calibrate::PoseMeans>(result.error().at(read.source));
-      }(),
-      Stage::reading);
+    out.reference_supply_v = bring_to_reference_supply(command.update_sensor, read);
+  const Rests rests = rests_of(read, command, notes);
+  calibrate::RecordingPoses found =
+      need_of_file(calibrate::recording_poses(
+                       read, {.dwells = rests.dwells, .shortest_s = command.shortest_rest_s}),
+                   read.source);
+  calibrate::PoseMeans& means = found.means;
+  out.unit = found.unit;
   out.poses = std::move(means.poses);
   out.noise_dof = means.noise_dof;
   out.sample_std = means.sample_std;
   out.session = std::move(means.session);
-  out.sensor = triad.name;
-  set_times(read, rests.dwells, out);
+  out.sensor = found.triad.name;
   out.file = {.file = read.source,
               .origin = rests.origin,
               .poses = out.poses.size(),

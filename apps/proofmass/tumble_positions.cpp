@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fmt/format.h>
 
 #include "console.hpp"
@@ -196,17 +195,6 @@ TumblePart read_rests(const Recording& recording,
   return part;
 }
 
-// Many samples in few places are a recording; a table has one row for a position.
-bool is_recording(const Recording& recording, const std::vector<double>& angle) {
-  constexpr std::size_t fewest = 100, samples_a_rest = 10;
-  if (recording.samples() < fewest) return false;
-  std::size_t moves = 0;
-  for (std::size_t k = 1; k < angle.size(); ++k)
-    if (std::abs(angle[k] - angle[k - 1]) > 0.25 * rad_per_deg) ++moves;
-  return (moves + 1) * samples_a_rest < recording.samples() ||
-         !calibrate::steady_angles(angle, {.rate_hz = recording.time.rate_hz}).empty();
-}
-
 void place(TumblePart& part, const TumbleCommand& command, std::size_t file) {
   const auto of_file = [&](const std::vector<int>& given, const char* flag) -> std::optional<int> {
     if (given.empty()) return std::nullopt;
@@ -248,7 +236,8 @@ TumblePart read_part(const TumbleCommand& command,
     throw Failure(usage, recording.source +
                              ": no column with the table's angle: name it with --angle, or give "
                              "--angles for the rests of a recording");
-  if (is_recording(recording, angles_rad(recording.channels[*columns.angle])))
+  if (calibrate::stops_in_places(angles_rad(recording.channels[*columns.angle]),
+                                 recording.time.rate_hz))
     return read_rests(recording, columns, command, before);
   return read_table(recording, columns, command.input, notes);
 }

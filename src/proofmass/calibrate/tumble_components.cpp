@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/linalg.hpp"
@@ -183,8 +184,13 @@ TumbleSolved solve_tumble(const Eigen::MatrixXd& A,
   out.beta = out.gain * y;
   out.beta += out.gain * (y - A * out.beta);  // one step of refinement
   out.projected = V.solve(y - A * out.beta);
-  out.chi_square = (y - A * out.beta).dot(out.projected);
-  out.log_likelihood = -0.5 * (V.log_determinant() + normal.log_determinant + out.chi_square);
+  const double square = (y - A * out.beta).dot(out.projected);
+  out.chi_square = std::max(square, 0.0);
+  // Sizes that far exceed the noise leave V without precision: a sum of squares below zero.
+  constexpr double rounding = 1e-3;
+  out.log_likelihood = square < -rounding
+                           ? -std::numeric_limits<double>::infinity()
+                           : -0.5 * (V.log_determinant() + normal.log_determinant + out.chi_square);
   out.projector = V.inverse_diagonal() - B.cwiseProduct(out.gain.transpose()).rowwise().sum();
   return out;
 }

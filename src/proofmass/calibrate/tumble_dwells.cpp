@@ -19,6 +19,16 @@ bool creeps(View<double> angle_rad) {
 
 }  // namespace
 
+bool stops_in_places(View<double> angle_rad, double rate_hz) {
+  constexpr std::size_t fewest = 100, samples_a_place = 10;
+  if (angle_rad.size() < fewest) return false;
+  std::size_t moves = 0;
+  for (std::size_t k = 1; k < angle_rad.size(); ++k)
+    if (std::abs(angle_rad[k] - angle_rad[k - 1]) > 0.25 * rad_per_deg) ++moves;
+  return (moves + 1) * samples_a_place < angle_rad.size() ||
+         !steady_angles(angle_rad, {.rate_hz = rate_hz}).empty();
+}
+
 std::vector<Dwell> steady_angles(View<double> angle_rad, const SteadyAngleOptions& options) {
   constexpr double usual_s = 0.5;
   constexpr std::size_t usual = 20, least = 6;

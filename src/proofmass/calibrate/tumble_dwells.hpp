@@ -24,6 +24,11 @@ struct SteadyAngleOptions {
 [[nodiscard]] std::vector<Dwell> steady_angles(View<double> angle_rad,
                                                const SteadyAngleOptions& options);
 
+/// Whether these angles are samples of a table that stops in places, rather than one row for each
+/// position: at least 100 of them, and a step of a quarter of a degree at most every tenth, or a
+/// steady angle. `rate_hz` 0: unknown.
+[[nodiscard]] bool stops_in_places(View<double> angle_rad, double rate_hz);
+
 /// The longest part of each steady interval in which the sensor is at rest too: the table may still
 /// move, or the sensor ring, when the angle has already reached its setting. An interval without
 /// such a part of six samples is omitted.
