@@ -1,7 +1,9 @@
 #include "proofmass/serve/analysis_arguments.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
+#include <optional>
 
 namespace proofmass::serve {
 namespace {

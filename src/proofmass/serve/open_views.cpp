@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <optional>
 
 #include "proofmass/serve/analysis_arguments.hpp"
 #include "proofmass/serve/bench_parts.hpp"

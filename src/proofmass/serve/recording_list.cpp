@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <optional>
 
 #include "proofmass/core/units.hpp"
 #include "proofmass/serve/analysis_arguments.hpp"

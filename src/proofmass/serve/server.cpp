@@ -6,6 +6,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <fmt/format.h>
+#include <memory>
 #include <utility>
 
 #include "proofmass/serve/session.hpp"

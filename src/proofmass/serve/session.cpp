@@ -6,8 +6,11 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/http/file_body.hpp>
+#include <cctype>
 #include <exception>
 #include <fmt/format.h>
+#include <memory>
+#include <optional>
 #include <unistd.h>
 
 #include "proofmass/core/version.hpp"
