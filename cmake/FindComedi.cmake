@@ -1,4 +1,4 @@
-# Finds the library of the comedi drivers, as Comedi::comedi: it brings no package of its own.
+# Finds the library of the comedi drivers, as Comedi::comedi: it has no CMake package of its own.
 find_path(Comedi_INCLUDE_DIR comedilib.h)
 find_library(Comedi_LIBRARY NAMES comedi)
 mark_as_advanced(Comedi_INCLUDE_DIR Comedi_LIBRARY)

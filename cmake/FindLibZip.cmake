@@ -1,5 +1,5 @@
-# Finds libzip, as LibZip::zip. The package that it brings itself asks for its command-line tools too,
-# which not everybody has installed.
+# Finds libzip, as LibZip::zip. Its own package also requires its command-line tools, which are often
+# not installed.
 find_path(LibZip_INCLUDE_DIR zip.h)
 find_library(LibZip_LIBRARY NAMES zip)
 mark_as_advanced(LibZip_INCLUDE_DIR LibZip_LIBRARY)

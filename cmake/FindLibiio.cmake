@@ -1,10 +1,10 @@
-# Finds the library of Linux's industrial I/O, as Libiio::iio: the calls as they were in 0.x, which
-# 1.0 replaces. It brings no package of its own.
+# Finds the library of Linux's industrial I/O, as Libiio::iio: with the API of 0.x, which 1.0
+# replaces. It has no CMake package of its own.
 find_path(Libiio_INCLUDE_DIR iio.h)
 find_library(Libiio_LIBRARY NAMES iio)
 mark_as_advanced(Libiio_INCLUDE_DIR Libiio_LIBRARY)
 
-# 1.0 lays its header in a folder, iio/iio.h.
+# 1.0 has its header in a folder, iio/iio.h.
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(Libiio REQUIRED_VARS Libiio_LIBRARY Libiio_INCLUDE_DIR)
 

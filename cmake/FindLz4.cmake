@@ -1,4 +1,4 @@
-# Finds the library of LZ4, as Lz4::lz4: it brings no package of its own.
+# Finds the library of LZ4, as Lz4::lz4: it has no CMake package of its own.
 find_path(Lz4_INCLUDE_DIR lz4frame.h)
 find_library(Lz4_LIBRARY NAMES lz4)
 mark_as_advanced(Lz4_INCLUDE_DIR Lz4_LIBRARY)

@@ -1,5 +1,5 @@
-# Finds Eclipse Paho's library of synchronous MQTT, without TLS, as PahoMqtt::client: Debian's brings
-# no package of its own.
+# Finds Eclipse Paho's library of synchronous MQTT, without TLS, as PahoMqtt::client: Debian's has no
+# CMake package of its own.
 find_path(PahoMqtt_INCLUDE_DIR MQTTClient.h)
 find_library(PahoMqtt_LIBRARY NAMES paho-mqtt3c)
 mark_as_advanced(PahoMqtt_INCLUDE_DIR PahoMqtt_LIBRARY)

@@ -1,5 +1,5 @@
-# Finds the library of Zstandard, as Zstd::zstd. The package that it brings itself is not there in
-# every distribution.
+# Finds the library of Zstandard, as Zstd::zstd. Its own CMake package is missing in some
+# distributions.
 find_path(Zstd_INCLUDE_DIR zstd.h)
 find_library(Zstd_LIBRARY NAMES zstd)
 mark_as_advanced(Zstd_INCLUDE_DIR Zstd_LIBRARY)

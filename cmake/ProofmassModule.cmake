@@ -6,15 +6,15 @@ include(ProofmassTests)
 #                  HEADERS ... [UNITS "name: sources" ...] [SOURCES ...] [KERNELS ...]
 #                  [TESTS ...] [SLOW_TESTS ...] [LINKS targets...] [USES_PRIVATELY targets...])
 #
-# One folder, one library, one test program; SLOW_TESTS are a second one, labelled slow. USES is the
-# only place that says which modules this one may include; tools/check_layers.py holds the #include
-# lines to it. LINKS are libraries that the headers show (Eigen); USES_PRIVATELY those that only .cpp
-# files name.
+# One folder, one library, one test program; SLOW_TESTS form a second program, labelled slow. USES is
+# the only list of the modules that this one may include; tools/check_layers.py checks the #include
+# lines against it. LINKS are libraries used in headers (Eigen); USES_PRIVATELY those used only in
+# .cpp files.
 #
-# The sources of a unit are compiled together (ProofmassUnits.cmake); SOURCES are compiled one by one,
-# being large enough; KERNELS too, at -O3 and without fused multiply-adds: a fused one rounds once
-# where two operations round twice, and without it every processor gets the same digits. TEXT modules
-# write words and pages, which -O1 does as well as -O2 in half of the compiler's time.
+# The sources of a unit are compiled together (ProofmassUnits.cmake). SOURCES are compiled one by one,
+# because they are large enough. KERNELS too, at -O3 and without fused multiply-adds: a fused one
+# rounds once instead of twice, and without it every processor gives the same digits. TEXT modules
+# generate text and pages, for which -O1 is sufficient and halves the compile time.
 function(proofmass_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "TEXT" ""
     "USES;HEADERS;UNITS;SOURCES;KERNELS;TESTS;SLOW_TESTS;LINKS;USES_PRIVATELY")
@@ -32,7 +32,7 @@ function(proofmass_module name)
     proofmass_compile_as(${target} numbers)
   endif()
   proofmass_units(${target} ${arg_UNITS})
-  # With a precompiled header GCC takes the header's optimisation flags, not the source's.
+  # With a precompiled header GCC uses the header's optimisation flags, not the source's.
   set_source_files_properties(${arg_KERNELS} PROPERTIES
     COMPILE_OPTIONS "-ffp-contract=off;$<$<CONFIG:Release>:-O3>" SKIP_PRECOMPILE_HEADERS ON)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})

@@ -1,10 +1,10 @@
-# libproofmass.so: every module's objects, as they are compiled for the static libraries. Its users
-# need nothing of what the modules use privately.
+# libproofmass.so: every module's objects, as compiled for the static libraries. Its users need none
+# of the modules' private dependencies.
 get_property(modules GLOBAL PROPERTY PROOFMASS_MODULES)
 list(TRANSFORM modules REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
 add_library(proofmass_shared SHARED ${objects})
 add_library(proofmass::proofmass ALIAS proofmass_shared)
-# While the version is 0.x, each minor one may break what was built against the one before.
+# While the version is 0.x, each minor version may break binary compatibility.
 set_target_properties(proofmass_shared PROPERTIES
   LINKER_LANGUAGE CXX
   OUTPUT_NAME proofmass
@@ -19,7 +19,7 @@ foreach(module IN LISTS modules)
   target_link_libraries(proofmass_shared PRIVATE ${libraries})
 endforeach()
 target_link_libraries(proofmass_shared PUBLIC Eigen3::Eigen)
-# What the headers of others have put into the objects is nobody's business but ours.
+# Symbols from third-party headers are not exported.
 target_link_options(proofmass_shared PRIVATE
   -Wl,--as-needed -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/proofmass.map)
 target_compile_features(proofmass_shared PUBLIC cxx_std_20)

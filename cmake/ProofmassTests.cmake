@@ -1,7 +1,7 @@
 # proofmass_tests(PROGRAM PREFIX prefix [LABELS labels...])
 #
-# Makes a program of its test sources and registers each test suite, by asking the program, as one
-# test of CTest: a process a suite instead of one a test, of which there are thousands.
+# Builds a program from its test sources and registers each test suite, as listed by the program, as
+# one test of CTest: one process per suite instead of one per test, of which there are thousands.
 function(proofmass_tests program)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "PREFIX" "LABELS")
   target_link_libraries(${program} PRIVATE GTest::gtest_main)
@@ -10,7 +10,7 @@ function(proofmass_tests program)
   set_target_properties(${program} PROPERTIES
     UNITY_BUILD ${PROOFMASS_UNITS} UNITY_BUILD_BATCH_SIZE 4)
   get_target_property(sources ${program} SOURCES)
-  list(FILTER sources EXCLUDE REGEX "_test\\.cpp$") # what stands in for a part of the language
+  list(FILTER sources EXCLUDE REGEX "_test\\.cpp$") # replacements of parts of the language
   if(sources)
     set_source_files_properties(${sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()

@@ -1,22 +1,22 @@
-# How sources are compiled: few at a time would be slow, since reading headers and instantiating their
-# templates takes more of the compiler's time than the sources do.
+# How sources are compiled: one at a time would be slow, because parsing headers and instantiating
+# their templates takes the compiler more time than the sources themselves.
 option(PROOFMASS_UNITS "Compile sources that belong together as one" ON)
 if(PROOFMASS_UNITS AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # What a class keeps private in its source may be of a type that the source keeps to itself; GCC
-  # takes the unit for the source and the source for a header.
+  # A class defined in a source may have private members of a type local to that source; GCC treats
+  # the unit as the source and the source as a header, and warns.
   add_compile_options(-Wno-subobject-linkage)
 endif()
 option(PROOFMASS_PRECOMPILED_HEADERS "Read the headers that most sources include once" ON)
 if(NOT CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  set(PROOFMASS_PRECOMPILED_HEADERS OFF) # Clang wants every macro to be the same
+  set(PROOFMASS_PRECOMPILED_HEADERS OFF) # Clang requires all macros to be equal
 endif()
 
-# Programs' objects as the libraries', so that they can share precompiled headers.
+# Compiles programs like the libraries, so that they can share precompiled headers.
 set(CMAKE_CXX_COMPILE_OPTIONS_PIE ${CMAKE_CXX_COMPILE_OPTIONS_PIC})
 
-# proofmass_precompiled(KIND FLAGS LIBRARIES HEADERS...): what sources of a kind have in common. GCC
-# passes a precompiled header over, with a warning, where a source knows other macros than it does: the
-# libraries are those whose headers are in it, and every target of the kind has to link them.
+# proofmass_precompiled(KIND FLAGS LIBRARIES HEADERS...): the common headers of sources of a kind. GCC
+# ignores a precompiled header, with a warning, if a source has other macros defined: the libraries
+# are those whose headers are in it, and every target of the kind has to link them.
 function(proofmass_precompiled kind flags libraries)
   set_property(GLOBAL PROPERTY PROOFMASS_FLAGS_${kind} "$<$<CONFIG:Release>:${flags}>")
   if(PROOFMASS_PRECOMPILED_HEADERS)
@@ -40,8 +40,8 @@ function(proofmass_compile_as target kind)
   endif()
 endfunction()
 
-# proofmass_units(TARGET "name: sources" ...): adds sources, each unit compiled as one. What a source
-# keeps to itself must have a name of its own in the unit; tools/check_layers.py looks.
+# proofmass_units(TARGET "name: sources" ...): adds sources, each unit compiled as one. Local names of
+# a source must be unique in the unit; tools/check_layers.py checks this.
 function(proofmass_units target)
   foreach(unit IN LISTS ARGN)
     if(NOT unit MATCHES "^([a-z0-9_]+): +([a-z0-9_. \n]+)$")

@@ -1,9 +1,9 @@
 # find_package(proofmass 0.1 REQUIRED [COMPONENTS shared|static])
 #
-# shared: proofmass::proofmass, all of it as one library, which asks for Eigen alone.
-# static: the modules one by one, proofmass::core, …; what they use privately is linked by whoever uses
-# them, so everything that the root CMakeLists.txt finds has to be found here too. tests/install holds
-# the two together. Without COMPONENTS they are there where all of that is.
+# shared: proofmass::proofmass, everything in one library, which requires Eigen only.
+# static: the modules separately, proofmass::core, …; their private dependencies are linked by their
+# users, so everything that the root CMakeLists.txt finds has to be found here too. tests/install
+# checks that the two agree. Without COMPONENTS they are available if all dependencies are.
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4 NO_MODULE)
 include(${CMAKE_CURRENT_LIST_DIR}/proofmass-targets.cmake)
@@ -12,13 +12,13 @@ set(proofmass_shared_FOUND TRUE)
 if(NOT proofmass_FIND_COMPONENTS OR static IN_LIST proofmass_FIND_COMPONENTS)
   list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
   set(proofmass_missing)
-  foreach(package IN ITEMS Boost Ceres ZLIB LibLZMA LibZip Lz4 Zstd fmt nlohmann_json tomlplusplus)
+  foreach(package IN ITEMS Boost Ceres ZLIB LibLZMA LibZip Lz4 Zstd OpenSSL Threads fmt nlohmann_json tomlplusplus)
     find_package(${package} QUIET)
     if(NOT ${package}_FOUND)
       list(APPEND proofmass_missing ${package})
     endif()
   endforeach()
-  foreach(package IN ITEMS Hdf5C Comedi Libiio PahoMqtt) # used if they were there when these were built
+  foreach(package IN ITEMS Hdf5C Comedi Libiio PahoMqtt) # used if available at build time
     find_package(${package} QUIET)
   endforeach()
   list(POP_BACK CMAKE_MODULE_PATH)

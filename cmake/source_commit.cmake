@@ -1,4 +1,4 @@
-# Writes to OUT the commit that SOURCE is at, empty where that is not known, if OUT says another.
+# Writes the current commit of SOURCE to OUT, empty if unknown, if OUT contains another.
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE problem)
 if(problem)

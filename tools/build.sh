@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Configures a preset where that is due and builds it, with one bar on stderr.
+# Configures a preset if necessary and builds it, with a progress bar on stderr.
 #
-#   tools/build.sh PRESET [TARGET...]        all targets where none is named
+#   tools/build.sh PRESET [TARGET...]        default: all targets
 #
-# One build of a folder at a time, however many ask for it. Without a terminal: a line each tenth.
+# Builds of one folder are serialised. Without a terminal: one line per tenth.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
@@ -16,8 +16,8 @@ esac
 
 say() { printf '%s\n' "$*" >&2; }
 
-# CMake configures anew by itself when a CMakeLists.txt changes; changed presets, a folder that was
-# moved, and libraries that came or went escape it.
+# CMake reconfigures by itself when a CMakeLists.txt changes, but not after a change of presets, a
+# move of the folder, or the installation or removal of libraries.
 surroundings() {
   echo "$root"
   cat "$root/CMakePresets.json"
@@ -32,7 +32,7 @@ configure() {
   now=$(surroundings)
   if [[ -f $build/build.ninja && -f $build/.configured ]]; then
     had=$(<"$build/.configured")
-    # What was configured for the tests is a release build, too.
+    # A configuration for the tests is a release build, too.
     if [[ $had == "$preset"$'\n'"$now" || $preset == release && $had == ci$'\n'"$now" ]]; then
       return
     fi
@@ -48,12 +48,12 @@ configure() {
   printf '%s\n%s' "$preset" "$now" >"$build/.configured"
 }
 
-# "12 s", "3 min": rounded up, so that it is not yet over when it says 0.
+# "12 s", "3 min": rounded up, so that 0 means finished.
 left() {
   if (($1 > 90)); then echo "$((($1 + 59) / 60)) min"; else echo "$1 s"; fi
 }
 
-# Ninja's lines "@ done total what", turned into a bar; all other lines are the compiler's.
+# Converts ninja's lines "@ done total what" to a bar; all other lines are the compiler's.
 show_bar() {
   local line done total seconds tenth=0 width=30 bar blank
   bar=$(printf '#%.0s' $(seq "$width"))

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Compiler seconds by module and the slowest units, from the log that ninja keeps of a build.
+"""Compile times by module and the slowest units, from the log that ninja keeps of a build.
 
   tools/build_times.py [FOLDER] [--slowest N]
   tools/build_times.py --tests [FOLDER]        the slowest tests, from CTest's record of their times
 
-FOLDER is build/release where nothing is said. Counted is the time that each object took when it was
-last compiled, beside whatever else ran then: compare builds with the same number of jobs.
+FOLDER defaults to build/release. The times are those of each object's last compilation, in parallel
+with any other jobs: compare builds with the same number of jobs.
 """
 import argparse
 import re
@@ -18,7 +18,7 @@ OBJECT = re.compile(r"\.(o|gch)$")
 
 
 def module_of(output: str) -> str:
-    """"src/proofmass/io/CMakeFiles/proofmass_io.dir/…" is io, of its tests "io tests"."""
+    """"src/proofmass/io/CMakeFiles/proofmass_io.dir/…" is io; for its tests "io tests"."""
     if found := re.match(r"src/proofmass/(\w+)/CMakeFiles/(\w+)\.dir/", output):
         return found[1] + (" tests" if found[2].endswith("_test") else "")
     if "precompiled" in output:
@@ -42,7 +42,7 @@ def read_log(log: Path) -> dict[str, float]:
     seconds = {}
     for line in lines:
         begin, end, _, output, _ = line.split("\t")
-        # Where an object's path is absolute, a line of the same step names it relative, too.
+        # If an object's path is absolute, another line of the same step has the relative one.
         if OBJECT.search(output) and not output.startswith("/"):
             seconds[output] = (int(end) - int(begin)) / 1000
     return {output: s for output, s in seconds.items() if (log.parent / output).exists()}

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Holds src/proofmass to its walls. The truth is in the modules' CMakeLists.txt: what a module may
-include stands in its USES line, what of it is public in its HEADERS line.
+"""Checks the layers of src/proofmass. They are defined in the modules' CMakeLists.txt: the modules that
+a module may include are in its USES line, its public headers in its HEADERS line.
 
 An offence is
   - an #include of a module that USES does not name, or a USES that no source needs;
   - a cycle among the USES lines;
-  - a public header that shows anything but std, Eigen/Core and public headers of Proofmass;
+  - a public header that includes anything but std, Eigen/Core and public headers of Proofmass;
   - another module's private header (tests may include its *_test_support.hpp), or a path that is not written "proofmass/module/file.hpp";
   - a listed header or source that does not exist, or one that exists and is not listed;
   - in the library (tests and *test_support* apart), output, exit, the environment or the process's locale.
@@ -25,7 +25,7 @@ KEYWORDS = set(PARSED[1].split(";"))
 TEST_LISTS = {"TESTS", "SLOW_TESTS"}
 INCLUDE = re.compile(r'\s*#\s*include\s*(["<])([^">]+)[">]')
 STD_HEADER = re.compile(r"[a-z_]+")
-# A broken contract prints its place and aborts; nothing else in the library speaks for itself.
+# A violated contract prints its location and aborts; nothing else in the library prints.
 MAY_PRINT = {"core/contract.cpp"}
 WORLD = re.compile(
     r"\b(std::c(out|err|log)|f?printf\s*\(|fmt::print|puts\s*\(|(std::)?(exit|abort|getenv|setlocale)\s*\("
@@ -50,7 +50,7 @@ def read_module(cmake: Path) -> tuple[str, Module]:
         word = word.strip('"')
         if word in KEYWORDS:
             current = lists[word]
-        elif word != "TEXT" and not word.endswith(":"):  # which names a unit
+        elif word != "TEXT" and not word.endswith(":"):  # the name of a unit
             current.add(word)
     tests = set().union(*(lists[keyword] for keyword in TEST_LISTS))
     listed = set().union(*(lists[keyword] for keyword in ("HEADERS", "UNITS", "SOURCES", "KERNELS"))) | tests
@@ -61,7 +61,7 @@ def files_offences(name: str, module: Module) -> list[str]:
     present = {path.name for path in (LIBRARY / name).glob("*.[ch]pp")}
     at = f"src/proofmass/{name}/CMakeLists.txt"
     gone = [f"{at}: lists {file}, which does not exist" for file in module.listed - present]
-    # A private header needs no line; a source or test without one would silently not be built.
+    # A private header need not be listed; a source or test that is not would silently not be built.
     forgotten = {file for file in present - module.listed if file.endswith(".cpp")}
     return sorted(gone) + [f"{at}: does not list {file}" for file in sorted(forgotten)]
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Holds the units, sources that are compiled as one (cmake/ProofmassUnits.cmake), to what that asks.
+"""Checks the requirements of units, sources that are compiled as one (cmake/ProofmassUnits.cmake).
 
-What a source keeps in its anonymous namespace the others of its unit see, too. Two equal names the
-compiler would mostly refuse; overloads it would take, and then a call in one source could mean the
-function of another. So a name is one source's alone, unless
+The anonymous namespace of a source is visible to the other sources of its unit. The compiler would
+mostly reject equal names; but it would accept overloads, and a call in one source could then refer to
+the function of another. So a name must be unique to one source, unless
   - it is an alias or a using-declaration, which may be repeated;
-  - it is a function whose first parameter is of a class of ours in each source, and in each of
-    another: nothing converts to that by accident.
-A using-directive at the level of a file, and a macro that is not undefined again, are refused as well.
+  - it is a function whose first parameter is of a class of ours in each source, and of a different
+    one in each: no implicit conversion applies.
+A using-directive at file scope, and a macro that is not undefined again, are rejected as well.
 
 Lists the offences and exits 1.
 """
@@ -29,7 +29,7 @@ def units():
 
 
 def declared(line: str) -> tuple[str, str] | None:
-    """Name and first parameter (of a function) that a line at the left margin declares."""
+    """Name and first parameter (of a function) declared by a line at the left margin."""
     line = re.sub(r"//.*|\[\[.*?\]\] ?", "", line).strip()
     if line.startswith(("using ", "namespace ", "extern ", "static_assert")):
         return None
@@ -47,7 +47,7 @@ def declared(line: str) -> tuple[str, str] | None:
 
 
 def local_names(source: Path):
-    """What its anonymous namespaces declare."""
+    """The declarations in its anonymous namespaces."""
     inside = False
     for line in source.read_text().splitlines():
         if line == "namespace {":

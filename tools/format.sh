@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Lays the C++ sources out as .clang-format says.
+# Formats the C++ sources according to .clang-format.
 #
 #   tools/format.sh           in place
-#   tools/format.sh --check   changes nothing; fails and shows what is out of line
+#   tools/format.sh --check   changes nothing; fails and shows the deviations
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Makes the man pages, proofmass(1) and one a verb, from what the program itself says to --help.
+"""Makes the man pages, proofmass(1) and one per verb, from the program's own --help.
 
     tools/man_pages.py build/release/proofmass docs/cli.md OUT
 
-docs/cli.md gives what --help leaves out: the exit statuses, the environment, and a paragraph on each
-verb. The pages are compressed, as Debian wants them. Their date is that of $SOURCE_DATE_EPOCH, else
-today's.
+docs/cli.md has what --help omits: the exit statuses, the environment, and a paragraph on each verb.
+The pages are compressed, as Debian requires. Their date is that of $SOURCE_DATE_EPOCH, else today's.
 """
 import gzip
 import os
@@ -22,13 +21,13 @@ COLUMN = 30  # where the help's descriptions begin, in bytes
 @dataclass
 class Help:
     description: str
-    usage: str  # behind the program's and the verb's name
-    groups: dict[str, list[tuple[str, str]]] = field(default_factory=dict)  # names and what they are
+    usage: str  # after the program's and the verb's name
+    groups: dict[str, list[tuple[str, str]]] = field(default_factory=dict)  # names and descriptions
     footer: list[str] = field(default_factory=list)
 
 
 def read_help(text: bytes) -> Help:
-    """CLI11's layout: description, usage, groups of entries in two columns, and what follows them."""
+    """CLI11's layout: description, usage, groups of entries in two columns, and text after them."""
     lines = text.split(b"\n")
     start = next(k for k, line in enumerate(lines) if line.startswith(b"Usage: "))
     usage = re.sub(r"^Usage: proofmass( [a-z]+)? ?", "", lines[start].decode())
@@ -58,7 +57,7 @@ def escaped(text: str) -> str:
 
 
 def entry(name: str, what: str) -> tuple[str, str]:
-    """"-o,--output FILE": what is typed as it is in bold, what stands for something in italics."""
+    """"-o,--output FILE": literal text in bold, placeholders in italics."""
     names, _, kind = name.partition(" ")
     style = "B" if names.startswith("-") else "I"
     shown = ", ".join(f"\\f{style}{escaped(one)}\\fR" for one in names.split(","))
@@ -79,7 +78,7 @@ def sections(markdown: str) -> dict[str, str]:
 
 
 def table(markdown: str) -> list[list[str]]:
-    """The rows of the first table, less its head."""
+    """The rows of the first table, without its head."""
     rows = []
     for line in markdown.splitlines():
         if line.startswith("|"):
@@ -130,7 +129,7 @@ def environment(cli: dict[str, str]) -> list[str]:
 
 
 def opening(verb: str, cli: dict[str, str]) -> list[str]:
-    """What docs/cli.md begins the verb's section with, behind its usage: a paragraph, and the list if it leads to one."""
+    """The beginning of the verb's section in docs/cli.md, after its usage: a paragraph, and a list if one follows."""
     first, *others = cli.get(verb, "").strip().split("\n\n")
     text = of_markdown(re.sub(r"^`proofmass [^`]*`: *", "", first))
     items = re.split(r"^- ", others[0], flags=re.M)[1:] if others and others[0].startswith("- ") else []

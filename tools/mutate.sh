@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Plants faults in a source and says which of them the module's own tests catch.
+# Introduces faults into a source and reports which of them the module's own tests catch.
 #
 #   tools/mutate.sh FILE SED_EXPRESSION...
 #
 #   tools/mutate.sh src/proofmass/core/statistics.cpp 's/count - 1/count/' 's/1\.4826/1.4/'
 #
-# Each expression is one mutant of FILE, tested by itself. Mutants live in a copy of the tree under
-# build/mutate, so the working tree is never touched, whatever interrupts this. One line a mutant:
+# Each expression is one mutant of FILE, tested separately. Mutants are in a copy of the tree under
+# build/mutate, so the working tree is never modified, even if interrupted. One line per mutant:
 #
-#   caught    a test failed, crashed or ran into the time limit: what one hopes for
-#   SURVIVED  every test passed: a test is missing, or the mutant changes nothing that matters
+#   caught    a test failed, crashed or reached the time limit: the desired result
+#   SURVIVED  every test passed: a test is missing, or the mutant has no relevant effect
 #   invalid   the expression changes nothing, or the result does not compile
 #
 # Exit status: 0 all caught, 1 some survived, 2 usage or an invalid mutant.
@@ -26,10 +26,10 @@ shift
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 copy=$root/build/mutate/tree
 build=$root/build/mutate/dev
-mark=$root/build/mutate/mutated # names the file that is not as it should be, if there is one
+mark=$root/build/mutate/mutated # name of the currently mutated file, if any
 limit_s=300
 
-# Put back last: newer than any object made from a mutant, so that it is compiled again.
+# Restored last: newer than any object made from a mutant, so that it is recompiled.
 restore() {
   [[ -f $mark ]] || return 0
   local mutated

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Takes one figure out of a report, as an SVG file that stands alone and follows light and dark.
+"""Extracts one figure from a report as a standalone SVG file with light and dark modes.
 
     tools/report_figure.py out/report.html 2 docs/images/wheel.svg
 
@@ -22,7 +22,7 @@ def main() -> int:
     style = re.search(r"<style>(.*?)</style>", page, re.S)[1]
     opening, rest = figures[number - 1].split(">", 1)
     width, height = re.search(r'viewBox="0 0 (\d+) (\d+)"', opening).groups()
-    # The page's ground, which its figures are drawn for, comes along.
+    # Includes the page's background, for which its figures are drawn.
     ground = '<rect width="100%" height="100%" fill="var(--paper)"/>'
     out.write_text(f'{opening} width="{width}" height="{height}"><style>{style}</style>{ground}{rest}\n')
     return 0

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Installs what `./run`, `./test` or `./test --long` needs and this machine lacks; `more` is `run` with
-# the libraries of all live sources.
+# Installs the missing dependencies of `./run`, `./test` or `./test --long`; `more` is `run` with the
+# libraries of all live sources.
 #
 #   tools/setup.sh run|more|test|long
 #
-# Where everything is there it needs neither network nor root. Speaks on stderr only.
+# If nothing is missing it needs neither network nor root. Prints to stderr only.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -32,28 +32,32 @@ mapfile -t missing < <(
     awk '/ install ok installed$/ { print $1 }' | sort -u |
     comm -13 - <(printf '%s\n' "${wanted[@]}" | sort -u)
 )
-# Node.js is taken as it is wherever it comes from; it is named here for that.
+# Any installation of Node.js is accepted; therefore it is not in the package list.
 if [[ $groups == *test* ]] && ! command -v npm >/dev/null; then
   missing+=(nodejs npm)
 fi
 
-# Programs of others that tests/readers/ holds our files against. Those tests are skipped without.
-install_readers() {
-  local folder=$here/../tests/readers
-  local installed=$folder/node_modules/.installed
+# npm packages of the tests: third-party programs for tests/readers/, the build of the page, and the
+# driver of its browser. Without them those tests are skipped.
+install_by_npm() {
+  local folder installed
   [[ $groups == *test* ]] || return 0
-  if cmp -s "$folder/package.json" "$installed"; then return 0; fi
-  say "installing what tests/readers/package.json names"
-  if npm --prefix "$folder" install --no-package-lock --ignore-scripts --no-audit --no-fund \
-    --loglevel=error </dev/null >&2; then
-    cp "$folder/package.json" "$installed"
-  else
-    say "npm could not install them: tests/readers will be skipped"
-  fi
+  for folder in tests/readers web tests/page; do
+    folder=$here/../$folder
+    installed=$folder/node_modules/.installed
+    if cmp -s "$folder/package.json" "$installed"; then continue; fi
+    say "installing what ${folder#"$here"/../}/package.json names"
+    if npm --prefix "$folder" install --no-package-lock --ignore-scripts --no-audit --no-fund \
+      --loglevel=error </dev/null >&2; then
+      cp "$folder/package.json" "$installed"
+    else
+      say "npm could not install them: ${folder#"$here"/../} will be skipped"
+    fi
+  done
 }
 
 if ((${#missing[@]} == 0)); then
-  install_readers
+  install_by_npm
   exit 0
 fi
 
@@ -66,7 +70,7 @@ if ((EUID != 0)); then
   as_root=(sudo)
 fi
 
-# The lock of an unattended upgrade is waited for, and a mirror that stumbles is asked again.
+# Waits for the lock of an unattended upgrade, and retries a failing mirror.
 apt() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -y -qq \
     -o DPkg::Lock::Timeout=300 -o Acquire::Retries=3 "$@" </dev/null >&2
@@ -74,4 +78,4 @@ apt() {
 say "installing ${missing[*]}"
 apt update
 apt install --no-install-recommends "${missing[@]}"
-install_readers
+install_by_npm

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Builds the site of README and docs/ and checks every link in it.
+# Builds the site from README and docs/ and checks every link in it.
 #
 #   tools/site.sh [FOLDER]     default build/site; open FOLDER/index.html
 #
-# A page that nothing leads to, a link or anchor that is not there, and a page that would fetch
-# anything from elsewhere are errors.
+# A page that is not linked, a broken link or anchor, and a page that would load anything from another
+# site are errors.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Runs clang-tidy over the sources that differ from a commit, with the flags of the preset dev,
-# which compiles each source by itself.
+# Runs clang-tidy on the sources that differ from a commit, with the flags of the preset dev, which
+# compiles each source separately.
 #
-#   tools/tidy_changed.sh [COMMIT]   default: the last commit, so what is not committed yet
+#   tools/tidy_changed.sh [COMMIT]   default: the last commit, so uncommitted changes
 #   tools/tidy_changed.sh --all      every source
 #
-# A header is read with the sources that include it, so a change to a header alone needs --all.
+# A header is checked with the sources that include it, so a change to a header alone needs --all.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -29,7 +29,7 @@ fi
 ((${#files[@]})) || { echo "tidy: nothing to do" && exit 0; }
 
 echo "tidy: ${#files[@]} sources"
-# The commands are g++'s; what clang does not know of them is none of its business.
+# The commands are g++'s; flags unknown to clang are ignored.
 printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$(nproc)" \
   clang-tidy-19 -p build/dev --quiet --extra-arg=-Wno-unknown-warning-option 2>&1 |
   sed -E '/^[0-9]+ warnings? generated\.$/d' # its count of what .clang-tidy leaves out

@@ -103,6 +103,7 @@ void add_calibrate_flags(CLI::App& verb, CalibrateCommand& command) {
   add_input_flags(verb, command.input);
   add_output_file(verb, command.output, "write the positions with forces and residuals");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer(
       "Example:\n  proofmass calibrate turned.csv --latitude 44.6 --update-sensor sensor.toml "

@@ -8,6 +8,8 @@
 #include "completion.hpp"
 #include "config_file.hpp"
 #include "exit_status.hpp"
+#include "fleet_arguments.hpp"
+#include "fleet_command.hpp"
 #include "help_format.hpp"
 #include "output.hpp"
 #include "plain_text.hpp"
@@ -115,6 +117,10 @@ std::vector<std::string> with_config(CLI::App& app, std::vector<std::string> arg
   return arguments;
 }
 
+const Verb& verb_named(const std::vector<Verb>& verbs, const std::string& name) {
+  return *std::ranges::find(verbs, name, [](const Verb& one) { return one.text.name; });
+}
+
 // The first word that is no flag, and has to be a verb.
 std::string first_word(const std::vector<std::string>& arguments) {
   const auto word = std::ranges::find_if(
@@ -145,8 +151,9 @@ void add_verbs(CLI::App& app, const std::vector<Verb>& verbs) {
 
 // What a file is read for, or changed by; anything else of this type is written.
 bool names_input(const CLI::Option& option) {
-  if (option.get_positional()) return true;
-  for (const char* written : {"json", "report", "output", "update-sensor"})
+  if (option.get_positional())
+    return option.get_type_name() != "WORD" && !option.get_type_name().starts_with("WORD:");
+  for (const char* written : {"json", "report", "page", "output", "update-sensor"})
     if (option.check_lname(written)) return false;
   return option.get_type_name().starts_with("FILE");
 }
@@ -223,6 +230,7 @@ std::optional<Verb> parse_command_line(int argc, char** argv) {
     throw Failure(usage, unknown_verb(app, word));
   if (print_help(app, arguments)) return std::nullopt;
   const std::vector<std::string> typed = arguments;
+  if (word == fleet_name) take_verb_flags(app, verb_named(verbs, word), arguments);
   arguments = with_config(app, std::move(arguments));
   std::ranges::reverse(arguments);  // as CLI11 takes them
   try {
@@ -234,8 +242,7 @@ std::optional<Verb> parse_command_line(int argc, char** argv) {
     throw Failure(usage, usage_error(app, error));
   }
   const CLI::App& chosen = *app.get_subcommands().front();
-  const Verb& verb =
-      *std::ranges::find(verbs, chosen.get_name(), [](const Verb& one) { return one.text.name; });
+  const Verb& verb = verb_named(verbs, chosen.get_name());
   OutputFlags& output = *verb.output;
   if (output.output == "-" && output.json == "-")
     throw Failure(usage, "--output - and --json - cannot both have standard output: name a file");

@@ -32,7 +32,7 @@ class Invocation;
 
 /// Flags of every verb.
 struct OutputFlags {
-  std::string json, report, output;
+  std::string json, report, page, output;
   bool quiet = false, verbose = false, strict = false;
   std::shared_ptr<Invocation> invocation{};  ///< where a document or a page was asked for
   std::shared_ptr<Host> host{};              ///< empty: results go to files and the terminal

@@ -148,6 +148,27 @@ class Bar {
   Clock::time_point begun_;
 };
 
+// For a program that runs this one: PROOFMASS_PROGRESS=lines.
+bool wants_progress_lines() {
+  const char* wish = std::getenv("PROOFMASS_PROGRESS");
+  return wish != nullptr && std::string_view(wish) == "lines";
+}
+
+// "progress 42 reading", once for each hundredth of a stage.
+Progress progress_lines() {
+  struct Said {
+    std::string stage;
+    int percent = -1;
+  };
+  return [said = std::make_shared<Said>()](std::string_view stage, double fraction) {
+    const int percent =
+        static_cast<int>(100.0 * std::clamp(std::isfinite(fraction) ? fraction : 0.0, 0.0, 1.0));
+    if (percent == said->percent && stage == said->stage) return;
+    *said = {std::string(stage), percent};
+    print(fmt::format("progress {} {}\n", percent, io::clean_text(stage)));
+  };
+}
+
 }  // namespace
 
 void watch_for_interrupts() {
@@ -201,6 +222,7 @@ void show_notes(const std::vector<Note>& notes,
 
 Progress progress_bar(const OutputFlags& flags) {
   if (flags.host) return flags.host->progress;
+  if (wants_progress_lines()) return progress_lines();
   const std::shared_ptr<Bar> bar =
       flags.quiet || !on_terminal() ? nullptr : std::make_shared<Bar>();
   return [bar](std::string_view stage, double fraction) {

@@ -37,6 +37,8 @@ void ignore_broken_pipes();
 void show_notes(const std::vector<Note>& notes, const std::string& where, const OutputFlags& flags);
 
 /// A bar on a terminal, nothing elsewhere or with --quiet. It is wiped away with the last copy.
+/// Where PROOFMASS_PROGRESS is "lines": lines such as "progress 42 reading", for a program that
+/// runs this one.
 [[nodiscard]] Progress progress_bar(const OutputFlags& flags);
 
 /// Some lines on a terminal that are drawn anew in place; nothing elsewhere or with --quiet. Wiped

@@ -146,6 +146,12 @@ void add_report_flag(CLI::App& verb, OutputFlags& flags) {
       ->group("Output");
 }
 
+void add_page_flag(CLI::App& verb, OutputFlags& flags) {
+  verb.add_option("--page", flags.page, "write what the report shows, with its plots as numbers")
+      ->type_name("FILE.json")
+      ->group("Output");
+}
+
 CLI::Option* add_output_file(CLI::App& verb, OutputFlags& flags, const char* help) {
   return verb.add_option("-o,--output", flags.output, help)->type_name("FILE.csv")->group("Output");
 }

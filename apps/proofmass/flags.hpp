@@ -26,6 +26,8 @@ void add_memory_flag(CLI::App& verb, InputFlags& flags);
 void add_switch_on_flag(CLI::App& verb, InputFlags& flags, const char* help);
 void add_output_flags(CLI::App& verb, OutputFlags& flags);
 void add_report_flag(CLI::App& verb, OutputFlags& flags);
+/// --page, of verbs whose report is a report::Page.
+void add_page_flag(CLI::App& verb, OutputFlags& flags);
 CLI::Option* add_output_file(CLI::App& verb, OutputFlags& flags, const char* help);
 
 inline constexpr const char* gravity_std_help =

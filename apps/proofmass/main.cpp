@@ -1,35 +1,7 @@
-#include <exception>
-#include <new>
-
-#include "command_line.hpp"
 #include "console.hpp"
-#include "distinct_files.hpp"
-#include "exit_status.hpp"
-
-namespace {
-
-using namespace proofmass::app;
-
-int fail(ExitStatus status, const char* message) {
-  show_error(message);
-  return status;
-}
-
-}  // namespace
+#include "run_command.hpp"
 
 int main(int argc, char** argv) {
-  watch_for_interrupts();
-  try {
-    const std::optional<Verb> verb = parse_command_line(argc, argv);
-    if (verb) hold_apart(verb->files());
-    if (verb) verb->run();
-    return done;
-  } catch (const Failure& failure) {
-    return fail(failure.status(), failure.what());
-  } catch (const std::bad_alloc&) {
-    return fail(failed,
-                "out of memory: give --from and --to to take less of the recording at once");
-  } catch (const std::exception& error) {
-    return fail(failed, error.what());
-  }
+  proofmass::app::watch_for_interrupts();
+  return proofmass::app::run_command(argc, argv);
 }

@@ -9,6 +9,7 @@
 #include "exit_status.hpp"
 #include "flags.hpp"
 #include "noise_command.hpp"
+#include "noise_joined.hpp"
 #include "noise_options.hpp"
 #include "noise_pieces.hpp"
 #include "output.hpp"
@@ -51,6 +52,13 @@ void add_noise_flags(CLI::App& verb, NoiseCommand& command) {
       "to 2");
   verb.add_flag("--exclude-events", command.exclude_events,
                 "exclude shocks, and intervals that span a step");
+  CLI::Option* as_one = verb.add_flag("--as-one", command.as_one,
+                                      "analyse the files as one recording with gaps between them");
+  add("--starts", command.starts_s, "S,S...",
+      "start of each file in seconds, with --as-one (default: by the files' own clocks)")
+      ->delimiter(',')
+      ->check(finite())
+      ->needs(as_one);
   add("--temperature", command.temperature, "NAME",
       "remove the linear dependence on this channel, by least squares");
   add("--update-sensor", command.update_sensor, "FILE.toml",
@@ -259,7 +267,9 @@ void run_noise(const NoiseCommand& command) {
   report::NoiseReport report;
   report.inputs = command.files;
   report.events_excluded = command.exclude_events;
-  std::vector<NoiseChannel> channels = noise_channels(command, options, report.notes);
+  std::vector<NoiseChannel> channels = command.as_one
+                                           ? analyse_joined(command, options, report.notes)
+                                           : noise_channels(command, options, report.notes);
   in_parallel(channels.size(), progress_bar(command.output), [&](std::size_t k, Progress progress) {
     NoiseOptions own = options;
     own.progress = std::move(progress);

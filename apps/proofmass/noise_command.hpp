@@ -15,6 +15,8 @@ struct NoiseCommand {
   double confidence = 0.683;
   std::optional<double> stop_ratio;
   bool exclude_events = false;
+  bool as_one = false;           ///< the files are parts of one recording
+  std::vector<double> starts_s;  ///< --starts: of the parts; empty: by their own clocks
   InputFlags input;
   OutputFlags output;
 };

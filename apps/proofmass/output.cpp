@@ -15,6 +15,7 @@
 #include "proofmass/core/new_file.hpp"
 #include "proofmass/io/shown_text.hpp"
 #include "proofmass/io/write_recording.hpp"
+#include "proofmass/report/page_json.hpp"
 #include "provenance.hpp"
 
 namespace proofmass::app {
@@ -77,6 +78,7 @@ void publish(const Results& results, const OutputFlags& flags) {
   if (!flags.report.empty())
     write_text(flags.report,
                report::page_with_provenance(results.html(), flags.invocation->provenance()), flags);
+  if (!flags.page.empty()) write_text(flags.page, results.page(), flags);
   if (!flags.json.empty() && flags.json != "-") write_text(flags.json, json(), flags);
   // One thing only goes to standard output: the series, the document or the text.
   if (flags.output == "-") return;
@@ -86,7 +88,8 @@ void publish(const Results& results, const OutputFlags& flags) {
 void publish(const report::Document& document, const OutputFlags& flags) {
   publish({.text = [&] { return report::to_text(document); },
            .json = [&] { return report::to_json(document); },
-           .html = [&] { return report::to_html(document); }},
+           .html = [&] { return report::to_html(document); },
+           .page = [&] { return report::page_json(document.page); }},
           flags);
 }
 

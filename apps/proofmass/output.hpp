@@ -16,9 +16,9 @@ void write_text(const std::string& path, const std::string& text, const OutputFl
 /// Writes to standard output. Throws Failure (failed) where that does not take it.
 void print_out(const std::string& text);
 
-/// The three shapes of a verb's results, made only if they are asked for. `html` may be empty.
+/// The shapes of a verb's results, made only if they are asked for. `html` and `page` may be empty.
 struct Results {
-  std::function<std::string()> text, json, html;
+  std::function<std::string()> text, json, html, page = {};
 };
 
 /// Writes what the flags ask for: with `--json -` the document alone to standard output.

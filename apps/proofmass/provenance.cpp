@@ -221,6 +221,15 @@ const report::Provenance& Invocation::provenance() {
   return provenance_;
 }
 
+std::string program_commit() {
+  return source_commit;
+}
+
+std::string sha256_of(const std::string& path) {
+  std::error_code problem;
+  return fs::is_regular_file(path, problem) ? summed(path, {}).sha256 : std::string();
+}
+
 std::string quoted(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) {

@@ -29,6 +29,12 @@ class Invocation {
   std::unique_ptr<Sums> sums_;
 };
 
+/// Of the source that the program was built from; empty where it is not known.
+[[nodiscard]] std::string program_commit();
+
+/// SHA-256 of a regular file in hexadecimal; empty where it cannot be read, and of anything else.
+[[nodiscard]] std::string sha256_of(const std::string& path);
+
 /// Words as a shell takes them.
 [[nodiscard]] std::string quoted(const std::vector<std::string>& words);
 

@@ -153,10 +153,7 @@ void list_sources(const RecordCommand& command) {
     }
     for (const acquire::FoundSource& one : *found) list.found.emplace_back(one.uri, one.what);
   }
-  publish({.text = [&] { return report::source_list_text(list); },
-           .json = [&] { return report::source_list_json(list); },
-           .html = {}},
-          command.output);
+  publish(report::describe(list), command.output);
 }
 
 // "sim-20261122-123005.mcap"
@@ -293,19 +290,16 @@ void run_record(const RecordCommand& given) {
   if (!command.guide.procedure.empty()) guide.emplace(command);
   without_interruption([&] {
     const report::RecordReport report = record(command, guide ? &*guide : nullptr);
+    const report::Document document = report::describe(report);
     show_notes(report.notes, "", command.output);
     // What the procedure leads to is the document, where there is one.
     OutputFlags own = command.output;
     if (guide) own.json.clear();
-    if (!guide || command.output.json != "-")
-      publish({.text = [&] { return report::record_text(report); },
-               .json = [&] { return report::record_json(report); },
-               .html = {}},
-              own);
+    if (!guide || command.output.json != "-") publish(document, own);
     if (guide && !report.summary.files.empty())
       finish(*guide, report.summary.files.front(), command.output);
     expect_no_break(report.summary);
-    hold_to_strict(command.output, report::is_bad(report));
+    hold_to_strict(command.output, document.bad);
     if (report.summary.end == RecordEnd::stopped) interruption_was_awaited();
   });
 }

@@ -1,11 +1,9 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "console.hpp"
 #include "exit_status.hpp"
 #include "flags.hpp"
 #include "output.hpp"
-#include "proofmass/report/json.hpp"
 #include "proofmass/report/sensor_report.hpp"
 #include "proofmass/sensor/sensor_comparison.hpp"
 #include "proofmass/sensor/sensor_export.hpp"
@@ -82,7 +80,7 @@ std::string exported(const SensorCommand& command, const sensor::SensorModel& mo
   return *text;
 }
 
-// What a person should know: of the file, and of flags that the format has no place for.
+// Notes of the file, and on flags that the format has no place for.
 std::vector<Note> notes_of(const SensorCommand& command, const sensor::SensorFile& file) {
   std::vector<Note> notes = file.notes;
   if (command.format == "c-header" && (command.rate_hz || !command.rostopic.empty()))
@@ -90,50 +88,30 @@ std::vector<Note> notes_of(const SensorCommand& command, const sensor::SensorFil
   return notes;
 }
 
-// Of what was written, or, where standard output is the document's, of the text in it.
-std::string document(const SensorCommand& command,
-                     const std::vector<Note>& notes,
-                     const std::string& text) {
-  std::vector<std::string> warnings = report::texts(notes, Severity::warning);
-  const std::string& output = command.output.output;
-  const bool nowhere = output.empty() && command.output.json == "-";
-  if (nowhere) warnings.emplace_back("output: null: no --output; the text stands here alone");
-  const std::string place = output.empty() ? "-" : output;
-  return report::to_json({"sensor", command.files, std::move(warnings)},
-                         {{"action", "export"},
-                          {"format", command.format},
-                          {"output", nowhere ? report::Value() : report::Value(place)},
-                          {"text", text}});
-}
-
 void run_export(const SensorCommand& command) {
   const sensor::SensorFile file =
       need(sensor::read_sensor_file(command.files.front()), Stage::reading);
-  const std::string text = exported(command, file.model);
-  const std::vector<Note> notes = notes_of(command, file);
-  show_notes(notes, "", command.output);
-  const std::string& output = command.output.output;
-  const bool to_file = !output.empty() && output != "-";
-  if (to_file) write_text(output, text, command.output);
-  if (output == "-") print_out(text);
-  publish({.text =
-               [&] {
-                 return to_file ? fmt::format("{}: written to {}\n", command.format, output) : text;
-               },
-           .json = [&] { return document(command, notes, text); },
-           .html = {}},
-          command.output);
+  OutputFlags flags = command.output;
+  // Without --output the text goes to standard output, unless the document does.
+  if (flags.output.empty() && flags.json != "-") flags.output = "-";
+  report::SensorExport result{.file = command.files.front(),
+                              .format = command.format,
+                              .output = {},
+                              .text = exported(command, file.model),
+                              .notes = notes_of(command, file)};
+  if (!flags.output.empty()) result.output = flags.output;
+  if (flags.output == "-")
+    print_out(result.text);
+  else if (result.output)
+    write_text(flags.output, result.text, flags);
+  finish(report::describe(result), {}, flags);
 }
 
 void run_show(const SensorCommand& command) {
   sensor::SensorFile file = need(sensor::read_sensor_file(command.files.front()), Stage::reading);
   const report::SensorShow shown{command.files.front(), std::move(file.model),
                                  std::move(file.notes)};
-  show_notes(shown.notes, "", command.output);
-  publish({.text = [&] { return report::sensor_show_text(shown); },
-           .json = [&] { return report::sensor_show_json(shown); },
-           .html = [&] { return report::sensor_show_html(shown); }},
-          command.output);
+  finish(report::describe(shown), {}, command.output);
 }
 
 void run_diff(const SensorCommand& command) {
@@ -143,12 +121,7 @@ void run_diff(const SensorCommand& command) {
   report::SensorDiff diff{command.files[0], command.files[1], before.notes,
                           sensor::compare(before.model, after.model)};
   diff.notes.insert(diff.notes.end(), after.notes.begin(), after.notes.end());
-  show_notes(diff.notes, "", command.output);
-  show_notes(diff.comparison.notes, "", command.output);
-  publish({.text = [&] { return report::sensor_diff_text(diff); },
-           .json = [&] { return report::sensor_diff_json(diff); },
-           .html = [&] { return report::sensor_diff_html(diff); }},
-          command.output);
+  finish(report::describe(diff), {}, command.output);
   if (command.output.strict && diff.comparison.all == sensor::Verdict::changed)
     throw Failure(bad_data,
                   fmt::format("done, but {} has changed from {} by more than its uncertainty "

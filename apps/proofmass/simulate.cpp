@@ -138,17 +138,13 @@ void run_simulate(const SimulateCommand& command) {
   if (flags.output.empty()) throw Failure(usage, "simulate: no --output: say where to, -o rig.csv");
   const simulate::RigResult result =
       need(simulate::simulate_rig(options, progress_bar(flags)), Stage::computing);
-  show_notes(result.recording.notes, "", flags);
   const std::string truth = flags.output == "-" ? "" : truth_name(flags.output);
   write_series(result.recording, flags);
   if (!truth.empty()) write_series(result.truth, with_output(flags, truth));
   const std::vector<std::string> inputs =
       command.rig.empty() ? std::vector<std::string>{} : std::vector{command.rig};
   const report::SimulateReport report{inputs, flags.output, truth, options, result};
-  publish({.text = [&] { return report::simulate_text(report); },
-           .json = [&] { return report::simulate_json(report); },
-           .html = {}},
-          flags);
+  finish(report::describe(report), {}, flags);
 }
 
 Verb simulate_verb() {

@@ -5,7 +5,7 @@
 #include "exit_status.hpp"
 #include "output.hpp"
 #include "proofmass/core/units.hpp"
-#include "proofmass/report/procedure_report.hpp"
+#include "proofmass/report/simulate_report.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 #include "proofmass/simulate/procedure.hpp"
 #include "proofmass/simulate/procedure_file.hpp"
@@ -113,10 +113,7 @@ void run_procedure(const SimulateCommand& command) {
     write_series(result.truth_series, with_output(flags, report.truth));
     write_text(report.sensor, sensor::format_sensor_file(result.truth.sensor), flags);
   }
-  publish({.text = [&] { return report::procedure_text(report); },
-           .json = [&] { return report::procedure_json(report); },
-           .html = {}},
-          flags);
+  finish(report::describe(report), {}, flags);
 }
 
 }  // namespace proofmass::app

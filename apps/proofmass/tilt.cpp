@@ -75,6 +75,7 @@ void add_tilt_flags(CLI::App& verb, TiltCommand& command) {
   add_output_file(verb, command.output,
                   "write roll and pitch against time with standard deviations");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer(
       "Examples:\n"

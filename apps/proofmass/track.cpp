@@ -122,6 +122,7 @@ void add_track_flags(CLI::App& verb, TrackCommand& command) {
   add_output_file(verb, command.output,
                   "write position and velocity against time with standard deviations");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer(
       "Examples:\n"

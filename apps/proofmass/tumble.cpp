@@ -81,6 +81,7 @@ void add_tumble_flags(CLI::App& verb, TumbleCommand& command) {
   add_input_flags(verb, command.input);
   add_output_file(verb, command.output, "write the positions with fit and residuals");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer("Example:\n  proofmass tumble positions.csv --unit g --report tumble.html");
 }

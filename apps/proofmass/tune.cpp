@@ -16,7 +16,6 @@
 #include "proofmass/report/tune_report.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/noise_update.hpp"
-#include "proofmass/signal/rests.hpp"
 #include "rest_channels.hpp"
 #include "verb.hpp"
 
@@ -63,6 +62,7 @@ void add_tune_flags(CLI::App& verb, TuneCommand& command) {
   add_input_flags(verb, command.input);
   add_output_file(verb, command.output, "write the innovations with standard deviations");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer(
       "Examples:\n"
@@ -70,18 +70,12 @@ void add_tune_flags(CLI::App& verb, TuneCommand& command) {
       "  proofmass tune stroke.csv --model pva --share jerk_psd --report tune.html");
 }
 
+using estimate::TuneChoice;
 using estimate::TunedParameter;
 using estimate::TuneModel;
 using estimate::TuneOptions;
 using estimate::TuneSeries;
 using estimate::Tuning;
-
-// The stretches of the recording that the model is tuned on.
-struct Choice {
-  TuneModel model = TuneModel::rest;
-  std::string reason;
-  std::vector<signal::Rest> stretches;  // of the grid; empty: all of it
-};
 
 estimate::FixedParameter parse_fixed(const std::string& text) {
   const std::size_t at = text.find('=');
@@ -95,12 +89,6 @@ estimate::FixedParameter parse_fixed(const std::string& text) {
   return fixed;
 }
 
-double share_at_rest(const std::vector<signal::Rest>& rests, std::size_t samples) {
-  std::size_t inside = 0;
-  for (const signal::Rest& rest : rests) inside += rest.last - rest.first + 1;
-  return samples == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(samples);
-}
-
 bool may_rest(const RestRecording& recording) {
   return std::ranges::all_of(recording.channels, [](const RestChannel& channel) {
     const Quantity quantity = channel.unit.quantity;
@@ -109,65 +97,21 @@ bool may_rest(const RestRecording& recording) {
   });
 }
 
-std::vector<signal::Rest> rests_of(const RestRecording& recording) {
-  std::vector<View<double>> axes;
-  for (const RestChannel& channel : recording.channels) {
-    if (!channel.series.empty() && axes.size() < 3) axes.emplace_back(channel.series);
-  }
-  if (axes.empty()) return {};
-  return signal::find_rests(axes, {.rate_hz = recording.channels.front().rate_hz}).rests;
-}
-
 bool is_rest(TuneModel model) {
   return model == TuneModel::rest || model == TuneModel::rest_markov;
 }
 
-Choice choose(const TuneCommand& command, const RestRecording& recording) {
-  constexpr double nearly_all = 0.9;
-  Choice choice;
-  const bool given = command.model != "auto";
-  if (given) {
-    choice.model = *estimate::parse_tune_model(command.model);
-    choice.reason = "Chosen by --model.";
-    if (!is_rest(choice.model)) return choice;
-  } else if (!may_rest(recording)) {
-    choice.model = TuneModel::local_level;
-    choice.reason = "Chosen because the channels are no accelerations.";
-    return choice;
+TuneChoice choose(const TuneCommand& command, const RestRecording& recording) {
+  constexpr std::size_t most_axes = 3;
+  estimate::TuneChoiceOptions options{.measures_acceleration = may_rest(recording)};
+  if (command.model != "auto") options.given = estimate::parse_tune_model(command.model);
+  std::vector<View<double>> axes;
+  for (const RestChannel& channel : recording.channels) {
+    if (channel.series.empty() || axes.size() == most_axes) continue;
+    axes.emplace_back(channel.series);
+    options.rate_hz = channel.rate_hz;
   }
-  std::vector<signal::Rest> rests = rests_of(recording);
-  std::size_t samples = 0;
-  for (const RestChannel& channel : recording.channels)
-    samples = std::max(samples, channel.series.size());
-  const double share = share_at_rest(rests, samples);
-  const std::string words =
-      fmt::format("{} % of the recording is at rest", std::lround(100.0 * share));
-  if (!given && share < nearly_all) {
-    choice.model = TuneModel::pva;
-    choice.reason =
-        fmt::format("Chosen because only {}; --model rest would look at the rests alone.", words);
-    return choice;
-  }
-  if (!given) choice.reason = "Chosen because " + words + ".";
-  if (!rests.empty() && share < 1.0) {
-    choice.stretches = std::move(rests);
-    choice.reason += fmt::format(" Only the {} are looked at, each from a level of its own.",
-                                 report::count_words(choice.stretches.size(), "rest"));
-  } else if (rests.empty()) {
-    choice.reason += " No rest was found in it: all of it is looked at.";
-  }
-  return choice;
-}
-
-TuneSeries series_of(const RestChannel& channel, const Choice& choice) {
-  TuneSeries series{.name = channel.title, .rate_hz = channel.rate_hz, .segments = {}};
-  const View<double> all(channel.series);
-  if (choice.stretches.empty()) series.segments.push_back(all);
-  for (const signal::Rest& rest : choice.stretches) {
-    series.segments.push_back(all.subspan(rest.first, rest.last - rest.first + 1));
-    series.starts_s.push_back(static_cast<double>(rest.first) / channel.rate_hz);
-  }
-  return series;
+  return estimate::choose_tune_model(axes, options);
 }
 
 // Where a sensor file knows the noise of the axis.
@@ -212,46 +156,6 @@ std::vector<Tuned> tune_all(const std::vector<TuneSeries>& series,
     }
   });
   return all;
-}
-
-double value_of(const Tuning& tuning, std::size_t series, std::size_t parameter) {
-  const double value = tuning.series[series].values[parameter];
-  const auto& about = estimate::parameters_of(tuning.model)[parameter];
-  return about.variance_power() == 2 ? value * value : value;
-}
-
-// The study of one channel whose noises are a white one and the level's walk.
-std::optional<report::TuneStudy> study_of(const report::TuneReport& report,
-                                          std::size_t k,
-                                          double step_s) {
-  const Tuning& tuning = report.tuning;
-  if (tuning.model != TuneModel::rest && tuning.model != TuneModel::pva) return std::nullopt;
-  const double q = value_of(tuning, k, 1), R = tuning.series[k].system.R;
-  if (!(q > 0.0 && R > 0.0)) return std::nullopt;
-  const double own_step_s = step_s > 0.0 ? step_s : 1.0 / tuning.series[k].rate_hz;
-  // The slowest case below has a quarter of the gain's rate; ten of its times are enough to see.
-  const double settle_s = own_step_s / std::min(1.0, std::sqrt(q * own_step_s / R));
-  estimate::GainStudyOptions options{.jerk_psd_m2ps5 = q,
-                                     .accel_variance_m2ps4 = R,
-                                     .step_s = own_step_s,
-                                     .duration_s = std::min(40.0 * settle_s, 2e5 * own_step_s),
-                                     .prior_variance = 100.0};
-  report::TuneStudy study{.channel = report.channels[k].name, .cases = {}, .steps = {}};
-  constexpr double larger = 4.0;
-  const auto add = [&](const char* label, double q_factor, double R_factor) {
-    estimate::GainStudyOptions own = options;
-    own.jerk_psd_m2ps5 *= q_factor;
-    own.accel_variance_m2ps4 *= R_factor;
-    study.cases.push_back({label, estimate::gain_study(own)});
-  };
-  add("as tuned", 1.0, 1.0);
-  add("Q four times", larger, 1.0);
-  add("R four times", 1.0, larger);
-  std::vector<double> steps_s;
-  for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0})
-    steps_s.push_back(factor * own_step_s);
-  study.steps = estimate::step_size_study(options, steps_s);
-  return study;
 }
 
 sensor::MeasuredCoefficient measured(const Tuning& tuning,
@@ -322,11 +226,13 @@ std::vector<const RestChannel*> usable(const RestRecording& recording, std::vect
 
 // Tunes by them and leaves those in `channels` that it worked for.
 void fill(const TuneCommand& command,
-          const Choice& choice,
+          const TuneChoice& choice,
           std::vector<const RestChannel*>& channels,
           report::TuneReport& report) {
   std::vector<TuneSeries> series;
-  for (const RestChannel* channel : channels) series.push_back(series_of(*channel, choice));
+  for (const RestChannel* channel : channels)
+    series.push_back(
+        estimate::tune_series(channel->title, channel->rate_hz, channel->series, choice));
   const std::vector<Tuned> tuned =
       tune_all(series, options_of(command, choice.model, channels), command.output);
   std::vector<const RestChannel*> worked;
@@ -342,11 +248,11 @@ void fill(const TuneCommand& command,
   if (command.share.empty()) channels = std::move(worked);
   for (const RestChannel* channel : channels) {
     report.channels.push_back(
-        {channel->title, channel->unit, std::max<std::size_t>(choice.stretches.size(), 1)});
+        {channel->title, channel->unit, std::max<std::size_t>(choice.rests.size(), 1)});
   }
   report.consistency = estimate::consistency_of(report.tuning);
   for (std::size_t k = 0; k < channels.size(); ++k) {
-    if (auto study = study_of(report, k, command.study_step_s))
+    if (auto study = estimate::tune_study(report.tuning, k, command.study_step_s))
       report.studies.push_back(std::move(*study));
   }
 }
@@ -361,11 +267,11 @@ void run_tune(const TuneCommand& command) {
                        .temperature = {},
                        .for_sensor_file = !command.update_sensor.empty()},
                       report.notes);
-  const Choice choice = choose(command, recordings.front());
+  const TuneChoice choice = choose(command, recordings.front());
   if (!command.update_sensor.empty() && choice.model != TuneModel::rest) {
     throw Failure(usage, "--update-sensor: a sensor file takes the figures of the model rest");
   }
-  report.model_reason = choice.reason;
+  report.choice = choice;
   std::vector<const RestChannel*> channels = usable(recordings.front(), report.notes);
   if (channels.empty()) throw Failure(failed, command.file + ": no channel that can be tuned by");
   fill(command, choice, channels, report);

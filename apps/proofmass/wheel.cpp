@@ -69,6 +69,7 @@ void add_wheel_flags(CLI::App& verb, WheelCommand& command) {
       "time since power-on at the first sample; removes the warm-up drift in the sensor files");
   add_output_file(verb, command.output, "write the time series with standard deviations");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer("Example:\n  proofmass wheel hub.csv rim.csv --spin-axis z --report wheel.html");
 }

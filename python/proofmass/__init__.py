@@ -5,7 +5,7 @@
 >>> pm.noise(x, rate_hz=100, unit="m/s2").channels[0].white.unit
 'm/s^2/sqrt(Hz)'
 """
-from . import live
+from . import fleet, live
 from ._allan import Deviation, allan
 from ._core import ArgumentError, DataError, Error, FileError
 from ._core import version as __version__
@@ -19,5 +19,5 @@ from ._verbs import Simulated, calibrate, drift, inspect, noise, simulate, tilt,
 __all__ = [
     "ArgumentError", "DataError", "Deviation", "Error", "Estimate", "FileError", "KalmanModel", "Missing", "Node",
     "ProofmassWarning", "Quantity", "Recording", "Result", "Sensor", "Simulated", "allan", "calibrate", "drift",
-    "inspect", "live", "noise", "read", "simulate", "tilt", "track", "tumble", "tune", "wheel", "__version__",
+    "fleet", "inspect", "live", "noise", "read", "simulate", "tilt", "track", "tumble", "tune", "wheel", "__version__",
 ]  # fmt: skip

@@ -14,7 +14,7 @@ NAMES = {"rate_hz": "rate", "from_s": "from", "to_s": "to"}
 _FLAGS = {flag: name for name, flag in NAMES.items()}
 
 #: Flags that take a list in one value; others are repeated.
-_JOINED = {"taus", "supplies", "angles", "coefficients", "spin_axis", "axis"}
+_JOINED = {"taus", "starts", "supplies", "angles", "coefficients", "spin_axis", "axis"}
 
 
 def words(options: dict[str, Any]) -> list[str]:

@@ -68,6 +68,8 @@ def noise(
     confidence: Optional[float] = None,
     noise_type: Union[str, int, None] = None,
     exclude_events: bool = False,
+    as_one: bool = False,
+    starts: Optional[Sequence[float]] = None,
     temperature: Optional[str] = None,
     update_sensor: Optional[Path] = None,
     channel: Union[str, Sequence[str], None] = None,
@@ -107,6 +109,10 @@ def noise(
         Exponent on which the limits depend: auto (default), lag1, or the power of f from -4 to 2.
     exclude_events : bool
         Leave out knocks, and whatever reaches across a step.
+    as_one : bool
+        Analyse the recordings as one with gaps between them.
+    starts : list of float, optional
+        Start of each recording in seconds, with as_one (default: by their own clocks).
     temperature : str, optional
         Take out what follows this channel, by least squares.
     update_sensor : path, optional

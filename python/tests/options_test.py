@@ -14,7 +14,7 @@ from proofmass._options import NAMES
 
 #: Flags about files, the terminal and the command itself.
 OF_THE_COMMAND = {
-    "help", "help-input", "json", "report", "output", "quiet", "verbose", "strict", "config", "memory", "pyramid",
+    "help", "help-input", "json", "report", "page", "output", "quiet", "verbose", "strict", "config", "memory", "pyramid",
     "print-config", "dataset",
 }  # fmt: skip
 

@@ -23,7 +23,7 @@ def reading(up, bias=BIAS, scale=SCALE):
 
 
 def directions(count):
-    """Evenly over the sphere, in a spiral."""
+    """Evenly spread over the sphere, in a spiral."""
     out = []
     for k in range(count):
         z = 1.0 - (2.0 * k + 1.0) / count
@@ -33,7 +33,7 @@ def directions(count):
 
 
 def turned(ups, rate_hz=50.0, rest_s=4.0, move_s=1.5, noise=0.01, seed=1, bad=None, head="acc", **sensor):
-    """A recording that lies still at each direction; position `bad` is off by 50 mg."""
+    """A recording at rest in each direction; position `bad` has an error of 50 mg."""
     draw = random.Random(seed)
     lines = [f"time (s),{head}_x (m/s^2),{head}_y (m/s^2),{head}_z (m/s^2)"]
     t = 0

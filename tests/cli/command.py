@@ -1,4 +1,4 @@
-"""Runs the built command and reads what it says: what the tests of this folder share."""
+"""Runs the built command and parses its output; shared by the tests of this folder."""
 import json
 import math
 import os
@@ -24,7 +24,7 @@ def refuse_constant(name: str):
 
 
 def parse_json(text: str) -> dict:
-    """As json.loads, but NaN and Infinity are errors, as they are to every other language."""
+    """Like json.loads, but NaN and Infinity are errors, as in every other language."""
     return json.loads(text, parse_constant=refuse_constant)
 
 
@@ -41,7 +41,7 @@ def nulls(value, path=""):
 
 
 class CommandTest(unittest.TestCase):
-    """A test with a folder of its own, in which the command runs."""
+    """A test with a temporary folder, in which the command runs."""
 
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp(prefix="proofmass-cli-"))
@@ -58,24 +58,24 @@ class CommandTest(unittest.TestCase):
         )
 
     def succeed(self, *arguments, **how) -> str:
-        """Standard output of a run that must end with 0."""
+        """Standard output of a run that must exit with 0."""
         ran = self.run_command(*arguments, **how)
         self.assertEqual(ran.returncode, DONE, ran.stderr.decode())
         return ran.stdout.decode()
 
     def document(self, verb, *arguments, **how) -> dict:
-        """The document of a run with `--json -`, which must fit the verb's schema and begin as all do."""
+        """The document of a run with `--json -`, which must match the verb's schema and have the common first keys."""
         document = parse_json(self.succeed(verb, *arguments, "--json", "-", **how))
         self.check_document(verb, document)
         return document
 
     @staticmethod
     def without_provenance(document) -> dict:
-        """What was found, without how it was asked for and when."""
+        """The results, without the command line and the time."""
         return {key: value for key, value in document.items() if key != "provenance"}
 
     def refused_document(self, verb, *arguments) -> dict:
-        """The document of a run that could analyse no channel: it ends with BAD_INPUT, and says why."""
+        """The document of a run that could analyse no channel: it exits with BAD_INPUT and gives the reason."""
         ran = self.run_command(verb, *arguments, "--json", "-")
         self.assertEqual(ran.returncode, BAD_INPUT, ran.stderr.decode())
         self.assertIn("proofmass: no channel can be analysed: ", ran.stderr.decode())
@@ -94,7 +94,7 @@ class CommandTest(unittest.TestCase):
             self.assertIn(leaf, reasons, f"{path} is null and no warning says why")
 
     def expect_failure(self, status, *arguments, **how) -> str:
-        """The one line of a run that must end with `status` and leave standard output empty."""
+        """The error line of a run that must exit with `status` and an empty standard output."""
         ran = self.run_command(*arguments, **how)
         error = ran.stderr.decode()
         self.assertEqual(ran.returncode, status, error)
@@ -109,7 +109,7 @@ class CommandTest(unittest.TestCase):
         return path
 
     def leftovers(self) -> list:
-        """Files that were begun and not finished."""
+        """Files that were started and not completed."""
         return [p.name for p in self.folder.iterdir() if "part" in p.name or "tmp" in p.name]
 
 
@@ -122,7 +122,7 @@ def rest_csv(seconds=30.0, rate_hz=100.0, seed=1) -> str:
 
 
 def turning_csv(seconds=20.0, rate_hz=100.0, rpm=30.0, radius_m=0.15) -> str:
-    """A noiseless two-axis sensor on a wheel that turns evenly: gravity and ω²r, nothing else."""
+    """A noiseless two-axis sensor on a wheel at constant speed: gravity and ω²r only."""
     omega = rpm * 2.0 * math.pi / 60.0
     lines = ["time (s),acc_x (m/s^2),acc_y (m/s^2),acc_z (m/s^2)"]
     for k in range(int(seconds * rate_hz)):

@@ -1,4 +1,4 @@
-"""Tab: what the shells' scripts in completions/ offer. They ask the program, so nothing here may know a list of
+"""Completion by the shells' scripts in completions/. They query the program, so no test may contain a list of
 verbs or flags that the program does not print itself."""
 import re
 import shutil
@@ -21,7 +21,7 @@ class CompletionTest(CommandTest):
         (self.folder / "sensors").mkdir()
 
     def offered(self, line: str) -> list[str]:
-        """What the program itself says to the line up to the cursor."""
+        """The program's completions of the line up to the cursor."""
         return self.succeed("__complete", *line.split(" ")[1:]).splitlines()
 
     def words(self, line: str) -> list[str]:
@@ -94,7 +94,7 @@ class TheProgram(CompletionTest):
 
 class Bash(CompletionTest):
     def reply(self, line: str) -> set[str]:
-        """Of the function that bash calls, with the words cut as it cuts them."""
+        """Completions of the function that bash calls, with the words split as by bash."""
         words = re.findall(r"[^\s:=]+|[:=]+", line) + ([""] if line.endswith(" ") else [])
         script = f"""
             source {SCRIPTS}/proofmass.bash

@@ -1,4 +1,4 @@
-"""proofmass drift, on made-up recordings whose drift is known."""
+"""proofmass drift, on synthetic recordings with known drift."""
 import csv
 import math
 import random
@@ -35,7 +35,7 @@ def total(*series):
 
 
 def table(columns, rate_hz=1.0, without=()):
-    """CSV of {heading: values} with a time column; rows in `without` are left out."""
+    """CSV of {heading: values} with a time column; rows in `without` are omitted."""
     lines = [",".join(["time (s)", *columns])]
     for k, row in enumerate(zip(*columns.values())):
         if k not in without:
@@ -153,7 +153,7 @@ class Drift(CommandTest):
         self.assertAlmostEqual(channel["duration_s"], HOURS_2, delta=1.0)
 
     def runs_that_warm_up(self, count=40):
-        """run1.csv …: means that follow −2 mg (1 − e^(−n/5)) in 0.1 mg of scatter; in the shell's order."""
+        """run1.csv …: means that follow −2 mg (1 − e^(−n/5)) in 0.1 mg of scatter; in the shell's sort order."""
         scatter = white(count, 1e-4, 3)
         for k in range(count):
             level = -2e-3 * -math.expm1(-k / 5.0) + scatter[k]

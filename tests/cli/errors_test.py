@@ -1,4 +1,4 @@
-"""What goes wrong ends with the status that the contract names, and one line that helps."""
+"""Errors give the documented exit status and one helpful line."""
 import fcntl
 import os
 import pty
@@ -100,7 +100,7 @@ class Usage(CommandTest):
         self.assertIn("no time column and no --rate", line)
 
     def test_a_channel_without_a_unit_asks_for_one(self):
-        # 300 is neither g nor m/s^2 nor anything else that a sensor at rest reads.
+        # 300 is not gravity in g, m/s^2 or any other unit.
         rows = "\n".join(f"{k / 100},120.5,275.25" for k in range(100))
         self.write("a.csv", "time (s),acc_x,acc_y\n" + rows + "\n")
         self.assertIn("--unit", self.expect_failure(USAGE, "wheel", "a.csv"))
@@ -259,7 +259,7 @@ class Terminal(CommandTest):
             try:
                 while piece := os.read(ours, 65536):
                     shown += piece
-            except OSError: # the other side is closed
+            except OSError: # the other end is closed
                 pass
             process.wait(timeout=60)
             os.close(ours)

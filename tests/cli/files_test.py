@@ -1,4 +1,4 @@
-"""What is written: never over an input, never half, never through somebody else's file."""
+"""Output files: never over an input, never partial, never through another file."""
 import os
 import random
 import signal
@@ -11,7 +11,7 @@ import zipfile
 
 from command import BAD_INPUT, DONE, PROGRAM, USAGE, CommandTest, parse_json, rest_csv, turning_csv
 
-# How many instants each command is killed at: a few in the usual run, many in the long one.
+# Number of times at which each command is killed: a few in the usual run, many in the long one.
 INSTANTS = int(os.environ.get("PROOFMASS_KILLS", "6"))
 
 
@@ -63,7 +63,7 @@ class Files(CommandTest):
         other = self.write("other.csv", turning_csv(seconds=1))
         self.succeed("convert", other, "-o", "run.csv")
         self.assertEqual(part.read_bytes(), self.bytes)
-        # The part itself as the input: too large for memory, so that it is read while it is written.
+        # The part file itself as the input: too large for memory, so it is read while it is written.
         self.succeed("convert", "run.csv.part", "-o", "run.csv", "--memory", "0.001")
         self.assertEqual(part.read_bytes(), self.bytes)
         self.assertEqual(self.document("inspect", "run.csv")["samples"], 200)
@@ -113,7 +113,7 @@ class Files(CommandTest):
 
 
 class Killed(CommandTest):
-    """kill -9 at any instant: what was read, and what was there before, is whole."""
+    """kill -9 at any time: the inputs and the previous files are intact."""
 
     def kill_at_instants(self, whole_s, *arguments):
         draw = random.Random(7)

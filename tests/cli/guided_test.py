@@ -1,4 +1,4 @@
-"""proofmass record --procedure: the twin is laid down as it pleases, and the guide looks on."""
+"""proofmass record --procedure: the twin takes its positions in its own order, and the guide follows."""
 import csv
 import tomllib
 import unittest
@@ -8,7 +8,7 @@ from command import BAD_INPUT, USAGE, CommandTest, parse_json
 
 class Guided(CommandTest):
     def guided(self, source, procedure, *arguments):
-        """Document of the verb, and what the guide said."""
+        """Document of the verb, and the output of the guide."""
         ran = self.run_command("record", source, "-o", "run.mcap", "--procedure", procedure, *arguments,
                                "--json", "-")
         said = ran.stderr.decode()

@@ -1,4 +1,4 @@
-"""HDF5 that proofmass writes, as h5py reads it, and what h5py writes."""
+"""HDF5 files written by proofmass and read by h5py, and the reverse."""
 import unittest
 
 import h5py

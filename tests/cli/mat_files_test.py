@@ -1,4 +1,4 @@
-"""What others read of the .mat files that `proofmass convert` writes."""
+""".mat files written by `proofmass convert` and read by other programs."""
 import unittest
 
 from command import CommandTest, turning_csv

@@ -1,4 +1,4 @@
-"""proofmass noise, on made-up recordings whose noise is known."""
+"""proofmass noise, on synthetic recordings with known noise."""
 import csv
 import math
 import random
@@ -205,7 +205,7 @@ class Noise(CommandTest):
         self.rest(samples=5000)
         def digits():
             text = self.succeed("noise", "rest.csv", "--json", "-")
-            return text[:text.index('"provenance"')]  # which has the time of day
+            return text[:text.index('"provenance"')]  # which contains the time of day
 
         self.assertEqual(digits(), digits())
 

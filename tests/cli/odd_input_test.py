@@ -1,4 +1,4 @@
-"""Streams without a row, names that a terminal obeys, and verbs on recordings of every scale."""
+"""Streams without rows, names with control characters, and verbs on recordings of every magnitude."""
 import gzip
 import os
 import unittest
@@ -41,7 +41,7 @@ class Streams(CommandTest):
 
 
 class Flags(CommandTest):
-    """A flag that contradicts the file is not obeyed in silence."""
+    """A flag that contradicts the file is not applied silently."""
 
     def test_of_a_rate_beside_stamps_are_warned_of(self):
         self.write("a.csv", turning_csv(seconds=4))
@@ -53,7 +53,7 @@ class Flags(CommandTest):
         self.write("a.csv", rest_csv(seconds=4))
         for verb in ("noise", "calibrate", "inspect", "track"):
             self.assertIn("contradicts the header's m/s^2", self.expect_failure(USAGE, verb, "a.csv", "--unit", "g"))
-        # A header that is wrong itself, and one that says nothing that can be checked, can be overruled.
+        # A header that is wrong, and one that cannot be checked, can be overruled.
         self.write("wrong.csv", rest_csv(seconds=4).replace("m/s^2", "g"))
         self.assertEqual(self.document("inspect", "wrong.csv", "--unit", "m/s2")["channels"][0]["unit"], "m/s^2")
 
@@ -76,7 +76,7 @@ class Names(CommandTest):
     def outputs_of(self, *arguments):
         for extra in ([], ["-v"]):
             ran = self.run_command(*arguments, *extra)
-            yield ran.stdout.decode() # which is UTF-8, or an error
+            yield ran.stdout.decode() # raises an error unless UTF-8
             yield ran.stderr.decode()
 
     def test_never_carry_what_a_terminal_obeys(self):
@@ -109,7 +109,7 @@ class Names(CommandTest):
 
 
 class Verbs(CommandTest):
-    """Of whatever size a recording is: a document that fits its schema, or one line that says why not."""
+    """For a recording of any magnitude: a document that matches its schema, or one line with the reason."""
 
     def test_end_with_a_document_or_one_line_on_any_recording(self):
         ends = {}

@@ -1,4 +1,4 @@
-"""Short recordings of every scale and shape, and the verbs to put them through: the same for the same seed."""
+"""Short recordings of every magnitude and shape, and the verbs to run on them; determined by the seed."""
 import math
 import random
 
@@ -38,7 +38,7 @@ class OddRecording:
         return at
 
     def axes(self) -> list:
-        """Three axes of accelerations, of one of the shapes that verbs look for."""
+        """Three axes of acceleration, with one of the shapes that verbs detect."""
         draw, g = self.random, 9.80665
         kind = draw.choice(["rest", "rest", "turning", "turning", "noise", "constant", "zero", "steps", "ramp"])
         noise = draw.choice([0.0, 1e-6, 0.01, 0.01, 1.0])
@@ -72,7 +72,7 @@ class OddRecording:
         return ",".join(heading) + "\n" + "".join(",".join(map(number, row)) + "\n" for row in rows)
 
     def command(self, name: str) -> tuple:
-        """A verb with flags of every kind of sense, on the recording of that name: (verb, arguments)."""
+        """A verb with sensible and senseless flags, on the recording of that name: (verb, arguments)."""
         draw = self.random
         verb = draw.choice(["inspect", "convert", "noise", "drift", "calibrate", "tumble", "tilt", "track", "wheel", "tune"])
         flags = [] if self.timed else draw.choice([[], ["--rate", "100"], ["--rate", "1e-3"]])

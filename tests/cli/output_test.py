@@ -82,7 +82,7 @@ class Output(CommandTest):
         ascii = self.succeed("wheel", "rig.csv", environment={"LC_ALL": "C"})
         self.assertIn("+-", ascii)
         self.assertIn("deg", ascii)
-        # The columns begin where they do in UTF-8.
+        # The columns are at the same positions as in UTF-8.
         rows = self.succeed("wheel", "rig.csv").splitlines()
         begin = [row.index("path of") for row in rows if "path of" in row]
         self.assertEqual(begin, [row.index("path of") for row in ascii.splitlines() if "path of" in row])

@@ -17,7 +17,7 @@ HEADER = b"t (ms),x (m/s^2),y (m/s^2),z (m/s^2)\n"
 
 
 def rows(first, count):
-    """Lines as a microcontroller would send them: milliseconds and three figures."""
+    """Lines as sent by a microcontroller: milliseconds and three values."""
     return b"".join(ROW % (10 * k, k % 7, k % 11, 9.81) for k in range(first, first + count))
 
 
@@ -50,7 +50,7 @@ class Record(CommandTest):
         self.wait_for(lambda: part.exists() and part.stat().st_size >= size, part.name)
 
     def end(self, process, status):
-        """Its document, once it has ended with this status."""
+        """Its document, once it has exited with this status."""
         out, err = process.communicate(timeout=200)
         self.assertEqual(process.returncode, status, (err or b"").decode())
         document = parse_json(out.decode())
@@ -94,7 +94,7 @@ class Record(CommandTest):
         self.assertEqual(self.leftovers(), [])
 
     def test_every_usual_signal_closes_the_file_without_a_word_of_interruption(self):
-        # A terminal that is closed, a service that is stopped, and Ctrl-C pressed twice.
+        # A closed terminal, a stopped service, and Ctrl-C pressed twice.
         for signals in ([signal.SIGHUP], [signal.SIGTERM], [signal.SIGINT, signal.SIGINT]):
             name = f"{signals[0].name}{len(signals)}.mcap"
             process = self.start("sim:?rate=200", "-o", name)
@@ -170,7 +170,7 @@ class Record(CommandTest):
         self.assertEqual(counts, [400, 400, 200])
 
     def test_a_trigger_keeps_what_is_around_it(self):
-        # A turn of 2 s: the level is passed once a turn.
+        # A turn of 2 s: the level is crossed once per turn.
         document = self.document(
             "record", "sim:wheel?rpm=30&rate=200&speed=max&seconds=20", "-o", "run.mcap",
             "--trigger", "acc1_x > 5.0", "--trigger-before", "0.1", "--trigger-after", "0.2",
@@ -204,7 +204,7 @@ class Record(CommandTest):
         return dict(zip((cell.split(" ")[0] for cell in head.split(",")), columns))
 
     def test_a_carriage_is_followed_live(self):
-        # Six strokes of 0.4 m, there and back in turn.
+        # Six strokes of 0.4 m in alternating directions.
         columns = self.estimates("sim:slide?speed=max", "track")
         self.assertAlmostEqual(max(columns["position"]), 0.4, delta=0.05)
         self.assertLess(abs(columns["position"][-1]), 4 * columns["position_std"][-1])
@@ -237,7 +237,7 @@ class Record(CommandTest):
         self.assertEqual([c["unit"] for c in document["channels"]], ["g"] * 3)
 
     def open_pty(self, link):
-        """A serial line that the program opens by the link's name."""
+        """A serial line that the program opens by a link."""
         ours, theirs = pty.openpty()
         tty.setraw(theirs)
         os.set_blocking(ours, False)
@@ -247,7 +247,7 @@ class Record(CommandTest):
         return ours, theirs
 
     def feed(self, ours, first, process, until):
-        """Sends rows every now and then until the condition holds; the next row's number."""
+        """Sends rows at intervals until the condition holds; returns the next row's number."""
         end = time.monotonic() + 120
         while not until():
             self.assertLess(time.monotonic(), end, "waited 120 s")
@@ -333,7 +333,7 @@ class Record(CommandTest):
         try:
             while chunk := os.read(ours, 65536):
                 drawn += chunk
-        except OSError:  # the terminal is closed with the process
+        except OSError:  # the terminal closes with the process
             pass
         os.close(ours)
         self.assertEqual(process.wait(timeout=60), DONE)

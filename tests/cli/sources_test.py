@@ -1,5 +1,5 @@
-"""A minute at 1 kHz and six channels through each kind of source that needs no machine of its own, side by
-side: nothing may be lost. Each sender counts its rows, so that the recorder would know."""
+"""A minute at 1 kHz and six channels through each kind of source that needs no separate machine, in
+parallel: nothing may be lost. Each sender counts its rows, so that the recorder detects a loss."""
 import os
 import pty
 import shutil
@@ -21,7 +21,7 @@ HEADER = "n,t (us)," + ",".join(f"c{i} (g)" for i in range(6)) + "\n"
 
 
 def line(k):
-    """Row k: its number, its microseconds and six figures."""
+    """Row k: its number, its microseconds and six values."""
     return f"{k},{1000 * k},{k % 1000},{k % 7},{k % 11},{k % 13},{k % 17},{k % 19}\n"
 
 
@@ -32,7 +32,7 @@ def free_port():
 
 
 def send_paced(write, first=0):
-    """Rows of a minute, ten at a time, when they are due."""
+    """A minute of rows, ten at a time, when they are due."""
     start = time.monotonic()
     for k in range(first, ROWS + RATE, 10):
         time.sleep(max(0.0, start + (k - first) / RATE - time.monotonic()))
@@ -54,7 +54,7 @@ class Sources(CommandTest):
         return process
 
     def record(self, name, source, environment=None, **how):
-        """Records a minute from the source, beside all others."""
+        """Records a minute from the source, in parallel with all others."""
         said = (self.folder / f"{name}.err").open("wb")
         self.addCleanup(said.close)
         self.running[name] = self.background(
@@ -97,7 +97,7 @@ class Sources(CommandTest):
             try:
                 sender.sendto(text, ("127.0.0.1", port))
             except ConnectionRefusedError:
-                pass  # the recorder is not there yet, or no more
+                pass  # the recorder is not running yet, or no longer
 
         self.send(write)
 

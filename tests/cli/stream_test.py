@@ -1,4 +1,4 @@
-"""Recordings that are read a piece at a time, for being larger than --memory."""
+"""Recordings that are read in blocks because they exceed --memory."""
 import math
 import random
 import unittest
@@ -7,7 +7,7 @@ from command import USAGE, CommandTest, turning_csv
 
 
 def noisy_csv(samples):
-    """A sensor at rest whose clock loses samples now and then."""
+    """A static sensor that occasionally loses samples."""
     random.seed(7)
     lines = ["time (s),ax (g),ay (g),az (g)"]
     time_s = 0.0

@@ -1,4 +1,4 @@
-"""TDMS files that proofmass writes, read by a reader of its own, and broken ones."""
+"""TDMS files written by proofmass, read by an independent reader; and damaged files."""
 import struct
 import unittest
 

@@ -1,4 +1,4 @@
-"""proofmass thesis: everything simulated, and on recordings that the twin made."""
+"""proofmass thesis: fully simulated, and on recordings of the twin."""
 import html.parser
 import itertools
 import math
@@ -20,7 +20,7 @@ QUICK = ("--runs", "2", "--static-hours", "0.2")
 
 
 class Links(html.parser.HTMLParser):
-    """Ids, and what links to them; whatever would have to be fetched."""
+    """Ids, links to them, and resources that would be fetched."""
 
     def __init__(self):
         super().__init__()
@@ -57,7 +57,7 @@ def rest(seconds=600, rate_hz=20):
 class Thesis(CommandTest):
     @classmethod
     def setUpClass(cls):
-        """One run for all that looks at what it has made."""
+        """One run for all tests of its output."""
         cls.shared = Path(tempfile.mkdtemp(prefix="proofmass-cli-"))
         cls.addClassCleanup(shutil.rmtree, cls.shared)
         files = {"--json": cls.shared / "t.json", "--report": cls.shared / "t.html"}

@@ -1,4 +1,4 @@
-"""proofmass tilt, on made-up files."""
+"""proofmass tilt, on synthetic files."""
 import csv
 import math
 import random

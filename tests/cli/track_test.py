@@ -1,4 +1,4 @@
-"""proofmass track, on the simulated slide and on made-up files."""
+"""proofmass track, on the simulated slide and on synthetic files."""
 import csv
 import math
 import random
@@ -10,7 +10,7 @@ GRAVITY = 9.80665
 
 
 def strokes_csv(heading="acc_{} (m/s^2)", scale=1.0, gravity=GRAVITY, axes="xyz", rate_hz=100, count=3) -> str:
-    """Strokes of 0.4 m along x, a second out and a second back, with rests of 2 s between."""
+    """Strokes of 0.4 m along x, one second out and one back, with rests of 2 s in between."""
     noise = random.Random(1)
     lines = ["time (s)," + ",".join(heading.format(axis) for axis in axes)]
     for k in range(int((2 + 4 * count) * rate_hz)):
@@ -57,7 +57,7 @@ class Track(CommandTest):
         self.assertAlmostEqual(abs(smoother["displacement_m"]), end, delta=2 * document["factor_95"] * smoother["std_m"])
 
     def slide_of_two(self, seed=5, noise=0.02):
-        """A slide with a second sensor; where it truly ended, along the axis."""
+        """A slide with a second sensor; its true final position along the axis."""
         self.write("two.toml", f"procedure = 'slide'\n[slide]\nsecond_sensor = true\nstrokes = 5\n"
                                f"[sensor]\nnoise_rms_mps2 = [{noise}, {noise}, {noise}]\n")
         self.succeed("simulate", "two.toml", "--procedure", "slide", "--seed", seed, "-o", "two.csv")
@@ -196,7 +196,7 @@ class Track(CommandTest):
         self.assertEqual(len(document["strokes"]), 3)
 
     def test_jerk_gets_no_figure_and_is_bad_data(self):
-        """A lift's ride whose acceleration was differentiated: pushes at both ends of a long cruise."""
+        """A lift ride with differentiated acceleration: pulses at both ends of a long cruise."""
         noise = random.Random(2)
         lines = ["time (s),Acceleration (m/s^2)"]
         last = 0.0

@@ -109,7 +109,7 @@ class Coefficients(ModesTest):
 
 class Rotating(ModesTest):
     def wheel(self, name="wheel.csv", rpm=11.0, seconds=200, noise=0.02, seed=1, encoder=False, ripple=0.0):
-        """Two axes in the plane and the axle's: K1 1 and 0.98, biases 0.2 and −0.1 m/s², r 0.1 m."""
+        """Two axes in the plane and one along the axle: K1 1 and 0.98, biases 0.2 and −0.1 m/s², r 0.1 m."""
         draw = random.Random(seed)
         omega = rpm * 2.0 * math.pi / 60.0
         lines = ["time (s),acc_x (m/s^2),acc_y (m/s^2),acc_z (m/s^2)" + (",angle (deg)" if encoder else "")]

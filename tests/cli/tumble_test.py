@@ -1,4 +1,4 @@
-"""proofmass tumble, on a simulated turntable whose every error is known."""
+"""proofmass tumble, on a simulated turntable with known errors."""
 import csv
 import math
 import random
@@ -12,7 +12,7 @@ K1, K0, DELTA, K2, K3, KIP, KPP = 0.0337, 0.05, 2e-3, 3e-6, 2e-6, 4e-6, 8e-6
 
 
 def output(degrees, phase=0.0, bias=K0):
-    """Volts about 1.65 of an axis that sees g sin(angle + phase)."""
+    """Volts, centred at 1.65, of an axis with the force g sin(angle + phase)."""
     phi = math.radians(degrees + phase)
     a, p = G * math.sin(phi), G * math.cos(phi)
     return 1.65 + K1 * (bias + a + DELTA * p + K2 * a * a + K3 * a**3 + KIP * a * p + KPP * p * p)
@@ -24,7 +24,7 @@ def table(rows, head="angle_deg,x (V)"):
 
 
 def rests(angles, rate_hz=100.0, rest_s=4.0, move_s=1.0, noise=0.002, encoder=False, seed=1):
-    """A three-axis recording, z along the table's axis, that lies still at each angle."""
+    """A three-axis recording, z along the table's axis, with a rest at each angle."""
     draw = random.Random(seed)
     lines = ["time (s)," + ("angle (deg)," if encoder else "") + "acc_x (V),acc_y (V),acc_z (V)"]
     t, previous = 0, angles[0]
@@ -181,7 +181,7 @@ class Tumble(CommandTest):
     def test_an_angle_that_is_shown_before_the_table_stands_still(self):
         lines = rests([*range(0, 360, 30), 0], encoder=True).splitlines()
         shown = [line.split(",") for line in lines[1:]]
-        for k, cells in enumerate(shown):  # 4 s rest, 1 s move: the setting is shown at once
+        for k, cells in enumerate(shown):  # 4 s rest, 1 s move: the setting is recorded at once
             cells[1] = str((k + 100) // 500 * 30 % 360)
         self.write("r.csv", "\n".join([lines[0], *map(",".join, shown)]) + "\n")
         found = self.document("tumble", "r.csv")
@@ -220,7 +220,7 @@ class Tumble(CommandTest):
         self.succeed("tumble", "p.csv", "--update-sensor", "s.toml")
         calibration = tomllib.loads((self.folder / "s.toml").read_text())["calibration"]
         self.assertIn("proofmass tumble p.csv", str(calibration))
-        # Applied again, the readings are accelerations with scale 1 and bias 0.
+        # After applying it, the readings are accelerations with scale 1 and bias 0.
         again = self.document("tumble", "p.csv", "--sensor", "s.toml")
         self.assertAlmostEqual(again["K1"]["value"], 1.0, places=4)
         self.assertAlmostEqual(again["K0"]["value"], 0.0, places=4)

@@ -1,4 +1,4 @@
-"""proofmass tune, on made-up recordings whose noise is known."""
+"""proofmass tune, on synthetic recordings with known noise."""
 import csv
 import math
 import random
@@ -9,7 +9,7 @@ from command import FAILED, USAGE, CommandTest
 
 
 def level(samples, reading_std, step_std, seed, start=0.0):
-    """A random walk read with white noise."""
+    """A random walk measured with white noise."""
     draw, values, at = random.Random(seed), [], start
     for _ in range(samples):
         values.append(at + draw.gauss(0.0, reading_std))

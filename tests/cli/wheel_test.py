@@ -1,4 +1,4 @@
-"""proofmass wheel, on the simulated rig and on made-up files."""
+"""proofmass wheel, on the simulated rig and on synthetic files."""
 import csv
 import math
 import unittest
@@ -8,7 +8,7 @@ from command import BAD_DATA, USAGE, CommandTest, parse_json, turning_csv
 
 class Wheel(CommandTest):
     def simulate(self, name="rig.csv"):
-        """Eight seconds, so that a build with sanitizers is done within minutes too."""
+        """Eight seconds, so that a build with sanitizers also completes within minutes."""
         flags = ("--duration", "8", "--rate", "50", "--rpm", "40")
         return self.document("simulate", "-o", name, *flags)["truth"]
 
@@ -24,7 +24,7 @@ class Wheel(CommandTest):
         self.assertAlmostEqual(document["methods"]["smoother"]["turns"], turns["value"])
 
     def with_gyro(self):
-        """From rest to 60 rpm and back; the gyroscope reads 2 % too much, in a unit that only its heading tells."""
+        """From rest to 60 rpm and back; the gyroscope has a 2 % scale error and a unit given only in its heading."""
         lasts, top, radius = 20.0, 2.0 * math.pi, 0.05
         rows = ["time (s)," + ",".join(f"acc_{axis} (m/s^2)" for axis in "xyz") + ","
                 + ",".join(f"gyr_{axis} (deg/s)" for axis in "xyz")]
@@ -134,7 +134,7 @@ class Wheel(CommandTest):
                                abs(truth["turns"]) * 2 * 3.14159265 * 0.3, delta=0.02)
 
     def test_a_radius_is_not_called_wrong_by_a_recording_that_shows_none(self):
-        """At one speed; of this pair the fit without the radius ends right at the axle."""
+        """At one speed; for this pair the fit without the radius converges to the axle."""
         self.succeed("simulate", "--rpm", "20", "--seed", "3", "-o", "even.csv")
         self.succeed("wheel", "even.csv", "--radius", "0.1", "--strict")
 
@@ -156,7 +156,7 @@ class Wheel(CommandTest):
         self.assertGreaterEqual(document["rejected_samples"], 20)
 
     def simulate_warm_up(self):
-        """Ten seconds that begin two seconds after switching on, and sensor file and truth for them."""
+        """Ten seconds that begin two seconds after power-on, with sensor file and truth."""
         sensor = "radius_m = 0.1\nwarm_up_mps2 = [1.0, -1.0, 0.0]\nwarm_up_time_s = 3.0\n"
         self.write("rig.toml", "seed = 3\n[[segment]]\nduration_s = 12\nspeed_rpm = 40\n[[sensor]]\n" + sensor)
         self.succeed("simulate", "rig.toml", "--rate", "50", "-o", "all.csv")

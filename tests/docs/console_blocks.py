@@ -1,9 +1,9 @@
-"""The examples in the pages: blocks marked console, with commands behind "$ " and what they print.
+"""The examples in the pages: blocks marked console, with commands after "$ " and their output.
 
-A line that is only "…" stands for any lines; "…" within a line for any text. A command may go on in the next line
-behind a backslash. "$ cat FILE" shows a file that the reader writes: it is written here. The blocks of one page
-run one after the other in one folder, so that one may use the other's files. A command on an .xz file uses a recording
-of others, which lies beside the project and not in it.
+A line "…" matches any lines; "…" within a line matches any text. A command may continue in the next line
+after a backslash. "$ cat FILE" shows a file written by the reader: it is written here. The blocks of one page
+run in order in one folder, so that they can share files. A command on an .xz file uses a published recording,
+which is stored beside the project, not in it.
 """
 import difflib
 import os
@@ -20,7 +20,7 @@ BLOCK = re.compile(r"^```console\n(.*?)^```$", re.S | re.M)
 
 @dataclass
 class Command:
-    text: str # as it stands, without "$ "
+    text: str # as written, without "$ "
     output: list = field(default_factory=list)
 
     @property
@@ -31,12 +31,12 @@ class Command:
 @dataclass
 class Block:
     page: Path
-    line: int # of the page, of the first command
+    line: int # line of the first command in the page
     commands: list
 
     @property
     def recordings(self) -> list:
-        """The recordings of others that it reads."""
+        """The published recordings that it reads."""
         return [word for command in self.commands for word in command.words if word.endswith(".xz")]
 
 
@@ -60,7 +60,7 @@ def blocks_of(page: Path) -> list:
 
 
 def pattern_of(lines: list) -> re.Pattern:
-    """What the printed lines have to match as a whole."""
+    """The pattern that the printed lines must match as a whole."""
     parts = []
     for line in lines:
         if line.strip() == "…":
@@ -71,7 +71,7 @@ def pattern_of(lines: list) -> re.Pattern:
 
 
 def with_elisions(written: list, printed: list) -> list:
-    """The printed lines, with "…" for what the written ones leave out between lines that are alike."""
+    """The printed lines, with "…" where the page omits text between matching lines."""
     def place(line: str, first: int) -> int | None:
         alike = [(difflib.SequenceMatcher(None, line, one).ratio(), -k) for k, one in enumerate(printed) if k >= first]
         best = max(alike, default=(0.0, 0))
@@ -94,13 +94,13 @@ def with_elisions(written: list, printed: list) -> list:
 
 
 def agrees(written: list, printed: list) -> bool:
-    """Whether a command printed what the page says; a narrow space in a number may be any space."""
+    """True if a command printed the output in the page; a narrow space in a number matches any space."""
     plain = [[line.replace("\u202f", " ") for line in lines] for lines in (written, printed)]
     return bool(pattern_of(plain[0]).fullmatch("".join(line + "\n" for line in plain[1])))
 
 
 def published(name: str):
-    """The path of a recording of others, or None."""
+    """The path of a published recording, or None."""
     for place in (os.environ.get("PROOFMASS_DATA"), ROOT / "../shared/data"):
         found = sorted(Path(place).rglob(name)) if place else []
         if found:
@@ -109,7 +109,7 @@ def published(name: str):
 
 
 def run(command: Command, folder: Path, program: str) -> list:
-    """What it prints, line by line without trailing blanks; a failure of the command is an error."""
+    """Its output, by line without trailing blanks; a failure of the command is an error."""
     words = command.words
     if words[0] == "cat":
         (folder / words[1]).write_text("\n".join(command.output) + "\n")

@@ -1,5 +1,5 @@
-"""docs/errata.md and the tests that it names hold together: each entry names a test, each test that
-it names is in the sources, and each test of the errata is named."""
+"""docs/errata.md agrees with the tests that it names: each entry names a test, each named test is in
+the sources, and each test of the errata is named."""
 import re
 import unittest
 from pathlib import Path

@@ -1,7 +1,7 @@
-"""Every example in the pages prints what the page says.
+"""Every example in the pages prints the output shown there.
 
-After a change, `PROOFMASS=build/release/proofmass python3 tests/docs/examples_test.py --write` puts what is printed
-now in place of what no longer matches; look at the difference before it goes in.
+After a change, `PROOFMASS=build/release/proofmass python3 tests/docs/examples_test.py --write` replaces output
+that no longer matches by the current one; review the difference before committing it.
 """
 import os
 import sys
@@ -9,10 +9,10 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from console_blocks import BLOCK, DOCS, agrees, blocks_of, published, run, with_elisions
+from console_blocks import BLOCK, DOCS, ROOT, agrees, blocks_of, published, run, with_elisions
 
 PROGRAM = os.path.abspath(os.environ["PROOFMASS"])
-PAGES = [page for page in sorted(DOCS.rglob("*.md")) if BLOCK.search(page.read_text())]
+PAGES = [page for page in [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))] if BLOCK.search(page.read_text())]
 CHAPTERS = "noise drift calibration estimation wheel acquisition formats".split()
 
 
@@ -56,7 +56,7 @@ class PublishedRecordings(Examples):
 
 
 def write_outputs():
-    """Puts what is printed now into the pages, where it differs from what stands there."""
+    """Replaces output in the pages that differs from the current one."""
     for page in PAGES:
         with tempfile.TemporaryDirectory() as folder:
             text = page.read_text()

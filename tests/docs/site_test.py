@@ -1,4 +1,4 @@
-"""The site is built of the pages without a broken link; the checks that say so can fail."""
+"""The site is built from the pages without a broken link; its checks can fail."""
 import shutil
 import subprocess
 import sys
@@ -48,8 +48,8 @@ class Site(unittest.TestCase):
     def test_links_to_sources_and_folders_become_pages_and_code_stays(self):
         stage = Stage(self.folder)
         page = ROOT / "docs/methods/noise.md"
-        text = stage.rewrite(page, "[a](../../examples/06_fit_a_curve.cpp) [b](../schema/) [c](../../README.md#the-verbs) `[d](e.md)`")
-        self.assertEqual(text, "[a](../../examples/06_fit_a_curve.cpp.md) [b](../schema/index.md) [c](../../index.md#the-verbs) `[d](e.md)`")
+        text = stage.rewrite(page, "[a](../../examples/06_fit_a_curve.cpp) [b](../schema/) [c](../../README.md#what-it-does) `[d](e.md)`")
+        self.assertEqual(text, "[a](../../examples/06_fit_a_curve.cpp.md) [b](../schema/index.md) [c](../../index.md#what-it-does) `[d](e.md)`")
         self.assertEqual(stage.broken, [])
         stage.rewrite(page, "[gone](../gone.md)")
         self.assertEqual(stage.broken, ["docs/methods/noise.md: ../gone.md"])

@@ -48,7 +48,8 @@ PoseGuide guided(const simulate::ProcedureOptions& options,
   return guide;
 }
 
-// Each true pose is taken once, within its rest and what is left of its settling; nothing else is.
+// Checks that each true pose is taken once, within its rest including the end of its settling, and
+// that there are no others.
 void expect_true_poses(const PoseGuide& guide,
                        const ProcedureResult& twin,
                        const simulate::ProcedureOptions& options) {
@@ -86,7 +87,7 @@ TEST_P(GuidedTwin, TakesThePositionsOfATableAtItsAngles) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, GuidedTwin, testing::Values(1, 2, 3, 4));
 
-// The largest error of the nine parameters' readings at 1 g, in m/s^2.
+// The largest error of the nine parameters for readings at 1 g, in m/s^2.
 double worst_error(const std::vector<calibrate::Pose>& poses,
                    double noise_dof,
                    const ProcedureResult& twin) {
@@ -96,7 +97,7 @@ double worst_error(const std::vector<calibrate::Pose>& poses,
           .value();
   double worst = 0.0;
   for (const simulate::TruePose& pose : twin.truth.poses) {
-    // What the true sensor reads, and what the fit makes of it.
+    // The true sensor's reading, and the force that the fit computes from it.
     Eigen::Vector3d reading;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<Eigen::Index>(axis);
@@ -135,7 +136,7 @@ TEST(Guided, PositionsCalibrateAsWellAsTheWholeRecording) {
     whole_squares += by_whole * by_whole;
     EXPECT_LT(by_guide, 1e-3 * standard_gravity_mps2) << seed;
   }
-  // Rests of two seconds in place of three and a half.
+  // Rests of two seconds instead of three and a half.
   EXPECT_LT(std::sqrt(guided_squares), 1.5 * std::sqrt(whole_squares));
 }
 

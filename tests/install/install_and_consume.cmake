@@ -1,5 +1,5 @@
-# Run by ctest with BUILD, WORK, CONSUMER, GENERATOR and COMPILER. Fails at the first
-# command that does.
+# Run by ctest with BUILD, WORK, CONSUMER, GENERATOR and COMPILER. Stops at the first command that
+# fails.
 function(run)
   execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()

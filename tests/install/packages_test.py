@@ -1,5 +1,5 @@
-"""The Debian packages that the finished build makes: what they say, what is in them, and that it works from where
-dpkg would lay it. Nothing is installed."""
+"""The Debian packages made from the finished build: their metadata, their contents, and that these work at the
+location where dpkg would unpack them. Nothing is installed."""
 import gzip
 import os
 import re
@@ -28,7 +28,7 @@ class Packages(unittest.TestCase):
         cls.work = Path(tempfile.mkdtemp(prefix="proofmass-packages-"))
         cls.addClassCleanup(shutil.rmtree, cls.work)
         cls.root = cls.work / "root"
-        # The packages are compressed by xz for who downloads them; a test need not wait for that.
+        # Released packages are compressed by xz; the test uses a faster compression.
         cpack = Path(CMAKE).with_name("cpack")
         output(cpack, "--config", BUILD / "CPackConfig.cmake", "-B", cls.work / "deb",
                "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip")  # fmt: skip

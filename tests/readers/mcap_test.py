@@ -1,4 +1,4 @@
-"""MCAP files of ours read by @mcap/core, and its files read by us."""
+"""Our MCAP files read by @mcap/core, and its files read by us."""
 import json
 import math
 import shutil
@@ -34,7 +34,7 @@ class Mcap(CommandTest):
         return json.loads(self.node("read_mcap.mjs", self.folder / name))
 
     def columns_of(self, found) -> list:
-        """The blocks put one behind another."""
+        """The blocks concatenated."""
         first = 0
         columns = [[] for _ in found["blocks"][0]["columns"]]
         for block in found["blocks"]:

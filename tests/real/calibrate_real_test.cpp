@@ -1,5 +1,5 @@
-// Sensors that others turned to many directions, calibrated as the program does it: read, find the
-// rests or take the labelled ones, means, fit. See published_data.hpp.
+// Published recordings of sensors in many orientations, calibrated as by the program: read, find
+// the rests or use the labelled ones, means, fit. See published_data.hpp.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -83,7 +83,7 @@ MultiPosition fitted(const PoseMeans& means, MultiPositionOptions options) {
   return calibrate_positions(means.poses, options).value();
 }
 
-// With the wander of the biases from one position to the next, as the program allows for it.
+// With the random walk of the biases between positions, as the program allows for it.
 MultiPosition fitted_with_wander(const PoseMeans& means, MultiPositionOptions options) {
   options.noise_dof = means.noise_dof;
   const auto wander = calibrate::session_noise(means.poses, {&means.session, 1}, options);
@@ -112,8 +112,8 @@ std::vector<double> figures_of(const MultiPosition& fit) {
   return out;
 }
 
-// imu_tk's own figures and those of an independent fit to the same recording, one and a half of
-// its standard deviations about them.
+// imu_tk's own parameters and those of an independent fit to the same recording, within one and a
+// half standard deviations.
 TEST(CalibrationOfImuTk, IsThatOfAnIndependentFit) {
   const auto file = imu_tk() / "xsens_acc.mat.xz";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
@@ -140,8 +140,8 @@ TEST(CalibrationOfImuTk, IsThatOfAnIndependentFit) {
   EXPECT_NEAR(fit.residual_rms_mps2, 0.98e-3, 0.02e-3);
 }
 
-// White noise at the sampling rate would leave 0.31 mm/s^2 of the 0.98; what the rests show of
-// slower noise explains the rest, and no pose has to be blamed.
+// White noise at the sampling rate would give 0.31 mm/s^2 of the 0.98; the slower noise of the
+// rests explains the remainder, and no pose is suspect.
 TEST(CalibrationOfImuTk, LeavesWhatTheNoiseOfTheMeansExplains) {
   const auto file = imu_tk() / "xsens_acc.mat.xz";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
@@ -170,8 +170,8 @@ TEST(CalibrationOfImuTk, IsTheSameFromTextAndFromMat) {
   EXPECT_EQ(of_text, figures_of(fitted(at_rest(read(mat, counts)), options)));
 }
 
-// Every second rest, tried on the others: the spread of |f| − g over positions that had no part in
-// the fit is what the fit says it is.
+// Every second rest, tested on the others: the spread of |f| − g over positions outside the fit
+// agrees with the prediction of the fit.
 TEST(CalibrationOfImuTk, OfHalfTheRestsHoldsOnTheOtherHalf) {
   const auto file = imu_tk() / "xsens_acc.mat.xz";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
@@ -185,7 +185,7 @@ TEST(CalibrationOfImuTk, OfHalfTheRestsHoldsOnTheOtherHalf) {
     const calibrate::Validation found = calibrate::validate(fit, others);
     EXPECT_GT(found.p.value(), 0.05) << first;
     EXPECT_NEAR(found.rms_mps2 / found.expected_rms_mps2, 1.0, 0.5) << first;
-    // New positions tell more than the residuals of the old ones do.
+    // New positions are more informative than the residuals of the fitted ones.
     EXPECT_GT(found.rms_mps2, 1.5 * fit.residual_rms_mps2) << first;
   }
 }
@@ -230,11 +230,11 @@ TEST(CalibrationOfImucal, ByTheNormIsThatOfAnIndependentFit) {
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(fit.scale[k]->value, scale[k], 0.5e-4) << k;
     EXPECT_NEAR(fit.bias[k]->value, bias[k], 0.5e-4) << k;
-    // The two ways differ by less than each says it may be off.
+    // The two methods differ by less than their standard deviations.
     EXPECT_NEAR(fit.scale[k]->value, six.scale[k]->value, 2.0 * six.scale[k]->std) << k;
     EXPECT_NEAR(fit.bias[k]->value, six.bias[k]->value, 2.0 * six.bias[k]->std) << k;
   }
-  // Six positions and six parameters: the residual is zero whatever was done, and tests nothing.
+  // Six positions and six parameters: the residual is zero in any case, and tests nothing.
   EXPECT_LT(fit.residual_rms_mps2, 1e-12);
   EXPECT_FALSE(fit.lack_of_fit);
   EXPECT_FALSE(fit.leave_one_out_rms_mps2);
@@ -244,7 +244,7 @@ TEST(CalibrationOfImucal, ByTheNormIsThatOfAnIndependentFit) {
 
 constexpr double grenoble_gravity = 9.8049;
 
-// The fit of others has six parameters and factors by which a reading is multiplied, 1/scale.
+// The published fit has six parameters, with factors that multiply a reading, 1/scale.
 TEST(CalibrationOfAPhone, IsThatOfOthersWithinItsUncertainty) {
   const auto file =
       published_data() / "tyrex-phones" / "calib_acc_Nexus5_d1" / "accelerometer.txt.xz";
@@ -259,11 +259,11 @@ TEST(CalibrationOfAPhone, IsThatOfOthersWithinItsUncertainty) {
   }
   EXPECT_NEAR(fit.residual_rms_mps2, 5.3e-3, 1.5e-3);
   for (const PoseResidual& pose : fit.poses) EXPECT_FALSE(pose.suspect);
-  // Ten rests with an axis near the vertical do not carry nine parameters.
+  // Ten rests with an axis near the vertical do not determine nine parameters.
   EXPECT_EQ(fitted(means, {.gravity_mps2 = grenoble_gravity}).model, PoseModel::norm_6);
 }
 
-// It reads the acceleration of gravity, not the force against it: |f| does not care.
+// It measures the acceleration of gravity, not the reaction force: |f| is the same.
 TEST(CalibrationOfAPhone, OfOppositeSignIsCalibratedAsItReads) {
   const auto file =
       published_data() / "tyrex-phones" / "calib_acc_iPhone5_d3" / "accelerometer.txt.xz";
@@ -284,8 +284,8 @@ TEST(CalibrationOfAPhone, OfOppositeSignIsCalibratedAsItReads) {
   EXPECT_GT(fit.lack_of_fit->p, 0.05);
 }
 
-// A record without time: 30 orientations, some held in two parts. Its z axis wanders, so that what
-// was read upright is known to 0.06 m/s^2 only.
+// A recording without time: 30 orientations, some held in two parts. Its z axis drifts, so that
+// upright measurements are known to 0.06 m/s^2 only.
 TEST(CalibrationOfAPhone, WithoutTimeHasTheNormOfGravityAfterwards) {
   const auto file =
       published_data() / "hassan-multiposition" / "MobileAccData30orientationRawSample01.mat";
@@ -313,9 +313,9 @@ TEST(CalibrationOfAPhone, WithoutTimeHasTheNormOfGravityAfterwards) {
 
 // --- a table of six means ------------------------------------------------------------------------
 
-// The author fits mean = A d + b by least squares with the six directions taken for exact: b is the
-// mean of all six readings, of A the diagonal is half the difference of a pair. Ferraris takes the
-// bias from the axis's own pair and the length of A's row.
+// The author fits mean = A d + b by least squares with the six directions assumed exact: b is the
+// mean of all six readings, and the diagonal of A is half the difference of a pair. Ferraris takes
+// the bias from the axis's own pair and the length of A's row.
 TEST(CalibrationOfATable, IsItsAuthors) {
   const auto file =
       published_data() / "uca-mpu9250" / "six-position" / "trial_1" / "six_position_data_1.csv";
@@ -347,8 +347,8 @@ TEST(CalibrationOfATable, IsItsAuthors) {
 
 // --- one bad position, by a simulator of others --------------------------------------------------
 
-// A search from a robust fit named positions 2, 3 and 5 of the first and 3 of the second, where 7
-// and 5 are off, and the figures were 12 and 49 standard deviations off.
+// A search from a robust fit named positions 2, 3 and 5 of the first and 3 of the second, but 7 and
+// 5 are wrong, and the parameters were 12 and 49 standard deviations off.
 TEST(CalibrationWithABadPosition, BlamesNoGoodOne) {
   struct Case {
     const char* file;

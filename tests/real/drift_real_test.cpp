@@ -1,5 +1,5 @@
-// Recordings that show no warm-up: two runs of a resting ADIS16405 (100 Hz, 10 000 s) whose bias
-// moves by steps, and thirty power-ups of an MPU-9250 (180 Hz, 60 s each).
+// Recordings without warm-up: two runs of a static ADIS16405 (100 Hz, 10 000 s) whose bias changes
+// in steps, and thirty power-ups of an MPU-9250 (180 Hz, 60 s each).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,7 +37,7 @@ double mean_of(View<double> values) {
   return sum / count;
 }
 
-/// Of the values given, over one less than their number.
+/// Sample standard deviation, with n − 1.
 double sample_std(View<double> values) {
   const double mean = mean_of(values);
   double squares = 0.0;
@@ -52,7 +52,7 @@ struct Axis {
   const char* channel;
 };
 
-// GoogleTest looks for a printer of this very name.
+// GoogleTest requires a printer of exactly this name.
 // NOLINTNEXTLINE(readability-identifier-naming)
 void PrintTo(const Axis& axis, std::ostream* out) {
   *out << "run " << axis.run << " " << axis.channel;
@@ -112,8 +112,8 @@ INSTANTIATE_TEST_SUITE_P(Axes,
                                          Axis{2, "acc_y"},
                                          Axis{2, "acc_z"}));
 
-// What plain least squares make of x and z: a time constant, known to a few per cent by their own
-// account. On y they run off to 15 000 s or stop at 13 s, as the start has it.
+// Result of plain least squares for x and z: a time constant with a stated uncertainty of a few per
+// cent. On y the fit diverges to 15 000 s or stops at 13 s, depending on the start.
 class PlainlyFittedAdis16405 : public DriftingAdis16405 {};
 
 TEST_P(PlainlyFittedAdis16405, HasATimeConstantOfFewPerCentThatIsNone) {
@@ -153,7 +153,7 @@ TEST(StepsOfTheAdis16405, TheHeightOfAStepIsWhatTheMeansOnItsTwoSidesDifferBy) {
   ASSERT_FALSE(found.fit.curve.steps.empty());
   const DriftStep& first = found.fit.curve.steps.front();
   const auto at = static_cast<std::size_t>(std::llround(first.t_s * adis_rate_hz));
-  constexpr std::size_t side = 2000;  // 20 s, less than the plateau behind it
+  constexpr std::size_t side = 2000;  // 20 s, less than the plateau after it
   const View<double> all(samples);
   const double height = mean_of(all.subspan(at, side)) - mean_of(all.subspan(at - side, side));
   EXPECT_NEAR(first.size.value, height, 3.0 * first.size.std);
@@ -194,7 +194,7 @@ struct PowerUps {
     return all;
   }
 
-  /// One a run, over a part of it.
+  /// One per run, over a part of it.
   [[nodiscard]] std::vector<double> means(double from, double to) const {
     std::vector<double> all;
     for (const std::vector<double>& values : series) {
@@ -224,7 +224,7 @@ TEST_P(PoweredUpMpu9250, ShowsNoWarmUpInWhatTheRunsHaveInCommon) {
   EXPECT_FALSE(set.warm_up.fit.reason.empty());
 }
 
-// What does show goes on from run to run: a straight line through the plain means.
+// The visible change is from run to run: a straight line through the plain means.
 TEST_P(PoweredUpMpu9250, MovesFromEachRunToTheNextAsALineThroughThePlainMeansDoes) {
   const PowerUps of_axis(GetParam());
   const RunSet set = compare_runs(of_axis.runs(), {}).value();
@@ -240,8 +240,9 @@ TEST_P(PoweredUpMpu9250, MovesFromEachRunToTheNextAsALineThroughThePlainMeansDoe
   EXPECT_LT(set.trend_p, 0.02);
 }
 
-// The second way: standard deviation of the plain means, less the Allan variance at the length of a
-// run, between that of a random walk and that of white noise when it is read at half that length.
+// Second computation: standard deviation of the plain means, minus the Allan variance at the length
+// of a run, between that of a random walk and that of white noise extrapolated from half that
+// length.
 TEST_P(PoweredUpMpu9250, ComesUpElsewhereEachTimeByAsMuchAsThePlainMeansScatter) {
   const PowerUps of_axis(GetParam());
   const RunSet set = compare_runs(of_axis.runs(), {}).value();
@@ -251,7 +252,7 @@ TEST_P(PoweredUpMpu9250, ComesUpElsewhereEachTimeByAsMuchAsThePlainMeansScatter)
   double half_variance = 0.0;
   for (std::size_t k = 0; k < first.size(); ++k)
     half_variance += 0.5 * (second[k] - first[k]) * (second[k] - first[k]) / power_ups;
-  const double chance = 1.3;  // 30 differences know a standard deviation to 13 %
+  const double chance = 1.3;  // 30 differences determine a standard deviation to 13 %
   EXPECT_GT(set.level.within_std, std::sqrt(half_variance / 2.0) / chance);
   EXPECT_LT(set.level.within_std, std::sqrt(half_variance * 2.0) * chance);
   const double most = std::sqrt(std::max(0.0, observed * observed - half_variance / 2.0));

@@ -1,4 +1,4 @@
-// Folders of phones and loggers, opened as a user would: by the name of the folder.
+// Folders of phones and loggers, opened by the folder's name, as by a user.
 #include <cmath>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ bool is_noted(const Recording& recording, const std::string& part) {
 
 class RealFolders : public testing::Test {
  protected:
-  /// The recording in a folder, which fails the test where it cannot be read.
+  /// The recording in a folder; fails the test if it cannot be read.
   static Recording read(const std::string& folder, const std::string& variable = {}) {
     io::ReadOptions options;
     if (!variable.empty()) options.variables = {variable};

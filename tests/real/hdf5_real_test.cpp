@@ -1,4 +1,4 @@
-// HDF5 and MAT 7.3 files of others, against what h5py 3.7 makes of them.
+// Third-party HDF5 and MAT 7.3 files, compared with h5py 3.7.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numeric>

@@ -1,4 +1,4 @@
-// LabVIEW measurement files of others: figures as their publishers' own reader has them.
+// Third-party LabVIEW measurement files: values from their publishers' own reader.
 #include <gtest/gtest.h>
 
 #include "proofmass/io/read_recording.hpp"

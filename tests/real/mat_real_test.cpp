@@ -1,4 +1,4 @@
-// MATLAB's own files, against what scipy 1.10.1 makes of them.
+// MATLAB's own files, compared with scipy 1.10.1.
 #include <algorithm>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ struct Specimen {
   const char* format;
   std::size_t channels;
   std::size_t samples;
-  Values last;  ///< the last channel, as far as it is given
+  Values last;  ///< the last channel, as far as it is listed
 };
 
 class MatSpecimen : public testing::TestWithParam<Specimen> {};

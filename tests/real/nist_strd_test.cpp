@@ -1,5 +1,4 @@
-// The certified fits of NIST's Statistical Reference Datasets, from both starts that come with
-// each.
+// The certified fits of NIST's Statistical Reference Datasets, from both given starts.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -21,7 +20,7 @@ using fit::LeastSquaresFit;
 using Predictors = View<double>;
 using Parameters = View<double>;
 
-// The models, x being the predictors of one row and b the parameters from b[0].
+// The models, x the predictors of one row and b the parameters from b[0].
 double chwirut(Predictors x, Parameters b) {
   return std::exp(-b[0] * x[0]) / (b[1] + b[2] * x[0]);
 }
@@ -83,7 +82,7 @@ struct Case {
   bool log_response = false;
 };
 
-// GoogleTest looks for a printer of this very name.
+// GoogleTest requires a printer of exactly this name.
 // NOLINTNEXTLINE(readability-identifier-naming)
 void PrintTo(const Case& set, std::ostream* out) {
   *out << set.name;

@@ -1,6 +1,6 @@
-// Two runs of a resting ADIS16405 (100 Hz, a million samples an axis, steps of 3.33 mg)
-// and the phase record that Stable32 is distributed with. The figures of the first were computed
-// once with NumPy and SciPy from their definitions.
+// Two runs of a static ADIS16405 (100 Hz, a million samples per axis, quantisation step 3.33 mg)
+// and the phase record distributed with Stable32. The values for the first were computed once with
+// NumPy and SciPy from their definitions.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -32,7 +32,7 @@ struct Axis {
   double density_mg_rthz;  ///< one-sided, root of the mean PSD from 20 to 40 Hz
 };
 
-// GoogleTest looks for a printer of this very name.
+// GoogleTest requires a printer of exactly this name.
 // NOLINTNEXTLINE(readability-identifier-naming)
 void PrintTo(const Axis& axis, std::ostream* out) {
   *out << "run " << axis.run << " " << axis.channel;
@@ -95,7 +95,7 @@ TEST_P(RestingAdis16405, HasTheFloorsThatWerePublished) {
                        [](const auto& a, const auto& b) { return a.value < b.value; });
   EXPECT_GT(lowest->value, 0.18);
   EXPECT_LT(lowest->value, 0.34);
-  // The level of the spectrum, read in a band that the analysis chooses.
+  // The level of the spectrum, in a band selected by the analysis.
   EXPECT_NEAR(found.lines.floor.one_sided_density / GetParam().density_mg_rthz, 1.0, 0.1);
 }
 
@@ -121,8 +121,8 @@ TEST_P(RestingAdis16405, ShowsTheBuildingAndKeepsItOutOfTheWhiteNoise) {
   EXPECT_TRUE(near(0.562, 0.025));
 }
 
-// At 1 s the curve reads the building; the white coefficient is the level below the filter, which
-// takes a fifth of it at 30 Hz.
+// At 1 s the curve shows the motion of the building; the white coefficient is the level below the
+// filter, which removes a fifth of it at 30 Hz.
 TEST_P(RestingAdis16405, ItsWhiteCoefficientIsThatOfTheSpectrumWithoutTheBuilding) {
   const NoiseAnalysis found = analysed();
   EXPECT_EQ(found.model.white.verdict, Verdict::identified);

@@ -1,4 +1,4 @@
-// Sensors that were turned by hand, rested or rode on a wheel, by others; see published_data.hpp.
+// Published recordings of sensors turned by hand, at rest or on a wheel; see published_data.hpp.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -63,13 +63,13 @@ double norm(const Vector& v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-// The parameters are those that imu_tk finds in its own 38 rests, and an independent fit's angles.
+// The parameters are those of imu_tk for its own 38 rests, and the angles of an independent fit.
 TEST(RestsOfImuTk, AreThirtyEightAndHaveTheNormOfGravity) {
   const auto file = published_data() / "imu-tk-xsens" / "xsens_acc.mat.xz";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
   const Accelerometer sensor = read(file, 100.0);
   const RestSearch search = sensor.search();
-  // One rest is knocked shortly before its end, to another level.
+  // One rest is disturbed shortly before its end, to another level.
   EXPECT_GE(search.rests.size(), 38U);
   EXPECT_LE(search.rests.size(), 39U);
   EXPECT_LT(search.rests[0].first, 10U);
@@ -91,7 +91,7 @@ TEST(RestsOfImuTk, AreThirtyEightAndHaveTheNormOfGravity) {
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(search.rests.size())), 0.98e-3, 0.1e-3);
 }
 
-// The six parts in which the sensor lay still, as its owner marked them; turns lie between.
+// The six intervals at rest as labelled by the owner, with rotations in between.
 TEST(RestsOfImucal, AreTheMarkedOnes) {
   const auto file = published_data() / "imucal-ferraris" / "annotated_session.csv.xz";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
@@ -105,7 +105,7 @@ TEST(RestsOfImucal, AreTheMarkedOnes) {
   }
 }
 
-// The 6-parameter fit of the same recording by others leaves 5.3 mm/s² rms.
+// The published 6-parameter fit of the same recording has residuals of 5.3 mm/s² rms.
 TEST(RestsOfAPhone, HaveTheNormOfGravity) {
   const auto file =
       published_data() / "tyrex-phones" / "calib_acc_Nexus5_d1" / "accelerometer.txt.xz";

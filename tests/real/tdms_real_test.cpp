@@ -25,7 +25,7 @@ TEST(PublishedTdms, TheBigEndianExampleOfLabviewIsRead) {
   EXPECT_NEAR(sweep->values[2], 0.1265799, 5e-8);
   EXPECT_EQ(read->time.rate_hz, 1000.0);
   EXPECT_EQ(read->samples(), 3500u);
-  EXPECT_FALSE(read->time.start_ns.has_value());  // 1904 is none
+  EXPECT_FALSE(read->time.start_ns.has_value());  // 1904 means not set
 }
 
 TEST(PublishedTdms, AWaveformWithItsStartIsReadAsItStands) {
@@ -35,11 +35,11 @@ TEST(PublishedTdms, AWaveformWithItsStartIsReadAsItStands) {
   ASSERT_TRUE(read.has_value()) << read.error().message;
   ASSERT_EQ(read->samples(), 128u);
   EXPECT_EQ(read->time.rate_hz, 1000.0);
-  // One turn of a sine in 128 samples.
+  // One period of a sine in 128 samples.
   for (std::size_t k = 0; k < 128; ++k)
     EXPECT_NEAR(read->channels[0].values[k],
                 std::sin(std::numbers::pi * static_cast<double>(k) / 64.0), 1e-12);
-  // 0xE1D61CFB seconds since 1904 and 0x1190B8 / 2^24 of one.
+  // 0xE1D61CFB seconds since 1904 plus 0x1190B8 / 2^24 s.
   EXPECT_EQ(read->time.start_ns, (std::int64_t{0xE1D61CFB} - 2'082'844'800) * 1'000'000'000 +
                                      std::llround(0x1190B8 / 16777216.0 * 1e9));
 }

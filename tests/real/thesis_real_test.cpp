@@ -1,5 +1,5 @@
-// The thesis's static test on recordings that show no warm-up: a resting ADIS16405 (100 Hz, 10 000
-// s) whose bias moves by steps, and a minute after the power-up of an MPU-9250 (180 Hz).
+// The thesis's static test on recordings without warm-up: a static ADIS16405 (100 Hz, 10 000 s)
+// whose bias changes in steps, and a minute after the power-up of an MPU-9250 (180 Hz).
 #include <algorithm>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -41,8 +41,8 @@ std::vector<StaticAxis> axes_of(const Recording& recording) {
   return axes;
 }
 
-/// Neither a1 nor T nor what the bias settles at is a number; where it was at first is one, the
-/// drift analysis's of the second axis.
+/// Neither a1 nor T nor the settled bias has a value; the initial bias has one, that of the drift
+/// analysis of the second axis.
 void expect_no_warm_up(const thesis::StaticTest& test) {
   const std::vector<Item> items = thesis::static_items(test);
   const Item& fit = item_of(items, "table 4.1");

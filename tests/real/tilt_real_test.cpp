@@ -1,4 +1,4 @@
-// A motor's axis with its true angle, a phone of the other sign, and sensors at rest.
+// A motor's axis with its true angle, a phone with the opposite sign, and static sensors.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -76,7 +76,7 @@ TEST(RealTilt, OfASensorThatLiesOnATableIsSmallAndItsBandCountsItsBias) {
   const auto solution = estimate::estimate_tilt(record_of(file, standard_gravity_mps2), {});
   ASSERT_TRUE(solution) << solution.error().message;
   EXPECT_FALSE(solution->moving);
-  // Its z axis reads 0.77 g: an uncalibrated unit, whose errors make degrees of tilt.
+  // Its z axis measures 0.77 g: an uncalibrated unit, whose errors cause degrees of tilt.
   ASSERT_TRUE(solution->final.pitch_rad);
   EXPECT_LT(std::abs(solution->final.pitch_rad->value), 3.0 * solution->final.pitch_rad->std);
   EXPECT_GT(solution->final.pitch_rad->std * deg, 5.0);
@@ -92,7 +92,7 @@ TEST(RealTilt, OfAPhoneOfTheOtherSignStandsOnItsHeadUnlessItIsTurnedRound) {
   const auto solution = estimate::estimate_tilt(record, options);
   ASSERT_TRUE(solution) << solution.error().message;
   ASSERT_GE(solution->rests.size(), 6U);
-  // It begins with its face up.
+  // It starts face up.
   EXPECT_NEAR(solution->rests.front().angles.roll_rad->value * deg, 0.0, 5.0);
   EXPECT_NEAR(solution->rests.front().angles.pitch_rad->value * deg, 0.0, 5.0);
 }

@@ -1,4 +1,4 @@
-// Clocks of recordings by others.
+// Clocks of published recordings.
 #include <gtest/gtest.h>
 
 #include "proofmass/io/read_recording.hpp"
@@ -8,7 +8,7 @@ namespace proofmass::timing_real_test {
 namespace {
 
 TEST(PublishedClock, OfRowsInBurstsGivesTheRateOfTheLongRun) {
-  // Half of the steps are 2 ms (490 Hz), and yet there are 65 067 rows in 655.1 s.
+  // Half of the intervals are 2 ms (490 Hz), although there are 65 067 rows in 655.1 s.
   const auto folder = published_data() / "sunsided-mpu6050";
   for (const char* name :
        {"unmoved-with-x-pointing-forward-10min", "unmoved-with-x-pointing-forward",

@@ -1,4 +1,4 @@
-// A barbell, a lift, a unit carried by hand with optical truth, and one that lay still.
+// A barbell, a lift, a unit carried by hand with optical ground truth, and one at rest.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@ using estimate::TrackOptions;
 using estimate::TrackSensor;
 using estimate::TrackSolution;
 
-/// Samples [first, last] of the recording's only accelerometer; a lone channel without an axis is
+/// Samples [first, last] of the recording's only accelerometer; a single channel without an axis is
 /// its x.
 TrackSensor sensor_of(const Recording& recording, std::size_t first, std::size_t last) {
   TrackSensor sensor;
@@ -53,7 +53,7 @@ TrackSolution track(const TrackSensor& sensor, const TrackOptions& options = {})
   return std::move(solution).value();
 }
 
-/// What somebody noted of a set, and what its recording shows.
+/// Notes on a set of repetitions, and the values from its recording.
 struct BarbellSet {
   const char* folder;
   std::size_t noted_strokes;
@@ -86,8 +86,8 @@ double median_length(const TrackSolution& solution) {
   return median(lengths).value_or(0.0);
 }
 
-/// How often the velocity, integrated once from the start, swings from below −v to above v: a count
-/// that knows nothing of filters, of positions or of their turns.
+/// Number of upward crossings of the velocity, integrated once from the start, from below −v to
+/// above v: a count that is independent of filters, positions and turning points.
 std::size_t swings_upwards(const TrackSensor& sensor, double v_mps) {
   const std::vector<double>& accel = sensor.accel_mps2[2];
   const double level = moments(View<double>(accel).subspan(0, 200)).mean;
@@ -112,9 +112,9 @@ TEST_P(Barbell, HasTheStrokesThatItsVelocitySwingsThrough) {
   EXPECT_GT(found.axis[2], 0.99);
 }
 
-// The tape says 0.50, 0.50, 0.50 and 0.32 m. The recordings say otherwise and close as
-// accelerations do: the velocity comes back to 0 and the bar to where it lay. docs/methods/track.md
-// weighs the two.
+// By tape measure 0.50, 0.50, 0.50 and 0.32 m. The recordings disagree, and their accelerations are
+// consistent: the velocity returns to 0 and the bar to its position. docs/methods/track.md
+// discusses both.
 TEST_P(Barbell, HasTheMedianLengthThatItsAccelerationsIntegrateTo) {
   const TrackSolution open = track(sensor());
   RecordProperty("median_m", std::to_string(median_length(open)));
@@ -148,7 +148,7 @@ TEST(Lift, WhoseColumnOfAccelerationBehavesAsJerkHasNoDisplacement) {
   EXPECT_TRUE(found.strokes.empty());
   EXPECT_TRUE(std::any_of(found.notes.begin(), found.notes.end(),
                           [](const Note& note) { return note.severity == Severity::bad; }));
-  // The lift rose some 71 m; taken as they are, the readings lead to a few metres.
+  // The lift rose about 71 m; the uncorrected measurements give a few metres.
   TrackOptions insists;
   insists.take_as_acceleration = true;
   const TrackSolution taken = track(sensor, insists);
@@ -181,8 +181,8 @@ class Broad : public testing::Test {
 constexpr std::array<std::array<double, 3>, 3> world_axes{
     {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
 
-// At each break the unit was laid back to within 2 mm of where it began: whatever the heading, the
-// truth along every axis is 0.
+// At each break the unit was returned to within 2 mm of its start: for any heading, the truth along
+// every axis is 0.
 TEST_F(Broad, BetweenBreaksItsBandsCoverTheError) {
   const std::array<std::array<double, 2>, 4> moves{
       {{32.0, 77.0}, {77.0, 108.0}, {108.0, 138.0}, {138.0, 175.0}}};
@@ -208,7 +208,7 @@ TEST_F(Broad, BetweenBreaksItsBandsCoverTheError) {
   EXPECT_EQ(inside, 12U);
 }
 
-// Height needs no heading either, and on the way it is known to the millimetre.
+// Height is independent of heading too, and known to a millimetre during the motion.
 TEST_F(Broad, OnTheWayTheBandOfTheHeightCoversTheTruth) {
   TrackOptions options;
   options.axis = world_axes[2];
@@ -235,7 +235,7 @@ TEST(XsensAtRest, GoesNowhere) {
   TrackSensor sensor;
   for (std::size_t k = 0; k < counts.samples(); ++k) sensor.time_s.push_back(counts.time.at(k));
   const std::array names{"x", "y", "z"};
-  const std::array zero{33'123.85, 33'276.0, 32'364.0};  // of its calibration, in counts
+  const std::array zero{33'123.85, 33'276.0, 32'364.0};  // from its calibration, in counts
   for (std::size_t a = 0; a < 3; ++a)
     for (const double value : counts.find(names[a])->values)
       sensor.accel_mps2[a].push_back((value - zero[a]) / 414.4);

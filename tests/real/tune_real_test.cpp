@@ -1,4 +1,4 @@
-// Noise figures of recordings by others: a resting ADIS16405 (100 Hz), a resting Xsens unit
+// Noise parameters of published recordings: a static ADIS16405 (100 Hz), a static Xsens unit
 // (counts) and a barbell in motion.
 #include <cmath>
 #include <filesystem>
@@ -30,7 +30,7 @@ Tuning tuned(const std::vector<double>& values, TuneModel model) {
       .value();
 }
 
-// Moved by its standard deviation along each axis, the likelihood falls by about a half.
+// At one standard deviation along each axis, the log-likelihood is lower by about a half.
 void expect_summit(const Tuning& tuning, const std::vector<double>& values) {
   for (std::size_t j = 0; j < tuning.parameters.size(); ++j) {
     if (!tuning.parameters[j].value) continue;
@@ -60,7 +60,7 @@ TEST(TunedAdis16405, HasTheDensityThatItsSpectrumHas) {
   EXPECT_NEAR(found.parameters[0].value->value / floor, 1.05, 0.05);
   EXPECT_TRUE(found.parameters[1].value.has_value());
   expect_summit(found, values);
-  // What looks like a fast walk are the building's swings, which add up to nothing.
+  // An apparent fast random walk is due to the building's sway, which averages to zero.
   const estimate::Consistency consistency = estimate::consistency_of(found);
   EXPECT_EQ(consistency.verdict, estimate::Verdict::coloured);
   EXPECT_EQ(consistency.nis > 0.99 && consistency.nis < 1.01, true);

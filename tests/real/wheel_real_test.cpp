@@ -1,5 +1,6 @@
-// A car's wheels with two units on each, at the hub and at a radius (trials 06 and 10). The turns
-// are those counted from gravity's phase by two other methods, good to about 0.015 turn.
+// A car's wheels with two units on each, at the hub and at a radius (trials 06 and 10). The numbers
+// of turns were counted from the phase of gravity by two other methods, accurate to about 0.015
+// turn.
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -132,8 +133,8 @@ INSTANTIATE_TEST_SUITE_P(Trials,
                                          Wheel{"trial06", "3", 79.924, 79.924, 0.165},
                                          Wheel{"trial10", "1", -105.411, -105.411, 0.143}));
 
-/// The right wheel of a wheelchair pushed by hand: 19.32 ± 0.02 turns, the fraction from gravity's
-/// direction at both ends and the whole turns from the gyroscope.
+/// The right wheel of a wheelchair pushed by hand: 19.32 ± 0.02 turns, the fraction from the
+/// direction of gravity at both ends and the whole turns from the gyroscope.
 TEST(Wheelchair, TurnsAsGravityAndTheGyroscopeSayWithItAndWithout) {
   const auto file =
       published_data() / "worklab-wheelchair" / "NGIMU - 3 Right - 003383F9" / "sensors.csv.xz";

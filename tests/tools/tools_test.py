@@ -22,7 +22,7 @@ def local(body):
 
 class CheckUnits(unittest.TestCase):
     def offences(self, one, two, rest=""):
-        """What is said of one.cpp and two.cpp in a unit, rest.cpp beside it."""
+        """The offences reported for one.cpp and two.cpp in a unit, with rest.cpp beside it."""
         check_units = load("check_units")
         with tempfile.TemporaryDirectory() as root:
             check_units.ROOT = Path(root)

@@ -6,13 +6,13 @@
 
 #include "wheel_world.hpp"
 
-// How often the intervals of estimate_wheel() hold the truth.
+// Coverage of the intervals of estimate_wheel().
 namespace proofmass::wheel_world {
 
-/// Errors over stated standard deviations of one figure, over many recordings.
+/// Errors of one parameter in units of its stated standard deviation, over many recordings.
 struct Tally {
   std::vector<double> z;
-  std::size_t none = 0;  ///< not given
+  std::size_t none = 0;  ///< no value given
 
   void add(const std::optional<Uncertain>& told, double truth);
   void append(const Tally& other);

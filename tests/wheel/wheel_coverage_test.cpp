@@ -1,5 +1,5 @@
-// A part of the table that wheel_coverage prints: every band holds the truth as often as it says,
-// or more often, and none is off by more than chance and a rare coarse draw allow.
+// A part of the table printed by wheel_coverage: every interval has at least the stated coverage,
+// and no error is larger than chance and rare gross draws allow.
 #include "wheel_coverage.hpp"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ using wheel_world::Coverage;
 using wheel_world::Scenario;
 using wheel_world::Tally;
 
-/// Least share of 95 % intervals that may hold the truth: two in a hundred thousand true 95 %
-/// figures fall below.
+/// Minimum coverage of a 95 % interval: a true 95 % interval falls below it in two of a hundred
+/// thousand cases.
 double least_coverage(std::size_t given) {
   return 0.95 - 4.1 * std::sqrt(0.95 * 0.05 / static_cast<double>(given));
 }
@@ -29,8 +29,9 @@ TEST_P(WheelCoverage, IsAsStated) {
     EXPECT_GE(tally->coverage_95(), least_coverage(tally->given()));
     EXPECT_LT(tally->largest(), 5.0);
   }
-  // Pushes by hand and a speed that ripples by 1 % are known to leave the constants a little too
-  // sure (docs/methods/wheel.md); a band that holds half of the time is no band.
+  // Pushes by hand and a speed with 1 % ripple are known to make the constants slightly
+  // overconfident (docs/methods/wheel.md); an interval with a coverage of one half would be
+  // useless.
   for (const Tally* tally : {&found.radius, &found.bias, &found.scale, &found.skew}) {
     if (tally->given() == 0) continue;
     EXPECT_GE(tally->coverage_95(), least_coverage(tally->given()) - 0.1);

@@ -25,7 +25,7 @@ estimate::test::Stream stream_of(const Recorded& recorded, estimate::LiveWheelOp
   return stream;
 }
 
-/// The truth at any time, along a line between rows.
+/// The truth at any time, interpolated linearly between rows.
 double angle_at(const Truth& truth, double time_s) {
   const auto next = std::ranges::upper_bound(truth.time_s, time_s) - truth.time_s.begin();
   const auto k =

@@ -8,7 +8,7 @@
 namespace proofmass::wheel_world {
 namespace {
 
-/// What every scenario starts from: a wheel between 20 and 150 rpm, an uncalibrated sensor.
+/// Common basis of all scenarios: a wheel between 20 and 150 rpm, an uncalibrated sensor.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : random_(seed, "world") {
@@ -35,7 +35,7 @@ class Draw {
     return *(courses.begin() +
              static_cast<int>(random_.unit() * static_cast<double>(courses.size())));
   }
-  /// Keeps the fastest sample below an eighth of a turn.
+  /// Limits the fastest sample to an eighth of a turn.
   double speed_within(double low_rpm, double high_rpm) {
     return log_between(low_rpm, high_rpm) * radps_per_rpm;
   }
@@ -160,7 +160,7 @@ World pair(std::uint64_t seed) {
   World& world = draw.world();
   world.course = draw.one_of(bench);
   world.units.push_back(draw.unit());
-  // The same box twice, as a rig has it: the second's axes may point anywhere.
+  // Two identical units, as on a rig: the second's axes may point in any direction.
   return world;
 }
 

@@ -64,7 +64,7 @@ class Command {
         return slow * (1.0 + share);
       }
       case Course::pushes: {
-        // Each push adds speed within a quarter of a second; rolling takes it off again.
+        // Each push adds speed within a quarter of a second; rolling resistance reduces it again.
         double speed = 0.0;
         for (const Push& push : pushes_) {
           const double since = t - push.at_s;
@@ -86,7 +86,7 @@ class Command {
   std::vector<Push> pushes_;
 };
 
-/// Speed of the wheel: the commanded one, rippling with the angle.
+/// Speed of the wheel: the commanded one with a ripple depending on the angle.
 class Motion {
  public:
   Motion(const World& world, std::uint64_t seed) : command_(world, seed), ripple_(world.ripple) {
@@ -101,7 +101,7 @@ class Motion {
     return command_.at(t) * share;
   }
 
-  /// Runge and Kutta's fourth order.
+  /// Runge–Kutta of fourth order.
   [[nodiscard]] double next(double t, double angle) const {
     const double h = step_s;
     const double a = speed(t, angle), b = speed(t + h / 2, angle + h / 2 * a);
@@ -136,7 +136,7 @@ class Resonance {
   double a1_, a2_, gain_, last_ = 0.0, before_ = 0.0;
 };
 
-/// Shaking of the hub with an rms of 1, along one direction.
+/// Vibration of the hub with an rms of 1, along one direction.
 class Road {
  public:
   Road(std::uint64_t seed, const char* direction) : random_(seed, direction) {}
@@ -150,13 +150,13 @@ class Road {
   Resonance body_{1.5, 3.0}, axle_{12.0, 3.0}, tyre_{60.0, 4.0};
 };
 
-/// Where the wheel's plane lies: first and second axis and axle, in inertial coordinates (z up).
+/// The plane of the wheel: first and second axis and axle, in inertial coordinates (z up).
 struct Frame {
   Vec3 first{1.0, 0.0, 0.0}, second, axle;
   explicit Frame(double tilt_rad)
       : second{0.0, std::sin(tilt_rad), std::cos(tilt_rad)},
         axle{0.0, -std::cos(tilt_rad), std::sin(tilt_rad)} {}
-  /// Of a point at radius and angle in the plane.
+  /// Position of a point at a radius and angle in the plane.
   [[nodiscard]] Vec3 point(double radius, double angle) const {
     Vec3 p{};
     for (std::size_t i = 0; i < 3; ++i)
@@ -165,9 +165,9 @@ struct Frame {
   }
 };
 
-/// One pole, stepped.
+/// A one-pole filter, stepped.
 struct Pole {
-  double share = 1.0;  ///< of what comes in, kept in a step
+  double share = 1.0;  ///< fraction of the input kept in a step
   double value = 0.0;
   void set(double pole_hz) {
     share = pole_hz > 0.0 ? 1.0 - std::exp(-2.0 * pi * pole_hz * step_s) : 1.0;
@@ -175,7 +175,7 @@ struct Pole {
   void take(double input, bool first) { value = first ? input : value + share * (input - value); }
 };
 
-/// What one unit puts out along u, v and the axle, and its gyroscope about the axle.
+/// Output of one unit along u, v and the axle, and of its gyroscope about the axle.
 class Output {
  public:
   Output(const Unit& unit, const Frame& frame) : unit_(unit), frame_(frame) {
@@ -209,7 +209,7 @@ class Output {
   std::array<Pole, 4> poles_;
 };
 
-/// Rows of one unit: what it reads from what it puts out.
+/// Rows of one unit, measured from its output.
 class Rows {
  public:
   Rows(const Unit& unit, std::uint64_t seed, std::size_t index)
@@ -251,8 +251,8 @@ class Rows {
   std::vector<double> gyro_;
 };
 
-/// Stamps of packets: all rows of one bear nearly the time at which it came, late by what the air
-/// made of it.
+/// Packet stamps: all rows of a packet have about the time of its arrival, delayed by the radio
+/// link.
 class Stamps {
  public:
   Stamps(const World& world, std::uint64_t seed) : world_(world), random_(seed, "stamps") {}
@@ -299,7 +299,7 @@ Recorded record(const World& world, std::uint64_t seed) {
   const auto last_row = static_cast<std::size_t>(std::floor(world.duration_s * world.rate_hz));
   std::size_t row = 0;
   double t = -lead_s, last_t = 0.0;
-  // The angle one step back, now, and one step on.
+  // The angle one step before, now, and one step after.
   std::array<double, 3> angle{};
   angle[1] = world.start_angle_rad;
   angle[0] = angle[1] - step_s * motion.speed(t, angle[1]);
@@ -318,7 +318,7 @@ Recorded record(const World& world, std::uint64_t seed) {
       before[i] = outputs[i].values();
       outputs[i].take(angle, hub, first);
     }
-    // Rows that fall between the step before and this one.
+    // Rows between the previous step and this one.
     while (row <= last_row && static_cast<double>(row) / world.rate_hz <= t) {
       const double at = static_cast<double>(row) / world.rate_hz;
       const double share = 1.0 - (t - at) / step_s;
@@ -346,7 +346,7 @@ Recorded record(const World& world, std::uint64_t seed) {
     angle = {angle[1], angle[2], motion.next(t, angle[2])};
   }
   out.truth.units = world.units;
-  // Only about the axle: the other two axes of a gyroscope on a wheel show next to nothing.
+  // Only about the axle: the other two axes of a gyroscope on a wheel measure almost nothing.
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].gyro().empty()) continue;
     out.sensors[i].rate_radps[2] = rows[i].gyro();

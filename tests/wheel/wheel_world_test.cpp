@@ -1,5 +1,5 @@
-// The two simulators of wheels against each other: closed forms in the wheel's axes on one side, a
-// body stepped in inertial coordinates on the other.
+// Comparison of the two simulators of wheels: closed forms in the wheel's axes, and a body stepped
+// in inertial coordinates.
 #include "wheel_world.hpp"
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 using wheel_world::Unit;
 using wheel_world::World;
 
-/// A sensor that errs in nothing, at 80 mm, on a wheel of constant speed.
+/// An ideal sensor at 80 mm on a wheel of constant speed.
 World bare_world() {
   World world;
   world.duration_s = 4.0;
@@ -77,7 +77,7 @@ TEST(WheelWorld, ReadsWhatTheRigReadsOnATiltedAxle) {
   EXPECT_LT(largest_difference(world, 0), 1e-4);
 }
 
-// Two discretisations of one pole, after it has settled.
+// Two discretisations of one pole, after settling.
 TEST(WheelWorld, DelaysAsTheRigDelays) {
   World world = bare_world();
   world.units.front().pole_hz = 30.0;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks a built site: every link, anchor and picture inside it is there, and nothing is fetched from outside.
+"""Checks a built site: every internal link, anchor and picture exists, and nothing is loaded from another site.
 
     tools/site/check_site.py build/site
 """
@@ -14,7 +14,7 @@ CSS_FETCH = re.compile(r"""(?:url\(\s*["']?|@import\s+["'])((?:https?:)?//[^"')]
 
 
 class Page(HTMLParser):
-    """What one page refers to, and the anchors that it has."""
+    """The references of one page, and its anchors."""
 
     def __init__(self, text: str):
         super().__init__()

@@ -1,4 +1,4 @@
-"""How Sphinx makes the site: pages in Markdown, no script, font or picture from anywhere else."""
+"""Sphinx configuration of the site: pages in Markdown, no script, font or picture from another site."""
 import re
 from pathlib import Path
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Lays out what the site is made of: README, CHANGELOG, CONTRIBUTING and docs/, as they lie in the repository.
+"""Collects the sources of the site: README, CHANGELOG, CONTRIBUTING and docs/, with the repository's layout.
 
     tools/site/stage.py build/site-source
 
-Links stay as they are, so that the same pages serve readers of the repository. What a page links to that is
-no page gets one of its own: a source file as a listing, a folder as a list of its files. The README is the
-front page. A link to what is not there is an error.
+Links are unchanged, so that the same pages work in the repository. A link target that is not a page gets
+its own page: a source file as a listing, a folder as a list of its files. The README is the front page. A
+broken link is an error.
 """
 import os
 import re
@@ -25,7 +25,7 @@ LINK = re.compile(r"(\]\()([^)\s#]+)(#[^)\s]*)?(\))")
 
 
 def target_page(path: Path) -> Path:
-    """Where a file or folder of the repository stands on the site."""
+    """The page of a file or folder of the repository on the site."""
     if path == ROOT / "README.md":
         return ROOT / "index.md"
     if path.is_dir():
@@ -38,11 +38,11 @@ def target_page(path: Path) -> Path:
 class Stage:
     def __init__(self, folder: Path):
         self.folder = folder
-        self.linked = set() # files and folders that are linked to and are no pages
+        self.linked = set() # linked files and folders that are not pages
         self.broken = []
 
     def rewrite(self, page: Path, text: str) -> str:
-        """The text of a page with links to what the site has in place of the repository's files."""
+        """The text of a page with links to the site's pages instead of the repository's files."""
 
         def link(match) -> str:
             before, target, anchor, after = match.groups()
@@ -57,7 +57,7 @@ class Stage:
                 self.linked.add(path)
             return f"{before}{os.path.relpath(there, page.parent)}{anchor or ''}{after}"
 
-        pieces = re.split(r"(^```.*?^```|`[^`\n]*`)", text, flags=re.S | re.M) # code stays as it is
+        pieces = re.split(r"(^```.*?^```|`[^`\n]*`)", text, flags=re.S | re.M) # code is unchanged
         return "".join(p if p.startswith("`") else LINK.sub(link, p) for p in pieces)
 
     def write(self, page: Path, text: str):
@@ -90,7 +90,7 @@ def toctree(caption: str, pages: list) -> str:
 
 
 def contents(others: list, listings: list) -> str:
-    """The site's contents; a page of docs/ that no list names stands under Reference."""
+    """The site's contents; a page of docs/ that is in no list is under Reference."""
     return "".join([
         toctree("Begin", ["docs/index"]),
         toctree("Chapters", [f"docs/{name}" for name in CHAPTERS]),

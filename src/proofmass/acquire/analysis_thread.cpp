@@ -15,7 +15,7 @@ std::size_t bytes_of(const Rows& rows) {
   return bytes_for(rows.rows(), rows.channels.size());
 }
 
-/// A copy that keeps the memory it has.
+/// Copies the block, reusing the memory of `out`.
 void copy(const Block& block, Rows& out) {
   out.stamps_s.assign(block.stamps_s.begin(), block.stamps_s.end());
   out.channels.resize(block.channels.size());
@@ -104,7 +104,7 @@ bool AnalysisThread::is_done() const {
   return is_over_ && made_.empty();
 }
 
-/// False: nothing will come, and nothing is to be finished.
+/// False: no task will come, and nothing remains to be finished.
 bool AnalysisThread::wait_for_task(std::unique_lock<std::mutex>& lock) {
   const auto has_room = [&] { return made_.empty() || made_bytes_ <= most_bytes_; };
   changed_.wait(lock, [&] { return stops_ || (has_room() && (finishes_ || !tasks_.empty())); });
@@ -136,7 +136,7 @@ void AnalysisThread::run() {
   }
 }
 
-/// Without a task it is the end. False: nothing more comes of it.
+/// Without a task, finishes the analysis. False: there will be no further result.
 bool AnalysisThread::work(const Task* task, Analysed& out) {
   out.estimates.clear();
   out.estimates.channels.resize(analysis_->columns().size());

@@ -18,42 +18,41 @@
 
 namespace proofmass::acquire {
 
-/// What an analysis made of one block of samples.
+/// Result of an analysis for one block of samples.
 struct Analysed {
-  Rows estimates{};  ///< there may be none
+  Rows estimates{};  ///< may be empty
   std::vector<Note> notes{};
-  double time_s = 0.0;                    ///< of the last sample it has had
-  std::optional<std::int64_t> host_ns{};  ///< when that arrived; absent of what comes at the end
-  std::optional<Error> failure{};         ///< it is the last then
+  double time_s = 0.0;                    ///< time of the last sample processed
+  std::optional<std::int64_t> host_ns{};  ///< arrival of that sample; absent for rows at the end
+  std::optional<Error> failure{};         ///< no more results follow
 };
 
-/// Runs an analysis on a thread of its own, so that one that takes long holds nobody up: so many
-/// bytes of samples wait for it at most, and of estimates for whoever takes them. put() and what
-/// follows it are called by one thread.
+/// Runs an analysis on its own thread, so that a slow one does not delay the recording. The queues
+/// for samples and for estimates are limited in bytes. put() and the methods after it are called by
+/// one thread.
 class AnalysisThread {
  public:
-  /// tell: called on the analysis's thread whenever there is something to take.
+  /// tell: called on the analysis's thread whenever a result is available.
   AnalysisThread(std::unique_ptr<LiveAnalysis> analysis,
                  std::size_t most_bytes,
                  std::function<void()> tell);
   AnalysisThread(const AnalysisThread&) = delete;
   AnalysisThread& operator=(const AnalysisThread&) = delete;
-  /// Waits for the block that is worked on; the others are forgotten.
+  /// Waits for the block in progress; the others are discarded.
   ~AnalysisThread();
 
-  /// False: there is no room for this block; there is none either until half of what waits is done.
+  /// False: no room for this block, and none until half of the queue is processed.
   [[nodiscard]] bool put(const Block& samples, std::int64_t host_ns);
-  /// What was made of the next block in place of an old one; false: nothing within the patience, or
-  /// nothing is on its way.
+  /// Swaps in the result of the next block; false: none within the patience, or none pending.
   [[nodiscard]] bool take(Analysed& out, std::chrono::milliseconds patience);
-  /// No sample follows: once what waits is done, the analysis finishes.
+  /// Ends the input: once the queue is processed, the analysis finishes.
   void finish();
-  /// Forgets the samples that wait; how many rows.
+  /// Discards the queued samples; returns their number of rows.
   std::size_t forget_waiting();
 
-  /// Nothing waits, is worked on or is to be taken.
+  /// True if nothing is queued, in progress or ready to take.
   [[nodiscard]] bool is_idle() const;
-  /// Idle for good: it has finished or failed.
+  /// True if idle for good: finished or failed.
   [[nodiscard]] bool is_done() const;
 
  private:
@@ -71,7 +70,7 @@ class AnalysisThread {
   const std::unique_ptr<LiveAnalysis> analysis_;
   const std::size_t most_bytes_;
   const std::function<void()> tell_;
-  double time_s_ = 0.0;  ///< of the last sample; the thread's alone
+  double time_s_ = 0.0;  ///< time of the last sample; used by the thread alone
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
@@ -80,7 +79,7 @@ class AnalysisThread {
   std::vector<Task> spare_tasks_;
   std::vector<Analysed> spare_made_;
   std::size_t task_bytes_ = 0, made_bytes_ = 0;
-  bool is_full_ = false;  ///< and not half empty again yet
+  bool is_full_ = false;  ///< set until the queue is half empty again
   bool is_busy_ = false;
   bool finishes_ = false;
   bool is_over_ = false;

@@ -5,7 +5,7 @@
 namespace proofmass::acquire {
 namespace {
 
-/// About what an item holds; none is for nothing.
+/// Approximate size of an item; never 0.
 std::size_t bytes_of(const Incoming& item) {
   const Arrival& arrival = item.arrival;
   std::size_t bytes = sizeof(Incoming) + 8 * arrival.rows() * arrival.channels.size() +

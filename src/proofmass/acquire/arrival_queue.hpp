@@ -11,19 +11,18 @@
 
 namespace proofmass::acquire {
 
-/// Between the thread that reads a source and the one that works on what it reads: so many bytes at
-/// most, in arrivals that go round.
+/// Queue between the thread that reads a source and the one that processes its data; limited in
+/// bytes, with arrivals that are reused.
 class ArrivalQueue {
  public:
   explicit ArrivalQueue(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
-  /// Takes an item and leaves an old one in its place, to be filled again. False: there is no room,
-  /// and none came within the patience; the item is untouched. What is neither rows nor notes
-  /// always has room.
+  /// Adds an item and returns an old one in its place, to be reused. False: no room within the
+  /// patience; the item is unchanged. Items other than rows and notes always have room.
   [[nodiscard]] bool put(Incoming& item, std::chrono::milliseconds patience);
-  /// The next item in place of an old one, which is kept to be filled again.
+  /// Swaps in the next item; the old one is kept for reuse.
   [[nodiscard]] bool take(Incoming& item, std::chrono::milliseconds patience);
-  /// Whoever waits to take something waits no longer.
+  /// Wakes a waiting take().
   void wake();
 
  private:

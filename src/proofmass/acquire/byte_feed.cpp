@@ -56,7 +56,7 @@ class StreamSource final : public Source {
     is_dry_ = fed->bytes == 0;
     return !ended_;
   }
-  /// Packets are small, and many may have come: what is there goes into one arrival.
+  /// Packets are small and many may be waiting: takes all of them into one arrival.
   Status take_what_waits() {
     constexpr int most_packets = 64;
     for (int i = 0; i < most_packets && !is_dry_ && !ended_; ++i) {
@@ -71,7 +71,7 @@ class StreamSource final : public Source {
   Carrier carrier_;
   SourceHead head_;
   bool ended_ = false;
-  bool is_dry_ = false;  ///< nothing was there
+  bool is_dry_ = false;  ///< no data were available
   std::vector<char> buffer_;
 };
 
@@ -79,7 +79,7 @@ class StreamSource final : public Source {
 
 bool wait_readable(int descriptor, std::chrono::milliseconds patience) {
   pollfd watched{descriptor, POLLIN, 0};
-  // A signal may end the wait early, as if nothing had come.
+  // A signal may end the wait early, as if no data had arrived.
   return ::poll(&watched, 1, static_cast<int>(patience.count())) > 0;
 }
 

@@ -57,8 +57,8 @@ std::optional<Uncertain> ClockFit::rate_error() const {
     neighbours += before * residual;
     before = residual;
   }
-  // Of a first-order process, where it is more than what scatter alone shows one time in twenty; a
-  // line takes some of it out, which is put back.
+  // Autocorrelation of a first-order process, if it exceeds the 95 % level of white scatter.
+  // Fitting a line reduces it; the bias is corrected.
   const double found = squares > 0.0 ? neighbours / squares + 2.0 / n : 0.0;
   const double correlation = found > 1.645 / std::sqrt(n) ? std::min(found, 0.95) : 0.0;
   const double variance = squares / (n - 2.0) / xx * (1.0 + correlation) / (1.0 - correlation);

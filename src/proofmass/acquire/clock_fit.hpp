@@ -8,29 +8,29 @@
 
 namespace proofmass::acquire {
 
-/// How the host's clock runs against another, told from when things arrived: delays are positive
-/// only and come in bursts, so that of each second the earliest arrival counts. A line through
-/// these by least squares; its uncertainty is from the scatter about it, with what neighbours have
-/// in common. See docs/methods/record.md.
-/// Memory: 4096 points at most; from there on stretches are twice as long.
+/// Rate of the host's clock relative to another, estimated from arrival times. Delays are positive
+/// and bursty, so only the earliest arrival of each second is used. A least-squares line through
+/// these; its uncertainty is from the scatter about the line, including autocorrelation. See
+/// docs/methods/record.md.
+/// Memory: at most 4096 points; beyond that the intervals are doubled.
 class ClockFit {
  public:
-  /// Something that was at `own_s` by its own clock arrived at `host_s` by the host's.
+  /// A sample with the time `own_s` on its own clock arrived at `host_s` on the host's.
   void add(double own_s, double host_s);
 
-  /// Host's seconds for one of its own, less 1; nullopt before half a minute.
+  /// Host's seconds per second of the other clock, minus 1; nullopt before half a minute.
   [[nodiscard]] std::optional<Uncertain> rate_error() const;
 
  private:
   struct Point {
     double own_s;
-    double ahead_s;  ///< host's time less its own
+    double ahead_s;  ///< host's time minus the other clock's
   };
   void halve();
 
   std::vector<Point> points_;
   double stretch_s_ = 1.0;
-  double next_s_ = 0.0;  ///< where the next stretch begins
+  double next_s_ = 0.0;  ///< start of the next interval
 };
 
 }  // namespace proofmass::acquire

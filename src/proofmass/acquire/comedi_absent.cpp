@@ -1,4 +1,4 @@
-// What stands in for the comedi sources where comedilib was not there at build time.
+// Replaces the comedi sources if comedilib was not available at build time.
 #include "proofmass/acquire/source_list.hpp"
 
 namespace proofmass::acquire {

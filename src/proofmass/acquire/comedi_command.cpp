@@ -40,7 +40,7 @@ Status open_inputs(const ComediRequest& request, ComediCommand& out) {
                     "rate",
                     request.path, comedi_get_board_name(out.device.get())));
   out.sample_bytes = (flags & SDF_LSAMPL) != 0 ? sizeof(lsampl_t) : sizeof(sampl_t);
-  // The largest buffer that the card allows: room for whoever reads late.
+  // The largest buffer that the card allows, so that a late reader loses nothing.
   const int most = comedi_get_max_buffer_size(out.device.get(), out.subdevice);
   if (most > 0)
     (void)comedi_set_buffer_size(out.device.get(), out.subdevice, static_cast<unsigned>(most));
@@ -60,8 +60,8 @@ Status check_range(const ComediRequest& request, const ComediCommand& out, unsig
                                                    channel, there.empty() ? "none" : there)};
 }
 
-// Cards that calibrate in software keep their figures in a file, which comedi_soft_calibrate
-// writes; the others correct themselves.
+// Cards with software calibration keep their coefficients in a file written by
+// comedi_soft_calibrate; the others correct themselves.
 CalibrationFile calibration_of(ComediCommand& out) {
   comedi_t* const device = out.device.get();
   const auto flags = static_cast<unsigned>(comedi_get_subdevice_flags(device, out.subdevice));
@@ -128,7 +128,7 @@ Status add_channels(const ComediRequest& request, ComediCommand& out) {
   return Done{};
 }
 
-// The card rounds the periods to what its clock can do, each time that it is asked, until nothing
+// The card rounds the periods to the resolution of its clock on every call: repeat until nothing
 // changes.
 Status set_rate(const ComediRequest& request, ComediCommand& out) {
   comedi_t* const device = out.device.get();

@@ -80,7 +80,7 @@ class ComediSource : public Source {
     return comedi_to_physical(figure, &card_.to_physical[channel]);
   }
 
-  // A reading may end within a row: the rest of it waits for the next.
+  // A read may end within a row: the remainder waits for the next one.
   void take_rows(Arrival& arrival) {
     const std::size_t row_bytes = card_.sample_bytes * card_.heads.size();
     const std::size_t rows = filled_ / row_bytes;
@@ -98,7 +98,8 @@ class ComediSource : public Source {
     has_restarted_ = false;
   }
 
-  // Its buffer ran over, and the driver gave up. How many rows are missing only the clock knows.
+  // The driver's buffer overflowed and the acquisition stopped. The number of missing rows follows
+  // from the clock alone.
   Result<Arrived> restart(Arrival& arrival) {
     if (std::exchange(has_restarted_, true))
       return Error{Errc::device,
@@ -124,7 +125,7 @@ class ComediSource : public Source {
   std::size_t filled_ = 0;
   std::int64_t last_ns_ = 0;
   std::uint64_t lost_ = 0;
-  bool has_restarted_ = false;  // and has given no row since
+  bool has_restarted_ = false;  // and has returned no row since
 };
 
 Result<std::vector<unsigned>> channels_in(std::string_view list) {
@@ -159,7 +160,7 @@ Result<ComediRequest> comedi_request(SourceUri& uri) {
                              std::string_view("diff"), std::string_view("other")};
   const auto reference = uri.choice("aref", {words.begin(), words.end()});
   if (!reference) return reference.error();
-  // They are numbered in this order: AREF_GROUND is 0.
+  // Numbered in this order: AREF_GROUND is 0.
   request.reference =
       static_cast<unsigned>(std::ranges::find(words, std::string_view(*reference)) - words.begin());
   const Status known = uri.nothing_unknown();

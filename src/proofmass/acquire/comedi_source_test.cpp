@@ -2,7 +2,7 @@
 
 #include "proofmass/acquire/source.hpp"
 
-// A card itself is read in the virtual machine of rig/iio-vm.
+// An actual card is tested in the virtual machine of rig/iio-vm.
 namespace proofmass::acquire::comedi_source_test {
 namespace {
 

@@ -16,7 +16,7 @@ Error bad(std::string_view text, std::string_view what) {
       fmt::format("\"{}\": {}; expected channels such as Dev1/ai0:5 or Dev1/ai0,ai2", text, what)};
 }
 
-/// A number that is all of the text.
+/// A number that makes up the entire text.
 std::optional<unsigned> number_of(std::string_view text) {
   unsigned number = 0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -25,7 +25,7 @@ std::optional<unsigned> number_of(std::string_view text) {
   return number;
 }
 
-/// "ai0:2" of the device.
+/// "ai0:2" of the given device.
 Status add_range(std::string_view text, const std::string& device, std::vector<std::string>& out) {
   const std::size_t colon = text.find(':');
   const std::string_view first = text.substr(0, colon);

@@ -16,11 +16,11 @@ Error no_library(const std::string& why) {
                       why)};
 }
 
-/// The library in one of its names; what the loader said of the last where there is none.
+/// The library under one of its names; the loader's message for the last name if none is found.
 Result<void*> loaded(const std::string& library) {
   std::string why;
   for (const char* name : {"libnidaqmx.so.1", "libnidaqmx.so"}) {
-    // Never unloaded: it has threads.
+    // Never unloaded, because it has threads.
     void* found =
         ::dlopen(library.empty() ? name : library.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (found != nullptr) return found;
@@ -37,7 +37,7 @@ bool find(void* library, const char* name, Function*& function) {
   return function != nullptr;
 }
 
-/// The name of a function that is missing; nullptr: none is.
+/// The name of a missing function; nullptr if none is missing.
 const char* find_required(void* library, DaqmxCalls& calls) {
   const char* missing = nullptr;
   const auto need = [&](const char* name, auto& function) {
@@ -71,7 +71,7 @@ void find_optional(void* library, DaqmxCalls& calls) {
 
 using GetText = std::function<std::int32_t(char* text, std::uint32_t size)>;
 
-/// Asked without room, the driver says how much it needs.
+/// Called with no buffer, the driver returns the required size.
 std::string text_of(const GetText& get) {
   constexpr std::int32_t most = 1 << 20;
   const std::int32_t size = get(nullptr, 0);
@@ -82,7 +82,7 @@ std::string text_of(const GetText& get) {
   return text;
 }
 
-/// "Dev1, Dev2" in parts.
+/// "Dev1, Dev2" split into parts.
 std::vector<std::string> parts_of(const std::string& list) {
   std::vector<std::string> parts;
   for (std::size_t from = 0; from < list.size();) {

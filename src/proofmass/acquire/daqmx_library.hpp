@@ -7,14 +7,14 @@
 
 #include "proofmass/core/result.hpp"
 
-// NI-DAQmx: National Instruments' driver for its cards, loaded when it is asked for.
-// Source: National Instruments, "NI-DAQmx C Reference Help"; names and figures of the constants as
+// NI-DAQmx: National Instruments' driver for its cards, loaded on demand.
+// Source: National Instruments, "NI-DAQmx C Reference Help"; names and values of the constants as
 // in the nidaqmx package for Python, https://github.com/ni/nidaqmx-python (MIT licence).
 namespace proofmass::acquire {
 
 using DaqmxTaskHandle = void*;
 
-/// The functions that are called, by their names less "DAQmx". Each returns below 0 where it fails.
+/// The functions used, by their names without "DAQmx". Each returns a negative value on failure.
 struct DaqmxCalls {
   std::int32_t (*create_task)(const char* name, DaqmxTaskHandle* task) = nullptr;
   std::int32_t (*create_ai_voltage_chan)(DaqmxTaskHandle task,
@@ -52,7 +52,7 @@ struct DaqmxCalls {
                                        char* text,
                                        std::uint32_t size) = nullptr;
 
-  // What a driver may lack: nullptr then.
+  // Optional in a driver: nullptr if missing.
   std::int32_t (*get_ai_rng_low)(DaqmxTaskHandle, const char* channel, double* volts) = nullptr;
   std::int32_t (*get_ai_rng_high)(DaqmxTaskHandle, const char* channel, double* volts) = nullptr;
   std::int32_t (*get_ai_term_cfg)(DaqmxTaskHandle,
@@ -66,15 +66,16 @@ struct DaqmxCalls {
                                           std::uint32_t size) = nullptr;
   std::int32_t (*get_dev_ai_max_multi_chan_rate)(const char* device, double* rate_hz) = nullptr;
 
-  /// What the function that failed last, on this thread, has to say: one line.
+  /// The driver's message for the last failure on this thread: one line.
   [[nodiscard]] std::string words(std::int32_t status) const;
 };
 
-/// Loads `library`, or the system's if it is empty, and never unloads it.
-/// Errors: unsupported (not there, or it lacks a function: which).
+/// Loads `library`, or the system's if it is empty, and never unloads it. Errors: unsupported
+/// (absent, or a function is missing: which).
 [[nodiscard]] Result<std::shared_ptr<const DaqmxCalls>> load_daqmx(const std::string& library);
 
-/// "Dev1", "Dev2"; of a device "Dev1/ai0", …; "USB-6009". Empty where the driver does not say.
+/// "Dev1", "Dev2"; for one device "Dev1/ai0", …; "USB-6009". Empty if the driver does not report
+/// it.
 [[nodiscard]] std::vector<std::string> daqmx_devices(const DaqmxCalls& calls);
 [[nodiscard]] std::vector<std::string> daqmx_channels_of(const DaqmxCalls& calls,
                                                          const std::string& device);

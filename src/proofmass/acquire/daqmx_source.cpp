@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_starts_in_vain = 10;
 
-/// What the thread at the driver has; it outlives the source if the driver never answers.
+/// State of the driver's thread; it outlives the source if the driver never returns.
 class Listener {
  public:
   Listener(std::unique_ptr<DaqmxTask> task, std::size_t channels)
@@ -27,10 +27,10 @@ class Listener {
         queue_(channels, most_queued_figures / channels) {}
 
   OverrunQueue& queue() { return queue_; }
-  /// Nobody reads any more.
+  /// The reader has stopped.
   void stop() { is_stopped_ = true; }
 
-  /// Until the device is gone or it is stopped.
+  /// Runs until the device is lost or it is stopped.
   void run() {
     while (!is_stopped_) {
       const DaqmxReading reading = task_->read(rows_, figures_);
@@ -47,10 +47,10 @@ class Listener {
   }
 
  private:
-  static constexpr std::size_t most_figures = std::size_t{1} << 18;  ///< of a reading
+  static constexpr std::size_t most_figures = std::size_t{1} << 18;  ///< per read
   static constexpr std::size_t most_queued_figures = std::size_t{1} << 22;
 
-  /// Those of 10 ms.
+  /// Rows in 10 ms.
   static std::size_t rows_at_once(double rate_hz, std::size_t channels) {
     return static_cast<std::size_t>(
         std::clamp(rate_hz / 100, 1.0, static_cast<double>(most_figures / channels)));
@@ -73,14 +73,15 @@ class Listener {
     queue_.put(std::move(arrival));
   }
 
-  /// Rows were lost in the driver or in the card, which ended the task.
+  /// Restarts the task after rows were lost in the driver or in the card, which ended it.
   Status start_anew(const std::string& words) {
     const auto lost = task_->unread();
     if (++starts_in_vain_ > most_starts_in_vain)
       return Error{Errc::device, fmt::format("{}; the task was started anew {} times in vain",
                                              words, most_starts_in_vain)};
     if (const Status again = task_->start_anew(); !again) return again.error();
-    // The card took none from when it stopped until now, which only the host's clock tells.
+    // The card acquired nothing from its stop until now; that time is known from the host's clock
+    // alone.
     const double silent_s = 1e-9 * static_cast<double>(host_now_ns() - rows_ns_);
     const double missing = std::max(std::round(silent_s * task_->rate_hz()), 1.0);
     lost_ = std::max(static_cast<std::uint64_t>(missing), lost.value_or(0));
@@ -94,11 +95,11 @@ class Listener {
 
   std::unique_ptr<DaqmxTask> task_;
   std::size_t channels_;
-  std::size_t rows_;  ///< of a reading
+  std::size_t rows_;  ///< rows per read
   OverrunQueue queue_;
   std::vector<double> figures_;
-  std::int64_t rows_ns_ = host_now_ns();  ///< when the last came, or the task was started
-  std::uint64_t lost_ = 0;                ///< in front of the rows that come next
+  std::int64_t rows_ns_ = host_now_ns();  ///< arrival of the last rows, or start of the task
+  std::uint64_t lost_ = 0;                ///< before the next rows
   std::size_t starts_in_vain_ = 0;
   std::atomic<bool> is_stopped_ = false;
 };
@@ -118,7 +119,7 @@ class DaqmxSource final : public Source {
 
   ~DaqmxSource() override {
     listener_->stop();
-    // A reading waits a tenth of a second; a driver that never answers keeps its thread.
+    // A read waits a tenth of a second; if the driver never returns, its thread is abandoned.
     if (over_.wait_for(std::chrono::seconds(2)) == std::future_status::ready)
       thread_.join();
     else

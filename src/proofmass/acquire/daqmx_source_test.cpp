@@ -1,5 +1,5 @@
-// Against rig/nidaqmx, which stands in for the driver and a USB-6009: no card of National
-// Instruments was at hand.
+// Uses rig/nidaqmx, a substitute for the driver and a USB-6009: no card of National Instruments was
+// available.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ std::string setting(const SourceHead& head, const std::string& key) {
   return found != head.settings.end() ? found->second : "";
 }
 
-/// What came until so many rows were there, or until something ended it.
+/// The rows received until the requested number or the end.
 struct Taken {
   std::vector<std::vector<double>> channels;
   std::uint64_t lost = 0;
@@ -70,7 +70,7 @@ Taken taken_of(Source& source, std::size_t rows) {
   return taken;
 }
 
-/// The ramp on ai0: 1 mV a row from -1 V, in steps of the converter.
+/// The ramp on ai0: 1 mV per row from -1 V, quantised by the converter.
 double ramp_v(std::size_t row, double step_v) {
   return std::round((-1.0 + 0.001 * static_cast<double>(row % 2000)) / step_v) * step_v;
 }

@@ -13,7 +13,7 @@
 namespace proofmass::acquire {
 namespace {
 
-// Constants and codes of the driver; the source stands in daqmx_library.hpp.
+// Constants and codes of the driver; see daqmx_library.hpp for the source.
 constexpr std::int32_t volts = 10348;
 constexpr std::int32_t rising_edge = 10280;
 constexpr std::int32_t continuous_samples = 10123;
@@ -43,7 +43,7 @@ Error refused(const std::string& words, const std::string& advice) {
   return {Errc::device, words + (advice.empty() ? "" : "; " + advice)};
 }
 
-/// "Dev1 (USB-6009) has Dev1/ai0, …, in the ranges ±5 V, ±10 V", or what there is instead.
+/// "Dev1 (USB-6009) has Dev1/ai0, …, in the ranges ±5 V, ±10 V", or the available devices.
 std::string advice_on_channels(const DaqmxCalls& calls, const std::string& device) {
   const auto channels = daqmx_channels_of(calls, device);
   if (channels.empty()) {
@@ -74,7 +74,7 @@ std::string advice_on_rate(const DaqmxCalls& calls, const std::string& device) {
       device, most_hz);
 }
 
-/// The channels' words, once where all say the same.
+/// The values of the channels, written once if all are the same.
 std::string of_each(const std::vector<std::string>& channels,
                     const std::function<std::optional<std::string>(const char*)>& word) {
   std::vector<std::string> all;
@@ -124,7 +124,7 @@ Status DaqmxTask::add_channels(const DaqmxRequest& request) {
 }
 
 Status DaqmxTask::set_clock(const DaqmxRequest& request) {
-  // What the driver holds for us while nobody reads: ten seconds.
+  // The driver buffers ten seconds while nobody reads.
   const auto buffer = static_cast<std::uint64_t>(std::clamp(10.0 * request.rate_hz, 1e3, 1e7));
   std::int32_t status = calls_->cfg_samp_clk_timing(task_, "", request.rate_hz, rising_edge,
                                                     continuous_samples, buffer);
@@ -183,7 +183,7 @@ DaqmxReading DaqmxTask::read(std::size_t rows, std::vector<double>& into) {
       task_, static_cast<std::int32_t>(rows), timeout_s, group_by_scan_number, into.data(),
       static_cast<std::uint32_t>(into.size()), &count, nullptr);
   DaqmxReading reading;
-  // What came before a failure counts too.
+  // Data received before a failure are included.
   reading.rows = std::min(rows, static_cast<std::size_t>(std::max(count, 0)));
   rows_read_ += reading.rows;
   if (status == samples_not_yet_available || status == 0) return reading;
@@ -207,7 +207,7 @@ std::optional<std::uint64_t> DaqmxTask::unread() const {
 }
 
 Status DaqmxTask::start_anew() {
-  // What stopping says is what reading said already.
+  // Stopping repeats the error that reading reported already.
   (void)calls_->stop_task(task_);
   rows_read_ = 0;
   if (const std::int32_t status = calls_->start_task(task_); status < 0)

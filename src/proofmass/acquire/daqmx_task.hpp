@@ -13,7 +13,7 @@
 
 namespace proofmass::acquire {
 
-/// What is asked of a card.
+/// Requested configuration of a card.
 struct DaqmxRequest {
   std::vector<std::string> channels{};  ///< "Dev1/ai0", …
   double rate_hz = 1000.0;
@@ -21,33 +21,34 @@ struct DaqmxRequest {
   std::string terminals = "default";  ///< rse, nrse, diff, pseudodiff
 };
 
-/// What a reading brought.
+/// Result of one read.
 struct DaqmxReading {
   enum class State { fine, overrun, failed } state = State::fine;
   std::size_t rows = 0;
-  std::string words{};  ///< of the driver, on an overrun, a failure or a new warning
+  std::string words{};  ///< the driver's message on an overrun, a failure or a new warning
 };
 
-/// A task of the driver that samples voltages for as long as it runs.
+/// A driver task that samples voltages continuously.
 class DaqmxTask {
  public:
-  /// Sets the channels and the clock, and starts it. Errors: device, in the driver's words.
+  /// Configures the channels and the clock, and starts the task. Errors: device, with the driver's
+  /// message.
   [[nodiscard]] static Result<std::unique_ptr<DaqmxTask>> start(
       std::shared_ptr<const DaqmxCalls> calls, const DaqmxRequest& request);
   DaqmxTask(const DaqmxTask&) = delete;
   DaqmxTask& operator=(const DaqmxTask&) = delete;
   ~DaqmxTask();
 
-  /// Really given, which is seldom just what was asked for.
+  /// Actual rate, which usually differs slightly from the request.
   [[nodiscard]] double rate_hz() const { return rate_hz_; }
-  /// What was asked for and what was granted, in words.
+  /// Requested and granted settings as text.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings(
       const DaqmxRequest& request) const;
 
-  /// Waits a tenth of a second at most for so many rows, a value a channel, one row behind the
-  /// other; what has come by then is in `into`.
+  /// Waits at most a tenth of a second for `rows` rows, one value per channel, row by row; `into`
+  /// then holds the rows that have arrived.
   [[nodiscard]] DaqmxReading read(std::size_t rows, std::vector<double>& into);
-  /// Rows that the card took since it was started and that were not read; nullopt: it does not say.
+  /// Rows acquired since the start and not read; nullopt: not reported.
   [[nodiscard]] std::optional<std::uint64_t> unread() const;
   /// Errors: device.
   [[nodiscard]] Status start_anew();
@@ -61,8 +62,8 @@ class DaqmxTask {
   DaqmxTaskHandle task_ = nullptr;
   std::vector<std::string> channels_;
   double rate_hz_ = 0.0;
-  std::uint64_t rows_read_ = 0;  ///< since it was started
-  std::int32_t warning_ = 0;     ///< the last
+  std::uint64_t rows_read_ = 0;  ///< since the start
+  std::int32_t warning_ = 0;     ///< the last one
 };
 
 }  // namespace proofmass::acquire

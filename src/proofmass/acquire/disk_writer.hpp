@@ -16,43 +16,43 @@
 
 namespace proofmass::acquire {
 
-/// Whole records of a file, and what the file holds once they are written.
+/// Whole records of a file, and the file's contents once they are written.
 struct DiskPiece {
   std::string bytes{};
   io::McapMark mark{};
-  std::uint64_t rows = 0;  ///< of samples in the file by then
+  std::uint64_t rows = 0;  ///< sample rows in the file by then
 };
 
-/// Writes on a thread of its own, so that a slow disk holds nobody up as long as the pieces that
-/// wait are few enough. After a failure nothing more is written.
+/// Writes on its own thread, so that a slow disk delays nobody as long as few pieces are queued.
+/// After a failure nothing more is written.
 class DiskWriter {
  public:
   struct Failure {
     Error error;
     std::shared_ptr<PartFile> file;
-    DiskPiece kept;          ///< the last piece of that file that is whole, without its bytes
-    bool is_naming = false;  ///< all of it is written, but it did not get its name
+    DiskPiece kept;          ///< the last piece of that file that is complete, without its bytes
+    bool is_naming = false;  ///< everything is written, but the file was not renamed
   };
 
   DiskWriter(std::size_t most_bytes, double sync_s);
   DiskWriter(const DiskWriter&) = delete;
   DiskWriter& operator=(const DiskWriter&) = delete;
-  /// Writes what waits.
+  /// Writes the queued pieces.
   ~DiskWriter();
 
-  /// A file that has this much already.
+  /// Opens a file that already holds `kept`.
   void open(std::shared_ptr<PartFile> file, DiskPiece kept);
-  /// What follows in the file opened last; false, after some time, while there is no room.
+  /// Appends to the file opened last; false, after a timeout, if there is no room.
   [[nodiscard]] bool put(DiskPiece& piece);
-  /// Once all is written, the file gets its name.
+  /// Renames the file once everything is written.
   void close();
-  /// Waits until all is done.
+  /// Waits until everything is done.
   void drain();
   [[nodiscard]] std::optional<Failure> failure() const;
 
  private:
   struct Task {
-    std::shared_ptr<PartFile> file;  ///< another one from here on
+    std::shared_ptr<PartFile> file;  ///< the file from here on
     DiskPiece piece{};
     bool is_end = false;
   };
@@ -71,7 +71,7 @@ class DiskWriter {
   bool is_busy_ = false;
   bool stops_ = false;
   std::optional<Failure> failure_;
-  // Of the thread alone:
+  // Used by the thread alone:
   std::shared_ptr<PartFile> file_;
   DiskPiece kept_;
   std::optional<std::int64_t> dirty_since_ns_;

@@ -8,7 +8,7 @@
 
 namespace proofmass::acquire {
 
-/// rig/iiod/fake_iiod.py at work.
+/// A running rig/iiod/fake_iiod.py.
 class FakeIiod {
  public:
   explicit FakeIiod(std::vector<std::string> options) : process_(words_of(std::move(options))) {}

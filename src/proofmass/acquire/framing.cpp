@@ -112,7 +112,7 @@ void Decoder::describe(SourceHead& head) const {
   }
   head.recording.time.source = TimeSource::stamps;
   head.recording.time.channel = plan.clock->name;
-  // A pipe may bring what was taken long ago; only a date says when.
+  // A pipe may deliver old data; only a date reveals their time.
   constexpr std::int64_t year_2000_ns = 946'684'800'000'000'000;
   constexpr std::int64_t year_2060_ns = 2'840'140'800'000'000'000;
   const auto first_ns = rows_.first_device_ns();

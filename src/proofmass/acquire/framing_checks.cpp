@@ -8,7 +8,7 @@
 namespace proofmass::acquire {
 namespace {
 
-/// Highest bit first, polynomial 0x07, begins with 0.
+/// Most significant bit first, polynomial 0x07, initial value 0.
 std::uint32_t crc8(std::string_view bytes) {
   unsigned sum = 0;
   for (const char c : bytes) {
@@ -18,7 +18,7 @@ std::uint32_t crc8(std::string_view bytes) {
   return sum;
 }
 
-/// Highest bit first, polynomial 0x1021, begins with 0xFFFF.
+/// Most significant bit first, polynomial 0x1021, initial value 0xFFFF.
 std::uint32_t crc16_ccitt_false(std::string_view bytes) {
   unsigned sum = 0xFFFF;
   for (const char c : bytes) {
@@ -29,7 +29,7 @@ std::uint32_t crc16_ccitt_false(std::string_view bytes) {
   return sum;
 }
 
-/// Lowest bit first, polynomial 0x8005, begins with 0xFFFF.
+/// Least significant bit first, polynomial 0x8005, initial value 0xFFFF.
 std::uint32_t crc16_modbus(std::string_view bytes) {
   unsigned sum = 0xFFFF;
   for (const char c : bytes) {

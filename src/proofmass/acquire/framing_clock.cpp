@@ -13,7 +13,7 @@ namespace {
 std::optional<std::int64_t> ns_of(const Tick& tick, std::int64_t unit_ns) {
   std::int64_t whole = 0;
   if (__builtin_mul_overflow(tick.whole, unit_ns, &whole)) return std::nullopt;
-  // unit_ns is 10^9 at most, so that the fraction's product fits.
+  // unit_ns is at most 10^9, so the product with the fraction fits.
   const std::int64_t fraction = (tick.nano * unit_ns + ns_per_s / 2) / ns_per_s;
   std::int64_t sum = 0;
   if (__builtin_add_overflow(whole, fraction, &sum)) return std::nullopt;
@@ -62,13 +62,14 @@ std::int64_t DeviceClock::range_ns(double figure) {
     const auto found = finder_.find(last_, figure, usual_, seen_);
     if (!found) return 0;
     const io::Wrap& wrap = finder_[*found];
-    // Devices divide what counts microseconds, or slower.
+    // Devices divide a counter of microseconds, or a slower one.
     constexpr double shortest_divided_ns = 2e12;
     if (!wrap.needs_whole && wrap.range() * unit < shortest_divided_ns) return 0;
     seen_ = found;
     return std::llround(wrap.range() * unit);
   }
-  // A device that restarts falls too: it ran over only if the way over the top is a short one.
+  // A restart of the device decreases the clock too: it is a wrap only if the distance across the
+  // wrap is short.
   if (bits_ > 32) return 0;
   const double range = std::ldexp(1.0, bits_);
   const double way = figure + range - last_;
@@ -77,7 +78,7 @@ std::int64_t DeviceClock::range_ns(double figure) {
 
 namespace {
 
-/// What a counter of unknown width that shows `low` soon after `high` runs over at; 0: none.
+/// The range of a counter of unknown width that shows `low` soon after `high`; 0: none.
 double range_between(double high, double low) {
   constexpr std::array<double, 4> ranges{0x1p8, 0x1p16, 0x1p24, 0x1p32};
   for (const double range : ranges)
@@ -109,7 +110,7 @@ CounterStep RowCounter::add(double count) {
     last_ = count;
     return {};
   }
-  constexpr double usual_most = 100.0;  // rows that come late, or are lost in a row
+  constexpr double usual_most = 100.0;  // rows that are late, or lost consecutively
   constexpr double most_lost = 1e6;
   const auto [ahead, back] = ways_to(count);
   if (ahead == 0.0) return {.is_late = may_be_late_};

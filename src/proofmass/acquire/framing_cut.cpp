@@ -6,7 +6,7 @@
 namespace proofmass::acquire {
 namespace {
 
-/// Undoes the stuffing of what stood between two marks; false if it is damaged.
+/// Decodes the bytes between two delimiters; false if they are damaged.
 using Unstuff = bool (*)(std::string_view stuffed, std::string& out);
 
 bool unstuff_cobs(std::string_view stuffed, std::string& out) {
@@ -39,7 +39,7 @@ bool unstuff_slip(std::string_view stuffed, std::string& out) {
   return true;
 }
 
-/// Frames that a mark ends, which stands nowhere in them.
+/// Frames terminated by a delimiter that does not occur in them.
 class MarkCutter final : public FrameCutter {
  public:
   MarkCutter(char mark, Unstuff unstuff, std::size_t frame_bytes)
@@ -61,7 +61,7 @@ class MarkCutter final : public FrameCutter {
   }
 
  private:
-  /// No frame is longer than twice its length, stuffed.
+  /// A stuffed frame is at most twice its length.
   void keep(std::string_view bytes, FrameSink& sink) {
     const std::size_t longest = 2 * frame_bytes_ + 2;
     if (skipped_ == 0 && stuffed_.size() + bytes.size() <= longest) {
@@ -83,7 +83,7 @@ class MarkCutter final : public FrameCutter {
     if (bytes == 0) return;
     const bool is_sound = fits && sink.is_sound(frame_);
     if (is_sound) sink.frame(frame_);
-    // What stands before the first mark began before we did.
+    // The frame before the first delimiter began before the stream was opened.
     else
       sink.passed_over(bytes + 1, has_begun_ ? lost_in(bytes) : 0, fits && has_begun_);
     has_begun_ = true;
@@ -97,7 +97,7 @@ class MarkCutter final : public FrameCutter {
   std::size_t frame_bytes_;
   bool has_begun_ = false;
   std::string stuffed_, frame_;
-  std::size_t skipped_ = 0;  ///< bytes up to the next mark that are too many for a frame
+  std::size_t skipped_ = 0;  ///< bytes up to the next delimiter that exceed a frame
 };
 
 class SyncCutter final : public FrameCutter {
@@ -127,7 +127,7 @@ class SyncCutter final : public FrameCutter {
  private:
   [[nodiscard]] std::size_t whole() const { return word_.size() + frame_bytes_; }
 
-  /// Takes a frame, or passes over what is none; false when it needs more bytes.
+  /// Takes a frame, or skips bytes that are not one; false if more bytes are needed.
   bool step(std::string_view& rest, FrameSink& sink) {
     const std::size_t at = rest.find(word_);
     if (at == std::string_view::npos) {
@@ -159,7 +159,7 @@ class SyncCutter final : public FrameCutter {
   void tell(FrameSink& sink) {
     const std::size_t bytes = std::exchange(passed_, 0);
     const bool by_checksum = std::exchange(by_checksum_, false);
-    // What stands before the first word began before we did.
+    // The frame before the first sync word began before the stream was opened.
     if (bytes > 0)
       sink.passed_over(bytes,
                        has_begun_ ? std::max<std::size_t>(1, (bytes + whole() / 2) / whole()) : 0,

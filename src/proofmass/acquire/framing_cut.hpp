@@ -9,19 +9,19 @@
 
 namespace proofmass::acquire {
 
-/// Who judges what a cutter finds, and is told of it in the order of the bytes.
+/// Receives the frames found by a cutter, in the order of the bytes, and validates them.
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
-  /// Whether bytes of a frame's length, without marks, have the checksum they should have.
+  /// True if bytes of a frame's length, without delimiters, have a valid checksum.
   [[nodiscard]] virtual bool is_sound(std::string_view bytes) const = 0;
   virtual void frame(std::string_view bytes) = 0;
-  /// Bytes that are in no frame; `frames` is how many may have been in them, and whether it was for
-  /// a checksum.
+  /// Skipped bytes outside any frame; `frames` is the number of frames they may have contained,
+  /// by_checksum whether a checksum failed.
   virtual void passed_over(std::size_t bytes, std::size_t frames, bool by_checksum) = 0;
 };
 
-/// Cuts a stream into frames of one length, and finds its way back after garbage.
+/// Splits a stream into frames of fixed length, and resynchronises after garbage.
 class FrameCutter {
  public:
   virtual ~FrameCutter() = default;
@@ -35,7 +35,8 @@ class FrameCutter {
 [[nodiscard]] std::unique_ptr<FrameCutter> cobs_cutter(std::size_t frame_bytes);
 /// Source: RFC 1055.
 [[nodiscard]] std::unique_ptr<FrameCutter> slip_cutter(std::size_t frame_bytes);
-/// Frames behind a word. Without a checksum one is believed once the next word stands behind it.
+/// Frames after a sync word. Without a checksum a frame is accepted once the next sync word follows
+/// it.
 [[nodiscard]] std::unique_ptr<FrameCutter> sync_cutter(std::string word,
                                                        std::size_t frame_bytes,
                                                        bool has_check);

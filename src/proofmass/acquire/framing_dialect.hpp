@@ -13,34 +13,34 @@
 
 namespace proofmass::acquire {
 
-/// A line that waits until it is known what the columns are.
+/// A line that waits until the columns are known.
 struct HeldLine {
   std::string text{};
   std::int64_t host_ns = 0;
 };
 
-/// How a line fits the columns.
+/// Match of a line to the columns.
 enum class LineFit {
   row,
-  blank,   ///< nothing that was asked for is in it
-  header,  ///< the names once more: the device has begun anew
-  words,   ///< no row at all
-  broken,  ///< a row that was damaged
+  blank,   ///< none of the requested columns is in it
+  header,  ///< the header again: the device has restarted
+  words,   ///< not a row
+  broken,  ///< a damaged row
 };
 
-/// Takes lines of one kind apart: a table's, or such that bring names with their figures.
+/// Parses lines of one kind: those of a table, or lines with names and values.
 class LineDialect {
  public:
   virtual ~LineDialect() = default;
   [[nodiscard]] virtual const std::vector<RowField>& fields() const = 0;
   [[nodiscard]] virtual bool has_names() const = 0;
-  /// The figures of a line, as many as fields, NaN where there is none, and the reading of the
-  /// field that is the clock.
+  /// The values of a line, one per field, NaN where there is none, and the value of the clock
+  /// field.
   [[nodiscard]] virtual LineFit read(std::string_view line,
                                      std::optional<std::size_t> clock,
                                      std::span<double> values,
                                      std::optional<Tick>& tick) = 0;
-  /// Which fields are asked for, once that is known.
+  /// Selects the requested fields, once that is known.
   virtual void keep(const RowPlan& /*plan*/) {}
   [[nodiscard]] std::vector<Note>& notes() { return notes_; }
 
@@ -48,24 +48,25 @@ class LineDialect {
   std::vector<Note> notes_;
 };
 
-/// A figure as a clock's reading, exact; nullopt if it is none.
+/// A number as a clock value, exact; nullopt if it is not a number.
 [[nodiscard]] std::optional<Tick> tick_in(std::string_view figure, char point);
 
-/// What the lines are, and the first of them that is a row.
+/// The detected dialect, and the first line that is a row.
 struct FoundDialect {
-  std::unique_ptr<LineDialect> dialect{};  ///< nullptr: they are something else
+  std::unique_ptr<LineDialect> dialect{};  ///< nullptr: another format
   std::size_t begin = 0;
-  std::vector<Note> notes{};  ///< of the names
+  std::vector<Note> notes{};  ///< about the names
 };
 
-/// A table with or without a header. Of a stream a first line of figures is left away, as it may
-/// lack its beginning, and so is what stands above the last header: rows from before the device
-/// began anew. Errors: invalid_argument (columns= of another number than the table has).
+/// A table with or without a header. In a stream a first line of numbers is dropped, because its
+/// beginning may be missing; so is everything above the last header, which is from before a restart
+/// of the device. Errors: invalid_argument (columns= with a different number of columns than the
+/// table).
 [[nodiscard]] Result<FoundDialect> find_table(std::span<const HeldLine> lines,
                                               const FramingOptions& options);
 
-/// Lines of "label:value" pairs, JSON objects, OSC messages, if most are. Of a stream the first is
-/// left away.
+/// Lines of "label:value" pairs, JSON objects or OSC messages, if most are. In a stream the first
+/// is dropped.
 [[nodiscard]] FoundDialect find_keyed(std::span<const HeldLine> lines,
                                       const FramingOptions& options);
 

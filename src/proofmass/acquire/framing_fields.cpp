@@ -40,7 +40,7 @@ const FieldType* type_called(std::string_view name) {
   return found == types.end() ? nullptr : found;
 }
 
-/// Reads the groups one after another.
+/// Parses the groups in order.
 class LayoutReader {
  public:
   explicit LayoutReader(bool big_endian) : big_endian_(big_endian) {}

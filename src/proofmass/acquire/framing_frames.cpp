@@ -30,7 +30,7 @@ class FrameDecoder final : public Decoder, private FrameSink {
     }
   }
 
-  /// What the fields are for. Errors: as decide_plan.
+  /// Determines the roles of the fields. Errors: as decide_plan.
   Status decide() {
     RowEvidence rows;
     std::vector<io::ColumnLabel> labels;
@@ -109,7 +109,7 @@ class FrameDecoder final : public Decoder, private FrameSink {
   }
 
   FrameLayout layout_;
-  std::unique_ptr<FrameCutter> cutter_;  ///< of streams
+  std::unique_ptr<FrameCutter> cutter_;  ///< for streams
   std::vector<double> values_;
   std::optional<std::size_t> clock_field_;
   std::int64_t host_ns_ = 0;

@@ -71,7 +71,7 @@ class FramingKinds : public testing::TestWithParam<Kind> {
   [[nodiscard]] static std::string settings() {
     return fmt::format("framing={}&{}", GetParam().setting, fields);
   }
-  /// Rows from..to, with values that need every kind of stuffing.
+  /// Rows from..to, with values that require every kind of stuffing.
   [[nodiscard]] static std::vector<std::string> frames(unsigned from, unsigned to) {
     std::vector<std::string> out;
     for (unsigned k = from; k < to; ++k)

@@ -47,7 +47,7 @@ class Keyed final : public LineDialect {
   }
 
  private:
-  /// Most lines bring their keys in the same order.
+  /// Most lines have their keys in the same order.
   std::size_t field_called(std::string_view key) {
     if (next_ >= fields_.size()) next_ = 0;
     if (fields_[next_].heading == key) return next_++;
@@ -76,14 +76,14 @@ class Keyed final : public LineDialect {
   bool told_lack_ = false;
 };
 
-/// A key of the first lines.
+/// A key in the first lines.
 struct SeenKey {
   std::string key{};
   std::size_t lines = 0;
   bool has_figure = false;
 };
 
-/// The keys of the first lines in the order in which they came.
+/// The keys of the first lines in order of appearance.
 class KeyCensus {
  public:
   void add(std::string_view line) {
@@ -102,7 +102,7 @@ class KeyCensus {
     fitting_ += fits ? 1 : 0;
   }
   [[nodiscard]] std::size_t fitting() const { return fitting_; }
-  /// A word with a colon on a single line is a message to a person.
+  /// A word with a colon on a single line is a message for people.
   [[nodiscard]] std::vector<SeenKey> repeated() const {
     constexpr std::size_t enough_to_tell = 8;
     std::vector<SeenKey> keys = seen_;

@@ -23,13 +23,13 @@ bool is_label(std::string_view text) {
   return is_letter || first == '_' || static_cast<unsigned char>(first) >= 0x80;
 }
 
-/// Takes "label:figure" off the front; false if it does not begin so.
+/// Removes "label:value" from the front; false if the text does not begin with one.
 bool take_pair(std::string_view& rest, char separator, Pair& pair) {
   const std::size_t mark = rest.find_first_of(":=");
   if (mark == std::string_view::npos) return false;
   pair.label = io::trimmed(rest.substr(0, mark));
   rest.remove_prefix(mark + 1);
-  // A blank may follow the mark, whatever separates the pairs.
+  // A blank may follow the separator, whatever separates the pairs.
   rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
   pair.figure = io::trimmed(rest.substr(0, rest.find(separator)));
   rest.remove_prefix(std::min(rest.find(separator), rest.size()));
@@ -38,7 +38,7 @@ bool take_pair(std::string_view& rest, char separator, Pair& pair) {
   return is_label(pair.label);
 }
 
-/// Where commas separate, none is left in a figure.
+/// The decimal mark: a comma that separates pairs cannot occur in a value.
 char point_of(std::string_view figure) {
   return figure.find('.') == std::string_view::npos ? ',' : '.';
 }

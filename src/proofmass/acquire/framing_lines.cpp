@@ -66,7 +66,7 @@ class LineDecoder final : public Decoder {
     skipped_ += partial_.size() + piece.size();
     partial_.clear();
   }
-  /// The end of a line that was kept, or passed over for its length.
+  /// End of a line, which was stored or skipped because of its length.
   void close(std::int64_t host_ns) {
     if (const std::uint64_t bytes = std::exchange(skipped_, 0); bytes > 0) {
       counts_.bytes += bytes;
@@ -109,11 +109,11 @@ class LineDecoder final : public Decoder {
   void read(std::string_view text, std::int64_t host_ns);
 
   std::string partial_;
-  std::uint64_t skipped_ = 0;  ///< bytes of a line that is too long
+  std::uint64_t skipped_ = 0;  ///< bytes of an overlong line
   std::uint64_t came_ = 0;
   std::vector<HeldLine> held_;
   std::size_t held_bytes_ = 0;
-  std::size_t tried_ = 0;  ///< lines there were when the columns were looked for last
+  std::size_t tried_ = 0;  ///< number of lines at the last search for the columns
   std::unique_ptr<LineDialect> dialect_;
   std::optional<std::size_t> clock_field_;
   std::vector<double> values_;
@@ -121,7 +121,7 @@ class LineDecoder final : public Decoder {
   RepeatedNote restarts_{"headers"};
 };
 
-/// Whether the lines tell the columns, and went on long enough to tell a clock's unit.
+/// True if the lines determine the columns, and span enough time to determine a clock's unit.
 bool LineDecoder::is_enough() const {
   if (held_.empty() || (tried_ > 0 && held_.size() < tried_ + tried_ / 4 + 1)) return false;
   constexpr std::size_t usual = 32, fewest = 8;

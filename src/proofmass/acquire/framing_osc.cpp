@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view bundle_mark{"#bundle\0", 8};
 constexpr int deepest = 4;
 
-/// What is left of a packet; whatever is not there makes it bad.
+/// The remainder of a packet; reading beyond its end marks it as bad.
 class OscBytes {
  public:
   explicit OscBytes(std::string_view bytes) : rest_(bytes) {}
@@ -27,13 +27,13 @@ class OscBytes {
     rest_.remove_prefix(bytes);
     return taken;
   }
-  /// Highest byte first.
+  /// Most significant byte first.
   std::uint64_t number(std::size_t bytes) {
     std::uint64_t value = 0;
     for (const char c : take(bytes)) value = value << 8 | static_cast<unsigned char>(c);
     return value;
   }
-  /// Ends in a zero, and in more of them up to a multiple of four.
+  /// Terminated by a zero and padded with zeros to a multiple of four.
   std::string_view text() {
     const std::size_t end = rest_.find('\0');
     if (end == std::string_view::npos) return take(rest_.size() + 1);
@@ -72,7 +72,7 @@ OscFigure read_figure(OscBytes& bytes, char type) {
   return {value, tick_of(value)};
 }
 
-/// Passes over an argument that is no figure; false if its type, and so its length, is unknown.
+/// Skips an argument that is not a number; false if its type, and thus its length, is unknown.
 bool skip_other(OscBytes& bytes, char type) {
   if (type == 's' || type == 'S') {
     (void)bytes.text();
@@ -121,7 +121,7 @@ bool visit_packet(std::string_view packet, const KeyVisit& visit, int level) {
     return is_osc(packet) && visit_message(OscBytes(packet), visit);
   if (level == deepest) return false;
   OscBytes bytes(packet.substr(bundle_mark.size()));
-  (void)bytes.take(8);  // its time, which senders mostly leave at "at once"
+  (void)bytes.take(8);  // its time, which most senders set to "immediately"
   while (!bytes.empty()) {
     const std::string_view element = bytes.take(bytes.number(4));
     if (bytes.is_bad() || !visit_packet(element, visit, level + 1)) return false;

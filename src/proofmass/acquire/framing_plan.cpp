@@ -38,7 +38,7 @@ Result<std::optional<RowPlan::Counter>> find_counter(const RowEvidence& rows,
   return std::optional<RowPlan::Counter>();
 }
 
-/// The fields that are channels, in the order of columns= or their own.
+/// The fields that are channels, in the order of columns= or in their own.
 Result<std::vector<std::size_t>> channel_fields(const RowEvidence& rows,
                                                 const FramingOptions& options,
                                                 std::optional<std::size_t> clock) {
@@ -59,7 +59,7 @@ Result<std::vector<std::size_t>> channel_fields(const RowEvidence& rows,
   return fields;
 }
 
-/// Units and factors of the settings, for channels that are no counters.
+/// Applies units and factors from the settings to channels that are not counters.
 Status apply_settings(const RowEvidence& rows, const FramingOptions& options, RowPlan& plan) {
   const auto units = per_column(options.unit, "unit", rows);
   if (!units) return units.error();

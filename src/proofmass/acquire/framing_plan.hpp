@@ -10,24 +10,24 @@
 
 namespace proofmass::acquire {
 
-/// A field of a row, before it is decided what it is for.
+/// A field of a row, before its role is determined.
 struct RowField {
-  std::string heading{};  ///< as it came: "t_us"
+  std::string heading{};  ///< as received: "t_us"
   io::ColumnLabel label{};
-  int bits = 0;              ///< width of a whole number; 0: of none, or unknown
-  bool is_figures = true;    ///< false: words, which are no channel
-  bool is_calendar = false;  ///< dates, which give ticks in seconds since 1970
+  int bits = 0;              ///< width of an integer; 0: not an integer, or unknown
+  bool is_figures = true;    ///< false: words, which are not a channel
+  bool is_calendar = false;  ///< dates, converted to ticks in seconds since 1970
 };
 
-/// What is known of the rows before the columns are decided.
+/// Information on the rows before the columns are determined.
 struct RowEvidence {
   std::vector<RowField> fields{};
-  bool has_names = true;                     ///< false: the names are no one's but ours
-  std::vector<std::vector<double>> first{};  ///< rows of each field, where there are any yet
-  std::vector<std::int64_t> host_ns{};       ///< of each of them
+  bool has_names = true;                     ///< false: the names are our own
+  std::vector<std::vector<double>> first{};  ///< the first rows of each field, if any
+  std::vector<std::int64_t> host_ns{};       ///< arrival of each of them
 };
 
-/// What was decided and what a person should know of it.
+/// The decisions and their notes.
 struct DecidedPlan {
   RowPlan plan{};
   std::optional<std::size_t> clock_field{};
@@ -35,9 +35,9 @@ struct DecidedPlan {
   std::vector<std::pair<std::string, std::string>> settings{};
 };
 
-/// Decides which field is the clock, which counts rows, and names and units of the channels.
-/// Errors: invalid_argument (a column that the options name and the rows do not have, a unit or
-/// factor that is none, a clock whose unit nobody says).
+/// Determines the clock field, the row counter, and names and units of the channels. Errors:
+/// invalid_argument (an option names a column that is not in the rows, an invalid unit or factor, a
+/// clock of unknown unit).
 [[nodiscard]] Result<DecidedPlan> decide_plan(const RowEvidence& rows,
                                               const FramingOptions& options);
 

@@ -54,7 +54,7 @@ bool RowQueue::place(const std::optional<Tick>& tick) {
   if (wraps == 0 && clock_->wraps() == 1)
     note(Severity::info, fmt::format("{} ran over: counted on", plan_.clock->name));
   if (rows_ == 0) first_device_ns_ = device_ns;
-  // Before the row joins its group, as all columns grow together.
+  // Before the row joins its group, because all columns grow together.
   device_ns_.push_back(*device_ns);
   return true;
 }

@@ -13,7 +13,7 @@
 
 namespace proofmass::acquire {
 
-/// A trouble that may come a million times: told in words the first few times, then at each power
+/// A fault that may occur a million times: reported in full the first few times, then at each power
 /// of ten.
 class RepeatedNote {
  public:
@@ -26,7 +26,7 @@ class RepeatedNote {
   std::uint64_t count_ = 0, next_ = 10;
 };
 
-/// What the fields of a row are for.
+/// Role of each field of a row.
 struct RowPlan {
   struct Column {
     std::size_t field = 0;
@@ -48,25 +48,25 @@ struct RowPlan {
   std::optional<Counter> counter{};
 };
 
-/// Rows on their way from a decoder to whoever reads, with what is missing between them.
+/// Queue of rows from a decoder to the reader, with the numbers of missing rows between them.
 class RowQueue {
  public:
   RowQueue() = default;
   void begin(RowPlan plan, bool may_be_late);
   [[nodiscard]] const RowPlan& plan() const { return plan_; }
 
-  /// A row's fields in the decoder's order, and its clock's reading. One that comes late, or whose
-  /// clock's reading is none, is passed over, counted and told.
+  /// A row's fields in the decoder's order, and its clock value. A row that is late or has an
+  /// invalid clock value is skipped, counted and reported.
   void add(View<double> fields, const std::optional<Tick>& tick, std::int64_t host_ns);
-  /// Rows that the framing knows to be missing here; a counter knows better.
+  /// Rows that the framing reports as missing here; a counter takes precedence.
   void lose(std::uint64_t rows);
-  /// The device began anew: clock and counter do not go on.
+  /// The device restarted: clock and counter are not continued.
   void begin_anew();
   void note(Severity severity, std::string text) { notes_.push_back({severity, std::move(text)}); }
   [[nodiscard]] std::vector<Note>& notes() { return notes_; }
 
   [[nodiscard]] bool empty() const { return next_group_ == groups_.size(); }
-  /// As Decoder::hand_out.
+  /// See Decoder::hand_out.
   bool hand_out(Arrival& arrival);
   [[nodiscard]] std::uint64_t rows() const { return rows_; }
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
@@ -76,14 +76,14 @@ class RowQueue {
   [[nodiscard]] std::optional<std::int64_t> first_device_ns() const { return first_device_ns_; }
 
  private:
-  /// Rows that none is known to be missing between.
+  /// Rows without known missing rows between them.
   struct Group {
     std::size_t first = 0;
     std::uint64_t lost_before = 0;
     std::int64_t first_host_ns = 0, host_ns = 0;
-    double first_count = 0.0, last_count = 0.0;  ///< where rows are counted
+    double first_count = 0.0, last_count = 0.0;  ///< if rows are counted
   };
-  /// False: the row is to be passed over.
+  /// False: skip the row.
   bool count(View<double> fields);
   bool place(const std::optional<Tick>& tick);
   void join_group(std::int64_t host_ns);
@@ -100,7 +100,7 @@ class RowQueue {
   RepeatedNote restart_notes_{"times that the count jumped"};
   RepeatedNote untimed_notes_{"rows without a reading of the clock"};
   std::uint64_t pending_lost_ = 0;
-  double count_ = 0.0;  ///< of the row that came last
+  double count_ = 0.0;  ///< count at the last row
   std::uint64_t rows_ = 0, lost_ = 0, late_ = 0, untimed_ = 0;
   std::optional<std::int64_t> first_device_ns_;
 };

@@ -11,10 +11,10 @@
 #include "proofmass/acquire/framing_plan.hpp"
 #include "proofmass/core/units.hpp"
 
-// Settings that name columns: time=, counter=, unit=, scale=.
+// Settings that refer to columns: time=, counter=, unit=, scale=.
 namespace proofmass::acquire {
 
-/// By its heading or its name less the unit, whatever the case.
+/// By its heading or its name without the unit, ignoring case.
 [[nodiscard]] std::optional<std::size_t> find_field(const std::vector<RowField>& fields,
                                                     std::string_view name);
 /// "time=tt: there is no such column of figures; there are t, ax, ay, az"
@@ -26,9 +26,9 @@ namespace proofmass::acquire {
 struct PerColumn {
   std::string all{};
   std::vector<std::pair<std::size_t, std::string>> some{};
-  [[nodiscard]] std::string of(std::size_t field) const;  ///< empty if none is named
+  [[nodiscard]] std::string of(std::size_t field) const;  ///< empty if none is given
 };
-/// Errors: invalid_argument (a column that is not there).
+/// Errors: invalid_argument (a column that does not exist).
 [[nodiscard]] Result<PerColumn> per_column(std::string_view text,
                                            std::string_view setting,
                                            const RowEvidence& rows);
@@ -36,9 +36,9 @@ struct PerColumn {
 [[nodiscard]] Result<Unit> unit_setting(std::string_view text);
 [[nodiscard]] Result<double> scale_setting(std::string_view text);
 
-/// "us"; of a unit that a clock may have.
+/// "us"; the word for a clock unit.
 [[nodiscard]] std::string_view unit_word(std::int64_t unit_ns);
-/// Of "s", "ms", "us", "ns"; nullopt of others, and of what is no time.
+/// For "s", "ms", "us", "ns"; nullopt for others, and for quantities other than time.
 [[nodiscard]] std::optional<std::int64_t> clock_unit_ns(const Unit& unit);
 
 }  // namespace proofmass::acquire

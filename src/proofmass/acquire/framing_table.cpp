@@ -63,7 +63,7 @@ class Table final : public LineDialect {
   }
 
  private:
-  /// A line with figures for half of the columns was a row.
+  /// A line with numbers for half of the columns was a row.
   [[nodiscard]] LineFit misfit() const {
     const auto figures = std::ranges::count_if(cells_, [&](std::string_view cell) {
       return io::read_cell(cell, layout_.point).kind == CellKind::number;
@@ -82,7 +82,7 @@ class Table final : public LineDialect {
 std::string joined(std::span<const HeldLine> lines) {
   std::string text;
   for (const HeldLine& line : lines) {
-    // A document in a datagram may have lines of its own, which would throw the count out.
+    // A document in a datagram may have several lines, which would invalidate the count.
     const auto first = static_cast<std::ptrdiff_t>(text.size());
     text += line.text;
     std::replace(text.begin() + first, text.end(), '\n', ' ');
@@ -98,7 +98,7 @@ bool is_words_only(std::string_view line, char separator) {
       cells, [](std::string_view cell) { return io::read_cell(cell, '.').kind == CellKind::text; });
 }
 
-/// Rows from before the device began anew stand above its header: where to begin instead.
+/// Rows from before a restart of the device precede its header: returns where to begin instead.
 std::size_t last_header(std::span<const HeldLine> lines, const io::CsvLayout& layout) {
   std::vector<std::string_view> cells;
   for (std::size_t l = lines.size(); l-- > layout.first_line;) {
@@ -118,7 +118,7 @@ RowField field_of(std::string heading, io::ColumnLabel label, ColumnKind kind) {
           .is_calendar = kind == ColumnKind::clock || kind == ColumnKind::time_of_day};
 }
 
-/// Names by columns=, else by place.
+/// Names from columns=, else by position.
 std::vector<std::string> given_headings(std::size_t width, const FramingOptions& options) {
   if (!options.columns.empty()) return options.columns;
   std::vector<std::string> headings;
@@ -126,7 +126,7 @@ std::vector<std::string> given_headings(std::size_t width, const FramingOptions&
   return headings;
 }
 
-/// Puts the fields' names where the header gives none.
+/// Sets the fields' names if the header gives none.
 void name_by_settings(const FramingOptions& options, io::CsvHeader& header) {
   const std::size_t width = header.labels.size();
   header.labels.clear();

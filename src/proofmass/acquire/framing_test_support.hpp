@@ -10,12 +10,12 @@
 
 namespace proofmass::acquire {
 
-/// All that came out of a decoder, one arrival behind the other.
+/// The complete output of a decoder, arrivals concatenated.
 struct Decoded {
   SourceHead head{};
   std::vector<std::vector<double>> channels{};
   std::vector<std::int64_t> device_ns{};
-  std::vector<std::uint64_t> lost_before{};  ///< of each row
+  std::vector<std::uint64_t> lost_before{};  ///< per row
   std::vector<std::string> notes{};
   DecodeCounts counts{};
 
@@ -51,7 +51,7 @@ inline FramingOptions options_of(const std::string& settings, Carrier carrier = 
   return framing_options(uri, carrier).value();
 }
 
-/// Decodes a text in pieces of so many bytes, each a millisecond after the one before.
+/// Decodes a text in pieces of the given size, each a millisecond after the previous one.
 inline Decoded decode(std::string_view bytes, const FramingOptions& options, std::size_t piece) {
   const std::unique_ptr<Decoder> decoder = Decoder::make(options).value();
   Decoded out;

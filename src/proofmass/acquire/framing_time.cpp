@@ -15,13 +15,13 @@
 namespace proofmass::acquire {
 namespace {
 
-/// How a field goes on over the first rows.
+/// Progress of a field over the first rows.
 struct Pace {
   std::size_t up = 0, down = 0, level = 0;
   bool by_ones = true;
   std::vector<double> steps{};
 
-  /// But where it runs over, or stands still for a reading or two.
+  /// Except where it wraps, or repeats a value once or twice.
   [[nodiscard]] bool ascends() const { return up > 2 * down && up >= level / 9; }
 };
 
@@ -37,15 +37,15 @@ Pace pace_of(const std::vector<double>& values) {
   return pace;
 }
 
-/// The unit in which the field keeps pace with the host; nullopt if the rows came too fast to tell,
-/// or at another pace than any unit's.
+/// The unit in which the field advances with the host's clock; nullopt if the rows came too fast to
+/// decide, or if no unit matches.
 std::optional<std::int64_t> unit_by_host(const RowEvidence& rows, std::size_t field) {
   if (rows.first.empty() || rows.host_ns.size() < 4) return std::nullopt;
   constexpr std::int64_t shortest_ns = 100'000'000;
   const std::int64_t host_ns = rows.host_ns.back() - rows.host_ns.front();
   const double went = rows.first[field].back() - rows.first[field].front();
   if (host_ns < shortest_ns || !(went > 0.0)) return std::nullopt;
-  // The first rows may have waited somewhere before they came; the units are far apart.
+  // The first rows may have been buffered before they arrived; the units are far apart.
   constexpr double tolerance = 3.0;
   constexpr std::array<std::int64_t, 4> units_ns{1'000'000'000, 1'000'000, 1'000, 1};
   for (const std::int64_t unit_ns : units_ns) {
@@ -55,7 +55,7 @@ std::optional<std::int64_t> unit_by_host(const RowEvidence& rows, std::size_t fi
   return std::nullopt;
 }
 
-/// "millis" and "us" are names that say the unit.
+/// "millis" and "us" are names that contain the unit.
 std::optional<std::int64_t> unit_by_name(const std::string& name) {
   constexpr std::array<std::pair<std::string_view, std::int64_t>, 3> words{
       {{"millis", 1'000'000}, {"micros", 1'000}, {"nanos", 1}}};
@@ -66,7 +66,7 @@ std::optional<std::int64_t> unit_by_name(const std::string& name) {
   return unit ? clock_unit_ns(*unit) : std::nullopt;
 }
 
-/// As for a file, by the size of the figures.
+/// As for a file, from the magnitude of the values.
 std::optional<std::int64_t> unit_by_size(const RowEvidence& rows,
                                          std::size_t field,
                                          std::vector<Note>& notes) {
@@ -109,7 +109,7 @@ Result<std::int64_t> unit_of_clock(const RowEvidence& rows,
                            clock.label.name)};
 }
 
-/// The field called as the time is; a candidate that falls is none, and a note says so.
+/// The field with a name of time; a candidate that decreases is rejected, with a note.
 std::optional<std::size_t> named_clock(const RowEvidence& rows, std::vector<Note>& notes) {
   std::optional<std::size_t> best;
   int best_likeness = 0;
@@ -117,7 +117,7 @@ std::optional<std::size_t> named_clock(const RowEvidence& rows, std::vector<Note
     const RowField& field = rows.fields[f];
     if (!field.is_figures && !field.is_calendar) continue;
     const int likeness = io::likeness_to_time(field.label);
-    // A unit of time alone may be a duration's: only what it does can tell.
+    // A unit of time alone may be that of a duration: only the values can decide.
     const bool is_enough = likeness >= (rows.first.empty() ? 2 : 1);
     if (is_enough && likeness > best_likeness) {
       best = f;
@@ -135,7 +135,8 @@ std::optional<std::size_t> named_clock(const RowEvidence& rows, std::vector<Note
   return std::nullopt;
 }
 
-/// A first field without a name that keeps time. One that goes up by ones may be a count.
+/// A first field without a name that advances with time. One that increments by one may be a
+/// counter.
 std::optional<std::size_t> nameless_clock(const RowEvidence& rows,
                                           const FramingOptions& options,
                                           std::vector<Note>& notes) {

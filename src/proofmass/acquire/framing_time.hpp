@@ -13,11 +13,11 @@ struct FoundClock {
   RowPlan::Clock clock{};
 };
 
-/// The device's clock: the field that time= names; else one that is called so and does not fall;
-/// else, of rows without names, a first field that ascends at a pace that s, ms, us or ns explain.
-/// Its unit: by time-unit=, the heading, the name, the pace at which rows came, and where they
-/// came all at once the rule for files (io/stamp_unit.hpp).
-/// Errors: invalid_argument (no such column; nobody says its unit).
+/// The device's clock: the field given by time=; else a field with such a name that does not
+/// decrease; else, for rows without names, a first field that increases at a rate consistent with
+/// s, ms, us or ns. Its unit: from time-unit=, the heading, the name, the rate at which rows
+/// arrived, and if they arrived all at once, the rule for files (io/stamp_unit.hpp).
+/// Errors: invalid_argument (no such column; unknown unit).
 [[nodiscard]] Result<std::optional<FoundClock>> find_clock(const RowEvidence& rows,
                                                            const FramingOptions& options,
                                                            std::vector<Note>& notes);

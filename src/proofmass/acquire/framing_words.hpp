@@ -5,7 +5,7 @@
 
 namespace proofmass::acquire {
 
-/// What stands between any of the marks; nothing is no word.
+/// The parts between any of the separators; empty parts are omitted.
 [[nodiscard]] inline std::vector<std::string_view> words_of(std::string_view text,
                                                             std::string_view marks) {
   std::vector<std::string_view> words;

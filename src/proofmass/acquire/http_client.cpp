@@ -21,7 +21,8 @@ using Clock = std::chrono::steady_clock;
 
 }  // namespace
 
-/// What is under way. Its context holds the handlers: destroyed together, none is called late.
+/// The pending request. Its context holds the handlers: both are destroyed together, so that no
+/// handler is called late.
 struct HttpClient::Connection {
   Connection(const HostPort& to, const HttpLimits& bounds) : server(to), limits(bounds) {}
 
@@ -56,7 +57,7 @@ struct HttpClient::Connection {
       if (!stays) close();
     });
   }
-  /// A server may close what it kept open just when it is asked again.
+  /// A server may close a persistent connection just as the next request is sent.
   void retry(std::string_view what, error_code failed) {
     if (!was_open) return fail(what, failed);
     was_open = false;
@@ -80,7 +81,7 @@ struct HttpClient::Connection {
   boost::beast::flat_buffer buffer;
   http::request<http::empty_body> request;
   std::optional<http::response_parser<http::string_body>> parser;
-  bool was_open = false;  ///< the connection is one that an earlier answer came over
+  bool was_open = false;  ///< an earlier response came over this connection
   bool is_waiting = false;
   Clock::time_point deadline{};
   std::optional<Result<HttpAnswer>> outcome;

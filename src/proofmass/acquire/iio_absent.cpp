@@ -1,4 +1,4 @@
-// What stands in for the IIO sources where libiio was not there at build time.
+// Replaces the IIO sources if libiio was not available at build time.
 #include "proofmass/acquire/source_list.hpp"
 
 namespace proofmass::acquire {

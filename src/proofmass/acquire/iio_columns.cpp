@@ -90,7 +90,8 @@ Result<IioColumn> column_of(iio_channel* channel) {
   return column;
 }
 
-// Of the axis, of all axes, or of the device; libiio takes in_mount_matrix for a channel "mount".
+// Attribute of the axis, of all axes, or of the device; libiio treats in_mount_matrix as a channel
+// "mount".
 std::optional<std::string> mount_text(const iio_device* device, const iio_channel* axis) {
   if (auto text = iio_text(axis, "mount_matrix")) return text;
   if (auto text = iio_text(device, "mount_matrix")) return text;
@@ -98,7 +99,7 @@ std::optional<std::string> mount_text(const iio_device* device, const iio_channe
   return all == nullptr ? std::nullopt : iio_text(all, "matrix");
 }
 
-// A sensor's axes are those of one name but for the modifier: accel_x, accel_y, accel_z.
+// A sensor's axes have the same name except for the modifier: accel_x, accel_y, accel_z.
 void add_turn(const iio_device* device, const IioColumn& x, IioColumns& out) {
   const auto text = mount_text(device, x.channel);
   if (!text) return;

@@ -45,7 +45,7 @@ Result<std::vector<FoundSource>> find_iio() {
   std::vector<FoundSource> found;
   std::thread([&] {
     block_broken_pipes();
-    // libiio complains aloud where there is nothing to look in: it is asked only where there is.
+    // libiio prints an error if there is nothing to search: it is called only if there is.
     if (is_there("/sys/bus/iio/devices")) scan("local", found);
     if (is_there("/run/avahi-daemon/socket")) scan("ip", found);
     if (is_there("/dev/bus/usb")) scan("usb", found);

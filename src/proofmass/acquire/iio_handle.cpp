@@ -9,7 +9,7 @@
 namespace proofmass::acquire {
 namespace {
 
-// `size`: what libiio returned, which counts a terminating zero, or is an error.
+// `size`: the return value of libiio, which includes a terminating zero, or is an error.
 std::optional<std::string> trimmed(const std::array<char, 4096>& text, ssize_t size) {
   if (size < 0 || static_cast<std::size_t>(size) > text.size()) return std::nullopt;
   std::string_view whole(text.data(), static_cast<std::size_t>(size));
@@ -32,7 +32,7 @@ std::string iio_reason(long code) {
   std::array<char, 256> text{};
   iio_strerror(static_cast<int>(std::labs(code)), text.data(), text.size());
   const std::string_view reason(text.data());
-  return std::string(reason.substr(0, reason.find(" (")));  // less the number
+  return std::string(reason.substr(0, reason.find(" (")));  // without the number
 }
 
 IioContext open_iio_context(std::string uri) {

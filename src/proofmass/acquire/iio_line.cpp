@@ -15,9 +15,9 @@
 namespace proofmass::acquire {
 namespace {
 
-constexpr std::size_t kernel_rows = 65536;                   // at most, 32 buffers: 2.5 s
-constexpr double buffer_s = 0.08;                            // of rows, each
-constexpr std::size_t queued_bytes = std::size_t{32} << 20;  // for whoever reads late
+constexpr std::size_t kernel_rows = 65536;                   // at most, in 32 buffers: 2.5 s
+constexpr double buffer_s = 0.08;                            // per buffer
+constexpr std::size_t queued_bytes = std::size_t{32} << 20;  // for a late reader
 
 struct Board {
   IioContext context;
@@ -42,8 +42,8 @@ Result<Board> find_board(IioLine& line, const IioRequest& request) {
     return Error{Errc::device,
                  fmt::format("{}: no board there ({}); is iiod running, and the address right?",
                              request.uri, iio_reason(errno))};
-  // libiio gives a board half of the time that it takes itself, so that a board that waits in vain
-  // for its trigger says so before the connection counts as dead.
+  // libiio gives a board half of its own timeout, so that a board waiting in vain for its trigger
+  // reports it before the connection counts as dead.
   const auto timeout_ms = request.patience.count() * (request.uri.starts_with("local:") ? 1 : 2);
   (void)iio_context_set_timeout(board.context.get(), static_cast<unsigned>(timeout_ms));
   step(line, "its settings");
@@ -100,7 +100,7 @@ SourceHead head_of(const Board& board, const IioRequest& request, const Arrival&
   return head;
 }
 
-/// A buffer that others may cancel as long as it lives.
+/// A buffer that other threads may cancel during its lifetime.
 class OpenBuffer {
  public:
   OpenBuffer(IioLine& line, iio_device* device, std::size_t rows) : line_(line) {
@@ -137,7 +137,7 @@ class OpenBuffer {
   long code_;
 };
 
-// From the first rows on, which are in the buffer. Returns why it ends.
+// Passes on rows, starting with those in the buffer. Returns the reason for the end.
 std::optional<Error> hand_over(const Board& board, IioLine& line, OpenBuffer& buffer) {
   StampWatch watch;
   bool has_clock = false;
@@ -154,7 +154,7 @@ std::optional<Error> hand_over(const Board& board, IioLine& line, OpenBuffer& bu
     watch.look(arrival.device_ns, arrival.notes);
     line.queue->put(std::move(arrival));
     long code = -ETIMEDOUT;
-    // A board that says that its trigger rests is still there.
+    // A board that reports a timeout of its trigger is still connected.
     while (code == -ETIMEDOUT && !buffer.is_stopped()) code = buffer.refill();
     if (buffer.is_stopped()) return std::nullopt;
     if (code < 0) return refill_failed(board, code);
@@ -169,10 +169,11 @@ Status serve(IioLine& line, const IioRequest& request) {
   const std::size_t rows = request.buffer_rows.value_or(
       rate_hz > 0.0 ? static_cast<std::size_t>(std::clamp(rate_hz * buffer_s, 1.0, 1e5)) : 8);
   enable(board->device, board->columns);
-  // Room in the kernel for a connection that falters.
+  // Kernel buffers for an unsteady connection.
   (void)iio_device_set_kernel_buffers_count(
       board->device, static_cast<unsigned>(std::clamp<std::size_t>(kernel_rows / rows, 4, 32)));
-  // libiio itself answers within twice the patience, and the board's word is worth more than ours.
+  // libiio itself replies within twice the patience, and the board's message is more informative
+  // than ours.
   const double period_s = rate_hz > 0.0 ? static_cast<double>(rows) / rate_hz : 0.0;
   step(line, "samples", 1e-3 * static_cast<double>(request.patience.count()) + 3.0 * period_s);
   OpenBuffer buffer(line, board->device, rows);

@@ -7,7 +7,7 @@
 
 #include "proofmass/acquire/iio_columns.hpp"
 
-// What libiio has in its buffer, as numbers.
+// Converts the contents of libiio's buffer to numbers.
 namespace proofmass::acquire {
 namespace {
 
@@ -39,8 +39,8 @@ struct RawRows {
   std::ptrdiff_t step;
 };
 
-// The first row's element of a channel; nullptr where the last row's would end behind the buffer,
-// as it does if whoever filled it left the channel out.
+// The first row's element of a channel; nullptr if the last row's would end beyond the buffer, as
+// happens if the channel was omitted when the buffer was filled.
 const std::byte* first_of(const RawRows& raw, const iio_channel* channel) {
   const auto* const first = static_cast<const std::byte*>(iio_buffer_first(raw.buffer, channel));
   const auto* const end = static_cast<const std::byte*>(iio_buffer_end(raw.buffer));

@@ -21,8 +21,8 @@ class IioSource : public Source {
       : line_(std::make_shared<IioLine>()),
         thread_([line = line_, request] { run_iio_line(line, request); }) {}
 
-  // A thread that hangs inside libiio is left behind on purpose: nothing can end it, and all it
-  // touches is the line, which it holds itself.
+  // A thread that hangs inside libiio is abandoned on purpose: it cannot be ended, and it uses only
+  // the line, which it owns a share of.
   ~IioSource() override {
     std::unique_lock hold(line_->lock);
     line_->is_stopped = true;
@@ -36,7 +36,7 @@ class IioSource : public Source {
       thread_.detach();
   }
 
-  /// Waits for the first samples. Errors: device, and those of what was asked for.
+  /// Waits for the first samples. Errors: device, and those of the request.
   Status open(const IioRequest& request, const OpenOptions& options) {
     std::unique_lock hold(line_->lock);
     std::size_t steps = line_->steps;

@@ -4,13 +4,13 @@
 #include "proofmass/acquire/fake_iiod_test_support.hpp"
 #include "proofmass/acquire/source.hpp"
 
-// libiio itself against a board that is none.
+// libiio itself with a simulated board.
 namespace proofmass::acquire::iio_source_test {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double scale = 0.009806;  // of the board's, m/s² per step
+constexpr double scale = 0.009806;  // scale of the board, m/s² per count
 
 std::string setting(const SourceHead& head, std::string_view key) {
   const auto found =
@@ -18,7 +18,7 @@ std::string setting(const SourceHead& head, std::string_view key) {
   return found == head.settings.end() ? "(none)" : found->second;
 }
 
-// What `count` rows bring, or why there are none. Waits as long as it takes.
+// The values of `count` rows, or the error. Waits as long as it takes.
 Result<Arrival> gather(Source& source, std::size_t count) {
   Arrival all, piece;
   all.clear(source.head().recording.channels.size());
@@ -36,7 +36,7 @@ Result<Arrival> gather(Source& source, std::size_t count) {
   return all;
 }
 
-// This machine stalls: only what has to be waited for in vain is given little time.
+// This machine stalls: only waits that must time out have a short limit.
 const OpenOptions patient{.patience = 60s, .stopped = {}};
 const OpenOptions impatient{.patience = 3s, .stopped = {}};
 
@@ -56,7 +56,7 @@ TEST(IioSource, BringsEachRowOnceInMetresPerSecondSquaredAndTheBoardsAxes) {
   EXPECT_EQ((*source)->head().recording.channels[0].name, "accel_x");
   EXPECT_EQ((*source)->head().recording.channels[0].unit.quantity, Quantity::acceleration);
   for (std::size_t k = 0; k < rows.rows(); ++k) {
-    // The chip's x is k and its y is -k steps; on the board x is the chip's y, and y its -x.
+    // The chip's x is k and its y is -k counts; on the board x is the chip's y, and y its -x.
     ASSERT_NEAR(rows.channels[0][k], -scale * static_cast<double>(k), 1e-9);
     ASSERT_NEAR(rows.channels[1][k], -scale * static_cast<double>(k), 1e-9);
     ASSERT_NEAR(rows.channels[2][k], scale * 1000.0, 1e-9);
@@ -185,7 +185,7 @@ TEST(IioSource, TakesShortBuffers) {
   const auto source = open_source(board.uri(), patient);
   ASSERT_TRUE(source) << source.error().message;
   const Arrival rows = gather(**source, 20).value();
-  // Buffers are of 8 rows, of which 4 come.
+  // Buffers hold 8 rows, of which 4 arrive.
   EXPECT_NEAR(rows.channels[0][3], -scale * 3.0, 1e-9);
   EXPECT_NEAR(rows.channels[0][4], -scale * 8.0, 1e-9);
 }
@@ -231,7 +231,7 @@ TEST(IioSource, KeepsItsTimeWhileTheBoardHangsAndCanBeClosed) {
 }
 
 TEST(IioSource, HoldsTheBoardForGoneWhenItHangs) {
-  // So long is waited in vain: short, unless the machine is too busy for the board to answer by
+  // Duration of the timed-out wait: short, unless the machine is too busy for the board to reply by
   // then.
   std::string before;
   for (const auto patience : {3s, 15s, 60s}) {

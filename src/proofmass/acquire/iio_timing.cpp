@@ -43,7 +43,7 @@ Result<ChosenTrigger> set_named(const iio_context* context,
   if (trigger == nullptr || !iio_device_is_trigger(trigger))
     return Error{Errc::invalid_argument, fmt::format("trigger={}: no such trigger; there are: {}",
                                                      wanted, list_of(iio_devices(context, true)))};
-  // Whoever died while reading leaves the buffer enabled, and then no trigger can be set.
+  // A program that died while reading leaves the buffer enabled; then no trigger can be set.
   if (trigger == current_trigger(device)) return ChosenTrigger{trigger};
   const int code = iio_device_set_trigger(device, trigger);
   if (code < 0) return refused(device, trigger, code);
@@ -77,7 +77,7 @@ std::vector<double> numbers_in(std::string_view text) {
   return numbers;
 }
 
-// The rate of a device is an attribute of its own or of its channels.
+// The rate of a device is its own attribute or one of its channels'.
 std::optional<std::string> own_text(iio_device* device, const char* attribute) {
   if (auto text = iio_text(device, attribute)) return text;
   for (unsigned k = 0; k < iio_device_get_channels_count(device); ++k)
@@ -112,7 +112,7 @@ Status ask_rate(iio_device* timer, double rate_hz) {
                                          iio_reason(code), there ? "; it takes " + *there : "")};
 }
 
-// A chip that converts more slowly than it is read gives each value several times.
+// A chip that converts more slowly than it is read repeats each value.
 void keep_up(iio_device* device, IioTiming& timing) {
   if (own_rate(device) >= timing.rate_hz || timing.rate_hz <= 0.0) return;
   std::vector<double> there =
@@ -144,7 +144,7 @@ Status set_rate(iio_device* device,
     if (!asked) return asked;
     timing.settings.emplace_back("rate asked", fmt::format("{} Hz", *rate_hz));
   }
-  // A trigger that a program fires has no rate, and then the device's tells nothing.
+  // A trigger fired by a program has no rate, and the device's then has no meaning.
   const bool is_fired_by_hand = trigger != nullptr && iio_name(trigger).starts_with("sysfstrig");
   timing.rate_hz = is_fired_by_hand ? 0.0 : own_rate(timer);
   timing.settings.emplace_back("rate granted",
@@ -155,7 +155,7 @@ Status set_rate(iio_device* device,
   return Done{};
 }
 
-// Without being asked the kernel stamps with the time of day, which is set and steps.
+// By default the kernel stamps with the time of day, which can be set and jump.
 void choose_clock(const iio_device* device, IioTiming& timing) {
   constexpr const char* clock = "current_timestamp_clock";
   const auto now = iio_text(device, clock);

@@ -8,27 +8,27 @@
 
 namespace proofmass::acquire {
 
-/// What the reading thread hands on, in its order.
+/// Item passed on by the reading thread, in order.
 struct Incoming {
   enum class Kind {
     rows,
     notes,     ///< without rows
-    stalled,   ///< nothing has come for `silence_s`
+    stalled,   ///< no data for `silence_s`
     gone,      ///< the source failed: `reason`
-    reopened,  ///< it is there again, with this head
-    gave_up,   ///< it stays away: the last
-    ended,     ///< as it should: the last
+    reopened,  ///< it is available again, with this head
+    gave_up,   ///< it stays unavailable: the last item
+    ended,     ///< regular end: the last item
   };
   Kind kind = Kind::rows;
   Arrival arrival{};
-  std::uint64_t overrun = 0;  ///< rows in front of it that found no room
-  /// After a reopening: the device's count went on, and lost_before is by it.
+  std::uint64_t overrun = 0;  ///< rows before it that found no room
+  /// After a reopening: the device's count continued, and lost_before is based on it.
   bool is_counted = false;
   double silence_s = 0.0;
   std::string reason{};
   std::shared_ptr<const SourceHead> head{};
-  /// Of sources without a clock of their own, as the host's clock tells: time in front of the rows
-  /// that none stands for, and how far apart the first ones are.
+  /// For sources without their own clock, from the host's clock: time before the rows that is not
+  /// accounted for, and the interval between the first ones.
   double gap_s = 0.0;
   double step_s = 0.0;
 };

@@ -8,11 +8,12 @@
 
 namespace proofmass::acquire {
 
-/// Delays in bins of a tenth of an octave from a microsecond to some minutes: quantiles to 7 %.
+/// Histogram of delays with bins of a tenth of an octave from a microsecond to some minutes:
+/// quantiles to 7 %.
 class LatencyHistogram {
  public:
   void add(double seconds);
-  [[nodiscard]] std::optional<Latency> latency() const;  ///< nullopt where there is none
+  [[nodiscard]] std::optional<Latency> latency() const;  ///< nullopt if empty
 
  private:
   [[nodiscard]] double quantile(double fraction) const;

@@ -66,7 +66,7 @@ bool LevelGate::passes(double value) {
   return was_short && is_there;
 }
 
-/// Keeps the rows that waited for it.
+/// Keeps the rows that waited for the decision.
 void LevelGate::open(double time_s, const Keep& keep) {
   const double from_s = time_s - trigger_.before_s;
   const bool is_apart = from_s > until_s_;

@@ -15,13 +15,13 @@ namespace proofmass::acquire {
 /// Rows `first` to `first + count` of a block.
 [[nodiscard]] Block part_of(const Block& block, std::size_t first, std::size_t count);
 
-/// The latest rows, so many at most.
+/// The most recent rows, up to a limit.
 class RecentRows {
  public:
   RecentRows(std::size_t columns, std::size_t most_rows);
 
   void add(const Block& block);
-  /// Both say how many rows there were.
+  /// Both return the number of rows.
   std::size_t drop_before(double time_s);
   std::size_t drop_first(std::size_t count);
   [[nodiscard]] std::size_t rows() const { return rows_.rows() - first_; }
@@ -30,23 +30,23 @@ class RecentRows {
 
  private:
   Rows rows_;
-  std::size_t first_ = 0;  ///< those before it are gone
+  std::size_t first_ = 0;  ///< rows before it are removed
   std::size_t most_rows_;
 };
 
-/// Lets through what lies around the moments at which a channel passes a level. Estimates come
-/// later than their samples and wait for what these decide.
+/// Passes on the data around the times at which a channel crosses a level. Estimates arrive later
+/// than their samples and wait for the decision on these.
 class LevelGate {
  public:
   struct Keep {
-    /// A stretch begins that is apart from the one before; nothing of it has been kept yet.
+    /// A new segment begins, separate from the previous one; nothing of it has been kept yet.
     std::function<void(double from_s)> begin_stretch;
     std::function<void(double time_s)> triggered;
     std::function<void(const Block& rows)> samples;
     std::function<void(const Block& rows)> estimates;
   };
 
-  /// channel: of the block, that the trigger names. most_bytes: of the rows that wait.
+  /// channel: index in the block of the trigger's channel. most_bytes: limit of the waiting rows.
   LevelGate(const LevelTrigger& trigger,
             std::size_t channel,
             std::size_t channels,
@@ -55,7 +55,7 @@ class LevelGate {
 
   void add_samples(const Block& block, const Keep& keep);
   void add_estimates(const Block& rows, const Keep& keep);
-  /// Rows that were not kept and will not be, if nothing follows.
+  /// Rows that were not kept and will not be if nothing follows.
   [[nodiscard]] std::uint64_t not_kept() const { return dropped_ + recent_.rows(); }
 
  private:
@@ -69,9 +69,9 @@ class LevelGate {
   static constexpr double never = -std::numeric_limits<double>::infinity();
   LevelTrigger trigger_;
   std::size_t channel_;
-  double before_ = std::numeric_limits<double>::quiet_NaN();  ///< the value of the row before
+  double before_ = std::numeric_limits<double>::quiet_NaN();  ///< the previous value
   double now_s_ = never;
-  double until_s_ = never;  ///< end of the stretch that is kept
+  double until_s_ = never;  ///< end of the segment that is kept
   std::deque<Window> windows_;
   RecentRows recent_;
   RecentRows recent_estimates_;

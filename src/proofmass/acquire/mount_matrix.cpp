@@ -28,7 +28,7 @@ std::optional<MountMatrix> nine_numbers(std::string_view text) {
   return matrix;
 }
 
-// Device trees give entries such as 0.7071.
+// Device trees contain entries such as 0.7071.
 bool is_orthonormal(const MountMatrix& m) {
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = i; j < 3; ++j) {

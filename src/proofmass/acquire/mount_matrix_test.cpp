@@ -6,7 +6,7 @@ namespace proofmass::acquire::mount_matrix_test {
 namespace {
 
 TEST(MountMatrix, TurnsTheChipsAxesIntoTheBoards) {
-  // The chip's y lies along the board's x, its x against the board's y.
+  // The chip's y points along the board's x, its x opposite to the board's y.
   const auto matrix = parse_mount_matrix("0, 1, 0; -1, 0, 0; 0, 0, 1").value();
   ASSERT_TRUE(matrix);
   std::vector<double> x{1.0, 4.0}, y{2.0, 5.0}, z{3.0, 6.0};

@@ -1,4 +1,4 @@
-// What stands in for MQTT where Paho's library was not there at build time.
+// Replaces MQTT if Paho's library was not available at build time.
 #include "proofmass/acquire/source_list.hpp"
 
 namespace proofmass::acquire {

@@ -14,7 +14,7 @@ namespace {
 constexpr int quality_of_service = 1;  // each message at least once
 constexpr std::string_view not_again = "was lost, and with it what was sent meanwhile";
 
-/// What a broker is asked for.
+/// Requested broker and topic.
 struct MqttPlace {
   std::string host, topic;
   unsigned short port = 1883;
@@ -26,7 +26,7 @@ std::string words_of(int code) {
   return words == nullptr ? fmt::format("error {}", code) : words;
 }
 
-/// What the broker answers to a connection that it does not take. Source: MQTT 3.1.1, table 3.1.
+/// Refusal codes of a broker. Source: MQTT 3.1.1, table 3.1.
 std::string refusal_of(int code) {
   switch (code) {
     case 1:
@@ -45,7 +45,7 @@ std::string refusal_of(int code) {
   }
 }
 
-/// A connection that has one topic.
+/// A connection with one topic.
 class MqttFeed final : public ByteFeed {
  public:
   explicit MqttFeed(MqttPlace place) : place_(std::move(place)) {}
@@ -104,7 +104,7 @@ class MqttFeed final : public ByteFeed {
   }
 
   Fed taken(const MQTTClient_message& message, std::span<char> into) {
-    // What the broker kept of long ago is no sample of now.
+    // A message retained by the broker is old, not a current sample.
     if (message.retained != 0) {
       notes_.push_back({Severity::info, "a message that the broker had kept is left out"});
       return {};

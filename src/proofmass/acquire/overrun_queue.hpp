@@ -12,22 +12,22 @@
 
 namespace proofmass::acquire {
 
-/// What goes from a thread that blocks inside a library to the one that reads the source: bounded,
-/// and what found no room is counted.
+/// Bounded queue from a thread that blocks inside a library to the one that reads the source; rows
+/// that found no room are counted.
 class OverrunQueue {
  public:
   OverrunQueue(std::size_t channel_count, std::size_t most_rows)
       : channel_count_(channel_count), most_rows_(most_rows) {}
 
-  /// An empty one, with the memory of one that was read.
+  /// An empty arrival, with the memory of one that was read.
   [[nodiscard]] Arrival spare();
-  /// Where there is no room the rows are lost: they are counted in lost_before of the next that
-  /// find some.
+  /// If there is no room the rows are lost: they are added to lost_before of the next arrival that
+  /// has room.
   void put(Arrival&& arrival);
-  /// No more will come; `why` if that is a failure.
+  /// Ends the queue; `why` if that is due to a failure.
   void end(std::optional<Error> why = {});
 
-  /// As Source::read(). What was put before the end is still read.
+  /// As Source::read(). Items added before the end are still returned.
   [[nodiscard]] Result<Arrived> take(Arrival& arrival, std::chrono::milliseconds patience);
 
  private:
@@ -37,7 +37,7 @@ class OverrunQueue {
   std::deque<Arrival> waiting_;
   std::vector<Arrival> spares_;
   std::size_t rows_ = 0;       // in waiting_
-  std::uint64_t dropped_ = 0;  // since the last that found room
+  std::uint64_t dropped_ = 0;  // since the last arrival that had room
   bool ended_ = false;
   std::optional<Error> why_;
 };

@@ -30,7 +30,7 @@ TEST(OverrunQueue, GivesWhatWasPutInItsOrder) {
 TEST(OverrunQueue, CountsTheRowsThatFoundNoRoomInFrontOfTheNextThatDo) {
   OverrunQueue queue(1, 4);
   queue.put(rows(queue, 3, 0.0));
-  queue.put(rows(queue, 2, 3.0));  // no room for both, so for none
+  queue.put(rows(queue, 2, 3.0));  // no room for both, so neither is kept
   Arrival known = rows(queue, 2, 5.0);
   known.lost_before = 7;
   queue.put(std::move(known));

@@ -22,7 +22,7 @@ std::int64_t Pacer::now_ns() {
   const std::int64_t host_ns = host_now_ns();
   if (start_ns_ == 0) start_ns_ = host_ns;
   const double passed_ns = static_cast<double>(host_ns - start_ns_) * speed_;
-  constexpr double most_ns = 9e18;  // of an int64; at any speed
+  constexpr double most_ns = 9e18;  // range of an int64; at any speed
   return static_cast<std::int64_t>(std::min(passed_ns, most_ns));
 }
 

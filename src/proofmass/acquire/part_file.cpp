@@ -71,7 +71,8 @@ class DiskPart final : public PartFile {
     if (::close(std::exchange(descriptor_, -1)) != 0)
       return cannot(names_.part, "cannot be closed");
     if (const Status named = rename_part(); !named) return named;
-    // The name itself must outlive a power cut, too; not every file system can be asked to.
+    // The directory entry must also survive a power failure; not every file system supports this
+    // sync.
     const int folder = ::open(folder_of(names_.path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder >= 0) {
       (void)::fsync(folder);
@@ -90,7 +91,7 @@ class DiskPart final : public PartFile {
     if (errno == EEXIST)
       return Error{Errc::unwritable, fmt::format("{}: is there by now; the recording stays in {}",
                                                  names_.path, names_.part)};
-    // File systems that cannot promise it.
+    // File systems without RENAME_NOREPLACE.
     if (errno == EINVAL && !is_there(names_.path) && ::rename(part, path) == 0) return Done{};
     return cannot(names_.path, "cannot be given its name");
   }
@@ -100,11 +101,11 @@ class DiskPart final : public PartFile {
   }
 
   int descriptor_;
-  int reserve_;  ///< a nameless file that holds room; -1: none
+  int reserve_;  ///< an unnamed file that reserves space; -1: none
   PartNames names_;
 };
 
-/// Room that is free again once the descriptor is closed; -1 where there is none.
+/// Space that is released when the descriptor is closed; -1 if none can be reserved.
 int room_kept_in(const std::string& folder) {
   constexpr std::uint64_t wanted = std::uint64_t{1} << 20;
   struct statvfs disk{};

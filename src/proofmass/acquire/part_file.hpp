@@ -10,8 +10,8 @@
 
 namespace proofmass::acquire {
 
-/// A file that is written from front to end and gets its name once it is whole. Until then, and
-/// whatever happens, what was written is in the part.
+/// A file that is written sequentially and is renamed once it is complete. Until then the written
+/// data are in the part file, whatever happens.
 class PartFile {
  public:
   PartFile() = default;
@@ -19,19 +19,20 @@ class PartFile {
   PartFile& operator=(const PartFile&) = delete;
   virtual ~PartFile() = default;
 
-  /// Errors of all: unwritable, "run.mcap.part: cannot be written: No space left on device".
+  /// Errors of all functions: unwritable, "run.mcap.part: cannot be written: No space left on
+  /// device".
   [[nodiscard]] virtual Status append(std::string_view bytes) = 0;
-  /// What was appended is on the disk.
+  /// Syncs the appended data to the disk.
   [[nodiscard]] virtual Status sync() = 0;
-  /// Forgets what is behind, and gives the room back that was kept for the end of the file.
+  /// Removes everything after `bytes`, and releases the space reserved for the end of the file.
   [[nodiscard]] virtual Status truncate(std::uint64_t bytes) = 0;
-  /// Gives it its name; never over another file.
+  /// Renames the part to the file; never overwrites another file.
   [[nodiscard]] virtual Status keep() = 0;
-  /// Removes the part, which holds nothing worth keeping.
+  /// Removes the part, which has nothing worth keeping.
   virtual void discard() = 0;
 };
 
-/// Where a file is and will be.
+/// Current and final path of a file.
 struct PartNames {
   std::string path;
   std::string part;
@@ -41,8 +42,8 @@ using CreatePartFile = std::function<Result<std::unique_ptr<PartFile>>(const Par
 /// "run.mcap.part" for "run.mcap".
 [[nodiscard]] PartNames part_names(const std::string& path);
 
-/// A megabyte, at most an eighth of the free room, is kept aside so that a file on a full disk can
-/// be closed. Errors: invalid_argument (one of the names is there: what to do with it), unreadable
+/// A megabyte, at most an eighth of the free space, is reserved so that a file on a full disk can
+/// be closed. Errors: invalid_argument (one of the names exists: what to do with it), unreadable
 /// (it cannot be created: why).
 [[nodiscard]] Result<std::unique_ptr<PartFile>> create_part_file(const PartNames& names);
 

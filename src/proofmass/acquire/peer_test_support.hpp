@@ -19,7 +19,8 @@
 
 namespace proofmass::acquire {
 
-/// A program that runs as long as this lives, and tells a port on its first line.
+/// A child process that runs during the lifetime of this object and prints a port on its first
+/// line.
 class PeerProcess {
  public:
   explicit PeerProcess(std::vector<std::string> words) {
@@ -72,7 +73,7 @@ inline std::vector<std::string> phone_peer(const std::string& kind,
   return words;
 }
 
-/// A phone's app, stood in for, and the source that reads it.
+/// A substitute for a phone's app, and the source that reads it.
 class PhoneSource : public ::testing::Test {
  protected:
   explicit PhoneSource(std::string kind) : kind_(std::move(kind)) {}
@@ -96,12 +97,12 @@ class PhoneSource : public ::testing::Test {
   const auto name = open(__VA_ARGS__); \
   ASSERT_TRUE(name) << name.error().message
 
-/// All that a source gave until it had so many rows, failed, or a minute was over.
+/// Everything a source returned until it had `rows` rows, failed, or a minute was over.
 struct Taken {
   std::vector<std::vector<double>> channels;
   std::vector<std::int64_t> device_ns{};
   std::uint64_t lost = 0;
-  std::string notes{};  ///< one a line
+  std::string notes{};  ///< one per line
   std::string error{};
 };
 
@@ -132,7 +133,7 @@ inline ::testing::AssertionResult says(std::string_view text, std::string_view p
   return ::testing::AssertionFailure() << "expected \"" << part << "\" in: " << text;
 }
 
-/// Steps of the rows' numbers, which channel 0 carries, that are not 1; an empty text if all are.
+/// Increments of the row numbers in channel 0 that are not 1; empty if all are 1.
 inline std::string broken_steps(const std::vector<double>& counter) {
   std::string told;
   for (std::size_t k = 1; k < counter.size(); ++k)

@@ -4,7 +4,7 @@
 
 namespace proofmass::acquire {
 
-/// A connection's failure with what to do on the phone.
+/// A connection error with advice on what to do on the phone.
 [[nodiscard]] inline Error phyphox_gone(const Error& why) {
   return {why.code, "no phyphox: " + why.message +
                         "; switch remote access on in the experiment's menu, keep the app in "

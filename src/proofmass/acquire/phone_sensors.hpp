@@ -7,10 +7,10 @@
 
 namespace proofmass::acquire {
 
-/// What both apps know of a kind of sensor, by Android's name for it without "android.sensor.".
+/// What both apps have in common for a type of sensor, by Android's name without "android.sensor.".
 struct PhoneSensor {
-  std::string short_name;  ///< "acc"; the kind itself where there is no usual one
-  Unit unit;               ///< Quantity::unknown where nobody says
+  std::string short_name;  ///< "acc"; the type itself if there is no usual one
+  Unit unit;               ///< Quantity::unknown if not documented
   bool has_axes = false;   ///< its first three values are x, y, z
 };
 

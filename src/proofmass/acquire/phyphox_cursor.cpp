@@ -9,9 +9,9 @@
 namespace proofmass::acquire {
 namespace {
 
-/// Asked for again, so that a clock's step back shows.
+/// Overlap of requests, so that a backward clock step is detected.
 constexpr double overlap_s = 0.05;
-/// Asked for again behind a clock's step back: more than goes by until that is seen.
+/// Overlap after a backward clock step: more than the time until it is detected.
 constexpr double search_s = 10.0;
 constexpr std::size_t most_had = 16;
 
@@ -53,7 +53,7 @@ std::size_t PhyphoxCursor::first_new(std::span<const std::vector<double>> column
   const auto found = std::search(rows.begin(), rows.end(), wanted, had_.end(), is_same);
   if (found != rows.end())
     return static_cast<std::size_t>(found - rows.begin() + (had_.end() - wanted));
-  // A buffer that holds few rows has lost them; one that was emptied begins below.
+  // A buffer of low capacity may have dropped them; one that was cleared begins below.
   const auto behind =
       std::ranges::find_if(times_s, [&](double time_s) { return time_s > had_.back().time_s; });
   return behind == times_s.end() ? 0 : static_cast<std::size_t>(behind - times_s.begin());
@@ -64,7 +64,7 @@ PhyphoxCursor::Range PhyphoxCursor::take(std::span<const std::vector<double>> co
   const std::size_t first = first_new(columns);
   std::size_t end = first;
   double last_s = had_.empty() ? times_s.empty() ? 0.0 : times_s.front() : had_.back().time_s;
-  // Behind a step back rows below the threshold are missing: they come with a lower one.
+  // After a backward step, rows below the threshold are missing: they come with a lower threshold.
   const bool has_all = set_back_to_s_ || had_.empty();
   while (end < times_s.size() && (has_all || times_s[end] >= last_s)) last_s = times_s[end++];
   if (end > first) set_back_to_s_.reset();

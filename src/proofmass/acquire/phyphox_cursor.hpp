@@ -10,40 +10,41 @@
 
 namespace proofmass::acquire {
 
-/// How far a group of phyphox's buffers has been read, by its time buffer, in seconds.
+/// Read position in a group of phyphox's buffers, by its time buffer, in seconds.
 ///
-/// The phone gives what lies behind a threshold of time, but for a figure in the eighth place, in
-/// which it also writes the times: so a little is asked for again, and what was had is found in it
-/// by the last rows that were had.
+/// The phone returns the values above a threshold of time, up to a digit in the eighth place, in
+/// which it also writes the times. Therefore a small overlap is requested, and the known part is
+/// identified by the last rows received.
 /// Source: phyphox-android, RemoteServer.java, parseBufferRequest.
 class PhyphoxCursor {
  public:
-  /// Rows that are new: from first up to the one before end.
+  /// New rows: from first up to but excluding end.
   struct Range {
     std::size_t first = 0, end = 0;
     friend bool operator==(const Range&, const Range&) = default;
   };
 
-  /// What to ask of the time buffer: "full", or a threshold.
+  /// Request for the time buffer: "full", or a threshold.
   [[nodiscard]] std::string threshold() const;
-  /// Which rows of what came upon the threshold are new; they count as had then. The columns are
-  /// equally long, the times first.
+  /// Determines the new rows of the response to the threshold and marks them as received. The
+  /// columns are equally long, the times first.
   [[nodiscard]] Range take(std::span<const std::vector<double>> columns);
 
-  /// Rows up to here are not wanted.
+  /// Rows up to this time are ignored.
   void start_behind(double last_s);
-  /// Nothing that was had is on the phone any more.
+  /// No received row is on the phone any more.
   void start_anew() { *this = {}; }
-  /// The time buffer ends with this now: further back than what was had is a clock set back.
+  /// The time buffer now ends here: further back than the received rows means that the clock was
+  /// set back.
   void see_end(double end_s);
-  /// What is asked for goes far back, to find where a clock was set back.
+  /// True if the request reaches far back, to find where a clock was set back.
   [[nodiscard]] bool is_searching() const { return set_back_to_s_.has_value(); }
 
  private:
-  /// A row that was had: no time alone tells it from another, where a clock ran twice over it.
+  /// A received row; time alone does not identify it if the clock passed the same time twice.
   struct Row {
     double time_s = 0.0;
-    std::optional<std::uint64_t> print;  ///< of all its figures; absent: not known
+    std::optional<std::uint64_t> print;  ///< hash of all its values; absent: unknown
   };
   [[nodiscard]] std::optional<double> wanted_from_s() const;
   [[nodiscard]] std::size_t first_new(std::span<const std::vector<double>> columns) const;

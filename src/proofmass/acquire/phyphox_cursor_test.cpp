@@ -9,7 +9,7 @@ namespace {
 using Columns = std::vector<std::vector<double>>;
 using Range = PhyphoxCursor::Range;
 
-/// Times with a column that is the same throughout.
+/// Times with a constant column.
 Columns times(std::vector<double> times_s) {
   const std::size_t rows = times_s.size();
   return {std::move(times_s), std::vector<double>(rows, 9.81)};
@@ -25,7 +25,7 @@ TEST(PhyphoxCursor, AsksForEverythingFirst) {
 TEST(PhyphoxCursor, AsksForALittleAgainAndPassesItOver) {
   PhyphoxCursor cursor;
   (void)cursor.take(times({99.96, 99.98, 100.0}));
-  EXPECT_EQ(cursor.threshold(), "99.949998");  // 50 ms less, and twice the eighth place
+  EXPECT_EQ(cursor.threshold(), "99.949998");  // 50 ms less, and two units of the eighth place
   EXPECT_EQ(cursor.take(times({99.96, 99.98, 100.0, 100.02})), (Range{3, 4}));
   EXPECT_EQ(cursor.take(times({99.98, 100.0, 100.02})), (Range{3, 3}));
 }

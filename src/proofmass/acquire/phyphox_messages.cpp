@@ -10,10 +10,10 @@
 namespace proofmass::acquire {
 namespace {
 
-/// More than an experiment has, of buffers and their kin; the rest is passed over.
+/// Maximum number of buffers and similar entries, more than any experiment has; others are skipped.
 constexpr std::size_t most_entries = 4096;
 
-/// Takes "name." or a last "name" from a path's beginning.
+/// Removes "name." or a final "name" from the beginning of a path.
 bool take_word(std::string_view& path, std::string_view name) {
   if (!path.starts_with(name)) return false;
   const std::string_view rest = path.substr(name.size());
@@ -22,7 +22,7 @@ bool take_word(std::string_view& path, std::string_view name) {
   return true;
 }
 
-/// Takes "12." or a last "12".
+/// Removes "12." or a final "12".
 std::optional<std::size_t> take_number(std::string_view& path) {
   std::size_t number = 0;
   const auto [end, problem] = std::from_chars(path.data(), path.data() + path.size(), number);
@@ -61,7 +61,7 @@ void take_input(PhyphoxConfig& config, std::string_view path, const io::JsonLeaf
     input.outputs.emplace(path, *leaf.text);
 }
 
-/// Sets and their sources are numbered; a source's label and buffer follow each other in any order.
+/// Sets and their sources are numbered; a source's label and buffer are in any order.
 void take_export(PhyphoxConfig& config,
                  std::string_view path,
                  const io::JsonLeaf& leaf,
@@ -104,7 +104,7 @@ Status parse_phyphox_reply(std::string_view text,
   out.is_there.assign(names.size(), false);
   out.session.clear();
   bool has_status = false;
-  std::size_t current = 0;  // values of one buffer follow each other
+  std::size_t current = 0;  // the values of one buffer are consecutive
   const auto take_value = [&](std::string_view path, const io::JsonLeaf& leaf) {
     for (std::size_t tried = 0; tried < names.size();
          ++tried, current = (current + 1) % names.size()) {

@@ -16,7 +16,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr unsigned short phyphox_port = 8080;
 
-/// One question and its answer while the source is opened.
+/// One request and its response while the source is opened.
 class Opening {
  public:
   Opening(HttpClient& client, const OpenOptions& options)
@@ -49,14 +49,14 @@ std::vector<std::string> strings(const std::vector<std::string_view>& words) {
   return {words.begin(), words.end()};
 }
 
-/// A part of the talk, and where it went wrong.
+/// Adds the request to the error of its response.
 template <class Parsed>
 Result<Parsed> placed(Result<Parsed> parsed, const char* where) {
   if (parsed) return parsed;
   return phyphox_gone({Errc::device, fmt::format("{} {}", where, parsed.error().message)});
 }
 
-/// Where the buffers end, so that what was measured before is left alone; starts the measurement.
+/// Determines the ends of the buffers, so that earlier data are skipped; starts the measurement.
 Result<PhyphoxStart> begin(Opening& phone, std::vector<PhyphoxGroup> groups) {
   std::vector<std::string> times;
   for (const PhyphoxGroup& group : groups) times.push_back(group.time);
@@ -133,7 +133,7 @@ Result<std::unique_ptr<Source>> open_phyphox(SourceUri& uri, const OpenOptions& 
   auto start = begin(phone, std::move(groups).value());
   if (!start) return start.error();
   SourceHead head = head_of(uri, *config, *start);
-  // Older versions do not tell the time.
+  // Older versions do not report the time.
   const auto times = phone.ask("/time");
   const auto zero_s = times ? parse_phyphox_time(*times) : std::optional<double>();
   if (zero_s && *zero_s)

@@ -59,7 +59,7 @@ std::string time_in_set(const PhyphoxConfig& config, std::size_t set) {
   return {};
 }
 
-/// Where no input says acceleration (a sensor over Bluetooth), a label may.
+/// If no input is an acceleration (a Bluetooth sensor), a label may be.
 std::optional<PhyphoxGroup> labelled_group(const PhyphoxConfig& config) {
   for (const PhyphoxConfig::Export& first : config.exports) {
     const std::string time = time_in_set(config, first.set);

@@ -9,23 +9,23 @@
 
 namespace proofmass::acquire {
 
-/// Buffers that fill together: a sensor's values and their time.
+/// Buffers that fill together: a sensor's values and their times.
 struct PhyphoxGroup {
-  std::string sensor;  ///< "accelerometer", "gyroscope"; a label's words where no input fills them
-  std::string time;    ///< buffer, in seconds
+  std::string sensor;  ///< "accelerometer", "gyroscope"; words of a label if no input fills them
+  std::string time;    ///< buffer name, in seconds
   std::vector<std::string> buffers{};
   std::vector<Unit> units{};
 };
 
-/// What the URI asks for; empty: the accelerometer, and the gyroscope if there is one.
+/// Request of the URI; empty: the accelerometer, and the gyroscope if there is one.
 struct PhyphoxWish {
-  std::vector<std::string> sensors{};  ///< "gyroscope", as the experiment's inputs are called
+  std::vector<std::string> sensors{};  ///< "gyroscope", by the names of the experiment's inputs
   std::vector<std::string> buffers{};  ///< instead of sensors
-  std::string time{};                  ///< buffer of their time
+  std::string time{};                  ///< buffer of their times
 };
 
-/// Errors: invalid_argument (what was asked for is not in the experiment), device (no acceleration
-/// in it), each with what there is.
+/// Errors: invalid_argument (a requested item is not in the experiment), device (no acceleration in
+/// it), each with the available items.
 [[nodiscard]] Result<std::vector<PhyphoxGroup>> plan_phyphox(const PhyphoxConfig& config,
                                                              const PhyphoxWish& wish);
 

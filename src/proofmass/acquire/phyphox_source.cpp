@@ -14,7 +14,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds between_questions{50};
-/// So long without rows while it measures, and the ends of the time buffers are asked for.
+/// After this time without rows during a measurement, the ends of the time buffers are requested.
 constexpr milliseconds suspicious_silence{500};
 constexpr int most_bad_answers = 5;
 
@@ -74,7 +74,7 @@ void PhyphoxSource::ask() {
   for (std::size_t k = 0; k < start_.groups.size(); ++k) {
     const PhyphoxGroup& group = start_.groups[k];
     const std::string time = query_text(group.time), from = start_.cursors[k].threshold();
-    // Of everything the phone takes no reference.
+    // For a full request the phone accepts no reference buffer.
     const std::string behind = from == "full" ? from : from + "%7C" + time;
     target += fmt::format("{}{}={}", k == 0 ? '?' : '&', time, from);
     for (const std::string& buffer : group.buffers)
@@ -91,7 +91,7 @@ Status PhyphoxSource::take(const HttpAnswer& answer) {
   bad_answers_ = 0;
   if (const Status same = take_session(reply_); !same) return same;
   asks_ends_ ? take_ends(reply_) : take_rows(reply_);
-  // A long answer was long under way: the next one tells when the last row was there.
+  // A long response took long to transfer: the next one shows when the last row was available.
   is_behind_ = is_searching_ && !asks_ends_ && !is_behind_;
   if (is_behind_) next_question_ = Clock::now();
   return Done{};

@@ -13,14 +13,14 @@
 
 namespace proofmass::acquire {
 
-/// What was agreed on with the phone before its first samples.
+/// Result of the initial exchange with the phone.
 struct PhyphoxStart {
   std::vector<PhyphoxGroup> groups;
-  std::vector<PhyphoxCursor> cursors;  ///< one a group
+  std::vector<PhyphoxCursor> cursors;  ///< one per group
   std::string session;
 };
 
-/// Asks phyphox twenty times a second for what its buffers have got.
+/// Polls phyphox twenty times a second for new values of the buffers.
 class PhyphoxSource : public Source {
  public:
   PhyphoxSource(std::unique_ptr<HttpClient> client, PhyphoxStart start, SourceHead head);
@@ -44,17 +44,17 @@ class PhyphoxSource : public Source {
   PhyphoxStart start_;
   SourceHead head_;
   SensorMerge merge_;
-  std::vector<std::string> names_, times_;  ///< of all buffers; of those that hold times
-  std::string ends_target_;                 ///< asks for the times' ends
+  std::vector<std::string> names_, times_;  ///< all buffers; buffers that contain times
+  std::string ends_target_;                 ///< requests the ends of the times
   PhyphoxReply reply_{};
   std::vector<double> row_{};
   std::vector<Note> notes_{};
   Clock::time_point next_question_{}, last_rows_{};
-  bool asks_ends_ = false;     ///< the question under way
-  bool is_searching_ = false;  ///< so does one for what a clock that was set back hides
-  bool is_behind_ = false;     ///< rows wait for the next answer
+  bool asks_ends_ = false;     ///< the pending request does so
+  bool is_searching_ = false;  ///< the pending request searches behind a clock step back
+  bool is_behind_ = false;     ///< rows wait for the next response
   bool was_measuring_ = true;
-  int bad_answers_ = 0;  ///< in a row
+  int bad_answers_ = 0;  ///< consecutive
   bool told_timeless_ = false;
 };
 

@@ -5,21 +5,21 @@
 
 namespace proofmass::acquire {
 
-/// The rate at which rows come, where it is not the granted one.
+/// The actual rate of the rows, if it differs from the granted one.
 struct OtherRate {
   double rate_hz = 0.0;
   double for_s = 0.0;
 };
 
-/// Notices, once, that rows come at a rate which differs from the granted one by more than 5 %:
-/// three times in a row, each over five seconds and forty rows at least, and always to the same
-/// side. So neither a delay nor what makes up for it counts.
+/// Detects, once, that the row rate differs from the granted one by more than 5 %: three
+/// consecutive times, each over at least five seconds and forty rows, and always in the same
+/// direction. A delay and its compensation therefore do not count.
 class RateWatch {
  public:
-  /// 0: no rate was granted, and nothing is noticed.
+  /// 0: no rate was granted, and nothing is detected.
   explicit RateWatch(double granted_hz = 0.0) : granted_hz_(granted_hz) {}
 
-  /// So many rows there are by now, those known to be missing too; host_s: when the last arrived.
+  /// rows: number of rows so far, including those known to be missing; host_s: arrival of the last.
   [[nodiscard]] std::optional<OtherRate> add(std::uint64_t rows, double host_s);
 
  private:
@@ -30,9 +30,9 @@ class RateWatch {
 
   double granted_hz_;
   bool is_told_ = false;
-  std::optional<Mark> since_;    ///< where what is compared now begins
-  std::optional<Mark> differs_;  ///< since when it has
-  int times_ = 0;                ///< that it has: below 0 to the slower side
+  std::optional<Mark> since_;    ///< start of the current comparison
+  std::optional<Mark> differs_;  ///< start of the difference
+  int times_ = 0;                ///< number of consecutive differences: negative if slower
 };
 
 }  // namespace proofmass::acquire

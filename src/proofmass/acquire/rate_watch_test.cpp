@@ -11,7 +11,7 @@
 namespace proofmass::acquire::rate_watch_test {
 namespace {
 
-/// What a watch tells of rows that come at `rate_hz` in tenths of a second, each `late_s` late.
+/// Output of a watch for rows at `rate_hz` in tenths of a second, each `late_s` late.
 std::vector<OtherRate> told_of(double granted_hz,
                                double rate_hz,
                                const std::function<double(double time_s)>& late_s) {
@@ -46,7 +46,7 @@ TEST(RateWatch, TakesTheGrantedRateForWhatItIs) {
 }
 
 TEST(RateWatch, IsNotMisledByADelayAndWhatMakesUpForIt) {
-  // From second 20 nothing comes for 9 s, and then all at once.
+  // From second 20 nothing arrives for 9 s, and then everything at once.
   const auto held_up = [](double time_s) {
     return time_s > 20.0 && time_s < 29.0 ? 29.0 - time_s : 0.0;
   };
@@ -65,7 +65,7 @@ TEST(Recorder, TellsThatRowsComeAtAnotherRateThanTheGranted) {
   const TestFolder folder;
   for (const bool has_device_clock : {true, false}) {
     Script script{.acts = arrivals(200), .has_device_clock = has_device_clock, .is_paced = true};
-    // 100 Hz were granted, and 80 Hz it is.
+    // 100 Hz were granted, the actual rate is 80 Hz.
     const auto at = [](std::uint64_t row) { return static_cast<std::int64_t>(row) * 12'500'000; };
     script.device_ns = script.host_ns = at;
     const auto summary =

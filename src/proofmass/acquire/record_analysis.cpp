@@ -3,7 +3,7 @@
 
 #include "proofmass/acquire/record_session.hpp"
 
-// What goes to the analysis and comes back.
+// Exchange with the analysis.
 namespace proofmass::acquire {
 namespace {
 
@@ -46,7 +46,7 @@ void RecordSession::tell_left_out() {
                    std::exchange(left_out_, 0)));
 }
 
-/// Waits for the first of them only.
+/// Waits for the first one only.
 void RecordSession::take_estimates(std::chrono::milliseconds wait) {
   while (analysis_ && analysis_->take(analysed_, wait)) {
     wait = std::chrono::milliseconds(0);
@@ -63,7 +63,7 @@ void RecordSession::take_estimates(std::chrono::milliseconds wait) {
 
 void RecordSession::keep_estimates() {
   if (analysed_.estimates.rows() == 0) return;
-  // Where samples wait for whoever reads, a queue that is full says nothing of the estimates.
+  // If samples wait for the reader, a full queue gives no information on the latency.
   if (head_.is_paced && analysed_.host_ns)
     latency_.add(static_cast<double>(host_now_ns() - *analysed_.host_ns) * 1e-9);
   const Block rows = view_of(analysed_.estimates, static_cast<std::size_t>(estimate_rows_));
@@ -80,7 +80,7 @@ bool RecordSession::is_told_to_stop() const {
          (watch_.stopped && watch_.stopped());
 }
 
-/// All that waits is analysed, unless somebody wants to stop and it takes long.
+/// Analyses all waiting samples, unless a stop is requested and it takes too long.
 void RecordSession::finish_analysis() {
   if (!analysis_) return;
   analysis_->finish();

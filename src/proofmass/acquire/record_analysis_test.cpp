@@ -7,13 +7,13 @@
 #include "proofmass/acquire/record_test_support.hpp"
 #include "proofmass/acquire/scripted_source_test_support.hpp"
 
-// The analysis on its own thread, beside the recording.
+// The analysis on its own thread, alongside the recording.
 namespace proofmass::acquire::record_analysis_test {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// False: it did not come about in a minute.
+/// False: the condition did not hold within a minute.
 bool comes_about(const auto& is_so) {
   const auto until = std::chrono::steady_clock::now() + 60s;
   while (!is_so()) {
@@ -23,7 +23,7 @@ bool comes_about(const auto& is_so) {
   return true;
 }
 
-/// Doubles, and does something before each block.
+/// Doubles the samples, and runs a callback before each block.
 class Slow final : public LiveAnalysis {
  public:
   explicit Slow(std::function<void(std::size_t first)> before) : before_(std::move(before)) {}
@@ -46,9 +46,9 @@ MakeAnalysis slow(std::function<void(std::size_t first)> before) {
   };
 }
 
-/// A source that comes at its own pace, but never so fast that a busy machine loses rows of it.
+/// A source with its own pace, slow enough that a busy machine loses no rows of it.
 struct Paced {
-  std::atomic<std::uint64_t> seen = 0;  ///< rows that the recording has had
+  std::atomic<std::uint64_t> seen = 0;  ///< rows received by the recording
   Script script(std::size_t count, std::size_t rows) {
     Script out{.acts = arrivals(count, {.rows = rows}), .is_paced = true};
     out.value = [this, rows](std::uint64_t row, std::size_t channel) {
@@ -69,7 +69,7 @@ std::uint64_t left_out_of(const RecordSummary& summary) {
   return 0;
 }
 
-/// Estimates are twice the samples of their time, each once and in order.
+/// Checks that estimates are twice the samples of their time, each once and in order.
 void expect_doubled(const Recording& estimates) {
   for (std::size_t k = 0; k < estimates.samples(); ++k)
     ASSERT_NEAR(estimates.channels[0].values[k], 200.0 * estimates.time.at(k), 1e-6) << k;
@@ -113,7 +113,7 @@ TEST(RecordAnalysis, IsLeftOutWhereTooMuchWaitsForItAndTheFileIsNot) {
   EXPECT_NE(summary->events[0].text.find("not of the recording"), std::string::npos);
   const Recording estimates = read_back(folder.file("run.mcap"), "estimates");
   EXPECT_EQ(estimates.samples() + left_out_of(*summary), 40'000u);
-  // Two channels and a stamp of eight bytes each wait.
+  // Two channels and a stamp of eight bytes each are queued.
   EXPECT_NEAR(static_cast<double>(estimates.samples()), 400'000.0 / 24.0, 1000.0);
   expect_doubled(estimates);
 }
@@ -127,7 +127,7 @@ TEST(RecordAnalysis, TakesItsSamplesUpAgainBehindThoseLeftOut) {
   Script script = source.script(400, 100);
   const auto paced = script.value;
   std::atomic<std::uint64_t> estimated = 0;
-  // Rows from 35 000 come when the analysis has caught up.
+  // Rows from 35 000 on arrive when the analysis has caught up.
   script.value = [&](std::uint64_t row, std::size_t channel) {
     if (row == 35'000) (void)comes_about([&] { return estimated > 10'000; });
     return paced(row, channel);

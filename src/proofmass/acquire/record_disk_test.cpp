@@ -18,15 +18,15 @@
 namespace proofmass::acquire::record_disk_test {
 namespace {
 
-/// What a disk in memory is to do.
+/// Behaviour of a disk in memory.
 struct DiskPlan {
-  std::size_t room = ~std::size_t{0};  ///< bytes of all files
-  std::chrono::milliseconds each{0};   ///< what an append takes
+  std::size_t room = ~std::size_t{0};  ///< total bytes of all files
+  std::chrono::milliseconds each{0};   ///< duration of an append
   bool has_no_room_for_the_end = false;
   bool refuses_names = false;
 };
 
-/// A disk in memory: its files by their names.
+/// A disk in memory: its files by name.
 struct TestDisk {
   DiskPlan plan;
   std::map<std::string, std::string> files{};
@@ -58,7 +58,7 @@ class TestPart final : public PartFile {
   Status truncate(std::uint64_t bytes) override {
     const std::scoped_lock lock(disk_.mutex);
     disk_.files[names_.part].resize(bytes);
-    // What had been kept aside.
+    // Releases the reserved space.
     disk_.plan.room = disk_.plan.has_no_room_for_the_end ? disk_.used() : ~std::size_t{0};
     return Done{};
   }
@@ -84,7 +84,7 @@ Result<RecordSummary> record_on(TestDisk& disk,
                                 const RecordOptions& options,
                                 const RecordWatch& watch = {}) {
   const MakeAnalysis none;
-  // Files that turn over take their numbers from a folder, which there is none of.
+  // Rotated files are numbered by the contents of a folder, which does not exist here.
   const auto create = [&](PartNames names) {
     const std::string number = std::to_string(disk.created++);
     if (options.rotate_s) names = {number, number + ".part"};
@@ -100,7 +100,7 @@ Recording read_bytes(const std::string& bytes) {
   return read ? std::move(read).value() : Recording{};
 }
 
-/// Whether there is anything to complain of.
+/// True if a recording has any fault.
 bool is_flawed(const Recording& recording) {
   return std::ranges::any_of(recording.notes,
                              [](const Note& note) { return note.severity != Severity::info; });
@@ -171,12 +171,12 @@ TEST(RecordDisk, HoldsNoMoreThanItMayWhileTheDiskIsSlow) {
       record_on(disk, open_scripts({script}), {.path = "run.mcap", .queue_bytes = 400'000});
   ASSERT_TRUE(summary);
   EXPECT_EQ(summary->samples + summary->overrun, 300'000u);
-  // 300 000 rows are 7 MB: what was neither queued nor written was dropped and counted.
+  // 300 000 rows are 7 MB: those neither queued nor written were dropped and counted.
   EXPECT_GT(summary->overrun, 0u);
   EXPECT_EQ(read_bytes(disk.files.at("run.mcap")).samples(), summary->samples);
 }
 
-/// Runs in a child, whose limits and fate are its own; true if it did what it should.
+/// Runs in a child process with its own limits; true if it succeeded.
 bool in_child(const std::function<bool()>& work) {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(work() ? 0 : 1);

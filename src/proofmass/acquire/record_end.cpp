@@ -3,7 +3,7 @@
 
 #include "proofmass/acquire/record_session.hpp"
 
-// How a recording ends.
+// End of a recording.
 namespace proofmass::acquire {
 
 void RecordSession::close() {
@@ -38,7 +38,7 @@ void RecordSession::close_file() {
   if (const auto failure = disk_.failure()) close_failed(*failure);
 }
 
-/// What the disk has is closed as well as can be.
+/// Closes the data on the disk as completely as possible.
 void RecordSession::close_failed(const DiskWriter::Failure& failure) {
   RecordSummary& summary = tally_.summary;
   end_ = RecordEnd::disk_failed;
@@ -56,8 +56,7 @@ void RecordSession::close_failed(const DiskWriter::Failure& failure) {
   closed_.back().path.clear();
 }
 
-/// Files that were handed on and did not get to the disk. What there is of one that failed stays in
-/// its part.
+/// Files that were passed on but are not on the disk. The data of a failed file stay in its part.
 void RecordSession::forget_unwritten(const DiskWriter::Failure& failure) {
   const auto failed =
       std::ranges::find(closed_, failure.file, [](const Closed& closed) { return closed.part; });

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What is no UTF-8 is replaced: texts come from devices.
+/// Invalid UTF-8 is replaced, because texts come from devices.
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

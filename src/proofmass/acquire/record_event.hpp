@@ -7,16 +7,16 @@
 
 namespace proofmass::acquire {
 
-/// The host's two clocks at one moment.
+/// Simultaneous values of the host's two clocks.
 struct HostTimes {
   std::int64_t steady_ns = 0;    ///< host_now_ns()
-  std::int64_t realtime_ns = 0;  ///< of the day, since 1970, UTC
+  std::int64_t realtime_ns = 0;  ///< time of day, since 1970, UTC
 };
 [[nodiscard]] HostTimes host_times_now();
 
-/// An event as the topic "events" has it, its time counted from `origin_s`.
+/// An event in the format of the topic "events", its time counted from `origin_s`.
 [[nodiscard]] std::string json_of(const RecordEvent& event, double origin_s, const HostTimes& now);
-/// One message of the topic "clock": a row of the recording and when it arrived.
+/// One message of the topic "clock": a row of the recording and its arrival time.
 [[nodiscard]] std::string clock_json(double time_s, const HostTimes& arrived);
 
 }  // namespace proofmass::acquire

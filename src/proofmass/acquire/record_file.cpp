@@ -11,11 +11,11 @@
 namespace proofmass::acquire {
 namespace {
 
-constexpr std::int64_t message_ns = 100'000'000;  ///< a message's rows
-constexpr std::int64_t chunk_ns = 400'000'000;  ///< what a crash costs, with what the timer is late
+constexpr std::int64_t message_ns = 100'000'000;  ///< rows per message
+constexpr std::int64_t chunk_ns = 400'000'000;  ///< maximum loss in a crash, plus the timer's delay
 constexpr std::size_t message_bytes = std::size_t{64} << 10;
 
-/// The machine and the moment.
+/// Host name and system.
 void add_host(RecordWords& words) {
   utsname host{};
   if (::uname(&host) != 0) return;
@@ -166,7 +166,7 @@ void RecordFile::flush_chunk() {
   pump();
 }
 
-/// Chunks that are closed go to the disk.
+/// Passes closed chunks to the disk.
 void RecordFile::pump() {
   DiskPiece piece{mcap_.take_bytes(), {}, samples_.written};
   if (piece.bytes.empty()) return;
@@ -182,7 +182,7 @@ void RecordFile::begin_stretch(const std::string& name) {
   begins_stretch_ = rows_ > 0;
 }
 
-/// To the audit the time between stretches is none.
+/// For the audit, the time between segments does not count.
 void RecordFile::audit(const Block& block) {
   const double first_s = block.stamps_s.front();
   if (begins_stretch_) between_stretches_s_ += first_s - last_s_;
@@ -231,7 +231,7 @@ void RecordFile::close(RecordWords summary) {
 Status RecordFile::close_after(const DiskWriter::Failure& failure,
                                const RecordEvent& event,
                                RecordWords summary) {
-  // Where another file of the recording failed, nothing of this one is written but its front.
+  // If another file of the recording failed, only the beginning of this one is written.
   const DiskPiece& kept = failure.file == part_ ? failure.kept : front_;
   add_audit(summary);
   rows_ = kept.rows;

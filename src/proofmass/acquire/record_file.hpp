@@ -21,55 +21,56 @@ namespace proofmass::acquire {
 
 using RecordWords = std::map<std::string, std::string>;
 
-/// What a file of a recording has at its front.
+/// Contents at the beginning of a file of a recording.
 struct RecordFileHead {
   const SourceHead& source;
-  const std::vector<Channel>& estimates;  ///< columns; none without an analysis
+  const std::vector<Channel>& estimates;  ///< columns; empty without an analysis
   RecordWords metadata{};
   const std::vector<std::string>& sensor_files;
 };
 
-/// One file of a recording: what goes into it, and when that is brought to the disk. Its times are
-/// the recording's, counted from its own first row.
+/// One file of a recording: its contents, and when they are synced to the disk. Its times are the
+/// recording's, counted from its own first row.
 class RecordFile {
  public:
-  /// Its front is written when this returns. Errors: those of the creation; unreadable.
+  /// The beginning of the file is written when this returns. Errors: those of the creation;
+  /// unreadable.
   [[nodiscard]] static Result<std::unique_ptr<RecordFile>> create(DiskWriter& disk,
                                                                   std::unique_ptr<PartFile> part,
                                                                   const RecordFileHead& head);
 
-  /// Told before the first row: its time on the recording's clock, and of the day.
+  /// Called before the first row: its time on the recording's clock, and time of day.
   void begin(double origin_s, std::int64_t start_ns);
   [[nodiscard]] bool has_begun() const { return has_begun_; }
   [[nodiscard]] double origin_s() const { return origin_s_; }
-  /// Rows with their stamps on the recording's clock; Block::first is not looked at.
+  /// Rows with their stamps on the recording's clock; Block::first is ignored.
   void add_rows(const Block& block);
   void add_estimates(const Block& rows);
   void add_event(const RecordEvent& event, const HostTimes& now);
   void add_clock(double time_s, const HostTimes& arrived);
-  /// The rows that follow are apart from those before: a stretch of its own, with this name.
+  /// Starts a new segment with this name, separate from the rows before.
   void begin_stretch(const std::string& name);
 
-  /// Hands on to the disk what has waited for long enough.
+  /// Passes data to the disk that have waited long enough.
   void tick(std::int64_t now_ns);
-  /// What the samples were like, in words, and the end of the file.
+  /// Writes the audit's summary and the end of the file.
   void close(RecordWords summary);
-  /// The same where the disk has failed: what it took is kept, as far as it can be with its end.
+  /// The same after a disk failure: the data written so far are kept, with an end if possible.
   [[nodiscard]] Status close_after(const DiskWriter::Failure& failure,
                                    const RecordEvent& event,
                                    RecordWords summary);
 
   [[nodiscard]] std::uint64_t rows() const { return rows_; }
-  [[nodiscard]] double last_s() const { return last_s_; }  ///< of the last row
+  [[nodiscard]] double last_s() const { return last_s_; }  ///< time of the last row
   [[nodiscard]] std::uint64_t bytes() const { return mcap_.bytes(); }
-  /// What the audit found; once it is closed.
+  /// The audit's notes; valid after close.
   [[nodiscard]] const std::vector<Note>& notes() const { return found_->notes; }
   [[nodiscard]] const std::shared_ptr<PartFile>& part() const { return part_; }
-  /// Called now and then while the disk has no room.
+  /// Called while the disk has no room.
   std::function<void()> while_waiting{};
 
  private:
-  /// Rows of a topic that are not in a message yet.
+  /// Rows of a topic that are not yet in a message.
   struct Waiting {
     io::McapRecording::Topic topic = 0;
     Rows rows{};

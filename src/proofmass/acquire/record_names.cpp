@@ -10,7 +10,7 @@
 namespace proofmass::acquire {
 namespace {
 
-/// The number in "run.0003.mcap" or "run.0003.mcap.part"; 0 where there is none.
+/// The number in "run.0003.mcap" or "run.0003.mcap.part"; 0 if there is none.
 unsigned long number_in(std::string_view name, std::string_view stem, std::string_view extension) {
   if (name.ends_with(".part")) name.remove_suffix(5);
   if (!name.starts_with(stem) || !name.ends_with(extension) ||
@@ -34,7 +34,7 @@ PartNames next_numbered(const std::string& path) {
   const std::string extension = whole.extension().string();
   const std::filesystem::path folder = whole.has_parent_path() ? whole.parent_path() : ".";
   unsigned long last = 0;
-  std::error_code problem;  // a folder that cannot be listed will not take a file either
+  std::error_code problem;  // a folder that cannot be listed will not accept a file either
   for (const auto& entry : std::filesystem::directory_iterator(folder, problem))
     last = std::max(last, number_in(entry.path().filename().string(), stem, extension));
   return part_names(

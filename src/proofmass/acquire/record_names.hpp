@@ -6,8 +6,8 @@
 
 namespace proofmass::acquire {
 
-/// "run.0004.mcap" for "run.mcap", where the folder has numbers up to 3, closed or not: a number is
-/// never used twice.
+/// "run.0004.mcap" for "run.mcap", if the folder has numbers up to 3, closed or not: a number is
+/// never reused.
 [[nodiscard]] PartNames next_numbered(const std::string& path);
 
 }  // namespace proofmass::acquire

@@ -49,7 +49,7 @@ LevelGate::Keep RecordSession::keepers() {
           .estimates = [this](const Block& rows) { write_estimates(rows); }};
 }
 
-/// Where a new file is due, rows are parted exactly there.
+/// Splits the rows exactly where a new file is due.
 void RecordSession::keep_samples(const Block& block) {
   std::size_t done = 0;
   while (done < block.rows() && file_) {

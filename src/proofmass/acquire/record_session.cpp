@@ -66,8 +66,8 @@ Status RecordSession::begin() {
   return Done{};
 }
 
-/// Waits a moment for a source that is not there, or went while it was opened, as for one that went
-/// later.
+/// Waits before retrying a source that is unavailable, or was lost while being opened, as for one
+/// lost later.
 bool RecordSession::may_try_again(const Error& error) {
   constexpr std::chrono::milliseconds slice{50}, between{500};
   const auto is_stopped = [&] { return watch_.stopped && watch_.stopped(); };
@@ -93,7 +93,7 @@ bool RecordSession::may_try_again(const Error& error) {
   return !is_stopped();
 }
 
-/// What depends on the source's channels.
+/// Setup that depends on the source's channels.
 Status RecordSession::use(const SourceHead& head) {
   head_ = head;
   const std::size_t channels = head_.recording.channels.size();
@@ -121,7 +121,7 @@ Status RecordSession::use(const SourceHead& head) {
   return Done{};
 }
 
-/// For silences and another rate, of a source that was opened.
+/// Starts monitoring silence and rate of an opened source.
 void RecordSession::begin_watching() {
   const double rate_hz = head_.recording.time.rate_hz;
   hold_.emplace(head_.has_device_clock, head_.is_paced, rate_hz, options_.stall_s);
@@ -145,7 +145,7 @@ void RecordSession::loop() {
   take_what_is_left(item);
 }
 
-/// What was read before the end is kept; where the disk has failed it is counted.
+/// Data read before the end are kept; after a disk failure they are counted.
 void RecordSession::take_what_is_left(Incoming& item) {
   do {
     while (hold_->take(item, true)) {
@@ -167,7 +167,7 @@ void RecordSession::end(RecordEnd how, std::string reason) {
   tally_.summary.end_reason = std::move(reason);
 }
 
-/// The time of day is compared with the clock that never jumps.
+/// Compares the time of day with the monotonic clock.
 void RecordSession::look_at_clocks() {
   const HostTimes now = host_times_now();
   if (now.steady_ns < next_clock_ns_) return;
@@ -250,7 +250,7 @@ void RecordSession::watch_rate(std::int64_t host_ns) {
                    head_.has_device_clock ? "" : ", by which their times are counted"));
 }
 
-/// Once a second, what the time of day was when the last row arrived.
+/// Once a second, the time of day at the arrival of the last row.
 void RecordSession::pair_clocks(std::int64_t host_ns) {
   if (host_ns < next_pair_ns_ || !file_ || !file_->has_begun()) return;
   constexpr std::int64_t every_ns = 1'000'000'000;

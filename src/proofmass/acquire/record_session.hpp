@@ -22,8 +22,7 @@
 
 namespace proofmass::acquire {
 
-/// One call of record(): what its own thread does between the one that reads and the one that
-/// writes.
+/// One call of record(): the work of its own thread, between the reading and the writing thread.
 class RecordSession {
  public:
   RecordSession(const OpenSource& open,
@@ -32,11 +31,11 @@ class RecordSession {
                 const MakeAnalysis& make_analysis,
                 CreatePartFile create);
 
-  /// Once. As record().
+  /// Call once. See record().
   [[nodiscard]] Result<RecordSummary> run();
 
  private:
-  // record_session.cpp: the course of it; record_end.cpp: its end.
+  // record_session.cpp: the main loop; record_end.cpp: its end.
   [[nodiscard]] Status begin();
   [[nodiscard]] bool may_try_again(const Error& error);
   [[nodiscard]] Status use(const SourceHead& head);
@@ -56,7 +55,7 @@ class RecordSession {
   void close_failed(const DiskWriter::Failure& failure);
   void forget_unwritten(const DiskWriter::Failure& failure);
 
-  // record_rows.cpp: where rows and events go.
+  // record_rows.cpp: storage of rows and events.
   void keep(const Block& block, std::int64_t host_ns);
   void keep_samples(const Block& block);
   void write_estimates(const Block& rows);
@@ -69,7 +68,7 @@ class RecordSession {
   void tell(const RecordEvent& event);
   void tell_notes(const std::vector<Note>& notes);
 
-  // record_analysis.cpp: what goes to the analysis and comes back.
+  // record_analysis.cpp: exchange with the analysis.
   void begin_analysis(std::unique_ptr<LiveAnalysis> analysis);
   void analyse(const Block& block, std::int64_t host_ns);
   void take_estimates(std::chrono::milliseconds patience);
@@ -90,9 +89,9 @@ class RecordSession {
   LatencyHistogram latency_;
   ArrivalQueue queue_;
   std::unique_ptr<AnalysisThread> analysis_;
-  std::vector<Channel> columns_;  ///< the analysis's
+  std::vector<Channel> columns_;  ///< those of the analysis
   Analysed analysed_;
-  std::uint64_t left_out_ = 0;  ///< rows in front of the next, of the analysis alone
+  std::uint64_t left_out_ = 0;  ///< rows skipped by the analysis before the next block
   DiskWriter disk_;
   std::unique_ptr<SourceReader> reader_;
   std::optional<TimeLine> line_;
@@ -101,7 +100,7 @@ class RecordSession {
   std::optional<LevelGate> gate_;
   std::size_t trigger_channel_ = 0;
   std::unique_ptr<RecordFile> file_;
-  /// A file that was handed on, all of it.
+  /// A file passed to the disk writer in full.
   struct Closed {
     std::string path;
     std::shared_ptr<PartFile> part;
@@ -111,13 +110,13 @@ class RecordSession {
   std::vector<Closed> closed_;
 
   std::optional<RecordEnd> end_;
-  std::optional<std::int64_t> waiting_since_ns_;  ///< for a source that could not be opened
-  std::string gone_;                              ///< why the source is
-  std::uint64_t rows_ = 0;                        ///< that arrived
+  std::optional<std::int64_t> waiting_since_ns_;  ///< set if the source could not be opened
+  std::string gone_;                              ///< reason for the loss of the source
+  std::uint64_t rows_ = 0;                        ///< arrived
   std::uint64_t estimate_rows_ = 0;
-  std::int64_t start_ns_ = 0;  ///< of the first row, by the time of day
+  std::int64_t start_ns_ = 0;  ///< time of day of the first row
   std::int64_t next_clock_ns_ = 0, next_pair_ns_ = 0;
-  std::int64_t realtime_ahead_ns_ = 0;  ///< of the steady clock
+  std::int64_t realtime_ahead_ns_ = 0;  ///< relative to the steady clock
   std::size_t stretches_ = 0;
 
   std::vector<double> stamps_s_;

@@ -30,7 +30,7 @@ void RecordTally::add_arrival(const TimeLine& line, const SourceHead& head, std:
   const double rate_hz = head.recording.time.rate_hz;
   const bool has_clock = head.has_device_clock || rate_hz > 0.0;
   if (has_clock) time_fit_.add(line.last_s(), host_s);
-  // The rows' own clock, at about their rate.
+  // The rows' own clock, at approximately their rate.
   constexpr std::uint64_t enough_rows = 64;
   if (nominal_hz_ == 0.0 && rate_hz > 0.0) nominal_hz_ = rate_hz;
   if (nominal_hz_ == 0.0 && line.rows() > enough_rows && line.step_s() > 0.0)

@@ -12,16 +12,16 @@
 
 namespace proofmass::acquire {
 
-/// Puts the account of a recording together while it is made.
+/// Accumulates the summary of a recording.
 class RecordTally {
  public:
-  /// False: there have been so many of them that this one is only counted.
+  /// False: the limit is reached and this event is only counted.
   [[nodiscard]] bool add(const RecordEvent& event);
-  /// Rows arrived; the last of them is where the time line is.
+  /// Rows arrived; the last of them is at the current time of the line.
   void add_arrival(const TimeLine& line, const SourceHead& head, std::int64_t host_ns);
-  /// The clock as told by all arrivals so far.
+  /// Updates the clock estimate from all arrivals so far.
   void tell_clock();
-  /// What a file says at its end.
+  /// Metadata for the end of a file.
   [[nodiscard]] RecordWords words() const;
 
   RecordSummary summary{};

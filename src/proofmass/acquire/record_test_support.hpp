@@ -25,7 +25,7 @@ inline Recording read_back(const std::string& path, const std::string& topic = {
   return read ? std::move(read).value() : Recording{};
 }
 
-/// Twice the first channel, until so many rows have come.
+/// Twice the first channel, for the given number of rows.
 class Doubler final : public LiveAnalysis {
  public:
   explicit Doubler(std::size_t most) : left_(most) {}

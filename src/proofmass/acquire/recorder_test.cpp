@@ -181,7 +181,7 @@ TEST(Recorder, TurnsOverByBytes) {
   EXPECT_EQ(rows, 20'000u);
 }
 
-/// Ones at rows 500, 520 and 1500, else noughts.
+/// One at rows 500, 520 and 1500, else zero.
 double pulses(std::uint64_t row, std::size_t channel) {
   if (channel == 1) return static_cast<double>(row);
   return row == 500 || row == 520 || row == 1500 ? 1.0 : 0.0;
@@ -237,7 +237,7 @@ TEST(Recorder, OpensASourceAgainThatIsGone) {
 
 TEST(Recorder, CountsOnWhereASourceIsOpenedAgain) {
   const TestFolder folder;
-  // The host's clock makes some 1100 rows of the break; the count, which went on, says 50.
+  // By the host's clock the interruption has about 1100 rows; by the count, which continued, 50.
   const auto host_ns = [](std::uint64_t row) {
     return static_cast<std::int64_t>(row) * 10'000'000 + (row >= 100 ? 11'000'000'000 : 0);
   };
@@ -307,7 +307,7 @@ TEST(Recorder, DropsAndCountsWhatAQueueThatIsFullCannotTake) {
       .acts = arrivals(2000, {.lost_before = 1}), .has_device_clock = false, .is_paced = true};
   bool waited = false;
   const RecordWatch watch{.samples = [&](const Block&) {
-    // A listener that takes its time, until the source is through.
+    // A slow observer, until the source has ended.
     if (!waited) std::this_thread::sleep_for(std::chrono::milliseconds(700));
     waited = true;
   }};
@@ -319,7 +319,7 @@ TEST(Recorder, DropsAndCountsWhatAQueueThatIsFullCannotTake) {
   EXPECT_GE(summary->lost, summary->overrun);
   const Recording read = read_back(folder.file("run.mcap"));
   ASSERT_EQ(read.samples(), summary->samples);
-  // Time is counted on over what is lost.
+  // Time is counted on across lost rows.
   for (std::size_t k = 0; k < read.samples(); ++k)
     ASSERT_NEAR(read.time.at(k), 0.01 * (read.channels[0].values[k] - 1.0), 1e-6);
 }

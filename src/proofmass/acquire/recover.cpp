@@ -11,14 +11,14 @@ namespace proofmass::acquire {
 namespace {
 
 bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code problem;  // of a file that is not there yet
+  std::error_code problem;  // for a file that does not exist yet
   return a == b || std::filesystem::equivalent(a, b, problem);
 }
 
 }  // namespace
 
 Result<Recovery> recover(const std::string& from, const std::string& to, const Progress& progress) {
-  // The part of a recording may be what is recovered.
+  // The file to be recovered may be the part of a recording.
   const PartNames names{to, to + ".recovered.part"};
   if (is_same_file(from, to) || is_same_file(from, names.part))
     return Error{Errc::invalid_argument,

@@ -8,10 +8,10 @@
 
 namespace proofmass::acquire {
 
-/// Reads what is whole of an MCAP file, ours or another's, and writes it anew with its index and
-/// summary. Never writes over `from`.
-/// Errors: unreadable, corrupt (not an MCAP file, or nothing in it is whole), invalid_argument
-/// (`to` is `from`). Cost: one pass, one chunk in memory.
+/// Recovers the intact part of an MCAP file, ours or from another program, and writes it to a new
+/// file with index and summary. Never overwrites `from`.
+/// Errors: unreadable, corrupt (not an MCAP file, or nothing intact), invalid_argument (`to` is
+/// `from`). Cost: one pass, one chunk in memory.
 [[nodiscard]] Result<Recovery> recover(const std::string& from,
                                        const std::string& to,
                                        const Progress& progress = {});

@@ -35,7 +35,7 @@ std::string words_of(const Recovery& recovery) {
   return all;
 }
 
-/// A recording of several chunks: whatever is slow ends one.
+/// A recording of several chunks: each delay ends one.
 std::string recorded(const TestFolder& folder, std::size_t count) {
   const std::string path = folder.file("run.mcap");
   const auto summary = record(open_scripts({{.acts = arrivals(count)}}),
@@ -47,7 +47,8 @@ std::string recorded(const TestFolder& folder, std::size_t count) {
 TEST(Recover, MakesNoFileOfAPartThatHoldsNoMessage) {
   const TestFolder folder;
   const std::string whole = recorded(folder, 200);
-  // A second of a recording, and nothing but its head: what a crash within the first second leaves.
+  // A second of a recording, and only its header: what remains after a crash within the first
+  // second.
   const std::size_t head = whole.find("sensor.toml") + 200;
   put(folder.file("cut.mcap"), std::string_view(whole).substr(0, head));
   const auto saved = recover(folder.file("cut.mcap"), folder.file("new.mcap"));
@@ -160,7 +161,7 @@ TEST(Recover, RefusesInOneLine) {
   }
 }
 
-/// Gives a thousand rows a second, as the host's clock has it.
+/// Delivers a thousand rows per second on the host's clock.
 class RealTimeSource final : public Source {
  public:
   RealTimeSource() : head_(head_of({.is_paced = true, .rate_hz = 1000.0, .channels = 3})) {}
@@ -184,7 +185,7 @@ class RealTimeSource final : public Source {
   std::int64_t row_ = 0;
 };
 
-/// What a child tells of itself while it lives.
+/// Status that a child reports while it lives.
 struct Life {
   struct Beat {
     std::int64_t host_ns;
@@ -213,7 +214,7 @@ void record_until_killed(const std::string& path, Life& life) {
   (void)record(open, {.path = path}, watch);
 }
 
-/// Rows that had come a second before the end, and before any time that the machine itself lost.
+/// Rows that had arrived a second before the end, excluding time lost by the machine itself.
 std::uint64_t rows_due(const Life& life, std::int64_t end_ns) {
   std::int64_t longest_ns = 0;
   const std::size_t beats = life.beats;

@@ -19,9 +19,9 @@ namespace {
 
 using OpenedFile = std::variant<Recording, io::RecordingStream>;
 
-/// What is larger is read a piece at a time, as `proofmass convert` would.
+/// Larger files are read in blocks, as `proofmass convert` does.
 constexpr std::uint64_t most_bytes_in_memory = std::uint64_t{64} << 20;
-/// Of a reading that nobody waits for.
+/// Limit of a read if there is no pacing.
 constexpr double most_rows_at_once = 4096.0;
 constexpr double most_s_at_once = 0.1;
 
@@ -37,16 +37,16 @@ bool has_time(const OpenedFile& file) {
   return stream != nullptr && stream->has_stamps();
 }
 
-/// A time of the recording in whole nanoseconds, the clock of what is replayed.
+/// A time of the recording in whole nanoseconds, the clock of the replayed device.
 std::int64_t to_ns(double time_s) {
-  constexpr double most_ns = 9e18;  // of an int64
+  constexpr double most_ns = 9e18;  // range of an int64
   if (std::isnan(time_s)) return 0;
   return std::llround(std::clamp(time_s * 1e9, -most_ns, most_ns));
 }
 
 class ReplaySource final : public Source {
  public:
-  /// Without a speed it goes as fast as it is read.
+  /// Without a speed it runs as fast as it is read.
   ReplaySource(OpenedFile file, SourceHead head, std::optional<double> speed)
       : file_(std::move(file)), head_(std::move(head)) {
     if (speed) pacer_.emplace(*speed);
@@ -83,7 +83,7 @@ class ReplaySource final : public Source {
                                          : block_.stamps_s[row]);
   }
 
-  /// The rows that are due.
+  /// Passes on the rows that are due.
   void hand_on(Arrival& arrival) {
     const std::int64_t now_ns =
         pacer_ ? pacer_->now_ns() : std::numeric_limits<std::int64_t>::max();
@@ -98,7 +98,7 @@ class ReplaySource final : public Source {
     arrival.host_ns = host_now_ns();
   }
 
-  /// What is known only once the file is read goes first.
+  /// Information known only at the end of the file comes first.
   Arrived end(Arrival& arrival) {
     if (std::exchange(is_end_told_, true)) return Arrived::ended;
     const Recording& file = recording_of(file_);
@@ -118,7 +118,7 @@ class ReplaySource final : public Source {
   std::optional<Pacer> pacer_;
   std::size_t most_rows_ = 1;
   Block block_;
-  std::size_t taken_ = 0;  ///< rows of the block that were handed on
+  std::size_t taken_ = 0;  ///< rows of the block that were passed on
   bool is_given_ = false;
   bool is_end_told_ = false;
 };
@@ -135,7 +135,7 @@ Status check_file(const std::string& path) {
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
   if (path.empty()) return invalid("expected a file, as in replay:run.csv");
-  // Where there is none, reading says so.
+  // If the file does not exist, reading reports it.
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status) ||
       std::filesystem::is_directory(status))
     return Done{};
@@ -156,7 +156,7 @@ SourceHead head_of(const SourceUri& uri, const Recording& file, std::optional<do
   for (const Channel& channel : file.channels)
     head.recording.channels.push_back({channel.name, channel.unit, {}});
   head.has_device_clock = true;
-  // At another speed its clock is not the host's, which therefore cannot judge it.
+  // At another speed its clock does not follow the host's, which therefore cannot check it.
   head.is_paced = speed == 1.0;
   head.settings = {{"file", uri.place()},
                    {"file format", file.format},

@@ -1,4 +1,4 @@
-// What is replayed is the file.
+// The replayed data equal the file.
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -32,11 +32,11 @@ std::unique_ptr<Source> open(const std::string& uri) {
 struct Replayed {
   std::vector<std::vector<double>> channels;
   std::vector<std::int64_t> device_ns;
-  std::vector<std::int64_t> host_ns;  ///< at which each row was there
+  std::vector<std::int64_t> host_ns;  ///< arrival of each row
   std::vector<Note> notes;
 };
 
-/// All of it; every reading asks for no more than a second.
+/// All rows; no read returns more than a second.
 Replayed gathered(Source& source) {
   Replayed all;
   all.channels.resize(source.head().recording.channels.size());
@@ -56,7 +56,7 @@ Replayed gathered(Source& source) {
   }
 }
 
-/// Bit for bit, NaN being NaN.
+/// Bit for bit; NaN equals NaN.
 void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k)
@@ -78,7 +78,7 @@ void expect_replayed(const std::string& path) {
     ASSERT_EQ(replayed.device_ns[k], std::llround(whole.time.at(k) * 1e9)) << k;
 }
 
-/// Rows of two channels with a NaN among them, stamped from an epoch.
+/// Rows of two channels with one NaN, stamped from an epoch.
 std::string specimen(std::size_t rows) {
   std::string text = "time (s),Acc_X (g),Supply (V)\n";
   for (std::size_t k = 0; k < rows; ++k) {

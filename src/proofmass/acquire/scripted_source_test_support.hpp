@@ -16,17 +16,17 @@
 
 namespace proofmass::acquire {
 
-/// What a scripted source does at one reading.
+/// Action of a scripted source at one read.
 struct Act {
   enum class Kind { rows, nothing, fail, end } kind = Kind::rows;
   std::size_t rows = 10;
   std::uint64_t lost_before = 0;
-  std::uint64_t uncounted = 0;  ///< rows in front of it that the source knows nothing of
-  double wait_s = 0.0;          ///< before it, really
+  std::uint64_t uncounted = 0;  ///< rows lost before it without the source's knowledge
+  double wait_s = 0.0;          ///< actual delay before it
   std::vector<Note> notes{};
 };
 
-/// How the rows of a script are made: row k of channel c is 1000 c + k, 100 rows a second.
+/// Contents of a script: row k of channel c is 1000 c + k, 100 rows a second.
 struct Script {
   std::vector<Act> acts{};
   bool has_device_clock = true;
@@ -35,9 +35,9 @@ struct Script {
   double rate_hz = 100.0;
   std::size_t channels = 2;
   std::function<double(std::uint64_t row, std::size_t channel)> value{};
-  /// Of the device's clock; the host's time of a row is the same unless it is a real-time script.
+  /// The device's clock; a row's host time is the same except in a real-time script.
   std::function<std::int64_t(std::uint64_t row)> device_ns{};
-  /// When a row arrives, where that is not really now.
+  /// Arrival of a row, if it is not the actual time.
   std::function<std::int64_t(std::uint64_t row)> host_ns{};
 };
 
@@ -115,7 +115,7 @@ class ScriptedSource final : public Source {
   double waited_s_ = 0.0;
 };
 
-/// Opens the scripts one after another; behind the last it cannot be opened.
+/// Opens the scripts one after another; after the last, opening fails.
 inline OpenSource open_scripts(std::vector<Script> scripts) {
   auto left = std::make_shared<std::deque<Script>>(scripts.begin(), scripts.end());
   auto row = std::make_shared<std::uint64_t>(0);
@@ -131,7 +131,7 @@ inline std::vector<Act> arrivals(std::size_t count, Act act = {}) {
   return std::vector<Act>(count, std::move(act));
 }
 
-/// A folder for a test's files that goes with it.
+/// A temporary folder for a test's files.
 class TestFolder {
  public:
   TestFolder() {

@@ -12,9 +12,9 @@ namespace proofmass::acquire {
 namespace {
 
 constexpr std::int64_t longest_wait_ns = 1'000'000'000;
-/// A clock that goes back by more was set; by less, samples came out of their order.
+/// A clock that decreases by more was set back; by less, samples are out of order.
 constexpr std::int64_t set_back_ns = 1'000'000'000;
-/// Samples of one sensor that wait at most, should the clocks stand or leap.
+/// Maximum number of waiting samples per sensor, if clocks stop or jump.
 constexpr std::size_t most_waiting = 100'000;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -43,7 +43,7 @@ void SensorMerge::add(std::size_t sensor, std::int64_t device_ns, std::span<cons
 
 std::uint64_t SensorMerge::era_of(const Track& track, std::int64_t ns) const {
   std::uint64_t era = track.newest.era + (track.newest.ns - ns > set_back_ns ? 1 : 0);
-  // One sensor's false reading of the clock must not set it apart from the others for good.
+  // A single wrong clock value of one sensor must not separate it from the others permanently.
   for (const Track& other : tracks_)
     if (std::abs(ns - other.newest.ns) <= set_back_ns) era = std::max(era, other.newest.era);
   return era;

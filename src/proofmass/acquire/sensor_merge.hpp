@@ -10,30 +10,30 @@
 
 namespace proofmass::acquire {
 
-/// Lays beside each other what several sensors of one device measured, each at its own instants:
-/// a row is a sample of the first, the leader, with what the others had at its instant, on the
-/// line between their samples before and behind. Samples at the very instant are taken as they
-/// are; a hole of more than a second is not bridged.
+/// Merges the samples of several sensors of one device, each with its own sample times. A row is a
+/// sample of the first sensor, the leader, with the other sensors interpolated linearly at its
+/// time. Samples at exactly that time are taken unchanged; a gap of more than a second is not
+/// interpolated.
 class SensorMerge {
  public:
-  /// How many values a sample of each sensor has.
+  /// Number of values per sample of each sensor.
   explicit SensorMerge(const std::vector<std::size_t>& widths);
 
-  /// Clocks are read within ±146 years, so that two readings can be subtracted.
+  /// Clock values are limited to ±146 years, so that two can be subtracted.
   static constexpr std::int64_t largest_ns = 4'611'686'018'427'387'903;
 
-  /// A sample, with the device's clock, which may be set back; else in its order.
+  /// A sample, with the device's clock, which may be set back; otherwise in order.
   void add(std::size_t sensor, std::int64_t device_ns, std::span<const double> values);
-  /// Appends to `out` the rows that are settled: those for which each sensor has a sample behind.
-  /// Nobody is waited for longer than a second of the leader's time: NaN stands for its values.
+  /// Appends to `out` the rows that are final: those for which each sensor has a later sample. No
+  /// sensor is awaited for more than a second of the leader's time; its values are then NaN.
   void take(Arrival& out);
 
-  /// Samples from before all sensors had begun, which are in no row; rows with NaN for want of a
-  /// sensor: told the first, tenth, hundredth … time.
+  /// Samples from before all sensors had started, which are in no row; rows with NaN because a
+  /// sensor is missing: reported the first, tenth, hundredth … time.
   [[nodiscard]] std::vector<Note> take_notes();
 
  private:
-  /// An instant: readings of the clock between two of its jumps back, and which they are.
+  /// A clock value and the number of backward jumps before it.
   struct Instant {
     std::uint64_t era = 0;
     std::int64_t ns = 0;
@@ -42,7 +42,7 @@ class SensorMerge {
   struct Track {
     std::size_t width = 0;
     std::deque<Instant> instants{};
-    std::deque<double> values{};  ///< `width` for each
+    std::deque<double> values{};  ///< `width` per sample
     Instant newest{0, -largest_ns};
     void drop_first();
   };

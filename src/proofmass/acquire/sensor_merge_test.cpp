@@ -67,7 +67,7 @@ TEST_F(SensorMergeOfTwo, GoesOnWithoutASensorThatIsSilent) {
   follow(0, 0.0);
   for (int k = 1; k < 300; ++k) lead(10 * k, k);
   merge.take(out);
-  ASSERT_EQ(out.rows(), 199U);  // all but the last second
+  ASSERT_EQ(out.rows(), 199U);  // all except the last second
   EXPECT_TRUE(std::isnan(out.channels[1].back()));
   EXPECT_EQ(merge.take_notes().size(), 1U);
 }

@@ -8,7 +8,7 @@
 namespace proofmass::acquire {
 namespace {
 
-/// More than Android gives of any sensor.
+/// More than Android provides for any sensor.
 constexpr std::size_t most_values = 64;
 
 }  // namespace

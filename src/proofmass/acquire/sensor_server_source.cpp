@@ -20,13 +20,13 @@ using Clock = std::chrono::steady_clock;
 
 constexpr unsigned short sensor_server_port = 8080;
 constexpr std::string_view android = "android.sensor.";
-/// Of one reading: a tenth of a second at any phone's rate.
+/// Limit per read: a tenth of a second at any phone's rate.
 constexpr std::size_t most_messages = 500;
 
-/// A sensor that was asked for, and what its first message said of it.
+/// A requested sensor, and what is known from its first message.
 struct Listed {
   std::string type;
-  std::size_t width = 0;  ///< 0: it has not spoken yet
+  std::size_t width = 0;  ///< 0: no message yet
 };
 
 std::string target_of(const std::vector<Listed>& sensors) {
@@ -52,7 +52,7 @@ void add_channels(Recording& recording, const Listed& sensor) {
   }
 }
 
-/// Listens to the app SensorServer.
+/// Receives from the app SensorServer.
 class SensorServerSource : public Source {
  public:
   SensorServerSource(HostPort server, std::vector<Listed> sensors)
@@ -62,7 +62,7 @@ class SensorServerSource : public Source {
     head_.has_device_clock = true;
   }
 
-  /// Waits until each sensor has sent a message, which says how many values it has.
+  /// Waits until each sensor has sent a message, which determines its number of values.
   Status open(const std::string& uri, const OpenOptions& options) {
     const auto until = Clock::now() + options.patience;
     while (!std::ranges::all_of(sensors_, &Listed::width, {})) {
@@ -88,7 +88,7 @@ class SensorServerSource : public Source {
       const auto left = std::chrono::ceil<milliseconds>(until - Clock::now());
       const auto message =
           socket_.read(has_rows ? milliseconds(0) : std::max(left, milliseconds(0)));
-      if (!message && has_rows) break;  // told again at the next reading
+      if (!message && has_rows) break;  // reported again at the next read
       if (!message) return sensor_server_gone(message.error());
       if (!*message) break;
       take(**message);
@@ -101,7 +101,7 @@ class SensorServerSource : public Source {
   }
 
  private:
-  /// The sensor that a message is of, which has no type where one was asked for.
+  /// The sensor of a message, which has no type if only one was requested.
   [[nodiscard]] std::optional<std::size_t> sensor_of(std::string_view text) {
     if (const Status read = parse_sensor_message(text, message_); !read)
       return pass_over(read.error().message);
@@ -173,7 +173,7 @@ class SensorServerSource : public Source {
   SourceHead head_{};
   std::optional<SensorMerge> merge_{};
   SensorMessage message_{};
-  std::vector<std::string> early_{};  ///< messages that came while it was opened
+  std::vector<std::string> early_{};  ///< messages that arrived during opening
   std::vector<Note> notes_{};
   std::uint64_t passed_over_ = 0, told_at_ = 1;
 };

@@ -25,7 +25,7 @@ Result<SerialSettings> serial_settings(SourceUri& uri) {
   return settings;
 }
 
-/// A clock that is 2.5 % off misreads the last of ten bits.
+/// With a baud rate error of 2.5 % the last of ten bits is misread.
 std::optional<Note> baud_note(unsigned asked, unsigned granted) {
   constexpr double most = 0.025;
   if (std::abs(static_cast<double>(granted) / asked - 1.0) <= most) return std::nullopt;

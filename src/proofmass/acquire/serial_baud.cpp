@@ -1,4 +1,4 @@
-// <asm/termbits.h>, which has rates without a name, cannot stand beside <termios.h>.
+// <asm/termbits.h>, which has rates without a name, conflicts with <termios.h>.
 #include <asm/termbits.h>
 #include <sys/ioctl.h>
 

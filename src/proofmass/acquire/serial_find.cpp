@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names in a folder, in order; none where it cannot be read.
+/// Names in a folder, sorted; empty if it cannot be read.
 std::vector<fs::path> entries_of(const fs::path& folder) {
   std::vector<fs::path> entries;
   std::error_code problem;
@@ -35,7 +35,7 @@ std::string first_line(const fs::path& file) {
   return io::shown(line);
 }
 
-/// "Arduino SA Arduino Uno", from the USB device that a port hangs on; empty of others.
+/// "Arduino SA Arduino Uno", from the USB device of a port; empty for others.
 std::string usb_product(const fs::path& sys, const std::string& name) {
   std::error_code problem;
   fs::path at = fs::canonical(sys / "class" / "tty" / name / "device", problem);
@@ -50,7 +50,7 @@ std::string usb_product(const fs::path& sys, const std::string& name) {
   return {};
 }
 
-/// Of the ports that a PC always lists few have a chip behind them. Source: ttyS(4), setserial(8).
+/// Few of the ports that a PC always lists have a chip. Source: ttyS(4), setserial(8).
 bool has_chip(const fs::path& port) {
   const int descriptor = ::open(port.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return false;
@@ -71,7 +71,7 @@ bool is_port(const fs::path& path) {
 
 std::vector<FoundSource> serial_devices(const fs::path& dev, const fs::path& sys) {
   std::vector<FoundSource> found;
-  std::set<fs::path> named;  // ports that have a lasting name, which is the better one
+  std::set<fs::path> named;  // ports with a persistent name, which is preferred
   for (const fs::path& link : entries_of(dev / "serial" / "by-id")) {
     std::error_code problem;
     const fs::path port = fs::canonical(link, problem);

@@ -7,7 +7,7 @@
 
 namespace proofmass::acquire {
 
-/// Serial devices among those of `dev`, described by what `sys` says of them.
+/// Serial devices in `dev`, with the descriptions in `sys`.
 [[nodiscard]] std::vector<FoundSource> serial_devices(const std::filesystem::path& dev,
                                                       const std::filesystem::path& sys);
 

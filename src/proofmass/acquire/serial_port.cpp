@@ -14,7 +14,7 @@
 namespace proofmass::acquire {
 namespace {
 
-/// A descriptor that is closed with it.
+/// A descriptor that is closed by the destructor.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -31,7 +31,7 @@ class Descriptor {
   int number_;
 };
 
-/// What the driver counted: bytes dropped for want of room, and characters that were none.
+/// Error counts of the driver: bytes dropped by overruns, and invalid characters.
 struct LineTrouble {
   int overrun = 0, buffer_overrun = 0, framing = 0, parity = 0;
 };
@@ -48,7 +48,7 @@ class SerialFeed final : public ByteFeed {
     const ssize_t bytes = ::read(descriptor_.number(), into.data(), into.size());
     if (bytes > 0) return Fed{static_cast<std::size_t>(bytes)};
     if (bytes < 0 && (errno == EAGAIN || errno == EINTR)) return Fed{};
-    // A line without a modem on it never ends: it was readable, and has nothing, as it is gone.
+    // A line without a modem never ends: readable without data means that the device is gone.
     return Error{
         Errc::device,
         fmt::format("{} was unplugged{}", device_,
@@ -76,7 +76,7 @@ class SerialFeed final : public ByteFeed {
   }
 
  private:
-  /// False where the driver does not count. Source: ioctl_tty(2), TIOCGICOUNT.
+  /// False if the driver does not count. Source: ioctl_tty(2), TIOCGICOUNT.
   [[nodiscard]] bool count(LineTrouble& out) const {
     serial_icounter_struct counts{};
     if (::ioctl(descriptor_.number(), TIOCGICOUNT, &counts) != 0) return false;
@@ -114,14 +114,14 @@ Error refusal(const std::string& device, int problem) {
   }
 }
 
-/// Raw bytes, 8N1, no modem lines but those of the flow. Source: termios(3).
+/// Raw bytes, 8N1, no modem control lines except those for flow control. Source: termios(3).
 bool make_raw(int descriptor, bool hardware_flow) {
   termios settings{};
   if (::tcgetattr(descriptor, &settings) != 0) return false;
   ::cfmakeraw(&settings);
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | PARENB | CRTSCTS);
   settings.c_cflag |= static_cast<tcflag_t>(CLOCAL | CREAD) | (hardware_flow ? CRTSCTS : 0);
-  settings.c_cc[VMIN] = 1;  // a reading of nothing then means that the line has gone
+  settings.c_cc[VMIN] = 1;  // an empty read then means that the line is gone
   settings.c_cc[VTIME] = 0;
   return ::tcsetattr(descriptor, TCSANOW, &settings) == 0;
 }
@@ -135,7 +135,7 @@ Result<SerialPort> open_serial_port(const SerialSettings& settings) {
   if (number < 0) return refusal(device, errno);
   if (::isatty(number) == 0)
     return Error{Errc::device, fmt::format("{}: is no serial device", device)};
-  // The lock holds against those of us whom TIOCEXCL lets pass, who are root.
+  // TIOCEXCL does not exclude root; this lock excludes other instances of this program.
   if (::flock(number, LOCK_EX | LOCK_NB) != 0) return refusal(device, errno);
   (void)::ioctl(number, TIOCEXCL);
   if (!make_raw(number, settings.hardware_flow)) return refusal(device, errno);

@@ -15,17 +15,17 @@ struct SerialSettings {
   bool hardware_flow = false;  ///< RTS and CTS
 };
 
-/// A serial device at 8N1, ours alone; what had come before is thrown away.
+/// A serial device at 8N1, opened exclusively; earlier input is discarded.
 struct SerialPort {
   std::unique_ptr<ByteFeed> feed;
   unsigned baud = 0;  ///< as granted
 };
 
-/// Errors: device (not there, no permission, in use, no serial device; what to do).
+/// Errors: device (absent, no permission, in use, not a serial device; with a remedy).
 [[nodiscard]] Result<SerialPort> open_serial_port(const SerialSettings& settings);
 
-/// Sets any baud rate, not only those that have a name, and reads back what was granted; 0 where
-/// the driver refuses.
+/// Sets any baud rate, not only the named ones, and reads back the granted one; 0 if the driver
+/// refuses.
 [[nodiscard]] unsigned set_baud(int descriptor, unsigned baud);
 
 }  // namespace proofmass::acquire

@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A device that is a program: what is written to it comes out of the port.
+/// A simulated device: what is written to it is received from the port.
 class FakeDevice {
  public:
   FakeDevice() : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
@@ -51,7 +51,7 @@ class FakeDevice {
   std::string port_;
 };
 
-/// Sends while the source is opened, which throws away what came before.
+/// Sends while the source is opened, which discards earlier input.
 Result<std::unique_ptr<Source>> open_while_sending(const FakeDevice& device,
                                                    const std::string& settings,
                                                    const std::string& text) {
@@ -67,7 +67,7 @@ Result<std::unique_ptr<Source>> open_while_sending(const FakeDevice& device,
   return source;
 }
 
-/// Reads until a condition holds, which it is sure to do in the end.
+/// Reads until a condition holds, which it eventually does.
 template <class Until>
 Error read_until(Source& source, Until until) {
   Arrival arrival;

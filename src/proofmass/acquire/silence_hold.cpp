@@ -27,7 +27,7 @@ void SilenceHold::put(Incoming item) {
                            seconds(*last_ns_, item.arrival.host_ns) > stall_s_;
   if (begins_hold) quiet_ns_ = last_ns_;
   if (is_rows(item)) last_ns_ = item.arrival.host_ns;
-  // What ends or interrupts the rows says that no more of them will tell.
+  // An item that ends or interrupts the rows shows that no more of them will decide.
   const bool breaks = item.kind == Incoming::Kind::gone || item.kind == Incoming::Kind::ended ||
                       item.kind == Incoming::Kind::gave_up;
   held_.push_back(std::move(item));

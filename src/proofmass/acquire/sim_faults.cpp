@@ -40,7 +40,7 @@ Status read_jump(SourceUri& uri, SimFaults& faults) {
   const auto text = uri.value("clock-jump");
   if (!text) return Done{};
   const auto pair = pair_of(*text);
-  constexpr double most_s = 1e9;  // half of what nanoseconds in 64 bits leave beside the time
+  constexpr double most_s = 1e9;  // half of the range that the time leaves of 64-bit nanoseconds
   if (!pair || std::abs((*pair)[1]) > most_s)
     return expected("clock-jump", *text, "AT,BY in seconds, such as 5,-1");
   faults.clock_jump = {(*pair)[0], (*pair)[1]};

@@ -21,7 +21,7 @@ using simulate::ProcedureOptions;
 using simulate::RigOptions;
 using simulate::RunningRig;
 
-/// The settings that a rig and a procedure have in common, each where it is said.
+/// The settings common to rig and procedure, each if given.
 struct Asked {
   std::optional<std::string> file;
   std::optional<double> rate_hz;
@@ -47,7 +47,7 @@ Result<Asked> asked_of(SourceUri& uri) {
   return asked;
 }
 
-/// So many sensors evenly about the axle, all else as the first.
+/// `count` sensors evenly about the axle, otherwise like the first.
 std::vector<simulate::RigSensor> spread(const simulate::RigSensor& first, std::size_t count) {
   std::vector<simulate::RigSensor> sensors(count, first);
   for (std::size_t i = 0; i < count; ++i)
@@ -55,7 +55,7 @@ std::vector<simulate::RigSensor> spread(const simulate::RigSensor& first, std::s
   return sensors;
 }
 
-/// Sensors and axes of a rig that no file describes.
+/// Sensors and axes of a rig without a description file.
 Status equip(SourceUri& uri, bool described, RigOptions& options) {
   const auto sensors = uri.whole("sensors", 1, 9);
   if (!sensors) return sensors.error();
@@ -89,13 +89,13 @@ Result<RigOptions> rig_options(SourceUri& uri, const Asked& asked) {
   if (const Status equipped = equip(uri, asked.file.has_value(), options); !equipped)
     return equipped.error();
   set_common(asked, options.supply.nominal_v, options);
-  constexpr double most_rpm = 1e6;  // either way round
+  constexpr double most_rpm = 1e6;  // in either direction
   const auto rpm = at_rest ? Result(std::optional(0.0)) : uri.number("rpm", -most_rpm);
   if (!rpm) return rpm.error();
   if (*rpm && **rpm > most_rpm)
     return Error{Errc::invalid_argument,
                  fmt::format("rpm={}: expected {} at most", **rpm, most_rpm)};
-  // One speed for ever: how long its stretch is does not matter.
+  // One constant speed: the length of its segment does not matter.
   if (*rpm)
     options.wheel.profile = {
         {.duration_s = 1.0 / options.rate_hz, .speed_radps = **rpm * radps_per_rpm}};
@@ -113,7 +113,7 @@ Result<SimSignal> rig_signal(SourceUri& uri, const Asked& asked) {
                    }};
 }
 
-/// Plays it from its beginning; the values are kept aside.
+/// Plays the recording from its beginning; takes its values out of the head.
 SimSignal played(Recording recording) {
   const std::uint64_t rows = recording.samples();
   auto values = std::make_shared<std::vector<std::vector<double>>>();

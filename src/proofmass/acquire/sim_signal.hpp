@@ -12,16 +12,16 @@
 
 namespace proofmass::acquire {
 
-/// What a simulated device measures, made as it is asked for.
+/// Measurements of a simulated device, generated on demand.
 struct SimSignal {
   Recording head;  ///< channels without values, and the rate
-  /// Appends the next rows to the columns; no more than there are.
+  /// Appends the next rows to the columns, at most as many as there are.
   std::function<void(std::size_t rows, std::vector<std::vector<double>>& columns)> make;
-  std::optional<std::uint64_t> rows{};  ///< that there are; absent: without end
+  std::optional<std::uint64_t> rows{};  ///< total number; absent: unlimited
 };
 
-/// Of the URI's place: a wheel, a wheel at rest, or a procedure; with the settings that say what is
-/// measured.
+/// For the URI's place: a wheel, a wheel at rest, or a procedure; with the settings that define the
+/// signal.
 /// Errors: invalid_argument, those of reading a description.
 [[nodiscard]] Result<SimSignal> sim_signal(SourceUri& uri);
 

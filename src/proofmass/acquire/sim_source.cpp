@@ -18,22 +18,22 @@ namespace {
 
 constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
 
-/// Number of the first row that is not before a time; where there is none, never.
+/// Number of the first row at or after a time; without a time, never.
 std::uint64_t row_at(std::optional<double> time_s, double rate_hz) {
   constexpr double most = 1e18;
   if (!time_s || *time_s * rate_hz > most) return never;
   return static_cast<std::uint64_t>(std::ceil(*time_s * rate_hz));
 }
 
-/// How the rows come, as far as it is asked for.
+/// Timing of the rows, as requested.
 struct SimCourse {
-  std::optional<double> speed{};  ///< of time; absent: as fast as they are read
-  std::uint64_t block = 1;        ///< rows that the device hands over at a time
-  std::uint64_t rows = never;     ///< up to its end
+  std::optional<double> speed{};  ///< speed of time; absent: as fast as they are read
+  std::uint64_t block = 1;        ///< rows per transfer of the device
+  std::uint64_t rows = never;     ///< total
   SimFaults faults{};
 };
 
-/// The twin as a device: it measures into blocks, and hands over those that are full.
+/// The twin as a device: it fills blocks, and transfers full ones.
 class SimSource final : public Source {
  public:
   SimSource(SourceHead head, SimSignal signal, const SimCourse& course)
@@ -46,7 +46,7 @@ class SimSource final : public Source {
     if (faults.stall) stall_row_ = row_at(faults.stall->at_s, rate_hz_);
     if (faults.clock_jump) jump_row_ = row_at(faults.clock_jump->at_s, rate_hz_);
     if (course.speed) pacer_.emplace(*course.speed);
-    // A tenth of a second's rows, as Source::read() asks for; the rest is a bound for any rate.
+    // A tenth of a second of rows, as Source::read() requires; most_rows is a limit for any rate.
     constexpr double reading_s = 0.1, most_rows = 65536.0;
     reading_rows_ = static_cast<std::uint64_t>(std::min(reading_s * rate_hz_, most_rows));
     draw_loss();
@@ -71,7 +71,7 @@ class SimSource final : public Source {
   }
 
  private:
-  /// Where the next block would end if there were no end to it: the rows' own, or a fault's.
+  /// The next limit of a block: the end of the rows, or a fault.
   [[nodiscard]] std::uint64_t barrier() const {
     const std::uint64_t end = std::min(course_.rows, unplug_row_);
     return next_ < stall_row_ ? std::min(end, stall_row_) : end;
@@ -79,7 +79,7 @@ class SimSource final : public Source {
   [[nodiscard]] std::uint64_t block_end() const {
     return std::min(next_ + course_.block, barrier());
   }
-  /// Another block has come by now, with nothing in front of it.
+  /// True if another block is due and no fault precedes it.
   [[nodiscard]] bool goes_on() {
     return next_ != stall_row_ && next_ < barrier() &&
            (!pacer_ || pacer_->now_ns() >= true_ns(block_end() - 1));
@@ -91,7 +91,7 @@ class SimSource final : public Source {
   [[nodiscard]] std::int64_t stall_ns() const {
     return std::llround(course_.faults.stall->for_s * ns_per_s);
   }
-  /// What the device's clock shows.
+  /// Value of the device's clock.
   [[nodiscard]] std::int64_t shown_ns(std::uint64_t row) const {
     if (course_.faults.dead_clock) return 0;
     if (row < jump_row_) return true_ns(row);
@@ -122,11 +122,11 @@ class SimSource final : public Source {
   std::uint64_t unplug_row_, stall_row_ = never, jump_row_ = never;
   std::uint64_t reading_rows_ = 1;
   std::optional<Pacer> pacer_;
-  Pacer stalled_{1.0};  ///< by the host's clock, whatever the speed
+  Pacer stalled_{1.0};  ///< on the host's clock, independent of the speed
   std::uint64_t next_ = 0;
   Random losses_{1, "lost blocks"};
   bool is_lost_ = false;
-  std::uint64_t lost_ = 0;  ///< since the last row that was handed over
+  std::uint64_t lost_ = 0;  ///< since the last transferred row
   std::vector<std::vector<double>> unseen_;
 };
 
@@ -143,7 +143,7 @@ Result<SimCourse> course_of(SourceUri& uri, const SimSignal& signal) {
   const auto seconds = uri.number("seconds", 0.0);
   if (!seconds) return seconds.error();
   course.rows = std::min(row_at(*seconds, rate_hz), signal.rows.value_or(never));
-  // A device's buffer: short enough to see each row soon, long enough for fast ones not to come
+  // Size of a device's buffer: short enough for low latency, long enough that fast rows do not come
   // one by one.
   constexpr double block_s = 0.01;
   constexpr std::uint64_t most_block = 65536;
@@ -157,7 +157,7 @@ Result<SimCourse> course_of(SourceUri& uri, const SimSignal& signal) {
   return course;
 }
 
-/// Everything that was set, so that a recording says of itself what was done to it.
+/// All settings, so that the recording documents how it was made.
 std::vector<std::pair<std::string, std::string>> settings_of(SourceUri& uri,
                                                              const SimSignal& signal,
                                                              const SimCourse& course) {
@@ -182,7 +182,7 @@ Result<std::unique_ptr<Source>> open_sim(SourceUri& uri, const OpenOptions& /*op
   if (const Status known = uri.nothing_unknown(); !known) return known.error();
   SourceHead head{.recording = signal.head,
                   .has_device_clock = true,
-                  // At another speed the host's clock says nothing of the device's.
+                  // At another speed the host's clock gives no information on the device's.
                   .is_paced = course->speed == 1.0,
                   .settings = settings_of(uri, signal, *course)};
   head.recording.source = uri.text();

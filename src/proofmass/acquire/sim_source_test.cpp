@@ -24,14 +24,14 @@ std::unique_ptr<Source> opened(const std::string& uri) {
   return open_source(uri).value();
 }
 
-/// All that comes until the end, or until an error.
+/// Everything received until the end, or until an error.
 struct Taken {
   Columns channels;
   std::vector<std::int64_t> device_ns;
-  std::vector<std::uint64_t> lost_before;  ///< at each row
+  std::vector<std::uint64_t> lost_before;  ///< per row
   std::uint64_t lost = 0;
-  std::size_t longest = 0;  ///< reading, in rows
-  /// Rows before each reading in which nothing had come.
+  std::size_t longest = 0;  ///< longest read, in rows
+  /// Number of rows before each read that returned nothing.
   std::vector<std::size_t> waits;
   std::optional<Error> error{};
 };
@@ -226,7 +226,7 @@ TEST(SimFaults, ADroppedBlockIsCountedAndItsRowsAreMissing) {
     ASSERT_EQ(taken.device_ns[k], static_cast<std::int64_t>(row) * 1'000'000);
     ASSERT_EQ(taken.channels[4][k], whole[4][row]);
   }
-  // 2000 blocks: five standard deviations of a binomial's count.
+  // 2000 blocks: five standard deviations of a binomial count.
   EXPECT_NEAR(static_cast<double>(taken.lost), 4000.0, 10.0 * 5.0 * std::sqrt(2000.0 * 0.2 * 0.8));
 }
 

@@ -27,7 +27,7 @@ void Arrival::clear(std::size_t channel_count) {
 
 std::string shown_uri(const std::string& uri) {
   std::string out = uri;
-  // What stands before an @ in the place is a user's name and word, wherever they belong.
+  // The part of the place before an @ is a user name and password, whatever the scheme.
   const std::size_t at = out.find('@');
   const std::size_t place = out.find(':') + 1;
   if (at < out.find('?') && place > 0) {

@@ -12,57 +12,59 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 
-// Where samples come from while they are taken: a device, a network, a pipe, the twin.
+// Live sources of samples: a device, a network, a pipe, the twin.
 namespace proofmass::acquire {
 
 inline constexpr std::int64_t ns_per_s = 1'000'000'000;
 
-/// What a source says of itself once it is open.
+/// Description of an open source.
 struct SourceHead {
-  /// source: its URI; format: "IIO", "serial", …; channels without values, in the units they come
-  /// in (Quantity::unknown where nobody says); time: the rate that was granted, 0 if it has none of
-  /// its own, and start_ns where what comes was taken at another time than now.
+  /// - source: its URI; format: "IIO", "serial", …
+  /// - channels without values, in their original units (Quantity::unknown if not stated)
+  /// - time: the granted rate, 0 if it has none, and start_ns if the data were taken at another
+  ///   time than now.
   Recording recording;
-  bool has_device_clock = false;  ///< arrivals bring device_ns
-  /// It comes at its own pace, whether or not anybody takes it; else it waits for whoever reads.
+  bool has_device_clock = false;  ///< arrivals include device_ns
+  /// True: data arrive at their own pace, whether read or not; false: the source waits for its
+  /// reader.
   bool is_paced = true;
-  /// What was asked for and what was granted, in words: {"trigger", "t0"}, {"range", "±5 V"}.
+  /// Requested and granted settings as text: {"trigger", "t0"}, {"range", "±5 V"}.
   std::vector<std::pair<std::string, std::string>> settings{};
 };
 
-/// Nanoseconds of the clock that never jumps (CLOCK_MONOTONIC).
+/// Nanoseconds of the monotonic clock (CLOCK_MONOTONIC).
 [[nodiscard]] std::int64_t host_now_ns();
 
-/// Rows that came together, none known to be missing between them. Belongs to whoever reads, and
-/// keeps its memory from one reading to the next.
+/// Rows that arrived together, none known to be missing between them. Owned by the reader; keeps
+/// its capacity between calls of read().
 struct Arrival {
-  std::vector<std::vector<double>> channels{};  ///< in the head's order, equally long
-  /// The device's own clock at each row, of any origin, unwrapped: it goes back only where the
-  /// device's does. Empty without one.
+  std::vector<std::vector<double>> channels{};  ///< in the head's order, of equal length
+  /// The device's own clock at each row, of any origin, unwrapped: it decreases only if the
+  /// device's clock does. Empty if there is none.
   std::vector<std::int64_t> device_ns{};
-  /// Rows that the device or the protocol knows to be missing in front of the first: a counter's
-  /// step, an overrun. What only the clocks betray is not in it.
+  /// Rows before the first that the device or the protocol reports as missing: a counter step, an
+  /// overrun. Gaps visible only in the clocks are not included.
   std::uint64_t lost_before = 0;
-  /// The device's own count of rows at the first and the last, where it counts them.
+  /// The device's own row count at the first and the last row, if it counts.
   std::optional<double> first_count{}, last_count{};
-  std::int64_t host_ns = 0;  ///< host_now_ns() when the last row was there
-  /// What happened since the last reading: "passed over 17 bytes up to the next frame".
+  std::int64_t host_ns = 0;  ///< host_now_ns() when the last row arrived
+  /// Notes since the last read: "passed over 17 bytes up to the next frame".
   std::vector<Note> notes{};
 
   [[nodiscard]] std::size_t rows() const { return channels.empty() ? 0 : channels.front().size(); }
-  /// Empty, with room for so many channels.
+  /// Clears all, with room for `channel_count` channels.
   void clear(std::size_t channel_count);
 };
 
 enum class Arrived {
   rows,     ///< at least one
-  nothing,  ///< none within the time; there may be notes
-  ended,    ///< there will be no more: the file or the stream is at its end
+  nothing,  ///< no rows within the time; there may be notes
+  ended,    ///< no more data: end of the file or stream
 };
 
-/// A source that is open. It is read by one thread; what it needs to never stop listening is its
-/// own. Whatever blocks for ever in a library stands on a thread of its own, so that read() keeps
-/// its time and the destructor returns.
+/// An open source, read by one thread. A source that must listen continuously does so on its own
+/// thread. A library call that may block for ever has its own thread, so that read() returns in
+/// time and the destructor returns.
 class Source {
  public:
   Source() = default;
@@ -71,32 +73,33 @@ class Source {
   virtual ~Source() = default;
 
   [[nodiscard]] virtual const SourceHead& head() const = 0;
-  /// Puts what is there into `arrival`, which is cleared before; waits `patience` for it at most.
-  /// A reading holds about a tenth of a second's rows at most, where the source can choose.
-  /// Errors: device (gone, refused, broken: the source is at its end), corrupt (of files).
+  /// Fills `arrival`, which is cleared before, with the available rows; waits for at most
+  /// `patience`. One call returns at most about a tenth of a second of rows, if the source can
+  /// choose.
+  /// Errors: device (lost, refused, failed: the source has ended), corrupt (for files).
   [[nodiscard]] virtual Result<Arrived> read(Arrival& arrival,
                                              std::chrono::milliseconds patience) = 0;
 };
 
-/// A source's URI as it may be shown and kept: without what password= says, or stands before an @.
+/// A source's URI for display and storage: without the value of password= and anything before an @.
 [[nodiscard]] std::string shown_uri(const std::string& uri);
 
 struct OpenOptions {
-  /// How long a source may wait for its device's first words or samples.
+  /// How long a source may wait for its device's first reply or samples.
   std::chrono::milliseconds patience{5000};
-  /// Asked now and then while it waits; true: give up. May be empty.
+  /// Polled while waiting; true: give up. May be empty.
   std::function<bool()> stopped{};
-  std::string duckdb_library{};  ///< path of libduckdb.so, which reads Parquet; empty: the system's
+  std::string duckdb_library{};   ///< path of libduckdb.so, for Parquet; empty: the system's
   std::string nidaqmx_library{};  ///< path of libnidaqmx.so; empty: the system's
 };
 
-/// Opens "scheme:rest". What the device needs to be told is told and checked when this returns.
-/// Errors: invalid_argument (the URI: which part, and what was expected), device (not there,
-/// refuses: why, and what to do), unsupported (this build lacks the library).
+/// Opens "scheme:rest". All device settings are made and checked when this returns.
+/// Errors: invalid_argument (the URI: which part, and what was expected), device (absent, refuses:
+/// reason and remedy), unsupported (the library is not in this build).
 [[nodiscard]] Result<std::unique_ptr<Source>> open_source(const std::string& uri,
                                                           const OpenOptions& options = {});
 
-/// Something that can be opened now.
+/// A source that can be opened now.
 struct FoundSource {
   std::string uri;
   std::string what;  ///< "LIS3DH, 3 axes, trigger t0"
@@ -107,11 +110,11 @@ struct SourceKind {
   std::string scheme;   ///< "serial"
   std::string grammar;  ///< "serial:DEVICE?baud=115200&framing=lines"
   std::string what;     ///< one sentence
-  /// Looks for what is there, for some seconds at most; empty where it cannot be looked for.
+  /// Searches for available sources, for at most some seconds; empty if a search is not possible.
   std::function<Result<std::vector<FoundSource>>(const OpenOptions& options)> find{};
 };
 
-/// All kinds there are, in the order of the documentation.
+/// All kinds, in the order of the documentation.
 [[nodiscard]] std::vector<SourceKind> source_kinds();
 
 }  // namespace proofmass::acquire

@@ -10,19 +10,19 @@
 
 namespace proofmass::acquire {
 
-/// A kind of source and how it is opened.
+/// A kind of source and its open function.
 struct SourceEntry {
   SourceKind kind;
   std::function<Result<std::unique_ptr<Source>>(SourceUri& uri, const OpenOptions& options)> open;
 };
 
-/// The list to which a new source adds its line.
+/// The list of sources. To add a source, add a line.
 [[nodiscard]] std::vector<SourceEntry> source_entries();
 
-// One function for each line, each in its source's file.
+// One function per line, each in its source's file.
 [[nodiscard]] Result<std::unique_ptr<Source>> open_daqmx(SourceUri& uri,
                                                          const OpenOptions& options);
-/// By the driver in `library`, or by the system's if it is empty.
+/// Uses the driver in `library`, or the system's if it is empty.
 [[nodiscard]] Result<std::vector<FoundSource>> find_daqmx(const std::string& library);
 [[nodiscard]] Result<std::unique_ptr<Source>> open_replay(SourceUri& uri,
                                                           const OpenOptions& options);

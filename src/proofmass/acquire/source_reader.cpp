@@ -38,7 +38,7 @@ void SourceReader::run() {
   }
 }
 
-/// False where the source is gone.
+/// False if the source was lost.
 bool SourceReader::read_to_the_end() {
   rows_ns_ = host_now_ns();
   is_stalled_ = false;
@@ -89,7 +89,7 @@ void SourceReader::hand_on_rows(std::size_t channels) {
   hand_on(Incoming::Kind::notes);
 }
 
-/// A source that was opened anew knows nothing of the count that it had before.
+/// A reopened source does not know its previous count.
 void SourceReader::count_on(Arrival& arrival) {
   item_.is_counted = false;
   if (std::exchange(is_reopened_, false) && last_count_ && arrival.first_count) {
@@ -110,14 +110,14 @@ void SourceReader::hand_on(Incoming::Kind kind, std::string reason) {
   if (!queue_.put(item_, std::chrono::milliseconds(0))) keep_notes();
 }
 
-/// What there was no room for is told later.
+/// Keeps the notes that found no room for later.
 void SourceReader::keep_notes() {
   constexpr std::size_t most_notes = 100;
   for (Note& note : item_.arrival.notes)
     if (dropped_notes_.size() < most_notes) dropped_notes_.push_back(std::move(note));
 }
 
-/// A source slower than the silence that is allowed would be told again and again.
+/// A source slower than the allowed silence would be reported repeatedly.
 double SourceReader::stall_s() const {
   const double rate_hz = source_->head().recording.time.rate_hz;
   constexpr double rows_missing = 4.0;
@@ -135,7 +135,7 @@ void SourceReader::watch_silence() {
     end_ = fmt::format("nothing came for {:.1f} s", silent_s);
 }
 
-/// Tries again, after a while that gets longer.
+/// Retries after a delay that increases.
 bool SourceReader::reopen() {
   constexpr double first_wait_s = 0.2;
   constexpr double longest_wait_s = 5.0;

@@ -13,9 +13,9 @@
 
 namespace proofmass::acquire {
 
-/// Reads a source on a thread of its own and never keeps it waiting, if it comes at its own pace:
-/// what finds no room in the queue is dropped and counted. Says when nothing comes, and opens the
-/// source again when it is gone.
+/// Reads a source on its own thread. If the source has its own pace it is never kept waiting: rows
+/// that find no room in the queue are dropped and counted. Reports silence, and reopens a source
+/// that was lost.
 class SourceReader {
  public:
   SourceReader(std::unique_ptr<Source> source,
@@ -26,9 +26,9 @@ class SourceReader {
   SourceReader& operator=(const SourceReader&) = delete;
   ~SourceReader() { stop(); }
 
-  /// Reads no more; what is in the queue stays there.
+  /// Stops reading; the queue keeps its contents.
   void stop();
-  /// Rows dropped behind the last that found room; once it is stopped.
+  /// Rows dropped after the last that found room; valid once stopped.
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
  private:
@@ -51,11 +51,11 @@ class SourceReader {
   Incoming item_;
   std::uint64_t dropped_ = 0;  ///< rows since the last that found room
   std::vector<Note> dropped_notes_;
-  std::int64_t rows_ns_ = 0;  ///< when the last rows came
+  std::int64_t rows_ns_ = 0;  ///< arrival of the last rows
   bool is_stalled_ = false;
-  bool is_reopened_ = false;          ///< and no rows have come since
-  std::optional<double> last_count_;  ///< of the device, at the row that came last
-  std::string end_;                   ///< why the silence ends the reading
+  bool is_reopened_ = false;          ///< and no rows have arrived since
+  std::optional<double> last_count_;  ///< the device's count at the last row
+  std::string end_;                   ///< reason if a silence ends the source
   std::thread thread_;
 };
 

@@ -11,9 +11,9 @@
 
 namespace proofmass::acquire {
 
-/// "scheme:place?key=value&key=value": the place may begin with "//"; %41 is a byte in hexadecimal
-/// in a value, and '+' a plus. "-" is "stdin:".
-/// Source: RFC 3986, less what has no use here.
+/// "scheme:place?key=value&key=value": the place may begin with "//"; in a value %41 is a byte in
+/// hexadecimal, and '+' a plus. "-" is "stdin:".
+/// Source: RFC 3986, reduced to what is needed here.
 class SourceUri {
  public:
   /// Errors: invalid_argument (no scheme, a key twice or without '=', a bad %).
@@ -23,20 +23,20 @@ class SourceUri {
   [[nodiscard]] const std::string& scheme() const { return scheme_; }
   [[nodiscard]] const std::string& place() const { return place_; }  ///< without "//", decoded
 
-  /// What a key says; each that is asked for is known from then on.
+  /// Value of a key; each key that is requested counts as known.
   [[nodiscard]] std::optional<std::string> value(std::string_view key);
-  /// The same as a number. Errors: invalid_argument ("rate=fast: expected a number above 0").
+  /// The value as a number. Errors: invalid_argument ("rate=fast: expected a number above 0").
   [[nodiscard]] Result<std::optional<double>> number(std::string_view key, double above);
-  /// The same as a whole number. Errors: invalid_argument ("axes=4: expected a whole number from 2
+  /// The value as a whole number. Errors: invalid_argument ("axes=4: expected a whole number from 2
   /// to 3").
   [[nodiscard]] Result<std::optional<std::uint64_t>> whole(std::string_view key,
                                                            std::uint64_t least,
                                                            std::uint64_t most);
-  /// The same, one of several words; the first where nothing is said. Errors: invalid_argument.
+  /// The value as one of several words; the first if absent. Errors: invalid_argument.
   [[nodiscard]] Result<std::string> choice(std::string_view key,
                                            const std::vector<std::string_view>& words);
-  /// Once all keys of the scheme were asked for. Errors: invalid_argument (a key that nobody knows;
-  /// the message lists those there are).
+  /// Call after all keys of the scheme were requested. Errors: invalid_argument (an unknown key;
+  /// the message lists the known ones).
   [[nodiscard]] Status nothing_unknown() const;
 
  private:
@@ -51,10 +51,10 @@ struct HostPort {
   std::optional<unsigned short> port;
 };
 
-/// Errors: invalid_argument.
-/// An error of what was asked for.
+/// An invalid_argument error.
 [[nodiscard]] Error invalid(std::string message);
 
+/// Errors: invalid_argument.
 [[nodiscard]] Result<HostPort> parse_host_port(std::string_view text);
 
 }  // namespace proofmass::acquire

@@ -14,7 +14,7 @@ bool is_dead(const std::vector<std::int64_t>& stamps_ns) {
 }
 
 void StampWatch::look(const std::vector<std::int64_t>& stamps_ns, std::vector<Note>& notes) {
-  double worst_s = 0.0;  // garbage may lie further apart than an integer holds
+  double worst_s = 0.0;  // invalid stamps may differ by more than an integer holds
   for (const std::int64_t stamp : stamps_ns) {
     if (last_ns_ && stamp == *last_ns_) ++repeated_.seen;
     if (last_ns_ && stamp < *last_ns_) {

@@ -9,12 +9,12 @@
 
 namespace proofmass::acquire {
 
-/// True if a device's stamps tell no time: all 0, or of several all the same. Drivers that leave
-/// the stamping to a trigger of their own do so under another's.
+/// True if a device's stamps contain no time: all 0, or several and all equal. Drivers that leave
+/// stamping to their own trigger do so under another trigger.
 [[nodiscard]] bool is_dead(const std::vector<std::int64_t>& stamps_ns);
 
-/// Looks at a device's stamps as they come and says what is wrong with them: at the first time,
-/// then at the tenth, the hundredth, so that a bad clock does not flood the recording.
+/// Monitors a device's stamps and reports faults: at the first time, then the tenth, the hundredth,
+/// so that a bad clock does not flood the recording.
 class StampWatch {
  public:
   void look(const std::vector<std::int64_t>& stamps_ns, std::vector<Note>& notes);

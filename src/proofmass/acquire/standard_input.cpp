@@ -9,7 +9,7 @@
 namespace proofmass::acquire {
 namespace {
 
-/// A pipe, a file or a terminal that somebody else opened and closes.
+/// A pipe, a file or a terminal opened and closed by another process.
 class InputFeed final : public ByteFeed {
  public:
   explicit InputFeed(int descriptor) : descriptor_(descriptor) {}

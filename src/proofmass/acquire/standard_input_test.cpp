@@ -14,13 +14,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Standard input brings a text, for as long as this stands.
+/// Provides a text on standard input during its lifetime.
 class Piped {
  public:
   explicit Piped(std::string_view text) : before_(::dup(STDIN_FILENO)) {
     int ends[2] = {-1, -1};
     EXPECT_EQ(::pipe(ends), 0);
-    // What a pipe holds without a reader is enough for these tests.
+    // The capacity of a pipe without a reader is sufficient for these tests.
     EXPECT_EQ(::write(ends[1], text.data(), text.size()), static_cast<ssize_t>(text.size()));
     ::close(ends[1]);
     ::dup2(ends[0], STDIN_FILENO);

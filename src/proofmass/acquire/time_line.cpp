@@ -40,7 +40,7 @@ void TimeLine::tell(EventKind kind, double duration_s, std::uint64_t rows, std::
   events_->push_back({kind, Severity::warning, last_s_, duration_s, rows, std::move(text)});
 }
 
-/// By the host's clock, where that shows that time has passed; else the next step.
+/// From the host's clock if it shows that time has passed; else the next interval.
 double TimeLine::bridged(const Arrival& arrival, std::size_t row) const {
   const double step_s = step_.step_s();
   const double next_s = last_s_ + step_s;
@@ -86,7 +86,7 @@ void TimeLine::tell_known(const Incoming& item, double hole_s) {
          fmt::format("{} rows were dropped, as the queue was full", item.overrun));
 }
 
-/// Says how many rows a hole stands for, of which `open_s` is not explained.
+/// Reports the number of rows in a hole, of which `open_s` is not explained.
 std::uint64_t TimeLine::tell_gap(double hole_s, double open_s) {
   const double usual_s = step_.step_s();
   const double rows = usual_s > 0.0 ? std::round(open_s / usual_s) - 1.0 : 0.0;
@@ -100,7 +100,7 @@ std::uint64_t TimeLine::tell_gap(double hole_s, double open_s) {
   return count;
 }
 
-/// Rows that are missing in front of those at hand and between them; carries the last stamp on.
+/// Reports the rows missing before and between the current ones; advances the last stamp.
 void TimeLine::tell_missing(const Incoming& item, View<double> stamps_s) {
   std::uint64_t missing = item.arrival.lost_before + item.overrun;
   for (std::size_t i = 0; i < stamps_s.size(); ++i) {
@@ -128,7 +128,7 @@ bool TimeLine::is_dead(const Arrival& arrival) {
   return still_rows_ >= most_still;
 }
 
-/// By the device's clock, unless that steps back or into the host's future.
+/// From the device's clock, unless it steps back or into the host's future.
 double TimeLine::device_stamp(const Arrival& arrival, std::size_t row) {
   std::int64_t since_ns = 0;
   const std::int64_t at_ns = arrival.device_ns[row];
@@ -140,7 +140,7 @@ double TimeLine::device_stamp(const Arrival& arrival, std::size_t row) {
   const double latest_s = host_s(arrival.host_ns) - floor_.value() - behind_s + slack_s;
   const bool is_ahead = is_paced_ && stamp_s > last_s_ + slack_s && stamp_s > latest_s;
   if (is_sane && stamp_s >= last_s_ && !is_ahead) return stamp_s;
-  // Stamps that are out of order by less than a step are no step of the clock.
+  // Stamps out of order by less than an interval are not a step of the clock.
   if (is_sane && stamp_s < last_s_ && last_s_ - stamp_s < step_s) return last_s_;
   const double bridged_s = bridged(arrival, row);
   tell(EventKind::clock_jump, 0.0, 0,
@@ -192,7 +192,7 @@ void TimeLine::stamp_by_host(const Incoming& item, std::vector<double>& stamps_s
     const double step_s = item.step_s;
     for (std::size_t i = 0; i < arrival.rows(); ++i)
       stamps_s.push_back(static_cast<double>(i) * step_s);
-    // The last of them is what arrived now.
+    // The last of them is the one that arrived now.
     first_host_ns_ -= static_cast<std::int64_t>(1e9 * (rows - 1.0) * step_s);
     line_.restart(stamps_s.back(), step_s);
     tell_missing(item, stamps_s);

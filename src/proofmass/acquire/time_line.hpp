@@ -13,7 +13,7 @@
 
 namespace proofmass::acquire {
 
-/// The least of a delay within the last ten to twenty seconds.
+/// Minimum of a delay over the last ten to twenty seconds.
 class DelayFloor {
  public:
   void add(double host_s, double delay_s);
@@ -24,21 +24,21 @@ class DelayFloor {
   double since_s_ = 0.0;
 };
 
-/// Gives rows their time on the recording's clock: seconds since its first row, never less than the
-/// row before.
+/// Assigns rows their time on the recording's clock: seconds since its first row, never less than
+/// the previous row.
 class TimeLine {
  public:
   explicit TimeLine(const SourceHead& head) { reopen(head); }
 
-  /// The source was opened again: its clock may begin anywhere, and the host's clock bridges.
+  /// The source was reopened: its clock may have any origin; the host's clock bridges the gap.
   void reopen(const SourceHead& head);
-  /// The stamps of an item's rows in place of `stamps_s`; what there is to tell behind `events`.
+  /// Replaces `stamps_s` by the stamps of an item's rows; appends events to `events`.
   void stamp(const Incoming& item, std::vector<double>& stamps_s, std::vector<RecordEvent>& events);
 
   [[nodiscard]] double last_s() const { return last_s_; }
-  /// Rows up to the last stamp, those that are missing counted too.
+  /// Rows up to the last stamp, including missing ones.
   [[nodiscard]] std::uint64_t rows() const { return rows_; }
-  /// Between rows, as it usually is; 0: not known yet.
+  /// Typical interval between rows; 0: not known yet.
   [[nodiscard]] double step_s() const { return step_.step_s(); }
   /// The host's steady clock, in seconds since the first arrival.
   [[nodiscard]] double host_s(std::int64_t host_ns) const;
@@ -64,19 +64,19 @@ class TimeLine {
   RunningLine line_;
 
   bool has_rows_ = false;
-  bool is_new_ = true;   ///< the clock gave no stamp yet
-  bool is_gap_ = false;  ///< in front of the rows at hand, whatever the device's clock says
+  bool is_new_ = true;   ///< the clock has given no stamp yet
+  bool is_gap_ = false;  ///< before the current rows, whatever the device's clock shows
   double last_s_ = 0.0;
   std::uint64_t rows_ = 0;
   std::int64_t first_host_ns_ = 0;
 
-  std::int64_t device_ns_ = 0;  ///< of the device's clock, where the recording's is device_s_
+  std::int64_t device_ns_ = 0;  ///< the device's clock when the recording's is device_s_
   double device_s_ = 0.0;
-  std::int64_t still_at_ns_ = 0;  ///< what the device's clock has said for still_rows_
+  std::int64_t still_at_ns_ = 0;  ///< value of the device's clock for still_rows_
   std::size_t still_rows_ = 0;
-  double count_s_ = 0.0;  ///< where rows are counted from
+  double count_s_ = 0.0;  ///< start of the row count
   std::uint64_t counted_ = 0;
-  std::vector<RecordEvent>* events_ = nullptr;  ///< of the item at hand
+  std::vector<RecordEvent>* events_ = nullptr;  ///< events of the current item
 };
 
 }  // namespace proofmass::acquire

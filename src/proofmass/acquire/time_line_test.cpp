@@ -37,7 +37,7 @@ Incoming rows_at(std::int64_t host_ms,
   return item;
 }
 
-/// A time line that keeps all it is given.
+/// A time line that stores all its output.
 class Folded {
  public:
   explicit Folded(const SourceHead& head) : line_(head) {}
@@ -148,7 +148,7 @@ TEST(TimeLine, CountsByTheGrantedRateAndOverWhatIsLost) {
   EXPECT_EQ(line.events.at(0).rows, 5u);
 }
 
-/// What passes a hold, in its order, folded.
+/// Passes items through a hold and adds its output in order.
 void fold_through(SilenceHold& hold, Folded& line, Incoming item) {
   hold.put(std::move(item));
   Incoming settled;
@@ -160,7 +160,7 @@ TEST(SilenceHold, TellsADelayFromAGap) {
     Folded line(head_of(false, 100.0));
     SilenceHold hold(false, true, 100.0, 2.0);
     for (int i = 1; i <= 20; ++i) fold_through(hold, line, rows_at(100 * i, 10));
-    // Five seconds of silence; then what was held back comes at once, or it does not.
+    // Five seconds of silence; then the delayed rows arrive at once, or they do not.
     const int burst = is_gap ? 0 : 49;
     for (int i = 0; i < burst; ++i) fold_through(hold, line, rows_at(7000 + i, 10));
     for (int i = 1; i <= 20; ++i) fold_through(hold, line, rows_at(7000 + 100 * i, 10));
@@ -224,7 +224,7 @@ TEST(TimeLine, MarksTheGapOfAReconnection) {
   EXPECT_NEAR(static_cast<double>(line.events[0].rows), 300.0, 5.0);
 }
 
-/// Delays of a bursty connection: seldom none, sometimes long.
+/// Delays of a bursty connection: rarely zero, sometimes long.
 class Delays {
  public:
   explicit Delays(std::uint64_t seed) : random_(seed) {}

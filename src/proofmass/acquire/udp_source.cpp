@@ -26,7 +26,7 @@ Error cannot_listen(const HostPort& at, const char* why) {
   return {Errc::device, fmt::format("cannot listen at {} port {}: {}", at.host, *at.port, why)};
 }
 
-/// Datagrams of a socket that is bound.
+/// Datagrams of a bound socket.
 class UdpFeed final : public ByteFeed {
  public:
   explicit UdpFeed(int socket) : socket_(socket) {}
@@ -48,24 +48,23 @@ class UdpFeed final : public ByteFeed {
   }
 
  private:
-  /// Datagrams that the kernel had no room for since the one before. Source: socket(7),
-  /// SO_RXQ_OVFL.
+  /// Datagrams dropped by the kernel since the previous one. Source: socket(7), SO_RXQ_OVFL.
   std::uint64_t dropped(msghdr& message) {
     const std::uint32_t before = overflow_;
     for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c))
       if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SO_RXQ_OVFL)
         std::memcpy(&overflow_, CMSG_DATA(c), sizeof(overflow_));
-    return overflow_ - before;  // a count of 32 bits that wraps
+    return overflow_ - before;  // a 32-bit count that wraps
   }
 
   int socket_;
   std::uint32_t overflow_ = 0;
 };
 
-/// As much room as the kernel grants; what that is.
+/// Requests the largest buffer; returns the granted size.
 int widen(int socket) {
   constexpr int wished_bytes = 16 << 20;
-  // Only root may go beyond the system's limit.
+  // Only root may exceed the system's limit.
   if (::setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &wished_bytes, sizeof(wished_bytes)) != 0)
     (void)::setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &wished_bytes, sizeof(wished_bytes));
   int granted = 0;
@@ -91,7 +90,7 @@ Result<int> bound_socket(const HostPort& at) {
   return cannot_listen(at, std::strerror(why));
 }
 
-/// "9870" is that port of this computer, which nobody else reaches.
+/// "9870" is that port on the loopback interface, which no other computer can reach.
 Result<HostPort> host_port_of(const std::string& place) {
   const bool is_port = !place.empty() && place.find_first_not_of("0123456789") == std::string::npos;
   auto at = parse_host_port(is_port ? "127.0.0.1:" + place : place);

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A socket of the loopback; bound, so that its port is nobody else's while it lives.
+/// A socket of the loopback interface; bound, so that no other program uses its port.
 class Socket {
  public:
   Socket() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -46,7 +46,7 @@ unsigned short free_port() {
   return Socket().bind_to_any();
 }
 
-/// Sends until it goes: whoever opens the source needs some rows to know the columns.
+/// Sends during its lifetime: opening the source needs some rows to determine the columns.
 class Sender {
  public:
   Sender(unsigned short port, std::string packet)
@@ -75,7 +75,7 @@ Result<std::unique_ptr<Source>> opened(unsigned short port,
                      {.patience = std::chrono::seconds(30)});
 }
 
-/// All rows up to the one whose second figure is `last`, their counter being the first.
+/// All rows up to the one whose second value is `last`; the first is their counter.
 struct Taken {
   std::vector<double> second;
   std::uint64_t lost = 0;

@@ -27,7 +27,7 @@ bool is_single(double step_s, double usual_s) {
   return step_s > 0.5 * usual_s && step_s < 1.5 * usual_s;
 }
 
-/// Of those within a half of it.
+/// Mean of the intervals within half of it.
 double mean_single(View<double> steps, double usual_s) {
   double sum_s = 0.0;
   std::size_t count = 0;
@@ -47,8 +47,8 @@ double deviation_s(View<double> steps, double usual_s) {
   return sum_s / static_cast<double>(steps.size());
 }
 
-/// Whether most of the time is in steps that are much longer than the usual one: rows that come in
-/// bursts, and not holes.
+/// True if most of the time is in intervals much longer than the typical one: rows come in bursts,
+/// and these are not holes.
 bool is_in_bursts(View<double> steps, double usual_s) {
   constexpr double long_steps = 4.5;
   double long_s = 0.0;
@@ -58,15 +58,15 @@ bool is_in_bursts(View<double> steps, double usual_s) {
     long_s += step_s;
     ++count;
   }
-  // A single one may be a hole, once there are enough of the others to tell.
+  // A single one may be a hole, once there are enough others to decide.
   return (count > 1 || steps.size() < 2 * warm) &&
          long_s > 0.5 * std::accumulate(steps.begin(), steps.end(), 0.0);
 }
 
-/// Where a step of one row ends and one of two begins. Both scatter by a density that falls
-/// exponentially (Laplace's, of mean deviation d); a step between is more likely two where
+/// Boundary between an interval of one row and one of two. Both scatter with an exponentially
+/// decaying density (Laplace, mean deviation d); an interval in between is more likely two if
 ///   step > 1.5 usual + d/2 ln(p1/p2),
-/// p being their shares. Where they cannot be told from the scatter, p2 is 1e-7.
+/// p1 and p2 their fractions. If these are not determined by the data, p2 is 1e-7.
 double longest_single_s(double usual_s, double deviation_s, double skips) {
   constexpr double rare = 1e-7, narrow = 0.1;
   const double p2 = deviation_s < narrow * usual_s ? std::clamp(skips, rare, 0.5) : rare;
@@ -86,7 +86,8 @@ void UsualStep::add(double step_s) {
   if (std::has_single_bit(count_) || count_ % learns_every == 0) learn();
 }
 
-/// A grant holds where some steps are as granted: then longer ones skip rows, be they ever so many.
+/// The grant is valid if some intervals are as granted: longer ones then skip rows, however many
+/// there are.
 bool UsualStep::is_by_grant() const {
   constexpr double near = 0.25, some = 0.25;
   if (!(granted_s_ > 0.0)) return false;
@@ -110,7 +111,7 @@ void UsualStep::learn() {
   longest_s_ = longest_single_s(step_s_, deviation, skips_);
 }
 
-/// What share of the steps are double ones, of some hundreds.
+/// Estimates the fraction of double intervals, over some hundreds.
 void UsualStep::learn_skips() {
   constexpr double fading = 1.0 / 16.0;
   const double now = share(recent(), [this](double step_s) {

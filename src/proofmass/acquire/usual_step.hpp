@@ -7,18 +7,18 @@
 
 namespace proofmass::acquire {
 
-/// The step between rows as it usually is, and which steps are too long to be one: told from the
-/// last 64. Steps that skip rows (twice, three times the usual one) may be many and count neither
-/// for the usual step nor for how much it varies.
+/// The typical interval between rows, and the detection of intervals that are too long, from the
+/// last 64. Intervals that skip rows (two, three times the typical one) may be frequent and affect
+/// neither the typical interval nor its scatter.
 class UsualStep {
  public:
-  /// The granted one; 0: there is none.
+  /// The granted interval; 0: none.
   explicit UsualStep(double granted_s) : granted_s_(granted_s), step_s_(granted_s) {}
 
-  /// A step that nothing known to be missing explains; a hole too.
+  /// An interval not explained by known missing rows; possibly a hole.
   void add(double step_s);
   [[nodiscard]] double step_s() const { return step_s_; }  ///< 0: not known yet
-  /// Whether a step is so long that rows must be missing. Nothing is within the first 16.
+  /// True if an interval is so long that rows must be missing. Never within the first 16.
   [[nodiscard]] bool is_hole(double step_s) const;
 
  private:
@@ -31,10 +31,10 @@ class UsualStep {
   static constexpr std::size_t memory = 64;
   double granted_s_;
   double step_s_;
-  double longest_s_ = 0.0;  ///< that is no hole
-  double skips_ = 0.0;      ///< share of steps that are double ones
+  double longest_s_ = 0.0;  ///< longest interval that is not a hole
+  double skips_ = 0.0;      ///< fraction of intervals that are double
   std::array<double, memory> recent_{};
-  std::size_t count_ = 0;  ///< ever added
+  std::size_t count_ = 0;  ///< total added
 };
 
 }  // namespace proofmass::acquire

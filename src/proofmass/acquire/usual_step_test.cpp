@@ -13,7 +13,7 @@ namespace {
 
 constexpr double tick_s = 0.01;
 
-/// A clock that ticks and skips ticks at random, each step being off by `jitter` of one.
+/// A clock that ticks and skips ticks at random; each interval has an error of `jitter` ticks.
 class SkippingClock {
  public:
   SkippingClock(double skips, double jitter, std::uint64_t seed)
@@ -33,7 +33,7 @@ class SkippingClock {
   std::uint64_t tick_ = 0;
 };
 
-/// What a time line tells of rows that come one by one, with these times of a device.
+/// Output of a time line for rows that arrive one by one, with these device times.
 struct Told {
   std::uint64_t gaps = 0, rows = 0;
 };
@@ -76,7 +76,7 @@ TEST(UsualStep, CountsTheRowsThatAClockSkipsOftenAsTheAuditDoes) {
       for (const double jitter : {0.0, 0.02}) {
         SkippingClock clock(skips, jitter, 7);
         std::vector<double> times_s;
-        // Nothing is told of the first rows: here they are whole.
+        // Nothing is reported for the first rows: here they are complete.
         for (int k = -19; k <= 0; ++k) times_s.push_back(tick_s * k);
         const std::size_t rows = times_s.size() + 5000;
         while (times_s.size() < rows) times_s.push_back(clock.next_s());
@@ -97,7 +97,7 @@ TEST(UsualStep, CountsFrequentSkipsOfAClockThatJittersToo) {
 
 TEST(UsualStep, TakesJitterForNoSkip) {
   std::mt19937_64 random(13);
-  // Laplace's density, of mean deviation a fifteenth.
+  // Laplace distribution with a mean deviation of a fifteenth.
   std::exponential_distribution<double> size(15.0 / tick_s);
   std::bernoulli_distribution is_late(0.5);
   UsualStep step(0.0);

@@ -22,7 +22,8 @@ using Clock = std::chrono::steady_clock;
 
 }  // namespace
 
-/// What is under way. Its context holds the handlers: destroyed together, none is called late.
+/// The pending operations. Its context holds the handlers: both are destroyed together, so that no
+/// handler is called late.
 struct WebSocket::Connection {
   Connection(HostPort to, std::string at, const WebSocketLimits& bounds)
       : server(std::move(to)),
@@ -61,8 +62,8 @@ struct WebSocket::Connection {
           "the other side closed it ({}{}{})", static_cast<unsigned>(stream.reason().code),
           stream.reason().reason.empty() ? "" : ": ",
           std::string_view(stream.reason().reason.data(), stream.reason().reason.size()));
-    // Where a peer breaks the protocol, Beast closes its own end; if the peer does not answer the
-    // close frame, that is all it reports.
+    // If a peer violates the protocol, Beast closes its own end; if the peer does not answer the
+    // close frame, this is all it reports.
     if (failed == asio::error::bad_descriptor)
       why = fmt::format(
           "the connection was closed: it sent what breaks the WebSocket protocol, or a message of "
@@ -74,14 +75,14 @@ struct WebSocket::Connection {
   HostPort server;
   std::string target;
   WebSocketLimits limits;
-  Clock::time_point deadline;  ///< of opening
+  Clock::time_point deadline;  ///< for opening
   asio::io_context context{1};
   asio::ip::tcp::resolver resolver{context};
   websocket::stream<asio::ip::tcp::socket, false> stream{context};
   boost::beast::flat_buffer buffer;
   bool is_open = false;
-  bool has_message = false;  ///< the buffer holds a whole one
-  bool was_told = false;     ///< it was handed out
+  bool has_message = false;  ///< the buffer holds a complete one
+  bool was_told = false;     ///< it was returned
   std::optional<Error> problem;
 };
 

@@ -14,24 +14,24 @@ namespace proofmass::acquire {
 
 struct WebSocketLimits {
   std::chrono::milliseconds opening{10'000};
-  /// Of a peer that neither sends nor answers a ping.
+  /// Timeout for a peer that neither sends nor answers a ping.
   std::chrono::milliseconds silence{10'000};
   std::size_t message_bytes = std::size_t{64} << 10;
 };
 
-/// Listens to a WebSocket (RFC 6455) without TLS; answers pings by itself while it is read.
+/// Receives from a WebSocket (RFC 6455) without TLS; answers pings while it is read.
 class WebSocket {
  public:
-  /// Begins to connect to ws://server/target; `server` has a port.
+  /// Starts to connect to ws://server/target; `server` has a port.
   WebSocket(HostPort server, std::string target, WebSocketLimits limits = {});
   WebSocket(const WebSocket&) = delete;
   WebSocket& operator=(const WebSocket&) = delete;
   ~WebSocket();
 
   [[nodiscard]] bool is_open() const;
-  /// The next message, valid until the next reading; nullopt if there is none within `patience`.
-  /// Errors: device (cannot be reached, no WebSocket, too long a message, silent; closed: with the
-  /// peer's code and reason). There is nothing to be read after one.
+  /// The next message, valid until the next call; nullopt if there is none within `patience`.
+  /// Errors: device (unreachable, not a WebSocket, message too long, silent; closed: with the
+  /// peer's code and reason). After an error nothing more can be read.
   [[nodiscard]] Result<std::optional<std::string_view>> read(std::chrono::milliseconds patience);
 
  private:

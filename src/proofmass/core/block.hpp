@@ -7,10 +7,10 @@
 
 namespace proofmass {
 
-/// Consecutive samples of a recording that is handled a piece at a time. The views are valid until
-/// the next piece is asked for.
+/// Consecutive samples of a recording that is processed in blocks. The views are valid until the
+/// next block is requested.
 struct Block {
-  std::size_t first = 0;                 ///< sample of the recording that row 0 is
+  std::size_t first = 0;                 ///< number of row 0 in the recording
   std::vector<View<double>> channels{};  ///< equally long, in the recording's order and units
   View<double> stamps_s{};  ///< since the recording's first sample; empty where the base is uniform
 

@@ -24,9 +24,8 @@ struct Bounds {
   double lower = 0.0, upper = 0.0;
 };
 
-/// Between what the mean of `count` independent chi-square variables of one degree of freedom lies
-/// in 95 % of cases. Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001),
-/// section 5.4.2.
+/// 95 % interval of the mean of `count` independent chi-square variables of one degree of freedom.
+/// Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 5.4.2.
 [[nodiscard]] Bounds mean_chi_square_95(std::size_t count);
 
 }  // namespace proofmass

@@ -6,8 +6,8 @@
 
 namespace proofmass {
 
-/// So many unit vectors spread evenly over the sphere, from z to −z along a spiral, each turned
-/// against the one before by the golden angle:
+/// `count` unit vectors spread evenly over the sphere, from z to −z along a spiral, each rotated
+/// from the previous one by the golden angle:
 ///
 ///     z_k = 1 − (2k + 1)/n,   φ_k = k π (3 − √5).
 ///

@@ -17,7 +17,7 @@ TEST(SpreadDirections, AreUnitVectorsAsManyAsAskedFor) {
   }
 }
 
-// Even over the sphere: mean 0 and mean square 1/3 along every axis.
+// Uniform over the sphere: mean 0 and mean square 1/3 along every axis.
 TEST(SpreadDirections, FavourNoAxis) {
   for (const std::size_t count : {24U, 1000U}) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -32,7 +32,7 @@ TEST(SpreadDirections, FavourNoAxis) {
   }
 }
 
-// The best packing of n caps leaves neighbours about √(8π/(√3 n)) apart; the spiral comes near it.
+// The best packing of n caps has neighbours about √(8π/(√3 n)) apart; the spiral comes close.
 TEST(SpreadDirections, KeepTheirDistance) {
   for (const std::size_t count : {12U, 24U, 100U, 400U}) {
     const auto d = spread_directions(count);

@@ -12,7 +12,7 @@
 namespace proofmass {
 namespace {
 
-// Tells one bar of the mean progress of several analyses at once.
+// Combines the progress of several analyses into one mean.
 class SharedProgress {
  public:
   SharedProgress(Progress shown, std::size_t parts) : shown_(std::move(shown)), done_(parts) {}

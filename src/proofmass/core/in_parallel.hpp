@@ -7,9 +7,9 @@
 
 namespace proofmass {
 
-/// Calls work(k, its own progress) once for each k below `parts`, as many at once as there are
-/// processors, and shows the mean of their progress. Parts share nothing, so the results do not
-/// depend on how many run at once. Of exceptions, that of the lowest k comes out.
+/// Calls work(k, its own progress) once for each k below `parts`, with one thread per processor,
+/// and reports the mean progress. Parts share no data, so the results do not depend on the number
+/// of threads. If several parts throw, the exception with the lowest k is rethrown.
 void in_parallel(std::size_t parts,
                  const Progress& shown,
                  const std::function<void(std::size_t, Progress)>& work);

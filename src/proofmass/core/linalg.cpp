@@ -15,7 +15,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-// A and b brought to a unit diagonal, so that one tolerance suits all unknowns.
+// A and b scaled to a unit diagonal, so that one tolerance suits all unknowns.
 struct ScaledProblem {
   Eigen::MatrixXd A;
   Eigen::VectorXd b, scale;
@@ -29,7 +29,7 @@ ScaledProblem scaled(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
   return problem;
 }
 
-// The minimiser with all unknowns zero but those listed.
+// The minimiser with all unknowns zero except those listed.
 Eigen::VectorXd solved_on(const ScaledProblem& problem, const std::vector<Index>& free) {
   const auto n = static_cast<Index>(free.size());
   Eigen::MatrixXd A(n, n);
@@ -45,7 +45,7 @@ Eigen::VectorXd solved_on(const ScaledProblem& problem, const std::vector<Index>
   return x;
 }
 
-// How far from x towards `to` until the first unknown reaches zero, 1 if none does.
+// Fraction of the step from x to `to` until the first unknown reaches zero, 1 if none does.
 double feasible_step(const Eigen::VectorXd& x,
                      const Eigen::VectorXd& to,
                      const std::vector<Index>& free) {
@@ -56,8 +56,8 @@ double feasible_step(const Eigen::VectorXd& x,
   return step;
 }
 
-// Moves x to the minimiser over the free unknowns; those that would turn negative stop at zero and
-// are free no more.
+// Moves x to the minimiser over the free unknowns; those that would become negative stop at zero
+// and are no longer free.
 void settle(const ScaledProblem& problem, Eigen::VectorXd& x, std::vector<Index>& free) {
   while (!free.empty()) {
     const Eigen::VectorXd to = solved_on(problem, free);

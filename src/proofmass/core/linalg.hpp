@@ -2,7 +2,8 @@
 
 #include <Eigen/Core>
 
-// Dense solvers, compiled once here so that nobody else pays for Eigen's decompositions.
+// Dense solvers, compiled once here so that other translation units need not instantiate Eigen's
+// decompositions.
 namespace proofmass {
 
 /// A = V diag(values) Vᵀ of a symmetric matrix, values ascending, V orthonormal.
@@ -15,8 +16,8 @@ struct SymmetricEigen {
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
 /// The x ≥ 0 that minimises ½ xᵀA x − bᵀx, for A symmetric positive definite: the normal equations
-/// of non-negative least squares. Where A is singular, one of the minimisers. Source: C. L. Lawson,
-/// R. J. Hanson, Solving Least Squares Problems (1974), algorithm NNLS. Cost: O(n³) a step, few
+/// of non-negative least squares. If A is singular, one of the minimisers. Source: C. L. Lawson, R.
+/// J. Hanson, Solving Least Squares Problems (1974), algorithm NNLS. Cost: O(n³) per step, few
 /// steps.
 [[nodiscard]] Eigen::VectorXd non_negative_minimiser(const Eigen::MatrixXd& A,
                                                      const Eigen::VectorXd& b);
@@ -27,11 +28,11 @@ struct PositiveInverse {
   double log_determinant = 0.0;
 };
 
-/// Of a symmetric positive definite matrix; of a singular one, with a ridge of 1e-14 of its
+/// Inverts a symmetric positive definite matrix; a singular one with a ridge of 1e-14 of its
 /// diagonal. Cost: O(n³).
 [[nodiscard]] PositiveInverse invert_positive(const Eigen::MatrixXd& A);
 
-/// Its inverse alone.
+/// The inverse alone.
 [[nodiscard]] Eigen::MatrixXd positive_inverse(const Eigen::MatrixXd& A);
 
 /// The X of A X = B, by LU with partial pivoting; A square and regular. Cost: O(n³).

@@ -17,14 +17,14 @@ TEST(SymmetricEigen, RebuildsTheMatrixWithValuesAscending) {
   EXPECT_LE(eigen.values(1), eigen.values(2));
 }
 
-// Lagrange: nothing to gain by moving along any unknown.
+// Karush–Kuhn–Tucker conditions: no unknown can move and lower the function.
 TEST(NonNegativeMinimiser, MeetsItsConditionsWhateverTheProblem) {
   std::mt19937_64 rng(5);
   std::normal_distribution<double> normal;
   for (int trial = 0; trial < 300; ++trial) {
     Eigen::MatrixXd X(12, 5);
     for (auto& value : X.reshaped()) value = normal(rng);
-    // Unknowns of very different sizes, as the terms of a spectrum are.
+    // Unknowns of very different magnitude, as the terms of a spectrum have.
     for (int j = 0; j < 5; ++j) X.col(j) *= std::pow(10.0, 4 * j - 8);
     Eigen::VectorXd y(12);
     for (auto& value : y) value = normal(rng);
@@ -50,7 +50,7 @@ TEST(PositiveInverse, UndoesTheMatrix) {
 }
 
 TEST(PositiveInverse, KnowsTheLogarithmOfTheDeterminant) {
-  // |A| of the n × n matrix with 2 on its diagonal and −1 beside it is n + 1.
+  // |A| of the n × n matrix with 2 on its diagonal and −1 next to it is n + 1.
   for (const int n : {1, 2, 7, 40}) {
     Eigen::MatrixXd A = 2.0 * Eigen::MatrixXd::Identity(n, n);
     for (int k = 1; k < n; ++k) A(k, k - 1) = A(k - 1, k) = -1.0;

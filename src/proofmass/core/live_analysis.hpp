@@ -9,7 +9,7 @@
 
 namespace proofmass {
 
-/// What is worked out of samples while they come: estimates that are recorded beside them.
+/// Online estimator that runs alongside a recording; its estimates are recorded with the samples.
 class LiveAnalysis {
  public:
   LiveAnalysis() = default;
@@ -17,16 +17,17 @@ class LiveAnalysis {
   LiveAnalysis& operator=(const LiveAnalysis&) = delete;
   virtual ~LiveAnalysis() = default;
 
-  /// Its columns: names and units, without values. They do not change.
+  /// The output columns: names and units, without values. They do not change.
   [[nodiscard]] virtual const std::vector<Channel>& columns() const = 0;
-  /// Takes the samples behind those it had, with their stamps, and appends to `out` the rows that
-  /// are settled by now, each with its own time on the recording's clock; there may be none yet, or
-  /// fewer than samples. What goes wrong with the data is a note, not an error: it goes on.
-  /// Errors: what makes all that follows senseless.
+  /// Takes the next samples with their stamps and appends to `out` the rows that are final by now,
+  /// each with its own time on the recording's clock. There may be no row yet, or fewer rows than
+  /// samples. A fault in the data is reported as a note, not as an error, and the analysis
+  /// continues.
+  /// Errors: only those that make all later output meaningless.
   [[nodiscard]] virtual Status add(const Block& samples, Rows& out) = 0;
-  /// No sample follows: the rows that were still waiting.
+  /// Ends the input: appends the rows that are still pending.
   [[nodiscard]] virtual Status finish(Rows& out) = 0;
-  /// What it has to say since it was asked last.
+  /// Notes since the last call.
   [[nodiscard]] virtual std::vector<Note> take_notes() = 0;
 };
 

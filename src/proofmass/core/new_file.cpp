@@ -37,7 +37,7 @@ bool is_standard_output(const struct stat& file) {
   return ::fstat(STDOUT_FILENO, &out) == 0 && is_one(out, file);
 }
 
-/// What a path leads to, whether it exists or not; ELOOP where links lead round.
+/// The target of a path after all links, whether it exists or not; ELOOP for a cycle of links.
 std::string behind_links(std::string path, int& error) {
   constexpr int most_links = 40;
   std::error_code none;
@@ -50,7 +50,7 @@ std::string behind_links(std::string path, int& error) {
   return path;
 }
 
-/// Six letters that nobody can foresee.
+/// Six unpredictable letters.
 std::string random_letters() {
   constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz0123456789";
   std::random_device source;
@@ -60,11 +60,11 @@ std::string random_letters() {
   return out;
 }
 
-/// Creates a file beside `target` and says what it is called; -1 with errno where there can be
-/// none. As mkostemp(), but with the mode that new files have: the umask cannot be read without
-/// changing it for all threads.
+/// Creates a file beside `target` and returns its name in `part`; -1 with errno on failure. Like
+/// mkostemp(), but with the default mode of new files: the umask cannot be read without changing it
+/// for all threads.
 int create_beside(const std::string& target, std::string& part) {
-  constexpr std::size_t longest_name = 255;  // of a file, on all usual file systems
+  constexpr std::size_t longest_name = 255;  // file name length limit of all usual file systems
   const fs::path whole(target);
   const std::string ending = ".part-";
   std::string name = whole.filename().string();
@@ -77,12 +77,12 @@ int create_beside(const std::string& target, std::string& part) {
   return -1;
 }
 
-/// Gives a new file the owner and the mode of the one that it will replace.
+/// Gives a new file the owner and the mode of the file it will replace.
 void take_over(int descriptor, const struct stat& replaced) {
   struct stat own{};
   if (::fstat(descriptor, &own) != 0) return;
   const bool other = own.st_uid != replaced.st_uid || own.st_gid != replaced.st_gid;
-  // Whoever may write a file may not always give one away; it is their own then.
+  // A user who may write a file may not be allowed to change its owner; the user then owns it.
   const bool given = !other || ::fchown(descriptor, replaced.st_uid, replaced.st_gid) == 0;
   constexpr mode_t permissions = 0777;
   constexpr mode_t all = 07777;
@@ -134,8 +134,8 @@ Status NewFile::append(std::string_view bytes) {
 }
 
 Status NewFile::keep() {
-  // What a power cut leaves under the name must be whole. A library may have put a file of its own
-  // in the place of this one.
+  // The file under this name must be complete even after a power failure. A library may have
+  // replaced this file by its own.
   const bool named = !target_.empty();
   const bool flushed =
       std::fflush(stream_.get()) == 0 && (!named || ::fsync(::fileno(stream_.get())) == 0);

@@ -9,26 +9,26 @@
 
 namespace proofmass {
 
-/// A file that is being written and takes its name only when it is complete, so that whatever had
-/// the name before is whole until then.
+/// A file under construction that takes its name only when it is complete. Until then the file that
+/// had the name before stays intact.
 ///
 /// - A regular file, or none: the bytes go to "<path>.part-xxxxxx" in the same folder, which is
-///   created for this writer alone: nothing that exists is opened, no link followed. keep() brings
-///   it to the disk and renames it; the mode, and where permitted the owner, of the file that it
-///   replaces are kept. A link at `path` is kept: the file that it leads to is replaced.
-/// - A device, a pipe or a socket, and what standard output is open on: written into as it is.
+///   created exclusively for this writer: no existing file is opened and no link is followed.
+///   keep() syncs it to the disk and renames it. The mode and, where permitted, the owner of the
+///   replaced file are kept. A link at `path` is kept: the file it points to is replaced.
+/// - A device, a pipe, a socket, or the file that standard output is open on: written in place.
 class NewFile {
  public:
-  /// Errors of all: unwritable, "<path>: cannot be written: No space left on device".
+  /// Errors of all functions: unwritable, "<path>: cannot be written: No space left on device".
   [[nodiscard]] static Result<NewFile> create(const std::string& path);
 
   NewFile(NewFile&& other) noexcept = default;
   NewFile& operator=(NewFile&&) = delete;
-  ~NewFile();  ///< removes what keep() has not named
+  ~NewFile();  ///< removes the file unless keep() has named it
 
   [[nodiscard]] Status append(std::string_view bytes);
   [[nodiscard]] std::FILE* stream() const { return stream_.get(); }
-  /// Where the bytes are before keep(): for libraries that write files themselves.
+  /// Path of the bytes before keep(), for libraries that write files themselves.
   [[nodiscard]] const std::string& part_path() const { return part_; }
   [[nodiscard]] Status keep();
 
@@ -40,7 +40,7 @@ class NewFile {
   [[nodiscard]] Error failed(int error) const;
 
   std::string path_;    ///< as given
-  std::string target_;  ///< the file to replace; empty: written into directly
+  std::string target_;  ///< the file to replace; empty: written in place
   std::string part_;
   std::unique_ptr<std::FILE, Close> stream_;
 };
@@ -48,11 +48,11 @@ class NewFile {
 /// Writes a whole file: create(), append() and keep().
 [[nodiscard]] Status write_file(const std::string& path, std::string_view bytes);
 
-/// Whether a path names something that exists and is no regular file, which is written into.
+/// True if the path names something that exists and is not a regular file; it is written in place.
 [[nodiscard]] bool is_special_file(const std::string& path);
 
-/// Whether two paths name one regular file; of a file that does not exist, whether they will. A
-/// file is in a folder that holds it, at any depth, too.
+/// True if two paths name the same regular file, or would name it once it exists. A file also
+/// counts as inside any folder that contains it, at any depth.
 [[nodiscard]] bool is_same_or_within(const std::string& file, const std::string& file_or_folder);
 
 }  // namespace proofmass

@@ -65,7 +65,7 @@ TEST_F(NewFiles, NeverTakeANameThatSomebodyElseMayHave) {
   ASSERT_TRUE(write_file(path("a"), "new"));
   EXPECT_EQ(text("a.part"), "what a recorder has left");
   EXPECT_EQ(text("victim"), "victim");
-  // Two at once have files of their own.
+  // Two concurrent writers have separate files.
   NewFile one = NewFile::create(path("a")).value();
   NewFile other = NewFile::create(path("a")).value();
   EXPECT_NE(one.part_path(), other.part_path());
@@ -121,7 +121,7 @@ TEST_F(NewFiles, AreWrittenIntoWhatIsNoRegularFile) {
   EXPECT_EQ(read, "through the pipe");
   EXPECT_TRUE(fs::is_fifo(path("pipe")));
   EXPECT_TRUE(is_special_file(path("pipe")));
-  // A node of one's own would need privileges; through a link it is the machine's.
+  // Creating a device node needs privileges; a link to the machine's own does not.
   fs::create_symlink("/dev/null", path("nothing"));
   EXPECT_TRUE(write_file(path("nothing"), "gone"));
   EXPECT_TRUE(fs::is_character_file("/dev/null"));

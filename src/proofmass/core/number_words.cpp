@@ -7,7 +7,7 @@
 namespace proofmass {
 namespace {
 
-// A true minus sign, and none at all before a zero.
+// A true minus sign; none before zero.
 std::string with_minus(std::string text) {
   if (text.empty() || text.front() != '-') return text;
   text.erase(0, 1);

@@ -8,17 +8,17 @@
 namespace proofmass {
 
 /// Random numbers that are the same on every platform for the same seed: the generator is
-/// standardised, the distributions are our own. Each purpose draws from a stream of its own, so
-/// that switching one effect on leaves the numbers of the others as they were.
+/// standardised, the distributions are our own. Each purpose draws from its own stream, so that
+/// enabling one effect does not change the numbers of the others.
 class Random {
  public:
   Random(std::uint64_t seed, std::string_view purpose, std::size_t index = 0);
 
-  /// Evenly in [0, 1).
+  /// Uniform in [0, 1).
   [[nodiscard]] double unit();
-  /// Evenly in [−1, 1).
+  /// Uniform in [−1, 1).
   [[nodiscard]] double uniform();
-  /// Evenly in [0, 2π).
+  /// Uniform in [0, 2π).
   [[nodiscard]] double phase();
   /// Normal, mean 0, standard deviation 1.
   /// Source: G. E. P. Box, M. E. Muller, Ann. Math. Statist. 29 (1958) 610.

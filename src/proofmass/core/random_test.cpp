@@ -20,7 +20,7 @@ TEST(Random, GivesTheSameNumbersForTheSameStreamOnly) {
   EXPECT_NE(first, other_index.normal());
 }
 
-// Recordings are named by their seed: a number that moves here moves every one of them.
+// Recordings are identified by their seed: a change of any number here changes all of them.
 TEST(Random, GivesTheNumbersThatItAlwaysGave) {
   EXPECT_EQ(Random(7, "noise", 2).uniform(), 0x1.146b28873ce96p-1);
 }

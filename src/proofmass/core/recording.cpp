@@ -15,7 +15,8 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-/// A channel's name taken apart: "Acc_X" is axis x of "acc_"; axis is 0 where there is none.
+/// A channel name split into stem and axis: "Acc_X" is axis x of "acc_"; axis is 0 if there is
+/// none.
 struct AxisName {
   std::string sensor;
   char axis = 0;
@@ -25,8 +26,8 @@ bool is_letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0;
 }
 
-/// The axis letter is the last x, y or z that no letter follows and that either starts a word
-/// ("x1", "Acc_X", "Accelerometer Z") or ends the usual short forms ("ax", "accx", "AccelY").
+/// The axis letter is the last x, y or z that is not followed by a letter and that either starts a
+/// word ("x1", "Acc_X", "Accelerometer Z") or ends the usual short forms ("ax", "accx", "AccelY").
 AxisName axis_of(std::string_view name) {
   const std::string text = lower(name);
   for (std::size_t i = text.size(); i-- > 0;) {
@@ -57,7 +58,7 @@ std::string tidy(std::string sensor) {
   return sensor.empty() ? "accelerometer" : sensor;
 }
 
-/// The labels of the samples `kept`, which ascend, by their new numbers.
+/// The labels of the samples `kept` (ascending), by their new numbers.
 std::vector<Label> cut_labels(const std::vector<Label>& labels,
                               const std::vector<std::size_t>& kept) {
   std::vector<Label> parts;
@@ -71,7 +72,7 @@ std::vector<Label> cut_labels(const std::vector<Label>& labels,
   return parts;
 }
 
-/// The samples `kept`, one at least, with their time counted from the first.
+/// The samples `kept` (at least one), with time counted from the first.
 Recording samples_of(const Recording& recording, const std::vector<std::size_t>& kept) {
   Recording part{recording.source, recording.format, recording.time, {}, recording.notes, 0};
   const double origin_s = recording.time.at(kept.front());

@@ -60,7 +60,7 @@ TEST(Cut, KeepsTheLabelsOfTheWindow) {
 
 TEST(Cut, CountsLabelsByTheSamplesThatAreKept) {
   Recording recording = with_channels({"x"}, "g");
-  recording.time.stamps_s = {0.0, 5.0, 0.2, 0.3};  // a stamp far off, outside the window
+  recording.time.stamps_s = {0.0, 5.0, 0.2, 0.3};  // an outlying stamp, outside the window
   recording.labels = {{"a", 0, 2}, {"b", 3, 3}};
   const Recording part = cut(recording, 0.0, 1.0).value();
   EXPECT_EQ(part.labels, (std::vector<Label>{{"a", 0, 1}, {"b", 2, 2}}));

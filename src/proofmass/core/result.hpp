@@ -10,33 +10,33 @@
 
 namespace proofmass {
 
-/// What went wrong, coarse enough for a caller to branch on.
+/// Kind of failure, coarse enough for a caller to branch on.
 enum class Errc {
-  invalid_argument,  ///< what the caller asked for makes no sense
+  invalid_argument,  ///< the request is invalid
   unwritable,        ///< a file that cannot be written: no room, no permission, no such folder
   unreadable,        ///< no such file, no permission, a failing disk
-  corrupt,           ///< bytes that cannot be what they claim to be
+  corrupt,           ///< bytes that violate their format
   unsupported,       ///< understood, but not built in
-  device,            ///< a device or a connection that is not there, refuses, or has gone
+  device,            ///< a device or connection that is absent, refuses, or is lost
   too_few_samples,
   not_finite,
   not_positive_definite,
-  not_observable,  ///< the data cannot tell, however long one computes
+  not_observable,  ///< not identifiable from the data, whatever the computation
 };
 
-/// A failure that data or the outside world can cause. A bug is not an Error: see contract.hpp.
+/// A failure caused by data or by the outside world. A bug is not an Error: see contract.hpp.
 struct Error {
   Errc code;
-  std::string message;  ///< one line for a person: what, and the limit that was broken
+  std::string message;  ///< one line for the user: the failure and the limit that was exceeded
 
-  /// The same error, seen from further out: "line 12: bad number" at "wheel.csv" becomes
-  /// "wheel.csv: line 12: bad number".
+  /// The same error with outer context: "line 12: bad number" at "wheel.csv" becomes "wheel.csv:
+  /// line 12: bad number".
   [[nodiscard]] Error at(std::string_view where) const {
     return {code, std::string(where) + ": " + message};
   }
 };
 
-/// An Error as an exception, for those who call value() without looking.
+/// An Error as an exception, for callers that use value() without a check.
 class ResultError : public std::runtime_error {
  public:
   explicit ResultError(const Error& error) : std::runtime_error(error.message), code_(error.code) {}
@@ -47,8 +47,8 @@ class ResultError : public std::runtime_error {
 };
 
 /// Either a T or the Error that prevented it: the part of std::expected that we use, made safe for
-/// C++20. A temporary Result hands its value over by value, so `for (auto& p : f().value())` does
-/// not dangle, and `*f()` does not compile.
+/// C++20. A temporary Result returns its value by value, so `for (auto& p : f().value())` does not
+/// dangle, and `*f()` does not compile.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -58,7 +58,7 @@ class [[nodiscard]] Result {
   [[nodiscard]] bool has_value() const { return state_.index() == 0; }
   explicit operator bool() const { return has_value(); }
 
-  /// Throws ResultError if there is none.
+  /// Throws ResultError if there is no value.
   [[nodiscard]] const T& value() const& {
     return has_value() ? **this : throw ResultError(error());
   }
@@ -66,7 +66,7 @@ class [[nodiscard]] Result {
     return has_value() ? std::get<T>(std::move(state_)) : throw ResultError(error());
   }
 
-  /// Looking without asking is a bug, and is treated as one.
+  /// Access without a prior check is a bug and aborts.
   const T& operator*() const& {
     PM_EXPECTS(has_value());
     return *std::get_if<T>(&state_);
@@ -83,7 +83,7 @@ class [[nodiscard]] Result {
   std::variant<T, Error> state_;
 };
 
-/// The Result of what is done for its effect: `return Done{};`
+/// Result of an operation that returns no value: `return Done{};`
 struct Done {};
 using Status = Result<Done>;
 

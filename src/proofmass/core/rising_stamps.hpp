@@ -4,8 +4,8 @@
 
 namespace proofmass {
 
-/// The recording without the samples whose time is not above that of all before: for estimates of a
-/// motion, in which two readings of one instant have no order.
+/// The recording without the samples whose time does not exceed all earlier times. Motion estimates
+/// need this, because two measurements at the same time have no order.
 [[nodiscard]] Recording with_rising_stamps(const Recording& recording);
 
 }  // namespace proofmass

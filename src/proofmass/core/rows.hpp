@@ -7,8 +7,7 @@
 
 namespace proofmass {
 
-/// Samples that belong to whoever holds them: what a Block is a view of. Cleared, it keeps its
-/// memory.
+/// Samples with their own storage; a Block is a view of them. Clearing keeps the capacity.
 struct Rows {
   std::vector<double> stamps_s{};  ///< since the recording's first sample
   std::vector<std::vector<double>> channels{};
@@ -20,7 +19,7 @@ struct Rows {
   }
 };
 
-/// Of the rows as they stand; `first` is the number of row 0 in the recording.
+/// View of the current rows; `first` is the number of row 0 in the recording.
 [[nodiscard]] inline Block view_of(const Rows& rows, std::size_t first) {
   return {first, {rows.channels.begin(), rows.channels.end()}, rows.stamps_s};
 }

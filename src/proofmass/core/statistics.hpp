@@ -19,7 +19,7 @@ inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 /// Source: B. P. Welford, Technometrics 4 (1962) 419, for the sum of squares without cancellation.
 struct Moments {
   std::size_t count = 0;      ///< finite values seen
-  std::size_t nonfinite = 0;  ///< NaN and infinities passed over
+  std::size_t nonfinite = 0;  ///< NaN and infinities skipped
   double mean = 0.0;
   double squares = 0.0;  ///< Σ (x − mean)²
   double min = 0.0;
@@ -40,8 +40,8 @@ struct Moments {
   return quantile(series, 0.5);
 }
 
-/// Standard deviation of a normal distribution from the median absolute deviation, 1.4826 · MAD:
-/// half the values may be anything. nullopt if no value is finite.
+/// Standard deviation of a normal distribution from the median absolute deviation, 1.4826 · MAD: up
+/// to half the values may be outliers. nullopt if no value is finite.
 [[nodiscard]] std::optional<double> robust_std(View<double> series);
 
 }  // namespace proofmass

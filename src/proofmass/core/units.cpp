@@ -16,8 +16,8 @@ struct Spelling {
   double offset_si = 0.0;
 };
 
-// Every spelling a recording has been seen with, after plain() has folded the look-alikes: ² to ^2,
-// µ and μ to u, ° to deg, · to *.
+// All spellings found in recordings, after plain() has replaced equivalent characters: ² by ^2, µ
+// and μ by u, ° by deg, · by *.
 constexpr std::array spellings = std::to_array<Spelling>({
     {"m/s^2", Quantity::acceleration, 1.0, "m/s^2"},
     {"m/s2", Quantity::acceleration, 1.0, "m/s^2"},
@@ -167,7 +167,8 @@ std::optional<Unit> parse_unit(std::string_view text) {
   };
   for (const Spelling& s : spellings)
     if (s.text == folded) return unit(s);
-  // Long words mean the same in any case ("Volts", "M/S^2"); of short ones the case is the meaning.
+  // Long words have the same meaning in any case ("Volts", "M/S^2"); for short ones the case
+  // matters.
   if (folded.size() < 3) return std::nullopt;
   for (const Spelling& s : spellings)
     if (s.text.size() >= 3 && same_ignoring_case(s.text, folded)) return unit(s);

@@ -4,7 +4,7 @@
 
 namespace proofmass {
 
-/// Version of this build, "0.1.0": stands at the head of every document.
+/// Version of this build, "0.1.0": the first entry of every document.
 [[nodiscard]] std::string_view version();
 
 }  // namespace proofmass

@@ -11,7 +11,7 @@ namespace {
 using Index = Eigen::Index;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// The residuals in units of their length at the start, as a function of the free parameters in
+// The residuals relative to their length at the start, as a function of the free parameters in
 // units in which each column of the Jacobian there has that length.
 struct Scaling {
   double residual = 1.0;
@@ -60,7 +60,7 @@ class ScaledCost final : public ceres::CostFunction {
     return out.allFinite();
   }
 
-  // Within the bounds also where the scaling rounds.
+  // Within the bounds even if the scaling rounds.
   [[nodiscard]] Eigen::VectorXd unscaled(const double* scaled) const {
     Eigen::VectorXd p = p_;
     for (std::size_t k = 0; k < descent_.free.size(); ++k) {

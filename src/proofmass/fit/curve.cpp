@@ -30,7 +30,7 @@ Eigen::VectorXd gradient(double x, const CurveModel& model, std::vector<double> 
   return g;
 }
 
-// gᵀ C g, where an infinite variance counts only if the curve depends on it.
+// gᵀ C g; an infinite variance counts only if the curve depends on that parameter.
 double quadratic_form(const Eigen::MatrixXd& C, const Eigen::VectorXd& g) {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < g.size(); ++i)

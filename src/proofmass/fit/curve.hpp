@@ -13,8 +13,8 @@ namespace proofmass::fit {
 using CurveModel = std::function<double(double x, View<double> parameters)>;
 
 struct CurveOptions {
-  std::vector<double> sigma = {};  ///< standard deviation of each y; empty: all alike
-  std::vector<double> lower = {};  ///< of the parameters, as in LeastSquaresProblem
+  std::vector<double> sigma = {};  ///< standard deviation of each y; empty: equal weights
+  std::vector<double> lower = {};  ///< lower bounds of the parameters, as in LeastSquaresProblem
   std::vector<double> upper = {};
   LeastSquaresOptions solver = {};  ///< unit_variance: sigma is known, not only up to a factor
 };
@@ -31,11 +31,11 @@ struct CurveOptions {
 
 struct CurvePoint {
   double value;
-  double std;          ///< of the curve
-  double reading_std;  ///< of one more reading that has sigma 1: √(std² + residual_std²)
+  double std;          ///< standard deviation of the curve
+  double reading_std;  ///< std of a new measurement with sigma 1: √(std² + residual_std²)
 };
 
-/// The fitted curve at each x with its band, by the delta method:
+/// The fitted curve at each x with its confidence band, by the delta method:
 ///
 ///     std² = gᵀ C g,   g = ∂f/∂p,   C the covariance of p
 ///

@@ -8,15 +8,15 @@ namespace proofmass::fit {
 namespace {
 
 constexpr std::size_t rows = 10;
-constexpr double settled = 1e-12;  // relative error at which no further step is taken
-constexpr double doubtful = 1e-5;  // and that at which shorter ones are tried
+constexpr double settled = 1e-12;  // relative error at which refinement stops
+constexpr double doubtful = 1e-5;  // relative error above which shorter steps are tried
 
 struct Estimate {
   Eigen::VectorXd value;
   double error = std::numeric_limits<double>::infinity();
 };
 
-// Which way from t the steps go, and how far they may.
+// Direction of the steps from t, and their limit.
 struct Room {
   double side;  // 0: both ways
   double reach;
@@ -28,7 +28,7 @@ Room room_around(double t, const DifferenceRange& range) {
   return above >= below ? Room{1.0, above} : Room{-1.0, below};
 }
 
-// A difference quotient with the error series that its extrapolation takes out.
+// A difference quotient with the error series that its extrapolation removes.
 class Quotient {
  public:
   Quotient(const Along& f, double t, double side) : f_(f), t_(t), side_(side) {
@@ -57,7 +57,7 @@ class Quotient {
 
 using Row = std::vector<Eigen::VectorXd>;
 
-// Extrapolates row[0] with the row above, each time by one more term of the error series.
+// Extrapolates row[0] with the previous row, removing one more term of the error series each time.
 void extrapolate(const Row& above, double ratio, Row& row, Estimate& best) {
   double factor = 1.0;
   for (std::size_t k = 1; k < row.size(); ++k) {
@@ -68,7 +68,7 @@ void extrapolate(const Row& above, double ratio, Row& row, Estimate& best) {
   }
 }
 
-// One tableau from the step h down.
+// One tableau, starting at the step h.
 Estimate extrapolated(Quotient& quotient, double h) {
   Row above, row(1);
   Estimate best;

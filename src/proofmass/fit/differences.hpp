@@ -10,18 +10,18 @@ namespace proofmass::fit {
 using Along = std::function<bool(double t, Eigen::VectorXd& f)>;
 
 struct DifferenceRange {
-  double scale;  ///< of a natural change in t
+  double scale;  ///< natural scale of a change in t
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// df/dt by differences at steps h, h/2, h/4 …, extrapolated to h = 0: central ones, or one-sided
-/// ones where a bound is near. Starts at a hundredth of the scale, and again at shorter steps while
-/// the extrapolation does not settle. f must hold as many values as t's; zero where no step has
-/// finite values.
+/// df/dt by differences at steps h, h/2, h/4 …, extrapolated to h = 0: central, or one-sided near a
+/// bound. Starts at a hundredth of the scale, and repeats with shorter steps while the
+/// extrapolation does not converge. f must have as many values as t's; zero if no step gives finite
+/// values.
 ///
 /// Source: C. J. F. Ridders, Accurate computation of F'(x) and F'(x)F''(x) (1982).
-/// Cost: 8 to 20 values of f, where it is smooth.
+/// Cost: 8 to 20 values of f where it is smooth.
 [[nodiscard]] Eigen::VectorXd derivative(const Along& f,
                                          double t,
                                          const DifferenceRange& range,

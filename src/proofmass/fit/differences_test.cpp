@@ -7,7 +7,7 @@
 namespace proofmass::fit::differences_test {
 namespace {
 
-// A scalar function as a vector of one.
+// A scalar function as a vector of length one.
 Along along(double (*f)(double)) {
   return [=](double t, Eigen::VectorXd& out) {
     out.setConstant(1, f(t));

@@ -4,8 +4,8 @@
 
 namespace proofmass::fit {
 
-/// A = Q R, a column being left out where what the others do not make up of it is negligible
-/// against its `length`. No inverse product.
+/// A = Q R. A column is dropped if its component orthogonal to the others is negligible relative to
+/// its `length`. No inverse product.
 [[nodiscard]] FactoredColumns factored(const Eigen::MatrixXd& A, Eigen::VectorXd length);
 
 }  // namespace proofmass::fit

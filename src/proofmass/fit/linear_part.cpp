@@ -13,7 +13,7 @@ using Index = Eigen::Index;
 
 constexpr double rounding = 1e-10;
 
-// r is linear in p_j and p_k together: r(+j) + r(+k) = r + r(+j +k), and with j = k in p_j.
+// True if r is linear in p_j and p_k jointly: r(+j) + r(+k) = r + r(+j +k); with j = k, in p_j.
 bool is_linear(const Objective& objective,
                const Eigen::VectorXd& at,
                const Eigen::VectorXd& unit,

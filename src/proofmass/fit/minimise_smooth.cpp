@@ -23,8 +23,8 @@ Point evaluate(const SmoothFunction& function, const Eigen::VectorXd& p) {
   return point;
 }
 
-// A step that meets Wolfe's weak conditions, by doubling and halving; the best point met where
-// rounding lets none do so. Source: A. S. Lewis, M. L. Overton, Math. Program. 141 (2013) 135,
+// A step that satisfies the weak Wolfe conditions, by doubling and bisection; the best point found
+// if rounding prevents that. Source: A. S. Lewis, M. L. Overton, Math. Program. 141 (2013) 135,
 // algorithm 2.6.
 Point search(const SmoothFunction& function, const Point& from, const Eigen::VectorXd& direction) {
   constexpr double enough = 1e-4, flat = 0.9;
@@ -45,7 +45,7 @@ Point search(const SmoothFunction& function, const Point& from, const Eigen::Vec
   return best;
 }
 
-// The inverse of the Hessian after a step, by Broyden, Fletcher, Goldfarb and Shanno's formula.
+// The inverse Hessian after a step, by the Broyden–Fletcher–Goldfarb–Shanno formula.
 void update(const Eigen::VectorXd& step,
             const Eigen::VectorXd& change,
             bool first,
@@ -59,7 +59,7 @@ void update(const Eigen::VectorXd& step,
              (moved * step.transpose() + step * moved.transpose()) / along;
 }
 
-// Downhill, and not further at once than the function is likely to be what it is here.
+// A descent direction, limited to where the local model is likely to hold.
 Eigen::VectorXd direction_from(const Point& at, Eigen::MatrixXd& inverse, double longest_step) {
   Eigen::VectorXd direction = -(inverse * at.gradient);
   if (!(direction.dot(at.gradient) < 0.0)) {

@@ -7,7 +7,7 @@
 namespace proofmass::fit::minimise_smooth_test {
 namespace {
 
-// H. H. Rosenbrock, Comput. J. 3 (1960) 175: a curved valley, its floor at (1, 1).
+// H. H. Rosenbrock, Comput. J. 3 (1960) 175: a curved valley with its minimum at (1, 1).
 double rosenbrock(View<double> p, std::span<double> slope) {
   const double along = 1.0 - p[0], across = p[1] - p[0] * p[0];
   slope[0] = -2.0 * along - 400.0 * p[0] * across;

@@ -12,13 +12,13 @@ namespace {
 
 using Index = Eigen::Index;
 
-// At a bound, with a gradient that leads out, or held.
+// True if the parameter is fixed, or at a bound that the descent presses against.
 bool is_held(const Objective& objective, const Eigen::VectorXd& p, Index j, double gradient) {
   const double lower = objective.lower()(j), upper = objective.upper()(j);
   return lower == upper || (p(j) <= lower && gradient >= 0.0) || (p(j) >= upper && gradient <= 0.0);
 }
 
-// Fills in all that depends on p. False where the residuals are not finite.
+// Updates all quantities that depend on p. False if the residuals are not finite.
 bool look_around(const Objective& objective, Minimum& at) {
   if (!objective.residuals(at.p, at.r)) return false;
   at.rss = at.r.squaredNorm();
@@ -31,8 +31,8 @@ bool look_around(const Objective& objective, Minimum& at) {
   return true;
 }
 
-// The length of the next Gauss–Newton step relative to the parameters, and relative to what the
-// residuals leave open (Bates and Watts's relative offset).
+// True if the next Gauss–Newton step is negligible relative to the parameters, and relative to the
+// residuals (Bates and Watts's relative offset).
 bool is_stationary(const Minimum& at) {
   if (at.tangent.along <= 1e-6 * std::sqrt(at.rss)) return true;
   for (std::size_t k = 0; k < at.free.size(); ++k)
@@ -41,8 +41,8 @@ bool is_stationary(const Minimum& at) {
   return true;
 }
 
-// The sum of squares is flat to rounding long before the Gauss–Newton step is zero: steps go on
-// while each is shorter than the one before.
+// The sum of squares is flat to rounding long before the Gauss–Newton step is zero: steps continue
+// while each is shorter than the last.
 void polish(const Objective& objective, Minimum& at) {
   for (int k = 0; k < 200 && at.tangent.along > 0.0; ++k) {
     Minimum next = at;
@@ -56,7 +56,7 @@ void polish(const Objective& objective, Minimum& at) {
   }
 }
 
-// Goes downhill one way, again with the scales of where it came to, until that helps no more.
+// Descends by one method, rescaled at each end point, until there is no further improvement.
 Minimum minimum_by(const Objective& objective, const Eigen::VectorXd& start, Descent descent) {
   Minimum at;
   at.p = start;
@@ -78,7 +78,7 @@ Minimum minimum_by(const Objective& objective, const Eigen::VectorXd& start, Des
   return at;
 }
 
-// Keeps the lower of the two; of equals, the one that converged.
+// Keeps the lower of the two; if equal, the one that converged.
 void keep_lower(Minimum& best, Minimum found) {
   const int iterations = best.iterations + found.iterations;
   const double advantage = (found.converged ? 1e-6 : 0.0) - (best.converged ? 1e-6 : 0.0);
@@ -86,8 +86,8 @@ void keep_lower(Minimum& best, Minimum found) {
   best.iterations = iterations;
 }
 
-// Two terms of one shape, such as two exponentials, may have changed places: back to the order of
-// the start, if the sum of squares is the same.
+// Two terms of the same form, such as two exponentials, may have been exchanged: restores the order
+// of the start if the sum of squares is the same.
 void restore_order(const Objective& objective, const Eigen::VectorXd& start, Minimum& at) {
   for (Index i = 0; i < at.p.size(); ++i)
     for (Index j = i + 1; j < at.p.size(); ++j) {
@@ -101,7 +101,7 @@ void restore_order(const Objective& objective, const Eigen::VectorXd& start, Min
     }
 }
 
-// Where the nonlinear parameters lead while the linear ones are kept at their best.
+// The minimum over the nonlinear parameters with the linear ones at their optimum.
 Minimum minimum_without_linear_part(const Objective& objective,
                                     const Eigen::VectorXd& start,
                                     const LeastSquaresOptions& options) {

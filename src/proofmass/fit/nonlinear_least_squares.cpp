@@ -76,7 +76,7 @@ LeastSquaresFit result_of(const Minimum& at, const Objective& objective, bool un
     fit.at_bound[static_cast<std::size_t>(i)] = false;
     for (std::size_t b = 0; b < at.free.size(); ++b) {
       const double entry = at.tangent.inverse_product(static_cast<Index>(a), static_cast<Index>(b));
-      // What is not determined stays so when the variance is 0.
+      // An undetermined parameter remains so when the variance is 0.
       fit.covariance(i, at.free[b]) = std::isinf(entry) ? entry : variance * entry;
     }
     fit.std[static_cast<std::size_t>(i)] = std::sqrt(fit.covariance(i, i));

@@ -92,7 +92,7 @@ Published misra1a() {
           .rss = 1.2455138894e-1};
 }
 
-// From its first start a plain descent runs to where the exponential is gone.
+// From its first start, plain descent leads to where the exponential vanishes.
 Published boxbod() {
   Published set = misra1a();
   set.x = {1.0, 2.0, 3.0, 5.0, 7.0, 10.0};
@@ -104,7 +104,7 @@ Published boxbod() {
   return set;
 }
 
-// Its first start is two hundred powers of ten too high.
+// Its first start is 200 orders of magnitude too high.
 Published mgh10() {
   Published set{
       .x = {},
@@ -119,7 +119,7 @@ Published mgh10() {
   return set;
 }
 
-// Two exponentials, which the first start has both far too short.
+// Two exponentials; both are far too short at the first start.
 Published mgh17() {
   Published set{
       .x = {},
@@ -214,7 +214,7 @@ TEST(LeastSquares, LeaveABoundThatTheyBeginAt) {
 }
 
 TEST(LeastSquares, TurnBackWhereTheResidualsAreNotFinite) {
-  // √ of what turns negative on the way from the start to the minimum's far side.
+  // Square root of a value that becomes negative between the start and the minimum.
   LeastSquaresProblem problem{.residuals =
                                   [](View<double> p, std::span<double> r) {
                                     r[0] = std::sqrt(p[0]) - 0.1;

@@ -41,7 +41,7 @@ Objective::Objective(const LeastSquaresProblem& problem, const LeastSquaresOptio
 bool Objective::residuals(const Eigen::VectorXd& p, Eigen::VectorXd& r) const {
   r.resize(residual_count_);
   problem_.residuals(view_of(p), span_of(r));
-  // A sum of squares beyond the range of double is no better than an infinite residual.
+  // A sum of squares that overflows is treated as an infinite residual.
   return std::isfinite(r.squaredNorm());
 }
 
@@ -57,7 +57,7 @@ Eigen::MatrixXd Objective::jacobian(const Eigen::VectorXd& p) const {
       J.col(j).setZero();
       continue;
     }
-    // The size of a parameter is its natural scale, until it comes close to zero.
+    // The magnitude of a parameter is its natural scale, until it comes close to zero.
     const double scale = std::max(std::abs(p(j)), 1e-4 * scale_(j));
     J.col(j) = derivative(
         [&](double t, Eigen::VectorXd& r) {

@@ -6,7 +6,7 @@
 
 namespace proofmass::fit {
 
-/// The problem in Eigen's terms, with a Jacobian in any case. Refers to the problem, which must
+/// The problem in Eigen types, always with a Jacobian. Holds a reference to the problem, which must
 /// outlive it and have passed the checks of fit_least_squares.
 class Objective {
  public:
@@ -17,7 +17,7 @@ class Objective {
   [[nodiscard]] const Eigen::VectorXd& lower() const { return lower_; }
   [[nodiscard]] const Eigen::VectorXd& upper() const { return upper_; }
 
-  /// False where one of them is not finite.
+  /// False if one of them is not finite.
   [[nodiscard]] bool residuals(const Eigen::VectorXd& p, Eigen::VectorXd& r) const;
 
   [[nodiscard]] Eigen::MatrixXd jacobian(const Eigen::VectorXd& p) const;

@@ -4,12 +4,12 @@
 
 namespace proofmass::fit {
 
-/// What a Jacobian J says at residuals r, its columns brought to unit length.
+/// Linearisation by a Jacobian J at residuals r, columns scaled to unit length.
 struct Tangent {
   Eigen::VectorXd step;             ///< −J⁺ r, the shortest in the scaled parameters
-  Eigen::MatrixXd inverse_product;  ///< (JᵀJ)⁻¹, ∞ on the diagonal where J does not determine
-  double along;                     ///< |part of r in the span of J|
-  double condition;                 ///< ∞ if the rank is not full
+  Eigen::MatrixXd inverse_product;  ///< (JᵀJ)⁻¹, ∞ on the diagonal where not determined
+  double along;                     ///< |component of r in the span of J|
+  double condition;                 ///< ∞ if rank deficient
   Eigen::Index rank;
 };
 

@@ -17,19 +17,19 @@ using Index = Eigen::Index;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// z less its part in the span of Q; twice, because once leaves what rounding makes of it.
+// z minus its projection onto the span of Q; applied twice to remove rounding errors.
 template <class Dense>
 void project_out(const Eigen::MatrixXd& Q, Dense& z) {
   for (int pass = 0; pass < 2 && Q.cols() > 0; ++pass) z -= Q * (Q.transpose() * z).eval();
 }
 
-// The linear problem at one α.
+// The linear problem for one α.
 struct Projected {
   std::vector<double> alpha;
   bool defined = false;
-  Eigen::MatrixXd V_in_Q;  // what the varying columns have in common with the constant ones
-  FactoredColumns extra;   // what they add to them
-  Eigen::VectorXd c;       // of the varying columns
+  Eigen::MatrixXd V_in_Q;  // projection of the varying columns onto the constant ones
+  FactoredColumns extra;   // their component orthogonal to the constant ones
+  Eigen::VectorXd c;       // coefficients of the varying columns
   Eigen::VectorXd e;       // y − Φ c
 };
 
@@ -63,7 +63,7 @@ class Separable {
     return now_;
   }
 
-  // (∂Φ/∂αₖ) c, column by column.
+  // (∂Φ/∂αₖ) c, one column for each k.
   Eigen::MatrixXd moved(View<double> alpha, View<double> scale) {
     const Eigen::VectorXd c = at(alpha).c;
     Eigen::MatrixXd slopes(y_.size(), static_cast<Index>(alpha.size()));
@@ -86,7 +86,7 @@ class Separable {
     return slopes;
   }
 
-  // Kaufman's: −P (∂Φ/∂α) c.
+  // Kaufman's approximation: −P (∂Φ/∂α) c.
   Eigen::MatrixXd jacobian(View<double> alpha, View<double> scale) {
     Eigen::MatrixXd J = -moved(alpha, scale);
     project_out(constant_.Q, J);
@@ -146,8 +146,8 @@ class Separable {
   Projected now_;
 };
 
-// s2 times that of unit variance, with C = (JᵀJ)⁻¹ and B = Φ⁺ (∂Φ/∂α) c; an α that is not
-// determined takes the c it moves along.
+// s2 times the covariance for unit variance, with C = (JᵀJ)⁻¹ and B = Φ⁺ (∂Φ/∂α) c. An undetermined
+// α makes the c that it is coupled to undetermined too.
 Eigen::MatrixXd joint_covariance(Eigen::MatrixXd C,
                                  const Eigen::MatrixXd& B,
                                  const Eigen::MatrixXd& inverse_product,

@@ -50,7 +50,7 @@ SeparableProblem separable(const WarmUp& set) {
           .constant = factor_columns(set.line)};
 }
 
-// The same by all four parameters at once, in the order [T; offset, slope, amplitude].
+// The same fit over all four parameters, in the order [T; offset, slope, amplitude].
 LeastSquaresFit full_fit(const WarmUp& set, const LeastSquaresOptions& options = {}) {
   return fit_curve(
              set.t, set.y,

@@ -15,11 +15,11 @@ namespace proofmass::io {
 
 /// A file in a folder or a zip archive.
 struct ArchiveEntry {
-  std::string name;  ///< path below the top, parts divided by '/'
+  std::string name;  ///< path below the top, separated by '/'
   std::uint64_t size = 0;
 };
 
-/// A folder or a zip archive: the same files either way.
+/// A folder or a zip archive, with the same interface.
 class Archive {
  public:
   Archive() = default;
@@ -27,10 +27,11 @@ class Archive {
   Archive& operator=(const Archive&) = delete;
   virtual ~Archive() = default;
 
-  /// In the order of their names.
+  /// Sorted by name.
   [[nodiscard]] virtual std::span<const ArchiveEntry> entries() const = 0;
-  /// The bytes of an entry, unpacked; what is compressed within (gz, xz) or UTF-16 too. May outlive
-  /// the archive. Errors: corrupt, unreadable, unsupported (encrypted, a method not known).
+  /// The bytes of an entry, decompressed, including inner compression (gz, xz), and converted from
+  /// UTF-16. May outlive the archive. Errors: corrupt, unreadable, unsupported (encrypted, an
+  /// unknown method).
   [[nodiscard]] virtual Result<std::unique_ptr<PeekSource>> open(std::size_t entry) = 0;
 };
 

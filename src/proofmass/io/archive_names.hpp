@@ -5,7 +5,7 @@
 
 namespace proofmass::io {
 
-/// A name of a file as it can stand in a line of text: what controls a terminal is a '?'.
+/// A file name for a line of text: control characters are replaced by '?'.
 [[nodiscard]] inline std::string plain_name(std::string_view name) {
   std::string out(name);
   for (char& c : out)
@@ -19,12 +19,12 @@ namespace proofmass::io {
   return stroke == std::string_view::npos ? path : path.substr(stroke + 1);
 }
 
-/// The path less its last part: "meta/time.csv" is "meta/"; empty at the top.
+/// The path without its last part: "meta/time.csv" is "meta/"; empty at the top.
 [[nodiscard]] inline std::string_view folder_part(std::string_view path) {
   return path.substr(0, path.size() - file_part(path).size());
 }
 
-/// A path without the endings of a compression and a format: "a/Raw Data.csv.xz" is "a/Raw Data".
+/// A path without the extensions of compression and format: "a/Raw Data.csv.xz" is "a/Raw Data".
 [[nodiscard]] std::string without_endings(std::string_view path);
 
 }  // namespace proofmass::io

@@ -18,11 +18,11 @@ namespace {
 
 constexpr std::size_t most_looked_at = 512;
 
-/// The programs that are known; a line for each.
+/// The supported programs, one line each.
 constexpr std::array layouts = {read_named_sensors, read_sensor_logger_layout, read_phyphox_layout,
                                 read_ximu_layout};
 
-/// Whether a file is something that no one means: hidden, or what a desktop leaves behind.
+/// True if a file is irrelevant: hidden, or created by a desktop.
 bool is_litter(std::string_view name) {
   return name.starts_with('.') || name.find("/.") != std::string_view::npos ||
          name.starts_with("__MACOSX/") || file_part(name) == "Thumbs.db";
@@ -32,13 +32,13 @@ bool is_npy(std::string_view name) {
   return lower(name).ends_with(".npy");
 }
 
-/// A table of one of the files.
+/// One table of one file.
 struct Member {
   std::size_t entry = 0;
-  std::size_t table = 0;  ///< of those in the file
+  std::size_t table = 0;  ///< index of the table within the file
 };
 
-/// Files that are no recordings, and those that should be and cannot be read.
+/// Files that are not recordings, and those that should be and cannot be read.
 struct PassedOver {
   std::size_t count = 0;
   std::string names;
@@ -57,7 +57,7 @@ struct PassedOver {
     }
     if (++count <= most_told) names += (names.empty() ? "" : ", ") + name;
   }
-  /// What there is to tell, in all.
+  /// Summary of the notes.
   [[nodiscard]] std::vector<Note> told() const {
     std::vector<Note> all = notes;
     if (count > 0)
@@ -67,8 +67,7 @@ struct PassedOver {
   }
 };
 
-/// Lines of a text that begin as a row of figures does, until the bytes allowed are used up;
-/// nullopt then.
+/// Number of lines that begin like a row of numbers; nullopt if the allowed bytes are exhausted.
 std::optional<std::uint64_t> count_rows(PeekSource& text, std::uint64_t& allowed_bytes) {
   std::uint64_t rows = 0;
   bool at_begin = true;
@@ -149,7 +148,7 @@ class ArchiveTables final : public TableFile {
     const auto head = opened->peek(4);
     if (!head) return head.error();
     const std::string& name = archive_->entries()[entry].name;
-    // An archive may hold itself.
+    // An archive may contain itself.
     if (claims_zip(*head, name) && !lower(name).ends_with(".npz"))
       return Error{Errc::unsupported, "is an archive within: unpack it, or name it by itself"};
     return open_tables(std::move(opened), name, options);
@@ -190,7 +189,7 @@ class ArchiveTables final : public TableFile {
                              passed_over_.first->message)};
   }
 
-  /// The folder that all tables lie in, which need not be said.
+  /// The folder common to all tables, which can be omitted from their names.
   [[nodiscard]] std::string common_folder() const {
     std::string common(folder_part(archive_->entries()[members_.front().entry].name));
     for (const Member& member : members_) {
@@ -208,7 +207,7 @@ class ArchiveTables final : public TableFile {
     const auto name_of = [&](const Member& member) {
       return archive_->entries()[member.entry].name.substr(skip);
     };
-    std::map<std::string, std::size_t> files;   // by their name less the endings
+    std::map<std::string, std::size_t> files;   // by name without extensions
     std::map<std::size_t, std::size_t> tables;  // by entry
     for (const Member& member : members_) {
       if (member.table == 0) ++files[without_endings(name_of(member))];
@@ -223,7 +222,7 @@ class ArchiveTables final : public TableFile {
     }
   }
 
-  /// Of texts, which can only guess it beforehand, while they are short.
+  /// For text files, whose number of rows can only be estimated in advance, while they are short.
   void count_rows_of_texts() {
     std::uint64_t allowed_bytes = std::uint64_t{256} << 20;
     for (std::size_t m = 0; m < members_.size(); ++m) {
@@ -242,7 +241,7 @@ class ArchiveTables final : public TableFile {
   std::unique_ptr<Archive> archive_;
   ArchiveLayout layout_;
   std::vector<Member> members_;
-  std::vector<TableSummary> summaries_;  ///< one a member
+  std::vector<TableSummary> summaries_;  ///< one per member
   PassedOver passed_over_;
   std::vector<Note> notes_;
 };

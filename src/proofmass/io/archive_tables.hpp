@@ -9,14 +9,14 @@
 
 namespace proofmass::io {
 
-/// The recordings in a folder or a zip archive, each a table called by its file less the endings
-/// (a file of several tables: "file/table"). What the export of a phone or a logger says beside
-/// them (archive_layout.hpp) goes into the tables; files that are no recording are told, and
-/// archives within are not opened. Where all files are NumPy arrays, it is open_npz()'s. Errors:
-/// too_few_samples (no recording in it), unsupported (an office document), or what is wrong with
+/// The recordings in a folder or a zip archive, each a table named by its file without extensions
+/// (for a file of several tables: "file/table"). Metadata in a phone's or logger's export
+/// (archive_layout.hpp) are applied to the tables. Files that are not recordings are reported, and
+/// nested archives are not opened. If all files are NumPy arrays, the result is that of open_npz().
+/// Errors: too_few_samples (no recording in it), unsupported (an office document), or the error of
 /// the only file.
-/// Cost: opens every file of at most 512 for its headings; where several hold accelerations those
-/// that are text are read once for the number of their rows.
+/// Cost: opens at most 512 files for their headings; if several contain accelerations, the text
+/// files are read once to count their rows.
 [[nodiscard]] Result<std::unique_ptr<TableFile>> open_tables_in(std::unique_ptr<Archive> archive,
                                                                 const ReadOptions& options);
 

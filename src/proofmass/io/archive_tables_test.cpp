@@ -14,7 +14,7 @@ namespace {
 using specimen::table_of;
 using specimen::ZipFile;
 
-/// The files as a folder, and as a zip archive: the same recording either way.
+/// The files as a folder, and as a zip archive: both give the same recording.
 class FolderAndZip : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
@@ -85,7 +85,7 @@ TEST_P(FolderAndZip, PhyphoxInOtherDialectsIsTheSame) {
   const auto read =
       this->read({{"export/Raw Data.csv", phyphox_table("Acceleration", "m/s^2", 0.01)},
                   {"export/meta/time.csv", times}});
-  if (!GetParam()) {  // a folder is looked into two levels deep
+  if (!GetParam()) {  // folders are searched two levels deep
     ASSERT_TRUE(read.has_value());
     return;
   }
@@ -152,7 +152,7 @@ TEST_P(FolderAndZip, XimuRateIsCountedBetweenDates) {
   std::string dates = "Packet number,Year,Month,Day,Hours,Minutes,Seconds\n";
   for (int s = 0; s <= 20; ++s)
     dates += std::to_string(128 * s + 1) + ",2000,1,5,23,59," + std::to_string(39 + s) + "\n";
-  dates += "9999,133333333333,1,5,0,0,0\n";  // a year that no calendar has
+  dates += "9999,133333333333,1,5,0,0,0\n";  // a year beyond any calendar
   const auto read = this->read(
       {{"00000_CalInertialAndMag.csv", ximu_table(1400)}, {"00000_DateTime.csv", dates}});
   ASSERT_TRUE(read.has_value()) << read.error().message;

@@ -7,7 +7,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Columns that are in memory: handed over whole, or a piece at a time.
+/// Columns in memory: returned as a whole, or in blocks.
 class LoadedReader final : public RecordingReader {
  public:
   LoadedReader(RawHead head, RawRows rows) : head_(std::move(head)), rows_(std::move(rows)) {}
@@ -45,7 +45,8 @@ class LoadedReader final : public RecordingReader {
   std::size_t at_ = 0;
 };
 
-/// Moves the origin of stamps in seconds, which is one to a nanosecond, to where the clock stood.
+/// Shifts the origin of stamps in seconds, which is exact to a nanosecond, to the start of the
+/// clock.
 void begin_at(std::int64_t start_ns, StampColumn& stamps) {
   if (stamps.origin.exponent10 == -9 && stamps.unit == *parse_unit("s"))
     stamps.origin.mantissa += start_ns;

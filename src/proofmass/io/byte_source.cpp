@@ -16,7 +16,7 @@ class FileSource final : public ByteSource {
  public:
   FileSource(std::FILE* file, bool owned, std::optional<std::uint64_t> size)
       : file_(file), owned_(owned), size_(size) {
-    // The readers take large pieces; a second buffer would only copy them once more.
+    // The readers read large pieces; a second buffer would only add a copy.
     if (owned_) std::setvbuf(file_, nullptr, _IONBF, 0);
   }
   ~FileSource() override {
@@ -68,7 +68,7 @@ class MemorySource final : public ByteSource {
   std::size_t position_ = 0;
 };
 
-/// Text in two bytes a character without a mark has a zero in every second byte.
+/// Text with two bytes per character without a byte-order mark has a zero in every second byte.
 bool zeros_at(std::string_view head, std::size_t parity) {
   if (head.size() < 8) return false;
   std::size_t zeros = 0;

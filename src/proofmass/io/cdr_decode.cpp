@@ -7,7 +7,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Goes through the bytes behind the encapsulation's head.
+/// Reads the bytes after the encapsulation header.
 class CdrBytes {
  public:
   CdrBytes(std::string_view bytes, std::size_t most_alignment, bool big_endian)
@@ -18,13 +18,13 @@ class CdrBytes {
     at_ = (at_ + to - 1) / to * to;
   }
   [[nodiscard]] std::size_t left() const { return at_ < bytes_.size() ? bytes_.size() - at_ : 0; }
-  /// Passes over `count` things of `size` bytes; false if there are not so many.
+  /// Skips `count` items of `size` bytes; false if there are fewer.
   bool skip(std::uint64_t count, std::size_t size) {
     if (count > left() / size) return false;
     at_ += static_cast<std::size_t>(count) * size;
     return true;
   }
-  /// The caller has seen that it is there.
+  /// Precondition: the bytes are available.
   double figure(char kind, std::size_t size) {
     const double value = load_figure(bytes_.data() + at_, {kind, size, big_endian_});
     at_ += size;
@@ -57,7 +57,7 @@ bool follow(const CdrStep& step, CdrBytes& bytes, std::span<double> columns) {
       columns[*step.column + i] = bytes.figure(step.kind, step.bytes);
     return true;
   }
-  // Each text and each message has one byte at least, so that no count goes beyond the bytes.
+  // Each text and each message has at least one byte, so that a count cannot exceed the bytes.
   for (std::uint64_t i = 0; i < count; ++i) {
     if (step.what == CdrStep::What::text) {
       std::uint64_t size = 0;

@@ -53,9 +53,9 @@ class Planner {
   static constexpr std::size_t most_steps = 4096;
   static constexpr std::uint32_t most_in_array = 16;
 
-  /// Where a field stands.
+  /// Location of a field.
   struct Place {
-    std::string path;    ///< of the message around it
+    std::string path;    ///< path of the enclosing message
     std::string parent;  ///< as in CdrColumn
     std::size_t depth = 0;
   };
@@ -70,7 +70,7 @@ class Planner {
     if (place.depth == deepest)
       return Error{Errc::corrupt, "its schema is deeper than 16 messages"};
     if (is_time(type)) note_stamp(place, has_columns);
-    // ROS 2 puts a byte where a message has no field.
+    // ROS 2 stores a byte for a message without fields.
     if (found->second.empty()) return add_figures({"", "uint8"}, {}, steps, false);
     for (const CdrField& field : found->second) {
       const std::string parent = fmt::format("{}.{}", type, field.name);
@@ -82,7 +82,7 @@ class Planner {
     return Done{};
   }
 
-  /// A vector's figures are of the quantity of the field that is the vector.
+  /// A vector's numbers have the quantity of the vector field.
   static bool has_own_unit(std::string_view type) {
     return type != "geometry_msgs/Vector3" && type != "geometry_msgs/Point" &&
            type != "geometry_msgs/Quaternion";
@@ -94,7 +94,7 @@ class Planner {
                    bool has_columns) {
     if (++steps_ > most_steps)
       return Error{Errc::unsupported, "its schema has more than 4096 fields"};
-    // Nothing says how many bytes a wide character has.
+    // The size of a wide character is not specified.
     if (field.type == "wstring" && !wide_text_at_) wide_text_at_ = plan_.columns.size();
     if (field.type == "string" || field.type == "wstring") {
       steps.push_back({.what = CdrStep::What::text,
@@ -154,7 +154,7 @@ class Planner {
   const CdrSchema& schema_;
   CdrPlan plan_;
   std::size_t steps_ = 0;
-  std::optional<std::size_t> wide_text_at_;  ///< columns before the first of them
+  std::optional<std::size_t> wide_text_at_;  ///< number of columns before the first of them
 };
 
 }  // namespace

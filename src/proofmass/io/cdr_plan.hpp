@@ -13,49 +13,49 @@
 
 namespace proofmass::io {
 
-/// One step through the bytes of a message.
+/// One step of decoding a message.
 struct CdrStep {
   enum class What { figures, text, messages };
   What what = What::figures;
-  char kind = 'f';                      ///< of figures: f, i, u as in NumPy
-  std::size_t bytes = 8;                ///< of one of them
-  bool is_sequence = false;             ///< its length stands in front of it
-  std::uint32_t count = 1;              ///< otherwise
-  std::optional<std::size_t> column{};  ///< of the first figure; none: passed over
-  std::vector<CdrStep> inner{};         ///< of messages: through each of them
+  char kind = 'f';                      ///< for numbers: f, i, u as in NumPy
+  std::size_t bytes = 8;                ///< size of one of them
+  bool is_sequence = false;             ///< preceded by its length
+  std::uint32_t count = 1;              ///< if not a sequence
+  std::optional<std::size_t> column{};  ///< column of the first number; none: skipped
+  std::vector<CdrStep> inner{};         ///< for nested messages: the steps of each
 };
 
-/// A figure of a message.
+/// A number in a message.
 struct CdrColumn {
   std::string path;  ///< "linear_acceleration_x"
   std::string
-      parent;  ///< message and field that its unit hangs on: "sensor_msgs/Imu.angular_velocity"
+      parent;  ///< message and field that determine its unit: "sensor_msgs/Imu.angular_velocity"
 };
 
-/// How to get from the bytes of a message to the figures of its columns.
+/// How to decode the bytes of a message into columns.
 struct CdrPlan {
   std::vector<CdrStep> steps;
   std::vector<CdrColumn> columns;
-  /// Columns of a time stamp, seconds and nanoseconds: of the header, else of a field called so.
+  /// Columns of a time stamp, seconds and nanoseconds: of the header, else of a field of that name.
   std::optional<std::size_t> stamp;
-  std::vector<std::string> skipped;  ///< paths of what is no single figure
+  std::vector<std::string> skipped;  ///< paths of fields that are not a single number
 };
 
-/// Columns for all figures that a message has once: fields of messages within it, arrays of a fixed
-/// length of at most 16, but not covariances.
-/// Errors: corrupt (a message that is not defined, or holds itself), unsupported (no figure; more
-/// than 4096 fields; text of wide characters before the last figure).
+/// Columns for all numbers that occur once in a message: fields of nested messages, arrays of fixed
+/// length up to 16, but not covariances.
+/// Errors: corrupt (an undefined or recursive message), unsupported (no number; more than 4096
+/// fields; wide-character text before the last number).
 [[nodiscard]] Result<CdrPlan> plan_cdr(const CdrSchema& schema);
 
-/// How the bytes are laid out.
+/// Layout of the bytes.
 enum class CdrLayout {
-  xcdr,  ///< of ROS 2: an encapsulation's head of 4 bytes, figures aligned
-  ros1,  ///< little-endian, one after another
+  xcdr,  ///< ROS 2: an encapsulation header of 4 bytes, numbers aligned
+  ros1,  ///< little-endian, packed
 };
 
-/// Puts the figures of a message into its columns. What stands behind them is not looked at.
+/// Decodes a message into its columns. Bytes after them are ignored.
 /// Source: OMG, "Extensible and Dynamic Topic Types for DDS", 1.3, section 7.4; ROS 1
-/// documentation, "Message serialization". Errors: corrupt (breaks off), unsupported (an
+/// documentation, "Message serialization". Errors: corrupt (truncated), unsupported (an
 /// encapsulation other than plain CDR).
 [[nodiscard]] Status decode_cdr(std::string_view message,
                                 CdrLayout layout,

@@ -21,7 +21,7 @@ bool is_rule(std::string_view line) {
   return line.size() >= 3 && line.find_first_not_of('=') == std::string_view::npos;
 }
 
-/// Types that need no definition: those of one figure, texts, and times.
+/// Types that need no definition: numbers, texts, and times.
 bool is_built_in(std::string_view type) {
   constexpr std::string_view names =
       " bool byte char int8 uint8 int16 uint16 int32 uint32 int64 uint64 float32 float64 string "
@@ -29,7 +29,7 @@ bool is_built_in(std::string_view type) {
   return names.find(fmt::format(" {} ", type)) != std::string_view::npos;
 }
 
-/// The full name of a type as a field of a message of `package` writes it.
+/// The full name of a type in a field of a message of `package`.
 std::string full_name(std::string_view type, std::string_view package) {
   if (is_built_in(type)) return std::string(type);
   if (type == "Header") return "std_msgs/Header";
@@ -37,8 +37,7 @@ std::string full_name(std::string_view type, std::string_view package) {
   return ros_name(type);
 }
 
-/// "float64[9]", "string<=10", "geometry_msgs/Point32[<=4]": what stands in front of a field's
-/// name.
+/// "float64[9]", "string<=10", "geometry_msgs/Point32[<=4]": the type before a field's name.
 bool read_type(std::string_view word, std::string_view package, CdrField& field) {
   const std::size_t bracket = word.find('[');
   std::string_view type = word.substr(0, bracket);
@@ -56,7 +55,7 @@ bool read_type(std::string_view word, std::string_view package, CdrField& field)
   return read.ec == std::errc{} && read.ptr == size.data() + size.size() && field.count > 0;
 }
 
-/// One line of a definition; false if it is none.
+/// One line of a definition; false if it is invalid.
 bool read_line(std::string_view line, std::string_view package, std::vector<CdrField>& fields) {
   line = trimmed(line.substr(0, line.find('#')));
   if (line.empty()) return true;
@@ -76,7 +75,7 @@ std::string_view package_of(std::string_view name) {
   return name.substr(0, std::min(name.find('/'), name.size()));
 }
 
-/// Times are two figures, whatever they are called.
+/// Times are two numbers, whatever their name.
 void add_times(CdrSchema& schema) {
   const std::vector<CdrField> stamp{{"sec", "int32"}, {"nanosec", "uint32"}};
   for (const char* name :

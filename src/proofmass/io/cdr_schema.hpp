@@ -17,7 +17,7 @@ struct CdrField {
   std::string name;
   std::string type;  ///< "float64", "string", or a message's full name: "geometry_msgs/Vector3"
   Many many = Many::one;
-  std::uint32_t count = 1;  ///< of an array
+  std::uint32_t count = 1;  ///< for an array
 };
 
 /// Messages by their full names, "package/Name", each with its fields in order.
@@ -29,9 +29,9 @@ struct CdrSchema {
 /// "sensor_msgs/msg/Imu" as "sensor_msgs/Imu".
 [[nodiscard]] std::string ros_name(std::string_view name);
 
-/// Reads a message definition of ROS 1 or 2 with those that it needs behind it, each below a line
-/// of '=' and one "MSG: package/Name". Constants and comments are passed over; "time", "duration"
-/// and builtin_interfaces' Time and Duration are there without a definition.
+/// Parses a message definition of ROS 1 or 2 with the nested definitions that follow it, each below
+/// a line of '=' and one "MSG: package/Name". Constants and comments are skipped; "time",
+/// "duration" and builtin_interfaces' Time and Duration are predefined.
 /// Source: MCAP format registry, "ros2msg"; ROS 2 documentation, "Interfaces".
 /// Errors: corrupt, with the line.
 [[nodiscard]] Result<CdrSchema> read_cdr_schema(std::string_view name, std::string_view text);

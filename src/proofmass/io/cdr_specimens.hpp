@@ -40,7 +40,7 @@ int32 sec
 uint32 nanosec
 )";
 
-/// Puts figures where CDR wants them, of either byte order.
+/// Writes aligned CDR numbers, of either byte order.
 class CdrWriter {
  public:
   explicit CdrWriter(bool big_endian = false, std::size_t alignment = 8, bool second = false)
@@ -72,7 +72,7 @@ class CdrWriter {
   std::string body_;
 };
 
-/// An Imu message at rest, with `k` in its figures.
+/// An Imu message at rest, with values derived from `k`.
 inline std::string imu_message(int k, std::int64_t stamp_ns, CdrWriter out = CdrWriter()) {
   out.put(static_cast<std::int32_t>(stamp_ns / 1'000'000'000))
       .put(static_cast<std::uint32_t>(stamp_ns % 1'000'000'000))

@@ -109,7 +109,7 @@ TEST(Cdr, RefusesAMessageThatBreaksOff) {
   const CdrPlan plan = plan_cdr(schema.value()).value();
   Values columns(plan.columns.size());
   const std::string message = specimen::imu_message(4, 5);
-  const std::size_t needed = message.size() - 9 * 8;  // the last covariances are not looked at
+  const std::size_t needed = message.size() - 9 * 8;  // the last covariances are not read
   for (std::size_t size = 0; size < needed; ++size)
     EXPECT_FALSE(decode_cdr(message.substr(0, size), CdrLayout::xcdr, plan, columns)) << size;
   EXPECT_TRUE(decode_cdr(message.substr(0, needed), CdrLayout::xcdr, plan, columns));
@@ -138,7 +138,7 @@ TEST(Cdr, RefusesSchemasThatCannotBe) {
   EXPECT_NE(problem_of("wstring a\nfloat64 b\n").find("wide"), std::string::npos);
   EXPECT_EQ(problem_of("float64 b\nwstring a\n"), "");
   EXPECT_NE(problem_of("").find("no single figure"), std::string::npos);
-  // Sixteen levels of messages that hold two of the next are not unfolded.
+  // Sixteen levels of messages that contain two of the next are not expanded.
   std::string wide = "M1 a\nM1 b\n";
   for (int i = 1; i < 14; ++i)
     wide += "===\nMSG: test_msgs/M" + std::to_string(i) + "\nM" + std::to_string(i + 1) + " a\nM" +

@@ -27,7 +27,7 @@ bool is_word_for_nothing(std::string_view text) {
   return std::ranges::any_of(words, [&](std::string_view word) { return same_word(text, word); });
 }
 
-/// Longer than any figure a program prints: a field beyond it is text.
+/// Longer than any number a program prints: a longer field is text.
 constexpr std::size_t longest_number = 800;
 
 Cell read_figure(std::string_view digits, bool negative, char point) {
@@ -43,14 +43,14 @@ Cell read_figure(std::string_view digits, bool negative, char point) {
   return {CellKind::number, negative ? -value : value};
 }
 
-/// How many digits a text begins with.
+/// Number of digits at the beginning of a text.
 std::size_t digits_at(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::find_if_not(text, is_digit) - text.begin());
 }
 
-/// The mark between groups of digits that a text begins with; empty if it begins with none.
+/// The group separator at the beginning of a text; empty if there is none.
 std::string_view grouping_mark(std::string_view text, char point) {
-  // An apostrophe, straight or typographic; a low line; blanks: usual, no-break, narrow, thin.
+  // An apostrophe, straight or typographic; an underscore; blanks: usual, no-break, narrow, thin.
   constexpr std::array<std::string_view, 9> marks{
       ",", ".", "'", "\xE2\x80\x99", "_", " ", "\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"};
   for (const std::string_view mark : marks)
@@ -133,7 +133,7 @@ double to_double(const Decimal& decimal) {
     fast_float::to_float(decimal.negative, binary, value);
     return value;
   }
-  // compute_float could not tell which neighbour is nearer: once in a blue moon.
+  // compute_float could not decide which neighbour is nearer: very rare.
   const std::string text =
       std::to_string(decimal.mantissa) + "e" + std::to_string(decimal.exponent10);
   fast_float::from_chars(text.data(), text.data() + text.size(), value);

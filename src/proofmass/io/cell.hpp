@@ -5,10 +5,10 @@
 
 namespace proofmass::io {
 
-/// What stands in one field of a table of text.
+/// Content of one field of a text table.
 enum class CellKind {
-  number,   ///< a figure, an infinity
-  missing,  ///< nothing, or a word for nothing: NaN, NULL, #N/A, …
+  number,   ///< a finite number or an infinity
+  missing,  ///< empty, or a word for missing: NaN, NULL, #N/A, …
   text,
 };
 
@@ -17,24 +17,24 @@ struct Cell {
   double value = 0.0;  ///< NaN unless a number
 };
 
-/// `text` less blanks and a pair of quotes around it.
+/// `text` without surrounding blanks and one pair of quotes.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
-/// Whether a spreadsheet takes a text for a formula: it begins with '=', '+', '-', '@', a tab or a
-/// carriage return.
+/// True if a spreadsheet would interpret a text as a formula: it begins with '=', '+', '-', '@', a
+/// tab or a carriage return.
 [[nodiscard]] bool is_formula(std::string_view text);
 
-/// A text less the apostrophe by which it was kept from being a formula.
+/// A text without the apostrophe that prevents it from being a formula.
 [[nodiscard]] std::string_view without_guard(std::string_view text);
 
-/// Reads a field of any shape; `point` is the decimal mark. No hexadecimals. Thousands may be
-/// separated where `is_grouped`.
+/// Parses a field; `point` is the decimal mark. Hexadecimal is not supported. Thousands may be
+/// separated if `is_grouped`.
 [[nodiscard]] Cell read_cell(std::string_view field, char point, bool is_grouped = false);
 
-/// A figure with its thousands separated ("1,234.5", "1'234", "1 234 567"), without the separators:
-/// one to three digits that do not begin with 0, then groups of three behind the same mark, which
-/// is an apostrophe, a low line, any blank, or the one of comma and point that is not `point`.
-/// Empty where the field is anything else.
+/// A number with separated thousands ("1,234.5", "1'234", "1 234 567"), without the separators: one
+/// to three digits that do not begin with 0, then groups of three after the same separator, which
+/// is an apostrophe, an underscore, any blank, or the one of comma and point that is not `point`.
+/// Empty for any other field.
 [[nodiscard]] std::string without_grouping(std::string_view field, char point);
 
 }  // namespace proofmass::io

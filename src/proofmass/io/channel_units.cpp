@@ -15,17 +15,17 @@
 namespace proofmass::io {
 namespace {
 
-/// Columns that an instrument names without their unit.
+/// Columns that an instrument names without a unit.
 struct KnownColumn {
   std::string_view starts_with;
   std::string_view unit;
 };
 struct Instrument {
   std::string_view name;
-  std::array<std::string_view, 2> signature;  ///< columns that give it away
+  std::array<std::string_view, 2> signature;  ///< columns that identify it
   std::array<KnownColumn, 8> columns;
 };
-// A line for each instrument; a column is matched by the beginning of its bare name.
+// One line per instrument; a column is matched by the beginning of its bare name.
 constexpr std::array instruments = std::to_array<Instrument>({
     // Source: Xsens DOT user manual, "Data output"; MT Manager export.
     {"Xsens",
@@ -95,7 +95,7 @@ void apply_given_unit(Recording& recording, const ReadOptions& options) {
       {Severity::info, fmt::format("{}: unit {} as given", names, options.unit->symbol)});
 }
 
-/// Some write G for g: a magnetic accelerometer there is not.
+/// Some files have G for g: magnetic accelerometers do not exist.
 void read_gauss_as_g(Recording& recording) {
   for (Channel& channel : recording.channels)
     if (channel.unit.quantity == Quantity::magnetic_field &&
@@ -107,7 +107,7 @@ void read_gauss_as_g(Recording& recording) {
     }
 }
 
-/// The unit an instrument writes a column in, by the beginning of the column's bare name.
+/// The unit in which an instrument writes a column, by the beginning of the column's bare name.
 std::string_view unit_of(const Instrument& instrument, const std::string& bare) {
   const auto matches = [&](const KnownColumn& column) {
     return !column.starts_with.empty() && bare.starts_with(column.starts_with);
@@ -155,8 +155,8 @@ std::vector<const Channel*> axes_of(const Recording& recording, const Triad& tri
   return axes;
 }
 
-/// The second in which the axes move least, of a thousand at most that are spread over the
-/// recording and whole.
+/// The second with the least variance, of at most a thousand complete ones spread over the
+/// recording.
 QuietWindow quietest_second(const Recording& recording, const std::vector<const Channel*>& axes) {
   const double rate_hz = recording.time.rate_hz > 0.0 ? recording.time.rate_hz : 100.0;
   const std::size_t samples = recording.samples();
@@ -178,7 +178,7 @@ QuietWindow quietest_second(const Recording& recording, const std::vector<const 
                              });
     }
     window.start_s = recording.time.at(begin);
-    // A sensor that is not yet awake writes zeros: quieter than any, and no gravity in it.
+    // A sensor that has not started yet writes zeros: quieter than any, but without gravity.
     if (window.norm > 0.0 && window.spread < quietest.spread) quietest = window;
   }
   return quietest;
@@ -226,8 +226,8 @@ void settle_by_gravity(Recording& recording, const Triad& triad) {
       {severity, fmt::format("{}: unit taken to be {}: {}; --unit overrides", names, symbol, why)});
 }
 
-/// Holds a unit that was given against a header with another: at rest, gravity says which is right.
-/// Errors: invalid_argument (the header's unit gives gravity, the one given does not).
+/// Checks a given unit against a header with another: at rest, gravity decides. Errors:
+/// invalid_argument (the header's unit gives gravity, the given one does not).
 Status check_given_unit(const Recording& recording, const Unit& given) {
   if (given.quantity != Quantity::acceleration) return Done{};
   for (const Triad& triad : accelerometer_triads(recording)) {
@@ -251,7 +251,7 @@ Status check_given_unit(const Recording& recording, const Unit& given) {
   return Done{};
 }
 
-/// One column that is called no more than "y" may be anything: its size is no proof of gravity.
+/// A single column named only "y" may be anything: its magnitude is no evidence of gravity.
 bool says_acceleration(const Recording& recording, const Triad& triad) {
   if (triad.axes() > 1) return true;
   for (const auto& axis : {triad.x, triad.y, triad.z})
@@ -259,9 +259,9 @@ bool says_acceleration(const Recording& recording, const Triad& triad) {
   return false;
 }
 
-/// Sorts the accelerometers of unknown unit into sensors and settles each.
+/// Groups the accelerometers of unknown unit into sensors and determines the unit of each.
 void recognise_gravity(Recording& recording) {
-  Recording sketch;  // names only: which channels belong together is for core to say
+  Recording sketch;  // names only: core decides which channels belong together
   std::vector<std::size_t> columns;
   for (std::size_t i = 0; i < recording.channels.size(); ++i) {
     const Channel& channel = recording.channels[i];

@@ -7,13 +7,13 @@
 
 namespace proofmass::io {
 
-/// Gives a unit to the channels whose file names none, and says in a note why: --unit for the
-/// accelerometers before anything else; known instruments by the names of their columns; else the
-/// size of gravity in the quietest second of the accelerometers: 9.8 is m/s^2, 1 is g, 1000 is mg.
-/// Whole numbers that fit none of these are counts.
+/// Determines the units of channels without one, and states the reason in a note. In order of
+/// precedence: --unit for the accelerometers; known instruments by their column names; the
+/// magnitude of gravity in the quietest second of the accelerometers: 9.8 is m/s^2, 1 is g, 1000 is
+/// mg. Integers that match none of these are counts.
 [[nodiscard]] Status settle_units(Recording& recording, const ReadOptions& options);
 
-/// Whether a name is an accelerometer's: by "acc", or by an axis and nothing else ("x", "ay2").
+/// True if a name is an accelerometer's: it contains "acc", or is an axis alone ("x", "ay2").
 [[nodiscard]] bool is_accelerometer_name(std::string_view name);
 
 }  // namespace proofmass::io

@@ -8,7 +8,7 @@
 namespace proofmass::io::channel_units_test {
 namespace {
 
-/// Three axes of an accelerometer at rest, tilted, whose readings have the norm `gravity`.
+/// A static three-axis accelerometer, tilted, whose measurements have the norm `gravity`.
 std::string at_rest(const std::string& header, double gravity, bool whole = false) {
   std::string text = header + "\n";
   for (int k = 0; k < 300; ++k) {

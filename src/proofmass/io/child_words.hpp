@@ -13,11 +13,11 @@ namespace proofmass::io {
 
 inline constexpr std::size_t usual_text = 4096;
 
-/// Numbers and texts as a child process tells them.
+/// Serialises numbers and texts sent by a child process.
 class WordWriter {
  public:
   void number(std::uint64_t value) { append(&value, sizeof value); }
-  /// Of a text that is longer, its beginning.
+  /// A longer text is truncated.
   void text(std::string_view value, std::size_t longest = usual_text) {
     value = value.substr(0, longest);
     number(value.size());
@@ -47,14 +47,15 @@ class WordWriter {
   std::string bytes_;
 };
 
-/// Text of one line, with whatever is no character of one made a blank.
+/// Text on one line, with a blank for each non-printable character.
 inline std::string printable(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
   return text;
 }
 
-/// Reads what WordWriter wrote, or what claims to be: once something does not fit, nothing does.
+/// Parses the output of WordWriter, or what claims to be: after the first mismatch everything
+/// fails.
 class WordReader {
  public:
   explicit WordReader(std::string_view bytes) : bytes_(bytes) {}
@@ -64,9 +65,9 @@ class WordReader {
     take(&value, sizeof value);
     return value;
   }
-  /// Printable, with blanks for what is not.
+  /// Printable, other characters replaced by blanks.
   std::string text(std::size_t longest = usual_text) { return printable(bytes_text(longest)); }
-  /// As it is.
+  /// Unchanged bytes.
   std::string bytes_text(std::size_t longest) {
     const std::uint64_t size = number();
     if (size > longest || size > bytes_.size()) {

@@ -9,14 +9,14 @@
 namespace proofmass::io {
 namespace {
 
-/// A block of rows: its middle on the base clock, and the median of other less base.
+/// A block of rows: its centre on the base clock, and the median of other minus base.
 struct BlockPoint {
   double x = 0.0;
   double y = 0.0;
   double weight = 1.0;
 };
 
-/// Rows that are numbers in both.
+/// Rows with numbers in both.
 std::vector<std::size_t> common_rows(View<double> base_s, View<double> other_s) {
   std::vector<std::size_t> rows;
   for (std::size_t k = 0; k < base_s.size(); ++k)
@@ -48,7 +48,7 @@ struct Line {
   double middle = 0.0;
 };
 
-/// Theil and Sen: the median of the slopes between all pairs.
+/// Theil–Sen: the median of the slopes between all pairs.
 Line first_line(const std::vector<BlockPoint>& points) {
   std::vector<double> slopes;
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -67,7 +67,7 @@ double residual(const Line& line, const BlockPoint& point) {
   return point.y - line.level - line.slope * (point.x - line.middle);
 }
 
-/// The robust spread of the points about a line, which was fitted with two figures.
+/// The robust spread of the points about a line fitted with two parameters.
 double spread_about(const Line& line, const std::vector<BlockPoint>& points) {
   std::vector<double> rests;
   for (const BlockPoint& point : points) rests.push_back(residual(line, point));
@@ -95,13 +95,13 @@ Line weighted_line(const std::vector<BlockPoint>& points) {
   return {y, xy / xx, x};
 }
 
-/// Tukey's biweight about the line before, a few times.
+/// Tukey's biweight about the previous line, a few times.
 Line robust_line(std::vector<BlockPoint>& points) {
   Line line = first_line(points);
   constexpr double tuning = 4.685;  // 95 % efficient for normal residuals
   for (int i = 0; i < 20; ++i) {
     const double limit = tuning * spread_about(line, points);
-    if (!(limit > 0.0)) break;  // they lie on it
+    if (!(limit > 0.0)) break;  // all points lie on it
     for (BlockPoint& point : points) {
       const double u = residual(line, point) / limit;
       point.weight = std::abs(u) < 1.0 ? (1.0 - u * u) * (1.0 - u * u) : 0.0;
@@ -111,8 +111,8 @@ Line robust_line(std::vector<BlockPoint>& points) {
   return line;
 }
 
-/// By how much more than apart ones neighbouring blocks scatter a line: (1 + ρ) / (1 − ρ) of their
-/// correlation ρ, its estimate set right for the two figures that were fitted (about 3 / n).
+/// Variance inflation of the slope by autocorrelation: (1 + ρ) / (1 − ρ) with the correlation ρ of
+/// adjacent blocks, corrected for the bias due to the two fitted parameters (about 3 / n).
 double likeness(const Line& line, const std::vector<BlockPoint>& points) {
   double squares = 0.0;
   double products = 0.0;
@@ -129,7 +129,8 @@ double likeness(const Line& line, const std::vector<BlockPoint>& points) {
   return (1.0 + bounded) / (1.0 - bounded);
 }
 
-/// Of the slope, by the asymptotic covariance of an M-estimate: σ² Σψ²/(n−2) / (Σψ'/n)² / Σ(x−x̄)².
+/// Standard deviation of the slope, by the asymptotic covariance of an M-estimate: σ² Σψ²/(n−2) /
+/// (Σψ'/n)² / Σ(x−x̄)².
 double slope_std(const Line& line, const std::vector<BlockPoint>& points) {
   const double limit = 4.685 * spread_about(line, points);
   if (!(limit > 0.0)) return 0.0;

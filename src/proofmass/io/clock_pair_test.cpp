@@ -10,8 +10,8 @@
 namespace proofmass::io::clock_pair_test {
 namespace {
 
-/// A device's clock, and a computer's that is fast by `drift_ppm`, late by some milliseconds with
-/// memory from row to row, and now and then by a quarter of a second.
+/// A device's clock, and a computer's that is fast by `drift_ppm`, delayed by some milliseconds
+/// with correlation between rows, and occasionally by a quarter of a second.
 struct Clocks {
   std::vector<double> device_s;
   std::vector<double> host_s;

@@ -8,7 +8,7 @@
 namespace proofmass::io {
 namespace {
 
-/// A cursor over the text; each reader moves it only when it succeeds.
+/// A cursor over the text; each parser moves it only on success.
 struct Scanner {
   std::string_view rest;
 
@@ -26,7 +26,7 @@ struct Scanner {
     while (take(' ')) {
     }
   }
-  /// `fewest` … `most` digits.
+  /// Between `fewest` and `most` digits.
   std::optional<int> digits(std::size_t fewest, std::size_t most) {
     int value = 0;
     std::size_t count = 0;
@@ -68,7 +68,7 @@ std::optional<std::int64_t> read_date(Scanner& text) {
 
 constexpr std::int64_t ns_per_s = 1'000'000'000;
 
-/// The digits behind the point of the seconds; those beyond the ninth are passed over.
+/// The decimals of the seconds; those beyond the ninth are ignored.
 std::int64_t read_fraction_ns(Scanner& at) {
   std::int64_t ns = 0;
   std::int64_t weight = ns_per_s / 10;
@@ -92,7 +92,7 @@ std::optional<std::int64_t> read_time_of_day(Scanner& text) {
     const auto seconds = at.digits(2, 2);
     if (!seconds || *seconds > 60) return std::nullopt;
     ns += *seconds * ns_per_s;
-    // Some write milliseconds as if they were a smaller hand.
+    // Some formats separate milliseconds by a colon.
     if (at.take('.') || at.take(',') || at.take(':')) ns += read_fraction_ns(at);
   }
   if (*hours > 24 || *minutes > 59) return std::nullopt;
@@ -100,7 +100,7 @@ std::optional<std::int64_t> read_time_of_day(Scanner& text) {
   return ns;
 }
 
-/// Z, +02:00, -0530, +02; "UTC" or "GMT" may stand before it. True if there was a zone.
+/// Z, +02:00, -0530, +02; optionally preceded by "UTC" or "GMT". True if there was a zone.
 bool read_zone(Scanner& text, std::int64_t& offset_ns) {
   const bool named = text.take('Z') || text.take("UTC") || text.take("GMT");
   Scanner at = text;

@@ -13,14 +13,14 @@
 namespace proofmass::io {
 namespace {
 
-// Rows that are looked at, from the first on: enough for any of these figures.
+// Rows that are examined, from the first: sufficient for each of these estimates.
 constexpr std::size_t most_rows = std::size_t{1} << 18;
 
 View<double> beginning(View<double> stamps) {
   return stamps.first(std::min(stamps.size(), most_rows));
 }
 
-/// Sample numbers where single steps say what is missing.
+/// Sample numbers if single intervals show what is missing.
 std::vector<double> numbers_by_step(View<double> stamps, double step) {
   std::vector<double> out{0.0};
   for (std::size_t k = 1; k < stamps.size(); ++k)
@@ -34,7 +34,7 @@ bool are_whole(const std::vector<double>& steps, double tick) {
   return static_cast<std::size_t>(off) * 100 <= steps.size();
 }
 
-/// Rises of the stamps over stretches of `rows` rows.
+/// Increments of the stamps over runs of `rows` rows.
 std::vector<double> rises_over(View<double> stamps, std::size_t rows) {
   std::vector<double> out;
   for (std::size_t from = 0; from + rows < stamps.size(); from += rows)
@@ -43,7 +43,7 @@ std::vector<double> rises_over(View<double> stamps, std::size_t rows) {
   return out;
 }
 
-/// Whether the ticks beyond (or short of) one a row are spread more evenly than by chance.
+/// True if the ticks beyond (or short of) one per row are spread more evenly than by chance.
 bool are_evenly_spread(View<double> stamps, double tick) {
   const double rise = stamps.back() - stamps.front();
   const double rows = static_cast<double>(stamps.size() - 1);
@@ -60,8 +60,8 @@ bool are_evenly_spread(View<double> stamps, double tick) {
          chance;
 }
 
-/// From stretches in which no row is missing: the shortest of short ones, then of ever longer ones
-/// those that agree with them.
+/// From runs without missing rows: the shortest of short ones, then of ever longer ones those that
+/// agree with them.
 double step_of_whole_stretches(View<double> stamps, double tick) {
   std::size_t rows = 16;
   const double shortest = quantile(rises_over(stamps, rows), 0.05).value_or(0.0);
@@ -77,8 +77,8 @@ double step_of_whole_stretches(View<double> stamps, double tick) {
   return step;
 }
 
-/// Of steps about this one, in either direction up to `reach` of it, that with which the stamps
-/// stay in a band of a tick best.
+/// Of periods near `about`, in either direction up to `reach` of it, the one for which the stamps
+/// stay in a band of one tick best.
 double step_of_best_band(View<double> stamps, double tick, double about, double reach) {
   constexpr int each_way = 24;
   double best = about;
@@ -96,8 +96,8 @@ double step_of_best_band(View<double> stamps, double tick, double about, double 
 /// A straight line through stamps against their sample numbers.
 struct StampLine {
   double step = 0.0;
-  double scatter = 0.0;  ///< root mean square about it
-  double width = 0.0;    ///< from the lowest to the highest about it
+  double scatter = 0.0;  ///< root mean square about the line
+  double width = 0.0;    ///< from the lowest to the highest residual
 };
 
 StampLine line_through(View<double> stamps, View<double> numbers) {
@@ -132,8 +132,8 @@ std::optional<CoarseStamps> find_coarse_stamps(View<double> stamps,
   if (!are_whole(steps, median_step) || !are_evenly_spread(some, median_step)) return std::nullopt;
   const double rough = step_of_whole_stretches(some, median_step);
   if (!(rough > 0.45 * median_step && rough < 1.6 * median_step)) return std::nullopt;
-  // One row in so many written twice, as a logger's buffer does, looks the same but for this: what
-  // figures are rounded to is no more than one of their units.
+  // Rows written twice at regular intervals, as by a logger's buffer, look the same except for one
+  // thing: the rounding of stamps is at most one unit of the last digit.
   const bool may_be_written_twice = rough < median_step && rough > 0.88 * median_step;
   if (may_be_written_twice && median_step > 1.001) return std::nullopt;
   const auto best = [&](std::size_t rows, double about, double reach) {
@@ -141,7 +141,7 @@ std::optional<CoarseStamps> find_coarse_stamps(View<double> stamps,
   };
   const double better = best(4096, best(1024, rough, 0.012), 1e-3);
   const double step = step_by_line(stamps, better, median_step);
-  // The clock's own jitter comes on top of the rounding.
+  // The clock's own jitter adds to the rounding.
   const double strain = signal::strain_in_band(some, step, median_step);
   constexpr double most_of_jitter = 4.0;
   const double jitter = most_of_jitter * strain / static_cast<double>(some.size());

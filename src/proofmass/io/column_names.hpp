@@ -14,32 +14,32 @@
 
 namespace proofmass::io {
 
-/// What the columns of a table of figures are called, and which of them is the time.
+/// Names of the columns of a numeric table, and which of them is the time.
 struct NamedColumns {
-  std::vector<ColumnLabel> labels;  ///< one a column, names unique
+  std::vector<ColumnLabel> labels;  ///< one per column, unique names
   std::optional<std::size_t> time;
-  bool are_made_up = false;  ///< the names are no one's but ours
+  bool are_made_up = false;  ///< the names are generated
   std::vector<Note> notes;
 };
 
-/// Names the columns by their headings, units taken off; `headings` empty: as those of a CSV
-/// without a header. The time is the column that --time names, else the one with such a name or
-/// unit, else an ascending first column without a name.
-/// Errors: invalid_argument (no column called as --time says).
+/// Names the columns by their headings without units; `headings` empty: as for a CSV without a
+/// header. The time is the column given by --time, else the one with a name or unit of time, else
+/// an increasing first column without a name.
+/// Errors: invalid_argument (no column with the name given by --time).
 [[nodiscard]] Result<NamedColumns> name_columns(const std::vector<std::string>& headings,
                                                 std::size_t columns,
                                                 bool first_ascends,
                                                 const ReadOptions& options);
 
-/// Whether a column without a name may be the time: finite, and each value above the one before.
+/// True if an unnamed column may be the time: finite and strictly increasing.
 [[nodiscard]] bool ascends(View<double> values);
 
-/// The heading that is the time's, as name_columns() takes it; nullopt if none is.
+/// The heading of the time as in name_columns(); nullopt if there is none.
 [[nodiscard]] std::optional<std::size_t> time_among(const std::vector<std::string>& headings,
                                                     const ReadOptions& options);
 
-/// The first stamp that is a number of sane size, exact to a nanosecond or, of large figures, to
-/// one; nullopt if there is none.
+/// The first finite stamp of plausible magnitude, exact to a nanosecond, or to one for large
+/// values; nullopt if there is none.
 [[nodiscard]] std::optional<StampOrigin> origin_of(View<double> stamps);
 
 }  // namespace proofmass::io

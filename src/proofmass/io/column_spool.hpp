@@ -13,17 +13,17 @@
 
 namespace proofmass::io {
 
-/// Takes rows as they come and gives them back column by column, when all are there: what is more
-/// than a piece lies meanwhile in a nameless file in the folder of what is being written.
+/// Takes rows and returns them column by column once all are present; data beyond one piece are
+/// kept in an unnamed file in the folder of the output file.
 class ColumnSpool {
  public:
-  /// `beside` is the path of the file that is being written; "-": the system's temporary folder.
+  /// `beside` is the path of the output file; "-": the system's temporary folder.
   ColumnSpool(std::size_t columns, std::string beside);
 
-  /// A row's figures, as many as columns. Errors: unreadable (no room).
+  /// Adds a row, one value per column. Errors: unreadable (no space).
   [[nodiscard]] Status add(std::span<const double> row);
   [[nodiscard]] std::size_t rows() const { return spooled_rows_ + rows_here_; }
-  /// Gives a column's figures, little-endian, in pieces. Errors: those of `take`, unreadable.
+  /// Returns a column's values, little-endian, in pieces. Errors: those of `take`, unreadable.
   [[nodiscard]] Status give(std::size_t column,
                             const std::function<Status(std::string_view)>& take);
 
@@ -37,7 +37,7 @@ class ColumnSpool {
   std::size_t columns_;
   std::string beside_;
   std::size_t rows_a_piece_;
-  std::vector<char> piece_;  ///< of rows_a_piece_ rows, column after column
+  std::vector<char> piece_;  ///< rows_a_piece_ rows, column by column
   std::size_t rows_here_ = 0;
   std::size_t spooled_rows_ = 0;
   std::unique_ptr<std::FILE, Close> file_;

@@ -8,8 +8,8 @@
 namespace proofmass::io {
 namespace {
 
-/// Reserves, and asks the system for large pages where there is much: giving out small ones one by
-/// one takes a quarter of the time in which a table is read. Only a hint: nothing hangs on it.
+/// Reserves memory, and requests large pages for large pieces: allocating small ones one by one
+/// takes a quarter of the time of reading a table. Only a hint: nothing depends on it.
 void reserve(std::vector<double>& piece, std::size_t count) {
   piece.reserve(count);
   constexpr std::uintptr_t large_page = std::uintptr_t{2} << 20;
@@ -48,7 +48,7 @@ std::vector<double> GrowingColumn::take() {
   reserve(all, std::exchange(size_, 0));
   for (std::vector<double>& piece : pieces_) {
     all.insert(all.end(), piece.begin(), piece.end());
-    std::vector<double>().swap(piece);  // assigning {} would keep its memory
+    std::vector<double>().swap(piece);  // assigning {} would keep its capacity
   }
   pieces_.resize(1);
   return all;

@@ -6,15 +6,15 @@
 
 namespace proofmass::io {
 
-/// A column that grows to a length nobody knows beforehand, with little memory besides its values:
-/// pieces that are never moved, each an eighth of what there is, joined at the end one by one. A
-/// length that was foreseen costs no copy; memory reserved but not written costs nothing.
+/// A column of unknown final length, with little memory besides its values: pieces that are never
+/// moved, each an eighth of the current size, joined at the end one by one. If the length was
+/// predicted correctly there is no copy; memory reserved but not written costs nothing.
 class GrowingColumn {
  public:
   explicit GrowingColumn(std::size_t expected);
 
   void append(std::span<const double> values);
-  /// All values in one; the column is empty afterwards, of no expected length.
+  /// All values in one vector; the column is empty afterwards, without an expected length.
   [[nodiscard]] std::vector<double> take();
 
  private:

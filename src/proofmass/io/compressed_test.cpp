@@ -26,7 +26,7 @@ std::string xz(const std::string& text) {
   return out;
 }
 
-/// With the checksum that the program zstd adds.
+/// With the checksum added by the program zstd.
 std::string zstd(const std::string& text) {
   ZSTD_CCtx* context = ZSTD_createCCtx();
   ZSTD_CCtx_setParameter(context, ZSTD_c_checksumFlag, 1);

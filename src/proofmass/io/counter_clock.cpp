@@ -8,14 +8,14 @@
 namespace proofmass::io {
 namespace {
 
-/// Steps beyond this are no rows that were lost but a decoder's accident.
+/// Larger increments are not lost rows but decoding errors.
 constexpr double longest_step = 1e6;
 
 bool is_count(double value) {
   return std::abs(value) < 1e15 && value == std::trunc(value);
 }
 
-/// How many counts on from `last` is `next`: nullopt if the counter started anew, or is none.
+/// Increment from `last` to `next`; nullopt if the counter restarted, or is invalid.
 std::optional<double> step_between(double last, double next) {
   if (!is_count(next)) return std::nullopt;
   const double step = next - last;
@@ -23,7 +23,7 @@ std::optional<double> step_between(double last, double next) {
   constexpr std::array<double, 4> ranges{0x1p8, 0x1p16, 0x1p24, 0x1p32};
   for (const double range : ranges) {
     const double way = step + range;
-    // Up to a tenth of the range may be missing where it ran over.
+    // Up to a tenth of the range may be missing at a wrap.
     if (last < range && next >= 0.0 && way >= 1.0 && way < std::min(0.1 * range, longest_step))
       return way;
   }

@@ -17,7 +17,7 @@ std::uint32_t crc32_of_zlib(std::uint32_t so_far, std::string_view bytes) {
 
 #if defined(PM_CARRYLESS)
 
-/// `folded` moved on by as many bits as the two constants stand for, and the bytes there added.
+/// `folded` shifted by the number of bits given by the two constants, with the next bytes added.
 PM_CARRYLESS __m128i fold(__m128i folded, __m128i constants, __m128i next) {
   const __m128i low = _mm_clmulepi64_si128(folded, constants, 0x00);
   const __m128i high = _mm_clmulepi64_si128(folded, constants, 0x11);
@@ -28,7 +28,7 @@ PM_CARRYLESS __m128i load(const char* bytes) {
   return _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes));
 }
 
-/// Folds 64 bytes at a time into 16 bytes of the same remainder, which zlib then divides.
+/// Folds 64 bytes at a time into 16 bytes with the same remainder, which zlib then divides.
 PM_CARRYLESS std::uint32_t crc32_by_folding(std::uint32_t so_far, std::string_view bytes) {
   // Remainders of x^(512+32), x^(512-32) and x^(128+32), x^(128-32), bits reflected (ibid., table).
   const __m128i by_512 = _mm_set_epi64x(0x1c6e41596, 0x154442bd4);
@@ -49,7 +49,7 @@ PM_CARRYLESS std::uint32_t crc32_by_folding(std::uint32_t so_far, std::string_vi
   for (; left >= 16; at += 16, left -= 16) a = fold(a, by_128, load(at));
   alignas(16) char rest[16];
   _mm_store_si128(reinterpret_cast<__m128i*>(rest), a);
-  // All ones to begin with are no bits before the first: the register is in `rest` already.
+  // An initial value of all ones means no preceding bits: the register is already in `rest`.
   return crc32_of_zlib(crc32_of_zlib(0xFFFFFFFFu, {rest, 16}), {at, left});
 }
 

@@ -13,18 +13,18 @@
 
 namespace proofmass::io {
 
-/// Which columns of a table are read as what.
+/// Role of each column of a table.
 struct CsvColumns {
   std::vector<ColumnUse> uses;
   std::optional<std::size_t> stamps;  ///< the time column
-  std::optional<std::size_t> date;    ///< the column before it that holds the date
-  std::optional<std::size_t> labels;  ///< the column of words that became the labels
+  std::optional<std::size_t> date;    ///< the preceding column with the date
+  std::optional<std::size_t> labels;  ///< the text column used as labels
   StampSpelling spelling = StampSpelling::figures;
 };
 
-/// Chooses the time column: the one --time names, else by name or unit, else a calendar's, else an
-/// ascending first column without a name. The first few columns of words may be labels.
-/// Errors: invalid_argument (there is no column called as --time says, or it holds words).
+/// Selects the time column: the one given by --time, else by name or unit, else a calendar column,
+/// else an increasing first column without a name. The first few text columns may be labels.
+/// Errors: invalid_argument (no column with the name given by --time, or it contains text).
 [[nodiscard]] Result<CsvColumns> choose_columns(const CsvLayout& layout,
                                                 const CsvHeader& header,
                                                 const ReadOptions& options);

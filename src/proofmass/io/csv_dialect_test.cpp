@@ -8,7 +8,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// Whatever the dialect, these two rows of time, x and y must come out.
+/// In any dialect, the result must be these two rows of time, x and y.
 void expect_two_rows(const Result<Recording>& read) {
   ASSERT_TRUE(read.has_value()) << read.error().message;
   ASSERT_EQ(read->channels.size(), 2u) << notes_of(*read);

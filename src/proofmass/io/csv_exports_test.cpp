@@ -1,4 +1,4 @@
-// Tables as the apps and loggers of others write them.
+// Tables as written by third-party apps and loggers.
 #include <gtest/gtest.h>
 
 #include "proofmass/io/test_support.hpp"
@@ -85,12 +85,12 @@ TEST(PhysicsToolbox, LinearAccelerometerIsInMetresPerSecondSquared) {
 
 // --- several sensors in one table ----------------------------------------------------------------
 
-/// Science Journal: milliseconds, a column a sensor, a row for each stamp, blanks for the others.
+/// Science Journal: milliseconds, one column per sensor, one row per stamp, blanks for the others.
 std::string journal_text() {
   std::string text = "relative_time,AccX,AccY,AccZ,DecibelSource\n";
   for (int k = 0; k < 400; ++k) {
     const int ms = 20 * k;
-    if (k % 10 == 9) {  // one reading that fell on two stamps
+    if (k % 10 == 9) {  // one measurement with two stamps
       text += std::to_string(ms) + ",0.25,,,\n" + std::to_string(ms + 1) + ",,0.5,9.81,\n";
     } else {
       text += std::to_string(ms) + ",0.25,0.5,9.81,\n";

@@ -26,7 +26,7 @@ Fields fields_of(std::string_view line, char separator) {
   return fields;
 }
 
-/// "degrees C" and the like, which have a blank inside.
+/// "degrees C" and similar, which contain a blank.
 std::optional<Unit> unit_in(std::string_view text) {
   text = trimmed(text);
   for (const std::string_view degrees : {"degrees ", "degree ", "deg ", "° "})
@@ -35,8 +35,8 @@ std::optional<Unit> unit_in(std::string_view text) {
   return parse_unit(text);
 }
 
-/// A unit at the end of a name, where the mark before it may be part of the name too: short ones
-/// only where they are common.
+/// A unit at the end of a name, where the separator before it may be part of the name too: short
+/// ones only if they are common.
 std::optional<Unit> unit_of_suffix(std::string_view suffix) {
   constexpr std::array<std::string_view, 4> parts_of_names{"min", "count", "raw", "counts"};
   if (std::ranges::find(parts_of_names, suffix) != parts_of_names.end()) return std::nullopt;
@@ -50,8 +50,7 @@ std::string without(std::string_view text, std::size_t begin, std::size_t end) {
   return std::string(before) + (before.empty() || after.empty() ? "" : " ") + std::string(after);
 }
 
-/// A heading whose last brackets of a kind hold a unit; brackets inside brackets belong to the
-/// unit:
+/// A heading whose last brackets of a kind contain a unit; nested brackets belong to the unit:
 /// "(m/(s^2))".
 std::optional<ColumnLabel> label_with_bracket(std::string_view text,
                                               std::size_t open,
@@ -75,7 +74,7 @@ std::optional<ColumnLabel> label_with_brackets(std::string_view text) {
   return std::nullopt;
 }
 
-/// "acc_x_m_s2" and "gyr_x_deg_s": the quotient's stroke cannot stand in every name.
+/// "acc_x_m_s2" and "gyr_x_deg_s": the slash of a quotient is not allowed in every name.
 std::optional<ColumnLabel> label_with_quotient(std::string_view text) {
   const std::size_t last = text.rfind('_');
   if (last == std::string_view::npos || last == 0) return std::nullopt;
@@ -97,7 +96,7 @@ bool is_unit_row(const Fields& fields) {
          std::ranges::any_of(fields, [](const std::string& f) { return unit_in(f).has_value(); });
 }
 
-/// "time (s)x (g)" is two headings that lost the separator between them.
+/// "time (s)x (g)" is two headings without the separator between them.
 Fields split_behind_brackets(const Fields& fields) {
   Fields out;
   for (const std::string& field : fields) {
@@ -119,7 +118,7 @@ bool has_text(const Fields& fields, char point) {
       fields, [&](const std::string& f) { return read_cell(f, point).kind == CellKind::text; });
 }
 
-/// The lines above the rows, taken apart, as a header; nearest line first.
+/// The lines above the rows, split into fields, as a header; nearest line first.
 class HeaderFinder {
  public:
   explicit HeaderFinder(const CsvLayout& layout) : layout_(layout) {}
@@ -138,7 +137,7 @@ class HeaderFinder {
  private:
   [[nodiscard]] std::size_t width() const { return layout_.columns.size(); }
 
-  /// The line's fields, mended so that there are as many as columns where that can be done.
+  /// The line's fields, adjusted to the number of columns if possible.
   Fields fitted(const std::string& text) {
     Fields fields = fields_of(text, layout_.separator);
     if (fields.size() == width()) return fields;
@@ -240,7 +239,7 @@ class HeaderFinder {
   CsvHeader header_;
 };
 
-/// The first number behind "sample rate", "SampleRate", "update rate", "sampling frequency", …
+/// The first number after "sample rate", "SampleRate", "update rate", "sampling frequency", …
 std::optional<double> rate_in(const std::string& line) {
   const std::string text = lower(line);
   std::size_t at = std::string::npos;
@@ -296,7 +295,7 @@ int likeness_to_time(const ColumnLabel& label) {
 
 void complete_names(std::vector<ColumnLabel>& labels, std::vector<Note>& notes) {
   std::set<std::string> taken;
-  std::map<std::string, int> next;  // number for the next column of a name that is taken
+  std::map<std::string, int> next;  // number for the next column with a name in use
   std::size_t renamed = 0;
   for (std::size_t c = 0; c < labels.size(); ++c) {
     const std::string wanted =

@@ -30,7 +30,7 @@ bool is_blank(std::string_view line) {
   return line.find_first_not_of(std::string_view(" \t\r\0", 4)) == std::string_view::npos;
 }
 
-/// The lines that end within the text.
+/// The complete lines of the text.
 std::vector<Line> complete_lines(std::string_view text, char line_end, bool is_whole_text) {
   std::vector<Line> lines;
   std::size_t number = 1;
@@ -46,7 +46,7 @@ std::vector<Line> complete_lines(std::string_view text, char line_end, bool is_w
   return lines;
 }
 
-/// "sep=;" on the first line, which spreadsheets write for one another.
+/// "sep=;" on the first line, as written by spreadsheets.
 std::optional<char> separator_line(std::string_view line) {
   line = trimmed(line);
   if (line.size() != 5 || (!line.starts_with("sep=") && !line.starts_with("SEP=")))
@@ -91,12 +91,12 @@ struct Tally {
   }
 };
 
-/// One way of taking the sampled lines apart, and how well it does.
+/// One way to split the sampled lines, and its score.
 struct Trial {
   char separator = ',';
   char point = '.';
   bool is_grouped = false;
-  std::size_t width = 0;  ///< of most lines, an empty last field not counted
+  std::size_t width = 0;  ///< width of most lines, not counting an empty last field
   bool trailing = false;  ///< most lines of that width end in a separator
   double score = -1e300;
   std::vector<Tally> tallies{};
@@ -109,7 +109,7 @@ std::size_t width_of(const std::vector<std::string_view>& fields) {
   return fields.size() - (trailing ? 1 : 0);
 }
 
-/// The commonest width, the larger of two that are equally common.
+/// The most frequent width; of two equally frequent ones the larger.
 std::size_t commonest(const std::vector<std::size_t>& widths) {
   std::map<std::size_t, std::size_t> counts;
   for (const std::size_t width : widths) ++counts[width];
@@ -119,15 +119,15 @@ std::size_t commonest(const std::vector<std::size_t>& widths) {
   return best;
 }
 
-/// Whether a line has so many names and nothing else: a header.
+/// True if a line contains this many names and nothing else: a header.
 bool names_columns(const std::vector<std::string_view>& fields, std::size_t width, char point) {
   return fields.size() == width && std::ranges::all_of(fields, [&](std::string_view field) {
            return read_cell(field, point).kind == CellKind::text && !read_clock(field);
          });
 }
 
-/// Whether what follows the last column is one more, blank in most rows: it has a name, or figures
-/// too often for rows that are a field too long. Else it is a mere separator at the end.
+/// True if the fields after the last column form another column, blank in most rows: it has a name,
+/// or numbers too often for rows with an excess field. Else it is only a separator at the end.
 bool has_last_column(const std::vector<Line>& lines,
                      const std::vector<std::vector<std::string_view>>& rows,
                      const Trial& trial) {
@@ -146,7 +146,7 @@ bool has_last_column(const std::vector<Line>& lines,
   return false;
 }
 
-/// Scores the rows, and settles what the columns are by the last half of them: a header of several
+/// Scores the rows, and determines the columns from the last half of them: a header of several
 /// lines may outnumber the rows of a short file.
 void tally_columns(const std::vector<std::vector<std::string_view>>& rows, Trial& trial) {
   std::vector<Tally> all(trial.width);
@@ -162,8 +162,8 @@ void tally_columns(const std::vector<std::vector<std::string_view>>& rows, Trial
         static_cast<double>(tally.number + tally.clocks()) - 1.5 * static_cast<double>(tally.text);
 }
 
-/// The lines of words that go before the first with a figure are a header, which says nothing of
-/// how the rows are separated; a short file is half header.
+/// The lines of words before the first number are a header, which gives no information on how the
+/// rows are separated; half of a short file may be header.
 void drop_header(Fielded& rows, const Trial& trial) {
   const auto has_value = [&](const std::vector<std::string_view>& fields) {
     return std::ranges::any_of(fields, [&](std::string_view field) {
@@ -205,20 +205,20 @@ bool header_is_one_wide(const std::vector<Line>& lines) {
   return false;
 }
 
-/// "0,5" below one name is half, not two columns.
+/// "0,5" below one name is a half, not two columns.
 Trial halves_instead(const std::vector<Line>& lines, const std::vector<Line>& sample, Trial best) {
   if (best.separator != ',' || best.width != 2 || !header_is_one_wide(lines)) return best;
   Trial halves = attempt(lines, sample, {.separator = ';', .point = ','});
   return halves.width == 1 && halves.score > 0.0 ? halves : best;
 }
 
-/// The separators to try: the one that the file names, else the usual.
+/// The separators to try: the one given in the file, else the usual ones.
 std::string separators_of(std::optional<char> given) {
   return given ? std::string(1, *given) : std::string(",;\t| ");
 }
 
-/// Whether nine in ten lines have the same number of tabs, which then separate the columns: two of
-/// them beside each other are an empty field, not a wide blank.
+/// True if nine in ten lines have the same number of tabs, which then separate the columns: two
+/// adjacent tabs are an empty field, not a wide blank.
 bool has_even_tabs(const std::vector<Line>& sample) {
   std::map<std::size_t, std::size_t> counts;
   std::size_t lines = 0;
@@ -231,9 +231,9 @@ bool has_even_tabs(const std::vector<Line>& sample) {
       counts, [&](const auto& entry) { return entry.first > 0 && entry.second * 10 >= lines * 9; });
 }
 
-/// Thousands that a semicolon's or a tab's table separates by commas look like decimals: "999",
-/// "1,000". They are thousands where no figure of the file has a comma in any other place, and the
-/// figures that have one continue those of their column that have none.
+/// Thousands separated by commas in a table with semicolons or tabs look like decimals: "999",
+/// "1,000". They are thousands if no number of the file has a comma in any other position, and the
+/// numbers with one continue those of their column without one.
 bool commas_are_thousands(const std::vector<Line>& lines, const Trial& trial) {
   std::vector<std::vector<double>> plain(trial.width), marked(trial.width);
   std::vector<std::string_view> fields;
@@ -258,7 +258,7 @@ bool commas_are_thousands(const std::vector<Line>& lines, const Trial& trial) {
   return continued > 0;
 }
 
-/// The best way to take the lines apart under separators and marks of the usual kinds.
+/// The best way to split the lines for separators and decimal marks of the usual kinds.
 Trial best_of(const std::vector<Line>& lines,
               const std::vector<Line>& sample,
               const std::string& separators) {
@@ -269,7 +269,7 @@ Trial best_of(const std::vector<Line>& lines,
     if (separator == ' ' && has_tabs && best.separator == '\t' && best.score > 0.0) return;
     Trial trial =
         attempt(lines, sample, {.separator = separator, .point = point, .is_grouped = is_grouped});
-    // A comma in a line without any separator is one, but for halves_instead().
+    // A comma in a line without any separator is one, except for halves_instead().
     const bool separates = point != ',' || trial.width > 1;
     if (separates && trial.score > best.score) best = std::move(trial);
   };
@@ -289,7 +289,7 @@ Trial best_trial(const std::vector<Line>& lines,
   return best;
 }
 
-/// Lines to judge by: the last of those looked at, which are rows whatever precedes them.
+/// Lines for the decision: the last of those examined, which are rows whatever precedes them.
 std::vector<Line> sample_of(const std::vector<Line>& lines) {
   const std::size_t most = std::clamp<std::size_t>((lines.size() + 1) / 2, 20, 200);
   std::vector<Line> sample;
@@ -305,7 +305,7 @@ bool is_row(const std::vector<std::string_view>& fields, const CsvLayout& layout
   bool any = false;
   for (std::size_t c = 0; c < layout.columns.size(); ++c) {
     if (layout.columns[c] == ColumnKind::text) continue;
-    // Words that only some rows have may stand in the very first of them.
+    // Words that occur only in some rows may occur in the very first.
     if (layout.columns[c] == ColumnKind::blank) {
       any = any || read_cell(fields[c], layout.point, layout.is_grouped).kind == CellKind::number;
       continue;
@@ -320,13 +320,13 @@ bool is_row(const std::vector<std::string_view>& fields, const CsvLayout& layout
   return any;
 }
 
-/// The text of a remark without its mark.
+/// The text of a comment without its mark.
 std::string without_mark(std::string_view line) {
   const auto first = line.find_first_not_of(" \t#%;/");
   return std::string(first == std::string_view::npos ? std::string_view{} : line.substr(first));
 }
 
-/// Ascending over what is looked at, but for one in ten.
+/// True if it increases over the rows examined, except for one in ten.
 bool first_column_ascends(const std::vector<Line>& rows, const CsvLayout& layout) {
   if (layout.columns.empty() || layout.columns[0] != ColumnKind::number) return false;
   std::vector<std::string_view> fields;
@@ -353,7 +353,7 @@ bool looks_binary(std::string_view head) {
   return static_cast<std::size_t>(odd) * 50 > head.size();
 }
 
-/// Takes the lines up to the first row for the preamble; returns the rows.
+/// Stores the lines before the first row as the preamble; returns the rows.
 std::vector<Line> find_rows(const std::vector<Line>& lines, CsvLayout& layout) {
   std::vector<std::string_view> fields;
   std::vector<Line> rows;
@@ -371,17 +371,17 @@ std::vector<Line> find_rows(const std::vector<Line>& lines, CsvLayout& layout) {
   return rows;
 }
 
-/// Whether a word is a figure that is spelt as no reader can be sure of: "(0.5)", "5 %", "1.5 g",
-/// "1.5D-3", digits of full width.
+/// True if a word is a number in an ambiguous notation: "(0.5)", "5 %", "1.5 g", "1.5D-3",
+/// full-width digits.
 bool is_odd_figure(std::string_view word) {
   constexpr std::string_view figures = "0123456789.,'_() %";
   word = trimmed(word);
   if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
-  constexpr std::string_view full_width = "\xEF\xBC";  // of U+FF00 … U+FF3F
+  constexpr std::string_view full_width = "\xEF\xBC";  // prefix of U+FF00 … U+FF3F
   bool has_digit = false;
   while (!word.empty()) {
     const bool is_wide = word.starts_with(full_width) && word.size() > 2;
-    // Bytes of other characters, as of blanks and minus signs, say nothing for or against.
+    // Bytes of other characters, such as blanks and minus signs, are neutral.
     const bool is_other = static_cast<unsigned char>(word[0]) >= 0x80;
     if (!is_wide && !is_other && figures.find(word[0]) == std::string_view::npos) break;
     has_digit = has_digit || is_wide || is_digit(word[0]);
@@ -396,7 +396,7 @@ bool is_odd_figure(std::string_view word) {
   return word.empty() || parse_unit(word).has_value();
 }
 
-/// Columns of text that are mostly odd figures.
+/// Text columns that are mostly odd numbers.
 void note_odd_figures(const std::vector<Line>& rows, CsvLayout& layout) {
   const std::size_t width = layout.columns.size();
   layout.odd_figures.assign(width, {});
@@ -415,7 +415,7 @@ void note_odd_figures(const std::vector<Line>& rows, CsvLayout& layout) {
     if (odd[c] * 2 <= words[c]) layout.odd_figures[c].clear();
 }
 
-/// Fills in where the rows begin and what stands before them; false if there is no row.
+/// Fills in the position of the rows and the preceding lines; false if there is no row.
 bool place_rows(const std::vector<Line>& lines, CsvLayout& layout) {
   const std::vector<Line> rows = find_rows(lines, layout);
   if (rows.empty()) return false;
@@ -429,7 +429,7 @@ bool place_rows(const std::vector<Line>& lines, CsvLayout& layout) {
   return true;
 }
 
-/// Where the field that begins at `begin` ends; quotes hold separators together.
+/// End of the field that starts at `begin`; separators within quotes are ignored.
 std::size_t end_of_field(std::string_view line, std::size_t begin, char separator) {
   const std::string_view separators = separator == ' ' ? " \t" : std::string_view(&separator, 1);
   std::size_t i = begin;

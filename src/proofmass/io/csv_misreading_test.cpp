@@ -1,4 +1,4 @@
-// Tables whose figures a reader can easily take for others.
+// Tables whose numbers are easily misread.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 namespace proofmass::io::csv_misreading_test {
 namespace {
 
-/// A table of rows, header first, with one separator and decimal mark.
+/// A table of rows, header first, with the given separator and decimal mark.
 std::string table(const std::vector<std::string>& header,
                   std::size_t rows,
                   char separator,
@@ -94,7 +94,7 @@ TEST(CsvMisreading, OfALastColumnFilledInTheFirstRowOnlyIsNone) {
 }
 
 TEST(CsvMisreading, KeepsTablesThatBlanksAlign) {
-  // Tabs here and there, as an editor leaves them: the columns are the blanks'.
+  // Occasional tabs, as inserted by an editor: the columns are separated by blanks.
   const auto read = read_text("t ax ay\n0.0\t1 2\n0.1 \t 3 4\n0.2  5\t\t6\n0.3 7  8\n");
   ASSERT_TRUE(read);
   ASSERT_EQ(read->channels.size(), 2u) << notes_of(*read);
@@ -119,7 +119,8 @@ TEST(CsvMisreading, OfThousandsAsDecimalsIsNone) {
 }
 
 TEST(CsvMisreading, OfDecimalsAsThousandsIsNone) {
-  // Trimmed decimals of which some happen to have three figures; and fixed ones that all have.
+  // Trimmed decimals, some of which happen to have three digits; and fixed ones that all have
+  // three.
   const auto trimmed = read_text("t;ax\n0;1,125\n1;2\n2;3,375\n3;1,125\n4;2\n");
   ASSERT_TRUE(trimmed);
   EXPECT_EQ(trimmed->channels[0].values, (std::vector<double>{1.125, 2, 3.375, 1.125, 2}));

@@ -32,8 +32,8 @@ std::string rows_from(const Seen& seen, std::string_view fault) {
              : fmt::format("{} lines, the first {}, {}", seen.count, seen.first_line, fault);
 }
 
-/// A channel whose figures cannot be read is no column of words: it is lost. It is known by its
-/// unit, by its name or by the look of its fields.
+/// A channel whose numbers cannot be read is not a text column: it is lost. It is recognised by its
+/// unit, its name or the appearance of its fields.
 void tell_lost_channels(const CsvLayout& layout,
                         const CsvHeader& header,
                         const CsvColumns& columns,
@@ -52,7 +52,7 @@ void tell_lost_channels(const CsvLayout& layout,
   }
 }
 
-/// Says what became of the columns of words.
+/// Notes on the use of the text columns.
 void tell_words(const CsvHeader& header, const CsvColumns& columns, std::vector<Note>& notes) {
   if (columns.labels)
     notes.push_back({Severity::info, fmt::format("{}: words, kept as labels",

@@ -10,14 +10,13 @@
 
 namespace proofmass::io {
 
-/// Says which dialect was found and what was made of the columns.
+/// Notes on the detected dialect and the interpretation of the columns.
 void tell_layout(const CsvLayout& layout,
                  const CsvHeader& header,
                  const CsvColumns& columns,
                  std::vector<Note>& notes);
 
-/// Says what was wrong with the rows, each fault with its count and first line; `point` is the
-/// decimal mark.
+/// Notes on faults of the rows, each with its count and first line; `point` is the decimal mark.
 void tell_faults(const RowFaults& faults,
                  const CsvHeader& header,
                  const CsvColumns& columns,

@@ -15,7 +15,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Lines longer than this belong to no table.
+/// Longer lines are not part of a table.
 constexpr std::size_t longest_line = std::size_t{8} << 20;
 
 /// The beginning of the text: 64 KiB, or more if that does not hold ten lines.
@@ -31,20 +31,20 @@ Result<std::string_view> peek_head(PeekSource& source) {
 
 std::size_t expected_rows(const PeekSource& source, const CsvLayout& layout) {
   if (!source.size() || layout.bytes_per_row <= 0.0) return 0;
-  // Half as many again as the first rows promise: what is reserved and not used costs nothing.
+  // 1.5 times the estimate from the first rows: reserved memory that is not used costs nothing.
   const double rows = 1.5 * static_cast<double>(*source.size()) / layout.bytes_per_row + 64.0;
   constexpr double most_values = 1 << 30;
   return static_cast<std::size_t>(
       std::min(rows, most_values / static_cast<double>(layout.columns.size())));
 }
 
-/// Feeds the text from the first row on to `rows`, a piece at a time.
+/// Passes the text from the first row on to `rows`, in pieces.
 class LineFeed {
  public:
   LineFeed(PeekSource& source, const CsvLayout& layout)
       : source_(source), layout_(layout), to_skip_(layout.data_offset) {}
 
-  /// Reads one piece and parses its whole lines, at the end of the text all; false there.
+  /// Reads one piece and parses its whole lines, at the end of the text all; false at the end.
   Result<bool> step(CsvRows& rows) {
     if (at_end_) return false;
     if (filled_ == buffer_.size() - decimal_padding && !make_room())
@@ -73,7 +73,7 @@ class LineFeed {
     searched_ = 0;
   }
 
-  /// A tail of zeros after a power cut can be of any length: all but one of them can go.
+  /// Trailing zeros after a power failure can be of any length: keeps one of them.
   bool make_room() {
     const auto last = std::string_view(buffer_.data(), filled_).find_last_not_of('\0');
     const std::size_t kept = last == std::string_view::npos ? 1 : last + 2;
@@ -106,11 +106,11 @@ class LineFeed {
   bool at_end_ = false;
   std::vector<char> buffer_ = std::vector<char>(std::size_t{256} << 10);
   std::size_t filled_ = 0;
-  std::size_t searched_ = 0;  ///< bytes known to hold no line end
+  std::size_t searched_ = 0;  ///< bytes known to contain no line end
 };
 
-/// The first column of words that says more than one thing for all rows, else the first;
-/// `has_figures` says of each column of the file whether it does.
+/// The first text column with more than one word, else the first; `has_figures` gives for each
+/// column of the file whether it has numbers.
 std::optional<std::size_t> label_column(const CsvColumns& columns,
                                         const CsvRows& rows,
                                         const std::vector<bool>& has_figures) {
@@ -210,7 +210,7 @@ class CsvReader final : public RecordingReader {
     if (!columns_.stamps) return;
     rows.stamps = rows_->take(*columns_.stamps);
     head_.stamps->origin = rows_->stamps()->origin().value_or(StampOrigin{});
-    // Loggers that can also write the seconds since 1970 name the start all the same.
+    // Loggers that can also write seconds since 1970 state the start in either case.
     constexpr double latest_since_start_s = 1e8;
     if (header_.zero_ns && head_.stamps->unit.to_si == 1.0 &&
         head_.stamps->origin.value() < latest_since_start_s)
@@ -219,7 +219,7 @@ class CsvReader final : public RecordingReader {
       head_.stamps->clock = rows_->stamps()->zone_missing() ? StampClock::wall : StampClock::zoned;
   }
 
-  /// Makes a column of words the recording's labels; it is no channel then.
+  /// Makes a text column the recording's labels; it is then not a channel.
   void take_labels(std::size_t column, Recording& recording) {
     recording.labels = rows_->words().at(column).labels();
     recording.label_channel = header_.labels[column].name;
@@ -232,12 +232,12 @@ class CsvReader final : public RecordingReader {
   CsvLayout layout_;
   CsvHeader header_;
   CsvColumns columns_;
-  std::vector<bool> has_figures_;  ///< of each column of the file, so far
+  std::vector<bool> has_figures_;  ///< for each column of the file, so far
   LineFeed feed_;
   std::optional<CsvRows> rows_;
   RawHead head_;
   Progress progress_;
-  std::size_t seen_wordy_ = 0;  ///< of CsvRows::wordy_lines()
+  std::size_t seen_wordy_ = 0;  ///< number of CsvRows::wordy_lines()
 };
 
 }  // namespace
@@ -264,7 +264,7 @@ Result<std::unique_ptr<RecordingReader>> csv_reader(std::unique_ptr<PeekSource> 
 
 namespace {
 
-/// The rows in the first 64 KiB, which are still to be read; none if they cannot be.
+/// The rows in the first 64 KiB, without consuming them; none if they cannot be read.
 RawRows first_rows_of(PeekSource& source, const ReadOptions& options) {
   RawRows rows;
   const auto head = source.peek(std::size_t{64} << 10);

@@ -9,12 +9,12 @@
 
 namespace proofmass::io {
 
-/// A table of text of any dialect, from where `source` stands.
-/// Errors: too_few_samples (no row of numbers), corrupt (no table), invalid_argument.
+/// A text table of any dialect, starting at the current position of `source`. Errors:
+/// too_few_samples (no row of numbers), corrupt (no table), invalid_argument.
 [[nodiscard]] Result<std::unique_ptr<RecordingReader>> csv_reader(
     std::unique_ptr<PeekSource> source, const ReadOptions& options);
 
-/// The same as a file of one table.
+/// The same as a file with one table.
 [[nodiscard]] Result<std::unique_ptr<TableFile>> open_csv(std::unique_ptr<PeekSource> source,
                                                           const ReadOptions& options);
 

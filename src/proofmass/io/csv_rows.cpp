@@ -21,21 +21,21 @@ const char* skip_blanks(const char* p) {
   return p;
 }
 
-/// Where an empty field or a plain "nan" ends; nullptr if it is neither.
+/// End of an empty field or a plain "nan"; nullptr if it is neither.
 const char* scan_missing(const char* p, char separator, char line_end) {
   if (*p == separator || *p == line_end) return p;
   if ((p[0] | 0x20) == 'n' && (p[1] | 0x20) == 'a' && (p[2] | 0x20) == 'n') return p + 3;
   return nullptr;
 }
 
-/// Where a field of words ends; nullptr if it has quotes or zeros in it.
+/// End of a text field; nullptr if it contains quotes or zeros.
 const char* scan_words(const char* p, char separator, char line_end) {
   for (; *p != separator && *p != line_end; ++p)
     if (*p == '"' || *p == '\0' || (separator == ' ' && *p == '\t')) return nullptr;
   return p;
 }
 
-/// Where the next field begins; nullptr if there is none.
+/// Start of the next field; nullptr if there is none.
 template <bool BlankSeparated>
 const char* scan_separator(const char* p, char separator) {
   if constexpr (BlankSeparated) return *p == ' ' || *p == '\t' ? p : nullptr;
@@ -43,7 +43,7 @@ const char* scan_separator(const char* p, char separator) {
   return *p == separator ? p + 1 : nullptr;
 }
 
-/// Where the next line begins, behind one separator at most; nullptr if the row goes on.
+/// Start of the next line, after at most one separator; nullptr if the row continues.
 template <bool BlankSeparated>
 const char* scan_row_end(const char* p, char separator, char line_end) {
   p = skip_blanks<BlankSeparated>(p);
@@ -52,17 +52,17 @@ const char* scan_row_end(const char* p, char separator, char line_end) {
   return *p == line_end ? p + 1 : nullptr;
 }
 
-/// What the loop below needs to know, held in registers.
+/// Parameters of the loop below, held in registers.
 struct Marks {
   char separator;
   char point;
   char line_end;
-  bool can_be_missing;  ///< an empty line is no row, and between blanks nothing can be missing
+  bool can_be_missing;  ///< not for empty lines, nor with blanks as separators
 };
 
-/// One plain figure, or nothing; nullptr if there is anything else. A stamp is taken relative to
-/// the first.
-// A call for each figure costs a tenth of the speed.
+/// One plain number, or an empty field; nullptr for anything else. A stamp is relative to the
+/// first.
+// A function call per number costs a tenth of the speed.
 [[gnu::always_inline]] inline const char* parse_value(const char* p,
                                                       const Marks& marks,
                                                       const StampReader* stamps,
@@ -122,7 +122,7 @@ std::vector<double> CsvRows::take(std::size_t column) {
   return columns_[slots_[column]].take();
 }
 
-/// Where a field of words ends, which is taken if it is read; nullptr if it has quotes or zeros.
+/// End of a text field, which is stored if it is used; nullptr if it contains quotes or zeros.
 const char* CsvRows::parse_words(const char* begin, std::size_t column) {
   const char* end = scan_words(begin, layout_.separator, layout_.line_end);
   if (uses_[column] == ColumnUse::words && end != nullptr)
@@ -130,8 +130,8 @@ const char* CsvRows::parse_words(const char* begin, std::size_t column) {
   return end;
 }
 
-/// One row of plain figures, straight from the text; nullptr, with nothing changed that matters, if
-/// there is anything else in it. This loop is the reader's speed.
+/// Parses one row of plain numbers directly from the text; nullptr, with no relevant change, if
+/// there is anything else in it. This loop determines the reader's speed.
 template <bool BlankSeparated>
 const char* CsvRows::parse_plain(const char* p) {
   const Marks marks{layout_.separator, layout_.point, layout_.line_end,
@@ -154,9 +154,8 @@ const char* CsvRows::parse_plain(const char* p) {
   }
 }
 
-/// Where the row that begins here ends: with its line, or where a quoted text goes on over more
-/// lines with the one that closes it. A quote that none of the next lines closes is a mark like any
-/// other.
+/// End of the row that starts here: the end of its line, or of the line that closes a quoted text
+/// over several lines. A quote that none of the next lines closes is an ordinary character.
 const char* CsvRows::end_of_row(const char* begin, const char* end) {
   const char* line_end = std::find(begin, end, layout_.line_end);
   const std::string_view line(begin, static_cast<std::size_t>(line_end - begin));
@@ -203,8 +202,8 @@ void CsvRows::parse_last(std::string_view line) {
   ++line_;
 }
 
-/// A line of any kind. Where zeros are in it (a file system's way of losing the last block) what
-/// stands before them broke off there.
+/// A line of any kind. If it contains zeros (a file system that lost the last block), the text
+/// before them is truncated.
 void CsvRows::parse_any(std::string_view line, bool is_cut) {
   if (line.ends_with('\r')) line.remove_suffix(1);
   if (const auto nul = line.find('\0'); nul != std::string_view::npos) {
@@ -216,7 +215,7 @@ void CsvRows::parse_any(std::string_view line, bool is_cut) {
   parse_fields(line, is_cut);
 }
 
-/// The value for a kept column; NaN with a remark where there is none.
+/// The value for a kept column; NaN with a note if there is none.
 double CsvRows::read_field(std::size_t column, std::size_t fields) {
   if (column >= fields) return nan;
   if (uses_[column] == ColumnUse::stamps) {
@@ -237,12 +236,12 @@ double CsvRows::read_field(std::size_t column, std::size_t fields) {
   return cell.value;
 }
 
-/// How many of the fields can be used, what is wrong with their number being noted.
+/// Number of usable fields; a wrong count is noted.
 std::size_t CsvRows::usable_fields(bool is_cut) {
   const std::size_t width = uses_.size();
   std::size_t count = fields_.size();
-  // The last field of a line that broke off may have lost digits: a whole row without its line end
-  // is taken for whole only where nothing shows otherwise.
+  // The last field of a truncated line may have lost digits: a complete row without its line end is
+  // accepted only if nothing indicates otherwise.
   const bool ended = count > width || (count == width && !layout_.trailing_separator);
   if (is_cut && !ended) {
     faults_.cut.add(line_);
@@ -254,7 +253,7 @@ std::size_t CsvRows::usable_fields(bool is_cut) {
   return count;
 }
 
-/// Whether a kept field holds a figure, or nothing: not a word.
+/// True if a kept field contains a number or nothing, not a word.
 bool CsvRows::is_figure(std::size_t column) const {
   if (!has_values(uses_[column])) return false;
   if (uses_[column] == ColumnUse::stamps && !plain_) return !trimmed(fields_[column]).empty();
@@ -291,7 +290,7 @@ void CsvRows::parse_fields(std::string_view line, bool is_cut) {
   commit();
 }
 
-/// Takes the row's values and words from its first `count` fields.
+/// Stores the row's values and words from its first `count` fields.
 void CsvRows::read_row(std::size_t count) {
   double* out = gathered_.data() + gathered_rows_;
   for (std::size_t c = 0; c < uses_.size(); ++c) {

@@ -15,10 +15,10 @@
 
 namespace proofmass::io {
 
-/// What becomes of a column.
+/// Use of a column.
 enum class ColumnUse : unsigned char { keep, stamps, words, skip };
 
-/// How often something was seen, and where first.
+/// Number of occurrences, and the first one.
 struct Seen {
   std::size_t count = 0;
   std::size_t first_line = 0;
@@ -27,52 +27,51 @@ struct Seen {
   }
 };
 
-/// What was wrong with the rows; none of it stops the reading.
+/// Faults of the rows; none of them stops the reading.
 struct RowFaults {
-  Seen narrow;                        ///< fewer fields than columns: the missing are NaN
-  Seen wide;                          ///< more fields than columns: the excess is passed over
-  Seen unreadable;                    ///< no number in it at all: passed over
-  Seen cut;                           ///< broke off: its last field is NaN
-  Seen nul;                           ///< bytes of zero in it
-  std::map<std::size_t, Seen> words;  ///< by column: a word where a number was expected
+  Seen narrow;                        ///< fewer fields than columns: the missing ones are NaN
+  Seen wide;                          ///< more fields than columns: the excess is ignored
+  Seen unreadable;                    ///< no number in it: skipped
+  Seen cut;                           ///< truncated: its last field is NaN
+  Seen nul;                           ///< contains zero bytes
+  std::map<std::size_t, Seen> words;  ///< by column: a word instead of a number
   std::map<std::size_t, std::string> first_word;
-  std::map<std::size_t, Seen> grouped;  ///< by column: figures with their thousands separated
+  std::map<std::size_t, Seen> grouped;  ///< by column: numbers with separated thousands
   std::map<std::size_t, std::string> first_grouped;
-  Seen remarks;  ///< between the rows
-  /// Lines between the rows that are no sample: then line and sample do not run in step.
+  Seen remarks;  ///< comments between the rows
+  /// Lines between the rows that are not samples: then lines and samples do not advance together.
   bool out_of_step = false;
 };
 
-/// Turns lines of a known layout into columns of doubles.
+/// Converts lines of a known layout to columns of doubles.
 class CsvRows {
  public:
-  /// The layout must outlive the rows; `uses` says of each of its columns what becomes of it.
+  /// The layout must outlive the rows; `uses` gives the use of each column.
   CsvRows(const CsvLayout& layout,
           std::vector<ColumnUse> uses,
           std::optional<StampReader> stamps,
           std::optional<std::size_t> date_column,
           std::size_t expected_rows);
 
-  /// Parses whole lines, each ended by the layout's line end, with decimal_padding readable bytes
-  /// behind `end`.
+  /// Parses whole lines, each terminated by the layout's line end, with decimal_padding readable
+  /// bytes after `end`.
   void parse(const char* begin, const char* end);
-  /// Parses what is left at the end of the text, without its line end.
+  /// Parses the last line of the text, without its line end.
   void parse_last(std::string_view line);
-  /// Hands over what parse() has gathered to the columns, before they are taken.
+  /// Appends the rows gathered by parse() to the columns; call before taking them.
   void flush();
 
   [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] std::size_t line() const { return line_; }
   [[nodiscard]] const RowFaults& faults() const { return faults_; }
-  /// Lines between the rows that hold as many fields as there are columns, and no figure: the first
-  /// few, among which a second header will be.
+  /// Lines between the rows with as many fields as columns and no number: the first few, which
+  /// include a second header if there is one.
   [[nodiscard]] const std::vector<PreambleLine>& wordy_lines() const { return wordy_lines_; }
   [[nodiscard]] const std::optional<StampReader>& stamps() const { return stamps_; }
-  /// The values of the file's column c, which must be kept or stamps, since they were last taken;
-  /// after flush().
+  /// The values of the file's column c, which must be kept or stamps, since the last call; after
+  /// flush().
   [[nodiscard]] std::vector<double> take(std::size_t column);
-  /// The words of the file's columns that are read as words, and those in columns where the layout
-  /// saw nothing at all.
+  /// The words of the text columns, and of columns that were empty in the layout.
   [[nodiscard]] const std::map<std::size_t, WordRuns>& words() const { return words_; }
 
  private:
@@ -93,24 +92,24 @@ class CsvRows {
   void commit_words();
 
   static constexpr std::size_t most_wordy_lines = 64;
-  static constexpr std::size_t block = 512;  ///< rows gathered before columns are appended to
+  static constexpr std::size_t block = 512;  ///< rows gathered before they are appended to columns
 
   const CsvLayout& layout_;
   std::vector<ColumnUse> uses_;
   std::optional<StampReader> stamps_;
   std::optional<std::size_t> date_column_;
-  std::vector<std::size_t> slots_;  ///< of each column of the file among those of its kind
+  std::vector<std::size_t> slots_;  ///< index of each file column among those of its use
   std::vector<GrowingColumn> columns_;
-  std::vector<double> gathered_;  ///< block by block, a column's rows side by side
+  std::vector<double> gathered_;  ///< in blocks, each column's rows contiguous
   std::size_t gathered_rows_ = 0;
   std::size_t rows_ = 0;
   std::size_t line_ = 0;
   std::vector<std::string_view> fields_;
   std::map<std::size_t, WordRuns> words_;
-  // Where the row's word goes, and the word, for each column of words.
+  // Destination and value of the row's word, for each text column.
   std::vector<WordRuns*> word_runs_;
   std::vector<std::string_view> row_words_;
-  bool pending_gap_ = false;  ///< a line that is no sample, harmful only if a sample follows
+  bool pending_gap_ = false;  ///< a line that is not a sample; relevant only if a sample follows
   bool plain_ = true;         ///< no calendar time: parse_plain may be tried
   RowFaults faults_;
   std::vector<PreambleLine> wordy_lines_;

@@ -9,10 +9,10 @@
 
 namespace proofmass::io {
 
-/// When the stamps of a table, which count the seconds from its start, are zero, as a line before
-/// the rows says.
+/// Time of zero of a table's stamps, which count seconds from its start, given in a line before the
+/// rows.
 struct CsvStart {
-  std::optional<std::int64_t> zero_ns;  ///< since 1970, as if the clock showed UTC
+  std::optional<std::int64_t> zero_ns;  ///< since 1970, assuming that the clock is UTC
   std::vector<Note> notes;
 };
 

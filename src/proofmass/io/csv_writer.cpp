@@ -24,8 +24,8 @@ void append_figure(std::string& out, double value) {
   out.append(text.data(), end.ptr);
 }
 
-/// A name or a label. Spreadsheets take what begins with one of these signs for a formula and
-/// work it out: an apostrophe before it, which the reader takes off again, says that it is text.
+/// A name or a label. Spreadsheets evaluate text that begins with one of these characters as a
+/// formula: a preceding apostrophe, which the reader removes again, marks it as text.
 /// Source: OWASP, "CSV Injection".
 void append_words(std::string& out, std::string words) {
   if (is_formula(words)) words.insert(0, 1, '\'');
@@ -53,9 +53,9 @@ std::string header_of(const Recording& recording) {
   return out + '\n';
 }
 
-constexpr int finest = -27;  ///< decimals that a clock of 19 digits leaves room for in 128 bits
+constexpr int finest = -27;  ///< decimals that fit into 128 bits for a clock of 19 digits
 
-/// A figure as a decimal of the shortest form that reads back, to 10^finest; nullopt beyond 317
+/// A number as a decimal of the shortest form that reads back, to 10^finest; nullopt beyond 317
 /// years.
 std::optional<Int128> shortest_decimal(double value) {
   std::array<char, 32> text;
@@ -82,8 +82,8 @@ std::optional<Int128> shortest_decimal(double value) {
   return value < 0.0 ? -mantissa : mantissa;
 }
 
-/// Writes the time column: on the recording's own clock, digit for digit the sum of its first
-/// stamp and the seconds since; seconds since the first where it has no clock.
+/// Writes the time column: on the recording's own clock, the exact sum of its first stamp and the
+/// seconds from it; seconds from the first if it has no clock.
 class TimeWriter {
  public:
   explicit TimeWriter(const TimeBase& time) : start_(time.start_ns.value_or(0)) {
@@ -106,7 +106,7 @@ class TimeWriter {
     }
     std::array<char, 48> digits;
     std::size_t count = 0;
-    // Zeros behind the last decimal say nothing.
+    // Trailing zeros are omitted.
     int decimals = -finest;
     while (decimals > 0 && value % 10 == 0) {
       value /= 10;
@@ -123,12 +123,12 @@ class TimeWriter {
   Int128 start_;
 };
 
-/// Writes the column of labels; a sample without one has an empty field.
+/// Writes the label column; a sample without one has an empty field.
 class LabelWriter {
  public:
   explicit LabelWriter(const std::vector<Label>& labels) : labels_(labels) {}
 
-  /// Samples must be asked for in order.
+  /// Samples must be requested in order.
   void append(std::string& out, std::size_t k) {
     while (next_ < labels_.size() && labels_[next_].last < k) ++next_;
     if (next_ < labels_.size() && labels_[next_].first <= k) append_words(out, labels_[next_].text);
@@ -154,7 +154,7 @@ class CsvWriter final : public RecordingWriter {
     LabelWriter labels(labels_);
     for (std::size_t r = 0; r < block.rows(); ++r) {
       if (timed) clock_.append(out_, times_.at(block, r));
-      // Not in the last column, where an empty field is taken for none.
+      // Not in the last column, where an empty field would not be read as one.
       if (timed && labelled) out_ += ',';
       if (labelled) labels.append(out_, block.first + r);
       append_values(block, r, timed || labelled);
@@ -169,7 +169,7 @@ class CsvWriter final : public RecordingWriter {
   }
 
  private:
-  /// The channels' figures of a row and its end.
+  /// The channels' values of a row and the line end.
   void append_values(const Block& block, std::size_t row, bool is_behind) {
     for (const View<double>& channel : block.channels) {
       if (std::exchange(is_behind, true)) out_ += ',';

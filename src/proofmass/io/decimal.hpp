@@ -8,14 +8,14 @@
 
 namespace proofmass::io {
 
-/// A decimal figure as it stands in a text: ±mantissa · 10^exponent10.
+/// A decimal number as written: ±mantissa · 10^exponent10.
 struct Decimal {
   std::uint64_t mantissa = 0;
   int exponent10 = 0;
   bool negative = false;
 };
 
-/// Bytes that must be readable behind any text given to scan_decimal: it looks at eight at a time.
+/// Bytes that must be readable after any text given to scan_decimal: it reads eight at a time.
 inline constexpr std::size_t decimal_padding = 8;
 
 inline bool is_digit(char c) {
@@ -30,13 +30,13 @@ inline std::uint64_t load_8(const char* p) {
   return bytes;
 }
 
-/// The high bit of each byte that is no digit. `bytes` are less '0' each: a digit is 0 … 9, to
-/// which 118 can be added without reaching the high bit.
+/// The high bit of each byte that is not a digit. '0' has been subtracted from each of `bytes`: a
+/// digit is 0 … 9, to which 118 can be added without reaching the high bit.
 inline std::uint64_t marks_of_others(std::uint64_t bytes) {
   return ((bytes + 0x7676767676767676) | bytes) & 0x8080808080808080;
 }
 
-/// The number that eight digits 0 … 9 spell, first byte first, by pairwise sums in one register.
+/// The number given by eight digits 0 … 9, first byte first, by pairwise sums in one register.
 /// Source: D. Lemire, "Number parsing at a gigabyte per second", Softw. Pract. Exper. 51 (2021)
 /// 1700.
 inline std::uint32_t value_of_8_digits(std::uint64_t digits) {
@@ -47,9 +47,9 @@ inline std::uint32_t value_of_8_digits(std::uint64_t digits) {
                                     32);
 }
 
-/// Appends the digits at p to the mantissa, eight at a time; the last few are moved to the end of
-/// the register, where those that are missing count as leading zeros. No branch hangs on how many
-/// there are, which is the one thing about figures that cannot be foreseen.
+/// Appends the digits at p to the mantissa, eight at a time. The last few are shifted to the end of
+/// the register, where missing digits count as leading zeros. No branch depends on their number,
+/// which is the one unpredictable property of numbers.
 inline const char* scan_digits(const char* p, std::uint64_t& mantissa) {
   if constexpr (std::endian::native == std::endian::little) {
     static constexpr std::array<std::uint64_t, 8> powers{1,      10,      100,       1'000,
@@ -59,7 +59,7 @@ inline const char* scan_digits(const char* p, std::uint64_t& mantissa) {
       const std::uint64_t others = marks_of_others(digits);
       if (others != 0) {
         const int count = std::countr_zero(others) / 8;
-        // In two steps, as a shift by all 64 bits is undefined.
+        // In two steps, because a shift by all 64 bits is undefined.
         const std::uint64_t moved = (digits << 8) << (56 - 8 * count);
         mantissa = mantissa * powers[static_cast<std::size_t>(count)] + value_of_8_digits(moved);
         return p + count;
@@ -72,7 +72,7 @@ inline const char* scan_digits(const char* p, std::uint64_t& mantissa) {
   return p;
 }
 
-/// Zeros before the first other digit; the point does not count.
+/// Zeros before the first other digit, not counting the point.
 inline std::ptrdiff_t count_leading_zeros(const char* p, char point) {
   std::ptrdiff_t zeros = 0;
   for (; *p == '0' || *p == point; ++p)
@@ -93,16 +93,16 @@ inline const char* scan_exponent(const char* p, int& exponent10) {
 
 }  // namespace detail
 
-/// Reads [+-]digits[point digits][e[+-]digits] and returns where it ends; nullptr if there is no
-/// number or one of more than 19 significant digits, whose mantissa would not fit. The text must
-/// end in something that is no digit and have decimal_padding bytes behind it.
+/// Parses [+-]digits[point digits][e[+-]digits] and returns the end; nullptr if there is no number
+/// or one of more than 19 significant digits, whose mantissa would not fit. The text must end in a
+/// non-digit followed by decimal_padding bytes.
 inline const char* scan_decimal(const char* p, char point, Decimal& out) {
-  // Signs come as they like: no branch may hang on them.
+  // Signs are unpredictable: no branch may depend on them.
   out.negative = *p == '-';
   p += static_cast<int>(out.negative) | static_cast<int>(*p == '+');
   std::uint64_t mantissa = 0;
   const char* const first = p;
-  // Few digits stand before the point, mostly as many as the row before had.
+  // There are few digits before the point, usually as many as in the previous row.
   for (; is_digit(*p); ++p) mantissa = mantissa * 10 + static_cast<unsigned>(*p - '0');
   std::ptrdiff_t digits = p - first;
   int exponent10 = 0;
@@ -123,8 +123,8 @@ inline const char* scan_decimal(const char* p, char point, Decimal& out) {
   return p;
 }
 
-/// The nearest double where one division or product of exact factors gives it, which is the case
-/// for nearly all figures people log; false where it does not.
+/// The nearest double if one division or product of exact factors gives it, which is the case for
+/// nearly all logged numbers; false otherwise.
 /// Source: W. D. Clinger, "How to read floating point numbers accurately", PLDI 1990, section 3.
 inline bool to_double_exactly(const Decimal& decimal, double& out) {
   static constexpr std::array<double, 23> powers{1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -145,8 +145,8 @@ inline bool to_double_exactly(const Decimal& decimal, double& out) {
   return true;
 }
 
-/// The nearest double to a decimal of any size.
-/// Source: D. Lemire (2021), as above, by way of the fast_float library.
+/// The nearest double to a decimal of any size. Source: D. Lemire (2021), as above, in the
+/// fast_float library.
 [[nodiscard]] double to_double(const Decimal& decimal);
 
 }  // namespace proofmass::io

@@ -12,7 +12,7 @@
 namespace proofmass::io::decimal_test {
 namespace {
 
-/// The value as the row loop takes it, or nullopt where that leaves the text to the slow path.
+/// The value from the row loop's parser, or nullopt if that leaves the text to the slow path.
 std::optional<double> scanned(std::string text, std::size_t* used = nullptr) {
   const std::size_t size = text.size();
   text += ',';

@@ -5,7 +5,7 @@
 
 namespace proofmass::io::specimen {
 
-/// Compressed by zlib, as gzip does (16 + 15 bits) or as MATLAB (15).
+/// Compressed by zlib, in the format of gzip (16 + 15 bits) or MATLAB (15).
 inline std::string deflated(std::string text, int window_bits) {
   z_stream stream{};
   deflateInit2(&stream, 6, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY);

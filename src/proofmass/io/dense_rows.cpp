@@ -16,7 +16,7 @@ std::size_t rows_of(const RawRows& rows) {
   return rows.channels.empty() ? 0 : rows.channels.front().size();
 }
 
-/// The channels that are wanted, as places.
+/// Indices of the requested channels.
 std::vector<std::size_t> wanted_channels(const RawHead& head, const ReadOptions& options) {
   std::vector<std::size_t> wanted;
   const auto& channels = head.recording.channels;
@@ -44,7 +44,8 @@ std::vector<std::size_t> others_than(const std::vector<std::size_t>& wanted, std
   return others;
 }
 
-/// Adds to the wanted the channels that are read with them: in a quarter of their rows at least.
+/// Adds the channels that are sampled together with the requested ones: in at least a quarter of
+/// their rows.
 void add_companions(const RawRows& rows,
                     const std::vector<std::size_t>& wanted,
                     std::vector<std::size_t>& kept) {
@@ -61,7 +62,7 @@ void add_companions(const RawRows& rows,
   std::ranges::sort(kept);
 }
 
-/// Whether the wanted and the other channels have rows of their own: those of both are few.
+/// True if the requested and the other channels have separate rows: few rows have both.
 bool take_turns(const RawRows& rows,
                 const std::vector<std::size_t>& wanted,
                 const std::vector<std::size_t>& others) {
@@ -75,11 +76,11 @@ bool take_turns(const RawRows& rows,
     theirs += is_theirs ? 1 : 0;
     both += is_mine && is_theirs ? 1 : 0;
   }
-  constexpr std::size_t few = 4;  // readings of two sensors fall on one stamp by chance
+  constexpr std::size_t few = 4;  // samples of two sensors that share a stamp by chance
   return mine > few && theirs > few && both * few < std::min(mine, theirs);
 }
 
-/// The median step of the stamps of the rows that have a figure; 0 if it cannot be told.
+/// The median interval of the stamps of the rows with a value; 0 if it cannot be determined.
 double median_step(const RawRows& rows, const std::vector<std::size_t>& wanted) {
   std::vector<double> steps;
   double last = std::numeric_limits<double>::quiet_NaN();
@@ -132,7 +133,7 @@ class OneSensor final : public RecordingReader {
 
   void finish(Recording& recording) override {
     reader_->finish(recording);
-    // Rows do not run in step with lines any more, nor do labels.
+    // Rows no longer match lines, nor labels.
     recording.first_line = 0;
     recording.labels.clear();
     recording.label_channel.clear();
@@ -148,7 +149,7 @@ class OneSensor final : public RecordingReader {
   }
 
  private:
-  /// Adds the row to the reading that is open, or ends that and begins another.
+  /// Adds the row to the pending sample, or completes that and begins another.
   void take_row(std::size_t r, RawRows& rows) {
     if (!has_figure(ahead_, wanted_, r)) {
       ++others_;
@@ -166,7 +167,7 @@ class OneSensor final : public RecordingReader {
     for (const std::size_t c : kept_) open_.push_back(ahead_.channels[c][r]);
     if (!ahead_.stamps.empty()) open_stamp_ = ahead_.stamps[r];
   }
-  /// Whether the row has only figures that the open reading lacks, next to it in time.
+  /// True if the row has only values that the pending sample lacks, at almost the same time.
   [[nodiscard]] bool belongs(std::size_t r) const {
     if (ahead_.stamps.empty() || !(ahead_.stamps[r] - open_stamp_ <= closest_)) return false;
     for (std::size_t k = 0; k < kept_.size(); ++k)
@@ -182,11 +183,11 @@ class OneSensor final : public RecordingReader {
   std::unique_ptr<RecordingReader> reader_;
   RawHead head_;
   RawRows ahead_;
-  std::vector<std::size_t> wanted_;  ///< whose rows these are
-  std::vector<std::size_t> kept_;    ///< they, and what is read with them
-  double closest_;                   ///< stamps nearer than this are of one reading
+  std::vector<std::size_t> wanted_;  ///< channels that define the rows
+  std::vector<std::size_t> kept_;    ///< these, and those sampled with them
+  double closest_;                   ///< closer stamps belong to one sample
   std::string left_out_;
-  std::vector<double> open_;  ///< the reading that the next row may belong to
+  std::vector<double> open_;  ///< the sample to which the next row may belong
   double open_stamp_ = 0.0;
   bool has_open_ = false;
   std::size_t others_ = 0;

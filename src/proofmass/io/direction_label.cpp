@@ -13,8 +13,8 @@ bool is_alphanumeric(char c) {
   return is_lower_letter(c) || (c >= '0' && c <= '9');
 }
 
-/// +1, -1, or 0 where the word is none; the single letters only where they stand behind the axis:
-/// "xa" is a position, "ax" an acceleration.
+/// +1, -1, or 0 if the word is not a sign; single letters count only after the axis: "xa" is a
+/// position, "ax" an acceleration.
 int sign_of(std::string_view word, bool is_behind_axis) {
   if (is_any_of(word, {"pos", "positive", "plus", "up", "upward", "upwards"})) return 1;
   if (is_any_of(word, {"neg", "negative", "minus", "down", "downward", "downwards"})) return -1;
@@ -23,7 +23,7 @@ int sign_of(std::string_view word, bool is_behind_axis) {
   return is_any_of(word, {"a", "n"}) ? -1 : 0;
 }
 
-/// What the parts of a label have said so far.
+/// State of parsing a label.
 class Reading {
  public:
   void take_sign(int sign) {
@@ -31,7 +31,7 @@ class Reading {
     sign_ = sign;
   }
 
-  /// A run of letters: an axis, a sign, both in one, or a word that says nothing here.
+  /// A run of letters: an axis, a sign, both in one, or an irrelevant word.
   void take_word(std::string_view word) {
     if (is_any_of(word, {"axis", "g"})) return;
     if (const int sign = sign_of(word, axes_ > 0); sign != 0) return take_sign(sign);
@@ -69,7 +69,7 @@ class Reading {
   int sign_ = 0;
 };
 
-/// In lower case, the typographer's minus as a plain one.
+/// Lower case, with a plain minus for the typographic one.
 std::string plain(std::string_view label) {
   std::string text = lower(label);
   constexpr std::string_view minus = "\u2212";
@@ -90,7 +90,7 @@ std::optional<std::array<double, 3>> direction_of_label(std::string_view label) 
       reading.take_word(std::string_view(text).substr(begin, i - begin));
       continue;
     }
-    // Between two words a stroke only joins them.
+    // Between two words a hyphen only joins them.
     const bool joins = i > 0 && i + 1 < text.size() && is_alphanumeric(text[i - 1]) &&
                        is_alphanumeric(text[i + 1]);
     if (text[i] == '+') reading.take_sign(1);

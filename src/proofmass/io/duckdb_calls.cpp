@@ -9,7 +9,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Finds the functions; what is not there is named.
+/// Finds the functions; keeps the name of a missing one.
 class Finder {
  public:
   explicit Finder(void* library) : library_(library) {}
@@ -19,7 +19,7 @@ class Finder {
     function = reinterpret_cast<Function*>(::dlsym(library_, name));
     if (function == nullptr && missing_ == nullptr) missing_ = name;
   }
-  /// nullptr where all are there.
+  /// nullptr if none is missing.
   [[nodiscard]] const char* missing() const { return missing_; }
 
  private:
@@ -77,7 +77,7 @@ const char* find_calls(void* library, DuckdbCalls& calls) {
 
 std::string duckdb_words(const char* words) {
   std::string text = words == nullptr ? "no reason given" : words;
-  // The reason comes behind what came of it.
+  // The cause follows the consequence.
   constexpr std::string_view consequence = "pending query result\nError: ";
   if (const std::size_t at = text.find(consequence); at != std::string::npos)
     text.erase(0, at + consequence.size());

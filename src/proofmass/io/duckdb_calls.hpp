@@ -5,10 +5,10 @@
 
 #include "proofmass/core/result.hpp"
 
-// What is called of DuckDB's C library. Source: DuckDB, "C API", version 1.1.
+// Functions used of DuckDB's C library. Source: DuckDB, "C API", version 1.1.
 namespace proofmass::io {
 
-/// duckdb_result, which is handed over by value.
+/// duckdb_result, which is passed by value.
 struct DuckdbResult {
   std::uint64_t deprecated_column_count = 0;
   std::uint64_t deprecated_row_count = 0;
@@ -18,7 +18,7 @@ struct DuckdbResult {
   void* internal_data = nullptr;
 };
 
-/// duckdb_string_t: a short text lies within.
+/// duckdb_string_t: a short text is stored inline.
 struct DuckdbText {
   std::uint32_t length;
   char prefix[4];
@@ -33,7 +33,7 @@ inline constexpr int duckdb_type_double = 11;   ///< duckdb_type DUCKDB_TYPE_DOU
 inline constexpr int duckdb_type_varchar = 17;  ///< DUCKDB_TYPE_VARCHAR
 inline constexpr int duckdb_type_blob = 18;     ///< DUCKDB_TYPE_BLOB
 
-/// The functions by their names, less "duckdb_"; all opaque handles are pointers.
+/// The functions by their names, without "duckdb_"; all opaque handles are pointers.
 struct DuckdbCalls {
   int (*create_config)(void** config) = nullptr;
   int (*set_config)(void* config, const char* name, const char* value) = nullptr;
@@ -73,10 +73,10 @@ struct DuckdbCalls {
   int (*appender_destroy)(void** appender) = nullptr;
 };
 
-/// Finds them in a library; the name of one that is not there, or nullptr.
+/// Finds them in a library; returns the name of a missing one, or nullptr.
 [[nodiscard]] const char* find_calls(void* library, DuckdbCalls& calls);
 
-/// The library's words on one line, without what points at the query.
+/// The library's message on one line, without the pointer into the query.
 [[nodiscard]] std::string duckdb_words(const char* words);
 [[nodiscard]] Error duckdb_error(Errc code, const char* words);
 

@@ -42,7 +42,7 @@ Duckdb::~Duckdb() {
 
 Result<Duckdb> Duckdb::open(const std::string& library, const std::string& database) {
   const std::string name = library.empty() ? "libduckdb.so" : library;
-  // Never unloaded: it may have threads.
+  // Never unloaded, because it may have threads.
   void* loaded = ::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (loaded == nullptr) return no_library(name, duckdb_words(::dlerror()));
   auto calls = std::make_unique<DuckdbCalls>();

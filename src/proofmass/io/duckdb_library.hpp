@@ -12,13 +12,13 @@
 
 #include "proofmass/core/result.hpp"
 
-// DuckDB, which reads and writes Parquet: its C library, loaded when it is asked for.
+// DuckDB, which reads and writes Parquet: its C library, loaded on demand.
 // Source: DuckDB, "C API", https://duckdb.org/docs/stable/clients/c/api, as of version 1.1.
 namespace proofmass::io {
 
 struct DuckdbCalls;
 
-/// What a query answers, a chunk of rows at a time.
+/// Result of a query, one chunk of rows at a time.
 class DuckdbRows {
  public:
   DuckdbRows(const DuckdbCalls& calls, std::unique_ptr<struct DuckdbResult> result);
@@ -28,12 +28,13 @@ class DuckdbRows {
   DuckdbRows& operator=(const DuckdbRows&) = delete;
   ~DuckdbRows();
 
-  /// Takes the next chunk: how many rows, 0 at the end. Errors: corrupt, in the library's words.
+  /// Fetches the next chunk: number of rows, 0 at the end. Errors: corrupt, with the library's
+  /// message.
   [[nodiscard]] Result<std::size_t> next();
   [[nodiscard]] std::size_t columns() const;
-  /// A column of the chunk that is of doubles, NaN where there is none.
+  /// A double column of the chunk, NaN where null.
   void copy(std::size_t column, std::span<double> into) const;
-  /// A field of the chunk that is a text or bytes; empty where there is none.
+  /// A text or binary field of the chunk; empty if null.
   [[nodiscard]] std::string text(std::size_t column, std::size_t row) const;
 
  private:
@@ -42,7 +43,7 @@ class DuckdbRows {
   void* chunk_ = nullptr;
 };
 
-/// Rows of doubles on their way into a table.
+/// Appends rows of doubles to a table.
 class DuckdbAppender {
  public:
   DuckdbAppender(const DuckdbCalls& calls, void* appender, std::size_t columns);
@@ -52,7 +53,7 @@ class DuckdbAppender {
   DuckdbAppender& operator=(const DuckdbAppender&) = delete;
   ~DuckdbAppender();
 
-  /// Equally long columns, one for each of the table's. Errors: unreadable, in the library's words.
+  /// Columns of equal length, one per table column. Errors: unreadable, with the library's message.
   [[nodiscard]] Status append(std::span<const std::span<const double>> columns);
   [[nodiscard]] Status close();
 
@@ -68,9 +69,9 @@ class DuckdbAppender {
 /// An open database of DuckDB.
 class Duckdb {
  public:
-  /// Loads the library and opens a database: a file, or one in memory where `database` is empty. It
+  /// Loads the library and opens a database: a file, or one in memory if `database` is empty. It
   /// loads no extensions.
-  /// Errors: unsupported (no such library, or one that lacks what is called), unreadable.
+  /// Errors: unsupported (no such library, or a function is missing), unreadable.
   [[nodiscard]] static Result<Duckdb> open(const std::string& library, const std::string& database);
 
   Duckdb(Duckdb&& other) noexcept;
@@ -79,7 +80,7 @@ class Duckdb {
   Duckdb& operator=(const Duckdb&) = delete;
   ~Duckdb();
 
-  /// Errors: corrupt, in the library's words, one line.
+  /// Errors: corrupt, with the library's message, one line.
   [[nodiscard]] Status run(const std::string& sql) const;
   [[nodiscard]] Result<DuckdbRows> query(const std::string& sql) const;
   [[nodiscard]] Result<DuckdbAppender> append_to(const std::string& table,
@@ -93,7 +94,7 @@ class Duckdb {
   void* connection_;
 };
 
-/// 'a text', "a name", as SQL spells them.
+/// 'a text', "a name", quoted for SQL.
 [[nodiscard]] std::string sql_text(std::string_view text);
 [[nodiscard]] std::string sql_name(std::string_view name);
 

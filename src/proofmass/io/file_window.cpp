@@ -12,7 +12,7 @@ Result<std::string_view> FileWindow::view(std::uint64_t offset, std::uint64_t co
   const auto wanted = static_cast<std::size_t>(count);
   if (offset >= first_ && offset - first_ <= held_ && held_ - (offset - first_) >= wanted)
     return std::string_view(room_.get() + (offset - first_), wanted);
-  // Small pieces come many at a time; a large one brings no more than the beginning of the next.
+  // Small pieces are read many at a time; a large one includes only the beginning of the next.
   constexpr std::size_t ahead = std::size_t{64} << 10;
   const auto target =
       static_cast<std::size_t>(std::min<std::uint64_t>(count + ahead, end_of_file_ - offset));

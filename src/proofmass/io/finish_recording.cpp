@@ -37,7 +37,7 @@ void attach_time(Recording& recording,
   if (is_by_rate && !recording.time.start_ns) recording.time.start_ns = head.start_ns;
   std::ranges::move(found.notes, std::back_inserter(recording.notes));
   if (!found.rejected) return;
-  // What is no time is a channel like any other.
+  // A rejected time column is an ordinary channel.
   StampColumn& column = *found.rejected;
   for (double& value : column.values) value += column.origin.value();
   recording.channels.insert(recording.channels.begin(),
@@ -54,8 +54,8 @@ std::string names_of(const Recording& recording) {
   return names;
 }
 
-/// The channels that a matrix's columns, or a sensor's axes, have become: "acc" is "acc_x", "acc_y"
-/// and "acc_z".
+/// The channels of a matrix's columns, or of a sensor's axes: "acc" is "acc_x", "acc_y" and
+/// "acc_z".
 std::vector<std::size_t> columns_of(const Recording& recording, const std::string& name) {
   std::vector<std::size_t> columns;
   const std::string stem = lower(name);

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files beyond this are no recording's: somebody named a home folder.
+/// Folders with more files are not recordings: the user probably named a home folder.
 constexpr std::size_t most_files = 10'000;
 
 class FolderArchive final : public Archive {
@@ -43,8 +43,8 @@ class FolderArchive final : public Archive {
   std::vector<ArchiveEntry> entries_;
 };
 
-/// Adds the regular files of a folder, and of those in it while `levels` are left. A folder within
-/// that cannot be read is passed over.
+/// Adds the regular files of a folder, and of its subfolders up to `levels`. An unreadable
+/// subfolder is skipped.
 Status gather(const fs::path& folder,
               const std::string& prefix,
               int levels,

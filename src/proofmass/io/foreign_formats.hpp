@@ -9,10 +9,10 @@
 
 namespace proofmass::io {
 
-/// Whether a file is of a format that is known by its first bytes but not read.
+/// True if a file is of a format that is recognised by its first bytes but not supported.
 [[nodiscard]] bool claims_foreign(std::string_view head, std::string_view file_name);
 
-/// Says which format it is and what to do. Errors: unsupported, always.
+/// Names the format and what to do. Errors: unsupported, always.
 [[nodiscard]] Result<std::unique_ptr<TableFile>> refuse_foreign(std::unique_ptr<PeekSource> source,
                                                                 const ReadOptions& options);
 

@@ -7,7 +7,7 @@
 namespace proofmass::io {
 namespace {
 
-/// A file whose bytes are compressed on their way.
+/// A file whose bytes are compressed as they are written.
 class GzipFile final : public OutputFile {
  public:
   explicit GzipFile(std::unique_ptr<OutputFile> file) : file_(std::move(file)) {
@@ -38,7 +38,7 @@ class GzipFile final : public OutputFile {
   Status compress(std::string_view bytes, int flush) {
     if (!is_open_) return Error{Errc::unreadable, "no memory to compress with"};
     std::array<char, 1 << 16> packed;
-    // zlib's interface promises not to write to what it reads.
+    // zlib guarantees that it does not write to its input.
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
     stream_.avail_in = static_cast<uInt>(bytes.size());
     do {

@@ -47,7 +47,7 @@ class GzipSource final : public ByteSource {
       ended_ = true;
       if (inside_member_) note_ = "the gzip data break off after byte " + std::to_string(consumed_);
     }
-    // Several members may stand one behind another; anything else behind one is padding.
+    // Several members may be concatenated; anything else after one is padding.
     if (!inside_member_ && !ended_) begin_member();
     return Done{};
   }

@@ -1,4 +1,4 @@
-// What stands in for the HDF5 library where it was not there at build time.
+// Replaces the HDF5 library if it was not available at build time.
 #include "proofmass/io/hdf5_library.hpp"
 #include "proofmass/io/recording_writers.hpp"
 

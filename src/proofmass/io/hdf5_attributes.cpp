@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t most_texts = 64;
 constexpr std::size_t longest_text = 4096;
 
-/// Up to a NUL or the end, and without blanks behind.
+/// Up to a NUL or the end, without trailing blanks.
 std::string trimmed(const char* text, std::size_t size) {
   std::string out(text, ::strnlen(text, std::min(size, longest_text)));
   while (!out.empty() && out.back() == ' ') out.pop_back();

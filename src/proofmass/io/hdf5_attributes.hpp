@@ -10,7 +10,7 @@ namespace proofmass::io {
 
 [[nodiscard]] bool has_attribute(hid_t object, const char* name);
 
-/// An attribute that is one text; empty where there is none.
+/// A text attribute; empty if there is none.
 [[nodiscard]] std::string text_attribute(hid_t object, const char* name);
 
 /// The attributes of an object that are texts, up to 64 each, or a single number.

@@ -7,7 +7,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Whether there can be so many figures.
+/// True if that many values are possible.
 bool is_possible(const Hdf5Dataset& dataset) {
   constexpr std::uint64_t most_figures = std::uint64_t{1} << 48;
   std::uint64_t figures = 1;

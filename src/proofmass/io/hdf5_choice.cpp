@@ -13,7 +13,7 @@
 namespace proofmass::io {
 namespace {
 
-/// A name as the user may write it: "/imu/acc/" is "imu/acc".
+/// A name as typed by the user: "/imu/acc/" is "imu/acc".
 std::string_view bare_path(std::string_view name) {
   while (name.starts_with('/')) name.remove_prefix(1);
   while (name.ends_with('/')) name.remove_suffix(1);
@@ -54,8 +54,8 @@ class Chooser {
  private:
   static constexpr std::size_t most_columns_joined = 512;
 
-  /// Chooses the datasets that the channels asked for are of, instead; false where there are none,
-  /// or they are chosen already.
+  /// Selects the datasets of the requested channels instead; false if there are none, or they are
+  /// selected already.
   bool take_asked_for() {
     std::set<const MatArray*> asked = arrays_asked_for(tables_, options_);
     if (std::ranges::includes(chosen_, asked)) return false;
@@ -63,7 +63,7 @@ class Chooser {
     return true;
   }
 
-  /// Of the tables within a group, those of the group in it that has most to say.
+  /// Of the tables within a group, selects those of the subgroup with the most values.
   Status take_best(std::string_view within) {
     struct Weight {
       bool may_be_samples = false;
@@ -90,7 +90,7 @@ class Chooser {
     return Done{};
   }
 
-  /// Rows of named fields are samples, however few there are.
+  /// Rows of named fields are samples, however few.
   [[nodiscard]] std::optional<MatTable> table_in(const MatArray& array) const {
     if (!dataset_of(array).is_compound) return table_of(array);
     const MatTable table{&array, array.shape[1], array.shape[0], true};
@@ -98,7 +98,8 @@ class Chooser {
     return is_table ? std::optional(table) : std::nullopt;
   }
 
-  /// What has that length in a group, around it, and below it or the group that has its time.
+  /// Adds the datasets of that length in a group, around it, and below it or the group that has its
+  /// time.
   void take_around(std::string_view group, std::size_t rows) {
     const MatTable* time = time_in(group, rows);
     if (time != nullptr && dataset_of(*time->array).is_compound) {
@@ -125,7 +126,7 @@ class Chooser {
     }
   }
 
-  /// Whether a group has a time of its own, of so many samples.
+  /// True if a group has its own time, with this number of samples.
   [[nodiscard]] bool has_time(std::string_view group, std::size_t rows) const {
     return time_in(group, rows) != nullptr;
   }
@@ -153,7 +154,7 @@ class Chooser {
            time_among(columns->texts, options_).has_value();
   }
 
-  /// Whether a group, or one between it and `scope`, keeps its own time.
+  /// True if a group, or one between it and `scope`, has its own time.
   [[nodiscard]] bool has_time_below(std::string_view scope,
                                     std::string_view group,
                                     std::size_t rows) const {
@@ -188,7 +189,7 @@ class Chooser {
         fmt::format("has no dataset {} that is a table of samples; it has {}", path, others())};
   }
 
-  /// The time that stands beside what was named, or in the nearest group around it.
+  /// Adds the time beside the named datasets, or in the nearest group around them.
   void add_time() {
     const auto first = std::ranges::find_if(
         tables_, [&](const MatTable& table) { return chosen_.contains(table.array); });
@@ -203,7 +204,7 @@ class Chooser {
     return catalogue_.datasets[static_cast<std::size_t>(&array - arrays_.data())];
   }
 
-  /// What the file has beside what was chosen, for a person.
+  /// The contents of the file that were not selected, for the user.
   [[nodiscard]] std::string others() const {
     constexpr std::size_t most = 8;
     std::vector<std::string> items;
@@ -262,7 +263,7 @@ std::vector<MatArray> arrays_of(const Hdf5Catalogue& catalogue) {
   for (const Hdf5Dataset& dataset : catalogue.datasets) {
     MatArray array;
     array.path = dataset.path;
-    // A table of named fields is a group of its own: others do not lie beside its fields.
+    // A table of named fields is its own group: no dataset is beside its fields.
     array.group_length = dataset.is_compound ? dataset.path.size() : dataset.group_length;
     array.class_name = dataset.type;
     array.shape.assign(dataset.shape.rbegin(), dataset.shape.rend());

@@ -13,7 +13,7 @@ bool is_number(hid_t type) {
   return (kind == H5T_INTEGER || kind == H5T_FLOAT || kind == H5T_ENUM) && !type_name(type).empty();
 }
 
-/// How many columns a field makes: 0 where it is no number and no row of numbers.
+/// Number of columns of a field: 0 if it is neither a number nor an array of numbers.
 std::size_t columns_of(hid_t type) {
   constexpr hsize_t most_columns = 4096;
   if (is_number(type)) return 1;

@@ -9,7 +9,7 @@
 
 namespace proofmass::io {
 
-/// A field of a compound type that is a number, or a row of them.
+/// A field of a compound type that is a number, or an array of them.
 struct NumericField {
   std::string name;
   std::size_t columns = 1;
@@ -22,10 +22,10 @@ struct CompoundFields {
   [[nodiscard]] std::size_t columns() const;
 };
 
-/// The fields of a compound type; none of any other type.
+/// The fields of a compound type; none for any other type.
 [[nodiscard]] CompoundFields fields_of(hid_t type);
 
-/// The type that those fields have in memory: doubles one after another.
+/// The memory type of those fields: consecutive doubles.
 [[nodiscard]] Hdf5Handle memory_type_of(const CompoundFields& fields);
 
 }  // namespace proofmass::io

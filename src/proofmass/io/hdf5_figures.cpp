@@ -18,13 +18,13 @@ Shape shape_of(hid_t space) {
   return shape;
 }
 
-/// What a dataset needs for none of its chunks to be unpacked twice while blocks go by.
+/// Cache required by a dataset so that no chunk is decompressed twice while blocks are read.
 struct ChunkNeed {
   std::size_t bytes = 0;  ///< 0 for a dataset without chunks
   std::size_t chunks = 0;
 };
 
-/// The chunks that lie abreast of a sample, twice where some end before a block does.
+/// The chunks that contain a sample, doubled if some end before a block does.
 ChunkNeed need_of(hid_t dataset) {
   const Hdf5Handle creation(H5Dget_create_plist(dataset), H5Pclose);
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
@@ -47,8 +47,8 @@ ChunkNeed need_of(hid_t dataset) {
   return need;
 }
 
-/// Opens datasets with room for their chunks as long as there is any: those that get none are
-/// slower to read.
+/// Opens datasets with cache for their chunks while the budget lasts; the others are slower to
+/// read.
 class DatasetOpener {
  public:
   Hdf5Handle open(hid_t file, const std::string& address) {
@@ -56,7 +56,7 @@ class DatasetOpener {
     constexpr std::size_t most_slots = 100'003;
     ChunkNeed need;
     {
-      // Closed before it is opened again: what is open already keeps the cache it has.
+      // Closed before it is opened again: an open dataset keeps its cache.
       const Hdf5Handle plain(H5Dopen2(file, address.c_str(), H5P_DEFAULT), H5Dclose);
       if (plain) need = need_of(plain);
     }
@@ -72,7 +72,7 @@ class DatasetOpener {
   std::size_t room_ = std::size_t{768} << 20;
 };
 
-/// The type that figures have in memory.
+/// The memory type of the values.
 Hdf5Handle memory_type(hid_t stored, Hdf5Figures figures) {
   if (figures == Hdf5Figures::int64) return {H5Tcopy(H5T_NATIVE_INT64), H5Tclose};
   if (figures == Hdf5Figures::uint64) return {H5Tcopy(H5T_NATIVE_UINT64), H5Tclose};
@@ -86,7 +86,7 @@ Hdf5Handle memory_type(hid_t stored, Hdf5Figures figures) {
   return {H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose};
 }
 
-/// Columns one after another from samples one after another.
+/// Converts consecutive samples to consecutive columns.
 void turn(const std::vector<double>& from,
           std::uint64_t rows,
           std::uint64_t width,
@@ -105,7 +105,7 @@ class DatasetReader {
         stored_(dataset_ ? H5Dget_type(dataset_) : -1, H5Tclose),
         type_(stored_ ? memory_type(stored_, request.figures) : Hdf5Handle(-1, H5Tclose)) {}
 
-  /// Whether there still is what was asked for.
+  /// True if the dataset still has the requested shape.
   [[nodiscard]] bool fits() const {
     Shape shape = space_ ? shape_of(space_) : Shape{};
     if (shape.empty() || !type_) return false;
@@ -116,7 +116,7 @@ class DatasetReader {
     return rows == request_.rows && figures == request_.rows * request_.width;
   }
 
-  /// Hands on samples, column by column. `block` and `turned` are room for as many.
+  /// Passes on samples, column by column. `block` and `turned` are buffers of that size.
   Status read(std::uint64_t row,
               std::uint64_t rows,
               std::vector<double>& block,
@@ -142,7 +142,7 @@ class DatasetReader {
     const std::size_t time = request_.is_by_row ? 0 : start.size() - 1;
     start[time] = row;
     count[time] = rows;
-    // Of the file's rank: where the two differ, the library goes through figures one by one.
+    // With the rank of the file: if the two differ, the library processes values one by one.
     const Hdf5Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
                             H5Sclose);
     return H5Sselect_hyperslab(space_, H5S_SELECT_SET, start.data(), nullptr, count.data(),

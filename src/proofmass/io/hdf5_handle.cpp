@@ -24,7 +24,7 @@ Result<Hdf5Handle> open_source(const Hdf5Source& source) {
 #if H5_VERSION_GE(1, 10, 7)
   H5Pset_file_locking(access, false, true);
 #endif
-  // The usual driver asks for the name behind a link, which such a file has not.
+  // The default driver resolves the name of a link, which such a file does not have.
   constexpr std::size_t step = std::size_t{1} << 20;
   if (source.is_nameless) H5Pset_fapl_core(access, step, false);
   Hdf5Handle file(H5Fopen(source.path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);

@@ -10,7 +10,7 @@
 
 namespace proofmass::io {
 
-/// An identifier of the HDF5 library, closed with its owner.
+/// An identifier of the HDF5 library, closed by its owner.
 class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -27,7 +27,7 @@ class Hdf5Handle {
   }
   ~Hdf5Handle() { close(); }
 
-  /// False where what was still to be written could not be.
+  /// False if pending data could not be written.
   bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
 
   explicit operator bool() const { return id_ >= 0; }
@@ -38,14 +38,14 @@ class Hdf5Handle {
   Close close_;
 };
 
-/// Opens a file to read; no other can be opened by this process from then on, so that nothing in
-/// the file can name one. Errors: corrupt, with the library's reason.
+/// Opens a file for reading; afterwards this process can open no other, so that nothing in the file
+/// can refer to one. Errors: corrupt, with the library's reason.
 [[nodiscard]] Result<Hdf5Handle> open_source(const Hdf5Source& source);
 
-/// Why the last call failed, in the library's words.
+/// The library's message for the last failure.
 [[nodiscard]] std::string hdf5_reason();
 
-/// The name of the part of a complex number that is read, where a type is one: "real", "r".
+/// The name of the real part, if a type is a complex number: "real", "r".
 [[nodiscard]] std::string real_part(hid_t type);
 
 }  // namespace proofmass::io

@@ -42,7 +42,7 @@ std::vector<std::string> split(std::string_view text) {
   return parts;
 }
 
-/// The texts of an attribute, one a column or one for all; empty if it is neither.
+/// The texts of an attribute, one per column or one for all; empty if it is neither.
 std::vector<std::string> for_columns(const Hdf5Attribute& attribute, std::size_t width) {
   std::vector<std::string> texts = attribute.texts;
   if (texts.size() == 1 && width > 1 && split(texts[0]).size() == width) texts = split(texts[0]);
@@ -50,7 +50,7 @@ std::vector<std::string> for_columns(const Hdf5Attribute& attribute, std::size_t
   return texts.size() == width ? texts : std::vector<std::string>{};
 }
 
-/// Names as an attribute lists them; an axis alone takes the dataset's name before it.
+/// Names listed in an attribute; an axis alone is prefixed with the dataset's name.
 std::vector<std::string> listed_names(const Hdf5Attribute& columns,
                                       std::size_t width,
                                       const std::string& stem) {
@@ -75,7 +75,7 @@ class Labeller {
       : catalogue_(catalogue) {
     stems_.reserve(tables.size());
     for (const MatTable& table : tables) stems_.push_back(std::string(leaf_of(table.array->path)));
-    // Twice: what is told apart by its group may be told apart by the next only.
+    // Twice: names made unique by their group may need the next group.
     for (int round = 0; round < 2; ++round) lengthen(tables);
   }
 
@@ -128,7 +128,7 @@ class Labeller {
     return found == catalogue_.attributes.end() ? nullptr : &*found;
   }
 
-  /// Puts the group before names that say nothing and names that are there twice.
+  /// Prefixes the group to uninformative and duplicate names.
   void lengthen(const std::vector<MatTable>& tables) {
     constexpr std::array<std::string_view, 12> idle{
         "x",     "y",     "z", "w", "data", "values", "value", "samples", "array", "block0values",
@@ -155,7 +155,7 @@ class Labeller {
     return names;
   }
 
-  /// From the texts of the dataset and of the groups around it.
+  /// From the texts of the dataset and of its enclosing groups.
   void use_told_unit(std::string_view path,
                      std::vector<std::string>& units,
                      std::vector<Note>& notes) const {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int deepest = 16;
 
-/// Where an object stands.
+/// Location of an object.
 struct Place {
   std::string path;
   std::string address;
@@ -36,7 +36,7 @@ class Lister {
  public:
   explicit Lister(bool is_matlab) : is_matlab_(is_matlab) {}
 
-  /// An object that has several names goes by the first.
+  /// An object with several names is listed under the first.
   void visit_object(hid_t object, const Place& place) {
     H5O_info_t info;
     if (H5Oget_info(object, &info) < 0) return skip(place, "damaged");
@@ -56,7 +56,7 @@ class Lister {
     std::vector<std::string> names;
   };
 
-  /// Called by the library, through which nothing may be thrown.
+  /// Called by the library, which exceptions must not cross.
   static herr_t collect(hid_t, const char* name, const H5L_info_t* link, void* into) noexcept {
     Members& members = *static_cast<Members*>(into);
     if (++members.lister->objects_ > most_hdf5_objects) {
@@ -87,7 +87,7 @@ class Lister {
     for (const std::string& name : members.names) visit(group, name, place);
   }
 
-  /// As its members were made, where the group keeps that; else by name.
+  /// In the order of creation, if the group stores it; else by name.
   static H5_index_t order_of(hid_t group) {
     const Hdf5Handle creation(H5Gget_create_plist(group), H5Pclose);
     unsigned kept = 0;
@@ -142,7 +142,7 @@ class Lister {
     keep_attributes(dataset, place.path);
   }
 
-  /// Makes columns of the fields of a compound type, and names them; false where it is no table.
+  /// Makes columns of the fields of a compound type, and names them; false if it is not a table.
   bool keep_fields(const CompoundFields& fields, const Place& place, Hdf5Dataset& found) {
     for (const std::string& other : fields.others) skip(place.path + '/' + other);
     if (found.shape.size() != 1 || fields.columns() > most_mat_channels) {
@@ -161,7 +161,7 @@ class Lister {
     return true;
   }
 
-  /// Why what a dataset stands for is no figures, whatever it is stored as; empty where it is.
+  /// The reason why a dataset is not numeric despite its storage type; empty if it is.
   static std::string meaning_refusal(hid_t dataset, const std::string& class_name) {
     const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
     if (H5Sget_simple_extent_type(space) == H5S_NULL || has_attribute(dataset, "MATLAB_empty"))

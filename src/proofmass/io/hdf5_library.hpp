@@ -10,31 +10,31 @@
 #include "proofmass/io/hdf5_catalogue.hpp"
 #include "proofmass/io/watched_child.hpp"
 
-// What is asked of the HDF5 library. It has global state and does not stand up to every file:
-// these are called in a child process and nowhere else.
+// Calls of the HDF5 library. It has global state and can crash on damaged files: these functions
+// are called in a child process only.
 namespace proofmass::io {
 
-/// Whether it was there when this was built; where not, the other two return unsupported.
+/// True if the library was available at build time; if not, the other two return unsupported.
 [[nodiscard]] bool has_hdf5_library();
 
 /// A file to open.
 struct Hdf5Source {
   std::string path;
-  bool is_nameless = false;  ///< the path leads to it, but it lies in no folder: held in memory
+  bool is_nameless = false;  ///< the path leads to an unnamed file in memory
 };
 
-/// Lists the datasets of a file, its groups 16 levels deep, with attributes; links into other files
-/// are not followed. Of a MAT file of version 7.3 the variables, looking into structs and cells.
-/// After it has opened the file the process can open no other.
+/// Lists the datasets of a file, its groups 16 levels deep, with attributes; links to other files
+/// are not followed. For a MAT file of version 7.3, lists the variables, including those in structs
+/// and cells. Afterwards the process can open no other file.
 /// Errors: corrupt (with the library's reason).
 [[nodiscard]] Result<Hdf5Catalogue> list_hdf5(const Hdf5Source& source, bool is_matlab);
 
-/// How figures travel.
+/// Transfer format of the values.
 enum class Hdf5Figures { doubles, int64, uint64 };
 
-/// A dataset to be read as samples × columns.
+/// A dataset to read as samples × columns.
 struct Hdf5Request {
-  std::string name{};     ///< for people
+  std::string name{};     ///< for display
   std::string address{};  ///< Hdf5Dataset::address
   std::uint64_t rows = 0;
   std::uint64_t width = 0;
@@ -42,8 +42,8 @@ struct Hdf5Request {
   Hdf5Figures figures = Hdf5Figures::doubles;
 };
 
-/// Samples that travel together, of datasets that are read side by side: what one of them hands
-/// over fits into a frame, what all do into 8 MiB.
+/// Number of samples transferred together, for datasets read in parallel: those of one dataset fit
+/// into a frame, those of all into 8 MiB.
 [[nodiscard]] inline std::uint64_t rows_a_block(std::span<const Hdf5Request> requests) {
   constexpr std::uint64_t most_figures = most_frame_bytes / sizeof(double);
   std::uint64_t width = 0;
@@ -56,9 +56,9 @@ struct Hdf5Request {
       1, std::min(most_figures / widest, 8 * most_figures / std::max<std::uint64_t>(width, 1)));
 }
 
-/// Reads equally long datasets side by side: of each in turn a block of rows_a_block() samples (the
-/// last of what there is), column by column, then the next block. Of complex numbers the real part,
-/// of compound ones the fields that numeric_fields() names.
+/// Reads datasets of equal length in parallel: for each in turn a block of rows_a_block() samples
+/// (or the remaining ones), column by column, then the next block. For complex numbers the real
+/// part, for compound ones the fields of numeric_fields().
 /// Errors: corrupt (naming dataset and sample).
 [[nodiscard]] Status read_hdf5(const Hdf5Source& source,
                                const std::vector<Hdf5Request>& requests,

@@ -4,7 +4,7 @@
 
 namespace proofmass::io {
 
-/// The group that an object is in: "imu" of "imu/acc"; empty for the file itself.
+/// The group of an object: "imu" of "imu/acc"; empty for the file itself.
 [[nodiscard]] inline std::string_view group_of(std::string_view path) {
   const std::size_t slash = path.rfind('/');
   return slash == std::string_view::npos ? std::string_view{} : path.substr(0, slash);
@@ -15,7 +15,7 @@ namespace proofmass::io {
   return path.substr(path.rfind('/') + 1);  // npos + 1 is 0
 }
 
-/// Whether a path is a group's or lies within it.
+/// True if a path is a group or lies within it.
 [[nodiscard]] inline bool is_within(std::string_view path, std::string_view group) {
   return group.empty() || path == group || (path.starts_with(group) && path[group.size()] == '/');
 }

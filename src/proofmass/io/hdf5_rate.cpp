@@ -11,7 +11,7 @@
 namespace proofmass::io {
 namespace {
 
-/// The rate that a number of that name says.
+/// The rate given by a number of that name.
 std::optional<double> rate_said(std::string_view name, std::optional<double> figure) {
   constexpr std::array<std::string_view, 7> steps{"dt",
                                                   "dts",
@@ -25,7 +25,7 @@ std::optional<double> rate_said(std::string_view name, std::optional<double> fig
   return is_one_of(name, steps) && *figure > 0.0 ? std::optional(1.0 / *figure) : std::nullopt;
 }
 
-/// A number that is written as a text: "285.7 Hz".
+/// A number stored as text: "285.7 Hz".
 std::optional<double> figure_of(const Hdf5Attribute& attribute) {
   if (attribute.figure || attribute.texts.size() != 1) return attribute.figure;
   const std::string& text = attribute.texts[0];
@@ -38,10 +38,10 @@ std::optional<double> figure_of(const Hdf5Attribute& attribute) {
 
 struct SaidRate {
   double rate_hz = 0.0;
-  std::string what;  ///< says so
+  std::string what;  ///< where it is given
 };
 
-/// By the attributes of a dataset or group, or the single numbers in it.
+/// From the attributes of a dataset or group, or the scalars in it.
 std::optional<SaidRate> rate_of_owner(const Hdf5Catalogue& catalogue, std::string_view owner) {
   for (const Hdf5Attribute& attribute : catalogue.attributes)
     if (attribute.owner == owner)

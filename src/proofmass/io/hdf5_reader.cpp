@@ -40,7 +40,7 @@ class Hdf5Tables final : public TableFile {
 
  private:
   OpenHdf5 file_;
-  std::unique_ptr<TableReader> first_;  ///< until it is asked for
+  std::unique_ptr<TableReader> first_;  ///< until it is requested
   std::array<TableSummary, 1> summary_;
 };
 

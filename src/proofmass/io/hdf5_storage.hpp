@@ -6,14 +6,14 @@
 
 namespace proofmass::io {
 
-/// "float64", "int16", "bool"; empty for what is no number.
+/// "float64", "int16", "bool"; empty if not a number.
 [[nodiscard]] std::string type_name(hid_t type);
 
-/// What a type is that is no number: "text", "references".
+/// Kind of a non-numeric type: "text", "references".
 [[nodiscard]] std::string_view kind_of(hid_t type);
 
-/// Why a dataset's storage is not read: in another file, in chunks too large, packed by a filter
-/// that is not built in; empty where it is.
+/// The reason why a dataset cannot be read: in another file, in chunks too large, compressed by a
+/// filter that is not built in; empty if it can.
 [[nodiscard]] std::string storage_refusal(hid_t dataset);
 
 }  // namespace proofmass::io

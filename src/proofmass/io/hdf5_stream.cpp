@@ -16,7 +16,7 @@ Hdf5Source source_of(const LibraryFile& file) {
   return {file.path(), file.is_nameless()};
 }
 
-/// Time enough to unpack so many bytes at a twentieth of what is usual, and room for the file.
+/// Time to decompress this many bytes at a twentieth of the usual speed, and memory for the file.
 ChildLimits limits_for(const LibraryFile& file, std::uint64_t bytes) {
   constexpr std::uint64_t bytes_a_second = 8'000'000;
   constexpr std::uint64_t longest_s = 360'000;
@@ -26,8 +26,8 @@ ChildLimits limits_for(const LibraryFile& file, std::uint64_t bytes) {
   return limits;
 }
 
-/// Figures take room in the file, if a thousandth when compressed; beyond 4 GiB as doubles nobody
-/// compresses that well.
+/// Values take space in the file, at least a thousandth if compressed; more than 4 GiB of doubles
+/// are never compressed that well.
 Status check_room(std::span<const Hdf5Request> requests, std::uint64_t file_bytes) {
   constexpr std::uint64_t most_packed = 1040;  // deflate's limit is 1032
   constexpr std::uint64_t usual_packed = 64;

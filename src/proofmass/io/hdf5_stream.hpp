@@ -15,26 +15,26 @@
 
 namespace proofmass::io {
 
-/// list_hdf5() in a process of its own. Errors: as there; corrupt, unsupported (too many names).
+/// list_hdf5() in a child process. Errors: as there; corrupt, unsupported (too many names).
 [[nodiscard]] Result<Hdf5Catalogue> list_in_child(const LibraryFile& file, bool is_matlab);
 
-/// Datasets read side by side by a process of their own, a block of rows at a time.
+/// Datasets read in parallel by a child process, one block of rows at a time.
 class FigureStream {
  public:
-  /// Errors: unsupported (more figures than the file has room for), unreadable.
+  /// Errors: unsupported (more values than the file can hold), unreadable.
   [[nodiscard]] static Result<FigureStream> start(const LibraryFile& file,
                                                   std::vector<Hdf5Request> requests);
-  /// For what a child might say: the stream of bytes in place of a process.
+  /// For tests: a stream of bytes instead of a child process.
   FigureStream(std::vector<Hdf5Request> requests, ByteFeed said);
 
   [[nodiscard]] std::span<const Hdf5Request> requests() const { return requests_; }
-  /// Takes the next block in place of the one there is: its rows, 0 at the end.
+  /// Replaces the current block by the next: number of rows, 0 at the end.
   /// Errors: corrupt (naming dataset and sample, or how the process ended).
   [[nodiscard]] Result<std::size_t> next();
   [[nodiscard]] std::size_t rows() const { return rows_; }
-  /// Figures of the block, from `row` on, less an integer column's origin.
+  /// Values of the block, from `row` on, minus an integer column's origin.
   void copy(std::size_t request, std::size_t column, std::size_t row, std::span<double> into) const;
-  /// The first figure of an integer column becomes its origin, so that stamps keep every digit.
+  /// Makes the first value of an integer column its origin, so that stamps keep all digits.
   Int128 put_origin_at_first(std::size_t request);
   [[nodiscard]] double fraction_read() const;
 
@@ -47,7 +47,7 @@ class FigureStream {
   std::vector<Hdf5Request> requests_;
   std::optional<WatchedChild> child_;
   std::optional<MessageReader> message_;
-  std::vector<std::vector<std::uint64_t>> block_;  ///< figures' bits, a request each
+  std::vector<std::vector<std::uint64_t>> block_;  ///< bits of the values, one vector per request
   std::vector<Int128> origins_;
   std::size_t rows_ = 0;
   std::uint64_t rows_taken_ = 0;

@@ -17,7 +17,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Where a column of the table comes from.
+/// Source of a column of the table.
 struct Destination {
   std::size_t request = 0;
   std::size_t column = 0;
@@ -54,10 +54,10 @@ class Hdf5TableReader final : public TableReader {
   FigureStream stream_;
   TableHead head_;
   std::vector<Destination> places_;
-  std::size_t row_ = 0;  ///< of the stream's block
+  std::size_t row_ = 0;  ///< in the stream's block
 };
 
-/// The datasets that are read, and what is known of them before the first figure.
+/// The datasets to be read, and what is known of them before the first value.
 struct Plan {
   std::vector<MatTable> tables;
   TableHead head;
@@ -76,7 +76,7 @@ Result<Plan> plan_plain(const OpenHdf5& file, const ReadOptions& options) {
   return plan;
 }
 
-/// A variable of MATLAB is chosen and called as in the older versions of its files.
+/// A variable of MATLAB is selected and named as in the older versions of its files.
 Result<Plan> plan_matlab(const OpenHdf5& file, const ReadOptions& options) {
   MatCatalogue variables;
   variables.version = "MAT v7.3";
@@ -127,7 +127,7 @@ std::vector<Hdf5Request> requests_of(const OpenHdf5& file, std::span<const MatTa
   return requests;
 }
 
-/// The first column of each table, as far as the first block has it.
+/// The first column of each table, as far as it is in the first block.
 std::vector<std::vector<std::vector<double>>> beginnings(const FigureStream& stream) {
   std::vector<std::vector<std::vector<double>>> values;
   for (std::size_t i = 0; i < stream.requests().size(); ++i) {
@@ -155,8 +155,8 @@ void put_headings(const OpenHdf5& file,
   tell_texts(file.catalogue, plan.tables, plan.head.notes);
 }
 
-/// Stamps that are integers keep every digit, and those that an attribute says are less a start
-/// get that as theirs.
+/// Integer stamps keep all digits, and stamps with a start in an attribute get that as their
+/// origin.
 void declare_stamps(const OpenHdf5& file,
                     std::span<const Destination> places,
                     const ReadOptions& options,

@@ -13,17 +13,17 @@
 
 namespace proofmass::io {
 
-/// An open HDF5 file and what is in it.
+/// An open HDF5 file and its contents.
 struct OpenHdf5 {
   LibraryFile file;
   Hdf5Catalogue catalogue{};
   std::vector<MatArray> arrays{};  ///< arrays_of(catalogue)
-  std::vector<Note> notes{};       ///< of unpacking
-  bool is_matlab = false;          ///< of version 7.3
+  std::vector<Note> notes{};       ///< about decompression
+  bool is_matlab = false;          ///< version 7.3
 };
 
-/// Chooses the datasets that make the recording and starts to read them. `file` need not outlive
-/// the reader. Errors: those of open_hdf5().
+/// Selects the datasets of the recording and starts to read them. `file` need not outlive the
+/// reader. Errors: those of open_hdf5().
 [[nodiscard]] Result<std::unique_ptr<TableReader>> open_hdf5_table(const OpenHdf5& file,
                                                                    const ReadOptions& options);
 

@@ -212,12 +212,12 @@ TEST_F(Hdf5, LeavesNoProcessAndNoOpenFileBehind) {
 }
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr std::size_t step = 6;  // a process is dear there
+constexpr std::size_t step = 6;  // a process is slow there
 #else
 constexpr std::size_t step = 1;
 #endif
 
-/// Read or refused in one line, and never channels of different length.
+/// Either read, or rejected with a one-line error; never channels of different length.
 void expect_sound(const Result<Recording>& recording, std::size_t place) {
   if (!recording) {
     ASSERT_EQ(recording.error().message.find('\n'), std::string::npos) << place;
@@ -238,7 +238,7 @@ TEST_F(Hdf5, ThatBreaksOffAnywhereIsRefused) {
 }
 
 TEST_F(Hdf5, WhateverByteIsWrongItIsReadOrRefusedInOneLine) {
-  unsigned state = 1;  // any sequence will do, as long as it is the same each time
+  unsigned state = 1;  // any sequence, but the same each time
   for (const char* name : {"groups.h5", "sensors.h5", "matlab.mat"}) {
     const std::string whole = bytes_of(name);
     for (std::size_t k = 0; k < 40; k += step) {
@@ -254,7 +254,7 @@ TEST_F(Hdf5, WhateverByteIsWrongItIsReadOrRefusedInOneLine) {
 
 TEST_F(Hdf5, NoticesFiguresThatFailTheirChecksum) {
   std::string damaged = bytes_of("groups.h5");
-  const std::size_t packed = damaged.rfind("\x78\x5e");  // the head of a zlib stream
+  const std::size_t packed = damaged.rfind("\x78\x5e");  // the header of a zlib stream
   ASSERT_NE(packed, std::string::npos);
   damaged[packed + 12] = static_cast<char>(damaged[packed + 12] ^ 0x55);
   const auto recording = read_text(damaged);

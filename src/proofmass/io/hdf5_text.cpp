@@ -26,7 +26,7 @@ bool put_attribute(hid_t owner, const char* name, hid_t type, const void* value)
 }
 
 bool put_text(hid_t owner, const std::string& name, const std::string& text) {
-  // Of variable length, as h5py has texts.
+  // Of variable length, like the texts of h5py.
   const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, H5T_VARIABLE);
   H5Tset_cset(type, H5T_CSET_UTF8);

@@ -15,13 +15,13 @@
 namespace proofmass::io {
 namespace {
 
-/// The library has one state for all threads.
+/// The library has global state.
 std::mutex& library() {
   static std::mutex mutex;
   return mutex;
 }
 
-/// What can stand in a path: a name that is not there yet, without a divider.
+/// A valid, unused name in a path, without a slash.
 std::string link_name(std::string name, hid_t group) {
   std::ranges::replace(name, '/', '_');
   std::erase(name, '\0');
@@ -32,7 +32,7 @@ std::string link_name(std::string name, hid_t group) {
   return free;
 }
 
-/// The system's reason where the library passes one on, else the library's.
+/// The system's reason if the library passes one on, else the library's.
 std::string reason() {
   constexpr std::string_view before = "error message = '";
   const std::string told = hdf5_reason();
@@ -42,7 +42,7 @@ std::string reason() {
   return words.substr(0, words.find('\''));
 }
 
-/// A dataset of doubles that grows.
+/// An extensible dataset of doubles.
 class Column {
  public:
   Column(hid_t group, const std::string& name, hsize_t chunk_rows)
@@ -83,7 +83,7 @@ class Column {
   hsize_t rows_ = 0;
 };
 
-/// Keeps the order in which its members are made.
+/// A group that stores the order of creation of its members.
 Hdf5Handle ordered_group(hid_t file, const char* name) {
   const Hdf5Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
   H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
@@ -175,7 +175,7 @@ class Hdf5Writer final : public RecordingWriter {
            put_text(columns_.back().id(), "units", unit);
   }
 
-  /// False where something could not be written in the end.
+  /// False if something could not be written.
   bool close() {
     columns_.clear();
     group_.close();

@@ -34,7 +34,7 @@ class Hdf5Written : public testing::Test {
     return std::distance(std::filesystem::directory_iterator(folder_), {});
   }
 
-  /// Writes a recording in blocks of so many samples.
+  /// Writes a recording in blocks of the given number of samples.
   [[nodiscard]] Status write(const Recording& recording,
                              std::size_t rows,
                              const WriteOptions& options = {}) const {
@@ -55,7 +55,7 @@ class Hdf5Written : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// Random doubles of every size with some of every kind of trouble, on a clock with jitter.
+/// Random doubles of every magnitude with faults of every kind, on a clock with jitter.
 Recording troubled(std::size_t samples) {
   Recording recording = troubled_recording(samples, {"z", "a/b", "odd, name", "a_b", "x (g)", "."});
   recording.channels[1].unit = *parse_unit("deg/s");
@@ -157,7 +157,7 @@ TEST_F(Hdf5Written, LeavesNothingBehindWhereItIsNotFinished) {
 TEST_F(Hdf5Written, SaysWhenThereIsNoRoom) {
   const Recording recording = troubled(100);
   const auto is_told = [&] {
-    // What a full disk says, but for the words.
+    // The same error as for a full disk, except for the wording.
     constexpr rlimit most{4096, 4096};
     std::signal(SIGXFSZ, SIG_IGN);
     ::setrlimit(RLIMIT_FSIZE, &most);
@@ -165,7 +165,7 @@ TEST_F(Hdf5Written, SaysWhenThereIsNoRoom) {
     return !written && written.error().code == Errc::unwritable &&
            written.error().message.find('\n') == std::string::npos;
   };
-  // In a process of its own: the library does not give back the memory of a file it cannot write.
+  // In a child process: the library does not release the memory of a file it cannot write.
   EXPECT_EXIT(std::_Exit(is_told() ? 0 : 1), ::testing::ExitedWithCode(0), "");
 }
 

@@ -8,12 +8,12 @@
 
 namespace proofmass::io {
 
-/// A column's name and unit with what the archive says of it: one called by an axis alone gets the
+/// A column's name and unit with the hints of the archive: one named by an axis alone gets the
 /// sensor's name and unit.
 [[nodiscard]] ColumnLabel with_hint(ColumnLabel label, const MemberHint& hint);
 
-/// The same recording with what its archive says of it: names and units of columns; stamps get the
-/// wall clock's origin; a table without a time its rate.
+/// The same recording with the hints of its archive: names and units of columns; the origin of
+/// stamps on the wall clock; the rate of a table without time.
 [[nodiscard]] std::unique_ptr<RecordingReader> with_hint(std::unique_ptr<RecordingReader> reader,
                                                          const MemberHint& hint);
 

@@ -24,7 +24,7 @@ constexpr auto std_names =
     std::to_array<std::string_view>({"std", "sd", "sigma", "stddev", "stdev", "uncertainty",
                                      "standarddeviation", "positionstd", "posstd", "stdposition"});
 
-/// A column and what turns its figures into SI.
+/// A column and the conversion of its values to SI.
 struct Figures {
   std::size_t column = 0;
   double to_si = 1.0;
@@ -45,7 +45,7 @@ InstantColumns bare_columns(char separator, std::size_t fields) {
   return columns;
 }
 
-/// Empty where a heading is in a unit that it cannot be in.
+/// nullopt if a heading has an invalid unit.
 std::optional<InstantColumns> named_columns(char separator,
                                             const std::vector<std::string>& fields) {
   InstantColumns columns{
@@ -71,7 +71,7 @@ std::optional<InstantColumns> named_columns(char separator,
   return columns;
 }
 
-/// A comma within a figure is the decimal mark where it does not separate.
+/// A comma within a number is the decimal mark if it is not the separator.
 char decimal_mark_of(const std::vector<TextLine>& lines, char separator) {
   if (separator == ',') return '.';
   for (const TextLine& line : lines)
@@ -80,7 +80,7 @@ char decimal_mark_of(const std::vector<TextLine>& lines, char separator) {
   return '.';
 }
 
-/// What separates the fields of a line; 0 where it is one field, blanks and all.
+/// The possible separators of a line; 0 if it is a single field, including blanks.
 std::vector<char> separators_of(const std::string& line) {
   for (const char separator : {'\t', ';', ',', '|'})
     if (line.find(separator) != std::string::npos) return {separator};

@@ -10,7 +10,7 @@ Result<std::vector<Instant>> instants(std::string_view text) {
   return read_instants(std::as_bytes(std::span(text)), "fixes.csv");
 }
 
-/// The message with which a text is refused.
+/// The error message for a rejected text.
 std::string refusal(std::string_view text) {
   const auto read = instants(text);
   return read ? "was read" : read.error().message;

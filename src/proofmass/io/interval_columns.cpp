@@ -16,7 +16,7 @@ std::string without(std::string text, std::string_view word) {
   return text;
 }
 
-/// What the headings of a line are.
+/// The headings of a line by role.
 struct Headings {
   std::optional<IntervalEdge> start, end;
   std::optional<std::size_t> label;
@@ -25,7 +25,8 @@ struct Headings {
   double angle_unit_rad = rad_per_deg;
 };
 
-/// A heading that may be an edge: "start (s)", "t_end", "first", "end sample", "Start time [ms]".
+/// A heading that may be an end of the interval: "start (s)", "t_end", "first", "end sample",
+/// "Start time [ms]".
 void enter_edge(Headings& headings, std::size_t c, const ColumnLabel& label) {
   const std::string bare = bare_name(label.name);
   std::string name = bare;
@@ -96,7 +97,7 @@ Result<IntervalColumns> columns_under(const Headings& headings, char separator) 
   return columns;
 }
 
-/// A comma within a figure is the decimal mark where it does not separate.
+/// A comma within a number is the decimal mark if it is not the separator.
 char decimal_mark(const std::vector<TextLine>& lines, const IntervalColumns& columns) {
   if (columns.separator == ',') return '.';
   for (const TextLine& line : lines) {

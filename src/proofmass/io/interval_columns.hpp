@@ -11,7 +11,7 @@
 
 namespace proofmass::io {
 
-/// What a heading says that its figures count.
+/// Unit of a column according to its heading.
 enum class Counts { unsaid, seconds, samples };
 
 /// The column of one end of the intervals.
@@ -21,7 +21,7 @@ struct IntervalEdge {
   double unit_s = 1.0;
 };
 
-/// How a list of intervals is written.
+/// Format of a list of intervals.
 struct IntervalColumns {
   char separator = ',';
   char point = '.';
@@ -37,13 +37,13 @@ struct IntervalColumns {
   }
 };
 
-/// Finds separator, decimal mark and columns: under the header that the first line is, or, where
-/// that begins with two figures, start, end and text.
+/// Determines separator, decimal mark and columns: from a header in the first line, or, if that
+/// begins with two numbers, start, end and text.
 /// Errors: corrupt (neither; seconds and samples in one list; a direction of fewer than three
 /// components).
 [[nodiscard]] Result<IntervalColumns> find_interval_columns(const std::vector<TextLine>& lines);
 
-/// Whether a field is a figure, with either decimal mark.
+/// True if a field is a number, with either decimal mark.
 [[nodiscard]] bool is_figure(const std::string& field);
 
 /// A line's fields without blanks and quotes.

@@ -13,7 +13,7 @@
 namespace proofmass::io {
 namespace {
 
-/// A line taken apart.
+/// A line split into fields.
 struct Row {
   std::size_t line = 0;
   std::vector<std::string> fields;
@@ -23,7 +23,7 @@ Error wrong(const Row& row, std::string_view what) {
   return {Errc::corrupt, fmt::format("line {}: {}", row.line, what)};
 }
 
-/// What the rows of a list mean, one after another.
+/// Interprets the rows of a list, one after another.
 class IntervalReader {
  public:
   explicit IntervalReader(const IntervalColumns& columns) : columns_(columns) {}
@@ -52,7 +52,7 @@ class IntervalReader {
     return read_cell(row.fields[column], columns_.point).value;
   }
 
-  /// Without a header the text is all that is left of the line.
+  /// Without a header the text is the remainder of the line.
   [[nodiscard]] std::string label_of(const Row& row) const {
     std::string label;
     if (!columns_.label) return label;
@@ -68,7 +68,7 @@ class IntervalReader {
     const auto is_whole = [](double x) { return x >= 0.0 && x == std::trunc(x) && x < 1e15; };
     if (interval.in_samples && (!is_whole(interval.start) || !is_whole(interval.end)))
       return "the number of a sample is whole and not below zero";
-    // One sample is an interval, an instant is none.
+    // One sample is a valid interval, a single time is not.
     const bool is_empty = !interval.in_samples && interval.end == interval.start;
     if (interval.end < interval.start || is_empty)
       return fmt::format("ends at {}, which is not after its start at {}", in_words(interval.end),
@@ -95,7 +95,7 @@ class IntervalReader {
   IntervalColumns columns_;
 };
 
-/// Lines of an Audacity track that give a label's range of frequencies.
+/// True for lines of an Audacity track with a label's frequency range.
 bool is_frequency_range(const Row& row) {
   return row.fields.front() == "\\";
 }
@@ -159,7 +159,7 @@ Status check_inside(const std::vector<Interval>& intervals,
   const double steps = samples > 1 ? static_cast<double>(samples) - 1.0 : 1.0;
   for (const Interval& interval : intervals) {
     const double last = interval.in_samples ? static_cast<double>(samples) - 1.0 : duration_s;
-    // A minute at 100 Hz has its last sample at 59.99 s, and people say that it ends at 60 s.
+    // A minute at 100 Hz has its last sample at 59.99 s, but users write that it ends at 60 s.
     const double slack = interval.in_samples ? 0.0 : duration_s / steps * (1.0 + 1e-9);
     if (interval.start >= 0.0 && interval.end <= last + slack) continue;
     const std::string limit = interval.in_samples ? fmt::format("samples 0 to {}", in_words(last))

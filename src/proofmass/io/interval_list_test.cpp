@@ -11,7 +11,7 @@ Result<std::vector<Interval>> intervals(std::string_view text) {
   return read_intervals(std::as_bytes(std::span(text)), "rests.csv");
 }
 
-/// The message with which a text is refused.
+/// The error message for a rejected text.
 std::string refusal(std::string_view text) {
   const auto read = intervals(text);
   return read ? "was read" : read.error().message;

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t deepest = 32;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// What the parser calls with each piece of the document; false stops it.
+/// Called by the parser with each element of the document; false stops it.
 class Visitor {
  public:
   explicit Visitor(const std::function<void(const JsonLeaf&)>& visit) : visit_(visit) {}
@@ -59,10 +59,10 @@ class Visitor {
   struct Level {
     std::size_t path_bytes = 0;
     bool is_list = false;
-    std::size_t next = 0;  ///< of a list: number of what comes next
+    std::size_t next = 0;  ///< for a list: index of the next element
   };
 
-  /// In a list the path of what comes next is its number.
+  /// In a list the path of the next element is its index.
   void count() {
     if (levels_.empty() || !levels_.back().is_list) return;
     path_.resize(levels_.back().path_bytes);

@@ -10,9 +10,9 @@
 
 namespace proofmass::io {
 
-/// A reader whose recording has these labels too: of a format that keeps them beside its rows.
-/// Labels that cannot be those of so many rows (out of order, beyond the end, without a text) are
-/// left out, all of them.
+/// A reader with labels added to its recording, for formats that store them beside the rows. If
+/// they are invalid for the number of rows (out of order, beyond the end, without a text), all of
+/// them are dropped.
 [[nodiscard]] std::unique_ptr<RecordingReader> labelled(std::unique_ptr<RecordingReader> reader,
                                                         std::vector<Label> labels,
                                                         std::string channel,

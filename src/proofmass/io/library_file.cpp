@@ -13,7 +13,7 @@
 namespace proofmass::io {
 namespace {
 
-/// The bytes of a stream as a file in memory.
+/// Copies the bytes of a stream to a file in memory.
 Status spool(PeekSource& source, int into, const Progress& progress) {
   constexpr std::uint64_t most_unpacked = std::uint64_t{4} << 30;
   std::vector<char> piece(std::size_t{1} << 20);
@@ -46,7 +46,7 @@ std::uint64_t LibraryFile::size() const {
 }
 
 Result<LibraryFile> library_file_of(PeekSource& source, const Progress& progress) {
-  // Above the standard streams, which a child process does without.
+  // Above the standard streams, which a child process does not have.
   if (const auto there = source.descriptor()) {
     LibraryFile file(::fcntl(*there, F_DUPFD_CLOEXEC, 3), false);
     if (file.descriptor() < 0) return system_failure("cannot be opened again");

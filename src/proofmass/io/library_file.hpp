@@ -10,7 +10,7 @@
 
 namespace proofmass::io {
 
-/// An open file that a library can open by its path, for as long as this lives.
+/// An open file that a library can open by its path during the lifetime of this object.
 class LibraryFile {
  public:
   LibraryFile(int descriptor, bool is_nameless)
@@ -23,9 +23,9 @@ class LibraryFile {
   ~LibraryFile();
 
   [[nodiscard]] int descriptor() const { return descriptor_; }
-  /// Which leads to it as long as it is open.
+  /// Path valid while it is open.
   [[nodiscard]] std::string path() const;
-  /// Whether it lies in no folder, but in memory.
+  /// True if it is in memory, not in a folder.
   [[nodiscard]] bool is_nameless() const { return is_nameless_; }
   [[nodiscard]] std::uint64_t size() const;
 
@@ -34,8 +34,8 @@ class LibraryFile {
   bool is_nameless_;
 };
 
-/// The bytes of a stream as a file: the one that it is, or one in memory, up to 4 GiB.
-/// Errors: those of the stream; unsupported (more than that); unreadable (no memory).
+/// The bytes of a stream as a file: the underlying one, or one in memory, up to 4 GiB.
+/// Errors: those of the stream; unsupported (larger); unreadable (no memory).
 [[nodiscard]] Result<LibraryFile> library_file_of(PeekSource& source, const Progress& progress);
 
 }  // namespace proofmass::io

@@ -17,7 +17,7 @@ constexpr std::size_t longest_line = std::size_t{1} << 20;
 LineReader::LineReader(const RandomBytes& file, std::uint64_t offset, std::size_t number)
     : file_(file), buffer_offset_(offset), number_(number - 1) {}
 
-/// Moves what is left of a line to the front and reads on behind it.
+/// Moves the remainder of a line to the front and reads more after it.
 Status LineReader::refill() {
   const std::size_t left = filled_ - next_;
   if (left > longest_line)

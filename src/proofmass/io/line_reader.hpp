@@ -10,20 +10,20 @@
 
 namespace proofmass::io {
 
-/// The lines of a text from any byte on, one at a time, in little memory.
+/// The lines of a text from any byte, one at a time, in little memory.
 class LineReader {
  public:
-  /// `file` must outlive the reader; a line begins at `offset`, the `number`-th of the file.
+  /// `file` must outlive the reader; a line begins at `offset`, number `number` in the file.
   LineReader(const RandomBytes& file, std::uint64_t offset, std::size_t number);
 
-  /// Goes to the next line; false at the end. Errors: corrupt (a line of more than 1 MiB is none),
+  /// Advances to the next line; false at the end. Errors: corrupt (a line of more than 1 MiB),
   /// unreadable.
   [[nodiscard]] Result<bool> next();
 
-  /// The line, less its LF or CRLF; decimal_padding bytes can be read behind it, and the first is
-  /// none of a figure. Valid until next().
+  /// The line without its LF or CRLF; decimal_padding bytes are readable after it, and the first of
+  /// them is not part of a number. Valid until next().
   [[nodiscard]] std::string_view text() const { return text_; }
-  [[nodiscard]] std::uint64_t offset() const { return offset_; }  ///< of its first byte
+  [[nodiscard]] std::uint64_t offset() const { return offset_; }  ///< offset of its first byte
   [[nodiscard]] std::size_t number() const { return number_; }    ///< 1 = first
   [[nodiscard]] bool is_ended() const { return is_ended_; }       ///< by an LF
 
@@ -31,9 +31,9 @@ class LineReader {
   Status refill();
 
   const RandomBytes& file_;
-  std::string buffer_;      ///< a part of the file, and padding
-  std::size_t filled_ = 0;  ///< bytes of the buffer that are the file's
-  std::size_t next_ = 0;    ///< where in the buffer the next line begins
+  std::string buffer_;      ///< a part of the file, plus padding
+  std::size_t filled_ = 0;  ///< bytes of the buffer that are from the file
+  std::size_t next_ = 0;    ///< position of the next line in the buffer
   std::uint64_t buffer_offset_;
   std::string_view text_;
   std::uint64_t offset_ = 0;

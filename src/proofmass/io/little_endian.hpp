@@ -13,12 +13,12 @@
 
 namespace proofmass::io {
 
-/// Appends the lowest `count` bytes of a number, the lowest first.
+/// Appends the lowest `count` bytes of a number, lowest first.
 inline void append_little_endian(std::string& out, std::uint64_t value, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) out += static_cast<char>(value >> (8 * i) & 0xFF);
 }
 
-/// Appends a number of any kind.
+/// Appends a number of any type.
 template <class T>
 void append_value(std::string& out, T value) {
   auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);
@@ -26,7 +26,7 @@ void append_value(std::string& out, T value) {
   out.append(bytes.data(), bytes.size());
 }
 
-/// Appends figures as they lie in a little-endian file.
+/// Appends doubles in little-endian order.
 inline void append_doubles(std::string& out, View<double> values) {
   if constexpr (std::endian::native == std::endian::little) {
     if (!values.empty())
@@ -36,7 +36,7 @@ inline void append_doubles(std::string& out, View<double> values) {
   }
 }
 
-/// Figures of a little-endian file, which may begin at any byte.
+/// Loads little-endian doubles from any alignment.
 inline void load_doubles(const char* bytes, std::span<double> into) {
   if (into.empty()) return;
   std::memcpy(into.data(), bytes, into.size_bytes());

@@ -53,7 +53,7 @@ constexpr std::array<std::string_view, 31> tags{"Channels",
                                                 "LabVIEW Measurement",
                                                 "X_Value"};
 
-/// The tag that a line begins with, whatever separates it from what it says; empty: none.
+/// The tag at the beginning of a line, whatever the separator after it; empty: none.
 std::string_view tag_of(std::string_view line) {
   std::string_view longest;
   for (const std::string_view tag : tags) {
@@ -75,7 +75,7 @@ std::string_view field(const Fields& fields, std::size_t column) {
   return column < fields.size() ? std::string_view(fields[column]) : std::string_view{};
 }
 
-/// A figure of the header, and half a unit in the last place that it is written with.
+/// A number of the header, and half a unit in its last written digit.
 struct Figure {
   double value = 0.0;
   double half_unit = 0.0;
@@ -84,7 +84,7 @@ std::optional<Figure> figure_of(std::string_view text, char point) {
   const std::string padded = std::string(trimmed(text)) + std::string(decimal_padding, ' ');
   Decimal decimal;
   const char* end = scan_decimal(padded.c_str(), point, decimal);
-  // Some headers keep to the point where the rows have commas.
+  // Some headers use the point although the rows have commas.
   if (end == nullptr || *end != ' ')
     end = scan_decimal(padded.c_str(), point == '.' ? ',' : '.', decimal);
   if (end == nullptr || *end != ' ' || decimal.exponent10 < -300 || decimal.exponent10 > 300)
@@ -92,7 +92,7 @@ std::optional<Figure> figure_of(std::string_view text, char point) {
   return Figure{to_double(decimal), 0.5 * std::pow(10.0, decimal.exponent10)};
 }
 
-/// Date and time of a channel's start; none where LabVIEW had none and wrote the beginning of its
+/// Date and time of a channel's start; none if LabVIEW had none and wrote the beginning of its
 /// calendar.
 std::optional<std::int64_t> start_of(std::string_view date, std::string_view time) {
   if (date.empty() || time.empty()) return std::nullopt;
@@ -142,14 +142,14 @@ Result<LvmFile> read_lvm_file_header(LineReader& lines) {
     if (is_lvm_mark(line, "End_of_Header")) return file;
     const std::string_view tag = tag_of(line);
     if (tag.empty() || line.size() <= tag.size()) continue;
-    // What follows the tag is the separator, whatever its name is.
+    // The character after the tag is the separator, whatever its name.
     if (tag == "Separator" || tag == "Writer_Version") file.separator = line[tag.size()];
     take_file_tag(tag, trimmed(line.substr(tag.size() + 1)), file);
   }
 }
 
-/// Fields of a line by their column; where separator and decimal mark are one character, digits
-/// behind it belong to the figure before.
+/// Fields of a line by their column; if separator and decimal mark are the same character, digits
+/// after it belong to the previous number.
 Fields LvmSegmentHeader::fields_of(std::string_view line) const {
   std::vector<std::string_view> views;
   split_fields(line, file_.separator, views);
@@ -178,7 +178,7 @@ void LvmSegmentHeader::add(std::string_view line) {
   if (std::ranges::find(told, tag) != told.end())
     add_text(texts_, tag, line.substr(tag.size()));
   else if (tag == "Channels")
-    // The one figure here that cannot have decimals.
+    // The only number here that cannot have decimals.
     std::from_chars(line.data() + std::min(line.size(), tag.size() + 1), line.data() + line.size(),
                     channels_);
   else if (tag == "Samples")
@@ -226,7 +226,7 @@ LvmChannel LvmSegmentHeader::channel(std::size_t index, Fields& unknown_units) c
   return channel;
 }
 
-/// No more than what is written in lines that are there.
+/// Only columns that occur in the lines present.
 std::size_t LvmSegmentHeader::count_channels() const {
   std::size_t told = std::max({names_.size(), samples_.size(), delta_x_.size()});
   while (told > 0 && field(names_, told - 1).empty() && field(samples_, told - 1).empty() &&

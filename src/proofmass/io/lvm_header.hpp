@@ -13,10 +13,10 @@
 
 namespace proofmass::io {
 
-/// Which columns of X values a file has.
+/// Columns of X values in a file.
 enum class LvmX { no, one, multi };
 
-/// What stands before all segments.
+/// Header of the file.
 struct LvmFile {
   char separator = '\t';
   char point = '.';
@@ -28,36 +28,37 @@ struct LvmFile {
 
 /// A channel of a segment.
 struct LvmChannel {
-  std::string heading;           ///< unit included, if it is known
-  std::size_t column = 0;        ///< of its figures
+  std::string heading;           ///< with the unit, if known
+  std::size_t column = 0;        ///< column of its values
   std::string delta_text;        ///< Delta_X as written
-  double delta_x = 0.0;          ///< 0: not told
-  double delta_half_unit = 0.0;  ///< half a unit in the last place that it is written with
+  double delta_x = 0.0;          ///< 0: not given
+  double delta_half_unit = 0.0;  ///< half a unit in its last written digit
   double x0 = 0.0;
-  std::size_t samples = 0;  ///< as the header says; 0: not told
+  std::size_t samples = 0;  ///< according to the header; 0: not given
   std::optional<std::int64_t> start_ns;
 
-  /// Whether two channels have one heading in one column.
+  /// True if two channels have the same heading and column.
   [[nodiscard]] bool is_same(const LvmChannel& other) const {
     return heading == other.heading && column == other.column;
   }
 };
 
-/// What stands before the rows of a segment.
+/// Header of a segment.
 struct LvmSegment {
   std::vector<LvmChannel> channels;
   bool x_is_time = true;
-  std::string x_heading;  ///< where it is not
+  std::string x_heading;  ///< heading of X, if that is not time
   std::vector<Note> notes;
 };
 
-/// Whether a line is one of the file's or a segment's header: it begins with one of their tags.
+/// True if a line belongs to the header of the file or of a segment: it begins with one of their
+/// tags.
 [[nodiscard]] bool is_lvm_tag(std::string_view line);
-/// Whether a line is the mark "***<word>***", whatever stands behind it.
+/// True if a line begins with the mark "***<word>***".
 [[nodiscard]] bool is_lvm_mark(std::string_view line, std::string_view word);
 
-/// Reads the file's header up to its end mark, `lines` standing before its first line.
-/// Errors: corrupt (it has no end), unreadable.
+/// Reads the file's header up to its end mark; `lines` is positioned before its first line. Errors:
+/// corrupt (it has no end), unreadable.
 [[nodiscard]] Result<LvmFile> read_lvm_file_header(LineReader& lines);
 
 /// The header of a segment, line by line.
@@ -66,7 +67,7 @@ class LvmSegmentHeader {
   explicit LvmSegmentHeader(const LvmFile& file) : file_(file) {}
 
   void add(std::string_view line);
-  /// All there is once the line of column names was read, which may be empty.
+  /// The header, once the line of column names was read, which may be empty.
   [[nodiscard]] LvmSegment finish(std::string_view names);
 
  private:

@@ -16,7 +16,7 @@
 namespace proofmass::io {
 namespace {
 
-/// What all tables of a file share.
+/// State shared by all tables of a file.
 struct OpenLvm {
   std::unique_ptr<RandomBytes> bytes;
   LvmContents contents;
@@ -35,7 +35,7 @@ class LvmReader final : public TableReader {
         rows_(*file_->bytes, file_->contents.file, table),
         figures_(table.channels.size()) {}
 
-  /// Looks at the first rows. Errors: corrupt, unreadable.
+  /// Inspects the first rows. Errors: corrupt, unreadable.
   Status open() {
     if (const Status looked = look(); !looked) return looked;
     head_.format = "LVM";
@@ -82,7 +82,8 @@ class LvmReader final : public TableReader {
   }
 
  private:
-  /// To the first row with an X value, of which the others are counted, or the first at all.
+  /// Finds the first row with an X value, to which the others are relative, or the first row at
+  /// all.
   Status look() {
     constexpr std::size_t most = 1000;
     rows_.begin(table_.segments.front());
@@ -139,7 +140,7 @@ class LvmReader final : public TableReader {
       head_.start_ns = at_ns;
   }
 
-  /// The X values are seconds since the start, or since the beginning of LabVIEW's calendar.
+  /// X values are seconds since the start, or since the beginning of LabVIEW's calendar.
   void place_x_values(std::int64_t start_ns) {
     const std::int64_t first_ns = rows_.first_x() ? rows_.first_x()->ns(1.0).value_or(0) : 0;
     constexpr std::int64_t surely_absolute_ns = 1'000'000'000 * second_ns;
@@ -148,7 +149,7 @@ class LvmReader final : public TableReader {
     declare_time(first_ns, is_absolute ? -seconds_1904_to_1970 * second_ns : start_ns);
   }
 
-  /// Column 0 is the time, seconds since the first row's at `first_ns` + `zero_ns`.
+  /// Column 0 is the time, in seconds from the first row's at `first_ns` + `zero_ns`.
   void declare_time(std::int64_t first_ns, std::int64_t zero_ns) {
     has_x_column_ = true;
     head_.headings.emplace_back("X_Value (s)");

@@ -10,15 +10,15 @@
 
 namespace proofmass::io {
 
-/// Whether the first line is the one that every LabVIEW measurement file begins with.
+/// True if the first line is that of a LabVIEW measurement file.
 [[nodiscard]] bool claims_lvm(std::string_view head, std::string_view file_name);
 
 /// Opens a LabVIEW measurement file. Segments of the same channels are one table, each row at its
-/// own segment's start + X0 + k · Delta_X, or at its X value; channels of another Delta_X, and
-/// segments of other channels, are tables of their own. Comments and special blocks are told in
-/// notes. Dates and times of day are taken for UTC.
+/// own segment's start + X0 + k · Delta_X, or at its X value; channels with another Delta_X, and
+/// segments with other channels, are separate tables. Comments and special blocks are reported in
+/// notes. Dates and times of day are assumed to be UTC.
 /// Source: National Instruments, "Specification for the LabVIEW Measurement File (.lvm)" (2010).
-/// Errors: corrupt (no segment of figures), unreadable.
+/// Errors: corrupt (no segment of numbers), unreadable.
 /// Cost: the file is read twice, once for its segments; memory grows with their number.
 [[nodiscard]] Result<std::unique_ptr<TableFile>> open_lvm(std::unique_ptr<PeekSource> source,
                                                           const ReadOptions& options);

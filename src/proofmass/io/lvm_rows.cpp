@@ -13,7 +13,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Digits behind the decimal mark of a figure, its exponent not counted.
+/// Digits after the decimal mark of a number, without its exponent.
 int decimals_in(std::string_view field, char point) {
   const std::size_t mark = field.find(point);
   if (mark == std::string_view::npos) return 0;
@@ -49,7 +49,7 @@ Result<bool> LvmRowParser::row(std::span<double> figures, double& x) {
   return true;
 }
 
-/// Separators inside a figure can only be its decimal mark, which is then read with the figure.
+/// A separator inside a number can only be its decimal mark, which is then read with the number.
 const char* LvmRowParser::end_of_field(const char* begin, const char* end) const {
   if (file_.separator == file_.point && *begin != file_.separator) {
     Decimal decimal;
@@ -84,7 +84,7 @@ void LvmRowParser::parse(std::string_view line, std::span<double> figures, doubl
   judge(row, figures);
 }
 
-/// What is beside the figures.
+/// Handles the fields that are not channel values.
 void LvmRowParser::take_field(int use, std::string_view field, Row& row) {
   if (use == x_value) row.x = field;
   if (use == further_x && field != row.x && !trimmed(field).empty()) row.has_other_x = true;
@@ -94,7 +94,7 @@ void LvmRowParser::take_field(int use, std::string_view field, Row& row) {
 void LvmRowParser::judge(const Row& row, std::span<double> figures) {
   if (row.has_other_x && faults_.other_x++ == 0) faults_.other_x_line = lines_->number();
   if (decimals_ && lines_->is_ended()) return;
-  // Figures are written with as many decimals all: fewer where the file ends are one cut short.
+  // All numbers have the same count of decimals: fewer at the end of the file mean truncation.
   const int decimals = decimals_in(row.last, file_.point);
   if (!decimals_) decimals_ = decimals;
   const bool is_short =
@@ -104,7 +104,7 @@ void LvmRowParser::judge(const Row& row, std::span<double> figures) {
   faults_.cut_line = lines_->number();
 }
 
-/// Where the field ends; its figure, or NaN.
+/// End of the field; its value, or NaN.
 const char* LvmRowParser::parse_figure(const char* begin, const char* end, double& figure) {
   Decimal decimal;
   const char* behind =

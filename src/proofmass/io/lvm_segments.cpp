@@ -12,7 +12,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Reads a file from front to back.
+/// Reads a file sequentially.
 class Lister {
  public:
   Lister(const RandomBytes& file, const Progress& progress)
@@ -53,7 +53,7 @@ class Lister {
     return static_cast<double>(lines_.offset()) / static_cast<double>(file_.size());
   }
 
-  /// A line that is no row.
+  /// A line that is not a row.
   Status read_other(std::string_view line) {
     if (is_lvm_mark(line, "Start_Special")) return skip_special();
     if (line.starts_with("LabVIEW Measurement")) {
@@ -109,7 +109,7 @@ class Lister {
     const auto there = lines_.next();
     if (!there) return there.error();
     if (!*there) return note_cut("segment's header");
-    // Column names are there as a rule, not always.
+    // Column names are usually present, but not always.
     const bool is_nameless = is_row(lines_.text());
     begin_segment(header.finish(is_nameless ? std::string_view{} : lines_.text()));
     if (is_nameless) add_row();
@@ -124,13 +124,13 @@ class Lister {
     pending_ = tables_of(segment, contents_.file.x);
   }
 
-  /// A segment that says it has samples and has none.
+  /// Handles a segment that claims samples and has none.
   void end_segment() {
     if (pending_.empty() || pending_.front().channels.front().samples == 0) return;
     if (++empty_segments_ == 1) first_empty_line_ = lines_.number();
   }
 
-  /// A row: of the tables that were announced last.
+  /// Adds a row to the tables of the last header.
   void add_row() {
     if (!is_begun_) place_pending();
     for (const std::size_t table : current_) ++contents_.tables[table].segments.back().count;
@@ -159,7 +159,7 @@ class Lister {
     pending_.clear();
   }
 
-  /// What tables have in common that are one.
+  /// The properties that tables must share to be one.
   static std::string key_of(const LvmTable& table) {
     std::string key;
     for (const LvmChannel& channel : table.channels)
@@ -171,7 +171,7 @@ class Lister {
     if (++strange_lines_ == 1) first_strange_line_ = lines_.number();
   }
 
-  /// Where the header does not say, the decimal mark is what the first row has.
+  /// If the header does not state it, the decimal mark is that of the first row.
   bool is_row(std::string_view line) {
     LvmFile& file = contents_.file;
     if (file.point_is_told) return is_lvm_row(line, file);
@@ -182,7 +182,7 @@ class Lister {
     return file.point_is_told;
   }
 
-  /// Names tell tables apart, where there are several.
+  /// Gives the tables distinct names, if there are several.
   void name_tables() {
     std::map<std::string, std::size_t> used;
     if (contents_.tables.size() == 1) contents_.tables[0].name.clear();
@@ -220,10 +220,10 @@ class Lister {
   LvmContents contents_;
   std::size_t segments_ = 0;
   std::vector<LvmTable> pending_;     ///< announced, without a row so far
-  std::vector<std::size_t> current_;  ///< tables that the rows belong to
+  std::vector<std::size_t> current_;  ///< tables of the current rows
   bool is_begun_ = false;
   std::map<std::string, std::size_t> specials_;
-  std::map<std::string, std::size_t> known_;  ///< place of a table by what it has
+  std::map<std::string, std::size_t> known_;  ///< index of a table by its properties
   std::size_t strange_lines_ = 0;
   std::size_t first_strange_line_ = 0;
   std::size_t empty_segments_ = 0;

@@ -10,14 +10,14 @@
 
 namespace proofmass::io {
 
-/// What a file holds.
+/// Contents of a file.
 struct LvmContents {
   LvmFile file;
   std::vector<LvmTable> tables;  ///< those with rows
   std::vector<Note> notes;
 };
 
-/// Reads the headers and finds the rows. Errors: corrupt (no segment), unreadable.
+/// Reads the headers and locates the rows. Errors: corrupt (no segment), unreadable.
 [[nodiscard]] Result<LvmContents> list_lvm(const RandomBytes& file, const Progress& progress);
 
 }  // namespace proofmass::io

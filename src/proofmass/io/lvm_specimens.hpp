@@ -12,10 +12,10 @@ struct LvmFileHeader {
   std::string time_pref = "Relative";
   char separator = '\t';
   std::string separator_name = "Tab";
-  std::string decimal_separator = ".";  ///< empty: not told, as before version 2
+  std::string decimal_separator = ".";  ///< empty: not given, as before version 2
 };
 
-/// Text written with tabs as the file has it.
+/// A text written with tabs, with the file's separator.
 inline std::string with(std::string text, char separator) {
   for (char& c : text)
     if (c == '\t') c = separator;
@@ -31,7 +31,7 @@ inline std::string lvm_header(const LvmFileHeader& h = {}) {
   return with(out, h.separator);
 }
 
-/// A segment's header of equal channels, tags and column names as given.
+/// A segment's header of equal channels, with the given tags and column names.
 struct LvmSegmentText {
   std::vector<std::string> names{"a", "b"};
   std::vector<std::string> units{"g", "V"};

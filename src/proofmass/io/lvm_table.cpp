@@ -12,15 +12,15 @@ namespace {
 
 bool is_together(const LvmChannel& one, const LvmChannel& other, LvmX x) {
   if (one.delta_text != other.delta_text) return false;
-  // One X value for all in a row says that they belong together.
+  // A single X value per row shows that all channels belong together.
   if (x == LvmX::one || one.delta_x == 0.0) return true;
   if (one.start_ns.has_value() != other.start_ns.has_value()) return false;
   double apart_s = other.x0 - one.x0;
   if (one.start_ns)
     apart_s +=
         static_cast<double>(*other.start_ns) * 1e-9 - static_cast<double>(*one.start_ns) * 1e-9;
-  // Channels that a multiplexer takes one after another are of one scan; software may take a while
-  // between its single readings.
+  // Channels sampled one after another by a multiplexer belong to one scan; software may take some
+  // time between single samples.
   return std::abs(apart_s) <= std::max(one.delta_x, 1e-3);
 }
 
@@ -36,7 +36,7 @@ bool is_figure(char c) {
   return (c >= '0' && c <= '9') || c == '-' || c == '+';
 }
 
-/// Whether there is a figure, or a word for none, in fields of which the first may not be a word.
+/// True if there is a number, or a word for a missing one; the first field may not be a word.
 bool has_figure(std::string_view line, const LvmFile& file) {
   for (bool is_first = true; !line.empty(); is_first = false) {
     const std::size_t end = std::min(line.find(file.separator), line.size());
@@ -81,7 +81,7 @@ std::vector<LvmTable> tables_of(const LvmSegment& segment, LvmX x) {
 
 bool is_lvm_row(std::string_view line, const LvmFile& file) {
   if (line.empty() || line.front() == '*') return false;
-  // Nearly all rows begin with a figure, or with a blank X value before one.
+  // Nearly all rows begin with a number, or with a blank X value before one.
   if (is_figure(line.front())) return true;
   if (line.front() == file.separator && line.size() > 1 && is_figure(line[1])) return true;
   return !is_lvm_tag(line) && has_figure(line, file);

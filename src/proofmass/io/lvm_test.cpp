@@ -166,7 +166,7 @@ TEST(Lvm, SegmentsApartKeepTheirTimes) {
 }
 
 TEST(Lvm, TheStartsOfSegmentsTellTheStepThatDeltaXRounds) {
-  // 1024 Hz: 0.0009765625 s is written as 0.000977, which would put 1000 rows 0.4 ms too late.
+  // 1024 Hz: 0.0009765625 s is written as 0.000977, which would make 1000 rows 0.4 ms too long.
   std::string text = lvm_header();
   std::string rows;
   for (int k = 0; k < 1000; ++k) rows += "\t1.0\t2.0\n";
@@ -251,7 +251,7 @@ TEST(Lvm, TellsWhereItBreaksOff) {
   ASSERT_TRUE(shorter.has_value());
   EXPECT_EQ(shorter->samples(), 2u);
   EXPECT_TRUE(is_noted(*shorter, "2 rows of the 3")) << notes_of(*shorter);
-  // Without its last line's end a file may still be whole.
+  // Without the last line end a file may still be complete.
   const auto whole_still = read_text(whole.substr(0, whole.size() - 1));
   ASSERT_TRUE(whole_still.has_value());
   EXPECT_EQ(whole_still->channels[1].values[2], 6.0);

@@ -20,7 +20,7 @@ double duration_s(const LvmRows& segment) {
   return static_cast<double>(segment.count) * segment.clock.delta_x;
 }
 
-/// Where segments begin, seconds since the first's Date and Time.
+/// Start of the segments, in seconds from the first one's Date and Time.
 std::vector<double> starts_of(const LvmTable& table, LvmTiming& timing) {
   std::vector<double> starts;
   std::size_t counted_on = 0;
@@ -45,7 +45,7 @@ std::vector<double> starts_of(const LvmTable& table, LvmTiming& timing) {
   return starts;
 }
 
-/// The step of a segment that the start of the next one tells, if it is Delta_X unrounded.
+/// The period of a segment from the start of the next one, if it equals Delta_X before rounding.
 double step_of(const LvmTable& table, const std::vector<double>& starts_s, std::size_t i) {
   const LvmRows& segment = table.segments[i];
   const double told_s = segment.clock.delta_x;
@@ -54,7 +54,7 @@ double step_of(const LvmTable& table, const std::vector<double>& starts_s, std::
   return std::abs(step_s - told_s) <= 1.01 * segment.clock.delta_half_unit ? step_s : told_s;
 }
 
-/// One step for all rows, where the segments follow each other without a gap.
+/// One period for all rows, if the segments are consecutive without gaps.
 std::optional<double> common_step(const LvmTable& table, const std::vector<double>& starts_s) {
   const LvmClock& clock = table.segments.front().clock;
   if (!(clock.delta_x > 0.0)) return std::nullopt;
@@ -64,7 +64,7 @@ std::optional<double> common_step(const LvmTable& table, const std::vector<doubl
     const double mean_s = (starts_s.back() - starts_s.front()) / rows;
     const double slack_s = 1.01 * clock.delta_half_unit;
     if (!(std::abs(mean_s - step_s) <= slack_s)) return std::nullopt;
-    // The rounding of Delta_X is all that they differ by, or they fit as they are.
+    // They differ only by the rounding of Delta_X, or match exactly.
     double row = 0.0;
     bool fits_told = true;
     bool fits_mean = true;

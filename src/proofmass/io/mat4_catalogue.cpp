@@ -10,7 +10,7 @@ namespace {
 
 enum class Content { numbers, text, sparse };
 
-/// One variable's header, taken apart.
+/// Parsed header of a variable.
 struct Header {
   int machine = 0;  ///< 0: IEEE little-endian, 1: big-endian, 2 to 4: VAX and Cray
   Content content = Content::numbers;
@@ -20,7 +20,7 @@ struct Header {
   std::size_t columns = 0;
   bool is_complex = false;
   std::string name;
-  std::size_t bytes = 0;  ///< of the header, the name included
+  std::size_t bytes = 0;  ///< size of the header, including the name
 };
 
 struct Precision {
@@ -42,7 +42,7 @@ std::size_t whole(std::string_view bytes, std::size_t word, bool big_endian) {
   return static_cast<std::size_t>(load_figure(bytes.data() + 4 * word, type));
 }
 
-/// The machine by the header's first number, which is below 5000 in one order of bytes only.
+/// The machine from the header's first number, which is below 5000 in one byte order only.
 std::optional<int> machine_of(std::string_view bytes) {
   const std::size_t big = whole(bytes, 0, true);
   if (big >= 1000 && big < 2000) return 1;
@@ -58,7 +58,7 @@ bool is_identifier(std::string_view name) {
   });
 }
 
-/// nullopt where the bytes are no such header.
+/// nullopt if the bytes are not such a header.
 std::optional<Header> read_header(std::string_view bytes) {
   constexpr std::size_t fixed = 20;
   constexpr std::size_t longest_name = 256;
@@ -86,7 +86,7 @@ std::optional<Header> read_header(std::string_view bytes) {
   return header;
 }
 
-/// Bytes of the figures; nullopt where no file can hold so many.
+/// Size of the values; nullopt if larger than any file.
 std::optional<std::size_t> figure_bytes(const Header& header) {
   std::size_t bytes = 0;
   if (__builtin_mul_overflow(header.rows, header.columns, &bytes) ||

@@ -20,7 +20,7 @@ std::string_view name_of(MatClass array_class) {
   return names[static_cast<std::size_t>(array_class)];
 }
 
-/// Walks through one variable and lists the arrays of numbers in it.
+/// Scans one variable and lists its numeric arrays.
 class Walker {
  public:
   Walker(MatStream& stream, const MatRegion& region, bool big_endian, MatCatalogue& catalogue)
@@ -41,7 +41,7 @@ class Walker {
   }
 
  private:
-  /// Where in the tree of structs and cells an array stands.
+  /// Position of an array in the tree of structs and cells.
   struct Place {
     std::string path;
     std::size_t group_length = 0;
@@ -54,7 +54,7 @@ class Walker {
     if (!preface) return preface.error();
     const bool is_variable = place.depth == 0;
     if (is_variable) place.path = preface->name;
-    // MATLAB keeps the workspaces of function handles in a variable without a name.
+    // MATLAB stores the workspaces of function handles in an unnamed variable.
     const bool is_private = is_variable && place.path.empty();
     if (!is_private && !is_full())
       if (const Status read = content(place, *preface, end); !read) return read;
@@ -153,7 +153,7 @@ class Walker {
     return elements_.skip_padding(*next, end);
   }
 
-  /// Each member has a tag at least.
+  /// Each member has at least a tag.
   [[nodiscard]] Status check_room(const Place& place,
                                   std::size_t members,
                                   std::uint64_t end) const {
@@ -183,7 +183,7 @@ class Walker {
   Mat5Elements elements_;
 };
 
-/// The order of bytes that the header names; nullopt where it is none of this version.
+/// The byte order given in the header; nullopt if it is not of this version.
 std::optional<bool> is_big_endian(std::string_view file) {
   if (file.size() < header_bytes) return std::nullopt;
   const std::string_view mark = file.substr(124, 4);

@@ -13,7 +13,7 @@
 
 namespace proofmass::io {
 
-/// Types of data elements that a reader has to tell apart.
+/// Types of data elements that a reader must distinguish.
 inline constexpr std::uint32_t mi_matrix = 14;
 inline constexpr std::uint32_t mi_compressed = 15;
 inline constexpr std::size_t mat_tag_bytes = 8;
@@ -31,17 +31,17 @@ enum class MatClass : unsigned {
   opaque = 17,
 };
 
-/// Type and length of a data element, with the data where these are in the tag itself.
+/// Type and length of a data element, with the data if these are in the tag itself.
 struct MatTag {
   std::uint64_t at = 0;     ///< position of the tag
-  std::uint64_t begin = 0;  ///< and of the data
+  std::uint64_t begin = 0;  ///< position of the data
   std::uint32_t type = 0;
   std::uint32_t size = 0;
   bool is_small = false;
   std::array<char, 4> data{};
 };
 
-/// What an array says of itself before its content.
+/// Description of an array before its content.
 struct MatPreface {
   MatClass array_class{};
   bool is_complex = false;
@@ -54,24 +54,24 @@ struct MatPreface {
 /// The unsigned number of four bytes.
 [[nodiscard]] std::uint32_t mat_word(const char* bytes, bool big_endian);
 
-/// How the figures of an element are stored; nullopt where its type is none of figures.
+/// Storage of the numbers of an element; nullopt if its type is not numeric.
 [[nodiscard]] std::optional<FigureType> mat_figure_type(std::uint32_t type, bool big_endian);
 
-/// Reads the data elements of one variable. Each length is held against what is left of the element
-/// that it lies in, `end`. Errors of all: corrupt.
+/// Reads the data elements of one variable. Each length is checked against the remainder of the
+/// enclosing element, `end`. Errors of all functions: corrupt.
 class Mat5Elements {
  public:
   Mat5Elements(MatStream& stream, bool big_endian) : stream_(stream), big_endian_(big_endian) {}
 
-  /// A tag, which has to lie before `end` with all of its data.
+  /// A tag, which must lie before `end` with all of its data.
   [[nodiscard]] Result<MatTag> tag(std::uint64_t end);
-  /// To where the next element begins, when the data of this one are read.
+  /// Skips to the next element, after the data of this one are read.
   Status skip_padding(const MatTag& tag, std::uint64_t end);
   /// Class, shape and name of an array.
   [[nodiscard]] Result<MatPreface> preface(std::uint64_t end);
   /// The names of a struct's fields.
   [[nodiscard]] Result<std::vector<std::string>> field_names(std::uint64_t end);
-  /// Characters of one byte, UTF-8 or UTF-16, as UTF-8; `most` bytes at most.
+  /// Characters of one byte, UTF-8 or UTF-16, as UTF-8; at most `most` bytes.
   [[nodiscard]] Result<std::string> text(std::uint64_t end, std::size_t most);
 
  private:

@@ -17,7 +17,7 @@ enum Type : std::uint32_t {
 };
 enum Class : std::uint32_t { mx_struct = 2, mx_char = 4, mx_double = 6, mx_int64 = 14 };
 
-/// A data element; one of four bytes or fewer has them in its tag.
+/// A data element; up to four bytes are stored in its tag.
 std::string element(Type type, std::string_view data) {
   std::string out;
   if (!data.empty() && data.size() <= 4) {
@@ -57,7 +57,7 @@ std::string matrix(const std::string& body) {
   return matrix_tag(body.size()) + body;
 }
 
-/// A text as MATLAB keeps it: its bytes in UTF-8, and how many units of UTF-16 they are.
+/// A text as stored by MATLAB: its bytes in UTF-8, and its length in UTF-16 units.
 struct StoredText {
   std::string bytes;
   std::size_t units = 0;

@@ -20,7 +20,7 @@ std::size_t size_of(const MatArray& array) {
   return size;
 }
 
-/// What the file has, for a person, the largest first: "acc (500 x 3 double), title (text), …".
+/// Contents of the file for the user, largest first: "acc (500 x 3 double), title (text), …".
 std::string contents(const MatCatalogue& catalogue, const std::set<const MatArray*>& but) {
   constexpr std::size_t most = 8;
   std::vector<const MatArray*> arrays;
@@ -41,14 +41,14 @@ std::string contents(const MatCatalogue& catalogue, const std::set<const MatArra
   return text;
 }
 
-/// Whether `path` is `group` or lies in it.
+/// True if `path` is `group` or lies in it.
 bool is_within(std::string_view path, std::string_view group) {
   if (group.empty() || path == group) return true;
   return path.starts_with(group) &&
          std::string_view(".({").find(path[group.size()]) != std::string_view::npos;
 }
 
-/// Whether a channel has a table's name, or that and the ending of a column.
+/// True if a channel has a table's name, optionally with the suffix of a column.
 bool is_channel_of(const std::string& channel, const MatTable& table) {
   const std::string wanted = lower(channel);
   const auto is_of = [&](const std::string& name) {
@@ -89,8 +89,8 @@ class Chooser {
   }
 
  private:
-  /// Chooses the tables that the channels asked for are of, instead; false where there are none, or
-  /// they are chosen already.
+  /// Selects the tables of the requested channels instead; false if there are none, or they are
+  /// selected already.
   bool take_asked_for() {
     std::set<const MatArray*> asked = arrays_asked_for(tables_, options_);
     if (std::ranges::includes(chosen_, asked)) return false;
@@ -98,8 +98,7 @@ class Chooser {
     return true;
   }
 
-  /// The largest table within a group, those of accelerations before others, and the vectors beside
-  /// it.
+  /// The largest table within a group, preferring accelerations, and the vectors beside it.
   Status take_largest(std::string_view group) {
     std::size_t longest = 0;
     for (const MatTable& table : tables_)
@@ -143,7 +142,7 @@ class Chooser {
                              contents(catalogue_, {}))};
   }
 
-  /// The time that stands beside what was named.
+  /// Adds the time beside the named arrays.
   Status add_time() {
     for (const MatTable& table : tables_) {
       if (!chosen_.contains(table.array)) continue;
@@ -166,7 +165,7 @@ class Chooser {
     return vectors;
   }
 
-  /// In the struct that the table is in, or one around it.
+  /// In the struct of the table, or an enclosing one.
   [[nodiscard]] const MatArray* rate_beside(const MatTable& table) const {
     for (const MatArray& array : catalogue_.arrays) {
       const bool is_number = !array.is_complex && std::ranges::all_of(array.shape, [](auto length) {
@@ -254,7 +253,7 @@ TableKind kind_of(const MatTable& table) {
       "gyr", "omega", "ang", "mag", "euler", "quat", "vel", "pos", "temp", "orient", "baro"};
   const std::string name = bare_name(table.name());
   const auto is_part = [&](std::string_view part) { return name.find(part) != std::string::npos; };
-  // "x" alone may be an axis of anything.
+  // "x" alone may be an axis of any quantity.
   const bool is_axis = !name.empty() && name[0] >= 'x' && name[0] <= 'z';
   if (is_accelerometer_name(name) && !is_axis) return TableKind::acceleration;
   if (std::ranges::any_of(others, is_part)) return TableKind::other;

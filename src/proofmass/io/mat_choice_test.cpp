@@ -93,7 +93,7 @@ TEST(MatChoice, ChannelsTimesSamplesAreTurned) {
   const auto read = read_mat5(doubles("data", 3, turned));
   ASSERT_EQ(names_of(read), (Names{"x", "y", "z"}));
   EXPECT_EQ(read->channels[1].values, values(0.2, 0.02));
-  // As motion capture writes it: bodies x axes x frames.
+  // As in motion capture: bodies x axes x frames.
   const auto cube = read_mat5(
       matrix({6, {1, 3, samples}, "Positions"}, element(9, bytes_of(turned), Order::little)));
   ASSERT_EQ(names_of(cube), (Names{"Positions_x", "Positions_y", "Positions_z"}));
@@ -164,7 +164,7 @@ TEST(MatChoice, PutsAccelerationsBeforeLargerTablesOfOtherThings) {
                               doubles("ax", samples, values(0.1, 0.01)) +
                               doubles("az", samples, values(9.7, 0.01));
   EXPECT_EQ(names_of(read_mat5(vectors)), (Names{"ax", "az"}));
-  // A matrix of calibration is no recording, whatever it is called.
+  // A calibration matrix is not a recording, whatever its name.
   const std::string calibration = doubles("acc_scale", 3, values(1, 0.1, 7, 9)) +
                                   doubles("data", 200, values(9.7, 0.01, 7, 600));
   const auto read = read_mat5(calibration);

@@ -14,7 +14,7 @@ namespace {
 
 using Columns = std::vector<std::vector<double>>;
 
-/// Headings for the columns of a matrix; `prefix` is empty where its name says nothing.
+/// Headings for the columns of a matrix; `prefix` is empty if its name is uninformative.
 std::vector<std::string> headings_of(std::string_view prefix, std::size_t width, bool is_timed) {
   constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
   const std::size_t first = is_timed ? 1 : 0;

@@ -23,7 +23,7 @@ bool is_keyword(std::string_view name) {
   return std::ranges::find(keywords, name) != keywords.end();
 }
 
-/// Characters that no name has become underscores, never two in a row.
+/// Invalid characters become underscores, never two in a row.
 std::string legal(std::string_view text) {
   std::string name;
   for (const char c : text) {

@@ -6,8 +6,8 @@
 
 namespace proofmass::io {
 
-/// Makes names that MATLAB takes for variables and fields: a letter, then letters, digits and
-/// underscores, 63 at most, none a keyword, none twice whatever the case.
+/// Makes valid MATLAB names of variables and fields: a letter, then letters, digits and
+/// underscores, at most 63, no keywords, unique ignoring case.
 class MatNames {
  public:
   [[nodiscard]] std::string name_for(std::string_view text);

@@ -36,12 +36,13 @@ Result<std::string> read_all(PeekSource& source, const Progress& progress) {
 
 using Columns = std::vector<std::vector<double>>;
 
-/// Reads figures; goes on in a variable where it can, as going back means to unpack it anew.
+/// Reads values; continues within a variable if possible, because going back requires decompressing
+/// it again.
 class FigureReader {
  public:
   explicit FigureReader(std::string_view file) : file_(file) {}
 
-  /// The whole number of eight bytes, exact.
+  /// An integer of eight bytes, exact.
   Result<std::int64_t> read_whole(const MatArray& array) {
     std::array<char, 8> bytes{};
     if (const Status found = go_to(array); !found) return found.error();
@@ -56,7 +57,7 @@ class FigureReader {
     for (auto& column : columns) column.reserve(table.rows);
     const FigureType& type = table.array->stored;
     if (const Status found = go_to(*table.array); !found) return found.error();
-    // Whole rows of a turned table are read at once.
+    // Whole rows of a turned table are read together.
     const std::size_t most = std::min(piece_figures / table.width * table.width, table.figures());
     std::vector<char> bytes(most * type.bytes);
     for (std::size_t at = 0; at < table.figures();) {
@@ -88,7 +89,7 @@ class FigureReader {
   std::size_t region_offset_ = 0;
 };
 
-/// The rate that a single number says; a note where it says none that can be.
+/// The rate in a scalar; a note if it is implausible.
 Result<std::optional<double>> rate_of(const MatArray& array,
                                       FigureReader& reader,
                                       std::vector<Note>& notes) {

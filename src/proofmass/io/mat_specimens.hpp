@@ -10,7 +10,7 @@
 
 #include "proofmass/io/deflate_test_support.hpp"
 
-// Writes MAT files, whole and broken ones, for tests.
+// Writes MAT files, intact and damaged ones, for tests.
 namespace proofmass::io::specimen {
 
 enum class Order { little, big };
@@ -27,14 +27,14 @@ std::string bytes_of(const std::vector<T>& values, Order order = Order::little) 
   return out;
 }
 
-/// The 128 bytes that version 5 begins with.
+/// The first 128 bytes of version 5.
 inline std::string mat5_header(Order order = Order::little) {
   std::string header = "MATLAB 5.0 MAT-file, made by a test";
   header.resize(124, ' ');
   return header + (order == Order::big ? std::string("\1\0MI", 4) : std::string("\0\1IM", 4));
 }
 
-/// A data element, with the data in its tag where they have room there.
+/// A data element, with the data in its tag if they fit.
 inline std::string element(std::uint32_t type, const std::string& data, Order order) {
   const auto size = static_cast<std::uint32_t>(data.size());
   if (size > 0 && size <= 4) {
@@ -91,7 +91,7 @@ inline std::string structure(const std::string& name, const std::vector<Field>& 
                                        element(1, names, Order::little) + values);
 }
 
-/// A variable as MATLAB's version 7 writes it.
+/// A variable as written by MATLAB's version 7.
 inline std::string packed(const std::string& variable, Order order = Order::little) {
   const std::string data = deflated(variable, 15);
   return bytes_of<std::uint32_t>({15, static_cast<std::uint32_t>(data.size())}, order) + data;

@@ -18,7 +18,7 @@ struct MatStream::Inflater {
   Inflater& operator=(const Inflater&) = delete;
   ~Inflater() { inflateEnd(&stream); }
 
-  /// Unpacks until `into` is full; less where the data end or are damaged.
+  /// Decompresses until `into` is full; less if the data end or are damaged.
   std::size_t read(std::span<char> into) {
     constexpr std::size_t at_once = std::size_t{1} << 30;
     std::size_t filled = 0;
@@ -37,7 +37,7 @@ struct MatStream::Inflater {
   }
 
   void feed(std::size_t count) {
-    // zlib asks for bytes it may write to, and never writes to them.
+    // zlib takes a non-const pointer, but never writes to it.
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest.data()));
     stream.avail_in = static_cast<uInt>(count);
     rest.remove_prefix(count);
@@ -46,7 +46,7 @@ struct MatStream::Inflater {
   z_stream stream{};
   std::string_view rest;
   bool ended = false;
-  bool complete = false;  ///< ended where its checksum says it should
+  bool complete = false;  ///< ended with a valid checksum
 };
 
 MatStream::MatStream(std::string_view file, const MatRegion& region)

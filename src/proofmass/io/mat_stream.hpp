@@ -11,14 +11,14 @@
 
 namespace proofmass::io {
 
-/// Where in a MAT file a variable lies.
+/// Location of a variable in a MAT file.
 struct MatRegion {
   std::size_t offset = 0;
   std::size_t size = 0;
-  bool is_packed = false;  ///< by zlib; else as it is
+  bool is_packed = false;  ///< by zlib; else uncompressed
 };
 
-/// The bytes of one variable from front to back, unpacked as they are asked for.
+/// The bytes of one variable, sequentially, decompressed on demand.
 class MatStream {
  public:
   /// `file` must outlive the stream. Precondition: the region lies within it.
@@ -27,15 +27,15 @@ class MatStream {
   MatStream& operator=(const MatStream&) = delete;
   ~MatStream();
 
-  /// Fills `into`, all of it. Errors: corrupt (the bytes end before, or cannot be unpacked).
+  /// Fills all of `into`. Errors: corrupt (premature end, or cannot be decompressed).
   Status read(std::span<char> into);
   /// Errors: as read().
   Status skip(std::uint64_t count);
-  /// When all has been read: whether what was compressed ends here, and has its checksum.
+  /// After all has been read: checks that compressed data end here, with a valid checksum.
   Status finish();
 
   [[nodiscard]] std::uint64_t position() const { return position_; }
-  /// More than the variable can hold: its bytes, or what zlib can make of them at most.
+  /// Upper bound of the variable's size: its bytes, or the maximum zlib can expand them to.
   [[nodiscard]] std::uint64_t most() const;
   /// An error at a position: "byte 136: …", "byte 136, unpacked byte 40: …".
   [[nodiscard]] Error corrupt(std::uint64_t position, std::string_view what) const;

@@ -49,7 +49,7 @@ TEST(Mat5, ReadsEveryTypeInBothOrdersOfBytes) {
   expect_stored<std::uint64_t>(13, 15, {2, 0, 1ULL << 40});
 }
 
-// MATLAB stores doubles that are whole numbers in the smallest type that holds them.
+// MATLAB stores integer-valued doubles in the smallest type that holds them.
 TEST(Mat5, ReadsDoublesThatAreStoredInFewerBytes) {
   expect_stored<std::uint8_t>(2, 6, {1, 2, 3, 4, 5});
   expect_stored<std::int16_t>(3, 6, {1, -2, 300});
@@ -57,7 +57,7 @@ TEST(Mat5, ReadsDoublesThatAreStoredInFewerBytes) {
 }
 
 TEST(Mat5, ReadsACompressedFileOfAnotherWriter) {
-  // Of scipy 1.10.1: savemat(…, {"imu": {"t": …, "acc": …, "fs": 100.0}}, do_compression=True).
+  // From scipy 1.10.1: savemat(…, {"imu": {"t": …, "acc": …, "fs": 100.0}}, do_compression=True).
   const auto read = read_text(
       mat5_header() +
       from_hex("0f0000009e000000789ce363606098c1c8c0c006a439809889010258a17c46386666c8cc2d058ab3"
@@ -162,7 +162,7 @@ TEST(Mat5, BelievesNoLengthBeyondItsElement) {
 }
 
 TEST(Mat5, BelievesNoLengthThatIsCompressed) {
-  // Says that it unpacks to 4 GB, and is ten bytes.
+  // Claims to decompress to 4 GB, and has ten bytes.
   const std::string claim = bytes_of<std::uint32_t>({14, 0xFFFFFFF0});
   const auto read = read_text(mat5_header() + packed(claim));
   ASSERT_FALSE(read.has_value());
@@ -174,7 +174,7 @@ TEST(Mat5, BelievesNoLengthThatIsCompressed) {
 TEST(Mat5, NoticesCompressedDataThatAreDamaged) {
   const std::string file = mat5_header() + packed(doubles("v", 6, ramp));
   std::string damaged = file;
-  damaged.back() = static_cast<char>(damaged.back() ^ 1);  // of the checksum
+  damaged.back() = static_cast<char>(damaged.back() ^ 1);  // in the checksum
   const auto read = read_text(damaged);
   ASSERT_FALSE(read.has_value());
   EXPECT_NE(read.error().message.find("byte 136, unpacked byte"), std::string::npos);
@@ -232,7 +232,7 @@ TEST(Mat4, ReadsEveryTypeInBothOrdersOfBytes) {
 }
 
 TEST(Mat4, ReadsAFileOfAnotherWriter) {
-  // Of scipy 1.10.1: savemat(…, {"a": int16 [[1, 2, 3, 4], [-5, 6, 7, 8]]}, format="4").
+  // From scipy 1.10.1: savemat(…, {"a": int16 [[1, 2, 3, 4], [-5, 6, 7, 8]]}, format="4").
   const auto read = read_text(
       from_hex("1e0000000200000004000000000000000200000061000100fbff0200060003000700040008"
                "00"));

@@ -13,7 +13,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Names of variables that say something about the others.
+/// Names of variables that describe the others.
 constexpr std::string_view time_name = "time_s";
 constexpr std::string_view rate_name = "fs";
 constexpr std::string_view start_name = "start_ns";
@@ -83,7 +83,7 @@ class MatWriter final : public RecordingWriter {
     return spool_.give(column, [&](std::string_view bytes) { return file_->append(bytes); });
   }
 
-  /// Where the recording comes from, and the sensor file that was applied.
+  /// Source of the recording, and the sensor file applied.
   [[nodiscard]] std::string origin() const {
     MatNames names;
     std::vector<Mat5Text> texts;

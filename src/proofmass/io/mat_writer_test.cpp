@@ -20,7 +20,7 @@
 namespace proofmass::io::mat_writer_test {
 namespace {
 
-/// A folder of its own that goes with the test.
+/// A temporary folder, removed after the test.
 class MatWriter : public testing::Test {
  protected:
   MatWriter() {
@@ -142,7 +142,7 @@ TEST_F(MatWriter, TellsWhereARecordingIsTooLarge) {
   const Recording head = uniform(0, 100.0);
   auto writer = mat_writer(std::make_unique<Nowhere>(), {.recording = head}, {});
   ASSERT_TRUE(writer.has_value());
-  // Nobody looks at the figures of a block that is refused.
+  // The values of a rejected block are not read.
   const double figure = 0.0;
   Block block;
   for (int c = 0; c < 2; ++c)

@@ -105,7 +105,7 @@ void McapBuilder::write_chunk() {
   record(chunk_indexes_, McapOp::chunk_index, index);
 }
 
-/// Message indexes behind the chunk, and where they are into the chunk's index.
+/// Writes message indexes after the chunk, and their positions into the chunk's index.
 void McapBuilder::write_indexes(std::string& index) {
   const std::uint64_t start = position();
   put_number(index, chunk_entries_.size() * (2 + 8), 4);

@@ -12,34 +12,34 @@
 
 namespace proofmass::io {
 
-/// Puts an MCAP file together in memory, from front to end; whoever uses it takes the bytes away
-/// and writes them. Chunks are not compressed, so that a file that is cut off anywhere opens up to
-/// its last whole chunk; each has its checksum and message indexes, the end a summary with schemas,
-/// channels, chunk, attachment and metadata indexes and statistics.
+/// Builds an MCAP file in memory, sequentially; the user takes the bytes and writes them. Chunks
+/// are uncompressed, so that a file truncated anywhere opens up to its last whole chunk. Each chunk
+/// has its checksum and message indexes; the end has a summary with schemas, channels, chunk,
+/// attachment and metadata indexes and statistics.
 class McapBuilder {
  public:
   explicit McapBuilder(const std::string& library,
                        McapChunking chunking = {},
                        const std::string& profile = "");
 
-  /// Both stand in front of the first message that needs them. Numbers count from 1.
+  /// Both are written before the first message that needs them. Numbers count from 1.
   [[nodiscard]] std::uint16_t add_schema(McapSchema schema);
   [[nodiscard]] std::uint16_t add_channel(McapChannel channel);
   /// Messages of a channel are numbered from 0.
   void add_message(std::uint16_t channel, std::uint64_t log_ns, std::string_view data);
-  /// The same with the sequence number and time of publishing that it has.
+  /// The same with a given sequence number and publish time.
   void add_message(const McapMessage& message);
-  /// Both close the chunk before them.
+  /// Both close the preceding chunk.
   void add_metadata(const McapMetadata& metadata);
   void add_attachment(const McapAttachmentHead& head, std::string_view data);
-  /// What was added so far can be taken and outlives a crash.
+  /// Completes the open chunk: the data added so far can be taken and survive a crash.
   void close_chunk();
-  /// The end of the data and the summary. Nothing can be added afterwards.
+  /// Writes the end of the data and the summary. Nothing can be added afterwards.
   void finish();
 
-  /// Bytes that follow those taken before.
+  /// Returns the bytes since the last call.
   [[nodiscard]] std::string take_bytes();
-  /// All of the file, the open chunk too.
+  /// Size of the file, including the open chunk.
   [[nodiscard]] std::uint64_t bytes() const { return position() + chunk_.size(); }
   [[nodiscard]] McapMark mark() const;
   void rewind(const McapMark& mark);
@@ -60,13 +60,13 @@ class McapBuilder {
 
   McapChunking chunking_;
   std::string bytes_;
-  std::uint64_t taken_ = 0;     ///< bytes that were handed out
-  std::uint32_t data_crc_ = 0;  ///< of those
+  std::uint64_t taken_ = 0;     ///< bytes returned so far
+  std::uint32_t data_crc_ = 0;  ///< checksum of those bytes
   std::vector<McapSchema> schemas_;
   std::vector<McapChannel> channels_;
   std::size_t schemas_put_ = 0;
   std::size_t channels_put_ = 0;
-  std::vector<std::uint32_t> sequences_;  ///< messages of each channel
+  std::vector<std::uint32_t> sequences_;  ///< number of messages of each channel
 
   std::string chunk_;
   std::map<std::uint16_t, std::vector<Entry>> chunk_entries_;

@@ -8,7 +8,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Fills a catalogue from the records, as far as they are needed.
+/// Fills a catalogue from as many records as needed.
 class Cataloguer {
  public:
   Cataloguer(McapCatalogue& out, bool counts) : out_(out), counts_(counts) {
@@ -68,7 +68,7 @@ class Cataloguer {
 
   McapCatalogue& out_;
   bool counts_;
-  std::set<std::uint16_t> missing_;  ///< channels whose first message is still to come
+  std::set<std::uint16_t> missing_;  ///< channels whose first message has not been read yet
   std::size_t kept_ = 0;
 };
 

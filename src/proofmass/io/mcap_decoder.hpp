@@ -14,7 +14,7 @@
 
 namespace proofmass::io {
 
-/// Makes rows of figures of the messages of one topic. What a reader of an encoding writes.
+/// Converts the messages of one topic to rows of numbers. Interface of the encodings.
 class McapDecoder {
  public:
   McapDecoder() = default;
@@ -24,36 +24,35 @@ class McapDecoder {
 
   /// Without rows.
   [[nodiscard]] virtual const TableHead& head() const = 0;
-  /// Looks into the next message and says how many rows it brings; its bytes must stay as they are
-  /// until the next. `lost_bytes` of messages before it have been passed over so far.
-  /// Errors: corrupt, of this message only.
+  /// Inspects the next message and returns its number of rows; its bytes must stay unchanged until
+  /// the next call. `lost_bytes` of earlier messages have been skipped so far.
+  /// Errors: corrupt, for this message only.
   [[nodiscard]] virtual Result<std::size_t> take(const McapMessage& message,
                                                  std::uint64_t lost_bytes) = 0;
-  /// Copies `count` of these rows, from `first` on, into the columns, each from its row `at` on.
+  /// Copies `count` of these rows, from `first` on, into the columns, starting at row `at` of each.
   virtual void copy(std::size_t first,
                     std::size_t count,
                     std::span<const std::span<double>> into,
                     std::size_t at) const = 0;
-  /// What was seen in the messages so far.
+  /// Notes on the messages so far.
   [[nodiscard]] virtual std::vector<Note> notes() const = 0;
 };
 
-/// All that a file says of a topic.
+/// All information of a file on a topic.
 struct McapTopic {
   McapChannel channel;
   McapSchema schema;       ///< empty if there is none
-  McapFirstMessage first;  ///< of the topic
+  McapFirstMessage first;  ///< the topic's first message
 };
 
-/// Decoders by encoding. Errors: unsupported (an encoding or schema that is not read), corrupt.
+/// Selects the decoder by encoding. Errors: unsupported (an encoding or schema), corrupt.
 [[nodiscard]] Result<std::unique_ptr<McapDecoder>> mcap_decoder(const McapTopic& topic);
 
-/// Blocks of samples, as mcap_samples.hpp lays them out.
+/// Blocks of samples, in the layout of mcap_samples.hpp.
 [[nodiscard]] Result<std::unique_ptr<McapDecoder>> mcap_samples_decoder(const McapTopic& topic);
-/// ROS messages, of version 2 ("cdr") and 1 ("ros1"): the figures of all fields that are there
-/// once.
+/// ROS messages, of version 2 ("cdr") and 1 ("ros1"): the numbers of all fields that occur once.
 [[nodiscard]] Result<std::unique_ptr<McapDecoder>> mcap_ros_decoder(const McapTopic& topic);
-/// JSON: the figures that the first message has.
+/// JSON: the numbers of the first message.
 [[nodiscard]] Result<std::unique_ptr<McapDecoder>> mcap_json_decoder(const McapTopic& topic);
 
 }  // namespace proofmass::io

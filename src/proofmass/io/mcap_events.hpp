@@ -10,10 +10,10 @@
 
 namespace proofmass::io {
 
-/// What the topic "events" of a recording says in all, in one note.
+/// Summary of the topic "events" of a recording, in one note.
 class McapEvents {
  public:
-  /// Messages that are no events are passed over.
+  /// Messages that are not events are skipped.
   void add(const McapMessage& message);
   [[nodiscard]] std::optional<Note> note() const;
 

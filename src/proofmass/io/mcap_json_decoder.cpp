@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t longest_path = 256;
 constexpr std::size_t most_figures = 4096;
 
-/// A path that can be looked up by a view.
+/// Allows lookup of a path by a view.
 struct PathHash {
   using is_transparent = void;
   std::size_t operator()(std::string_view path) const {
@@ -32,14 +32,14 @@ bool is_second(std::string_view path) {
 bool is_nanosecond(std::string_view path) {
   return path.ends_with(".nsec") || path.ends_with(".nsecs") || path.ends_with(".nanosec");
 }
-/// A stamp as ROS and Foxglove write it: {"timestamp": {"sec": 1, "nsec": 5}}.
+/// A stamp in the format of ROS and Foxglove: {"timestamp": {"sec": 1, "nsec": 5}}.
 bool is_stamp_path(std::string_view path) {
   const std::string_view owner = path.substr(0, path.rfind('.'));
   return (is_second(path) || is_nanosecond(path)) &&
          (owner == "timestamp" || owner == "header.stamp" || owner == "stamp" || owner == "time");
 }
 
-/// The stamp's parts while a message is gone through.
+/// The stamp's parts found in the current message.
 struct StampParts {
   std::optional<std::int64_t> seconds;
   std::optional<std::int64_t> nanoseconds;
@@ -54,7 +54,7 @@ struct StampParts {
   }
 };
 
-/// What the first message has.
+/// Contents of the first message.
 struct JsonLayout {
   std::vector<std::string> paths;
   StampParts stamp;
@@ -84,7 +84,8 @@ Result<JsonLayout> layout_of(std::string_view message) {
   return out;
 }
 
-/// Whether a path is the last of a list of three, "acc.2" without "acc.3": then those are x, y, z.
+/// True if a path belongs to a list of exactly three, "acc.2" without "acc.3": then those are x, y,
+/// z.
 bool is_in_triple(const std::vector<std::string>& paths, std::string_view list) {
   const auto has = [&](const char* number) {
     return std::ranges::find(paths, fmt::format("{}.{}", list, number)) != paths.end();
@@ -118,7 +119,7 @@ class JsonDecoder final : public McapDecoder {
     head_.headings.push_back(fmt::format("{} (ns)", clock_.name()));
     for (std::size_t c = 0; c < layout.paths.size(); ++c) {
       places_.emplace(layout.paths[c], c);
-      // Looking for neighbours takes its time, which long lists are not worth.
+      // The search for neighbours is too slow for long lists.
       constexpr std::size_t few = 256;
       head_.headings.push_back(
           layout.paths.size() <= few

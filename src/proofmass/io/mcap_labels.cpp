@@ -16,7 +16,7 @@ std::string quoted(std::string text) {
   return '"' + text + '"';
 }
 
-/// Takes the field before the next comma off the front.
+/// Removes the field before the next comma from the front.
 std::string_view next_field(std::string_view& line) {
   const std::size_t comma = line.find(',');
   const std::string_view field = line.substr(0, comma);

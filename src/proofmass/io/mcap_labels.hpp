@@ -9,16 +9,16 @@
 
 namespace proofmass::io {
 
-/// The attachment that holds a recording's labels: a table of text, "first,last,NAME", with the
-/// samples from 0 and NAME the column of words that they come from.
+/// The attachment with a recording's labels: a text table, "first,last,NAME", with samples from 0
+/// and NAME the text column of their origin.
 inline constexpr std::string_view mcap_labels_name = "labels.csv";
 
 [[nodiscard]] std::string labels_table(const Recording& recording);
-/// Gives the labels of such a table to a recording of `samples`; those beyond it, or out of order,
-/// are left out.
+/// Adds the labels of such a table to a recording of `samples`; labels beyond the end, or out of
+/// order, are dropped.
 void add_labels(std::string_view table, std::size_t samples, Recording& recording);
 
-/// The same recording with the labels that `table` holds once all rows are read.
+/// The same recording with the labels of `table` once all rows are read.
 [[nodiscard]] std::unique_ptr<RecordingReader> with_labels(std::unique_ptr<RecordingReader> reader,
                                                            std::shared_ptr<std::string> table);
 

@@ -30,7 +30,7 @@ std::uint64_t messages_of(const McapCatalogue& catalogue, std::uint16_t channel)
   return found == catalogue.messages.end() ? 0 : found->second;
 }
 
-/// Rows of a topic, where the file can hold so many.
+/// Rows of a topic, if the file can hold that many.
 std::optional<std::uint64_t> rows_of(const McapTopic& topic,
                                      std::uint64_t messages,
                                      std::uint64_t file_bytes) {
@@ -48,21 +48,21 @@ std::optional<std::uint64_t> rows_of(const McapTopic& topic,
   return rows;
 }
 
-/// The topics of a file, and why those are not read that are not.
+/// The topics of a file, and the reasons why others are not read.
 struct Topics {
   std::vector<McapTableSpec> read;
   std::set<std::uint16_t> events;
   std::vector<Note> others;
 };
 
-/// What stands beside the samples of a recording of our own is no table.
+/// The metadata topics of our own recordings are not tables.
 bool is_beside(const McapTopic& topic) {
   return topic.schema.name == mcap_event_schema || topic.schema.name == mcap_clock_schema;
 }
 
 Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
   Topics out;
-  // Several publishers of a topic are several channels.
+  // Several publishers of a topic have separate channels.
   std::map<std::tuple<std::string, std::string, std::string>, std::size_t> known;
   std::vector<std::uint64_t> messages;
   constexpr std::size_t most_topics = 1024;

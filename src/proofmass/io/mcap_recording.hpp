@@ -15,39 +15,39 @@
 
 namespace proofmass::io {
 
-/// How the messages of an MCAP file are put into chunks.
+/// How the messages of an MCAP file are grouped into chunks.
 struct McapChunking {
-  /// A chunk is closed as soon as it is as large or its messages span as much time.
+  /// A chunk is closed as soon as it reaches this size or its messages span this time.
   std::size_t bytes = std::size_t{1} << 20;
   std::uint64_t span_ns = ~std::uint64_t{0};
-  /// Each has all schemas and channels, so that it can be read if those before it are lost.
+  /// Each chunk has all schemas and channels, so that it can be read if earlier ones are lost.
   bool is_self_contained = false;
 };
 
-/// The state of a file at the end of a chunk, to which it can be taken back.
+/// The state of a file at the end of a chunk, to which it can be rewound.
 struct McapMark {
-  std::uint64_t bytes = 0;  ///< of the file up to here
+  std::uint64_t bytes = 0;  ///< size of the file so far
   std::uint32_t data_crc = 0;
   std::size_t chunk_index_bytes = 0, attachment_index_bytes = 0, metadata_index_bytes = 0;
   std::uint32_t chunks = 0, attachments = 0, metadata = 0;
   std::uint64_t start_ns = 0, end_ns = 0, messages = 0;
-  std::vector<std::uint32_t> sequences{};  ///< of the channels
+  std::vector<std::uint32_t> sequences{};  ///< sequence numbers of the channels
 };
 
-/// A topic of blocks of samples.
+/// A topic with blocks of samples.
 struct McapSamplesTopic {
   std::string name;                     ///< "recording"
-  const std::vector<Channel>& columns;  ///< names and units; values are not looked at
+  const std::vector<Channel>& columns;  ///< names and units; values are ignored
   bool has_stamps = true;
-  std::optional<double> rate_hz{};  ///< without stamps
+  std::optional<double> rate_hz{};  ///< if there are no stamps
   std::optional<std::int64_t> start_ns{};
-  std::string derived_from{};  ///< the topic that it was worked out of; empty: measured
+  std::string derived_from{};  ///< the topic from which it was computed; empty: measured
 };
 
-/// Time of a sample as the log time of a message, which cannot be below zero.
+/// Time of a sample as the log time of a message, which cannot be negative.
 [[nodiscard]] std::uint64_t mcap_log_ns(std::int64_t start_ns, double since_s);
 
-/// Our own recordings in an MCAP file, from front to end, as bytes for whoever writes them. See
+/// Writes our own recordings as an MCAP file, sequentially, into bytes that the caller stores. See
 /// docs/formats.md.
 class McapRecording {
  public:
@@ -59,9 +59,9 @@ class McapRecording {
   ~McapRecording();
 
   [[nodiscard]] Topic add_samples_topic(const McapSamplesTopic& topic);
-  /// Messages are JSON. The schema's name is what readers know the topic by.
+  /// Messages are JSON. Readers identify the topic by the schema's name.
   [[nodiscard]] Topic add_json_topic(const std::string& name, const std::string& schema_name);
-  /// A block whose first row has the number `first`; stamps are empty where the topic has none.
+  /// A block whose first row has the number `first`; stamps are empty if the topic has none.
   void add_samples(Topic topic,
                    std::uint64_t first,
                    std::uint64_t log_ns,
@@ -73,19 +73,19 @@ class McapRecording {
                       const std::string& media_type,
                       std::uint64_t log_ns,
                       std::string_view data);
-  /// The labels of a recording whose samples are in the topic "recording".
+  /// Adds the labels of a recording whose samples are in the topic "recording".
   void add_labels(const Recording& recording, std::uint64_t log_ns);
-  /// What was added so far can be taken and outlives a crash.
+  /// Completes the open chunk: the data added so far can be taken and survive a crash.
   void close_chunk();
-  /// The end of the data and the summary. Nothing can be added afterwards.
+  /// Writes the end of the data and the summary. Nothing can be added afterwards.
   void finish();
 
-  /// Bytes that follow those taken before: whole records.
+  /// Returns the bytes since the last call: whole records.
   [[nodiscard]] std::string take_bytes();
-  [[nodiscard]] std::uint64_t bytes() const;  ///< taken, waiting and in the open chunk
-  /// Of the bytes that were taken; there must be no others.
+  [[nodiscard]] std::uint64_t bytes() const;  ///< taken, pending and in the open chunk
+  /// State after the bytes taken; no others may be pending.
   [[nodiscard]] McapMark mark() const;
-  /// All that came after the mark was not written.
+  /// Rewinds to the mark: everything after it was not written.
   void rewind(const McapMark& mark);
 
  private:
@@ -93,7 +93,7 @@ class McapRecording {
   std::unique_ptr<State> state_;
 };
 
-/// The names of the schemas of what is told beside the samples; readers make no table of them.
+/// Schema names of the data stored beside the samples; readers do not present them as tables.
 inline constexpr std::string_view mcap_event_schema = "proofmass.event";
 inline constexpr std::string_view mcap_clock_schema = "proofmass.clock";
 

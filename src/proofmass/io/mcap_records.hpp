@@ -10,7 +10,7 @@
 
 namespace proofmass::io {
 
-/// What the records of an MCAP file are. Source: MCAP format specification, "Records".
+/// Record types of an MCAP file. Source: MCAP format specification, "Records".
 enum class McapOp : unsigned char {
   header = 0x01,
   footer = 0x02,
@@ -30,8 +30,8 @@ enum class McapOp : unsigned char {
 };
 
 inline constexpr std::string_view mcap_magic{"\x89MCAP0\r\n", 8};
-inline constexpr std::size_t mcap_record_head = 9;    ///< bytes: what it is, and its length
-inline constexpr std::size_t mcap_footer_bytes = 20;  ///< less its head
+inline constexpr std::size_t mcap_record_head = 9;    ///< bytes: opcode and length
+inline constexpr std::size_t mcap_footer_bytes = 20;  ///< without its header
 
 using McapMap = std::map<std::string, std::string>;
 
@@ -58,15 +58,15 @@ struct McapMessage {
   std::string_view data;
 };
 
-/// A chunk's record up to where its bytes begin.
+/// A chunk's record up to its data.
 struct McapChunkHead {
   std::uint64_t start_ns = 0;
   std::uint64_t end_ns = 0;
   std::uint64_t unpacked_bytes = 0;
-  std::uint32_t crc = 0;  ///< of the unpacked bytes; 0: none
+  std::uint32_t crc = 0;  ///< checksum of the decompressed bytes; 0: none
   std::string compression;
   std::uint64_t packed_bytes = 0;
-  std::size_t head_bytes = 0;  ///< of the record's content before the packed bytes
+  std::size_t head_bytes = 0;  ///< size of the record's content before the compressed bytes
 };
 
 struct McapMetadata {
@@ -74,14 +74,14 @@ struct McapMetadata {
   McapMap values;
 };
 
-/// An attachment's record up to where its bytes begin.
+/// An attachment's record up to its data.
 struct McapAttachmentHead {
   std::uint64_t log_ns = 0;
-  std::uint64_t create_ns = 0;  ///< 0: nobody says
+  std::uint64_t create_ns = 0;  ///< 0: unknown
   std::string name;
   std::string media_type;
   std::uint64_t bytes = 0;
-  std::size_t head_bytes = 0;  ///< of the record's content before the attachment's
+  std::size_t head_bytes = 0;  ///< size of the record's content before the attachment's
 };
 
 struct McapFooter {
@@ -95,8 +95,8 @@ struct McapStatistics {
   std::map<std::uint16_t, std::uint64_t> of_channels;  ///< messages
 };
 
-/// Reads numbers and texts, little-endian, from the front of bytes that may be too few: after the
-/// first that is not there everything is zero or empty, and is_whole() false.
+/// Reads numbers and texts, little-endian, from the beginning of bytes that may be too few: after
+/// the first missing one everything is zero or empty, and is_whole() false.
 class McapFields {
  public:
   explicit McapFields(std::string_view bytes) : bytes_(bytes) {}
@@ -105,7 +105,7 @@ class McapFields {
   std::uint16_t u16() { return static_cast<std::uint16_t>(number(2)); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(number(4)); }
   std::uint64_t u64() { return number(8); }
-  std::string_view text() { return take(u32()); }  ///< its length before it
+  std::string_view text() { return take(u32()); }  ///< preceded by its length
   std::string_view take(std::uint64_t count);
   McapMap map();
   [[nodiscard]] bool is_whole() const { return is_whole_; }
@@ -118,21 +118,21 @@ class McapFields {
   bool is_whole_ = true;
 };
 
-/// What is in the content of a record; nullopt where it breaks off. Bytes behind the last field are
-/// passed over, as later versions may add some.
+/// Parses the content of a record; nullopt if it is truncated. Bytes after the last field are
+/// ignored, because later versions may add some.
 [[nodiscard]] std::optional<McapSchema> mcap_schema(std::string_view content);
 [[nodiscard]] std::optional<McapChannel> mcap_channel(std::string_view content);
 [[nodiscard]] std::optional<McapMessage> mcap_message(std::string_view content);
 [[nodiscard]] std::optional<McapChunkHead> mcap_chunk_head(std::string_view content);
 [[nodiscard]] std::optional<McapMetadata> mcap_metadata(std::string_view content);
 [[nodiscard]] std::optional<McapAttachmentHead> mcap_attachment_head(std::string_view content);
-/// The attachment itself; nullopt where it breaks off or its checksum is wrong.
+/// The attachment itself; nullopt if it is truncated or its checksum is wrong.
 [[nodiscard]] std::optional<std::string_view> mcap_attachment_data(std::string_view content,
                                                                    const McapAttachmentHead& head);
 [[nodiscard]] std::optional<McapFooter> mcap_footer(std::string_view content);
 [[nodiscard]] std::optional<McapStatistics> mcap_statistics(std::string_view content);
 
-/// "a chunk", "a message"; "a record of kind 0x85" for what is not known.
+/// "a chunk", "a message"; "a record of kind 0x85" if unknown.
 [[nodiscard]] std::string mcap_record_name(McapOp op);
 
 }  // namespace proofmass::io

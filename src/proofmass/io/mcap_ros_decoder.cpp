@@ -11,7 +11,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Puts the columns of a plan into rows of a table: the time first, less the plan's own stamp.
+/// Converts the columns of a plan to rows of a table: the time first, without the plan's own stamp.
 class RosDecoder final : public McapDecoder {
  public:
   RosDecoder(CdrPlan plan, CdrLayout layout, const McapTopic& topic)
@@ -61,7 +61,7 @@ class RosDecoder final : public McapDecoder {
 
   [[nodiscard]] std::optional<std::int64_t> stamp() const {
     if (!plan_.stamp) return std::nullopt;
-    // Whole numbers of 32 bits.
+    // 32-bit integers.
     return stamp_ns(static_cast<std::int64_t>(figures_[*plan_.stamp]),
                     static_cast<std::int64_t>(figures_[*plan_.stamp + 1]));
   }
@@ -93,7 +93,7 @@ class RosDecoder final : public McapDecoder {
 
   CdrPlan plan_;
   CdrLayout layout_;
-  std::vector<double> figures_;  ///< of the message, in the plan's columns
+  std::vector<double> figures_;  ///< values of the message, in the plan's columns
   MessageClock clock_;
   std::vector<std::size_t> kept_;  ///< columns of the plan that are not the stamp
   double time_ = 0.0;

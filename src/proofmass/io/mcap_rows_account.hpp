@@ -8,7 +8,7 @@
 
 namespace proofmass::io {
 
-/// Which rows of the topic "recording" of a file of our own are there, by the numbers and stamps of
+/// The rows present in the topic "recording" of one of our own files, by the numbers and stamps of
 /// its blocks.
 class McapRowsAccount {
  public:

@@ -21,9 +21,9 @@
 namespace proofmass::io {
 namespace {
 
-constexpr std::size_t most_definitions = 0xFFFF;  ///< schemas or channels of a file
+constexpr std::size_t most_definitions = 0xFFFF;  ///< schemas or channels per file
 
-/// The new file while the records of the old one come in.
+/// The new file, built while the old one is read.
 class Salvager {
  public:
   explicit Salvager(const McapSummary& summary) {
@@ -74,12 +74,12 @@ class Salvager {
   template <class Record>
   struct Defined {
     Record record;
-    std::uint16_t number = 0;  ///< in the new file; 0: not there yet
+    std::uint16_t number = 0;  ///< in the new file; 0: not written yet
   };
   template <class Record>
   using Definitions = std::map<std::uint16_t, Defined<Record>>;
 
-  /// A number that is used again for something else is something else in the new file.
+  /// A reused number with another meaning gets a new number.
   template <class Record>
   static void define(Definitions<Record>& known, Record record) {
     const std::uint16_t id = record.id;
@@ -98,7 +98,7 @@ class Salvager {
     return found->second.number;
   }
 
-  /// 0 where nothing says what the channel is.
+  /// 0 if the channel is not defined.
   [[nodiscard]] std::uint16_t channel_number(std::uint16_t id) {
     const auto found = channels_.find(id);
     if (found == channels_.end()) return 0;

@@ -11,19 +11,19 @@
 
 namespace proofmass::io {
 
-/// Gets the bytes of a new file, piece after piece.
+/// Receives the bytes of a new file, piece by piece.
 using PutBytes = std::function<Status(const std::string& bytes)>;
 
-/// Reads what is whole of an MCAP file, whoever wrote it: up to damage, and from the next whole
-/// chunk on. Puts it into a new one with all that a file needs at its end, its messages in the same
-/// order and with the same times, its chunks not compressed. Recovery::file stays empty.
+/// Reads the intact part of any MCAP file: up to damage, and from the next intact chunk on. Writes
+/// it to a new, complete file, with the messages in the same order and with the same times, chunks
+/// uncompressed. Recovery::file stays empty.
 /// Source: MCAP format specification, version 0.
-/// Errors: unreadable, corrupt (nothing in it is whole), those of `put`.
-/// Cost: one pass where nothing is damaged; one chunk in memory.
+/// Errors: unreadable, corrupt (nothing intact), those of `put`.
+/// Cost: one pass if nothing is damaged; one chunk in memory.
 [[nodiscard]] Result<Recovery> salvage_mcap(const std::string& path,
                                             const PutBytes& put,
                                             const Progress& progress = {});
-/// The same of bytes that are in memory.
+/// The same for bytes in memory.
 [[nodiscard]] Result<Recovery> salvage_mcap(std::span<const std::byte> bytes, const PutBytes& put);
 
 }  // namespace proofmass::io

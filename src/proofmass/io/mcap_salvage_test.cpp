@@ -62,7 +62,7 @@ TEST(McapSalvage, GoesOnAtTheNextWholeChunkWhateverIsBroken) {
       std::string bytes = broken;
       if (bytes[at] == wrong) continue;
       bytes[at] = wrong;
-      // The times of a chunk and what its compression is called stand outside of its checksum.
+      // The times and the compression name of a chunk are not covered by its checksum.
       const Saved saved = salvaged(front + bytes + rest + mcap_end());
       ASSERT_TRUE(saved.recovery);
       ASSERT_GE(saved.recovery->messages, 20u) << at << words_of(*saved.recovery);
@@ -105,7 +105,7 @@ TEST(McapSalvage, TakesMessagesOutsideOfChunksUpToTheDamage) {
 }
 
 TEST(McapSalvage, EndsItsSearchInBytesMadeForIt) {
-  // Heads of chunks, one in another, none of which has its checksum.
+  // Nested chunk headers, none with a valid checksum.
   std::string file = mcap_front() + std::string(1, '\0');
   const std::string head = mcap_chunk("x").substr(0, 49);
   while (file.size() < 400'000) file += head;
@@ -161,7 +161,7 @@ TEST(McapRecording, TakenBackToAMarkIsAsIfNothingHadFollowed) {
   for (const Note& note : b->notes) EXPECT_NE(note.severity, Severity::bad) << note.text;
 }
 
-// The first message of a topic says nothing of how long the others are.
+// The first message of a topic does not determine the length of the others.
 TEST(McapRecording, RowsOfAnotherTopicAreToldWhereTheyAreKnownAndElseNotGuessed) {
   const std::vector<Channel> columns{{"acc_x", *parse_unit("m/s^2"), {}}};
   const std::vector<double> stamps{0.0, 0.5, 1.0}, values{1.0, 2.0, 3.0};

@@ -15,18 +15,18 @@
 
 namespace proofmass::io {
 
-/// Our own encoding of messages: blocks of samples, little-endian.
+/// Our own message encoding: blocks of samples, little-endian.
 ///   byte 0  u8   version, 1
-///        1  u8   flags; bit 0: stamps are there
+///        1  u8   flags; bit 0: has stamps
 ///        2  u16  columns
 ///        4  u32  rows
 ///        8  u64  number of the first row, from 0 at the recording's first sample
-///       16  f64  stamps, as many as rows: seconds since the recording's first sample
-///           f64  column after column, as many figures each as there are rows
+///       16  f64  stamps, one per row: seconds from the recording's first sample
+///           f64  column by column, one value per row
 inline constexpr std::string_view mcap_samples_encoding = "proofmass-samples";
 inline constexpr std::size_t mcap_samples_head = 16;
 
-/// What the schema and the channel say of these blocks.
+/// Description of these blocks in the schema and the channel.
 struct McapSamplesLayout {
   struct Column {
     std::string name;
@@ -34,9 +34,9 @@ struct McapSamplesLayout {
   };
   std::vector<Column> columns;
   bool has_stamps = false;
-  std::optional<double> rate_hz;         ///< without stamps
+  std::optional<double> rate_hz;         ///< if there are no stamps
   std::optional<std::int64_t> start_ns;  ///< time of the first sample
-  std::string derived_from{};            ///< topic that it was worked out of; empty: measured
+  std::string derived_from{};            ///< topic from which it was computed; empty: measured
 };
 
 struct McapSamplesHead {
@@ -46,10 +46,10 @@ struct McapSamplesHead {
   std::uint64_t first = 0;
 };
 
-/// Reads a block's head and holds it against the bytes there are.
-/// Errors: corrupt (of another length than it says), unsupported (another version).
+/// Reads a block's header and checks it against the available bytes. Errors: corrupt (a length
+/// other than stated), unsupported (another version).
 [[nodiscard]] Result<McapSamplesHead> read_samples_head(std::string_view message);
-/// Puts a block into bytes, in place of what they are.
+/// Replaces the bytes by an encoded block.
 void write_samples(std::uint64_t first,
                    View<double> stamps_s,
                    std::span<const View<double>> columns,

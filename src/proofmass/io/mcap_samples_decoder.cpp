@@ -33,7 +33,7 @@ TableHead head_of(const McapSamplesLayout& layout) {
   return head;
 }
 
-/// Rows that are missing in the file are rows of NaN where only the rate says when rows were taken.
+/// Missing rows of the file become rows of NaN if only the rate gives the times.
 class SamplesDecoder final : public McapDecoder {
  public:
   explicit SamplesDecoder(McapSamplesLayout layout)
@@ -98,7 +98,7 @@ class SamplesDecoder final : public McapDecoder {
                      : "they are left empty";
   }
 
-  /// Rows of NaN before a block; no more in all than there can have been in what is read or lost.
+  /// Rows of NaN before a block; in total no more than the data read or lost can have contained.
   std::size_t missing_before(std::uint64_t first, std::uint64_t lost_bytes) {
     if (first < expected_) ++repeats_;
     if (first <= expected_) return 0;
@@ -117,7 +117,7 @@ class SamplesDecoder final : public McapDecoder {
 
   McapSamplesLayout layout_;
   TableHead head_;
-  std::string_view figures_;  ///< of the message
+  std::string_view figures_;  ///< values of the message
   std::size_t rows_ = 0;
   std::size_t missing_ = 0;  ///< rows before it
   std::uint64_t expected_ = 0;

@@ -9,8 +9,8 @@
 #include <zlib.h>
 #include <zstd.h>
 
-// Writes MCAP files, whole and broken ones, for tests: by hand, so that the reader is not tested
-// against the writer alone.
+// Writes MCAP files, intact and damaged ones, for tests: independently, so that the reader is not
+// tested against the writer alone.
 namespace proofmass::io::specimen {
 
 inline std::string le(std::uint64_t value, std::size_t bytes) {
@@ -82,11 +82,11 @@ inline std::string packed(const std::string& bytes, std::string_view compression
   return out;
 }
 
-/// What a chunk says of itself, where that is to be wrong.
+/// Claims in a chunk header, to make them wrong.
 struct ChunkClaims {
   std::string compression{};
   std::uint64_t unpacked_bytes = ~std::uint64_t{0};
-  std::uint32_t crc = 1;  ///< 1: the right one
+  std::uint32_t crc = 1;  ///< 1: the correct one
 };
 
 inline std::string mcap_chunk(const std::string& records, const ChunkClaims& claims = {}) {
@@ -104,8 +104,8 @@ inline std::string mcap_end(std::uint32_t data_crc = 0) {
          std::string("\x89MCAP0\r\n", 8);
 }
 
-/// The end of the data with a summary that counts messages and lists chunks: `before` is all there
-/// is in front of it.
+/// The end of the data with a summary that counts messages and lists chunks: `before` is everything
+/// preceding it.
 inline std::string mcap_end_with_summary(const std::string& before,
                                          const std::vector<std::pair<int, std::uint64_t>>& messages,
                                          const std::vector<std::uint64_t>& chunk_starts = {}) {

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint64_t end_bytes = mcap_record_head + mcap_footer_bytes + mcap_magic.size();
 constexpr std::uint64_t data_end_bytes = mcap_record_head + 4;
 
-/// The footer of a file that was closed.
+/// The footer of a properly closed file.
 Result<std::optional<McapFooter>> read_footer(FileWindow& window) {
   using Found = std::optional<McapFooter>;
   if (window.size() < mcap_magic.size() + end_bytes) return Found();
@@ -23,7 +23,7 @@ Result<std::optional<McapFooter>> read_footer(FileWindow& window) {
   return Found(mcap_footer(fields.take(mcap_footer_bytes)));
 }
 
-/// Nullopt where a record breaks off or the messages are not counted.
+/// nullopt if a record is truncated or the messages are not counted.
 std::optional<McapSummary> parsed_summary(std::string_view records) {
   McapSummary out;
   bool is_counted = false;
@@ -78,7 +78,7 @@ Result<std::optional<McapSummary>> read_mcap_summary(FileWindow& window, std::ve
   constexpr std::uint64_t most_bytes = std::uint64_t{256} << 20;
   if (start < mcap_magic.size() + data_end_bytes || start > end || end - start > most_bytes)
     return refused("begins where it cannot");
-  // Its checksum ends with the footer, before the checksum itself.
+  // The checksum covers the footer up to the checksum itself.
   const std::uint64_t checked = end - start + mcap_record_head + mcap_footer_bytes - 4;
   const auto bytes = window.view(start, checked);
   if (!bytes) return bytes.error();

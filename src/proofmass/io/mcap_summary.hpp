@@ -13,17 +13,17 @@
 
 namespace proofmass::io {
 
-/// What the end of an MCAP file says of its data.
+/// Information on the data from the end of an MCAP file.
 struct McapSummary {
-  std::map<std::uint16_t, std::uint64_t> messages;  ///< of each channel
+  std::map<std::uint16_t, std::uint64_t> messages;  ///< per channel
   std::vector<std::uint64_t> chunk_starts;          ///< ascending
   bool has_data_checksum = false;
   std::vector<McapSchema> schemas;
   std::vector<McapChannel> channels;
 };
 
-/// Reads the summary that the footer points to; nullopt where there is none, or none that counts
-/// the messages of each channel, or it is damaged, which a note then says.
+/// Reads the summary that the footer points to; nullopt if there is none, or it does not count the
+/// messages of each channel, or it is damaged, which is reported in a note.
 /// Errors: unreadable.
 [[nodiscard]] Result<std::optional<McapSummary>> read_mcap_summary(FileWindow& window,
                                                                    std::vector<Note>& notes);

@@ -13,10 +13,10 @@
 namespace proofmass::io {
 namespace {
 
-/// What is done with the messages of a channel.
+/// Use of a channel's messages.
 enum class Use : unsigned char { unknown, known, event, read };
 
-/// What a note says of a record of metadata: its texts as far as they are short.
+/// Text of a metadata record for a note: its short texts.
 std::string words_of(const McapMetadata& metadata) {
   constexpr std::size_t longest = 300;
   std::string words = fmt::format("metadata \"{}\":", shown(metadata.name));
@@ -89,7 +89,7 @@ class McapTable final : public TableReader {
   }
 
  private:
-  /// Goes on to the next message that has rows; false at the end.
+  /// Advances to the next message with rows; false at the end.
   [[nodiscard]] Result<bool> advance() {
     McapRecord record;
     for (;;) {
@@ -123,7 +123,7 @@ class McapTable final : public TableReader {
     refusal_ = why;
   }
 
-  /// Notes of what stands beside the messages.
+  /// Notes on other records.
   void tell(const McapRecord& record) {
     constexpr std::size_t most_told = 8;
     if (record.op == McapOp::attachment) take_attachment(record.content);
@@ -138,7 +138,7 @@ class McapTable final : public TableReader {
     if (!head) return;
     constexpr std::size_t most_told = 8;
     const auto data = mcap_attachment_data(content, *head);
-    // Of what is larger than a record that is held there is only the beginning.
+    // A record larger than the limit is held only in part.
     const bool is_cut = content.size() < head->head_bytes + head->bytes;
     const bool is_damaged = !data && !is_cut;
     const bool are_labels = head->name == mcap_labels_name && labels_ && labels_->empty();
@@ -157,9 +157,9 @@ class McapTable final : public TableReader {
   std::unique_ptr<McapDecoder> decoder_;
   std::shared_ptr<std::string> labels_;
   TableHead head_;
-  std::size_t rows_ = 0;       ///< of the message
-  std::size_t next_ = 0;       ///< of them
-  std::uint64_t strange_ = 0;  ///< messages of channels that are not known
+  std::size_t rows_ = 0;       ///< in the message
+  std::size_t next_ = 0;       ///< the next of them
+  std::uint64_t strange_ = 0;  ///< messages of unknown channels
   std::uint64_t refused_ = 0;
   std::uint64_t refused_at_ = 0;
   std::string refusal_;

@@ -14,7 +14,7 @@ std::size_t bad_notes(const Recording& recording) {
   return count;
 }
 
-/// A file that must be read: `samples` of them, those of the test's channel in order.
+/// Reads a file that must be readable: `samples` of the test's channel, in order.
 Recording expect_samples(const std::string& file, std::size_t samples) {
   const auto read = read_text(file);
   EXPECT_TRUE(read.has_value()) << read.error().message;
@@ -149,7 +149,7 @@ TEST(Mcap, ComparesTheChecksumOfTheDataSection) {
 TEST(Mcap, DoesWithoutASummaryThatIsDamaged) {
   const std::string data = mcap_front() + json_channel() + json_messages(0, 10);
   std::string end = mcap_end_with_summary(data, {{1, 10}, {7, 3}});
-  EXPECT_EQ(bad_notes(expect_samples(data + end, 10)), 0u);  // counts messages that are not there
+  EXPECT_EQ(bad_notes(expect_samples(data + end, 10)), 0u);  // counts messages that do not exist
   end[40] = static_cast<char>(end[40] ^ 1);
   EXPECT_TRUE(is_noted(expect_samples(data + end, 10), "its checksum is wrong"));
 }

@@ -25,7 +25,7 @@ McapUnpacker::~McapUnpacker() {
 
 char* McapUnpacker::room_for(std::size_t bytes) {
   if (bytes > room_bytes_) {
-    // Not filled beforehand: pages that nothing is unpacked to are never there.
+    // Not initialised: pages without decompressed data are never allocated.
     room_ = std::make_unique_for_overwrite<char[]>(bytes);
     room_bytes_ = bytes;
   }
@@ -69,7 +69,7 @@ Result<std::string_view> McapUnpacker::unlz4(std::size_t unpacked, std::string_v
 }
 
 Result<std::string_view> McapUnpacker::unpack(const McapChunkHead& head, std::string_view packed) {
-  // No block of 4 bytes holds more than 128 KiB in zstd; lz4 has at most 255 bytes for one.
+  // A zstd block of 4 bytes expands to at most 128 KiB; lz4 to at most 255 bytes per byte.
   const std::uint64_t most_a_byte = head.compression.empty() ? 1 : std::uint64_t{1} << 15;
   if (head.unpacked_bytes > mcap_most_unpacked ||
       head.unpacked_bytes > (packed.size() + 16) * most_a_byte)

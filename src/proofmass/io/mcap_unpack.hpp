@@ -8,10 +8,10 @@
 
 namespace proofmass::io {
 
-/// Chunks that unpack to more are not read.
+/// Chunks with a larger decompressed size are not read.
 inline constexpr std::uint64_t mcap_most_unpacked = std::uint64_t{1} << 30;
 
-/// Unpacks the records of chunks into memory that it keeps from one to the next.
+/// Decompresses the records of chunks into a reusable buffer.
 class McapUnpacker {
  public:
   McapUnpacker();
@@ -19,10 +19,10 @@ class McapUnpacker {
   McapUnpacker& operator=(const McapUnpacker&) = delete;
   ~McapUnpacker();
 
-  /// The records as they were before compression (none, lz4, zstd), their checksum compared. What
-  /// is not compressed comes back as it is, else it is valid until the next call.
-  /// Errors: unsupported (another compression), corrupt (damaged; more or less than the head says,
-  /// the checksum differs). Nothing is reserved that so few bytes cannot unpack to.
+  /// The records before compression (none, lz4, zstd), with their checksum verified. Uncompressed
+  /// data are returned directly; otherwise the result is valid until the next call.
+  /// Errors: unsupported (another compression), corrupt (damaged; a size other than stated, a wrong
+  /// checksum). Never allocates more than the given bytes can decompress to.
   [[nodiscard]] Result<std::string_view> unpack(const McapChunkHead& head, std::string_view packed);
 
  private:

@@ -15,7 +15,7 @@ bool is_wanted(McapOp op) {
          op == McapOp::message || op == McapOp::attachment || op == McapOp::metadata;
 }
 
-/// The most of a record's content that is held in memory.
+/// Maximum size of a record's content held in memory.
 std::uint64_t most_held(McapOp op) {
   constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20;
   if (op == McapOp::chunk || op == McapOp::message) return mcap_most_unpacked + mebibyte;
@@ -58,7 +58,7 @@ bool McapWalk::next_in_chunk(McapRecord& record) {
   return op == McapOp::schema || op == McapOp::channel || op == McapOp::message;
 }
 
-/// One record of the file; false where it is none of those wanted.
+/// Reads one record of the file; false if it is not of a requested type.
 Result<bool> McapWalk::step(McapRecord& record) {
   const auto head = window_.view(position_, mcap_record_head);
   if (!head) return head.error();
@@ -84,7 +84,7 @@ Result<bool> McapWalk::step(McapRecord& record) {
   if (!*believable)
     return broken_off(
         fmt::format("where {} of {} bytes cannot be", mcap_record_name(record.op), length));
-  // Where its length is wrong, a chunk may begin within.
+  // If its length is wrong, a chunk may begin within it.
   search_from_ = position_ + 1;
   return enter(length, record);
 }
@@ -120,7 +120,7 @@ Result<bool> McapWalk::enter(std::uint64_t length, McapRecord& record) {
   return true;
 }
 
-/// Says where the record behind the chunk is to be looked for.
+/// Returns the position of the record after the chunk.
 Result<std::uint64_t> McapWalk::enter_chunk(std::uint64_t length) {
   chunk_at_ = position_;
   constexpr std::uint64_t most_head_bytes = 4096;
@@ -133,7 +133,7 @@ Result<std::uint64_t> McapWalk::enter_chunk(std::uint64_t length) {
     return lose_chunk({}, end, "its head is damaged");
   if (head->packed_bytes > mcap_most_unpacked || head->unpacked_bytes > mcap_most_unpacked)
     return lose_chunk(*head, end, "it is larger than 1 GiB");
-  // The record as a whole, so that the checksum of the data section finds it in the window.
+  // The whole record, so that the checksum of the data section finds it in the window.
   const std::uint64_t before = mcap_record_head + head->head_bytes;
   const auto whole = window_.view(position_, before + head->packed_bytes);
   if (!whole) return whole.error();
@@ -141,12 +141,12 @@ Result<std::uint64_t> McapWalk::enter_chunk(std::uint64_t length) {
   if (!unpacked) return lose_chunk(*head, end, unpacked.error().message);
   in_chunk_ = *unpacked;
   ++counts_.chunks;
-  // The checksum stands for the length within, nothing for the one without.
+  // The checksum validates the inner length; nothing validates the outer one.
   if (hints_.search) search_from_ = position_ + before + head->packed_bytes;
   return hints_.search ? search_from_ : end;
 }
 
-/// Carries the checksum of the data section on; the bytes are in the window still.
+/// Updates the checksum of the data section; the bytes are still in the window.
 Status McapWalk::pass(std::uint64_t end) {
   constexpr std::uint64_t piece = std::uint64_t{1} << 20;
   while (hints_.check_data && passed_ < end) {

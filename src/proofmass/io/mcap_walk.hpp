@@ -14,34 +14,34 @@
 
 namespace proofmass::io {
 
-/// A record, wherever it stands.
+/// A record at any level.
 struct McapRecord {
   McapOp op = McapOp::header;
-  std::string_view content;  ///< valid until the next record; of an attachment 16 MiB at most
-  std::uint64_t offset = 0;  ///< byte of the file at which it begins, or its chunk
+  std::string_view content;  ///< valid until the next record; at most 16 MiB of an attachment
+  std::uint64_t offset = 0;  ///< file offset of the record, or of its chunk
 };
 
-/// What is known of a file beside its records.
+/// Information on a file beyond its records.
 struct McapWalkHints {
-  /// Where chunks begin, ascending: after damage the walk goes on at the next of them.
+  /// Start of the chunks, ascending: after damage the walk continues at the next one.
   std::vector<std::uint64_t> chunk_starts{};
-  bool check_data = false;  ///< compare the checksum of the whole data section, if it has one
-  /// After damage the walk goes on at the next bytes that are a whole chunk, wherever they are.
+  bool check_data = false;  ///< verify the checksum of the whole data section, if it has one
+  /// After damage the walk continues at the next bytes that form an intact chunk.
   bool search = false;
 };
 
-/// What a walk came across.
+/// Counts of a walk.
 struct McapWalkCounts {
-  std::uint64_t chunks = 0;  ///< that were whole
+  std::uint64_t chunks = 0;  ///< intact chunks
   std::uint64_t damaged_chunks = 0;
-  std::uint64_t passed_over = 0;  ///< bytes of the file, with those at its end
-  bool is_closed = false;         ///< the end of the data section is there
+  std::uint64_t passed_over = 0;  ///< bytes of the file, including those at its end
+  bool is_closed = false;         ///< the end of the data section is present
 };
 
-/// Goes through the data section of an MCAP file from front to end, into its chunks too.
-/// Chunks that fail their checksum or cannot be unpacked are passed over; what comes after a length
-/// that cannot be, and before a chunk that the hints know, too. All that is told in notes().
-/// Cost: one chunk in memory, packed and unpacked.
+/// Walks through the data section of an MCAP file, including its chunks. Chunks with a wrong
+/// checksum, or that cannot be decompressed, are skipped; so is everything from an impossible
+/// length to the next chunk known from the hints. All of this is reported in notes().
+/// Cost: one chunk in memory, compressed and decompressed.
 class McapWalk {
  public:
   McapWalk(std::shared_ptr<const RandomBytes> bytes, McapWalkHints hints);
@@ -49,12 +49,12 @@ class McapWalk {
   /// The next header, schema, channel, message, attachment or metadata; false at the end of the
   /// data section, or of the file. Errors: unreadable.
   [[nodiscard]] Result<bool> next(McapRecord& record);
-  /// What is damaged or missing; complete once next() has said false.
+  /// Damaged or missing parts; complete once next() has returned false.
   [[nodiscard]] std::vector<Note> notes() const;
-  /// How many bytes of messages can at most have been in the chunks that were passed over.
+  /// Upper bound of the message bytes in the skipped chunks.
   [[nodiscard]] std::uint64_t lost_bytes() const { return lost_bytes_; }
   [[nodiscard]] double fraction_read() const;
-  /// Complete once next() has said false.
+  /// Complete once next() has returned false.
   [[nodiscard]] const McapWalkCounts& counts() const { return counts_; }
 
  private:
@@ -77,15 +77,15 @@ class McapWalk {
   FileWindow window_;
   McapWalkHints hints_;
   McapUnpacker unpacker_;
-  std::string_view in_chunk_;   ///< what is left of the chunk
-  std::uint64_t chunk_at_ = 0;  ///< where that chunk begins
-  std::uint64_t position_ = 8;  ///< behind the record that was taken last
-  std::uint64_t passed_ = 0;    ///< bytes whose checksum is in data_crc_
+  std::string_view in_chunk_;   ///< remainder of the chunk
+  std::uint64_t chunk_at_ = 0;  ///< start of that chunk
+  std::uint64_t position_ = 8;  ///< end of the last record
+  std::uint64_t passed_ = 0;    ///< bytes included in data_crc_
   std::uint32_t data_crc_ = 0;
   bool ended_ = false;
   std::uint64_t lost_bytes_ = 0;
-  std::uint64_t search_from_ = 8;  ///< behind what is surely whole
-  std::uint64_t searched_ = 0;     ///< bytes that were looked at in vain
+  std::uint64_t search_from_ = 8;  ///< end of the data known to be intact
+  std::uint64_t searched_ = 0;     ///< bytes searched without result
   McapWalkCounts counts_;
   std::vector<Note> notes_;
 };

@@ -3,7 +3,7 @@
 
 #include "proofmass/io/mcap_walk.hpp"
 
-// Where bytes are damaged: what is lost, and where the walk goes on.
+// Damaged bytes: the loss, and where the walk continues.
 namespace proofmass::io {
 namespace {
 
@@ -14,7 +14,7 @@ std::string seconds(std::uint64_t ns) {
 
 }  // namespace
 
-/// Goes on behind damage, where there is anything to go on with; there is no record yet.
+/// Continues after damage, if possible; there is no record yet.
 Result<bool> McapWalk::broken_off(const std::string& why) {
   const auto listed = std::ranges::upper_bound(hints_.chunk_starts, position_);
   std::uint64_t next = listed == hints_.chunk_starts.end() ? window_.size() : *listed;
@@ -42,7 +42,8 @@ Result<bool> McapWalk::broken_off(const std::string& why) {
   return false;
 }
 
-/// Whether what has the head of a record is one: only asked where the walk can go on without it.
+/// True if a plausible record header begins a record: checked only if the walk can continue without
+/// it.
 Result<bool> McapWalk::is_believable(McapOp op, std::uint64_t length) {
   if (!hints_.search || op == McapOp::chunk) return true;
   const std::uint64_t end = position_ + mcap_record_head + length;
@@ -52,7 +53,7 @@ Result<bool> McapWalk::is_believable(McapOp op, std::uint64_t length) {
   return op < McapOp::data_end ? Result(true) : is_record_at(end);
 }
 
-/// Whether a record can begin there, or the file ends.
+/// True if a record can begin there, or the file ends.
 Result<bool> McapWalk::is_record_at(std::uint64_t at) {
   if (at == window_.size()) return true;
   const auto next = window_.view(at, 1);
@@ -63,10 +64,10 @@ Result<bool> McapWalk::is_record_at(std::uint64_t at) {
          kind >= first_private;
 }
 
-/// The first byte from `from` on at which a whole chunk stands; the file's end where there is none.
+/// The first intact chunk from byte `from`; the file's end if there is none.
 Result<std::uint64_t> McapWalk::next_chunk(std::uint64_t from) {
   constexpr std::uint64_t piece = std::uint64_t{64} << 10;
-  // Each try costs a chunk's checksum: bytes made for it would keep the search busy for ever.
+  // Each attempt costs the checksum of a chunk: malicious bytes would make the search endless.
   const std::uint64_t most_searched = 8 * window_.size() + (std::uint64_t{64} << 20);
   for (std::uint64_t at = from; at < window_.size() && searched_ < most_searched;) {
     const auto bytes = window_.view(at, piece);
@@ -104,7 +105,7 @@ Result<bool> McapWalk::is_chunk(std::uint64_t at) {
   return unpacker_.unpack(*head, whole->substr(before)).has_value();
 }
 
-/// Says where to go on: behind it, or at the next chunk where its length cannot be right either.
+/// Returns where to continue: after it, or at the next chunk if its length is invalid too.
 Result<std::uint64_t> McapWalk::lose_chunk(const McapChunkHead& head,
                                            std::uint64_t end,
                                            const std::string& why) {

@@ -10,7 +10,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Rows of a message: what 64 KiB hold, but a second's at most.
+/// Rows per message: 64 KiB, but at most one second.
 std::size_t rows_a_message(const WriterHead& head) {
   constexpr std::size_t bytes = std::size_t{64} << 10;
   const std::size_t columns = head.recording.channels.size() + (head.has_stamps ? 1 : 0);
@@ -100,7 +100,7 @@ class McapWriter final : public RecordingWriter {
   bool has_stamps_;
   std::size_t rows_a_message_;
   McapRecording::Topic topic_ = 0;
-  std::vector<std::vector<double>> columns_;  ///< of the next message; the stamps first
+  std::vector<std::vector<double>> columns_;  ///< columns of the next message; the stamps first
   std::uint64_t written_ = 0;
 };
 

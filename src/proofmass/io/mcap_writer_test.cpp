@@ -35,7 +35,7 @@ class MemoryFile final : public OutputFile {
   std::string path_ = "memory";
 };
 
-/// The bytes of a recording that is written in blocks of so many samples.
+/// The bytes of a recording written in blocks of the given number of samples.
 std::string written(const Recording& recording,
                     std::size_t rows,
                     const WriteOptions& options = {}) {
@@ -114,7 +114,7 @@ TEST(McapWritten, WithoutATimeBaseHasNone) {
 }
 
 TEST(McapWritten, OpensUpToTheLastWholeChunkWhereverItIsCut) {
-  // Several chunks of a mebibyte, cut at random bytes.
+  // Several chunks of a mebibyte, truncated at random bytes.
   const Recording recording = troubled(100'000, false);
   const std::string bytes = written(recording, 4096);
   std::mt19937_64 random(4);
@@ -158,7 +158,7 @@ TEST(McapWritten, LeavesALostChunkEmptyWhereOnlyTheRateTellsTheTime) {
   EXPECT_LT(empty, 36'000u);
 }
 
-/// A block of our own encoding, which says what it likes.
+/// A block in our own encoding with arbitrary claims.
 std::string block(int version,
                   int flags,
                   int columns,

@@ -33,7 +33,7 @@ std::optional<std::int64_t> stamp_ns(std::int64_t seconds, std::int64_t nanoseco
 MessageClock::MessageClock(std::optional<std::int64_t> stamp_ns,
                            std::uint64_t log_ns,
                            std::string stamp_name)
-    // A driver that has no clock leaves the stamp at zero.
+    // A driver without a clock leaves the stamp at zero.
     : has_stamps_(stamp_ns.value_or(0) != 0),
       name_(has_stamps_ ? std::move(stamp_name) : "log_time"),
       last_log_ns_(log_ns) {

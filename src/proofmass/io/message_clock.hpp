@@ -11,20 +11,20 @@
 
 namespace proofmass::io {
 
-/// The time column of messages that bring a stamp of the device, and one of the host that logged
-/// them: the device's, where it has one.
+/// The time column of messages with a device stamp and the logging time of the host: the device's
+/// stamp, if there is one.
 class MessageClock {
  public:
   /// `stamp_ns` is the first message's; none: the host's clock is the time.
   MessageClock(std::optional<std::int64_t> stamp_ns, std::uint64_t log_ns, std::string stamp_name);
 
   [[nodiscard]] bool has_stamps() const { return has_stamps_; }
-  /// For column 0 of the table, in nanoseconds less the first message's.
+  /// For column 0 of the table, in nanoseconds minus the first message's.
   [[nodiscard]] DeclaredStamps declared() const;
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// A message's figure in that column; NaN where it has none.
+  /// A message's value in that column; NaN if it has none.
   [[nodiscard]] double take(std::optional<std::int64_t> stamp_ns, std::uint64_t log_ns);
-  /// How the host's clock went against the device's; where messages were logged out of order.
+  /// Drift of the host's clock relative to the device's; messages logged out of order.
   [[nodiscard]] std::vector<Note> notes() const;
 
  private:
@@ -33,10 +33,10 @@ class MessageClock {
   bool has_stamps_;
   std::string name_;
   std::int64_t origin_ns_ = 0;
-  double first_offset_s_ = 0.0;  ///< host's clock less the device's, at the first message
+  double first_offset_s_ = 0.0;  ///< host's clock minus the device's, at the first message
   std::uint64_t last_log_ns_ = 0;
   std::size_t backwards_ = 0;
-  // Running least squares of the difference over the device's time.
+  // Running least-squares fit of the difference against the device's time.
   double count_ = 0.0;
   double mean_t_ = 0.0;
   double mean_d_ = 0.0;

@@ -9,11 +9,11 @@
 namespace proofmass::io {
 namespace {
 
-/// A sensor by the bare name of its file in Sensor Logger's exports, and the unit that it writes.
+/// A sensor by the bare name of its file in Sensor Logger's exports, and its unit.
 struct LoggedSensor {
   std::string_view file;
   std::string_view unit;
-  std::string_view name;  ///< put before the axes; empty for what an accelerometer says
+  std::string_view name;  ///< prefix of the axes; empty for an accelerometer
 };
 constexpr std::array logged_sensors = std::to_array<LoggedSensor>({
     {"accelerometer", "m/s^2", "Linear acceleration"},
@@ -25,7 +25,7 @@ constexpr std::array logged_sensors = std::to_array<LoggedSensor>({
     {"magnetometeruncalibrated", "uT", "Magnetometer"},
 });
 
-/// Sensors that files are called by, whoever wrote them.
+/// Sensor names used in file names, independent of the program.
 constexpr std::array<std::string_view, 7> sensors{
     "gyroscope", "magnetometer", "gyro", "gyr", "mag", "gravity", "linearacceleration"};
 
@@ -40,13 +40,13 @@ bool has_logged_columns(std::string_view header) {
   return time && elapsed;
 }
 
-/// The sensor whose file it is; nullptr if none of Sensor Logger's with axes and a sure unit.
+/// The sensor of the file; nullptr if it is not one of Sensor Logger's with axes and a known unit.
 const LoggedSensor* sensor_logged(const std::string& bare) {
   const auto* found = std::ranges::find(logged_sensors, bare, &LoggedSensor::file);
   return found == logged_sensors.end() ? nullptr : found;
 }
 
-/// "platform android, device Pixel 6" of Metadata.csv.
+/// "platform android, device Pixel 6" from Metadata.csv.
 std::string device_logged(std::string_view text) {
   const auto lines = lines_of(text);
   if (lines.size() < 2) return {};
@@ -72,7 +72,7 @@ std::string phone_in(std::string_view text) {
   return told;
 }
 
-/// Tells it of all files in the folder of one, which is no recording.
+/// Adds `text` as a note to all files in the folder of `one`, which is not a recording.
 void tell_beside(const Archive& archive,
                  std::size_t one,
                  const std::string& text,

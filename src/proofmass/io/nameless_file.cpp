@@ -11,7 +11,7 @@ namespace proofmass::io {
 int nameless_file(const std::string& folder) {
   const int nameless = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (nameless >= 0) return nameless;
-  // Not every file system has files without a name.
+  // Not every file system supports unnamed files.
   std::string path = folder + "/proofmass-XXXXXX";
   const int named = ::mkostemp(path.data(), O_CLOEXEC);
   if (named >= 0) ::unlink(path.c_str());

@@ -7,11 +7,11 @@
 
 namespace proofmass::io {
 
-/// The descriptor of a new file in a folder that has no name, or has lost it, and is gone when it
-/// is closed; -1 with errno where there can be none.
+/// The descriptor of a new unnamed file in a folder, deleted when it is closed; -1 with errno on
+/// failure.
 [[nodiscard]] int nameless_file(const std::string& folder);
 
-/// Unreadable: `what`, and what the system says of it in errno.
+/// Unreadable: `what`, and the system's message for errno.
 [[nodiscard]] Error system_failure(const std::string& what);
 
 /// Writes all bytes; false, with errno set, if that fails.

@@ -8,7 +8,7 @@
 
 namespace proofmass::io {
 
-/// ASCII letters in lower case, whatever the locale.
+/// ASCII letters in lower case, independent of the locale.
 [[nodiscard]] inline std::string lower(std::string_view text) {
   std::string out(text);
   for (char& c : out)
@@ -16,12 +16,12 @@ namespace proofmass::io {
   return out;
 }
 
-/// Whether a character is an ASCII letter in lower case.
+/// True if a character is a lower-case ASCII letter.
 [[nodiscard]] inline bool is_lower_letter(char c) {
   return c >= 'a' && c <= 'z';
 }
 
-/// Whether a word is one of several, to the letter.
+/// True if a word equals one of several exactly.
 [[nodiscard]] inline bool is_any_of(std::string_view word,
                                     std::initializer_list<std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
@@ -34,7 +34,7 @@ namespace proofmass::io {
   return out;
 }
 
-/// Whether a name is one of several, which are bare.
+/// True if a name equals one of several bare names.
 template <std::size_t N>
 [[nodiscard]] bool is_one_of(std::string_view name, const std::array<std::string_view, N>& names) {
   const std::string bare = bare_name(name);

@@ -11,10 +11,10 @@
 
 namespace proofmass::io {
 
-/// The figures of an array, row by row.
+/// The values of an array, row by row.
 class NpyFigures {
  public:
-  /// Errors: corrupt, where not even one row is there, or a column is not whole.
+  /// Errors: corrupt, if there is not even one row, or a column is incomplete.
   [[nodiscard]] static Result<NpyFigures> open(std::unique_ptr<RandomBytes> bytes,
                                                NpyLayout layout);
 
@@ -22,10 +22,10 @@ class NpyFigures {
   [[nodiscard]] Result<std::size_t> read(std::span<const std::span<double>> into);
 
   [[nodiscard]] const NpyLayout& layout() const { return layout_; }
-  /// Rows that the bytes have room for, of those that the header claims.
+  /// Number of rows in the available bytes, at most as many as the header claims.
   [[nodiscard]] std::size_t rows_there() const;
   [[nodiscard]] std::size_t rows_read() const { return rows_read_; }
-  /// What was found once read() has returned 0: an array that breaks off.
+  /// Faults found, once read() has returned 0: a truncated array.
   [[nodiscard]] std::vector<Note> notes() const;
 
  private:
@@ -43,8 +43,8 @@ class NpyFigures {
   std::vector<char> piece_;
 };
 
-/// The bytes of a stream that are asked for in ascending order only: what a zip holds need not be
-/// unpacked to the disk for it.
+/// The bytes of a stream that are requested in ascending order only: no need to decompress a zip
+/// entry to the disk.
 [[nodiscard]] std::unique_ptr<RandomBytes> ascending_bytes_of(std::unique_ptr<PeekSource> source);
 
 }  // namespace proofmass::io

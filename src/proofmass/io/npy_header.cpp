@@ -8,7 +8,7 @@
 namespace proofmass::io {
 namespace {
 
-/// The few forms of Python literal that the header is made of.
+/// The few forms of Python literals used in the header.
 class LiteralScanner {
  public:
   explicit LiteralScanner(std::string_view text) : rest_(text) {}
@@ -66,7 +66,7 @@ const Error damaged{Errc::corrupt,
                     "the .npy header is damaged: expected {'descr': …, 'fortran_order': …, "
                     "'shape': …}"};
 
-/// Whether NumPy's letter and size are a figure that is read here.
+/// True if NumPy's letter and size are a supported number.
 bool is_figure(char kind, std::size_t bytes) {
   const bool whole = bytes == 1 || bytes == 2 || bytes == 4 || bytes == 8;
   switch (kind) {
@@ -103,7 +103,7 @@ Result<FigureType> type_of(std::string_view text) {
   return type;
 }
 
-/// The product of the lengths; nullopt if it is zero or does not fit.
+/// The product of the lengths; nullopt if it is zero or overflows.
 std::optional<std::size_t> product(const std::vector<std::size_t>& lengths) {
   std::size_t all = 1;
   for (const std::size_t length : lengths)
@@ -188,7 +188,7 @@ Result<NpyHeader> read_npy_header(std::string_view dictionary) {
   if (!scanner.take("{")) return damaged;
   do {
     const auto key = scanner.string();
-    if (!key) break;  // the comma behind the last entry
+    if (!key) break;  // the comma after the last entry
     auto* entry = std::ranges::find(entries, *key, &Entry::key);
     if (entry == entries.end() || !scanner.take(":")) return damaged;
     if (const Status read = entry->read(scanner, header); !read) return read.error();

@@ -10,7 +10,7 @@
 
 namespace proofmass::io {
 
-/// A field of a row: one column, or `count` of them where it is an array itself.
+/// A field of a row: one column, or `count` of them if it is an array itself.
 struct NpyField {
   std::string name;
   FigureType type;
@@ -19,7 +19,7 @@ struct NpyField {
 
 /// The header of an .npy file.
 struct NpyHeader {
-  std::vector<NpyField> fields;  ///< one, without a name, unless the array is structured
+  std::vector<NpyField> fields;  ///< a single unnamed one, unless the array is structured
   bool is_structured = false;
   bool fortran_order = false;
   std::vector<std::size_t> shape;

@@ -37,7 +37,7 @@ class NpyTable final : public TableReader {
   TableHead head_;
 };
 
-/// Whether so few rows of so many columns are channels × samples.
+/// True if so few rows of so many columns are channels × samples.
 bool is_lying(const std::vector<std::size_t>& shape) {
   constexpr std::size_t most_channels_in_rows = 64;
   return shape.size() == 2 && shape[0] <= most_channels_in_rows && shape[1] > 4 * shape[0];

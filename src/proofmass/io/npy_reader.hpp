@@ -12,9 +12,9 @@ namespace proofmass::io {
 
 [[nodiscard]] bool claims_npy(std::string_view head, std::string_view file_name);
 
-/// Opens a NumPy array: 1-D is one channel; 2-D is samples × channels, or channels × samples where
+/// Opens a NumPy array: 1-D is one channel; 2-D is samples × channels, or channels × samples if
 /// there are far more columns than rows; a structured array's fields are the channels. Column 0 of
-/// a plain 2-D array is the time in seconds if it ascends.
+/// a plain 2-D array is the time in seconds if it increases.
 /// Source: NumPy Enhancement Proposal 1, "A simple file format for NumPy arrays".
 /// Errors: corrupt, unsupported (text, objects, complex numbers), too_few_samples, unreadable.
 [[nodiscard]] Result<std::unique_ptr<TableFile>> open_npy(std::unique_ptr<PeekSource> source,

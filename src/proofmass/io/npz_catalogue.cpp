@@ -57,7 +57,7 @@ class Lister {
     const auto preface = peek_npy_preface(**source);
     if (!preface) return leave_out(name, preface.error().message);
     const NpyHeader& header = preface->header;
-    // What is too wide as rows may be a table lengthwise.
+    // An array with too many columns may be a transposed table.
     const bool is_wide = !header.is_structured && header.shape.size() > 1;
     auto layout = npy_layout(*preface, false);
     if (!layout && is_wide) layout = npy_layout(*preface, true);

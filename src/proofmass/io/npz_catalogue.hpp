@@ -11,23 +11,22 @@
 
 namespace proofmass::io {
 
-/// Where an array of an archive is kept.
+/// Location of an array in an archive.
 struct NpzArray {
-  std::size_t entry = 0;  ///< of the archive
+  std::size_t entry = 0;  ///< index in the archive
   NpyPreface preface;
-  std::size_t first_column = 0;        ///< of a field of a structured array, among its figures
-  std::optional<std::size_t> columns;  ///< of the field; nullopt: the array is not structured
+  std::size_t first_column = 0;        ///< position of a structured field among the numeric columns
+  std::optional<std::size_t> columns;  ///< width of the field; nullopt: not a structured array
 };
 
-/// The arrays of an archive as variables of a MAT file, which the choice of tables is made from.
-/// Shapes are as NumPy prints them, one dimension as a column.
+/// The arrays of an archive as variables of a MAT file, the input of table selection. Shapes are as
+/// printed by NumPy, one dimension as a column.
 struct NpzCatalogue {
   MatCatalogue variables;
-  std::vector<NpzArray> places;  ///< one an array
+  std::vector<NpzArray> places;  ///< one per array
 };
 
-/// Reads the headers of all arrays. Those that cannot be read are among the skipped, with the
-/// reason.
+/// Reads the headers of all arrays. Unreadable ones are listed as skipped, with the reason.
 [[nodiscard]] NpzCatalogue list_npz(Archive& archive);
 
 }  // namespace proofmass::io

@@ -16,7 +16,7 @@ namespace {
 
 using Columns = std::vector<std::vector<double>>;
 
-/// The figures of one table, from its first row on.
+/// The values of one table, from its first row on.
 class NpzColumns {
  public:
   static Result<NpzColumns> open(Archive& archive,
@@ -27,7 +27,7 @@ class NpzColumns {
     if (!layout) return layout.error();
     auto source = archive.open(place.entry);
     if (!source) return source.error();
-    // Columns one after another have to be read side by side; rows come as they are unpacked.
+    // Column-major data need random access; rows are read while they are decompressed.
     auto bytes = layout->by_column ? random_bytes_of(std::move(source).value(), progress)
                                    : ascending_bytes_of(std::move(source).value());
     if (!bytes) return bytes.error();
@@ -41,7 +41,7 @@ class NpzColumns {
     return NpzColumns(std::move(figures).value());
   }
 
-  /// All of `into`, unless the array breaks off.
+  /// Fills all of `into`, unless the array is truncated.
   Result<std::size_t> read(std::span<const std::span<double>> into) {
     std::size_t done = 0;
     std::vector<std::span<double>> rest(into.begin(), into.end());
@@ -61,7 +61,7 @@ class NpzColumns {
   NpyFigures figures_;
 };
 
-/// The tables that were chosen, read side by side.
+/// The selected tables, read in parallel.
 class NpzTable final : public TableReader {
  public:
   NpzTable(TableHead head, std::vector<NpzColumns> parts, const std::vector<MatTable>& tables)
@@ -80,7 +80,7 @@ class NpzTable final : public TableReader {
       column += widths_[i];
     }
     if (is_ended_) return std::size_t{0};
-    // An array that breaks off ends the rows of all.
+    // A truncated array ends the rows of all.
     is_ended_ = rows < into[0].size();
     rows_read_ += rows;
     return rows;
@@ -98,7 +98,7 @@ class NpzTable final : public TableReader {
  private:
   TableHead head_;
   std::vector<NpzColumns> parts_;
-  std::size_t rows_;  ///< as the headers say
+  std::size_t rows_;  ///< according to the headers
   std::vector<std::size_t> widths_;
   std::size_t rows_read_ = 0;
   bool is_ended_ = false;
@@ -145,7 +145,7 @@ class NpzOpener {
     return parts;
   }
 
-  /// What tells whether a first column is the time.
+  /// The rows that decide whether a first column is the time.
   Result<std::vector<Columns>> first_rows(const std::vector<MatTable>& tables) {
     constexpr std::size_t most = 256;
     std::vector<Columns> all;

@@ -11,16 +11,16 @@
 
 namespace proofmass::io {
 
-/// Whether the first bytes are those of a zip archive whose first file is a NumPy array, or of any
-/// zip archive called .npz.
+/// True if the first bytes are those of a zip archive whose first file is a NumPy array, or of any
+/// zip archive named .npz.
 [[nodiscard]] bool claims_npz(std::string_view head, std::string_view file_name);
 
-/// Whether there is a NumPy array among the files of an archive.
+/// True if a file of an archive is a NumPy array.
 [[nodiscard]] bool holds_npy(const Archive& archive);
 
-/// Opens an archive of NumPy arrays, which are chosen as the variables of a MAT file are: the
-/// largest table with the vectors of its length beside it, or those that ReadOptions::variables
-/// names; a single number called "fs" is the rate. The fields of a structured array are
+/// Opens an archive of NumPy arrays, which are selected like the variables of a MAT file: the
+/// largest table with the vectors of its length beside it, or those named by
+/// ReadOptions::variables; a scalar named "fs" is the rate. The fields of a structured array are
 /// "name.field". Errors: corrupt, unreadable, unsupported, too_few_samples (no table),
 /// invalid_argument.
 [[nodiscard]] Result<std::unique_ptr<TableFile>> open_npz(std::unique_ptr<Archive> archive,

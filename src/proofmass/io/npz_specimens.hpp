@@ -10,7 +10,7 @@
 // Writes NumPy arrays and zip archives of them for tests.
 namespace proofmass::io::specimen {
 
-/// An .npy file of version 1 with the dictionary as given.
+/// An .npy file of version 1 with the given dictionary.
 inline std::string npy_text(std::string dictionary, const std::string& figures) {
   dictionary += '\n';
   return std::string("\x93NUMPY\x01\0", 8) +
@@ -32,7 +32,7 @@ struct ZipMember {
   std::string content;
 };
 
-/// A zip archive, its members stored, or packed as np.savez_compressed does.
+/// A zip archive, its members stored, or compressed as by np.savez_compressed.
 inline std::string zip(const std::vector<ZipMember>& members, bool is_packed = false) {
   std::string files;
   std::string directory;

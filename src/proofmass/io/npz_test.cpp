@@ -56,7 +56,7 @@ TEST(Npz, ReadsPackedArraysToo) {
 }
 
 TEST(Npz, EitherOrderAndEitherDirectionGiveTheSameTable) {
-  // Row k is {9 - k, 10 + k}, in each of the four ways to lay it out.
+  // Row k is {9 - k, 10 + k}, in each of the four possible layouts.
   std::string rows;
   std::string columns;
   for (int k = 0; k < 8; ++k)
@@ -138,7 +138,7 @@ TEST(Npz, BrokenOffAnywhereIsReadOrRefused) {
   }
 }
 
-// Arrays that break off within a whole archive.
+// Truncated arrays within an intact archive.
 TEST(Npz, ArraysBrokenOffAnywhereAreReadOrRefused) {
   for (const bool fortran : {false, true}) {
     const std::string whole = npy_file("<f8", "(6, 3)", counted(18, 0), fortran);

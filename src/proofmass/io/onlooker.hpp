@@ -12,10 +12,10 @@
 
 namespace proofmass::io {
 
-/// The stamps behind one, unrolled where one ran over on the way.
+/// Look-ahead window: the stamps after one, unwrapped.
 class Onlooker {
  public:
-  /// `shift` is what is to be added to the stamps at k.
+  /// `shift` is to be added to the stamps at k.
   Onlooker(View<double> stamps, std::size_t k, double shift) {
     for (std::size_t i = k + 1; i < stamps.size() && i < k + StampMender::window; ++i) {
       if (!is_stamp(stamps[i])) continue;
@@ -24,7 +24,7 @@ class Onlooker {
     }
   }
 
-  /// `from` is the stamp at k; `origin` its reading where it is 0.
+  /// `from` is the stamp at k; `origin` the clock value where it is 0.
   void unroll(double from, const WrapFinder& wraps, double origin, double usual) {
     double added = 0.0;
     double last = from;
@@ -39,18 +39,19 @@ class Onlooker {
   }
 
   [[nodiscard]] std::size_t count() const { return count_; }
-  /// Whether most of them are such.
+  /// True if the predicate holds for the majority.
   template <class Such>
   [[nodiscard]] bool most_are(Such is_such) const {
     return std::ranges::count_if(seen(), is_such) * 2 > static_cast<std::ptrdiff_t>(count_);
   }
-  /// Whether the next two follow `stamp` at the usual pace: a clock that was set, not an accident.
+  /// True if the next two follow `stamp` at the usual interval: the clock was set, the stamp is not
+  /// an outlier.
   [[nodiscard]] bool go_on(double stamp, double usual) const {
     const auto is_usual = [&](double step) { return step >= 0.0 && step < usual; };
     return count_ >= 2 && is_usual(next_[0] - stamp) && is_usual(next_[1] - next_[0]);
   }
-  /// Whether a stamp that is ahead of its time is alone in being so: what follows lies between the
-  /// last good one and it.
+  /// True if a stamp that is ahead of its time is the only one: the following stamps lie between
+  /// the last good one and it.
   [[nodiscard]] bool leave_behind(double stamp, double last, double usual) const {
     const auto between = [&](double next) { return next >= last && next < stamp; };
     if (count_ == 0 || go_on(stamp, usual)) return false;

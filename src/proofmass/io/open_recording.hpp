@@ -15,18 +15,18 @@ namespace proofmass::io {
 [[nodiscard]] Result<std::unique_ptr<TableFile>> open_path(const std::string& path,
                                                            const ReadOptions& options);
 
-/// The tables that make the recording: all, or those chosen; and what there is to say about it.
+/// The tables of the recording, all or those selected, and notes on the selection.
 struct ChosenTables {
   std::vector<std::size_t> tables;
   std::vector<Note> notes;
 };
-/// Errors: those of choose_table(); invalid_argument (several with a clock each, and no rate to
-/// resample them at).
+/// Errors: those of choose_table(); invalid_argument (several tables with separate clocks, and no
+/// rate to resample them at).
 [[nodiscard]] Result<ChosenTables> chosen_tables_of(const TableFile& file,
                                                     const ReadOptions& options);
 
-/// Reads them whole; several are joined on one grid, and lone ones resampled where the options say.
-/// Errors: those of the readers.
+/// Reads them completely; several are joined on one grid, a single one is resampled if the options
+/// require it. Errors: those of the readers.
 [[nodiscard]] Result<Recording> read_tables(TableFile& file,
                                             const ChosenTables& chosen,
                                             const ReadOptions& options);

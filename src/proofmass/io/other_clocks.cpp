@@ -23,10 +23,10 @@ bool is_clock_name(const std::string& name) {
   return is_one_of(name, clocks) || bare.find("time") != std::string::npos;
 }
 
-/// A channel as a clock: seconds, NaN where it has none, and when its first row was.
+/// A channel as a clock: seconds, NaN if missing, and the time of its first row.
 struct OtherClock {
   std::vector<double> seconds;
-  std::optional<std::int64_t> start_ns;  ///< since 1970, if it is a calendar's
+  std::optional<std::int64_t> start_ns;  ///< since 1970, if it is a calendar time
 };
 
 std::optional<OtherClock> as_clock(const Channel& channel) {
@@ -74,7 +74,7 @@ void tell_other_clocks(Recording& recording) {
     const auto clock = as_clock(channel);
     if (!clock) continue;
     const auto pair = compare_clocks(base_s, clock->seconds);
-    if (!pair || std::abs(pair->drift_ppm) > 1e5) continue;  // no clock of the same thing
+    if (!pair || std::abs(pair->drift_ppm) > 1e5) continue;  // not a clock of the same recording
     std::string text = words_on(recording.time.channel, channel.name, *pair);
     const bool is_dated = recording.time.start_ns && *recording.time.start_ns > year_2000_ns;
     if (!is_dated && clock->start_ns) {

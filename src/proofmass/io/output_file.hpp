@@ -9,8 +9,8 @@
 
 namespace proofmass::io {
 
-/// A file being written: a NewFile, which has its name from keep() on and is removed without it.
-/// Path "-" is standard output, where nothing can be overwritten.
+/// A file being written: a NewFile, which is named by keep() and otherwise removed. Path "-" is
+/// standard output, which does not support overwrite().
 class OutputFile {
  public:
   OutputFile() = default;
@@ -18,9 +18,9 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
   virtual ~OutputFile() = default;
 
-  /// Errors of all: unwritable, "<path>: cannot be written: No space left on device".
+  /// Errors of all functions: unwritable, "<path>: cannot be written: No space left on device".
   [[nodiscard]] virtual Status append(std::string_view bytes) = 0;
-  /// Writes over what was written before; it ends within it.
+  /// Overwrites earlier bytes; must end within them.
   [[nodiscard]] virtual Status overwrite(std::uint64_t offset, std::string_view bytes) = 0;
   [[nodiscard]] virtual std::uint64_t size() const = 0;  ///< bytes appended
   /// NewFile::part_path(), for libraries that write files themselves.
@@ -30,7 +30,7 @@ class OutputFile {
 
 [[nodiscard]] Result<std::unique_ptr<OutputFile>> create_file(const std::string& path);
 
-/// The same file, compressed by gzip on its way; nothing can be written over in it.
+/// The same file, compressed by gzip; does not support overwrite().
 [[nodiscard]] std::unique_ptr<OutputFile> gzipped(std::unique_ptr<OutputFile> file);
 
 }  // namespace proofmass::io

@@ -27,7 +27,7 @@ bool is_number(std::string_view type) {
   return std::ranges::find(numbers, type) != numbers.end() || type.starts_with("DECIMAL");
 }
 
-/// Texts of a query's two first columns, row by row.
+/// Texts in the first two columns of a query, row by row.
 Result<std::vector<std::array<std::string, 2>>> pairs(const Duckdb& database,
                                                       const std::string& sql) {
   std::vector<std::array<std::string, 2>> found;
@@ -43,7 +43,7 @@ Result<std::vector<std::array<std::string, 2>>> pairs(const Duckdb& database,
   }
 }
 
-/// One file, its head and then its rows.
+/// Reads one file, its head and then its rows.
 class ParquetReading {
  public:
   ParquetReading(Duckdb database, const std::string& path, const ReadOptions& options)
@@ -98,7 +98,7 @@ class ParquetReading {
                  fmt::format("has no column of numbers: it has {}", head_.skipped)};
   }
 
-  /// The time of a recording that is even says no more than its rate.
+  /// True for the time of an evenly sampled recording, which only repeats its rate.
   [[nodiscard]] bool is_even_time(std::string_view name) const {
     return name == head_.fact(parquet::time_key) && !head_.fact(parquet::rate_key).empty() &&
            options_.time_channel.empty();
@@ -116,13 +116,13 @@ class ParquetReading {
     head_.columns.push_back({exact.empty() ? name : exact, unit, type});
   }
 
-  /// Whole numbers as they are, exact; instants in nanoseconds.
+  /// Exact integers; timestamps in nanoseconds.
   [[nodiscard]] std::string whole(std::size_t column) const {
     return is_instant(head_.columns[column].type) ? fmt::format("epoch_ns({})", names_[column])
                                                   : names_[column];
   }
 
-  /// The first stamp, where stamps are whole numbers of more digits than a double has.
+  /// The first stamp, if stamps are integers with more digits than a double has.
   Status read_origin() {
     if (head_.stamps) return Done{};
     std::vector<std::string> headings;
@@ -172,7 +172,7 @@ class ParquetReading {
       if (*count == 0) return Done{};
       chunk.resize(*count);
       block_.resize(*count * width);
-      // A chunk has 2048 rows: what is too wide for a frame is cut.
+      // A chunk has 2048 rows: one too large for a frame is split.
       for (std::size_t row = 0; row < *count; row += most) {
         const std::size_t some = std::min(most, *count - row);
         for (std::size_t c = 0; c < width; ++c) {
@@ -188,10 +188,10 @@ class ParquetReading {
 
   Duckdb database_;
   std::string from_;
-  std::string path_;  ///< as SQL spells it
+  std::string path_;  ///< quoted for SQL
   const ReadOptions& options_;
   ParquetHead head_;
-  std::vector<std::string> names_;  ///< of the columns that are read, as SQL spells them
+  std::vector<std::string> names_;  ///< names of the columns that are read, quoted for SQL
   std::vector<double> block_;
 };
 

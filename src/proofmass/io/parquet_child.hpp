@@ -15,45 +15,44 @@
 
 namespace proofmass::io {
 
-/// Columns of one table that are read.
+/// Maximum number of columns that are read from a table.
 inline constexpr std::size_t most_parquet_columns = 4096;
 
-/// A column that is read, as doubles.
+/// A column to be read, as doubles.
 struct ParquetColumn {
   std::string name;
-  std::string unit;  ///< as Proofmass wrote it, or "ns" of instants; empty: not known
+  std::string unit;  ///< as written by Proofmass, or "ns" for timestamps; empty: unknown
   std::string type;  ///< DuckDB's: "FLOAT", "TIMESTAMP_NS"
 };
 
-/// What is known of a Parquet file before its first row.
+/// Information on a Parquet file before its first row.
 struct ParquetHead {
   std::vector<ParquetColumn> columns;
   std::uint64_t rows = 0;
   std::map<std::string, std::string, std::less<>> facts;  ///< key-value metadata
-  std::string skipped;                                    ///< "note (VARCHAR)"; empty: nothing
-  /// The column of the time, where its figures are less an origin: that of integers and instants,
-  /// which is exact, or where is_since_start the start that the metadata tell.
+  std::string skipped;                                    ///< "note (VARCHAR)"; empty: none
+  /// The time column, whose values are relative to an origin: for integers and timestamps an exact
+  /// one, or if is_since_start the start given in the metadata.
   std::optional<std::size_t> stamps;
   std::int64_t origin = 0;
   bool is_since_start = false;
 
-  /// Empty where there is none of that key.
+  /// Empty if there is no such key.
   [[nodiscard]] std::string_view fact(std::string_view key) const;
-  /// Those in the metadata; none where they are not spelt as Proofmass does.
+  /// The labels in the metadata; none if they are not in Proofmass's format.
   [[nodiscard]] std::vector<Label> labels() const;
 };
 
-/// A head as bytes and back, which believes nothing. Errors of decode_parquet: corrupt.
+/// Serialises a head; the decoder trusts nothing. Errors of decode_parquet: corrupt.
 [[nodiscard]] std::string encode_parquet(const ParquetHead& head);
 [[nodiscard]] Result<ParquetHead> decode_parquet(std::string_view bytes);
 
-/// How many bytes the encoded head has, of which `bytes` are the first; nullopt where they are too
-/// few to say.
+/// Total size of the encoded head that begins with `bytes`; nullopt if these are too few.
 [[nodiscard]] std::optional<std::uint64_t> parquet_head_bytes(std::string_view bytes);
 
-/// Reads a file by DuckDB, for a process of its own: hands on the encoded head, then blocks of
-/// rows, each of at most most_frame_bytes, column by column, NaN where there is no figure. Errors:
-/// unsupported (no library), corrupt, too_few_samples (no column of numbers).
+/// Reads a file by DuckDB, in a child process: passes on the encoded head, then blocks of rows,
+/// each of at most most_frame_bytes, column by column, NaN for missing values. Errors: unsupported
+/// (no library), corrupt, too_few_samples (no numeric column).
 [[nodiscard]] Status read_parquet(const std::string& path,
                                   const ReadOptions& options,
                                   const ByteSink& sink);

@@ -67,7 +67,7 @@ std::string encode_parquet(const ParquetHead& head) {
 std::optional<std::uint64_t> parquet_head_bytes(std::string_view bytes) {
   if (bytes.size() < sizeof(std::uint64_t)) return std::nullopt;
   const std::uint64_t size = WordReader(bytes).number();
-  // One that cannot be is longer than anything there is.
+  // An impossible size is larger than any available data.
   return size > size + sizeof size ? size : size + sizeof size;
 }
 

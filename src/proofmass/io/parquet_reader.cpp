@@ -27,7 +27,7 @@ std::optional<T> figure(std::string_view text) {
   return value;
 }
 
-/// Rows as the child hands them over: frames of doubles, column by column.
+/// Rows as sent by the child: frames of doubles, column by column.
 class ParquetTableReader final : public TableReader {
  public:
   ParquetTableReader(WatchedChild child, TableHead head)
@@ -59,7 +59,7 @@ class ParquetTableReader final : public TableReader {
   }
 
  private:
-  /// The next block, of no row at the end.
+  /// Receives the next block, without rows at the end.
   Status hear() {
     row_ = 0;
     rows_ = 0;
@@ -78,11 +78,11 @@ class ParquetTableReader final : public TableReader {
   TableHead head_;
   std::vector<double> block_;
   std::size_t rows_ = 0;  ///< in the block
-  std::size_t row_ = 0;   ///< in the block, the next
+  std::size_t row_ = 0;   ///< the next one in the block
   std::uint64_t rows_read_ = 0;
 };
 
-/// What the child says of the file, before the first row.
+/// Information of the child on the file, before the first row.
 Result<ParquetHead> hear_head(WatchedChild& child) {
   std::string bytes;
   constexpr std::size_t most_bytes = std::size_t{64} << 20;
@@ -99,7 +99,7 @@ Result<ParquetHead> hear_head(WatchedChild& child) {
 
 struct OpenParquet {
   LibraryFile file;
-  std::vector<Note> notes;  ///< of unpacking
+  std::vector<Note> notes;  ///< about decompression
 };
 
 struct OpenTable {
@@ -107,7 +107,7 @@ struct OpenTable {
   ParquetHead head;
 };
 
-/// Short texts in the metadata, but for those that say what the columns are.
+/// Notes on short texts in the metadata, except those that describe the columns.
 void tell_texts(const ParquetHead& parquet, std::vector<Note>& notes) {
   constexpr std::size_t most_texts = 4;
   constexpr std::size_t longest = 160;
@@ -159,7 +159,7 @@ TableHead table_head(const ParquetHead& parquet, const OpenParquet& file) {
 }
 
 ChildLimits limits_for(const LibraryFile& file) {
-  constexpr std::uint64_t bytes_a_second = 200'000;  // of what is packed as well as it can be
+  constexpr std::uint64_t bytes_a_second = 200'000;  // rate for maximally compressed data
   constexpr std::uint64_t longest_s = 360'000;
   ChildLimits limits;
   limits.memory_bytes = std::size_t{4} << 30;  // DuckDB reserves more than it uses
@@ -207,7 +207,7 @@ class ParquetFile final : public TableFile {
 
  private:
   OpenParquet file_;
-  OpenTable first_;  ///< its reader until it is asked for
+  OpenTable first_;  ///< its reader until it is requested
   std::array<TableSummary, 1> summary_;
 };
 

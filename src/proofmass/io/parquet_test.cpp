@@ -18,7 +18,7 @@
 namespace proofmass::io::parquet_test {
 namespace {
 
-/// DuckDB's library where somebody has put it; empty where nobody has.
+/// DuckDB's library if it is installed; else empty.
 std::string duckdb_library() {
   if (const char* given = std::getenv("PROOFMASS_DUCKDB_LIB")) return given;
   const auto here = std::filesystem::path(PROOFMASS_SOURCE_DIR) /
@@ -63,7 +63,7 @@ class Parquet : public testing::Test {
     return read_recording(path(), options);
   }
 
-  /// What DuckDB makes of a query on the file, its first row.
+  /// DuckDB's result for a query on the file, its first row.
   [[nodiscard]] std::vector<double> ask(const std::string& what) const {
     const auto database = Duckdb::open(duckdb_library(), "");
     if (!database) return {};
@@ -76,7 +76,7 @@ class Parquet : public testing::Test {
     return answer;
   }
 
-  /// Makes a file by DuckDB itself.
+  /// Creates a file with DuckDB itself.
   void make(const std::string& query) const {
     const auto database = Duckdb::open(duckdb_library(), "");
     ASSERT_TRUE(database) << database.error().message;
@@ -197,7 +197,7 @@ TEST_F(Parquet, WhateverIsWrongItIsReadOrRefusedInOneLine) {
     expect_sound(whole.substr(0, size));
     EXPECT_FALSE(read_text(whole.substr(0, size), options)) << size;
   }
-  unsigned state = 1;  // any sequence will do, as long as it is the same each time
+  unsigned state = 1;  // any sequence, but the same each time
   for (int round = 0; round < 12; ++round) {
     std::string damaged = whole;
     for (int wrong = 0; wrong < 4; ++wrong) {

@@ -17,7 +17,7 @@
 namespace proofmass::io {
 namespace {
 
-/// The database that rows wait in; it goes with its owner.
+/// Temporary database for the rows; deleted with its owner.
 class WaitingRoom {
  public:
   explicit WaitingRoom(std::string path) : path_(std::move(path)) { clear(); }
@@ -36,7 +36,7 @@ class WaitingRoom {
   std::string path_;
 };
 
-/// Columns whose names differ in case only are one to SQL.
+/// Column names that differ only in case are equal in SQL.
 std::vector<std::string> column_names(const std::vector<std::string>& names) {
   std::vector<std::string> unique;
   std::set<std::string> taken;
@@ -68,7 +68,7 @@ class ParquetWriter final : public RecordingWriter {
     std::string table = "CREATE TABLE recording (";
     for (std::size_t c = 0; c < columns_.size(); ++c)
       table += fmt::format("{}c{} DOUBLE", c == 0 ? "" : ", ", c);
-    // Never committed: what waits for a moment need not survive anything.
+    // Never committed: temporary data need not survive.
     if (const Status begun = database_->run("BEGIN TRANSACTION"); !begun)
       return failed(begun.error());
     if (const Status made = database_->run(table + ")"); !made) return failed(made.error());
@@ -170,11 +170,11 @@ class ParquetWriter final : public RecordingWriter {
   TimeBase time_;
   bool has_stamps_;
   std::vector<std::string> names_;    ///< the time's first, if there is one
-  std::vector<std::string> columns_;  ///< what they are called in the file
+  std::vector<std::string> columns_;  ///< their names in the file
   std::map<std::string, std::string> facts_;
   std::vector<double> times_;
   std::optional<Duckdb> database_;
-  std::optional<DuckdbAppender> appender_;  ///< goes before the database
+  std::optional<DuckdbAppender> appender_;  ///< destroyed before the database
 };
 
 }  // namespace

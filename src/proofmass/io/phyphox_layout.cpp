@@ -11,7 +11,7 @@
 namespace proofmass::io {
 namespace {
 
-/// A line of time.csv: the experiment begins, or pauses.
+/// A line of time.csv: start or pause of the experiment.
 struct Event {
   bool is_start = false;
   double experiment_s = 0.0;
@@ -19,7 +19,7 @@ struct Event {
   std::int64_t system_ns = 0;  ///< since 1970
 };
 
-/// A figure in seconds as whole nanoseconds; nullopt if it is none.
+/// A number in seconds as whole nanoseconds; nullopt if it is not a number.
 std::optional<std::int64_t> ns_of(const std::string& field, char point) {
   StampReader reader(StampSpelling::figures, point);
   reader.read(field);
@@ -35,8 +35,8 @@ std::optional<char> separator_of(std::string_view header) {
   return std::nullopt;
 }
 
-/// The events of time.csv; none if the text is no such file. The app writes what separator and
-/// decimal mark its user chose.
+/// The events of time.csv; none if the text is not such a file. The app uses the separator and
+/// decimal mark chosen by its user.
 std::vector<Event> events_of(std::string_view text) {
   std::vector<Event> events;
   const auto lines = lines_of(text);
@@ -58,7 +58,7 @@ std::vector<Event> events_of(std::string_view text) {
   return events;
 }
 
-/// What the wall clock says: when it began, and where it went on without the experiment.
+/// Information from the wall clock: the start, and pauses of the experiment.
 void tell_clock(const std::vector<Event>& events, MemberHint& hint) {
   if (events.empty() || !events.front().is_start) return;
   std::int64_t zero = 0;
@@ -99,7 +99,7 @@ std::string device_in(std::string_view text) {
   return told;
 }
 
-/// The folder whose recordings a file of meta data is about: the one above "meta/".
+/// The folder whose recordings a metadata file describes: the one above "meta/".
 std::string subject_of(std::string_view path) {
   std::string folder(folder_part(path));
   if (folder == "meta/") return {};

@@ -8,7 +8,7 @@
 namespace proofmass::io {
 namespace {
 
-/// The runs of letters and those of digits in a name, in lower case.
+/// The runs of letters and of digits in a name, in lower case.
 std::vector<std::string> words_of(std::string_view name) {
   std::vector<std::string> words;
   char before = ' ';
@@ -23,7 +23,7 @@ std::vector<std::string> words_of(std::string_view name) {
   return words;
 }
 
-/// What the words of a name say besides axis and sensor.
+/// Information in the words of a name besides axis and sensor.
 struct Said {
   bool mean = false;
   bool std = false;
@@ -31,7 +31,7 @@ struct Said {
   bool direction = false;
   bool other_sensor = false;
 
-  /// False if the word says none of it.
+  /// False if the word contains no such information.
   bool hear(std::string_view word) {
     bool& flag = flag_of(word);
     flag = true;
@@ -50,7 +50,7 @@ struct Said {
     if (is_any_of(word, {"mean", "means", "avg", "average"})) return mean;
     if (is_any_of(word, {"std", "sd", "stdev", "stddev", "sigma", "standard", "deviation"}))
       return std;
-    // An error alone is a residual; a standard error is a mean's.
+    // An error alone is a residual; a standard error is that of a mean.
     if (is_any_of(word, {"sem", "se", "stderr"}) || (std && is_any_of(word, {"err", "error"})))
       return error;
     if (is_any_of(word, {"true", "up", "ref", "reference", "dir", "direction", "nominal"}))
@@ -64,7 +64,7 @@ struct Said {
   bool nothing_ = false;
 };
 
-/// The short forms before an axis letter: "ax", "accy", "fz"; nullopt if the word is no axis.
+/// The short forms before an axis letter: "ax", "accy", "fz"; nullopt if the word is not an axis.
 std::optional<std::string_view> stem_of_axis(std::string_view word) {
   if (word.back() < 'x' || word.back() > 'z') return std::nullopt;
   const std::string_view stem = word.substr(0, word.size() - 1);

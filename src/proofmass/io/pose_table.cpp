@@ -27,7 +27,7 @@ constexpr auto numbers = std::to_array<std::string_view>(
 constexpr auto positions = std::to_array<std::string_view>(
     {"position", "pose", "id", "no", "nr", "label", "orientation", "index"});
 
-/// A column of numbers in SI; nullopt if there is none of these names.
+/// A numeric column in SI; nullopt if none has one of these names.
 std::optional<std::vector<double>> column_called(const Recording& recording, Names names) {
   for (const Channel& channel : recording.channels) {
     if (!is_called(bare_name(channel.name), names)) continue;
@@ -38,7 +38,7 @@ std::optional<std::vector<double>> column_called(const Recording& recording, Nam
   return std::nullopt;
 }
 
-/// A column of times, which the reader may have taken for the stamps.
+/// A column of times, which the reader may have used as stamps.
 std::optional<std::vector<double>> times_called(const Recording& recording, Names names) {
   const TimeBase& time = recording.time;
   if (!is_called(bare_name(time.channel), names) || time.source != TimeSource::stamps ||
@@ -58,7 +58,7 @@ std::string names_of(const Recording& recording, const PoseTriple& triple) {
   return names;
 }
 
-/// Three columns and what turns their figures into the unit of the means.
+/// Three columns and the conversion of their values to the unit of the means.
 struct Axes {
   std::array<View<double>, 3> values;
   std::array<double, 3> factor{1.0, 1.0, 1.0};
@@ -74,7 +74,7 @@ Axes axes_of(const Recording& recording, const PoseTriple& triple) {
   return axes;
 }
 
-/// The same in `unit`; a column without a unit has that one.
+/// The same in `unit`; a column without a unit is assumed to have it.
 Result<Axes> axes_in(const Recording& recording, const PoseTriple& triple, const Unit& unit) {
   Axes axes = axes_of(recording, triple);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -164,7 +164,7 @@ class TableReader {
     return Done{};
   }
 
-  /// Fills in all but the mean.
+  /// Fills in everything except the mean.
   Status complete(PoseRow& row) const {
     const std::size_t k = row.row;
     row.label = label_of(k);
@@ -218,7 +218,7 @@ class TableReader {
   PoseTable table_;
 };
 
-// A column for each position and the rows x, y, z.
+// One column for each position, and rows x, y, z.
 bool is_turned(const Recording& recording) {
   return recording.samples() == 3 && recording.channels.size() > 3;
 }

@@ -10,7 +10,7 @@ namespace {
 
 using Axes = std::array<double, 3>;
 
-/// The table that a text holds, or the first error on the way.
+/// The table in a text, or the first error.
 Result<PoseTable> table_of(std::string_view text, const std::optional<Unit>& unit = {}) {
   const auto recording = read_text(text);
   if (!recording) return recording.error();

@@ -1,4 +1,4 @@
-// Recordings that others have published, as they come. They are not part of this repository.
+// Unmodified recordings published by others. They are not part of this repository.
 #include <cmath>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@ namespace {
 struct Published {
   const char* path;
   std::size_t samples;
-  double rate_hz;  ///< 0: the file does not say
+  double rate_hz;  ///< 0: not given in the file
   const char* unit;
-  std::size_t axes;  ///< of its first accelerometer; 0: it has none of three axes
+  std::size_t axes;  ///< axes of its first accelerometer; 0: no three-axis one
 };
 
 class PublishedRecording : public testing::TestWithParam<Published> {};
@@ -81,7 +81,7 @@ TEST(PublishedWheel, BothUnitsOfAWheelStandOnOneClock) {
   EXPECT_EQ(hub->first_line, 3u);
 }
 
-/// The rows of a wheel's recording with every tenth of a stretch spoilt as a decoder spoils them.
+/// The rows of a wheel's recording, with every tenth of a segment corrupted as by a decoder.
 std::string spoilt(const std::string& text) {
   const std::vector<std::string> junk{"nan", "inf", "-inf", "3.0531e+34", "1.4013e-45", "4.9e-324"};
   std::string out;
@@ -94,7 +94,7 @@ std::string spoilt(const std::string& text) {
       out += row + "\n";
       continue;
     }
-    // The packet counter stays; stamp and readings go.
+    // Keeps the packet counter and removes stamp and measurements.
     out += row.substr(0, row.find(',')) + ", ";
     for (std::size_t c = 0; c < 10; ++c) out += junk[(line / 10 + c) % junk.size()] + ", ";
     out += "\n";

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// NaN gives way to any number.
+/// NaN is replaced by any number.
 void widen(double& min, double& max, double low, double high) {
   if (!(min <= low)) min = std::isnan(low) ? min : low;
   if (!(max >= high)) max = std::isnan(high) ? max : high;

@@ -8,13 +8,13 @@
 
 namespace proofmass::io {
 
-// The figures of a pyramid are written and read as they lie in memory.
+// The values of a pyramid are written and read in the memory layout.
 static_assert(std::endian::native == std::endian::little);
 
-/// In front of the header's text in an .npy of version 1: magic, version, length.
+/// Bytes before the header's text in an .npy of version 1: magic, version, length.
 inline constexpr std::size_t npy_magic_bytes = 10;
 
-/// The .npy name of the types that a pyramid's arrays are of.
+/// The .npy name of the element types of a pyramid's arrays.
 template <class T>
 constexpr std::string_view type_of() {
   if constexpr (std::is_same_v<T, double>) return "<f8";

@@ -26,7 +26,7 @@ class PyramidReader {
       places_.emplace(archive_->entries()[i].name, i);
   }
 
-  /// All bytes of an entry, which are stored: an archive holds no more than it is long.
+  /// All bytes of an entry, which is uncompressed: no entry exceeds the archive's size.
   Result<std::string> text(const std::string& name) const {
     const auto at = places_.find(name);
     if (at == places_.end()) return damaged("has no " + name);
@@ -44,7 +44,7 @@ class PyramidReader {
     return out;
   }
 
-  /// A list, or a table, of so many figures in all.
+  /// A list or table with this total number of values.
   template <class T>
   Result<std::vector<T>> figures(const std::string& name, std::size_t count) const {
     const auto bytes = text(name + ".npy");
@@ -68,7 +68,7 @@ class PyramidReader {
     return out;
   }
 
-  /// One row a channel, spread over the channels.
+  /// One row per channel, distributed to the channels.
   template <class T>
   Status rows(const std::string& name,
               PyramidLevel& level,
@@ -89,7 +89,7 @@ class PyramidReader {
   std::map<std::string, std::size_t> places_;
 };
 
-/// "name TAB unit" a line.
+/// "name TAB unit" per line.
 Status read_names(const PyramidReader& reader, Pyramid& out) {
   const auto text = reader.text("names.txt");
   if (!text) return text.error();

@@ -28,7 +28,7 @@ Recording noise(std::size_t samples, std::size_t channels = 2) {
   return out;
 }
 
-/// Adds the samples in pieces of such a length.
+/// Adds the samples in pieces of the given length.
 Pyramid pyramid_of(const Recording& recording, std::size_t piece) {
   PyramidBuilder builder(recording);
   for (std::size_t first = 0; first < recording.samples(); first += piece) {
@@ -73,7 +73,7 @@ TEST(Pyramid, HoldsTheExtremesOfEveryBinAtEveryLevelHoweverTheSamplesCome) {
   const Pyramid pyramid = pyramid_of(recording, 40'000);
   EXPECT_EQ(pyramid.samples, 40'000u);
   EXPECT_EQ(pyramid.end_s, 399.99);
-  ASSERT_EQ(pyramid.levels.size(), 4u);  // of 157, 40, 10 and 3 bins
+  ASSERT_EQ(pyramid.levels.size(), 4u);  // with 157, 40, 10 and 3 bins
   for (const PyramidLevel& level : pyramid.levels)
     for (std::size_t c = 0; c < 2; ++c)
       for (std::size_t i = 0; i < level.bins(); ++i) {

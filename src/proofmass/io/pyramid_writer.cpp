@@ -14,7 +14,7 @@ namespace {
 std::string npy_head(std::string_view type, const std::string& shape) {
   std::string text =
       fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
-  // The figures begin at a multiple of 64 bytes, as the format asks, behind a line's end.
+  // The values begin at a multiple of 64 bytes, as the format requires, after a line end.
   text.resize((npy_magic_bytes + text.size() + 1 + 63) / 64 * 64 - npy_magic_bytes - 1, ' ');
   text += '\n';
   std::string out("\x93NUMPY\x01\x00", 8);
@@ -34,7 +34,7 @@ Status add_list(StoredZipWriter& zip, const std::string& name, const std::vector
                  bytes_of(std::span<const T>(values)));
 }
 
-/// One row a channel.
+/// One row per channel.
 template <class T>
 Status add_rows(StoredZipWriter& zip,
                 const std::string& name,

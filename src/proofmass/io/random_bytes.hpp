@@ -10,7 +10,7 @@
 
 namespace proofmass::io {
 
-/// A file that can be read anywhere, for as long as this lives.
+/// A file with random access, valid during the lifetime of this object.
 class RandomBytes {
  public:
   RandomBytes() = default;
@@ -19,17 +19,18 @@ class RandomBytes {
   virtual ~RandomBytes() = default;
 
   [[nodiscard]] virtual std::uint64_t size() const = 0;
-  /// Fills `into` from byte `offset` on and says how many bytes; fewer than asked only at the end.
+  /// Fills `into` from byte `offset` and returns the number of bytes; fewer than requested only at
+  /// the end.
   /// Errors: unreadable.
   [[nodiscard]] virtual Result<std::size_t> read_at(std::uint64_t offset,
                                                     std::span<char> into) const = 0;
-  /// What unpacking found: compressed data that break off.
+  /// Faults found by decompression: truncated data.
   [[nodiscard]] virtual std::vector<Note> notes() const { return {}; }
 };
 
-/// The bytes of a stream to be read anywhere: of the file that it is; of memory that it is; else
-/// (compressed, a pipe) of a nameless file on disk that they are unpacked to.
-/// Errors: those of the stream; unreadable (no room on the disk).
+/// Random access to the bytes of a stream: the underlying file; the underlying memory; else
+/// (compressed, a pipe) an unnamed file on disk with the decompressed data.
+/// Errors: those of the stream; unreadable (no space on the disk).
 [[nodiscard]] Result<std::unique_ptr<RandomBytes>> random_bytes_of(
     std::unique_ptr<PeekSource> source, const Progress& progress);
 

@@ -23,7 +23,7 @@ Result<Recording> read_table(TableFile& file, std::size_t table, const ReadOptio
   return signal::resample(*read, *options.resample);
 }
 
-/// Several tables have clocks of their own.
+/// Several tables have separate clocks.
 Result<Recording> read_joined(TableFile& file,
                               const std::vector<std::size_t>& chosen,
                               const ReadOptions& options) {

@@ -10,12 +10,12 @@
 namespace proofmass::io {
 namespace {
 
-/// Few enough figures to stay in the processor's cache on their way.
+/// Few enough values to stay in the processor's cache.
 std::size_t rows_a_piece(std::size_t columns) {
   return std::clamp<std::size_t>((std::size_t{1} << 16) / columns, 16, 4096);
 }
 
-/// A table's rows, the first of which were looked at before.
+/// A table's rows with look-ahead to the first ones.
 class PeekTable {
  public:
   explicit PeekTable(std::unique_ptr<TableReader> table)
@@ -33,7 +33,7 @@ class PeekTable {
   [[nodiscard]] View<double> ahead(std::size_t column) const {
     return View<double>(piece_[column]).first(ahead_);
   }
-  /// The next rows, in the piece.
+  /// Reads the next rows into the piece.
   Result<std::size_t> next() {
     if (ahead_ > 0) return std::exchange(ahead_, 0);
     return table_->read(into_);
@@ -41,7 +41,7 @@ class PeekTable {
   [[nodiscard]] std::span<double> column(std::size_t c, std::size_t count) {
     return std::span(piece_[c]).first(count);
   }
-  /// The next rows, straight to where they are wanted, once nothing is ahead.
+  /// Reads the next rows directly into `into`, once the look-ahead is consumed.
   Result<std::size_t> read(std::span<const std::span<double>> into) { return table_->read(into); }
   [[nodiscard]] bool has_ahead() const { return ahead_ > 0; }
 
@@ -52,7 +52,7 @@ class PeekTable {
   std::size_t ahead_ = 0;
 };
 
-/// A table whose columns have become channels and stamps.
+/// A table whose columns are channels and stamps.
 class TableRecordingReader final : public RecordingReader {
  public:
   /// `shifts` are added to the columns.
@@ -70,7 +70,7 @@ class TableRecordingReader final : public RecordingReader {
   [[nodiscard]] const RawHead& head() const override { return head_; }
   [[nodiscard]] Status next(std::size_t most, RawRows& rows) override {
     rows.channels.resize(head_.recording.channels.size());
-    // More rows than anybody streams: all are wanted, their number not known.
+    // More rows than are ever streamed: all are requested, their number is unknown.
     constexpr std::size_t most_streamed = std::size_t{1} << 28;
     return most > most_streamed ? read_all(rows) : read_some(most, rows);
   }
@@ -145,7 +145,7 @@ class TableRecordingReader final : public RecordingReader {
   Progress progress_;
 };
 
-/// The time that the format declares, unless the user names one.
+/// The time declared by the format, unless the user names one.
 std::optional<std::size_t> time_column(const TableHead& table,
                                        const NamedColumns& names,
                                        const ReadOptions& options) {
@@ -153,7 +153,7 @@ std::optional<std::size_t> time_column(const TableHead& table,
   return names.time;
 }
 
-/// Where the stamps begin, and what is to be added to them for that to be zero.
+/// The origin of the stamps, and the offset that makes it zero.
 StampColumn stamp_column(const TableHead& table,
                          const NamedColumns& names,
                          std::size_t time,

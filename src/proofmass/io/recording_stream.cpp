@@ -25,7 +25,7 @@ std::size_t columns_of(const RawHead& head) {
   return head.recording.channels.size() + (head.stamps ? 1 : 0);
 }
 
-/// Some MiB, few enough to be worked on in the processor's caches level by level.
+/// Some MiB, few enough for processing in the processor's caches.
 std::size_t rows_a_block(const RawHead& head) {
   constexpr std::size_t figures = std::size_t{1} << 18;
   return std::clamp<std::size_t>(figures / std::max<std::size_t>(columns_of(head), 1), 1024,
@@ -34,7 +34,7 @@ std::size_t rows_a_block(const RawHead& head) {
 
 }  // namespace
 
-/// A reader on its way, with what was decided on its first rows.
+/// A reader in progress, with the decisions made on its first rows.
 class RecordingStream::Reading {
  public:
   Reading(std::unique_ptr<TableFile> file,
@@ -53,7 +53,7 @@ class RecordingStream::Reading {
     return reader_->head().rows;
   }
 
-  /// Whether the rows are more than that; those that were looked at are kept for later.
+  /// True if the rows exceed the limit; those read so far are kept.
   Result<bool> exceeds(std::uint64_t most_bytes) {
     const std::uint64_t row_bytes = columns_of(reader_->head()) * figure_bytes;
     if (const auto rows = reader_->head().rows) return *rows > most_bytes / row_bytes;
@@ -82,7 +82,7 @@ class RecordingStream::Reading {
     return recording;
   }
 
-  /// Decides on the first rows.
+  /// Makes the decisions on the first rows.
   Status begin(std::vector<Note> notes) {
     if (const Status rate = check_rate(options_); !rate) return rate.error();
     notes_ = std::move(notes);
@@ -145,7 +145,7 @@ class RecordingStream::Reading {
     return !at_end_;
   }
 
-  /// The next rows as they come; none at the end.
+  /// The next rows as read; none at the end.
   Status take(RawRows& rows) {
     if (ahead_.empty() && !at_end_) {
       const auto more = gather();
@@ -176,7 +176,7 @@ class RecordingStream::Reading {
     if (is_by_rate && !first.time.start_ns) first.time.start_ns = raw.start_ns;
     is_channel_ = time_->is_rejected();
     if (!is_channel_) return;
-    // What is no time is a channel like any other.
+    // A rejected time column is an ordinary channel.
     first.channels.insert(first.channels.begin(),
                           {raw.stamps->name, raw.stamps->unit, std::move(evidence.stamps->values)});
     origin_ = raw.stamps->origin.value();
@@ -225,16 +225,16 @@ class RecordingStream::Reading {
   std::unique_ptr<TableFile> file_;
   std::unique_ptr<RecordingReader> reader_;
   ReadOptions options_;
-  std::string name_;           ///< of the file
-  std::deque<RawRows> ahead_;  ///< read, not yet handed on
+  std::string name_;           ///< name of the file
+  std::deque<RawRows> ahead_;  ///< read but not returned yet
   bool at_end_ = false;
   std::optional<RunningTimeBase> time_;
   std::optional<std::size_t> counter_;
   std::vector<std::size_t> chosen_;
-  bool is_channel_ = false;  ///< the column of stamps is, being no time base: the first
+  bool is_channel_ = false;  ///< the stamp column is not a time base, and is the first channel
   double origin_ = 0.0;
   RawRows current_;
-  std::size_t settled_ = 0;  ///< rows of current_ that were handed on
+  std::size_t settled_ = 0;  ///< rows of current_ that were returned
   std::size_t given_ = 0;
   Recording head_;
   std::vector<Note> notes_;

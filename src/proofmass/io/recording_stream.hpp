@@ -13,9 +13,9 @@
 
 namespace proofmass::io {
 
-/// A recording that is read a piece at a time, in memory that does not grow with it. What
-/// read_recording() decides by all samples, units and the time base, is decided by the first ones;
-/// stamps are mended as there.
+/// A recording that is read in blocks, in memory independent of its length. Units and time base,
+/// which read_recording() determines from all samples, are determined from the first ones; stamps
+/// are corrected in the same way.
 class RecordingStream {
  public:
   class Reading;
@@ -24,14 +24,14 @@ class RecordingStream {
   RecordingStream& operator=(RecordingStream&&) noexcept;
   ~RecordingStream();
 
-  /// Channels without values, in the units they have; time without stamps_s. Notes, first_line and
-  /// labels are complete once next() has returned no row.
+  /// Channels without values, in their units; time without stamps_s. Notes, first_line and labels
+  /// are complete once next() has returned no row.
   [[nodiscard]] const Recording& head() const;
-  /// Whether the blocks bring stamps; else the base is uniform, or there is none.
+  /// True if the blocks have stamps; else the base is uniform, or there is none.
   [[nodiscard]] bool has_stamps() const;
-  /// About how many samples there will be, if the file says.
+  /// Approximate number of samples, if the file states it.
   [[nodiscard]] std::optional<std::uint64_t> expected_samples() const;
-  /// The next samples; none only at the end. The block's views hold until the next call.
+  /// The next samples; none only at the end. The block's views are valid until the next call.
   /// Errors: as read_recording(), naming the file.
   [[nodiscard]] Result<Block> next();
 
@@ -39,8 +39,8 @@ class RecordingStream {
   std::unique_ptr<Reading> reading_;
 };
 
-/// Reads a recording whole if its table fits into `most_bytes`, else opens it as a stream. Several
-/// tables that are joined, and what is resampled, are always read whole.
+/// Reads a whole recording if its table fits into `most_bytes`, else opens it as a stream. Joined
+/// tables and resampled recordings are always read as a whole.
 /// Errors: those of read_recording().
 [[nodiscard]] Result<std::variant<Recording, RecordingStream>> open_recording(
     const std::string& path, const ReadOptions& options, std::uint64_t most_bytes);

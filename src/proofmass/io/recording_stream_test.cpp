@@ -1,4 +1,4 @@
-// A recording that is read a piece at a time is the one that is read whole.
+// A recording that is read in blocks equals the one that is read as a whole.
 #include "proofmass/io/recording_stream.hpp"
 
 #include <bit>
@@ -23,7 +23,7 @@ std::string write(const std::string& name, const std::string& text) {
   return path.string();
 }
 
-/// All pieces of a stream, put together.
+/// All blocks of a stream, concatenated.
 Result<Recording> gathered(const std::string& path, const ReadOptions& options) {
   auto opened = open_recording(path, options, 0);
   if (!opened) return opened.error();
@@ -68,7 +68,7 @@ void expect_same(const std::string& path, const ReadOptions& options = {}) {
   }
   for (std::size_t k = 0; k < whole->samples(); ++k)
     ASSERT_EQ(whole->time.at(k), pieces->time.stamps_s[k]) << k;
-  // A counter that never skips is seen to at the end only.
+  // That a counter never skips is known at the end only.
   if (!options.rate_hz) {
     EXPECT_EQ(whole->time.source, pieces->time.source);
   }
@@ -78,7 +78,7 @@ void expect_same(const std::string& path, const ReadOptions& options = {}) {
   EXPECT_EQ(whole->first_line, pieces->first_line);
 }
 
-/// 200 000 rows, some of them as the devil would have them.
+/// 200 000 rows, some of them malicious.
 std::string large_csv() {
   std::string text = "time (us),packet,ax (g),ay (g),az (g)\n";
   std::uint64_t stamp = 4'200'000'000;

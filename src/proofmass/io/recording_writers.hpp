@@ -8,7 +8,7 @@
 
 namespace proofmass::io {
 
-// The writers behind write_recording(), one a format; it says what each of them keeps.
+// The writers of write_recording(), one per format; see there for the contents of each.
 
 [[nodiscard]] Result<std::unique_ptr<RecordingWriter>> csv_writer(std::unique_ptr<OutputFile> file,
                                                                   const WriterHead& head,
@@ -16,12 +16,12 @@ namespace proofmass::io {
 [[nodiscard]] Result<std::unique_ptr<RecordingWriter>> npy_writer(std::unique_ptr<OutputFile> file,
                                                                   const WriterHead& head,
                                                                   const WriteOptions& options);
-/// A group "recording" with a dataset of doubles for each channel, in chunks. Errors: unsupported
-/// (built without the library).
+/// A group "recording" with one chunked dataset of doubles per channel. Errors: unsupported (built
+/// without the library).
 [[nodiscard]] Result<std::unique_ptr<RecordingWriter>> hdf5_writer(std::unique_ptr<OutputFile> file,
                                                                    const WriterHead& head,
                                                                    const WriteOptions& options);
-/// A column of doubles for each channel, by DuckDB's library, which is loaded when this is called.
+/// One column of doubles per channel, by DuckDB's library, which is loaded when this is called.
 /// Errors: unsupported (no such library).
 [[nodiscard]] Result<std::unique_ptr<RecordingWriter>> parquet_writer(
     std::unique_ptr<OutputFile> file, const WriterHead& head, const WriteOptions& options);

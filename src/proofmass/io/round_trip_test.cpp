@@ -13,7 +13,7 @@
 namespace proofmass::io::round_trip_test {
 namespace {
 
-/// A folder of its own that goes with the test.
+/// A temporary folder, removed after the test.
 class RoundTrip : public testing::Test {
  protected:
   RoundTrip() {
@@ -50,7 +50,7 @@ void expect_same_times(const Recording& a, const Recording& b) {
   for (std::size_t k = 0; k < a.samples(); ++k) ASSERT_EQ(a.time.at(k), b.time.at(k)) << k;
 }
 
-/// Random doubles of every size with some of every kind of trouble, on a clock with jitter.
+/// Random doubles of every magnitude with faults of every kind, on a clock with jitter.
 Recording troubled(std::optional<std::int64_t> start_ns) {
   std::mt19937_64 random(11);
   Recording recording;

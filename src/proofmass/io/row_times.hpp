@@ -7,7 +7,7 @@
 
 namespace proofmass::io {
 
-/// The times of a block's rows in seconds since the recording's first sample.
+/// The times of a block's rows in seconds from the recording's first sample.
 class RowTimes {
  public:
   explicit RowTimes(const TimeBase& time) : is_timed_(time.source != TimeSource::none) {

@@ -14,14 +14,13 @@
 namespace proofmass::io {
 namespace {
 
-/// Seconds from a figure in `unit_s`: divided where the unit is a decimal fraction, so that 8333 µs
-/// is the double that "0.008333" is.
+/// Seconds from a value in `unit_s`: by division if the unit is a decimal fraction, so that 8333 µs
+/// is the same double as "0.008333".
 double in_seconds(double figure, double unit_s) {
   return unit_s < 1.0 ? figure / std::round(1.0 / unit_s) : figure * unit_s;
 }
 
-/// The time of the first sample since 1970 (or whatever the clock began with); nullopt beyond ±292
-/// years.
+/// The time of the first sample since 1970 (or the clock's own origin); nullopt beyond ±292 years.
 std::optional<std::int64_t> start_of(const StampOrigin& origin, double first, double unit_s) {
   const auto start_ns = origin.ns(unit_s);
   const double later_ns = first * unit_s * 1e9;
@@ -32,7 +31,7 @@ std::optional<std::int64_t> start_of(const StampOrigin& origin, double first, do
   return out;
 }
 
-/// What is to be said of stamps beside a rate that was given: a warning where they contradict it.
+/// Note on stamps if a rate was given: a warning if they contradict it.
 Note note_on_unused(const StampColumn& stamps, double rate_hz) {
   const StampSteps steps = measure_steps(stamps.values);
   const bool is_count = !stamps.is_named && steps.median == 1.0;
@@ -103,7 +102,7 @@ void RunningTimeBase::decide_on_stamps(const TimeEvidence& rows) {
     take_rate(steps);
     return;
   }
-  // The rate of what will be handed out, by a beginning of it.
+  // The rate of the resulting stamps, from their beginning.
   constexpr std::size_t most = std::size_t{1} << 16;
   const std::size_t from = std::min(rules.first_good, stamps.values.size());
   const auto begin = stamps.values.begin() + static_cast<std::ptrdiff_t>(from);

@@ -15,35 +15,40 @@
 
 namespace proofmass::io {
 
-/// The time base of a recording whose rows come in pieces: decided on the first of them, then
-/// folded over all. find_time_base() is the same where the first rows are all there are.
+/// The time base of a recording whose rows arrive in blocks: determined from the first rows, then
+/// applied to all. Equal to find_time_base() if the first rows are all rows.
 class RunningTimeBase {
  public:
-  /// Rows that mend() may leave over at most; with more than these it settles one at least.
+  /// Maximum number of rows that mend() leaves undecided; with more it decides at least one.
   static constexpr std::size_t most_unsettled = StampMender::most_unsettled;
 
-  /// Decides on the first rows, which are looked at only: they are to be mended like the others.
+  /// Decides from the first rows, which are only inspected: they still have to be corrected by
+  /// mend().
   RunningTimeBase(const TimeEvidence& first_rows, const ReadOptions& options);
 
-  /// Source, channel, rate and start; what was mended until now. Never with stamps_s.
+  /// Source, channel, rate and start; corrections so far. Never with stamps_s.
   [[nodiscard]] const TimeBase& base() const { return base_; }
-  /// Whether the column of stamps is no time base: then it is a channel like any other.
+  /// True if the column of stamps is not a time base: it is then an ordinary channel.
   [[nodiscard]] bool is_rejected() const { return rejected_; }
-  /// Whether each row has a time of its own, which mend() gives; else rate and start say it all.
+  /// True if each row has its own time, given by mend(); else rate and start are sufficient.
   [[nodiscard]] bool has_stamps() const {
     return base_.source == TimeSource::stamps || base_.source == TimeSource::counter;
   }
 
-  /// Turns the stamps of the next rows, less the column's origin, into seconds since the first
-  /// sample, in place: unrolled, mended. Says of how many: a stamp is judged by those behind it,
-  /// so that the last few rows stay as they are unless this is the end; they are to stand in front
-  /// of the next rows, in `stamps` and in `counter`. The result does not depend on how the rows
-  /// are cut. `counter` is as long as `stamps`, or empty if there is none; where the counter is the
-  /// time base `stamps` is only written. Expects has_stamps(). Cost: O(N).
+  /// Converts the stamps of the next rows, relative to the column's origin, to seconds from the
+  /// first sample, in place: unwrapped and corrected. Returns the number of rows done.
+  ///
+  /// - A stamp is judged by the following ones, so the last few rows remain unchanged unless this
+  ///   is the end; pass them again before the next rows, in `stamps` and in `counter`.
+  /// - The result does not depend on the block boundaries.
+  /// - `counter` is as long as `stamps`, or empty if there is none; if the counter is the time
+  ///   base, `stamps` is output only.
+  ///
+  /// Expects has_stamps(). Cost: O(N).
   [[nodiscard]] std::size_t mend(std::span<double> stamps, View<double> counter, bool is_end);
 
-  /// What was decided and why, and what was mended, complete once the end was mended. `first_line`
-  /// is the recording's, which may be known at the end only.
+  /// The decisions with their reasons, and the corrections; complete after the end was corrected.
+  /// `first_line` is the recording's, which may be known at the end only.
   [[nodiscard]] std::vector<Note> notes(std::size_t first_line) const;
   [[nodiscard]] std::vector<Note> notes() const { return notes(first_line_); }
 
@@ -59,7 +64,7 @@ class RunningTimeBase {
   TimeBase base_;
   bool rejected_ = false;
   double unit_s_ = 1.0;
-  double first_ = 0.0;  ///< stamp of the first sample, less the origin
+  double first_ = 0.0;  ///< stamp of the first sample, minus the origin
   std::size_t first_line_ = 0;
   std::string counter_name_;
   std::optional<double> header_rate_hz_;

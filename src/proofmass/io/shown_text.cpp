@@ -5,7 +5,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Bytes of the character of UTF-8 that a text begins with; 0 where it begins with none.
+/// Length of the UTF-8 character at the beginning of a text; 0 if it is invalid.
 std::size_t character_bytes(std::string_view text) {
   const auto lead = static_cast<unsigned char>(text[0]);
   if (lead < 0x80) return 1;
@@ -23,7 +23,7 @@ std::size_t character_bytes(std::string_view text) {
   return is_overlong || is_none ? 0 : bytes;
 }
 
-/// Whether a character of UTF-8 is none to be seen but one to be obeyed.
+/// True if a UTF-8 character is a control character, not a visible one.
 bool is_control(std::string_view character) {
   const auto byte = static_cast<unsigned char>(character[0]);
   if (character.size() == 1) return byte < ' ' || byte == 127;
@@ -38,7 +38,7 @@ bool is_control(std::string_view character) {
          (second == 0x81 && third >= 0xA6 && third <= 0xA9);
 }
 
-/// The beginning of a text, cleaned, of about so many bytes; what is left of it stays in `text`.
+/// The first `most` bytes or so of a text, cleaned; the remainder stays in `text`.
 std::string cleaned(std::string_view& text, std::size_t most) {
   std::string out;
   while (!text.empty() && out.size() < most) {
@@ -48,7 +48,7 @@ std::string cleaned(std::string_view& text, std::size_t most) {
     if (is_control(character) || (bytes == 0 && byte < 0xA0)) {
       out += ' ';
     } else if (bytes == 0) {
-      // What is no UTF-8 is taken for Latin-1, which old programs write.
+      // Invalid UTF-8 is treated as Latin-1, which old programs write.
       out += static_cast<char>(0xC0 | byte >> 6);
       out += static_cast<char>(0x80 | (byte & 0x3F));
     } else {

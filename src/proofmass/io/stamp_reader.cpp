@@ -21,7 +21,7 @@ struct WideDecimal {
   int exponent10 = 0;
 };
 
-/// "e-9" behind a mantissa; 0 where there is nothing.
+/// "e-9" after a mantissa; 0 if there is nothing.
 std::optional<int> scan_power(std::string_view text) {
   if (text.empty()) return 0;
   if ((text[0] | 0x20) != 'e') return std::nullopt;
@@ -33,7 +33,7 @@ std::optional<int> scan_power(std::string_view text) {
   return whole && std::abs(power) < 10'000 ? std::optional(power) : std::nullopt;
 }
 
-/// A plain decimal of up to 37 digits, which is what 128 bits hold.
+/// A plain decimal of up to 37 digits, the capacity of 128 bits.
 std::optional<WideDecimal> scan_wide(std::string_view text, char point) {
   WideDecimal out;
   const bool negative = text.starts_with('-');
@@ -159,7 +159,7 @@ double StampReader::read(std::string_view field, std::string_view date) {
   const std::string_view text = trimmed(field);
   const auto stamp = scan_wide(text, point_);
   if (!stamp) return nan;
-  // A clock's reading is never of this size; taken for the first stamp it would spoil the rest.
+  // No clock has a value of this size; as the first stamp it would spoil the rest.
   if (std::abs(nearest_double(stamp->mantissa, stamp->exponent10)) > 1e20) return nan;
   return difference(stamp->mantissa, stamp->exponent10);
 }

@@ -21,14 +21,14 @@ struct StampOrigin {
   [[nodiscard]] std::optional<std::int64_t> ns(double unit_s) const;
 };
 
-/// How the fields of a time column are spelt.
+/// Format of the fields of a time column.
 enum class StampSpelling {
-  figures,          ///< numbers of any unit
+  figures,          ///< numbers in any unit
   clock,            ///< date and time, or time of day, in one field
   date_then_clock,  ///< the date in one column, the time of day in the next
 };
 
-/// Turns a time column into differences from its first stamp, each the double nearest to the exact
+/// Converts a time column to differences from its first stamp, each the double nearest to the exact
 /// decimal difference: an epoch in nanoseconds has more digits than a double.
 class StampReader {
  public:
@@ -38,7 +38,7 @@ class StampReader {
   [[nodiscard]] const std::optional<StampOrigin>& origin() const { return origin_; }
   [[nodiscard]] bool zone_missing() const { return zone_missing_; }
 
-  /// The usual case, figures of one and the same number of decimals; false for any other.
+  /// The usual case, numbers with a constant count of decimals; false for any other.
   bool relative(const Decimal& stamp, double& out) const {
     if (stamp.exponent10 != narrow_exponent10_ || stamp.mantissa > std::uint64_t{narrow_limit})
       return false;
@@ -47,7 +47,7 @@ class StampReader {
     const auto magnitude = static_cast<std::uint64_t>(difference < 0 ? -difference : difference);
     return to_double_exactly({magnitude, stamp.exponent10, difference < 0}, out);
   }
-  /// Any field; NaN where it is no stamp. `date` is the column before, where there is one.
+  /// Any field; NaN if it is not a stamp. `date` is the preceding column, if there is one.
   double read(std::string_view field, std::string_view date = {});
 
  private:
@@ -58,13 +58,12 @@ class StampReader {
   StampSpelling spelling_;
   char point_;
   std::optional<StampOrigin> origin_;
-  // The origin again where 62 bits hold it; the exponent is one that no stamp has where they do
-  // not.
+  // The origin again if 62 bits hold it; otherwise the exponent is one that no stamp has.
   static constexpr std::int64_t narrow_limit = std::int64_t{1} << 62;
   std::int64_t narrow_mantissa_ = 0;
   int narrow_exponent10_ = std::numeric_limits<int>::min();
   bool zone_missing_ = false;
-  std::int64_t day_ = 0;          ///< midnights passed, where only the time of day is given
+  std::int64_t day_ = 0;          ///< number of midnights passed, if only the time of day is given
   std::int64_t last_of_day_ = 0;  ///< ns
 };
 

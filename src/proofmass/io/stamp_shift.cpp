@@ -10,7 +10,7 @@ namespace {
 constexpr Int128 largest =
     std::numeric_limits<std::int64_t>::max() * Int128{10'000'000'000'000'000};
 
-/// `value` · 10^`power`; nullopt beyond what is sane for a stamp.
+/// `value` · 10^`power`; nullopt beyond what is plausible for a stamp.
 std::optional<Int128> times_ten_to(Int128 value, int power) {
   for (; power > 0 && value != 0; --power) {
     if (value > largest || value < -largest) return std::nullopt;

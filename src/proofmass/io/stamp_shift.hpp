@@ -6,8 +6,8 @@
 
 namespace proofmass::io {
 
-/// The origin of stamps in seconds, later by so many nanoseconds, and no digit less exact; as it
-/// is where its figures are beyond all sense.
+/// The origin of stamps in seconds, shifted by `by_ns` nanoseconds without loss of digits;
+/// unchanged if its values are implausible.
 [[nodiscard]] StampOrigin moved(const StampOrigin& origin, std::int64_t by_ns);
 
 }  // namespace proofmass::io

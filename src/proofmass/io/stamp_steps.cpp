@@ -12,8 +12,8 @@
 namespace proofmass::io {
 namespace {
 
-/// The largest figure that the steps up to five medians are multiples of, if it is more
-/// than 1 % of the median: then the clock was read, or written, that coarsely.
+/// The largest divisor of the intervals up to five medians, if it is more than 1 % of the median:
+/// the resolution with which the clock was read, or written.
 double rounding_of(const std::vector<double>& steps, double median) {
   constexpr std::size_t most = 4096;
   std::vector<double> sorted;
@@ -35,7 +35,7 @@ double rounding_of(const std::vector<double>& steps, double median) {
   return static_cast<std::size_t>(off_grid) * 100 > sorted.size() ? 0.0 : smallest;
 }
 
-/// Steps from one stamp to the next, at most 65 536 of them spread over the file.
+/// Intervals between adjacent stamps, at most 65 536 of them spread over the file.
 std::vector<double> sampled_steps(View<double> stamps) {
   constexpr std::size_t most = 1u << 16;
   std::vector<double> steps;
@@ -44,9 +44,9 @@ std::vector<double> sampled_steps(View<double> stamps) {
   return steps;
 }
 
-/// Time a row: the mean over stretches of rows, without those that gaps make outliers; 0 where
-/// there are fewer than eight. Long stretches, so that bursts average out; several, so that gaps
-/// fall into few of them.
+/// Time per row: the mean over segments of rows, without those that are outliers due to gaps; 0 if
+/// there are fewer than eight. Long segments, so that bursts average out; several, so that few
+/// contain gaps.
 double long_run_of(View<double> stamps) {
   const std::size_t count = stamps.size() < 1024 ? 16 : 64;
   const std::size_t rows = (stamps.size() - 1) / count;
@@ -60,7 +60,7 @@ double long_run_of(View<double> stamps) {
   }
   if (means.size() < 8) return 0.0;
   const double middle = *median(means);
-  // A stretch holds whole bursts: their number alone scatters it by some per cent.
+  // A segment contains whole bursts: their number alone scatters it by some per cent.
   const double near = std::max(3.0 * *robust_std(means), 0.25 * middle);
   Moments usual;
   for (const double mean : means)
@@ -68,8 +68,8 @@ double long_run_of(View<double> stamps) {
   return usual.mean;
 }
 
-/// Whether the steps are what the loss of rows leaves: nine in ten whole multiples of the single
-/// step within a fifth of it, and half of them the single step itself.
+/// True if the intervals are consistent with lost rows: nine in ten are whole multiples of the
+/// single interval within a fifth of it, and half of them the single interval itself.
 bool are_multiples(const std::vector<double>& steps, double single) {
   std::size_t multiples = 0;
   std::size_t singles = 0;
@@ -82,8 +82,8 @@ bool are_multiples(const std::vector<double>& steps, double single) {
   return multiples * 10 >= steps.size() * 9 && singles * 2 >= steps.size();
 }
 
-/// The median of the steps within half a step of it: that of all is too long where rows are lost
-/// and stamps jitter, as each loss takes a step out of the lower half.
+/// The median of the intervals within half an interval of it: that of all is too long if rows are
+/// lost and stamps jitter, because each loss removes an interval from the lower half.
 double ordinary_median(const std::vector<double>& steps, double median_step) {
   double ordinary = median_step;
   for (int pass = 0; pass < 4; ++pass) {
@@ -97,8 +97,8 @@ double ordinary_median(const std::vector<double>& steps, double median_step) {
   return ordinary;
 }
 
-/// The step by a line through the stamps, where it is the same as the single one within what the
-/// jitter makes that uncertain by; else 0. Only of stamps that jitter.
+/// The period from a line through the stamps, if it equals the single one within the uncertainty
+/// due to jitter; else 0. Only for stamps with jitter.
 double step_by_jittered_line(View<double> stamps, const std::vector<double>& steps, double single) {
   std::vector<double> near;
   std::ranges::copy_if(steps, std::back_inserter(near),
@@ -115,8 +115,8 @@ bool come_in_bursts(const StampSteps& out, const std::vector<double>& steps) {
   const double single = out.single;
   if (out.long_run <= 0.0 || std::abs(out.long_run / single - 1.0) <= 0.05) return false;
   if (out.long_run < single) return out.repeated > 0.12;
-  // Of rows that are lost at random half are not followed by another loss: the long run is less
-  // than two steps.
+  // With random loss, half of the lost rows are not followed by another: the long run is less than
+  // two intervals.
   if (out.long_run > 3.0 * single) return true;
   return !are_multiples(steps, single);
 }
@@ -169,7 +169,7 @@ StampSteps measure_steps(View<double> stamps) {
 }
 
 bool are_regular(View<double> stamps, double usual) {
-  // Without a branch, so that the compiler can take several at once.
+  // Branch-free, so that the compiler can vectorise it.
   std::size_t odd = 0;
   for (std::size_t k = 1; k < stamps.size(); ++k) {
     const double rise = stamps[k] - stamps[k - 1];

@@ -20,7 +20,7 @@ bool is_of_this_age(double epoch_s) {
   return epoch_s > year_2000_s && epoch_s < year_2060_s;
 }
 
-/// The origin less a whole number of its units; as it is where that needs too many digits.
+/// The origin minus a whole number of its units; unchanged if that needs too many digits.
 StampOrigin less(StampOrigin origin, std::int64_t units) {
   if (origin.exponent10 > 0 || origin.exponent10 < -18) return origin;
   Int128 shift = units;
@@ -30,8 +30,8 @@ StampOrigin less(StampOrigin origin, std::int64_t units) {
   return origin;
 }
 
-/// Days since some day, as MATLAB and spreadsheets keep time: as seconds they would be absurdly
-/// fast, above 10 kHz.
+/// Days since some day, as in MATLAB and spreadsheets: as seconds they would be implausibly fast,
+/// above 10 kHz.
 std::optional<StampUnit> as_days(const StampColumn& stamps, double step) {
   struct Calendar {
     std::int64_t day_of_1970;
@@ -50,8 +50,8 @@ std::optional<StampUnit> as_days(const StampColumn& stamps, double step) {
   return std::nullopt;
 }
 
-/// Xsens' SampleTimeFine: microseconds in the DOT, ticks of 100 µs in the MTi.
-/// Source: Xsens DOT user manual, "SampleTimeFine"; MT low level communication protocol.
+/// Xsens' SampleTimeFine: microseconds in the DOT, ticks of 100 µs in the MTi. Source: Xsens DOT
+/// user manual, "SampleTimeFine"; MT low level communication protocol.
 std::optional<StampUnit> as_xsens(const StampColumn& stamps, double step) {
   if (stamps.name != "SampleTimeFine") return std::nullopt;
   const double unit_s = step > 400.0 ? 1e-6 : 1e-4;
@@ -61,7 +61,7 @@ std::optional<StampUnit> as_xsens(const StampColumn& stamps, double step) {
                                        stamps.name, in_words(unit_s * 1e6))}};
 }
 
-/// Of s, ms, us and ns.
+/// Selects one of s, ms, us and ns.
 StampUnit guess(const StampColumn& stamps, double step) {
   struct Candidate {
     std::string_view symbol;
@@ -88,7 +88,7 @@ StampUnit guess(const StampColumn& stamps, double step) {
                  "of s, ms, us, ns it gives the rate nearest to 100 Hz");
 }
 
-/// Seconds since 1904 in fractions: a count of ticks that size has steps of one at least.
+/// Fractional seconds since 1904: a count of ticks of that size has steps of at least one.
 std::optional<StampUnit> as_labview(const StampColumn& stamps, double step, bool is_told) {
   const double first = stamps.origin.value();
   if (step > 0.5 || !is_of_this_age(first - static_cast<double>(from_1904_to_1970_s)))

@@ -25,7 +25,7 @@ std::string SampleTally::where(std::size_t first_line) const {
 }
 
 std::optional<std::size_t> StampMender::first_good(View<double> stamps, const StampRules& rules) {
-  // If none of so many can be the first, the next that is a number has to be.
+  // If none of this many can be the first, the next number is used.
   constexpr std::size_t most_bad_at_first = 64;
   const WrapFinder wraps(rules.unit_s);
   for (std::size_t k = 0; k < stamps.size(); ++k) {
@@ -44,12 +44,12 @@ double StampMender::rows_since_last(std::size_t k) const {
   return static_cast<double>(row_ + k - last_->row);
 }
 
-/// Whether the instrument's counter says that no row is missing before row k.
+/// True if the instrument's counter shows that no row is missing before row k.
 bool StampMender::counts_on(const Rows& rows, std::size_t k) const {
   return rows.counter.empty() || rows.counter[k] - last_->count <= 1.5 * rows_since_last(k);
 }
 
-/// A stamp below the last good one: alone in being so, or for good, and then why.
+/// Judges a stamp below the last good one: a single outlier, or permanent, and the reason.
 StampMender::Judgement StampMender::judge_fall(const Rows& rows, std::size_t k) const {
   const double reading = rows.stamps[k];
   const double stamp = reading + shift_;
@@ -62,15 +62,15 @@ StampMender::Judgement StampMender::judge_fall(const Rows& rows, std::size_t k) 
     return {Event::wrap, shift_ + wraps_[*wrap].range(), wrap};
   const double hour = hour_s / rules_.unit_s;
   const double without = stamp + hour - last_->stamp;
-  // Steps of a computer's clock are late by some hundredths of a second.
+  // Intervals of a computer's clock are late by some hundredths of a second.
   if (rules_.has_summer_time && without >= 0.0 && without <= usual + 0.1 / rules_.unit_s)
     return {Event::hour, shift_ + hour};
-  // One or two stamps at the very end tell nothing: they are no clock that was set.
+  // One or two stamps at the very end are not sufficient to conclude that the clock was set.
   if (next.count() < 2) return {Event::bad};
   return {Event::restart, last_->stamp + rules_.nominal * rows_since_last(k) - reading};
 }
 
-/// A stamp further on than a usual step: an accident, a clock that was set, or a gap.
+/// Judges a stamp later than a usual interval: an outlier, a clock that was set, or a gap.
 StampMender::Judgement StampMender::judge_leap(const Rows& rows, std::size_t k) const {
   const double reading = rows.stamps[k];
   const double stamp = reading + shift_;
@@ -85,7 +85,7 @@ StampMender::Judgement StampMender::judge_leap(const Rows& rows, std::size_t k) 
   }
   const double hour = hour_s / rules_.unit_s;
   const bool is_hour = rise >= hour && rise - hour <= rules_.usual * rows_since_last(k);
-  // Of a slow logger's rows those of a whole hour may be missing.
+  // With a slow logger, the rows of a whole hour may be missing.
   const bool is_fast = rules_.usual * rules_.unit_s < 30.0;
   if (rules_.has_summer_time && is_hour && is_fast && next.go_on(stamp, rules_.usual) &&
       counts_on(rows, k))
@@ -140,7 +140,7 @@ void StampMender::accept(const Rows& rows, std::size_t k, const Judgement& as) {
   last_ = {row_ + k, reading, rows.stamps[k], rows.counter.empty() ? 0.0 : rows.counter[k]};
 }
 
-/// The rows from k on, bad itself, up to the next good one.
+/// The rows from the bad row k up to the next good one.
 StampMender::Stretch StampMender::stretch_from(const Rows& rows, std::size_t k) const {
   Stretch out{k, k + 1};
   for (; out.end < rows.stamps.size() && out.end - k < longest_stretch; ++out.end) {
@@ -176,7 +176,7 @@ void StampMender::place(const Rows& rows, const Stretch& stretch) {
   }
 }
 
-/// Those in front of the first row that is a time; says how many.
+/// Assigns times to the rows before the first valid one; returns their number.
 std::size_t StampMender::place_before_first(const Rows& rows) {
   std::size_t k = 0;
   for (; k < rows.stamps.size() && row_ + k < rules_.first_good; ++k) {
@@ -187,7 +187,7 @@ std::size_t StampMender::place_before_first(const Rows& rows) {
   return k;
 }
 
-/// Whether `count` rows from k on go on at the usual pace; then they are settled.
+/// True if `count` rows from k continue at the usual interval; they are then final.
 bool StampMender::pass_regular(const Rows& rows, std::size_t k, std::size_t count) {
   const std::span<double> stamps = rows.stamps.subspan(k, count);
   if (!is_stamp(stamps.front())) return false;
@@ -205,7 +205,7 @@ bool StampMender::pass_regular(const Rows& rows, std::size_t k, std::size_t coun
 }
 
 std::size_t StampMender::fold(std::span<double> stamps, View<double> counter, bool is_end) {
-  // Long enough to be fast, short enough that one accident holds up few.
+  // Long enough to be fast, short enough that one outlier affects few rows.
   constexpr std::size_t stretch_rows = 1024;
   const Rows rows{stamps, counter, is_end};
   std::size_t k = place_before_first(rows);

@@ -12,66 +12,71 @@
 
 namespace proofmass::io {
 
-/// How many samples something befell, and where the first of them are: of millions as of two.
+/// Count and first positions of affected samples.
 struct SampleTally {
   std::size_t count = 0;
-  std::vector<std::size_t> first;  ///< five at most
+  std::vector<std::size_t> first;  ///< at most five
 
   void add(std::size_t sample);
   /// "lines 12, 40, 41 and 7 more", as places().
   [[nodiscard]] std::string where(std::size_t first_line) const;
 };
 
-/// What was done to a column of stamps.
+/// Corrections of a column of stamps.
 struct MendedStamps {
-  SampleTally samples;            ///< that were replaced
-  std::size_t backwards = 0;      ///< of these: were below the stamp before
-  std::size_t by_counter = 0;     ///< of these: put where the instrument's counter says
-  SampleTally wraps;              ///< where a counter ran over
-  std::string wrapped;            ///< what of: "32 bits"
-  double longest_wrap_gap = 0.0;  ///< between the stamps on either side, if above a usual step
-  SampleTally hours;              ///< summer time began or ended: the hour was taken out
-  std::size_t hours_back = 0;     ///< of these: the clock was put back
-  SampleTally restarts;           ///< the clock fell back for good: it goes on one step later
-  double fell_from = 0.0;         ///< reading before the first of them
-  double fell_to = 0.0;           ///< and at it
-  SampleTally settings;           ///< the clock leapt by more than ten years: likewise
+  SampleTally samples;            ///< replaced samples
+  std::size_t backwards = 0;      ///< replaced stamps that were below the previous one
+  std::size_t by_counter = 0;     ///< replaced stamps determined by the instrument's counter
+  SampleTally wraps;              ///< positions of counter wraps
+  std::string wrapped;            ///< its range: "32 bits"
+  double longest_wrap_gap = 0.0;  ///< between the stamps on either side, if above a usual interval
+  SampleTally hours;              ///< daylight saving began or ended: the hour was removed
+  std::size_t hours_back = 0;     ///< number of `hours` with the clock set back
+  SampleTally restarts;           ///< the clock decreased permanently: continued one step later
+  double fell_from = 0.0;         ///< clock value before the first of them
+  double fell_to = 0.0;           ///< clock value at the first of them
+  SampleTally settings;           ///< the clock jumped by more than ten years: likewise
 };
 
-/// What a column's stamps are judged by, all in its own unit.
+/// Parameters for judging a column's stamps, all in its own unit.
 struct StampRules {
-  double nominal = 1.0;  ///< one step
-  double usual = 1.5;    ///< longest step that needs no second look
-  double origin = 0.0;   ///< the reading where the column's stamps are 0
+  double nominal = 1.0;  ///< one period
+  double usual = 1.5;    ///< longest interval that needs no check
+  double origin = 0.0;   ///< clock value where the column's stamps are 0
   double unit_s = 1.0;
   bool has_summer_time = false;  ///< a wall clock without a zone
-  std::size_t first_good = 0;    ///< the first row that is a time, and its stamp
+  std::size_t first_good = 0;    ///< the first row with a valid time, and its stamp
   double first_stamp = 0.0;
 };
 
-/// Unrolls and mends a column of stamps, row after row: what ran over goes on; what is no number or
-/// lies apart from those before and after it is put where the instrument's counter says, or evenly
-/// between its good neighbours. An hour forwards or back on a wall clock is taken out. A clock that
-/// falls back for good (a reboot), or leaps by more than ten years, goes on one step later: how
-/// long it stood nobody knows. Gaps and repeats are kept.
+/// Unwraps and corrects a column of stamps, row by row.
+///
+/// - Wraps are unwrapped.
+/// - A stamp that is not a number, or deviates from those before and after it, is replaced by the
+///   instrument's counter, or evenly between its good neighbours.
+/// - An hour forwards or back on a wall clock is removed.
+/// - A clock that decreases permanently (a reboot), or jumps by more than ten years, continues one
+///   step later: the duration of the interruption is unknown.
+/// - Gaps and repeats are kept.
 class StampMender {
  public:
-  /// Rows behind a stamp that it is judged by.
+  /// Number of following rows by which a stamp is judged.
   static constexpr std::size_t window = 24;
-  /// A stretch without stamps is put between its ends if it is not longer; else it goes on at the
-  /// nominal step.
+  /// An interval without stamps is interpolated between its ends if it is not longer; else it is
+  /// extrapolated at the nominal period.
   static constexpr std::size_t longest_stretch = 4096;
   static constexpr std::size_t most_unsettled = longest_stretch + window;
 
   StampMender() = default;
   explicit StampMender(const StampRules& rules) : rules_(rules), wraps_(rules.unit_s) {}
 
-  /// The first row that can be a time: most of those behind it come after it, and not ages later.
-  /// nullopt if there is no number.
+  /// The first row with a plausible time: most of the following rows come after it, and within a
+  /// reasonable time. nullopt if there is no number.
   [[nodiscard]] static std::optional<std::size_t> first_good(View<double> stamps,
                                                              const StampRules& rules);
 
-  /// As RunningTimeBase::mend(), in the column's unit: stamps are less the origin before and after.
+  /// As RunningTimeBase::mend(), in the column's unit: stamps are relative to the origin before and
+  /// after.
   [[nodiscard]] std::size_t fold(std::span<double> stamps, View<double> counter, bool is_end);
   [[nodiscard]] const MendedStamps& done() const { return done_; }
   [[nodiscard]] double usual() const { return rules_.usual; }
@@ -79,28 +84,28 @@ class StampMender {
  private:
   struct Good {
     std::size_t row = 0;
-    double reading = 0.0;  ///< as it came, less the origin
-    double stamp = 0.0;    ///< as it is given out
-    double count = 0.0;    ///< of the instrument's counter
+    double reading = 0.0;  ///< as read, minus the origin
+    double stamp = 0.0;    ///< as returned
+    double count = 0.0;    ///< the instrument's counter
   };
   enum class Event { none, bad, wrap, hour, restart, setting, undecided };
   struct Judgement {
     Event event = Event::none;
-    double shift = 0.0;  ///< from the reading to the stamp
+    double shift = 0.0;  ///< from the read value to the stamp
     std::optional<std::size_t> wrap{};
   };
-  /// Rows as they are handed over; row_ is that of their front.
+  /// Rows as passed in; row_ is the number of the first.
   struct Rows {
     std::span<double> stamps;
     View<double> counter;
     bool is_end = false;
   };
-  /// Rows without a usable stamp, and what they end at.
+  /// Rows without a usable stamp, and the stamps at both ends.
   struct Stretch {
     std::size_t first = 0;
     std::size_t end = 0;
-    std::optional<double> right{};  ///< stamp at the end, if it is known
-    bool is_open = false;           ///< its end is not to be seen yet
+    std::optional<double> right{};  ///< stamp at the end, if known
+    bool is_open = false;           ///< its end is not yet visible
   };
 
   [[nodiscard]] Judgement judge(const Rows& rows, std::size_t k) const;
@@ -121,7 +126,7 @@ class StampMender {
   std::size_t row_ = 0;
   std::optional<Good> last_;
   double shift_ = 0.0;
-  std::optional<std::size_t> seen_;  ///< what ran over before
+  std::optional<std::size_t> seen_;  ///< the range that has wrapped before
 };
 
 }  // namespace proofmass::io

@@ -20,10 +20,10 @@ std::uint32_t checksum(std::uint32_t crc, std::string_view bytes) {
 }
 
 constexpr std::uint64_t version = 20;
-constexpr std::uint64_t first_of_1980 = 0x0021;  // the calendar of zip begins there
+constexpr std::uint64_t first_of_1980 = 0x0021;  // the earliest date in a zip file
 constexpr std::uint64_t most_bytes = 0xFFFF'FFFF;
 
-/// What the local header and the directory have in common.
+/// The common part of the local header and the directory entry.
 void put_common(std::string& out, std::uint32_t crc, std::uint32_t size, std::size_t name) {
   put(out, version, 2);
   put(out, 0x0800, 2);  // names are UTF-8

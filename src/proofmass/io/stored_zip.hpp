@@ -11,7 +11,7 @@
 
 namespace proofmass::io {
 
-/// Writes a zip archive whose entries are stored as they are.
+/// Writes a zip archive with uncompressed entries.
 /// Source: PKWARE, APPNOTE.TXT 6.3.10, sections 4.3 and 4.4.
 class StoredZipWriter {
  public:
@@ -19,7 +19,7 @@ class StoredZipWriter {
 
   /// Errors: those of the file; unsupported (the archive would have 4 GiB or more).
   [[nodiscard]] Status add(const std::string& name, std::string_view head, std::string_view bytes);
-  /// Writes the directory and gives the file its name.
+  /// Writes the directory and names the file.
   [[nodiscard]] Status finish();
 
  private:

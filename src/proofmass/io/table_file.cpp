@@ -11,7 +11,7 @@
 namespace proofmass::io {
 namespace {
 
-/// "Acc_X (g)", or the name alone where no unit is known.
+/// "Acc_X (g)", or the name alone if no unit is known.
 std::string heading_of(const std::string& name, const Unit& unit) {
   return unit.symbol.empty() ? name : name + " (" + unit.symbol + ")";
 }
@@ -39,7 +39,7 @@ class OnlyTable final : public TableFile {
   TableSummary summary_;
 };
 
-/// How much a table is what is looked for: 2 accelerations with gravity in them, 1 without, 0 none.
+/// Suitability of a table: 2 accelerations including gravity, 1 without gravity, 0 none.
 int likeness_to_accelerations(const TableSummary& table) {
   bool any = false;
   for (const std::string& heading : table.headings) {
@@ -51,7 +51,7 @@ int likeness_to_accelerations(const TableSummary& table) {
     const bool is_meant =
         label.unit.quantity == Quantity::acceleration || is_accelerometer_name(label.name);
     const std::string bare = bare_name(label.name + " " + table.name);
-    // What a phone or an attitude filter has taken gravity from.
+    // Gravity removed by a phone or an attitude filter.
     const bool without_gravity =
         bare.find("linear") != std::string::npos || bare.find("freeacc") != std::string::npos ||
         bare.find("earth") != std::string::npos || bare.find("gravity") != std::string::npos ||
@@ -69,8 +69,8 @@ std::string described(const TableSummary& table) {
   return text + ")";
 }
 
-/// How well a table's name fits the one asked for: 3 exactly, 2 but for case, 1 by the end of its
-/// path, 0 not at all.
+/// Match of a table's name with the requested one: 3 exact, 2 except for case, 1 by the end of its
+/// path, 0 none.
 int fit_of(const std::string& name, const std::string& wanted) {
   if (name == wanted) return 3;
   const std::string small = lower(name);
@@ -91,7 +91,7 @@ std::string names_of(std::span<const TableSummary> tables) {
   return names;
 }
 
-/// The tables that fit a name best.
+/// The tables that match a name best.
 Result<std::vector<std::size_t>> tables_called(std::span<const TableSummary> tables,
                                                const std::string& wanted) {
   int best = 1;
@@ -108,8 +108,8 @@ Result<std::vector<std::size_t>> tables_called(std::span<const TableSummary> tab
   return found;
 }
 
-/// The table of accelerations that was measured, of several the one with most rows, else the first
-/// with most rows.
+/// The measured table of accelerations, of several the one with most rows, else the first with most
+/// rows.
 std::size_t likeliest(std::span<const TableSummary> tables) {
   const auto rank = [&](std::size_t t) {
     return std::tuple(!tables[t].is_derived, likeness_to_accelerations(tables[t]),
@@ -137,7 +137,7 @@ void tell_the_others(std::span<const TableSummary> tables,
   if (tables.size() > most_told + 1)
     others += fmt::format(" and {} more", tables.size() - most_told - 1);
   const int likeness = likeness_to_accelerations(tables[chosen]);
-  // Another table with accelerations of its own may have been meant.
+  // The user may have meant another table with accelerations.
   bool is_open = false;
   for (std::size_t t = 0; t < tables.size(); ++t)
     is_open = is_open || (t != chosen && likeness == 2 && !tables[t].is_derived &&

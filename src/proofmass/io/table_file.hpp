@@ -14,17 +14,18 @@
 
 namespace proofmass::io {
 
-/// One of the tables that a file holds: columns that were sampled together.
+/// One of the tables in a file: columns that were sampled together.
 struct TableSummary {
-  std::string name;  ///< as --variable takes it: "Accelerometer", "/imu/data"; may be empty if lone
-  std::vector<std::string> headings;  ///< unit included
+  std::string name;  ///< as for --variable: "Accelerometer", "/imu/data"; may be empty for a single
+                     ///< table
+  std::vector<std::string> headings;  ///< with units
   std::optional<std::uint64_t> rows;  ///< if known
   std::optional<double> rate_hz;      ///< if known
-  bool rows_are_guessed = false;      ///< good to choose a table by, not to be told
-  bool is_derived = false;            ///< worked out of another table, which goes before it
+  bool rows_are_guessed = false;      ///< accurate enough to select a table, not to be reported
+  bool is_derived = false;            ///< computed from another table, which takes precedence
 };
 
-/// An open file, or folder, of one table or several, each with a time base of its own.
+/// An open file or folder with one or more tables, each with its own time base.
 class TableFile {
  public:
   TableFile() = default;
@@ -33,19 +34,19 @@ class TableFile {
   virtual ~TableFile() = default;
 
   [[nodiscard]] virtual std::span<const TableSummary> tables() const = 0;
-  /// Opens one of them. What else there is in the file is told by read_recording(), not here.
-  /// Readers may outlive the file, and one may be opened after the other.
+  /// Opens one of them. The other contents of the file are reported by read_recording(), not here.
+  /// Readers may outlive the file, and several may be opened in turn.
   [[nodiscard]] virtual Result<std::unique_ptr<RecordingReader>> open(
       std::size_t table, const ReadOptions& options) = 0;
 };
 
-/// A file of one table that can be opened once.
+/// A file with one table that can be opened once.
 [[nodiscard]] std::unique_ptr<TableFile> only_table(std::unique_ptr<RecordingReader> reader);
 
-/// Which of the tables make the recording: those that ReadOptions::variables name (exactly, then
+/// Selects the tables of the recording: those named by ReadOptions::variables (exactly, then
 /// ignoring case, then by the end of a path), else the one with accelerations, of several the one
-/// with most rows; what else there is, is told in a note.
-/// Errors: too_few_samples (no table), invalid_argument (none of a name asked for).
+/// with most rows; the others are reported in a note.
+/// Errors: too_few_samples (no table), invalid_argument (no table of a requested name).
 [[nodiscard]] Result<std::vector<std::size_t>> choose_table(std::span<const TableSummary> tables,
                                                             const ReadOptions& options,
                                                             std::vector<Note>& notes);

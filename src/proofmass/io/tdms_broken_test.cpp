@@ -25,7 +25,7 @@ void expect_same(const std::vector<double>& expected, const std::vector<double>&
 const double nan = std::nan("");
 
 TEST(BrokenTdms, WhatAKilledProgramWroteIsReadToTheLastWholeValue) {
-  // a whole, b in part, c not at all: one table still.
+  // a complete, b partly, c not at all: still one table.
   TdmsList list;
   for (const char* path : {"/'g'/'a'", "/'g'/'b'", "/'g'/'c'"}) list.channel(path, f64, 3);
   const std::string start =

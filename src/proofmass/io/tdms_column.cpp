@@ -10,7 +10,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Values read at once of a channel that lies apart from the others.
+/// Values read together of a channel that is not adjacent to the others.
 constexpr std::uint64_t values_at_once = 16 << 10;
 
 }  // namespace
@@ -46,7 +46,7 @@ TdmsColumn::TdmsColumn(const TdmsMap& map, std::uint32_t channel, std::uint32_t 
   find_run();
 }
 
-/// From the present run on, the first that has values of this channel.
+/// Advances from the current run to the first with values of this channel.
 void TdmsColumn::find_run() {
   for (entry_ = nullptr; run_ < map_.runs.size(); ++run_) {
     const TdmsLayout& layout = map_.layouts[map_.runs[run_].layout];
@@ -123,7 +123,7 @@ void TdmsColumn::advance(std::uint64_t count) {
   find_run();
 }
 
-/// Values of the present extent.
+/// Reads values of the current extent.
 Status TdmsColumn::take(TdmsWindow& window, std::span<double> into) {
   const std::size_t size = bytes_of(entry_->kind);
   const auto stride = static_cast<std::size_t>(extent_.stride);

@@ -8,7 +8,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Several segments of a fragmented file at once, and little where segments are large.
+/// Several segments of a fragmented file at once, and little if segments are large.
 constexpr std::uint64_t window_bytes = 16 << 10;
 constexpr std::uint64_t longest_text = 64 << 10;
 

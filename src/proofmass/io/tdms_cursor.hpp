@@ -16,7 +16,7 @@
 
 namespace proofmass::io {
 
-/// The bytes of `T` turned round where the file's order is not this machine's.
+/// The bytes of `T` reversed if the file's byte order differs from this machine's.
 template <class T>
 [[nodiscard]] T from_file_order(std::array<char, sizeof(T)> bytes, bool big_endian) {
   if (big_endian == (std::endian::native == std::endian::little))
@@ -27,8 +27,8 @@ template <class T>
 /// "byte 28: what".
 [[nodiscard]] Error at_byte(std::uint64_t position, std::string_view what);
 
-/// Reads the lead-ins and metadata of a TDMS file, small figures one behind the other. Beyond the
-/// end of the region it reads zeros and is broken from then on.
+/// Reads the lead-ins and metadata of a TDMS file, a sequence of small values. Beyond the end of
+/// the region it returns zeros and is broken from then on.
 class TdmsCursor {
  public:
   /// `bytes` must outlive the cursor.
@@ -41,9 +41,9 @@ class TdmsCursor {
 
   [[nodiscard]] std::uint64_t position() const { return position_; }
   [[nodiscard]] std::uint64_t left() const { return end_ - position_; }
-  /// Whether more was asked for than the region holds.
+  /// True if a read went beyond the region.
   [[nodiscard]] bool broken() const { return broken_; }
-  /// Why the file could not be read, if it could not.
+  /// The error if the file could not be read.
   [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
 
   template <class T>
@@ -52,10 +52,10 @@ class TdmsCursor {
     fetch(raw);
     return from_file_order<T>(raw, big_endian_);
   }
-  /// A length and as many bytes, of which 64 KiB are kept.
+  /// A length followed by as many bytes, of which 64 KiB are kept.
   [[nodiscard]] std::string take_text();
   void skip(std::uint64_t count);
-  /// All bytes from `from` to the present position where they are no more than `most`; else empty.
+  /// All bytes from `from` to the current position if they are at most `most`; else empty.
   [[nodiscard]] std::string copy_since(std::uint64_t from, std::size_t most);
 
  private:

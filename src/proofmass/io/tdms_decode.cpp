@@ -32,8 +32,8 @@ T load(const char* p, bool swap) {
   return std::bit_cast<T>(bits);
 }
 
-/// One loop for each type, order and, where values lie together, for that: the compiler takes
-/// several at once then.
+/// One loop for each type and byte order, and for contiguous values: the compiler can then
+/// vectorise it.
 template <class T>
 void convert(const char* first, std::size_t stride, bool swap, std::span<double> into) {
   double* const out = into.data();

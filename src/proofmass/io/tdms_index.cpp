@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::uint32_t format_changing_scaler = 0x1269;
 constexpr std::uint32_t digital_line_scaler = 0x126A;
-/// The digital line scaler as NI's description of the format has it, with four bytes for the sample
-/// format instead of the one that is found in files.
+/// The digital line scaler according to NI's description of the format, with four bytes for the
+/// sample format instead of the one found in files.
 constexpr std::uint32_t digital_line_scaler_as_told = 0x1369;
 
 bool is_small_integer(TdmsKind kind) {
@@ -38,7 +38,7 @@ Result<TdmsScaler> take_scaler(TdmsCursor& cursor, std::uint32_t header) {
   return scaler;
 }
 
-/// The rest of a DAQmx index behind its dimension.
+/// The remainder of a DAQmx index after its dimension.
 Status read_daqmx(TdmsCursor& cursor, std::uint32_t header, TdmsIndex& index) {
   index.values = cursor.take<std::uint64_t>();
   const auto scalers = cursor.take<std::uint32_t>();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t most_pieces = std::size_t{1} << 20;
 
-/// Sums and products that say when they have left 64 bits.
+/// Sums and products with detection of 64-bit overflow.
 struct Checked {
   std::uint64_t value = 0;
   bool overflow = false;
@@ -66,11 +66,11 @@ Result<TdmsLayout> lay_out_contiguous(std::span<const TdmsPart> parts, const Tdm
   return layout;
 }
 
-/// Rows that all have values of the same channels.
+/// Rows with values of the same channels.
 struct Band {
-  std::uint64_t offset = 0;  ///< of the first row, then of the next channel's value in it
+  std::uint64_t offset = 0;  ///< offset of the first row, then of the next channel's value in it
   std::uint64_t width = 0;
-  std::uint64_t from = 0;  ///< row
+  std::uint64_t from = 0;  ///< first row
   std::uint64_t to = 0;
 };
 
@@ -83,8 +83,7 @@ std::uint64_t width_of_row(std::span<const TdmsPart> parts,
   return width;
 }
 
-/// Where channels are of different length, those that have ended are left out of the rows that
-/// follow.
+/// If channels differ in length, those that have ended are omitted from the following rows.
 Result<std::vector<Band>> bands_of(std::span<const TdmsPart> parts, const TdmsOrder& order) {
   std::vector<std::uint64_t> ends;
   for (const TdmsPart& part : parts) ends.push_back(part.index->values);
@@ -105,7 +104,7 @@ Result<std::vector<Band>> bands_of(std::span<const TdmsPart> parts, const TdmsOr
   return at.overflow ? Result<std::vector<Band>>(too_large()) : bands;
 }
 
-/// Rows of one value of each channel.
+/// Rows of one value per channel.
 Result<TdmsLayout> lay_out_interleaved(std::span<const TdmsPart> parts, const TdmsOrder& order) {
   const bool has_text = std::ranges::any_of(
       parts, [](const TdmsPart& part) { return part.index->kind == TdmsKind::text; });
@@ -130,7 +129,7 @@ Result<TdmsLayout> lay_out_interleaved(std::span<const TdmsPart> parts, const Td
   return layout;
 }
 
-/// Whether a channel of DAQmx raw data fits buffers of these widths.
+/// Checks that a channel of DAQmx raw data fits buffers of these widths.
 Status check_scalers(const TdmsIndex& index, const std::vector<std::uint32_t>& widths) {
   if (index.scalers.empty())
     return Error{Errc::unsupported, "mixes DAQmx raw data with other data"};
@@ -143,7 +142,7 @@ Status check_scalers(const TdmsIndex& index, const std::vector<std::uint32_t>& w
   return Done{};
 }
 
-/// Buffers one after another, each of rows that hold figures of several channels at fixed places.
+/// Consecutive buffers of rows, which contain values of several channels at fixed positions.
 Result<TdmsLayout> lay_out_daqmx(std::span<const TdmsPart> parts) {
   const std::vector<std::uint32_t>& widths = parts.front().index->widths;
   std::vector<std::uint64_t> rows(widths.size());

@@ -13,7 +13,8 @@
 namespace proofmass::io {
 namespace {
 
-/// Of all layouts together: twenty channels may change the lengths of their chunks 25 000 times.
+/// Limit for all layouts together: twenty channels may change the lengths of their chunks 25 000
+/// times.
 constexpr std::size_t most_layout_entries = std::size_t{1} << 20;
 constexpr std::size_t longest_compared = 16 << 10;
 
@@ -46,7 +47,7 @@ class TdmsWalk {
     return {Errc::corrupt, fmt::format("byte {}: {}", at, what)};
   }
 
-  /// Where the next segment begins.
+  /// Reads one segment; returns the start of the next.
   Result<std::uint64_t> take_segment(std::uint64_t at) {
     const auto lead = take_tdms_lead_in(cursor_, at, size_);
     if (!lead) return lead.error();
@@ -66,7 +67,7 @@ class TdmsWalk {
     return lead->end;
   }
 
-  /// A file that ends with a whole chunk, but not where its last segment should.
+  /// Notes a file that ends with a whole chunk, but not where its last segment should end.
   void note_end(const TdmsLeadIn& lead) {
     if (lead.is_unfinished)
       map_.notes.push_back(
@@ -104,7 +105,7 @@ class TdmsWalk {
     return Done{};
   }
 
-  /// The layout of the present list of objects, made anew only where it has not been met before.
+  /// The layout of the current list of objects, computed only if it is new.
   Result<std::uint32_t> layout_of(const TdmsLeadIn& lead) {
     const std::uint32_t order_bits =
         lead.contents & (TdmsLeadIn::interleaved | TdmsLeadIn::big_endian);
@@ -159,7 +160,7 @@ class TdmsWalk {
     return rest == 0 ? Status(Done{}) : add_rest(lead, *layout, rest);
   }
 
-  /// The last chunk of a segment, which is not a whole one.
+  /// Adds the incomplete last chunk of a segment.
   Status add_rest(const TdmsLeadIn& lead, std::uint32_t whole, std::uint64_t rest) {
     std::optional<TdmsLayout> part;
     if (lead.is_complete) part = in_proportion(map_.layouts[whole], rest);
@@ -201,7 +202,7 @@ class TdmsWalk {
     return count;
   }
 
-  /// Extends the run before where the new one continues it.
+  /// Extends the previous run if the new one continues it.
   void add_run(const TdmsRun& next) {
     if (!map_.runs.empty()) {
       TdmsRun& last = map_.runs.back();
@@ -241,7 +242,7 @@ class TdmsWalk {
   std::string previous_metadata_;
   std::uint32_t previous_contents_ = 0;
   std::unordered_map<std::string, std::uint32_t> by_key_;
-  std::optional<std::uint32_t> layout_;  ///< of the present list, if it is known
+  std::optional<std::uint32_t> layout_;  ///< layout of the current list, if it is known
   std::uint32_t layout_bits_ = 0;
   std::size_t layout_entries_ = 0;
   bool told_version_ = false;

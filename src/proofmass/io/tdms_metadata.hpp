@@ -15,18 +15,18 @@
 
 namespace proofmass::io {
 
-/// The objects of a file and which of them have values in the present segment, as one segment's
-/// metadata after another is read.
+/// The objects of a file, and those with values in the current segment, updated with each segment's
+/// metadata.
 class TdmsMetadata {
  public:
-  /// Reads the metadata that begins at the cursor. `new_list`: it lists all objects of the segment;
-  /// else it changes the list of the segment before.
-  /// Errors: corrupt, unsupported; objects read before stay as they are then.
+  /// Reads the metadata at the cursor. `new_list`: they list all objects of the segment; else they
+  /// modify the list of the previous segment. Errors: corrupt, unsupported; objects read before are
+  /// kept unchanged.
   [[nodiscard]] Status read(TdmsCursor& cursor, bool new_list);
 
-  /// Channels that have values in the segment, in the order of the list.
+  /// Channels with values in the segment, in the order of the list.
   [[nodiscard]] std::vector<TdmsPart> parts() const;
-  /// The same for as long as parts() is.
+  /// Equal as long as parts() is.
   [[nodiscard]] std::string key() const;
   [[nodiscard]] std::vector<TdmsObject>& objects() { return objects_; }
 
@@ -45,12 +45,12 @@ class TdmsMetadata {
 
   std::vector<TdmsObject> objects_;
   std::unordered_map<std::string, std::uint32_t> by_path_;
-  std::vector<std::optional<std::uint32_t>> last_index_;  ///< of each object
+  std::vector<std::optional<std::uint32_t>> last_index_;  ///< per object
   std::vector<std::unique_ptr<const TdmsIndex>> indices_;
   std::unordered_map<std::string, std::uint32_t> by_index_;
-  std::vector<std::uint32_t> listed_;  ///< objects of the present segment
+  std::vector<std::uint32_t> listed_;  ///< objects of the current segment
   std::vector<bool> is_listed_;
-  std::vector<std::optional<std::uint32_t>> index_now_;  ///< of each object; none: no values
+  std::vector<std::optional<std::uint32_t>> index_now_;  ///< per object; none: no values
 };
 
 }  // namespace proofmass::io

@@ -44,7 +44,7 @@ TdmsInstant take_instant(TdmsCursor& cursor) {
   return instant;
 }
 
-/// nullopt for what is passed over, or cannot be.
+/// nullopt for a skipped or impossible value.
 std::optional<TdmsValue> take_value(TdmsCursor& cursor, std::uint32_t type) {
   const TdmsKind kind = tdms_kind(type);
   if (kind == TdmsKind::text) return cursor.take_text();

@@ -6,8 +6,8 @@
 
 namespace proofmass::io {
 
-/// Reads the properties of an object: how many, then name, type and value of each.
-/// Errors: corrupt (a type whose size is not known). Where the file breaks off the cursor says so.
+/// Reads the properties of an object: their number, then name, type and value of each. Errors:
+/// corrupt (a type of unknown size). If the file is truncated, the cursor is broken.
 [[nodiscard]] Status read_tdms_properties(TdmsCursor& cursor, TdmsProperties& properties);
 
 }  // namespace proofmass::io

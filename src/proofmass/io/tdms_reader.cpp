@@ -8,7 +8,7 @@
 namespace proofmass::io {
 namespace {
 
-/// The labels that our own files have: properties label[0]_text, label[0]_first, label[0]_last, …
+/// The labels in our own files: properties label[0]_text, label[0]_first, label[0]_last, …
 std::vector<Label> labels_in(const TdmsProperties& properties) {
   constexpr double most_samples = 0x1p53;
   std::vector<Label> labels;

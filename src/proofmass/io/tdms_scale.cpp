@@ -13,7 +13,7 @@ namespace {
 
 constexpr double most_points = 65'536;
 
-/// The properties of one scale; remembers the first that is missing.
+/// The properties of one scale; keeps the first missing one.
 class ScaleProperties {
  public:
   ScaleProperties(const TdmsProperties& properties, std::uint32_t index, std::string_view kind)
@@ -60,8 +60,7 @@ Result<TdmsScale> read_polynomial(ScaleProperties& of) {
   return of.done(std::move(polynomial));
 }
 
-/// The "scaled values" are what goes in and the "pre-scaled" what comes out, as NI's own readers
-/// have it.
+/// The "scaled values" are the input and the "pre-scaled" ones the output, as in NI's own readers.
 Result<TdmsScale> read_lookup(ScaleProperties& of) {
   const double size = of("Scaled_Values_Size");
   if (!is_count(size) || size < 1.0 || of("Pre_Scaled_Values_Size") != size)
@@ -79,7 +78,7 @@ Result<TdmsScale> read_lookup(ScaleProperties& of) {
 constexpr double current_excitation = 10134;
 constexpr double voltage_excitation = 10322;
 
-/// What of the leads' resistance is measured along, by how many wires there are.
+/// The part of the leads' resistance in the measured path, by the number of wires.
 double leads_ohm(double lead_ohm, double wires, bool is_divider) {
   if (wires == 3) return lead_ohm;
   return wires == 2 && !is_divider ? 2.0 * lead_ohm : 0.0;

@@ -23,22 +23,22 @@ struct TdmsPolynomial {
   std::vector<double> coefficients;
 };
 
-/// Straight lines between points, the first and last value beyond them.
+/// Linear interpolation between points, constant beyond them.
 struct TdmsLookup {
   std::vector<double> x;  ///< ascending
   std::vector<double> y;
 };
 
-/// Volts across a platinum thermometer to degrees Celsius.
-/// R(T) = R0 · (1 + A·T + B·T² + C·(T − 100)·T³ below 0 °C). Source: IEC 60751 (2008), section 4.2.
+/// Voltage across a platinum thermometer to degrees Celsius. R(T) = R0 · (1 + A·T + B·T² + C·(T −
+/// 100)·T³ below 0 °C). Source: IEC 60751 (2008), section 4.2.
 struct TdmsRtd {
   double current_amp = 0.0;
   double r0_ohm = 0.0;
   double a = 0.0, b = 0.0, c = 0.0;
-  double lead_ohm = 0.0;  ///< taken off: that of all leads in the measured path
+  double lead_ohm = 0.0;  ///< subtracted: that of all leads in the measured path
 };
 
-/// Volts across a bridge to strain. Source: National Instruments, "Connecting Strain Gages",
+/// Voltage across a bridge to strain. Source: National Instruments, "Connecting Strain Gages",
 /// NI-DAQmx help: the equation of each configuration; Vr = (V − V0) / excitation.
 struct TdmsStrain {
   enum class Bridge { full_1, full_2, full_3, half_1, half_2, quarter } bridge = Bridge::full_1;
@@ -46,10 +46,10 @@ struct TdmsStrain {
   double gage_factor = 0.0;
   double excitation_volt = 0.0;
   double unstrained_volt = 0.0;
-  double gain = 1.0;  ///< shunt calibration's, and 1 + R_lead / R_gage but for full bridges
+  double gain = 1.0;  ///< shunt calibration, and 1 + R_lead / R_gage except for full bridges
 };
 
-/// Volts to kelvin less an offset. 1/T = A + B·ln R + C·(ln R)³. Source: Steinhart and Hart,
+/// Voltage to kelvin minus an offset. 1/T = A + B·ln R + C·(ln R)³. Source: Steinhart and Hart,
 /// "Calibration curves for thermistors", Deep-Sea Research 15 (1968).
 struct TdmsThermistor {
   bool is_divider = false;  ///< R = R1 / (excitation / V − 1); else R = V / excitation
@@ -60,18 +60,19 @@ struct TdmsThermistor {
   double offset_kelvin = 0.0;
 };
 
-/// Microvolts to degrees Celsius or back, the other junction at 0 °C; NaN beyond the type's range.
+/// Microvolts to degrees Celsius or the reverse, reference junction at 0 °C; NaN outside the type's
+/// range.
 struct TdmsThermocouple {
   char type = 'J';
   bool to_voltage = false;
 };
 
-/// The right operand plus or less the left one.
+/// The right operand plus or minus the left one.
 struct TdmsSum {
   double sign_of_left = 1.0;
 };
 
-/// What stands for no change.
+/// Identity scale.
 struct TdmsSame {};
 
 using TdmsScale = std::variant<TdmsLinear,
@@ -85,14 +86,13 @@ using TdmsScale = std::variant<TdmsLinear,
                                TdmsSame>;
 
 /// Reads NI_Scale[index]_* of a channel.
-/// Errors: unsupported (a kind that is not known; a property that is missing or impossible), in a
-/// few words.
+/// Errors: unsupported (an unknown kind; a missing or impossible property), a short message.
 [[nodiscard]] Result<TdmsScale> read_scale(const TdmsProperties& properties, std::uint32_t index);
 
 /// "linear 2 x + 10", "thermocouple K": for a note.
 [[nodiscard]] std::string words_for(const TdmsScale& scale);
 
-/// Precondition: as many values in each; `right` is of TdmsSum only.
+/// Precondition: equal lengths; `right` is used by TdmsSum only.
 void apply_scale(const TdmsScale& scale,
                  View<double> left,
                  View<double> right,

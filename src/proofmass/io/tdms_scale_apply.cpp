@@ -26,11 +26,11 @@ double scaled(const TdmsLookup& table, double x) {
   return table.y[i - 1] + part * (table.y[i] - table.y[i - 1]);
 }
 
-/// The quadratic above 0 °C; below, Newton's steps on the quartic from its root.
+/// The quadratic above 0 °C; below, Newton steps on the quartic starting at its root.
 double scaled(const TdmsRtd& rtd, double volts) {
   const double ratio = (volts / rtd.current_amp - rtd.lead_ohm) / rtd.r0_ohm;
   const double root = std::sqrt(rtd.a * rtd.a - 4.0 * rtd.b * (1.0 - ratio));
-  // The form that keeps its digits where B is small.
+  // This form preserves digits for small B.
   double t = 2.0 * (ratio - 1.0) / (rtd.a + root);
   if (!(ratio < 1.0)) return t;
   constexpr int enough = 20;

@@ -39,7 +39,7 @@ class TdmsScaling::Builder {
     return input;
   }
 
-  /// The stored values, by the name that a scale calls them by.
+  /// The stored values, by the name used in a scale.
   Result<Input> stored(std::uint32_t index) {
     if (scalers_.empty()) {
       if (index == stored_values) return source(stored_values);

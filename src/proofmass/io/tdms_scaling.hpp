@@ -13,28 +13,28 @@
 
 namespace proofmass::io {
 
-/// The chain of scales that turns what a channel stores into what it measured: NI_Scale[n]_*, of
-/// which the last is the outcome.
+/// The chain of scales from a channel's stored values to its measured values: NI_Scale[n]_*; the
+/// last one gives the result.
 class TdmsScaling {
  public:
-  /// Where the chain begins that is not DAQmx raw data.
+  /// Input of a chain that is not DAQmx raw data.
   static constexpr std::uint32_t stored_values = 0xFFFFFFFF;
 
-  /// `scalers` are the channel's, by their numbers; empty where it is no DAQmx raw data. nullopt
-  /// where there is no chain, or it has been applied already.
-  /// Errors: unsupported (what cannot be computed), in a few words.
+  /// `scalers` are the channel's, by their numbers; empty if it is not DAQmx raw data. nullopt if
+  /// there is no chain, or it has been applied already.
+  /// Errors: unsupported (cannot be computed), a short message.
   [[nodiscard]] static Result<std::optional<TdmsScaling>> of(
       const TdmsProperties& properties, std::span<const std::uint32_t> scalers);
 
-  /// The scalers whose values go in, in the order in which apply() takes them.
+  /// The scalers used as input, in the order in which apply() takes them.
   [[nodiscard]] std::span<const std::uint32_t> sources() const { return sources_; }
-  /// Precondition: one column for each source, of the outcome's length.
+  /// Precondition: one column per source, of the result's length.
   void apply(std::span<const std::vector<double>> columns, std::span<double> out);
   /// "linear 2 x + 10, then thermocouple K"
   [[nodiscard]] std::string words() const;
 
  private:
-  /// A column that goes in, or the outcome of a step before.
+  /// An input column, or the result of an earlier step.
   struct Input {
     bool is_source = true;
     std::size_t number = 0;

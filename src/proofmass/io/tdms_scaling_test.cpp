@@ -10,7 +10,7 @@ namespace {
 
 using namespace specimen;
 
-/// Properties as a channel has them.
+/// Properties of a channel.
 struct Scale {
   TdmsProperties properties;
 
@@ -118,7 +118,7 @@ TEST(TdmsScaling, ACircleOfScalesIsNoChain) {
 }
 
 TEST(TdmsScaling, SumsOfSumsAreComputedOnce) {
-  // 2^60 additions if each were followed anew.
+  // 2^60 additions if each were evaluated separately.
   TdmsList list = one_channel(1);
   list.property("NI_Number_Of_Scales", 60U);
   for (std::uint32_t i = 0; i < 60; ++i) {
@@ -203,7 +203,7 @@ TEST(TdmsScaling, LeadsCountAsOftenAsTheyAreMeasuredAlong) {
 }
 
 /// Voltage over excitation of a bridge with resistors 1 and 2 in the left arm and 3 and 4 in the
-/// right one, as National Instruments counts them.
+/// right one, in National Instruments' numbering.
 double bridge(double r1, double r2, double r3, double r4) {
   return r3 / (r3 + r4) - r2 / (r1 + r2);
 }
@@ -295,7 +295,7 @@ TEST(TdmsScaling, ThermocouplesInvertToASixteenthOfADegree) {
 }
 
 TEST(TdmsScaling, AThermocouplesChainAddsTheColdJunction) {
-  // Microvolts and the junction's temperature, as a task of NI-DAQmx stores them.
+  // Microvolts and the junction's temperature, as stored by a task of NI-DAQmx.
   TdmsList list;
   list.daqmx("/'g'/'T'", 2, {list.scaler(9, 0, 0, 0), list.scaler(9, 0, 8, 1)}, {16});
   list.property("NI_Number_Of_Scales", 5U)

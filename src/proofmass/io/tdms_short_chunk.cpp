@@ -1,4 +1,4 @@
-// Chunks that are not whole: at the end of a segment, or of a file that breaks off.
+// Incomplete chunks: at the end of a segment, or of a truncated file.
 #include <algorithm>
 #include <optional>
 

@@ -11,7 +11,7 @@
 #include "proofmass/io/mat_specimens.hpp"
 #include "proofmass/io/tdms_value.hpp"
 
-// Writes TDMS files, whole and broken ones, for tests.
+// Writes TDMS files, intact and damaged ones, for tests.
 namespace proofmass::io::specimen {
 
 inline constexpr std::uint32_t tdms_metadata = 1U << 1;
@@ -22,7 +22,7 @@ inline constexpr std::uint32_t tdms_big_endian = 1U << 6;
 inline constexpr std::uint32_t tdms_daqmx = 1U << 7;
 inline constexpr std::uint32_t tdms_whole = tdms_metadata | tdms_new_list | tdms_raw_data;
 
-/// Objects and their properties, as a segment lists them.
+/// Objects and their properties, as listed in a segment.
 class TdmsList {
  public:
   explicit TdmsList(Order order = Order::little) : order_(order) {}
@@ -35,7 +35,7 @@ class TdmsList {
     return number(static_cast<std::uint32_t>(words.size())) + std::string(words);
   }
 
-  /// Begins an object; `index` as number() and the like make it.
+  /// Begins an object; `index` is made by number() and similar functions.
   TdmsList& object(std::string_view path, const std::string& index) {
     end_object();
     ++objects_;
@@ -51,7 +51,7 @@ class TdmsList {
   TdmsList& texts(std::string_view path, std::uint64_t values, std::uint64_t bytes) {
     return object(path, number(28U) + number(0x20U) + number(1U) + number(values) + number(bytes));
   }
-  /// `scalers` as scaler() and digital_line() make them.
+  /// `scalers` are made by scaler() and digital_line().
   TdmsList& daqmx(std::string_view path,
                   std::uint64_t values,
                   const std::vector<std::string>& scalers,
@@ -85,7 +85,7 @@ class TdmsList {
   TdmsList& property(std::string_view name, const TdmsInstant& value) {
     return add(name, number(0x44U) + instant(value));
   }
-  /// Raw bytes with a type of the caller's.
+  /// Raw bytes with a type given by the caller.
   TdmsList& property(std::string_view name, std::uint32_t type, const std::string& value) {
     return add(name, number(type) + value);
   }
@@ -126,7 +126,7 @@ inline std::string tdms_lead_in(std::uint32_t contents, std::uint64_t next, std:
          bytes_of<std::uint64_t>({next, raw}, order);
 }
 
-/// A segment with all its lengths right.
+/// A segment with correct lengths.
 inline std::string tdms_segment(std::uint32_t contents,
                                 const std::string& metadata,
                                 const std::string& data) {

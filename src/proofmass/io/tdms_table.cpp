@@ -9,7 +9,7 @@
 namespace proofmass::io {
 namespace {
 
-/// A column of the table: what is read for it and what is made of that.
+/// A column of the table: its inputs and their conversion.
 struct Reading {
   std::vector<TdmsColumn> sources;
   std::optional<TdmsScaling> scaling;
@@ -85,7 +85,7 @@ class TdmsTable final : public TableReader {
     return Done{};
   }
 
-  /// Points in time are read as seconds since the first.
+  /// Timestamps are read as seconds from the first.
   Status count_from_first(std::size_t c, Reading& reading) {
     const auto first = reading.sources.front().first_instant(window_);
     if (!first) return first.error();
@@ -145,7 +145,7 @@ class TdmsTable final : public TableReader {
 
 constexpr std::size_t longest_text = 300;
 
-/// What the file says of itself in words: author, title.
+/// Descriptive texts of the file: author, title.
 std::string self_description(const TdmsProperties& properties) {
   std::string words;
   for (const auto& [name, value] : properties) {

@@ -10,20 +10,20 @@
 
 namespace proofmass::io {
 
-/// An open TDMS file, which its tables share.
+/// An open TDMS file, shared by its tables.
 struct TdmsContents {
   std::unique_ptr<const RandomBytes> bytes;
   TdmsMap map;
   std::vector<TdmsGroup> groups;
-  std::vector<Note> notes;  ///< what is to be told of the file whichever table is read
+  std::vector<Note> notes;  ///< about the file, whichever table is read
 };
 
-/// One table of a file, its values scaled as the file says.
+/// One table of a file, its values scaled as specified in the file.
 /// Errors: unreadable, corrupt.
 [[nodiscard]] Result<std::unique_ptr<TableReader>> open_tdms_table(
     std::shared_ptr<const TdmsContents> contents, std::size_t group);
 
-/// Maps a file and sorts its channels. Errors: as open_tdms().
+/// Maps a file and groups its channels. Errors: as open_tdms().
 [[nodiscard]] Result<std::shared_ptr<const TdmsContents>> read_tdms_contents(
     std::unique_ptr<const RandomBytes> bytes);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double longest_increment_s = 1e9;
 
-/// What the waveform properties of a channel say.
+/// The waveform properties of a channel.
 struct Waveform {
   std::optional<double> increment_s;
   std::optional<double> rate_hz;
@@ -25,7 +25,7 @@ bool is_read(const TdmsObject& object) {
   return object.has_index && !object.changes_kind && object.kind <= TdmsKind::instant;
 }
 
-/// The rate whose step is `increment_s` to the last bit, whole where one is.
+/// The rate whose period is `increment_s` to the last bit, an integer if there is one.
 double rate_of(double increment_s) {
   const double rate_hz = 1.0 / increment_s;
   const double whole = std::round(rate_hz);
@@ -54,7 +54,7 @@ Waveform waveform_of(const TdmsProperties& properties) {
   const bool is_step = increment_s > 1.0 / longest_increment_s && increment_s < longest_increment_s;
   if (!is_step || !is_time_axis(properties)) return waveform;
   waveform.increment_s = increment_s;
-  // Our own files name the rate as well, whose inverse the increment is.
+  // Our own files also contain the rate, whose inverse is the increment.
   const auto told_hz = number_of(properties, "rate_hz");
   waveform.rate_hz = told_hz && 1.0 / *told_hz == increment_s ? *told_hz : rate_of(increment_s);
   return waveform;
@@ -72,7 +72,7 @@ std::string heading_of(const TdmsMap& map, std::uint32_t channel) {
   return unit.empty() || has_unit ? name : fmt::format("{} ({})", name, unit);
 }
 
-/// A table, and what a channel has to agree with to belong to it.
+/// A table, and the properties that its channels must share.
 struct Draft {
   TdmsGroup group;
   std::uint64_t promised = 0;
@@ -85,7 +85,7 @@ struct Draft {
     if (!waveform.increment_s || !other.increment_s) return true;
     if (*waveform.increment_s != *other.increment_s) return false;
     if (!waveform.start_ns || !other.start_ns) return true;
-    // Channels of one task may have started a fraction of a step apart.
+    // Channels of one task may have started a fraction of a period apart.
     const double apart_s = 1e-9 * std::abs(static_cast<double>(*waveform.start_ns) -
                                            static_cast<double>(*other.start_ns));
     return apart_s < 0.5 * *waveform.increment_s;
@@ -102,7 +102,7 @@ void add(Draft& draft, const TdmsMap& map, std::uint32_t channel, const Waveform
   draft.group.rows = std::max(draft.group.rows, object.values);
 }
 
-/// Points in time, or else seconds since a start that the channel itself names.
+/// Timestamps, or else seconds since a start given by the channel itself.
 std::optional<std::size_t> time_column_of(const TdmsMap& map, const TdmsGroup& group) {
   for (std::size_t c = 0; c < group.channels.size(); ++c)
     if (map.objects[group.channels[c]].kind == TdmsKind::instant) return c;
@@ -150,7 +150,7 @@ TdmsGroup finished(const TdmsMap& map, Draft draft) {
   return group;
 }
 
-/// Tells tables of one group apart by rate, else by length, else by number.
+/// Gives tables of one group distinct names by rate, else by length, else by number.
 void name_apart(std::vector<TdmsGroup>& groups) {
   const auto is_taken = [&](const std::string& name, std::size_t self) {
     for (std::size_t i = 0; i < groups.size(); ++i)
@@ -206,7 +206,7 @@ std::vector<std::uint32_t> scalers_of(const TdmsMap& map, std::uint32_t channel)
 }
 
 std::vector<TdmsGroup> group_channels(const TdmsMap& map) {
-  // A file of more tables than that is none of measurements.
+  // A file with more tables does not contain measurements.
   constexpr std::size_t most_tables = 1024;
   std::vector<Draft> drafts;
   for (std::uint32_t i = 0; i < map.objects.size(); ++i) {

@@ -99,7 +99,7 @@ TEST(Tdms, AListThatIsNotNewChangesTheOneBefore) {
   // a has none, b still two.
   file += tdms_segment(tdms_metadata | tdms_raw_data, TdmsList().no_values("/'g'/'a'").bytes(),
                        doubles_of({20, 21}));
-  // a is back, behind b's place in the list it keeps its own.
+  // a is present again, at its earlier position in the list, before b.
   file += tdms_segment(tdms_metadata | tdms_raw_data, TdmsList().as_before("/'g'/'a'").bytes(),
                        doubles_of({30, 31, 32, 33, 34}));
   const auto contents = tdms_contents(file);
@@ -269,7 +269,7 @@ TEST(Tdms, AHundredThousandSegmentsOfOneValueAreOneRun) {
 }
 
 TEST(Tdms, ChannelsThatWereWrittenByTurnsAreOneTable) {
-  // Segments of changing length, a and b in segments of their own.
+  // Segments of varying length, a and b in separate segments.
   std::string file;
   std::vector<double> a;
   std::vector<double> b;
@@ -291,7 +291,7 @@ TEST(Tdms, ChannelsThatWereWrittenByTurnsAreOneTable) {
 }
 
 TEST(Tdms, RowsBeyondAWindowAreReadAsWritten) {
-  // Larger than what is read at once, in each of the ways that values can lie.
+  // Larger than one read, in each of the possible layouts.
   constexpr std::size_t rows = 70'000;
   std::vector<double> a(rows);
   std::vector<double> b(rows);

@@ -17,7 +17,7 @@ namespace specimen {
 
 using Columns = std::vector<std::vector<double>>;
 
-inline constexpr std::uint32_t f64 = 10;  ///< the format's number of doubles
+inline constexpr std::uint32_t f64 = 10;  ///< the format's code for doubles
 
 inline std::string doubles_of(const std::vector<double>& values, Order order = Order::little) {
   return bytes_of(values, order);
@@ -33,7 +33,7 @@ inline TdmsList two_channels(Order order = Order::little) {
 
 }  // namespace specimen
 
-/// A table as a test looks at it.
+/// Contents of a table for the tests.
 struct TdmsRead {
   TableHead head;
   std::vector<std::vector<double>> columns;
@@ -88,7 +88,7 @@ inline Result<TdmsRead> read_tdms(const std::string& bytes,
   return out;
 }
 
-/// The same where it has to succeed.
+/// The same; must succeed.
 inline TdmsRead tdms_or_fail(const std::string& bytes,
                              std::size_t group = 0,
                              std::size_t rows_at_once = 7) {

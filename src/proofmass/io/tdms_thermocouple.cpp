@@ -10,7 +10,7 @@
 namespace proofmass::io {
 namespace {
 
-/// A polynomial that holds from `from` to the next one's, c[0] first.
+/// A polynomial valid from `from` to the next one's, c[0] first.
 struct Branch {
   double from = 0.0;
   std::array<double, 15> c{};
@@ -25,8 +25,8 @@ struct Function {
 
 struct Thermocouple {
   char type = 0;
-  Function mV;    ///< of degrees Celsius
-  Function degC;  ///< of millivolts
+  Function mV;    ///< as a function of degrees Celsius
+  Function degC;  ///< as a function of millivolts
 };
 
 // Source: NIST Monograph 175, tables of coefficients; ITS-90 Thermocouple Database.
@@ -226,7 +226,7 @@ double thermocouple_mv(char type, double temp_degc) {
   const Thermocouple* couple = find(type);
   if (couple == nullptr) return std::numeric_limits<double>::quiet_NaN();
   const double mV = value_of(couple->mV, temp_degc);
-  // Type K alone has a term that is no polynomial, above 0 °C.
+  // Only type K has a term that is not a polynomial, above 0 °C.
   if (type != 'K' || !(temp_degc >= 0.0)) return mV;
   const double apart = temp_degc - 126.9686;
   return mV + 0.118597600000e+00 * std::exp(-0.118343200000e-03 * apart * apart);

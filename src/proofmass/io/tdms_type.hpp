@@ -7,7 +7,7 @@
 
 namespace proofmass::io {
 
-/// How a value of a TDMS channel is stored.
+/// Storage of a value of a TDMS channel.
 enum class TdmsKind : unsigned char {
   i8,
   i16,
@@ -21,20 +21,20 @@ enum class TdmsKind : unsigned char {
   f64,
   boolean,
   instant,  ///< TdmsInstant
-  text,     ///< of any length
-  other,    ///< not read: complex, extended, fixed point
+  text,     ///< variable length
+  other,    ///< unsupported: complex, extended, fixed point
 };
 
 /// 0 for text and other.
 [[nodiscard]] std::size_t bytes_of(TdmsKind kind);
-/// Of a type as a channel or a property names it.
+/// Kind for the type code of a channel or a property.
 [[nodiscard]] TdmsKind tdms_kind(std::uint32_t type);
-/// Of a type as a DAQmx scaler names it; nullopt: not known.
+/// Kind for the type code of a DAQmx scaler; nullopt: unknown.
 [[nodiscard]] std::optional<TdmsKind> daqmx_kind(std::uint32_t type);
-/// "complex numbers", "extended-precision numbers", … of a type whose kind is `other`.
+/// "complex numbers", "extended-precision numbers", … for a type of kind `other`.
 [[nodiscard]] std::string words_for_type(std::uint32_t type);
 
-/// Bytes of a value of a type whose kind is `other`; 0: not known.
+/// Size of a value of a type of kind `other`; 0: unknown.
 [[nodiscard]] std::size_t bytes_of_other(std::uint32_t type);
 
 }  // namespace proofmass::io

@@ -31,7 +31,7 @@ TdmsInstant tdms_instant(std::int64_t unix_ns) {
     part += ns_per_s;
     --seconds;
   }
-  // Rounded up, so that rounding to the nearest nanosecond finds it again from above.
+  // Rounded up, so that rounding to the nearest nanosecond recovers it.
   const UInt128 fraction = ((UInt128{static_cast<std::uint64_t>(part)} << 64) + ns_per_s - 1) /
                            static_cast<std::uint64_t>(ns_per_s);
   return {seconds + unix_epoch_s, static_cast<std::uint64_t>(fraction)};

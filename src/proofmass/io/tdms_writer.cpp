@@ -20,7 +20,7 @@ constexpr std::uint32_t has_raw_data = 1U << 3;
 constexpr std::uint32_t is_interleaved = 1U << 5;
 constexpr std::uint32_t version = 4713;
 constexpr std::uint32_t no_values = 0xFFFFFFFF;
-/// What a file that is cut short loses at most.
+/// Maximum loss if a file is truncated.
 constexpr std::size_t segment_bytes = std::size_t{1} << 20;
 constexpr std::string_view group = "recording";
 
@@ -33,7 +33,7 @@ std::string path_of(std::string_view channel) {
   return path + "'";
 }
 
-/// How a channel is called and what is said of it.
+/// Name and properties of a channel.
 struct Column {
   std::string name;
   TdmsPropertyList properties;
@@ -51,7 +51,7 @@ TdmsInstant start_of(const TimeBase& time) {
   return time.start_ns ? tdms_instant(*time.start_ns) : TdmsInstant{};
 }
 
-/// A name that no other column has; two objects of one name would be one to a reader.
+/// A name that no other column has; two objects with one name would be the same to a reader.
 std::string free_name(std::string name, const std::vector<Column>& taken) {
   if (name.empty()) name = "channel";
   const std::string stem = name;
@@ -60,7 +60,7 @@ std::string free_name(std::string name, const std::vector<Column>& taken) {
   return name;
 }
 
-/// The channels keep their names; the time gives way.
+/// The channels keep their names; the time is renamed.
 std::string time_name(const Recording& recording) {
   for (const char* name : {"time", "timestamp", "sample time"})
     if (recording.find(name) == nullptr) return name;
@@ -91,7 +91,7 @@ std::vector<Column> columns_of(const WriterHead& head, std::int32_t rows_a_segme
   return columns;
 }
 
-/// Samples are whole numbers that a double holds.
+/// Sample numbers are integers within the range of a double.
 TdmsPropertyList label_properties(const Recording& recording) {
   TdmsPropertyList list;
   list.text("label_channel", recording.label_channel);
@@ -158,8 +158,8 @@ class TdmsWriter final : public RecordingWriter {
     rows_ += rows;
   }
 
-  /// Metadata only where they say something new: in the first segment, and where the number of rows
-  /// differs, which is in the last.
+  /// Metadata only if they are new: in the first segment, and where the number of rows differs,
+  /// which is in the last.
   Status end_segment() {
     const bool says_more = is_first_ || rows_ != told_rows_;
     const std::string metadata = says_more ? metadata_of(rows_) : std::string{};
@@ -180,7 +180,7 @@ class TdmsWriter final : public RecordingWriter {
     return file_->append(out);
   }
 
-  /// What is known at the end only: a segment of metadata alone.
+  /// Data known only at the end: a segment of metadata alone.
   Status append_labels(const Recording& recording) {
     std::string metadata;
     constexpr std::uint32_t objects = 1;

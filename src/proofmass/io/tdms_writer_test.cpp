@@ -108,7 +108,7 @@ TEST_F(TdmsWriting, LabelsComeBack) {
   recording.labels = {{"#1", 5, 7}, {"x, \"up\"\n", 8, 8}, {"x", 700, 2999}};
   recording.label_channel = "part; of";
   const Recording back = through(recording);
-  recording.labels[1].text.back() = ' ';  // what is read is on one line
+  recording.labels[1].text.back() = ' ';  // texts are read as one line
   EXPECT_EQ(back.labels, recording.labels);
   EXPECT_EQ(back.label_channel, recording.label_channel);
 }
@@ -122,7 +122,7 @@ TEST_F(TdmsWriting, ACutFileLosesItsLastPieceOnlyAndAllChannelsEndTogether) {
     const auto cut = read_tdms(whole.substr(0, size), 0, 50'000);
     ASSERT_TRUE(cut.has_value()) << cut.error().message;
     const std::size_t rows = cut->columns[0].size();
-    // 32 bytes a row; the row that is broken has its first figures still.
+    // 32 bytes per row; the truncated row still has its first values.
     EXPECT_NEAR(static_cast<double>(rows) * 32.0, static_cast<double>(size), 1500.0);
     for (std::size_t k = 0; k + 1 < rows; ++k)
       for (std::size_t c = 0; c < 3; ++c)
@@ -137,7 +137,7 @@ TEST_F(TdmsWriting, SegmentsAfterTheFirstHaveNoMetadata) {
   const auto contents = tdms_contents(file);
   ASSERT_TRUE(contents.has_value());
   EXPECT_EQ((*contents)->map.segments, 3u);
-  // The first segment's metadata are all that is beside values and lead-ins.
+  // The first segment's metadata are all data besides values and lead-ins.
   EXPECT_LT(file.size() - std::size_t{32768} * 3 * 32 - 3 * std::size_t{28}, 1000u);
 }
 

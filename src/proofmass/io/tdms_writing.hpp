@@ -11,7 +11,7 @@ namespace proofmass::io {
 
 inline constexpr std::uint32_t tdms_double = 10;
 
-/// A length and as many bytes.
+/// A length followed by as many bytes.
 inline void append_text(std::string& out, std::string_view text) {
   append_value(out, static_cast<std::uint32_t>(text.size()));
   out += text;
@@ -40,7 +40,7 @@ class TdmsPropertyList {
     append_value(bytes_, value.fraction);
     append_value(bytes_, value.seconds);
   }
-  /// As a segment lists them.
+  /// In the format of a segment's list.
   void append_to(std::string& out) const {
     append_value(out, count_);
     out += bytes_;

@@ -10,12 +10,12 @@
 
 namespace proofmass::io {
 
-/// Reads a text as if it were a file.
+/// Reads a text as a file.
 inline Result<Recording> read_text(std::string_view text, const ReadOptions& options = {}) {
   return read_recording(std::as_bytes(std::span(text)), "text", options);
 }
 
-/// Whether any note has `part` in it.
+/// True if any note contains `part`.
 inline bool is_noted(const Recording& recording, std::string_view part) {
   for (const Note& note : recording.notes)
     if (note.text.find(part) != std::string::npos) return true;
@@ -29,7 +29,7 @@ inline std::string notes_of(const Recording& recording) {
   return all;
 }
 
-/// The folder of published recordings, or an empty path where there is none.
+/// The folder of published recordings, or an empty path if there is none.
 inline std::filesystem::path published_data() {
   if (const char* given = std::getenv("PROOFMASS_DATA")) return given;
   std::filesystem::path beside = std::filesystem::path(PROOFMASS_SOURCE_DIR) / "../shared/data";

@@ -18,7 +18,7 @@ std::vector<TextLine> lines_in(std::string_view text) {
     const std::size_t end = std::min(text.find(line_end), text.size());
     std::string_view line = text.substr(0, end);
     if (line.ends_with('\r')) line.remove_suffix(1);
-    // A semicolon may be a separator, behind an empty field.
+    // A semicolon may be a separator after an empty field.
     if (!trimmed(line).empty() && !is_remark(line, ';'))
       lines.push_back({number, std::string(line)});
     text.remove_prefix(std::min(end + 1, text.size()));
@@ -26,7 +26,7 @@ std::vector<TextLine> lines_in(std::string_view text) {
   return lines;
 }
 
-/// All there is, or more than the longest text.
+/// The whole text, or more than the maximum length.
 Result<std::string_view> peek_all(PeekSource& source) {
   for (std::size_t wanted = std::size_t{64} << 10;; wanted *= 4) {
     auto text = source.peek(wanted);

@@ -22,7 +22,7 @@ TimeBaseFound find_time_base(TimeEvidence evidence, const ReadOptions& options) 
   } else if (running.base_.source == TimeSource::counter) {
     times.resize(evidence.counter.size());
     static_cast<void>(running.mend(times, evidence.counter, true));
-    // No row is missing: the rate says it all.
+    // No row is missing: the rate is sufficient.
     if (running.counted_.lost() == 0 && running.counted_.restarts() == 0) {
       running.base_.source = TimeSource::given_rate;
       running.base_.channel.clear();

@@ -12,28 +12,28 @@
 
 namespace proofmass::io {
 
-/// What the figures of a column of stamps were before they were figures.
+/// Original form of a column of stamps.
 enum class StampClock {
-  figures,  ///< figures
-  wall,     ///< dates or times of day without a zone: summer time may begin or end in it
+  figures,  ///< numbers
+  wall,     ///< dates or times of day without a zone: daylight saving may begin or end
   zoned,    ///< with a zone
 };
 
-/// A column of stamps as a reader found it.
+/// A column of stamps as found by a reader.
 struct StampColumn {
   std::string name;
-  Unit unit;                   ///< Quantity::unknown: told by the size of the figures
+  Unit unit;                   ///< Quantity::unknown: determined from the magnitude
   StampOrigin origin;          ///< exact first stamp
-  std::vector<double> values;  ///< stamps less the origin, in `unit`; NaN where there is none
-  bool is_named = true;        ///< false: only its ascending says that it is a time
+  std::vector<double> values;  ///< stamps minus the origin, in `unit`; NaN if missing
+  bool is_named = true;        ///< false: identified as a time only because it increases
   StampClock clock = StampClock::figures;
 };
 
-/// All that a file says about when its samples were taken.
+/// All information of a file on the times of its samples.
 struct TimeEvidence {
   std::optional<StampColumn> stamps;
   std::string counter_name;              ///< empty if there is no counter
-  View<double> counter;                  ///< sample counter of the instrument
+  View<double> counter;                  ///< the instrument's sample counter
   std::optional<double> header_rate_hz;  ///< a rate in the file's preamble
   std::size_t samples = 0;
   std::size_t first_line = 0;  ///< as in Recording
@@ -42,17 +42,22 @@ struct TimeEvidence {
 struct TimeBaseFound {
   TimeBase base;
   std::vector<Note> notes;
-  /// The column of stamps given back where it turned out to be no time base.
+  /// The column of stamps, returned if it is not a time base.
   std::optional<StampColumn> rejected;
 };
 
-/// Decides on the time base: --rate before stamps, stamps before a rate in the preamble.
-/// Stamps: the unit from the header, else by their size (stamp_unit.hpp). What ran over is unrolled
-/// and what is no time is mended (stamps.hpp); gaps and repeats are kept. The rate is 1 / median
-/// step; where the stamps are rounded to more than 1 % of a step, 1 / mean of the steps within one
-/// rounding of the median; where they come in bursts, that of the long run (stamp_steps.hpp).
-/// Stamps that are k / rate to the last bit are dropped: the base is uniform then.
-/// The same as RunningTimeBase with all rows at once, but that the rate is by all of them.
+/// Determines the time base: --rate takes precedence over stamps, stamps over a rate in the
+/// preamble.
+///
+/// - Unit of stamps: from the header, else from their magnitude (stamp_unit.hpp).
+/// - Wraps are unwrapped and invalid stamps corrected (stamps.hpp); gaps and repeats are kept.
+/// - The rate is 1 / median interval. If the stamps are rounded to more than 1 % of an interval, it
+///   is 1 / mean of the intervals within one rounding of the median; if they come in bursts, the
+///   long-run rate (stamp_steps.hpp).
+/// - Stamps that equal k / rate to the last bit are dropped: the base is then uniform.
+///
+/// Equal to RunningTimeBase with all rows at once, except that the rate is determined from all of
+/// them.
 [[nodiscard]] TimeBaseFound find_time_base(TimeEvidence evidence, const ReadOptions& options);
 
 }  // namespace proofmass::io

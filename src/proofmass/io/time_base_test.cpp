@@ -12,14 +12,14 @@
 namespace proofmass::io::time_base_test {
 namespace {
 
-/// A table of a time column of `stamps` and one of ones.
+/// A table with a time column of `stamps` and a column of ones.
 std::string table(const std::string& name, const std::vector<std::string>& stamps) {
   std::string text = name + ",a\n";
   for (const std::string& stamp : stamps) text += stamp + ",1.5\n";
   return text;
 }
 
-/// Stamps `first` + k·step as whole numbers.
+/// Stamps `first` + k·step as integers.
 std::vector<std::string> counting(std::int64_t first, std::int64_t step, int count = 20) {
   std::vector<std::string> out;
   for (int k = 0; k < count; ++k) out.push_back(std::to_string(first + k * step));
@@ -44,7 +44,7 @@ TEST(TimeBase, TellsAnEpochByItsCentury) {
     EXPECT_EQ(read->time.rate_hz, 50.0) << per_s;
     EXPECT_EQ(read->time.start_ns, epoch_s * 1'000'000'000) << per_s;
   }
-  // One sample a second of an epoch in seconds is slow, but it is what it says.
+  // One sample per second with an epoch in seconds is slow, but correct.
   EXPECT_EQ(read_text(table("time", counting(epoch_s, 1))).value().time.rate_hz, 1.0);
 }
 
@@ -138,7 +138,7 @@ TEST(TimeBase, MendsAFirstStampThatIsNoTime) {
 }
 
 TEST(TimeBase, PutsAMendedStampWhereTheCounterSays) {
-  // Packets 4 and 5 are lost: packet 6 stands three steps behind packet 3, its stamp unreadable.
+  // Packets 4 and 5 are lost: packet 6 is three steps after packet 3, its stamp unreadable.
   const auto read = read_text(
       "PacketCounter,t_ms,a\n0,0,1\n1,10,1\n2,20,1\n3,30,1\n6,inf,1\n7,70,1\n8,80,1\n9,90,1\n"
       "10,100,1\n11,110,1\n12,120,1\n13,130,1\n");
@@ -226,7 +226,7 @@ TEST(TimeBase, NoticesARateInThePreambleThatTheStampsBelie) {
   EXPECT_TRUE(is_noted(*read, "one of them is wrong")) << notes_of(*read);
 }
 
-/// Rounded to whole milliseconds, at this rate; of the samples some are lost at random.
+/// Rounded to whole milliseconds, at this rate; some samples are lost at random.
 std::vector<std::string> in_whole_ms(double rate_hz, int samples, double lost, unsigned seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform;

@@ -11,7 +11,7 @@
 
 namespace proofmass::io {
 
-/// What the notes on a column of stamps name.
+/// Names used in the notes on a column of stamps.
 struct NamedStamps {
   std::string name;
   std::string counter_name;  ///< empty if there is no counter
@@ -19,10 +19,10 @@ struct NamedStamps {
   std::size_t first_line = 0;
 };
 
-/// What ran over, was taken out, fell back, was replaced: where, and what was done.
+/// Notes on wraps, removed hours, restarts and replacements: position and correction.
 [[nodiscard]] std::vector<Note> notes_on_mending(const MendedStamps& done,
                                                  const NamedStamps& stamps);
-/// That stamps come in bursts; that a rate in the preamble is another.
+/// Notes on stamps in bursts, and on a rate in the preamble that differs.
 [[nodiscard]] std::vector<Note> notes_on_rate(const TimeBase& base,
                                               const StampSteps& steps,
                                               double unit_s,

@@ -1,4 +1,4 @@
-// Clocks as they misbehave: every trouble is found, told with its place, and mended or kept.
+// Faulty clocks: every fault is detected, reported with its position, and corrected or kept.
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace proofmass::io::time_trouble_test {
 namespace {
 
-/// Stamps first + k·step, as an instrument of 2^bits ticks writes them; 0: it never runs over.
+/// Stamps first + k·step, as written by an instrument with 2^bits ticks; 0: it never wraps.
 std::vector<double> ticks(double first, double step, std::size_t count, int bits = 0) {
   std::vector<double> out;
   for (std::size_t k = 0; k < count; ++k) {
@@ -32,7 +32,7 @@ std::string table(const std::string& name, const std::vector<double>& stamps) {
   return table(name, words);
 }
 
-/// That sample k stands at k·step for all k.
+/// Checks that sample k is at k·step for all k.
 void expect_even(const Recording& read, double step_s, double tolerance_s = 1e-9) {
   for (std::size_t k = 0; k < read.samples(); ++k)
     ASSERT_NEAR(read.time.at(k), static_cast<double>(k) * step_s, tolerance_s) << k << "\n"
@@ -53,7 +53,7 @@ TEST(Clock, RunsOverAtAnyWidthInAnyUnit) {
 }
 
 TEST(Clock, RunsOverManyTimes) {
-  // 16 bits of microseconds at 500 Hz last for 33 samples.
+  // 16 bits of microseconds at 500 Hz wrap after 33 samples.
   const auto read = read_text(table("t_us", ticks(1234.0, 2000.0, 5000, 16)));
   ASSERT_TRUE(read.has_value());
   expect_even(*read, 0.002);
@@ -82,7 +82,7 @@ TEST(Clock, RunsOverWhereTicksWereDivided) {
 }
 
 TEST(Clock, RunsOverInAGap) {
-  // 30 s of a microsecond counter of 71.6 min are missing about its end.
+  // 30 s of a microsecond counter of 71.6 min are missing around its wrap.
   std::vector<double> stamps = ticks(0x1p32 - 20e6, 10'000.0, 500);
   const auto after = ticks(15e6, 10'000.0, 500);
   stamps.insert(stamps.end(), after.begin(), after.end());
@@ -124,7 +124,7 @@ TEST(Clock, IsSetFromItsEpochToTheDay) {
   EXPECT_TRUE(is_noted(*read, "leapt by more than ten years at line 152")) << notes_of(*read);
 }
 
-/// Local time of Berlin about the end of March and of October 2024: seconds of the wall clock.
+/// Local time of Berlin near the end of March and of October 2024: seconds of the wall clock.
 std::string wall(double seconds_of_day) {
   const auto ms = static_cast<long>(std::llround(seconds_of_day * 1e3));
   return fmt::format("{:02}:{:02}:{:02}.{:03}", ms / 3'600'000, ms / 60'000 % 60, ms / 1000 % 60,
@@ -173,7 +173,7 @@ TEST(Clock, KeepsAGapOfAnHourWhereTheZoneIsGiven) {
 }
 
 TEST(Clock, CountsTheLongRunWhereRowsComeInBursts) {
-  // Four samples 2 ms apart, then a wait: 100 Hz in the long run, 500 Hz by the median step.
+  // Four samples 2 ms apart, then a pause: 100 Hz in the long run, 500 Hz by the median interval.
   std::vector<double> stamps;
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> late(0.0, 2e-3);
@@ -244,7 +244,7 @@ TEST(Clock, IsReadAsSecondsSince1904) {
 }
 
 TEST(Clock, DoesNotMakeADateOfATickCounter) {
-  // A millisecond counter of 32 bits near its end, of which seconds since 1904 would be 2023.
+  // A 32-bit millisecond counter near its end, which as seconds since 1904 would be 2023.
   const auto read = read_text(table("time", ticks(3'776'000'000.0, 5.0, 100)));
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(read->time.rate_hz, 200.0) << notes_of(*read);
@@ -259,7 +259,7 @@ TEST(Clock, GoesOnWhereAStretchWithoutStampsIsLong) {
   expect_even(*read, 0.01);
 }
 
-/// Stamps with every trouble in random places.
+/// Stamps with every fault at random positions.
 std::vector<double> troubled(std::mt19937_64& random) {
   std::vector<double> out;
   double reading = 0x1p32 - 4e6;

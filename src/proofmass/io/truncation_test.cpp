@@ -1,5 +1,5 @@
-// Every specimen of the fuzzers, broken off at every byte: each piece is read or refused in one
-// line, and never more than the whole holds.
+// Every specimen of the fuzzers, truncated at every byte: each part is read or rejected with a
+// one-line error, and never contains more than the whole.
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>

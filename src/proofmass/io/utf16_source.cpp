@@ -60,7 +60,7 @@ class Utf16Source final : public ByteSource {
   std::unique_ptr<ByteSource> source_;
   bool high_first_;
   std::array<char, 1 << 15> units_{};
-  std::size_t kept_ = 0;  ///< half a unit, left from the piece before
+  std::size_t kept_ = 0;  ///< half a code unit, left from the previous piece
   std::uint32_t high_surrogate_ = 0;
   std::string text_;
   std::size_t taken_ = 0;

@@ -7,11 +7,11 @@
 
 namespace proofmass::io {
 
-/// A character's bytes in UTF-8; half a surrogate pair, which is none, becomes '?'.
+/// A character's bytes in UTF-8; an unpaired surrogate becomes '?'.
 void append_utf8(std::string& out, std::uint32_t character);
 
-/// The next character of UTF-8 and how many bytes it takes; a byte that is none stands for itself.
-/// Expects that there is one.
+/// The next character of UTF-8 and its length in bytes; an invalid byte is returned as itself.
+/// Precondition: non-empty.
 [[nodiscard]] std::uint32_t next_character(std::string_view text, std::size_t& length);
 
 }  // namespace proofmass::io

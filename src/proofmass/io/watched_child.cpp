@@ -37,7 +37,7 @@ void write_error(int descriptor, Errc code, std::string_view message) {
   write_frame(descriptor, FrameKind::error, text);
 }
 
-/// Bytes that are mapped now; 0 where the system does not say.
+/// Bytes mapped now; 0 if the system does not report it.
 std::size_t mapped_bytes() {
   std::FILE* file = std::fopen("/proc/self/statm", "r");
   if (file == nullptr) return 0;
@@ -65,7 +65,7 @@ void shut_in(const ChildLimits& limits, int parent) {
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (int stream = 0; stream < 3; ++stream)
     if (nowhere < 0 || ::dup2(nowhere, stream) < 0) ::close(stream);
-  // A sanitizer maps terabytes beforehand: only what is added can be limited.
+  // A sanitizer maps terabytes in advance: only additional memory can be limited.
   if (const std::size_t mapped = mapped_bytes(); mapped > 0)
     limit(RLIMIT_AS, mapped + limits.memory_bytes, mapped + limits.memory_bytes);
   limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 1);
@@ -99,7 +99,7 @@ void shut_in(const ChildLimits& limits, int parent) {
 
 // ---- the parent's side ----
 
-/// What became of a child that did not end its message.
+/// The error for a child that did not complete its message.
 Error how_it_ended(int status, const ChildLimits& limits) {
   const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (number == SIGXCPU || number == SIGKILL)
@@ -113,7 +113,7 @@ Error how_it_ended(int status, const ChildLimits& limits) {
 
 }  // namespace
 
-/// A pipe's reading end and the process behind it; both are gone with it.
+/// The read end of a pipe and the child process; both are closed by the destructor.
 class WatchedChild::Process {
  public:
   Process(pid_t process, int pipe, const ChildLimits& limits)
@@ -136,7 +136,7 @@ class WatchedChild::Process {
   }
 
  private:
-  /// Waits for the process, ended by force or not; its status, where the system still has it.
+  /// Waits for the process, optionally killing it; its status, if still available.
   int end(bool by_force) {
     int status = 0;
     if (process_ <= 0) return status;
@@ -184,11 +184,11 @@ Result<WatchedChild> WatchedChild::start(const ChildWork& work, const ChildLimit
   };
   std::array<int, 2> ends{-1, -1};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return failed("no pipe");
-  ::fcntl(ends[1], F_SETPIPE_SZ, static_cast<int>(most_frame_bytes));  // refused, it is but slower
+  ::fcntl(ends[1], F_SETPIPE_SZ, static_cast<int>(most_frame_bytes));  // if refused, only slower
   const pid_t self = ::getpid();
   const pid_t process = ::fork();
   if (process == 0) {
-    // The standard streams are put aside: the pipe may lie among them.
+    // Avoids the standard streams, which may include the pipe.
     const int out = ::fcntl(ends[1], F_DUPFD_CLOEXEC, 3);
     ::close(ends[0]);
     ::close(ends[1]);

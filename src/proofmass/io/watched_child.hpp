@@ -10,33 +10,32 @@
 
 namespace proofmass::io {
 
-/// What a child process may use before it is ended.
+/// Resource limits of a child process.
 struct ChildLimits {
-  std::size_t memory_bytes = std::size_t{2} << 30;  ///< beyond what is mapped when it begins
+  std::size_t memory_bytes = std::size_t{2} << 30;  ///< beyond the memory mapped at its start
   unsigned cpu_s = 20;
-  unsigned silence_s = 60;  ///< without a word
+  unsigned silence_s = 60;  ///< without output
 };
 
-/// Hands bytes to whoever waits for them; false where nobody does any more.
+/// Passes bytes to the receiver; false if there is none any more.
 using ByteSink = std::function<bool(std::span<const char>)>;
 using ByteTaker = std::function<Status(std::span<const char>)>;
 
-/// Fills `into` from its front; 0 only at the end.
+/// Fills the beginning of `into`; 0 only at the end.
 using ByteFeed = std::function<Result<std::size_t>(std::span<char>)>;
 
-/// A message from a child is a run of frames: a kind, a length of at most most_frame_bytes, that
-/// many bytes; the last says that it is the end, or what went wrong.
+/// A message from a child is a sequence of frames: a kind, a length of at most most_frame_bytes,
+/// that many bytes; the last frame is the end or an error.
 inline constexpr std::size_t most_frame_bytes = std::size_t{1} << 20;
 
-/// Takes a message apart, whatever bytes it is made of.
+/// Parses a message from arbitrary bytes.
 class MessageReader {
  public:
   explicit MessageReader(ByteFeed feed) : feed_(std::move(feed)) {}
 
-  /// The next bytes that the message holds, never more than most_frame_bytes, good until the next
-  /// are asked for; none only at its end.
-  /// Errors: the one that the message tells; the feed's; corrupt (no message, or one that breaks
-  /// off).
+  /// The next bytes of the message, never more than most_frame_bytes, valid until the next call;
+  /// none only at its end.
+  /// Errors: the one in the message; the feed's; corrupt (not a message, or truncated).
   [[nodiscard]] Result<std::span<const char>> next();
 
  private:
@@ -45,16 +44,16 @@ class MessageReader {
   bool is_at_end_ = false;
 };
 
-/// Takes all of a message and hands on what it holds. Errors: MessageReader's; `take`'s.
+/// Reads a whole message and passes on its contents. Errors: MessageReader's; `take`'s.
 [[nodiscard]] Status take_message(const ByteFeed& feed, const ByteTaker& take);
 
-/// What a process is to do, with the sink that leads back to who started it.
+/// Task of a child process, with the sink that leads back to the parent.
 using ChildWork = std::function<Status(const ByteSink&)>;
 
-/// A process of its own for libraries that files may bring down: what `work` hands to its sink
-/// there arrives here, in order but in pieces of any length, when it is asked for; until then it
-/// waits. The child has no standard streams, default signals and the limits. It is gone when this
-/// is, or the thread that started it.
+/// A child process for libraries that damaged files can crash. What `work` passes to its sink there
+/// is received here, in order but in pieces of any length, on demand; until then the child waits.
+/// The child has no standard streams, default signals and the given limits. It ends with this
+/// object, or with the thread that started it.
 class WatchedChild {
  public:
   /// Errors: unreadable, if no process can be started.
@@ -66,8 +65,8 @@ class WatchedChild {
   WatchedChild& operator=(const WatchedChild&) = delete;
   ~WatchedChild();
 
-  /// The next bytes, good until the next are asked for; none only at the end, and nothing more
-  /// after an error. Errors: those of `work`; corrupt, if the child crashed or came to a limit.
+  /// The next bytes, valid until the next call; none only at the end, and none after an error.
+  /// Errors: those of `work`; corrupt, if the child crashed or reached a limit.
   [[nodiscard]] Result<std::span<const char>> next();
 
  private:
@@ -77,7 +76,7 @@ class WatchedChild {
   std::unique_ptr<Process> process_;
 };
 
-/// Runs `work` in a WatchedChild to its end; when this returns the child is gone, however it ended.
+/// Runs `work` in a WatchedChild to its end; when this returns the child has ended, in any case.
 /// Errors: those of `work` and `take`, and the child's.
 [[nodiscard]] Status run_in_child(const ChildWork& work,
                                   const ByteTaker& take,

@@ -34,7 +34,7 @@ std::size_t open_descriptors() {
   return static_cast<std::size_t>(std::distance(Entries("/proc/self/fd"), Entries()));
 }
 
-/// No child is left, running or dead.
+/// No child remains, running or dead.
 bool is_alone() {
   return ::waitpid(-1, nullptr, WNOHANG) == -1 && errno == ECHILD;
 }
@@ -187,7 +187,7 @@ TEST(Message, BelievesNoLengthAndNoKind) {
   EXPECT_FALSE(take_text("what\1\0\0\0x"s, text));
   const Status told = take_text("erro\2\0\0\0\x7Fx"s, text);
   ASSERT_FALSE(told);
-  EXPECT_EQ(told.error().code, Errc::corrupt);  // there is no error of that number
+  EXPECT_EQ(told.error().code, Errc::corrupt);  // an invalid error number
   EXPECT_EQ(told.error().message, "x");
   EXPECT_EQ(text, "");
 }

@@ -4,7 +4,7 @@
 
 namespace proofmass::io {
 
-// What a message from a child is made of.
+// Kinds of frames in a message from a child.
 
 enum class FrameKind : std::uint32_t { data = 0x61746164, error = 0x6F727265, end = 0x20646E65 };
 

@@ -39,7 +39,7 @@ std::string_view name_of(std::uint64_t encoding) {
   }
 }
 
-/// Walks through the chunks of a file.
+/// Iterates over the chunks of a file.
 class ChunkReader {
  public:
   explicit ChunkReader(const RandomBytes& file) : file_(file) {}
@@ -66,9 +66,9 @@ class ChunkReader {
  private:
   struct Chunk {
     std::string name;
-    std::uint64_t begin = 0;  ///< of its content
+    std::uint64_t begin = 0;  ///< offset of its content
     std::uint64_t size = 0;
-    std::uint64_t left = 0;  ///< bytes of the file from there on
+    std::uint64_t left = 0;  ///< bytes of the file from there
   };
 
   [[nodiscard]] std::string at(std::string_view what) const {
@@ -78,7 +78,7 @@ class ChunkReader {
     return {Errc::corrupt, fmt::format("byte {}: breaks off within {}", file_.size(), where)};
   }
 
-  /// As many of the bytes as there are.
+  /// At most as many bytes as there are.
   Result<std::string> text_at(std::uint64_t offset, std::size_t size) const {
     std::string text(size, '\0');
     const auto count = file_.read_at(offset, text);
@@ -165,7 +165,7 @@ class ChunkReader {
     return Done{};
   }
 
-  /// The lengths that do not fit into 32 bits.
+  /// The sizes that exceed 32 bits.
   Status read_long_sizes(const Chunk& chunk) {
     const auto bytes = text_at(chunk.begin, 16);
     if (!bytes) return bytes.error();

@@ -17,7 +17,7 @@ namespace {
 
 using Fields = std::map<std::string, std::string>;
 
-/// "Channel-1: Accel-X" and the like, a line each.
+/// "Channel-1: Accel-X" and similar, one per line.
 Fields fields_of(std::string_view comment) {
   Fields fields;
   while (!comment.empty()) {
@@ -36,13 +36,13 @@ std::string find(const Fields& fields, const std::string& key) {
   return found == fields.end() ? std::string{} : found->second;
 }
 
-/// The instant of a date with a time of day, taken for UTC unless it names its zone.
+/// A date and time of day, assumed to be UTC unless it has a zone.
 std::optional<std::int64_t> instant_of(std::string_view text) {
   const auto clock = read_clock(trimmed(text));
   return clock ? instant_ns(*clock) : std::nullopt;
 }
 
-/// The full scale in g that the comment names for an acceleration of whole numbers.
+/// The full scale in g given in the comment for an acceleration in integers.
 std::optional<double> scale_of(const WavHeader& header,
                                const Fields& fields,
                                const std::string& name,
@@ -54,7 +54,7 @@ std::optional<double> scale_of(const WavHeader& header,
   return is_told ? std::optional(scale.value) : std::nullopt;
 }
 
-/// Whether a channel says which samples are there: only 16 bits have the layout for it.
+/// True if a channel marks which samples are present: only 16-bit samples have this layout.
 bool is_auxiliary(const WavHeader& header, std::string_view name) {
   return bare_name(name) == "aux" && header.figure.kind == 'i' && header.figure.bytes == 2;
 }

@@ -85,7 +85,7 @@ class WavTable final : public TableReader {
     if (labels_.validity) strike_lost(into, done, rows);
   }
 
-  /// The sign bit of the auxiliary channel says that there were no data.
+  /// The sign bit of the auxiliary channel marks missing data.
   void strike_lost(std::span<const std::span<double>> into, std::size_t done, std::size_t rows) {
     const std::span<double> auxiliary = into[*labels_.validity];
     for (std::size_t k = done; k < done + rows; ++k) {

@@ -5,10 +5,10 @@
 
 #include "proofmass/io/mat_specimens.hpp"
 
-// Writes WAV files, whole and broken ones, for tests.
+// Writes WAV files, intact and damaged ones, for tests.
 namespace proofmass::io::specimen {
 
-/// A chunk, padded to an even length; `claimed` in place of its true length.
+/// A chunk, padded to an even length; `claimed` replaces its true length.
 inline std::string chunk(const std::string& name,
                          const std::string& content,
                          Order order = Order::little,
@@ -20,7 +20,7 @@ inline std::string chunk(const std::string& name,
 }
 
 struct WavFormat {
-  std::uint16_t encoding = 1;  ///< 1 whole numbers, 3 floating point
+  std::uint16_t encoding = 1;  ///< 1 integers, 3 floating point
   std::uint16_t channels = 1;
   std::uint32_t rate_hz = 100;
   std::uint16_t bits = 16;
@@ -36,7 +36,7 @@ inline std::string format_chunk(const WavFormat& f) {
                f.order);
 }
 
-/// A format that says its encoding in a longer chunk.
+/// A format with its encoding in an extended chunk.
 inline std::string extensible_chunk(const WavFormat& f, std::uint16_t valid_bits) {
   const auto row = static_cast<std::uint16_t>(f.channels * ((f.bits + 7) / 8));
   return chunk("fmt ", bytes_of<std::uint16_t>({0xFFFE, f.channels}) +
@@ -52,7 +52,7 @@ inline std::string riff(const std::string& chunks, Order order = Order::little) 
          chunks;
 }
 
-/// Samples in a file of the plainest kind.
+/// Samples in a file of the simplest kind.
 inline std::string wav(const WavFormat& f, const std::string& samples) {
   return riff(format_chunk(f) + chunk("data", samples, f.order), f.order);
 }

@@ -22,7 +22,7 @@ Errc code_of(const std::string& file) {
   return read ? Errc::invalid_argument : read.error().code;
 }
 
-/// Rows of three accelerations and a word of the instrument.
+/// Rows of three accelerations and a status word of the instrument.
 const std::string comment =
     "Time: 2014-08-01 10:00:00.500\nChannel-1: Accel-X\nScale-1: 8\nChannel-2: Accel-Y\n"
     "Scale-2: 8\nChannel-3: Accel-Z\nScale-3: 8\nChannel-4: Aux\n";

@@ -10,17 +10,17 @@
 
 namespace proofmass::io {
 
-/// A column of words as runs of equal ones, gathered row by row. Given up, with nothing kept, where
-/// the words are no names: more than most_names of them, more than most_runs runs, or one of more
-/// than longest_name bytes. Memory: that of the runs.
+/// A text column as runs of equal words, built row by row. Abandoned, keeping nothing, if the words
+/// cannot be names: more than most_names of them, more than most_runs runs, or one of more than
+/// longest_name bytes. Memory: that of the runs.
 class WordRuns {
  public:
   static constexpr std::size_t most_names = 256;
   static constexpr std::size_t most_runs = std::size_t{1} << 16;
   static constexpr std::size_t longest_name = 100;
 
-  /// The field of a row, blanks and quotes left on; rows ascend. A row that is left out, an empty
-  /// field and a word for nothing ("nan", "-", "none") end the run.
+  /// The field of a row, including blanks and quotes; rows ascend. A skipped row, an empty field
+  /// and a word for missing ("nan", "-", "none") end the run.
   void add(std::size_t row, std::string_view field) {
     if (given_up_) return;
     if (field == field_ && row == last_row_ + 1) {
@@ -33,7 +33,7 @@ class WordRuns {
 
   [[nodiscard]] std::size_t runs() const { return runs_.size(); }
   [[nodiscard]] std::size_t names() const { return names_.size(); }
-  /// Whether it says more than one word for all `rows` rows.
+  /// True if it has more than one word over all `rows` rows.
   [[nodiscard]] bool changes(std::size_t rows) const;
   [[nodiscard]] std::vector<Label> labels() const;
 
@@ -49,8 +49,8 @@ class WordRuns {
 
   std::vector<std::string> names_;
   std::vector<Run> runs_;
-  std::string field_;                ///< of the row before, as it came
-  std::optional<std::size_t> name_;  ///< what it reads, if anything
+  std::string field_;                ///< field of the previous row, as read
+  std::optional<std::size_t> name_;  ///< its word, if any
   std::size_t last_row_ = 0;
   bool given_up_ = false;
 };

@@ -43,7 +43,7 @@ std::optional<std::size_t> WrapFinder::find(double last,
   double shortest = 0.0;
   for (std::size_t i = 0; i < all_.size(); ++i) {
     const Wrap& wrap = all_[i];
-    // The top itself is read where ticks are divided and rounded.
+    // The upper limit itself occurs if ticks are divided and rounded.
     if (!(last <= wrap.top) || !(next >= wrap.bottom)) continue;
     if (wrap.needs_whole && !(is_whole(last) && is_whole(next))) continue;
     const double way = next + wrap.range() - last;

@@ -15,7 +15,7 @@ namespace {
 using Opener = Result<std::unique_ptr<RecordingWriter>> (*)(std::unique_ptr<OutputFile>,
                                                             const WriterHead&,
                                                             const WriteOptions&);
-/// Whether a format has room for labels: beside the samples, or behind them.
+/// Support of a format for labels: beside the samples, or after them.
 enum class LabelRoom { none, beside, behind };
 
 struct Extension {
@@ -48,7 +48,7 @@ const Extension* extension_of(std::string_view path) {
   const auto* found = std::ranges::find_if(
       extensions, [&](const Extension& e) { return path.ends_with(e.ending); });
   if (found != extensions.end()) return found;
-  // "/dev/stdout", or the pipe that a shell gives for ">(command)".
+  // "/dev/stdout", or the pipe of a shell's ">(command)".
   return is_special_file(std::string(path)) ? &extensions[0] : nullptr;
 }
 

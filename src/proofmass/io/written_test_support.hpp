@@ -16,7 +16,7 @@
 
 namespace proofmass::io {
 
-/// Doubles of every size, with every kind of trouble, at uneven stamps. Expects five samples.
+/// Doubles of every magnitude, with every kind of fault, at uneven stamps. Expects five samples.
 inline Recording troubled_recording(std::size_t samples, const std::vector<std::string>& names) {
   std::mt19937_64 random(11);
   Recording recording;
@@ -38,7 +38,7 @@ inline Recording troubled_recording(std::size_t samples, const std::vector<std::
   return recording;
 }
 
-/// Hands a recording to a writer, so many rows at a time, and closes it.
+/// Passes a recording to a writer, in blocks of the given number of rows, and closes it.
 inline Status write_in_pieces(RecordingWriter& writer,
                               const Recording& recording,
                               std::size_t rows) {
@@ -54,8 +54,8 @@ inline Status write_in_pieces(RecordingWriter& writer,
   return writer.finish(recording);
 }
 
-/// Whether all figures are the same to the last bit, any NaN being one, with names, units and
-/// times.
+/// Checks that all numbers are bitwise equal, any NaN being equal to any other, with names, units
+/// and times.
 inline void expect_same_recording(const Recording& read, const Recording& written) {
   ASSERT_EQ(read.channels.size(), written.channels.size());
   ASSERT_EQ(read.samples(), written.samples());

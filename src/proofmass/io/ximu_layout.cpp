@@ -12,12 +12,12 @@
 namespace proofmass::io {
 namespace {
 
-/// A file of figures by the end of its name, and the register that says its rate.
+/// A data file by the end of its name, and the register with its rate.
 struct DataFile {
   std::string_view ending;
   std::string_view rate_register;
 };
-// The maker's program changed the names of some.
+// The manufacturer's program changed some of the names.
 constexpr std::array data_files = std::to_array<DataFile>({
     {"_CalInertialAndMag", "InertialAndMagneticDataRate"},
     {"_CalInertialMagnetic", "InertialAndMagneticDataRate"},
@@ -32,8 +32,8 @@ constexpr std::array data_files = std::to_array<DataFile>({
     {"_EulerAngles", "QuaternionDataRate"},
 });
 
-/// An entry that belongs to the session `prefix`, by the end of its name; its number of entries if
-/// there is none.
+/// An entry of the session `prefix`, by the end of its name; the number of entries if there is
+/// none.
 std::size_t find_entry(const Archive& archive, const std::string& name) {
   const auto entries = archive.entries();
   for (std::size_t e = 0; e < entries.size(); ++e)
@@ -41,7 +41,7 @@ std::size_t find_entry(const Archive& archive, const std::string& name) {
   return entries.size();
 }
 
-/// The value of a register by its name; nullopt if the file has none.
+/// The value of a register by name; nullopt if the file does not have it.
 std::optional<std::uint64_t> register_in(std::string_view text, std::string_view name) {
   for (const std::string_view line : lines_of(text)) {
     if (field_of(line, ',', 4) != name) continue;
@@ -81,7 +81,7 @@ std::vector<DatedPacket> dates_in(std::string_view text) {
   return dates;
 }
 
-/// Rows of a table whose packet number, its first column, is in [first, last).
+/// Number of rows of a table whose packet number, the first column, is in [first, last).
 std::uint64_t rows_between(Archive& archive,
                            std::size_t entry,
                            std::uint64_t first,
@@ -112,7 +112,8 @@ std::uint64_t rows_between(Archive& archive,
   return 0;
 }
 
-/// The rate counted between the first and last date and time of the session; adds how it was found.
+/// The rate counted between the first and last date and time of the session; adds a note on its
+/// origin.
 std::optional<double> counted_rate_hz(Archive& archive,
                                       std::size_t entry,
                                       const std::string& session,
@@ -128,7 +129,7 @@ std::optional<double> counted_rate_hz(Archive& archive,
   return ximu_rate_counted(rows, seconds);
 }
 
-/// The rate of the card's own file beside the CSV that was made of it.
+/// The rate of the card's own file beside the CSV made from it.
 std::optional<double> card_rate_hz(Archive& archive, const std::string& session, std::string& how) {
   const auto entries = archive.entries();
   for (std::size_t e = 0; e < entries.size(); ++e) {

@@ -6,8 +6,7 @@
 namespace proofmass::io {
 namespace {
 
-/// Bytes of a packet of each kind, header and checksum included; 0: a command has as many as it
-/// needs.
+/// Packet length in bytes by type, header and checksum included; 0: a command of variable length.
 constexpr std::array<std::uint8_t, ximu_headers> lengths{4,  0,  4, 8,  2,  8,  6,  6, 20,
                                                          20, 10, 4, 18, 18, 10, 26, 26};
 

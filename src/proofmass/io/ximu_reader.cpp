@@ -13,7 +13,7 @@
 namespace proofmass::io {
 namespace {
 
-/// A column of a kind of packet; its figure is less `1 / 2^bits`.
+/// A column of a packet type; its raw value is in units of `1 / 2^bits`.
 struct Column {
   std::string_view heading;
   int bits = 0;
@@ -100,7 +100,7 @@ class PacketStream {
   std::array<char, 1 << 16> buffer_{};
   std::size_t at_ = 0;
   std::size_t filled_ = 0;
-  std::uint64_t begin_ = 0;  ///< byte of the file at which the buffer begins
+  std::uint64_t begin_ = 0;  ///< file offset of the buffer
   std::uint64_t packets_ = 0;
   std::uint64_t damaged_ = 0;
   std::uint64_t first_damaged_ = 0;
@@ -108,7 +108,7 @@ class PacketStream {
 
 using Counts = std::array<std::uint64_t, ximu_headers>;
 
-/// What a file holds: packets of each kind, in all and until its first and last date and time.
+/// Contents of a file: packets of each type, in total and until its first and last date and time.
 struct Survey {
   Counts all{};
   Counts until_first{};
@@ -240,7 +240,7 @@ bool claims_ximu(std::string_view head, std::string_view) {
   for (const char c : head) {
     const auto outcome = decoder.take(static_cast<std::uint8_t>(c));
     if (outcome == XimuDecoder::Outcome::damaged) return false;
-    constexpr std::size_t enough = 2;  // one in 65 536 of other bytes would have as many
+    constexpr std::size_t enough = 2;  // one in 65 536 random byte sequences would have as many
     if (outcome == XimuDecoder::Outcome::packet && ++good == enough) return true;
   }
   return false;

@@ -7,7 +7,7 @@
 
 namespace proofmass::io::specimen {
 
-/// A packet of an x-IMU as it is sent: header, data and checksum in groups of seven bits.
+/// A packet of an x-IMU as transmitted: header, data and checksum in groups of seven bits.
 inline std::string ximu_packet(std::uint8_t header,
                                const std::vector<std::uint8_t>& data,
                                std::uint8_t add_to_checksum = 0) {
@@ -36,7 +36,7 @@ inline std::string ximu_inertial(const std::vector<std::int16_t>& figures) {
   return ximu_packet(9, data);
 }
 
-/// 2000-01-01 10:20 and so many seconds, less than a minute.
+/// 2000-01-01 10:20 plus `second`, less than a minute.
 inline std::string ximu_date_time(int second) {
   const auto bcd = static_cast<std::uint8_t>(second / 10 * 16 + second % 10);
   return ximu_packet(5, {0x00, 0x01, 0x01, 0x10, 0x20, bcd});

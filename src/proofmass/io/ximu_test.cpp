@@ -12,7 +12,7 @@ using specimen::ximu_date_time;
 using specimen::ximu_inertial;
 using specimen::ximu_packet;
 
-/// Seconds of so many inertial packets each, a date and time before each of them.
+/// Seconds of the given number of inertial packets, each preceded by a date and time.
 std::string session(int seconds, int a_second) {
   std::string bytes;
   for (int s = 0; s < seconds; ++s) {

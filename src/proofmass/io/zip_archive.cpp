@@ -10,7 +10,7 @@
 namespace proofmass::io {
 namespace {
 
-/// The archive's bytes as libzip asks for them, one place at a time.
+/// The archive's bytes in the form required by libzip, one position at a time.
 class ZipBytes {
  public:
   explicit ZipBytes(std::unique_ptr<RandomBytes> bytes) : bytes_(std::move(bytes)) {}
@@ -75,7 +75,7 @@ class ZipBytes {
   zip_error_t error_{};
 };
 
-/// An archive that libzip has open, with the bytes behind it.
+/// An archive opened by libzip, with its bytes.
 struct OpenZip {
   explicit OpenZip(std::unique_ptr<RandomBytes> from) : bytes(std::move(from)) {}
   OpenZip(const OpenZip&) = delete;
@@ -87,19 +87,19 @@ struct OpenZip {
   zip_t* zip = nullptr;
 };
 
-/// One entry, unpacked. What breaks off, or fails its checksum, ends it with a note.
+/// One entry, decompressed. Truncated data or a wrong checksum end it with a note.
 class EntrySource final : public ByteSource {
  public:
   EntrySource(std::shared_ptr<OpenZip> zip, zip_file_t* file, const zip_stat_t& stat)
       : zip_(std::move(zip)), file_(file), claimed_(stat.size), packed_(stat.comp_size) {
-    // Only bytes that lie in the archive as they are can be counted on.
+    // The size is reliable only for uncompressed entries.
     if (stat.comp_method == ZIP_CM_STORE) size_ = std::min(stat.size, stat.comp_size);
   }
   ~EntrySource() override { zip_fclose(file_); }
 
   Result<std::size_t> read(std::span<char> into) override {
     if (ended_ || into.empty()) return std::size_t{0};
-    // Figures in text take a tenth when packed; a hundredth where most of them repeat.
+    // Numbers as text compress to a tenth; to a hundredth if most of them repeat.
     constexpr std::uint64_t large = std::uint64_t{1} << 30, most_packed = 250;
     if (position_ > large && position_ / most_packed > packed_)
       return Error{Errc::unsupported,
@@ -187,7 +187,7 @@ class ZipArchive final : public Archive {
   std::vector<zip_uint64_t> places_;
 };
 
-/// Whether a name stays within the archive.
+/// True if a name stays within the archive.
 bool stays_within(std::string_view name) {
   if (name.starts_with('/')) return false;
   for (std::size_t begin = 0; begin <= name.size();) {
@@ -198,7 +198,7 @@ bool stays_within(std::string_view name) {
   return true;
 }
 
-/// The entries of the directory that are files, with their places in it.
+/// The entries of the directory that are files, with their indices in it.
 Result<std::unique_ptr<Archive>> list_entries(std::shared_ptr<OpenZip> zip) {
   constexpr zip_int64_t most_entries = 65'536;
   constexpr std::size_t longest_name = 1024;

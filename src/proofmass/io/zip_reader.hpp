@@ -10,7 +10,7 @@
 
 namespace proofmass::io {
 
-/// By the first bytes.
+/// Decides by the first bytes.
 [[nodiscard]] bool claims_zip(std::string_view head, std::string_view file_name);
 
 /// The recordings in a zip archive, as open_tables_in() finds them.

@@ -10,15 +10,15 @@
 
 namespace proofmass::io::specimen {
 
-/// A file of a zip archive made by hand, and what is wrong with it.
+/// A file of a hand-made zip archive, and its faults.
 struct ZipFile {
   std::string name;
   std::string text;
   bool deflate = false;
   std::uint16_t flags = 0;  ///< 1: encrypted
-  int method = -1;          ///< other than what it is
+  int method = -1;          ///< if it differs from the actual one
   bool wrong_checksum = false;
-  std::uint32_t claimed_more = 0;  ///< bytes that the directory claims beyond those there
+  std::uint32_t claimed_more = 0;  ///< bytes in the directory beyond those present
 };
 
 inline std::string little(std::uint32_t value, int bytes) {

@@ -58,12 +58,12 @@ class ZstdSource final : public ByteSource {
       return;
     }
     inside_frame_ = outcome != 0;
-    // What did not fit waits in the library and comes without further bytes.
+    // Data that did not fit are buffered in the library and need no further input.
     is_full_ = out.pos == out.size && inside_frame_;
   }
 
   std::unique_ptr<ByteSource> source_;
-  ZSTD_DCtx* context_;  ///< of windows up to 128 MiB, the library's own limit
+  ZSTD_DCtx* context_;  ///< for windows up to 128 MiB, the library's own limit
   std::array<char, 1 << 16> compressed_{};
   ZSTD_inBuffer in_{nullptr, 0, 0};
   std::uint64_t consumed_ = 0;

@@ -75,7 +75,8 @@ std::string inside(const std::string& place, const std::string& key) {
 // What names an object of a list: its first text that is a name.
 std::string name_in(const Fields& fields) {
   for (const Field& field : fields)
-    if (field.key == "name" || field.key == "file" || field.key == "channel" || field.key == "id")
+    if (field.key == "name" || field.key == "file" || field.key == "channel" || field.key == "id" ||
+        field.key == "key")
       if (const auto* name = std::get_if<std::string>(&field.scalar.state())) return *name;
   return {};
 }
@@ -284,6 +285,12 @@ Field without_value(Field field, std::string_view why) {
   field.scalar = {};
   field.figure.reset();
   field.fields.reset();
+  return field;
+}
+
+Field list_or_null(std::string key, std::optional<Fields> items, About about) {
+  Field field{std::move(key), {.kind = Kind::list, .nullable = true}, std::move(about)};
+  field.fields = std::move(items);
   return field;
 }
 

@@ -121,6 +121,8 @@ namespace field {
 [[nodiscard]] Field fixed_list(std::string key, Fields items, About about = {});
 /// The same entry without its value.
 [[nodiscard]] Field without_value(Field field, std::string_view why);
+/// A list that may be absent.
+[[nodiscard]] Field list_or_null(std::string key, std::optional<Fields> items, About about = {});
 
 /// A list of strings.
 [[nodiscard]] Field texts(std::string key, const std::vector<std::string>& items, About about = {});

@@ -20,24 +20,6 @@ namespace {
 constexpr double width = 900.0, left = 66.0, right = 26.0, foot = 48.0, row = 20.0;
 constexpr double swatch = 24.0, letter = 6.9;  // advance of the 12.5-unit type, on average
 
-std::string_view colour(Ink ink) {
-  switch (ink) {
-    case Ink::blue:
-      return "blue";
-    case Ink::orange:
-      return "orange";
-    case Ink::green:
-      return "green";
-    case Ink::purple:
-      return "purple";
-    case Ink::red:
-      return "red";
-    case Ink::grey:
-      break;
-  }
-  return "grey";
-}
-
 // From the values of an axis to places on the page.
 struct Mapping {
   double low, high;
@@ -115,11 +97,16 @@ Mappings mappings(const Figure& figure) {
 using Out = std::back_insert_iterator<std::string>;
 
 void point(Out out, const Mappings& map, double x, double y) {
-  fmt::format_to(out, "{:.1f},{:.1f} ", map.x(x), map.y(y));
+  fmt::format_to(out, "{:.2f},{:.2f} ", map.x(x), map.y(y));
 }
 
 double text_width(std::string_view text) {
   return letter * static_cast<double>(letters(text));
+}
+
+// By which the page's script finds the shapes of a curve, and what it calls them.
+std::string data_name(const std::string& label) {
+  return label.empty() ? "" : fmt::format(" data-name=\"{}\"", escaped(label));
 }
 
 std::string_view stroke(Mark mark) {
@@ -130,7 +117,8 @@ std::string_view stroke(Mark mark) {
 void draw_line(std::string& text, const Mappings& map, const Curve& curve) {
   const Polyline line = thinned(curve.x, curve.y);
   const Out out(text);
-  fmt::format_to(out, "<path class=\"{} pm-{}\" d=\"", stroke(curve.mark), colour(curve.ink));
+  fmt::format_to(out, "<path class=\"{} pm-{}\"{} d=\"", stroke(curve.mark), name_of(curve.ink),
+                 data_name(curve.label));
   bool pen_down = false;
   for (std::size_t k = 0; k < line.x.size(); ++k) {
     if (!map.x.shows(line.x[k]) || !map.y.shows(line.y[k])) {
@@ -149,11 +137,12 @@ void draw_line(std::string& text, const Mappings& map, const Curve& curve) {
 
 void draw_points(std::string& text, const Mappings& map, const Curve& curve) {
   const Polyline line = thinned(curve.x, curve.y);
+  const std::string name = data_name(curve.label);
   for (std::size_t k = 0; k < line.x.size(); ++k) {
     if (!map.x.shows(line.x[k]) || !map.y.shows(line.y[k])) continue;
     fmt::format_to(Out(text),
-                   "<circle class=\"pm-fill pm-{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>\n",
-                   colour(curve.ink), map.x(line.x[k]), map.y(line.y[k]));
+                   "<circle class=\"pm-fill pm-{}\"{} cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"3\"/>\n",
+                   name_of(curve.ink), name, map.x(line.x[k]), map.y(line.y[k]));
   }
 }
 
@@ -162,7 +151,7 @@ void draw_ticks(std::string& text, const Mappings& map, const Curve& curve) {
   for (const double x : curve.x) {
     if (map.x.holds(x)) columns.insert(static_cast<int>(std::lround(map.x(x))));
   }
-  fmt::format_to(Out(text), "<path class=\"pm-line pm-{}\" d=\"", colour(curve.ink));
+  fmt::format_to(Out(text), "<path class=\"pm-line pm-events pm-{}\" d=\"", name_of(curve.ink));
   for (const int column : columns) {
     fmt::format_to(Out(text), "M{},{:.1f}v-9", column, map.y.from);
   }
@@ -192,7 +181,8 @@ void draw(std::string& text, const Mappings& map, const Band& band) {
   const auto shown = [&](std::size_t k) {
     return map.x.shows(area.x[k]) && map.y.shows(area.lower[k]) && map.y.shows(area.upper[k]);
   };
-  fmt::format_to(Out(text), "<path class=\"pm-band pm-{}\" d=\"", colour(band.ink));
+  fmt::format_to(Out(text), "<path class=\"pm-band pm-{}\"{} d=\"", name_of(band.ink),
+                 data_name(band.label));
   for (std::size_t begin = 0; begin < area.x.size();) {
     std::size_t end = begin;
     while (end < area.x.size() && shown(end)) ++end;
@@ -219,17 +209,20 @@ void draw(std::string& text, const Mappings& map, const Callout& callout) {
   const double x = map.x(callout.x), y = map.y(callout.y);
   if (callout.bare) {
     fmt::format_to(Out(text),
-                   "<text class=\"pm-callout pm-mid pm-{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-                   colour(callout.ink), x, y + 4.0, escaped(callout.text));
+                   "<text class=\"pm-callout pm-mid pm-{}\" data-dy=\"4\" x=\"{:.1f}\" "
+                   "y=\"{:.1f}\">{}</text>\n",
+                   name_of(callout.ink), x, y + 4.0, escaped(callout.text));
     return;
   }
   const double wide = 10.0 + text_width(callout.text);
   const bool turned = x + wide > map.x.to || (callout.left && x - wide > map.x.from);
+  const double dx = turned ? -7.0 : 7.0, dy = callout.below ? 17.0 : -7.0;
   fmt::format_to(Out(text),
                  "<circle class=\"pm-fill pm-{0}\" cx=\"{1:.1f}\" cy=\"{2:.1f}\" r=\"3.5\"/>"
-                 "<text class=\"pm-callout{3} pm-{0}\" x=\"{4:.1f}\" y=\"{5:.1f}\">{6}</text>\n",
-                 colour(callout.ink), x, y, turned ? " pm-end" : "", turned ? x - 7.0 : x + 7.0,
-                 callout.below ? y + 17.0 : y - 7.0, escaped(callout.text));
+                 "<text class=\"pm-callout{3} pm-{0}\" data-dx=\"{4}\" data-dy=\"{5}\" "
+                 "x=\"{6:.1f}\" y=\"{7:.1f}\">{8}</text>\n",
+                 name_of(callout.ink), x, y, turned ? " pm-end" : "", dx, dy, x + dx, y + dy,
+                 escaped(callout.text));
 }
 
 std::vector<Tick> ticks_of(const Mapping& map, const Axis& axis, int most) {
@@ -258,6 +251,7 @@ void draw_minor_grid(std::string& text, const Mapping& map, const Mapping& acros
 
 void draw_axes(std::string& text, const Mappings& map, const Figure& figure) {
   const Out out(text);
+  text += "<g class=\"pm-scale\">\n";
   draw_minor_grid(text, map.x, map.y, true);
   draw_minor_grid(text, map.y, map.x, false);
   for (const Tick& tick :
@@ -275,6 +269,7 @@ void draw_axes(std::string& text, const Mappings& map, const Figure& figure) {
                    "<text class=\"pm-tick pm-mid\" x=\"{0:.1f}\" y=\"{3:.1f}\">{4}</text>\n",
                    x, map.y.from, map.y.to, map.y.from + 18.0, escaped(tick.label));
   }
+  text += "</g>\n";
   if (figure.x.scale == AxisScale::bare) return;
   fmt::format_to(out,
                  "<path class=\"pm-axis\" d=\"M{0:.1f},{1:.1f}H{2:.1f}\"/>"
@@ -296,14 +291,14 @@ std::vector<Entry> legend(const Figure& figure) {
     std::string_view shape = "<path class=\"{2} pm-{0}\" d=\"M0,0H{1}\"/>";
     if (curve.mark == Mark::points) shape = "<circle class=\"pm-fill pm-{0}\" cx=\"12\" r=\"3\"/>";
     if (curve.mark == Mark::ticks) shape = "<path class=\"pm-line pm-{0}\" d=\"M12,-5v10\"/>";
-    entries.push_back({curve.label, fmt::format(fmt::runtime(shape), colour(curve.ink), swatch,
+    entries.push_back({curve.label, fmt::format(fmt::runtime(shape), name_of(curve.ink), swatch,
                                                 stroke(curve.mark))});
   }
   for (const Band& band : figure.bands) {
     if (band.label.empty()) continue;
     entries.push_back(
         {band.label, fmt::format("<path class=\"pm-band pm-{}\" d=\"M0,-6h{}v12h-{}z\"/>",
-                                 colour(band.ink), swatch, swatch)});
+                                 name_of(band.ink), swatch, swatch)});
   }
   for (const Level& level : figure.levels) {
     if (level.label.empty()) continue;
@@ -317,6 +312,7 @@ std::vector<Entry> legend(const Figure& figure) {
 // their height.
 double draw_legend(std::string& text, const std::vector<Entry>& entries) {
   double x = left, y = 0.5 * row;
+  text += "<g class=\"pm-legend\">\n";
   for (const Entry& entry : entries) {
     const double wide = swatch + 8.0 + text_width(entry.label);
     if (x > left && x + wide > width - right) {
@@ -329,10 +325,40 @@ double draw_legend(std::string& text, const std::vector<Entry>& entries) {
                    x, y, entry.sample, swatch + 6.0, escaped(entry.label));
     x += wide + 18.0;
   }
+  text += "</g>\n";
   return entries.empty() ? 0.0 : y + 0.5 * row;
 }
 
+// What the page's script needs to turn places back into values. A map without axes has none.
+std::string scale_of(const Mappings& map, const Figure& figure) {
+  if (figure.x.scale == AxisScale::bare || figure.y.scale == AxisScale::bare) return "";
+  const auto axis = [](const Mapping& one) {
+    return fmt::format("{} {} {:.17g} {:.17g} {}", one.from, one.to, one.low, one.high,
+                       one.log ? "log" : "linear");
+  };
+  return fmt::format(" data-x=\"{}\" data-y=\"{}\" data-label=\"{}\"", axis(map.x), axis(map.y),
+                     escaped(figure.x.label));
+}
+
 }  // namespace
+
+std::string_view name_of(Ink ink) {
+  switch (ink) {
+    case Ink::blue:
+      return "blue";
+    case Ink::orange:
+      return "orange";
+    case Ink::green:
+      return "green";
+    case Ink::purple:
+      return "purple";
+    case Ink::red:
+      return "red";
+    case Ink::grey:
+      break;
+  }
+  return "grey";
+}
 
 std::string svg(const Figure& figure, const std::string& id) {
   std::string body;
@@ -344,20 +370,21 @@ std::string svg(const Figure& figure, const std::string& id) {
   map.y.from = bottom;
   map.y.to = top;
   draw_axes(body, map, figure);
-  fmt::format_to(Out(body),
-                 "<clipPath id=\"{}-box\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
-                 "height=\"{:.1f}\"/></clipPath>\n<g clip-path=\"url(#{}-box)\">\n",
-                 id, left - 1.0, top - 1.0, width - left - right + 2.0, figure.height + 2.0, id);
+  fmt::format_to(
+      Out(body),
+      "<clipPath id=\"{}-box\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
+      "height=\"{:.1f}\"/></clipPath>\n<g class=\"pm-plot\" clip-path=\"url(#{}-box)\">\n",
+      id, left - 1.0, top - 1.0, width - left - right + 2.0, figure.height + 2.0, id);
   for (const Band& band : figure.bands) draw(body, map, band);
   for (const Level& level : figure.levels) draw(body, map, level);
   for (const Curve& curve : figure.curves) draw(body, map, curve);
   for (const Callout& callout : figure.callouts) draw(body, map, callout);
   return fmt::format(
-      "<svg class=\"pm-figure\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" "
+      "<svg class=\"pm-figure\" viewBox=\"0 0 {:.0f} {:.0f}\"{} role=\"img\" "
       "aria-labelledby=\"{}-title {}-desc\" xmlns=\"http://www.w3.org/2000/svg\">\n"
       "<title id=\"{}-title\">{}</title>\n<desc id=\"{}-desc\">{}</desc>\n{}</g>\n</svg>\n",
-      width, bottom + foot, id, id, id, escaped(figure.title), id, escaped(figure.description),
-      body);
+      width, bottom + foot, scale_of(map, figure), id, id, id, escaped(figure.title), id,
+      escaped(figure.description), body);
 }
 
 std::string figure_css() {

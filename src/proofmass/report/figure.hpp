@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 // Plots as SVG text, drawn in the colours of the page around them (CSS variables), so that one file
@@ -29,6 +30,8 @@ struct Axis {
 /// Colours that stay apart for colour-blind eyes and in grey print.
 /// Source: M. Okabe & K. Ito, Color Universal Design (2008), tuned for contrast on either ground.
 enum class Ink { blue, orange, green, purple, red, grey };
+/// "blue", …: of the colour in style sheets and documents.
+[[nodiscard]] std::string_view name_of(Ink ink);
 
 enum class Mark {
   line,

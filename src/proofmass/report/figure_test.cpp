@@ -87,6 +87,17 @@ TEST(Svg, RulesALogAxisBetweenThePowersOfTen) {
   EXPECT_EQ(count(svg(figure, "f"), "pm-minor"), 1);
 }
 
+TEST(Svg, StatesItsScalesForTheScript) {
+  Figure figure = plot({1.0, 10.0, 100.0});
+  figure.y = {.label = "y", .scale = AxisScale::log, .min = 1.0, .max = 1000.0};
+  const std::string text = svg(figure, "f");
+  EXPECT_NE(text.find("data-x=\"66 874 0 2 linear\""), std::string::npos) << text;
+  EXPECT_TRUE(std::regex_search(text, std::regex("data-y=\"[0-9]+ [0-9]+ 1 1000 log\"")));
+  EXPECT_NE(text.find("data-name=\"curve &lt;1&gt;\" d="), std::string::npos);
+  figure.x.scale = AxisScale::bare;
+  EXPECT_EQ(svg(figure, "f").find("data-x"), std::string::npos);
+}
+
 TEST(Svg, KeepsTheLegendAboveThePlot) {
   Figure figure = plot({1.0, 2.0});
   for (int k = 0; k < 12; ++k) figure.levels.push_back({"a rather long name of a level", 1.5});
@@ -106,17 +117,25 @@ TEST(Svg, StaysSmallHoweverLongTheSeries) {
   EXPECT_LT(svg(plot(std::move(y)), "f").size(), 80'000U);
 }
 
-TEST(Html, FetchesNothingAndRunsNothing) {
+TEST(Html, FetchesNothing) {
   Page page{.verb = "wheel", .title = "<x>.csv", .inputs = {"<x>.csv"}, .conclusion = "It turned."};
   page.sections = {{.heading = "H", .figures = {plot({1.0, 2.0}), plot({2.0, 1.0})}}};
   const std::string text = html(page);
-  for (const char* word : {"<script", "<link", "<img", "@import", "url(http", "src="}) {
+  for (const char* word : {"<link", "<img", "@import", "url(http", "src="}) {
     EXPECT_EQ(text.find(word), std::string::npos) << word;
   }
-  EXPECT_EQ(count(text, "https?://"), 2);  // the two names of the SVG namespace
+  EXPECT_EQ(count(text, "https?://"), 3);  // names of the SVG namespace, one in the script
   EXPECT_EQ(text.find("<x>.csv"), std::string::npos);
   EXPECT_NE(text.find("id=\"figure-1-title\""), std::string::npos);
   EXPECT_NE(text.find("id=\"figure-2-title\""), std::string::npos);
+}
+
+TEST(Html, HasAScriptOnlyWhereItHasFigures) {
+  Page page{.verb = "wheel", .title = "t", .inputs = {}, .conclusion = "It turned."};
+  page.sections = {{.heading = "H"}};
+  EXPECT_EQ(count(html(page), "<script"), 0);
+  page.sections.front().figures = {plot({1.0, 2.0}), plot({2.0, 1.0})};
+  EXPECT_EQ(count(html(page), "<script"), 1);
 }
 
 TEST(Html, PutsTheConclusionBeforeEverythingElseAndFaultsBeforeSections) {

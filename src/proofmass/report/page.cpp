@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "proofmass/core/version.hpp"
+#include "proofmass/report/page_script.hpp"
 #include "proofmass/report/page_style.hpp"
 #include "proofmass/report/wording.hpp"
 
@@ -39,12 +40,18 @@ std::string unbroken(const std::string& cell) {
   return text;
 }
 
-void write_cells(std::string& text, const std::vector<std::string>& cells, bool head) {
+void write_cells(std::string& text,
+                 const std::vector<std::string>& cells,
+                 bool head,
+                 const std::string& link = {}) {
   text += "<tr>";
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const std::string_view tag = head || k == 0 ? "th" : "td";
     const std::string_view scope = head ? " scope=\"col\"" : k == 0 ? " scope=\"row\"" : "";
-    fmt::format_to(Out(text), "<{0}{1}>{2}</{0}>", tag, scope, unbroken(cells[k]));
+    const std::string cell = k > 0 || link.empty() ? unbroken(cells[k])
+                                                   : fmt::format("<a href=\"{}\">{}</a>",
+                                                                 escaped(link), escaped(cells[k]));
+    fmt::format_to(Out(text), "<{0}{1}>{2}</{0}>", tag, scope, cell);
   }
   text += "</tr>\n";
 }
@@ -66,7 +73,8 @@ void write(std::string& text, const Table& table) {
   }
   text += "<tbody>\n";
   const std::size_t shown = cut ? most_rows : table.rows.size();
-  for (std::size_t k = 0; k < shown; ++k) write_cells(text, table.rows[k], false);
+  for (std::size_t k = 0; k < shown; ++k)
+    write_cells(text, table.rows[k], false, k < table.links.size() ? table.links[k] : "");
   text += "</tbody></table></div>\n";
 }
 
@@ -201,14 +209,15 @@ void write_plain_notes(std::string& text, const std::vector<Note>& notes) {
 }  // namespace
 
 std::string html(const Page& page) {
+  const std::string command = page.action.empty() ? page.verb : page.verb + ' ' + page.action;
   std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"generator\" content=\"Proofmass {0}\">\n"
-      "<title>{1} – proofmass {2}</title>\n<style>\n{3}{4}</style>\n</head>\n<body>\n<main>\n"
+      "<title>{1} – proofmass {2}</title>\n<style>\n{3}{4}{6}</style>\n</head>\n<body>\n<main>\n"
       "<p class=\"from\">Proofmass {0} · {2}</p>\n<h1>{1}</h1>\n<p class=\"conclusion\">{5}</p>\n",
-      version(), escaped(page.title), escaped(page.verb), figure_css(), page_css(),
-      escaped(page.conclusion));
+      version(), escaped(page.title), escaped(command), figure_css(), page_css(),
+      escaped(page.conclusion), page_script_css());
   write(text, page.key_figures);
   write_grave_notes(text, page.notes);
   if (page.contents) write_contents(text, page.sections);
@@ -222,8 +231,10 @@ std::string html(const Page& page) {
   fmt::format_to(
       Out(text),
       "<p>Made by Proofmass {}. A figure written a ± b carries its standard deviation b; "
-      "bands are 95 % where they do not say otherwise.</p>\n</footer>\n</main>\n</body>\n</html>\n",
+      "bands are 95 % where they do not say otherwise.</p>\n</footer>\n</main>\n",
       version());
+  if (count.figures > 0) fmt::format_to(Out(text), "<script>\n{}</script>\n", page_script());
+  text += "</body>\n</html>\n";
   return text;
 }
 

@@ -10,7 +10,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/report/figure.hpp"
 
-// One self-contained page: no script, no network, no second file.
+// One self-contained page: no network, no second file, readable without its script.
 namespace proofmass::report {
 
 struct Table {
@@ -20,6 +20,7 @@ struct Table {
   bool stacks = false;     ///< where it is narrow, that cell stands above the others of its row
   bool page_only = false;  ///< too wide or too detailed for a terminal
   bool long_list = false;  ///< may be cut short, as the JSON document has all rows
+  std::vector<std::string> links = {};  ///< of the rows' first cells, to files beside the page
 };
 
 /// A figure, or what draws it: a result with a million samples is not copied into plots that nobody
@@ -71,6 +72,7 @@ struct KeyFigure {
 
 struct Page {
   std::string verb;
+  std::string action = {};          ///< of a verb that has several: "show" of `sensor show`
   std::string title;                ///< "wheel1.csv and wheel2.csv"
   std::vector<std::string> inputs;  ///< files, with their size in samples and seconds
   std::string conclusion;           ///< what it comes to, in a sentence or two

@@ -82,8 +82,8 @@ void add_conditions(Object& schema, const std::vector<const Fields*>& objects) {
   schema.push_back({"allOf", std::move(conditions)});
 }
 
-// "properties" and what belongs to them.
-void add_properties(Object& schema, Object properties, const std::vector<const Fields*>& objects) {
+// "properties" and "required".
+void add_entries(Object& schema, Object properties, const std::vector<const Fields*>& objects) {
   Array required;
   for (const Member& given : properties) required.push_back(given.key);
   for (const KeySamples& one : by_key(objects)) {
@@ -93,6 +93,11 @@ void add_properties(Object& schema, Object properties, const std::vector<const F
   schema.push_back({"properties", std::move(properties)});
   schema.push_back({"required", std::move(required)});
   add_conditions(schema, objects);
+}
+
+// The same, and that there are no others.
+void add_properties(Object& schema, Object properties, const std::vector<const Fields*>& objects) {
+  add_entries(schema, std::move(properties), objects);
   schema.push_back({"additionalProperties", false});
 }
 
@@ -277,25 +282,61 @@ Object quantity_schema() {
            Array{Object{{"type", "null"}}, figure_schema("number", Object{{"type", "string"}})}}};
 }
 
+// What a schema begins with.
+Object title(const std::string& description, const std::string& verb, const std::string& name) {
+  return {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+          {"$id", name + ".schema.json"},
+          {"title", "proofmass " + verb + " --json"},
+          {"description", description},
+          {"type", "object"}};
+}
+
+// What every document has.
+Object common_properties(const std::string& verb) {
+  Object properties = head(verb);
+  properties.push_back({"provenance", provenance()});
+  return properties;
+}
+
+std::string text_of(Object schema) {
+  schema.push_back({"$defs", Object{{"quantity", quantity_schema()}}});
+  return json_text(schema) + '\n';
+}
+
+std::vector<const Fields*> fields_of(const std::vector<Document>& samples) {
+  PM_EXPECTS(!samples.empty());
+  std::vector<const Fields*> objects;
+  for (const Document& sample : samples) objects.push_back(&sample.fields);
+  return objects;
+}
+
 }  // namespace
 
 std::string json_schema(const std::string& description,
                         const std::vector<Document>& samples,
                         const std::string& name) {
-  PM_EXPECTS(!samples.empty());
+  const std::vector<const Fields*> objects = fields_of(samples);
   const std::string& verb = samples.front().page.verb;
-  std::vector<const Fields*> objects;
-  for (const Document& sample : samples) objects.push_back(&sample.fields);
-  Object schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                {"$id", (name.empty() ? verb : name) + ".schema.json"},
-                {"title", "proofmass " + verb + " --json"},
-                {"description", description},
-                {"type", "object"}};
-  Object properties = head(verb);
-  properties.push_back({"provenance", provenance()});
-  add_properties(schema, std::move(properties), objects);
-  schema.push_back({"$defs", Object{{"quantity", quantity_schema()}}});
-  return json_text(schema) + '\n';
+  Object schema = title(description, verb, name.empty() ? verb : name);
+  add_properties(schema, common_properties(verb), objects);
+  return text_of(std::move(schema));
+}
+
+std::string json_schema_of_kinds(const std::string& description,
+                                 const std::vector<std::vector<Document>>& kinds) {
+  PM_EXPECTS(!kinds.empty());
+  Array alternatives;
+  for (const std::vector<Document>& samples : kinds) {
+    Object alternative;
+    add_entries(alternative, {}, fields_of(samples));
+    alternatives.push_back(std::move(alternative));
+  }
+  const std::string& verb = kinds.front().front().page.verb;
+  Object schema = title(description, verb, verb);
+  add_entries(schema, common_properties(verb), {});
+  schema.push_back({"anyOf", std::move(alternatives)});
+  schema.push_back({"unevaluatedProperties", false});
+  return text_of(std::move(schema));
 }
 
 }  // namespace proofmass::report

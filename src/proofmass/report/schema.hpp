@@ -16,4 +16,8 @@ namespace proofmass::report {
                                       const std::vector<Document>& samples,
                                       const std::string& name = {});
 
+/// The same of a verb whose documents are of several kinds: one of them, by the samples of each.
+[[nodiscard]] std::string json_schema_of_kinds(const std::string& description,
+                                               const std::vector<std::vector<Document>>& kinds);
+
 }  // namespace proofmass::report

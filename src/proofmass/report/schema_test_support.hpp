@@ -12,18 +12,29 @@
 // For tests.
 namespace proofmass::report {
 
-/// docs/schema is what json_schema() makes. With PROOFMASS_WRITE_SCHEMAS set the file is written.
-inline void expect_schema(const std::string& description,
-                          const std::vector<Document>& samples,
-                          const std::string& name = {}) {
-  const std::string schema = json_schema(description, samples, name);
-  const std::string path = std::string(PROOFMASS_SOURCE_DIR) + "/docs/schema/" +
-                           (name.empty() ? samples.front().page.verb : name) + ".schema.json";
+/// docs/schema has this file with this text. With PROOFMASS_WRITE_SCHEMAS set it is written.
+inline void expect_schema_file(const std::string& name, const std::string& schema) {
+  const std::string path =
+      std::string(PROOFMASS_SOURCE_DIR) + "/docs/schema/" + name + ".schema.json";
   if (std::getenv("PROOFMASS_WRITE_SCHEMAS") != nullptr) std::ofstream(path) << schema;
   std::stringstream file;
   file << std::ifstream(path).rdbuf();
   EXPECT_TRUE(schema == file.str())
       << path << " differs: PROOFMASS_WRITE_SCHEMAS=1 before this test program regenerates it";
+}
+
+/// docs/schema is what json_schema() makes.
+inline void expect_schema(const std::string& description,
+                          const std::vector<Document>& samples,
+                          const std::string& name = {}) {
+  expect_schema_file(name.empty() ? samples.front().page.verb : name,
+                     json_schema(description, samples, name));
+}
+
+/// docs/schema is what json_schema_of_kinds() makes.
+inline void expect_schema_of_kinds(const std::string& description,
+                                   const std::vector<std::vector<Document>>& kinds) {
+  expect_schema_file(kinds.front().front().page.verb, json_schema_of_kinds(description, kinds));
 }
 
 }  // namespace proofmass::report

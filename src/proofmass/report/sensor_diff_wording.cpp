@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "proofmass/core/units.hpp"
-#include "proofmass/report/sensor_report.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {
@@ -28,7 +27,7 @@ bool in_calibration(const FigureComparison& figure) {
   return figure.before.section == "calibration";
 }
 
-/// What the figures of one verdict are called, inside or outside the calibration.
+/// Names of the figures of one verdict, inside or outside the calibration.
 std::vector<std::string> names_of(const SensorComparison& comparison,
                                   Verdict verdict,
                                   bool calibration) {
@@ -64,7 +63,7 @@ std::string calibration_words(const SensorComparison& comparison) {
   }
   if (std::ranges::none_of(comparison.figures, in_calibration))
     return "Neither file has a calibration.";
-  return "Whether the calibration has changed cannot be told.";
+  return "The files do not determine whether the calibration has changed.";
 }
 
 void add_changes(const SensorComparison& comparison, std::vector<std::string>& findings) {
@@ -72,7 +71,7 @@ void add_changes(const SensorComparison& comparison, std::vector<std::string>& f
   if (!inside.empty())
     findings.push_back(fmt::format("Changed by more than their uncertainty: {}.", listed(inside)));
   else if (comparison.calibration == Verdict::changed)
-    findings.emplace_back("No single figure of it shows that by itself.");
+    findings.emplace_back("No single figure of it has changed significantly by itself.");
   const auto others = names_of(comparison, Verdict::changed, false);
   const auto same = names_of(comparison, Verdict::same, false);
   if (!others.empty())
@@ -83,28 +82,29 @@ void add_changes(const SensorComparison& comparison, std::vector<std::string>& f
                                    listed(same)));
   auto open = names_of(comparison, Verdict::cannot_tell, true);
   for (auto& name : names_of(comparison, Verdict::cannot_tell, false)) open.push_back(name);
-  if (!open.empty()) findings.push_back(fmt::format("Cannot be told: {}.", listed(open)));
+  if (!open.empty()) findings.push_back(fmt::format("Undetermined: {}.", listed(open)));
 }
 
 void add_effect(const SensorComparison& comparison, std::vector<std::string>& findings) {
   if (!comparison.effect) {
-    findings.push_back("The largest error cannot be told: " + comparison.no_effect + ".");
+    findings.push_back("The largest error is undetermined: " + comparison.no_effect + ".");
     return;
   }
   const sensor::CalibrationEffect& effect = *comparison.effect;
   const LargestError& force = effect.force_mps2;
   if (force.value == 0.0) return;
   findings.push_back(
-      fmt::format("Using OLD instead of NEW makes an error of up to {} ({}) at 1 g, and of up to "
+      fmt::format("Using OLD instead of NEW causes an error of up to {} ({}) at 1 g, and of up to "
                   "{} in direction.",
                   milli_g_words(force), words(force, 1.0, "m/s²"), angle_words(effect.angle_rad)));
   if (force.by_chance_95 && *force.by_chance_95 > 0.0)
-    findings.push_back(
-        fmt::format("For their uncertainty alone, two calibrations of one unchanged sensor would "
-                    "differ by up to {} in 95 % of cases.",
-                    chance_words(effect)));
+    findings.push_back(fmt::format(
+        "By their uncertainty alone, two calibrations of one unchanged sensor differ by "
+        "up to {} in 95 % of cases.",
+        chance_words(effect)));
   if (!effect.without_std.empty())
-    findings.push_back("The uncertainty of that cannot be told: " + effect.without_std + ".");
+    findings.push_back("The uncertainty of this error is undetermined: " + effect.without_std +
+                       ".");
 }
 
 }  // namespace

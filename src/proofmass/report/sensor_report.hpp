@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "proofmass/core/recording.hpp"
+#include "proofmass/report/document.hpp"
 #include "proofmass/sensor/sensor_comparison.hpp"
 #include "proofmass/sensor/sensor_model.hpp"
 
@@ -16,14 +18,8 @@ struct SensorShow {
   std::vector<Note> notes;
 };
 
-/// The document of `sensor show`: docs/schema/sensor.schema.json.
-[[nodiscard]] std::string sensor_show_json(const SensorShow& report);
-
-/// Every figure with its unit, standard deviation and origin.
-[[nodiscard]] std::string sensor_show_html(const SensorShow& report);
-
-/// The same for a terminal.
-[[nodiscard]] std::string sensor_show_text(const SensorShow& report);
+/// The result of `sensor show`: every figure with its unit, standard deviation and origin.
+[[nodiscard]] Document describe(const SensorShow& report);
 
 /// Two sensor files and what has changed from the one to the other.
 struct SensorDiff {
@@ -32,16 +28,19 @@ struct SensorDiff {
   sensor::SensorComparison comparison;
 };
 
-/// The document of `sensor diff`: docs/schema/sensor.schema.json.
-[[nodiscard]] std::string sensor_diff_json(const SensorDiff& report);
+/// The result of `sensor diff`: what has changed, by how many standard deviations, and the error
+/// that the old file would cause.
+[[nodiscard]] Document describe(const SensorDiff& report);
 
-/// What has changed, by how many standard deviations, and what it would do to use the old file.
-[[nodiscard]] std::string sensor_diff_html(const SensorDiff& report);
+/// A sensor file in another format.
+struct SensorExport {
+  std::string file, format;           ///< format: "imu-yaml" or "c-header"
+  std::optional<std::string> output;  ///< file written, "-" for standard output
+  std::string text;                   ///< the export itself
+  std::vector<Note> notes;
+};
 
-/// The same for a terminal.
-[[nodiscard]] std::string sensor_diff_text(const SensorDiff& report);
-
-/// What it comes to, in sentences.
-[[nodiscard]] std::vector<std::string> sensor_diff_findings(const SensorDiff& report);
+/// The result of `sensor export`.
+[[nodiscard]] Document describe(const SensorExport& report);
 
 }  // namespace proofmass::report

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "proofmass/report/schema_test_support.hpp"
+#include "proofmass/report/sensor_diff_wording.hpp"
+
 namespace proofmass::report::sensor_report_test {
 namespace {
 
@@ -50,12 +53,12 @@ bool says(const std::vector<std::string>& sentences, std::string_view part) {
 }
 
 TEST(SensorShow, HasEachFigureWithUnitStdAndOrigin) {
-  const std::string text = sensor_show_text({"s.toml", calibrated(0.1), {}});
-  EXPECT_TRUE(text.starts_with("ADXL335 <rim>, serial number 17, 2026-11-21\n")) << text;
+  const std::string text = to_text(describe(SensorShow{"s.toml", calibrated(0.1), {}}));
+  EXPECT_TRUE(has(text, "Sensor         ADXL335 <rim>\n  Serial number  17\n")) << text;
   EXPECT_TRUE(
       has(text, "calibration (7 figures), noise (3 figures); nothing on drift, electrical"));
   EXPECT_TRUE(has(text, "bias x   0.1000 ± 0.0030")) << text;
-  EXPECT_TRUE(has(text, "212    ug/√Hz  not said  static.csv")) << text;
+  EXPECT_TRUE(has(text, "212    ug/√Hz  not stated  static.csv")) << text;
   EXPECT_TRUE(has(text, "tumble"));
 }
 
@@ -66,12 +69,12 @@ TEST(SensorShow, NamesTheStrongestCorrelation) {
   C[0][0] = 9e-6;
   C[3][3] = 4e-8;
   C[0][3] = C[3][0] = -0.5 * 3e-3 * 2e-4;
-  EXPECT_TRUE(has(sensor_show_text({"s.toml", model, {}}),
+  EXPECT_TRUE(has(to_text(describe(SensorShow{"s.toml", model, {}})),
                   "most correlated are bias x and scale x, −0.50"));
 }
 
 TEST(SensorShow, ItsDocumentIsInSiAndSaysWhatIsWritten) {
-  const Json document = Json::parse(sensor_show_json({"s.toml", calibrated(0.1), {}}));
+  const Json document = Json::parse(to_json(describe(SensorShow{"s.toml", calibrated(0.1), {}})));
   EXPECT_EQ(document["action"], "show");
   EXPECT_EQ(document["serial"], "17");
   const Json& white = document["figures"].back();
@@ -86,12 +89,12 @@ TEST(SensorShow, ItsDocumentIsInSiAndSaysWhatIsWritten) {
 }
 
 TEST(SensorShow, OfAnEmptyFileSaysSo) {
-  EXPECT_TRUE(has(sensor_show_text({"s.toml", {}, {}}), "The file has no figures."));
-  EXPECT_TRUE(has(sensor_show_html({"s.toml", {}, {}}), "The file has no figures."));
+  EXPECT_TRUE(has(to_text(describe(SensorShow{"s.toml", {}, {}})), "The file has no figures."));
+  EXPECT_TRUE(has(to_html(describe(SensorShow{"s.toml", {}, {}})), "The file has no figures."));
 }
 
 TEST(SensorShow, ItsPageEscapesTheName) {
-  const std::string page = sensor_show_html({"s.toml", calibrated(0.1), {}});
+  const std::string page = to_html(describe(SensorShow{"s.toml", calibrated(0.1), {}}));
   EXPECT_TRUE(has(page, "ADXL335 &lt;rim&gt;"));
   EXPECT_FALSE(has(page, "<rim>"));
 }
@@ -118,23 +121,23 @@ TEST(SensorDiff, SaysThatNothingChanged) {
   EXPECT_EQ(sensor_diff_findings(diff_of({}, {}))[0], "Neither file has a calibration.");
 }
 
-TEST(SensorDiff, SaysWhatCannotBeTold) {
+TEST(SensorDiff, SaysWhatIsUndetermined) {
   SensorModel other = again(0.1);
   other.noise.white[0]->value = 110;
   const SensorDiff diff = diff_of(calibrated(0.1), other);
-  EXPECT_TRUE(says(sensor_diff_findings(diff), "Cannot be told: noise.white x."));
-  EXPECT_TRUE(has(sensor_diff_text(diff), "cannot be told: no uncertainty in OLD and NEW"));
+  EXPECT_TRUE(says(sensor_diff_findings(diff), "Undetermined: noise.white x."));
+  EXPECT_TRUE(has(to_text(describe(diff)), "undetermined: no uncertainty in OLD and NEW"));
 }
 
 TEST(SensorDiff, ShowsBothFilesInTheNewOnesUnit) {
   SensorModel other = again(0.1);
   other.calibration.bias[0] = make_figure(120.0, "mm/s^2", "tumble 2");
   other.calibration.bias[0]->std = 3.0;
-  EXPECT_TRUE(has(sensor_diff_text(diff_of(calibrated(0.1), other)), "100.0 ± 3.0"));
+  EXPECT_TRUE(has(to_text(describe(diff_of(calibrated(0.1), other))), "100.0 ± 3.0"));
 }
 
 TEST(SensorDiff, ItsDocumentHasFiguresEffectAndAReasonForEveryNull) {
-  const Json document = Json::parse(sensor_diff_json(diff_of(calibrated(0.1), again(0.15))));
+  const Json document = Json::parse(to_json(describe(diff_of(calibrated(0.1), again(0.15)))));
   EXPECT_EQ(document["action"], "diff");
   EXPECT_EQ(document["verdict"], "changed");
   EXPECT_EQ(document["input"], (Json{"a/old.toml", "b/new.toml"}));
@@ -151,8 +154,41 @@ TEST(SensorDiff, ItsDocumentHasFiguresEffectAndAReasonForEveryNull) {
 }
 
 TEST(SensorDiff, ItsPageHasTheFigureWhereThereIsSomethingToDraw) {
-  EXPECT_TRUE(has(sensor_diff_html(diff_of(calibrated(0.1), again(0.15))), "<svg"));
-  EXPECT_FALSE(has(sensor_diff_html(diff_of(calibrated(0.1), calibrated(0.1))), "<svg"));
+  EXPECT_TRUE(has(to_html(describe(diff_of(calibrated(0.1), again(0.15)))), "<svg"));
+  EXPECT_FALSE(has(to_html(describe(diff_of(calibrated(0.1), calibrated(0.1)))), "<svg"));
+}
+
+/// With every entry that a calibration may have.
+SensorModel full(double x_bias_mps2) {
+  SensorModel model = again(x_bias_mps2);
+  model.calibration.misalignment = make_axis_figures({0.01, 0.02, 0.03}, "rad", "tumble 2");
+  for (auto& figure : model.calibration.misalignment) figure->std = 1e-4;
+  model.calibration.dof = make_figure(20.0, "1", "tumble 2");
+  auto& C = model.calibration.covariance.emplace();
+  for (auto& row : C) row.fill(0.0);
+  for (std::size_t k = 0; k < 9; ++k) C[k][k] = k < 3 ? 9e-6 : k < 6 ? 4e-8 : 1e-8;
+  return model;
+}
+
+TEST(Schemas, Sensor) {
+  SensorModel other = calibrated(0.1);
+  other.calibration.bias[0].reset();
+  other.calibration.bias[1]->std.reset();
+  other.noise.white[0]->value = 110.0;
+  expect_schema_of_kinds(
+      "A sensor file as it is (show), compared with another (diff), or in another format (export).",
+      {{describe(SensorShow{"s.toml", full(0.1), {}}), describe(SensorShow{"s.toml", other, {}})},
+       {describe(diff_of(full(0.1), full(0.2))), describe(diff_of(full(0.1), calibrated(0.1))),
+        describe(diff_of(other, again(0.1)))},
+       {describe(SensorExport{"s.toml", "imu-yaml", "s.yaml", "text", {}})}});
+}
+
+TEST(SensorExport, WithoutAFileSaysThatTheDocumentHasTheText) {
+  const Json document =
+      Json::parse(to_json(describe(SensorExport{"s.toml", "c-header", {}, "text", {}})));
+  EXPECT_TRUE(document["output"].is_null());
+  EXPECT_TRUE(has(document["warnings"][0].get<std::string>(), "output: null: no --output"));
+  EXPECT_EQ(document["text"], "text");
 }
 
 }  // namespace

@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "proofmass/core/recording.hpp"
+#include "proofmass/report/document.hpp"
+#include "proofmass/simulate/procedure.hpp"
 #include "proofmass/simulate/rig.hpp"
 
 namespace proofmass::report {
@@ -15,10 +16,17 @@ struct SimulateReport {
   const simulate::RigResult& result;
 };
 
-/// The document of `simulate`: docs/schema/simulate.schema.json.
-[[nodiscard]] std::string simulate_json(const SimulateReport& report);
+/// What was simulated, and which files hold it.
+[[nodiscard]] Document describe(const SimulateReport& report);
 
-/// A few lines for a terminal: what was simulated and where it lies.
-[[nodiscard]] std::string simulate_text(const SimulateReport& report);
+struct ProcedureReport {
+  std::vector<std::string> inputs{};      ///< the description, if it came from a file
+  std::string output, truth{}, sensor{};  ///< files written
+  const simulate::ProcedureOptions& options;
+  const simulate::ProcedureResult& result;
+};
+
+/// The same of a calibration procedure or a slide, with the figures of the true sensor.
+[[nodiscard]] Document describe(const ProcedureReport& report);
 
 }  // namespace proofmass::report

@@ -112,7 +112,7 @@ Fields channel_fields(const TuneReport& report, std::size_t k) {
 
 const std::string unsettled = "the gain does not settle within the study";
 
-Fields case_fields(const GainCase& one) {
+Fields case_fields(const estimate::GainCase& one) {
   const estimate::GainStudy& study = one.study;
   Fields settling;
   for (const auto& time_s : study.settling_s)
@@ -127,7 +127,7 @@ Fields case_fields(const GainCase& one) {
     gains.push_back(field::numbers("", instant.gain));
     variances.push_back(field::numbers("", instant.variance));
   }
-  return {field::text("label", one.label),
+  return {field::text("label", case_words(one)),
           field::number("process_psd", study.options.jerk_psd_m2ps5),
           field::number("reading_variance", study.options.accel_variance_m2ps4),
           field::number("step_s", study.options.step_s),
@@ -147,7 +147,7 @@ Fields step_fields(const estimate::StepSizeEffect& step) {
           field::number("settling_s", step.settling_s, {.why_null = unsettled})};
 }
 
-Fields study_fields(const TuneStudy& study) {
+Fields study_fields(const estimate::TuneStudy& study) {
   return {field::text("channel", study.channel),
           field::text("definition",
                       "position, velocity and acceleration with the acceleration measured; a gain "
@@ -166,7 +166,7 @@ Fields tune_fields(const TuneReport& report) {
     channels.push_back(field::object({}, channel_fields(report, k)));
   return {
       field::text("model", estimate::name_of(tuning.model)),
-      field::text("model_reason", report.model_reason),
+      field::text("model_reason", choice_words(report.choice)),
       field::records("parameters", tuning.parameters,
                      [&](const TunedParameter& one) { return parameter_fields(report, one); }),
       field::number("log_likelihood", tuning.log_likelihood,
@@ -213,7 +213,7 @@ Section parameters_section(const TuneReport& report) {
   Section section{
       .heading = fmt::format("Model {}", estimate::name_of(report.tuning.model)),
       .paragraphs = {"The data are modelled as " + model_words(report.tuning.model) + ".",
-                     report.model_reason},
+                     choice_words(report.choice)},
       .tables = {channels_table(report), parameters_table(report)},
       .on_terminal = true};
   for (const TunedParameter& parameter : report.tuning.parameters)
@@ -232,7 +232,7 @@ Section innovations_section(const TuneReport& report, std::size_t channel) {
   return section;
 }
 
-Section study_section(const TuneStudy& study) {
+Section study_section(const estimate::TuneStudy& study) {
   return {
       .heading = study.channel + ": gain and covariance",
       .paragraphs = {"They depend on Q, R and the step, not on the data: Q as the density of the "
@@ -290,7 +290,7 @@ Document describe(const TuneReport& report) {
   sections.push_back(consistency_section(report.consistency, noise_names(report.tuning.model)));
   for (std::size_t k = 0; k < report.channels.size() && k < most_with_figures; ++k)
     sections.push_back(innovations_section(report, k));
-  for (const TuneStudy& study : report.studies) sections.push_back(study_section(study));
+  for (const estimate::TuneStudy& study : report.studies) sections.push_back(study_section(study));
   sections.push_back(method_section());
   return document;
 }

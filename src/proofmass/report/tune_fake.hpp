@@ -17,12 +17,11 @@ inline TuneReport fake_tuned(double step_std) {
   }
   TuneReport report;
   report.inputs = {"rest.csv"};
-  report.model_reason = "Chosen by --model.";
   report.tuning =
       estimate::tune({{"x", 100.0, {values}}}, {.model = estimate::TuneModel::rest}).value();
   report.channels = {{"x", *parse_unit("m/s^2"), 1}};
   report.consistency = estimate::consistency_of(report.tuning);
-  TuneStudy study{"x", {{"as tuned", estimate::gain_study({})}}, {}};
+  estimate::TuneStudy study{"x", {{.study = estimate::gain_study({})}}, {}};
   const std::vector<double> steps{0.1, 1.0};
   study.steps = estimate::step_size_study({}, steps);
   report.studies.push_back(std::move(study));

@@ -55,7 +55,7 @@ Figure autocorrelation_figure(const TuneReport& report, std::size_t channel) {
   return figure;
 }
 
-Figure gain_figure(const TuneStudy& study) {
+Figure gain_figure(const estimate::TuneStudy& study) {
   Figure figure{.title = study.channel + ": gain against time",
                 .description =
                     "What share of a reading's surprise the filter takes for "
@@ -64,8 +64,8 @@ Figure gain_figure(const TuneStudy& study) {
                 .x = {.label = "Time (s)", .scale = AxisScale::log},
                 .y = {.label = "Gain of acceleration", .min = 0.0, .max = 1.05}};
   for (std::size_t k = 0; k < study.cases.size(); ++k) {
-    const GainCase& one = study.cases[k];
-    Curve curve{one.label, {}, {}, inks[k % inks.size()]};
+    const estimate::GainCase& one = study.cases[k];
+    Curve curve{case_words(one), {}, {}, inks[k % inks.size()]};
     for (const estimate::GainInstant& instant : one.study.instants) {
       if (instant.t_s <= 0.0) continue;
       curve.x.push_back(instant.t_s);
@@ -80,7 +80,7 @@ Figure gain_figure(const TuneStudy& study) {
   return figure;
 }
 
-Figure covariance_figure(const TuneStudy& study) {
+Figure covariance_figure(const estimate::TuneStudy& study) {
   constexpr std::array names{"position (m)", "velocity (m/s)", "acceleration (m/s²)"};
   Figure figure{.title = study.channel + ": standard deviations against time, as tuned",
                 .description =
@@ -101,7 +101,7 @@ Figure covariance_figure(const TuneStudy& study) {
   return figure;
 }
 
-Figure step_figure(const TuneStudy& study) {
+Figure step_figure(const estimate::TuneStudy& study) {
   Figure figure{.title = study.channel + ": standard deviation against the step",
                 .description =
                     "Of the acceleration, once the gain has settled: readings further "

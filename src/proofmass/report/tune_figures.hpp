@@ -17,10 +17,10 @@ namespace proofmass::report {
 [[nodiscard]] Figure autocorrelation_figure(const TuneReport& report, std::size_t channel);
 
 /// Gain of the acceleration against time, each case with where it has settled.
-[[nodiscard]] Figure gain_figure(const TuneStudy& study);
+[[nodiscard]] Figure gain_figure(const estimate::TuneStudy& study);
 /// Standard deviations of position, velocity and acceleration against time, as tuned.
-[[nodiscard]] Figure covariance_figure(const TuneStudy& study);
+[[nodiscard]] Figure covariance_figure(const estimate::TuneStudy& study);
 /// Standard deviation of the acceleration against the step.
-[[nodiscard]] Figure step_figure(const TuneStudy& study);
+[[nodiscard]] Figure step_figure(const estimate::TuneStudy& study);
 
 }  // namespace proofmass::report

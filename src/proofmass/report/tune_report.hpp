@@ -5,8 +5,9 @@
 
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/units.hpp"
-#include "proofmass/estimate/gain_study.hpp"
 #include "proofmass/estimate/tune.hpp"
+#include "proofmass/estimate/tune_choice.hpp"
+#include "proofmass/estimate/tune_study.hpp"
 #include "proofmass/report/document.hpp"
 
 namespace proofmass::report {
@@ -18,27 +19,14 @@ struct TuneChannel {
   std::size_t segments = 1;
 };
 
-/// A filter with certain figures, and how its gain comes to rest.
-struct GainCase {
-  std::string label;  ///< "x as tuned"
-  estimate::GainStudy study;
-};
-
-/// Gain and covariance of the figures found.
-struct TuneStudy {
-  std::string channel;
-  std::vector<GainCase> cases;  ///< the first as tuned
-  std::vector<estimate::StepSizeEffect> steps;
-};
-
 struct TuneReport {
   std::vector<std::string> inputs;
   std::vector<Note> notes;
-  std::string model_reason;  ///< why this model
+  estimate::TuneChoice choice;
   estimate::Tuning tuning;
   std::vector<TuneChannel> channels;  ///< as tuning.series
   estimate::Consistency consistency;
-  std::vector<TuneStudy> studies;  ///< of channels with two white noises
+  std::vector<estimate::TuneStudy> studies;  ///< of channels with two white noises
 };
 
 /// Model, parameters, innovations, study of gain and covariance. It refers to the report, which

@@ -154,14 +154,37 @@ Table parameters_table(const TuneReport& report) {
   return table;
 }
 
-Table settling_table(const TuneStudy& study) {
+std::string choice_words(const estimate::TuneChoice& choice) {
+  using enum estimate::TuneBasis;
+  const std::string share = fmt::format("{} % of the recording is at rest",
+                                        std::lround(100.0 * choice.rest_share.value_or(0.0)));
+  if (choice.basis == no_acceleration)
+    return "Chosen because the channels do not measure acceleration.";
+  if (choice.basis == in_motion)
+    return fmt::format("Chosen because only {}; --model rest would use the rests alone.", share);
+  std::string words =
+      choice.basis == given ? "Chosen by --model." : fmt::format("Chosen because {}.", share);
+  if (!choice.rests.empty())
+    words += fmt::format(" Only the {} are used, each from a level of its own.",
+                         count_words(choice.rests.size(), "rest"));
+  else if (choice.rest_share && *choice.rest_share < 1.0)
+    words += " No rest was found in it: all of it is used.";
+  return words;
+}
+
+std::string case_words(const estimate::GainCase& one) {
+  if (one.Q_factor > 1.0) return "Q four times";
+  return one.R_factor > 1.0 ? "R four times" : "as tuned";
+}
+
+Table settling_table(const estimate::TuneStudy& study) {
   Table table{"Gain of the filter",
               {"Case", "Q", "R", "Gain of acceleration", "settles in",
                "Gain of velocity settles in", "Gain of position settles in", "Std of acceleration"},
               {}};
-  for (const GainCase& one : study.cases) {
+  for (const estimate::GainCase& one : study.cases) {
     const estimate::GainStudy& s = one.study;
-    table.rows.push_back({one.label, significant(s.options.jerk_psd_m2ps5, 3),
+    table.rows.push_back({case_words(one), significant(s.options.jerk_psd_m2ps5, 3),
                           significant(s.options.accel_variance_m2ps4, 3),
                           significant(s.limit[2], 3), time_words(s.settling_s[2]),
                           time_words(s.settling_s[1]), time_words(s.settling_s[0]),
@@ -170,7 +193,7 @@ Table settling_table(const TuneStudy& study) {
   return table;
 }
 
-Table step_table(const TuneStudy& study) {
+Table step_table(const estimate::TuneStudy& study) {
   Table table{"Step between readings, Q and R as tuned",
               {"Step", "Gain", "settles in", "Std after a reading", "and before it"},
               {}};

@@ -35,13 +35,19 @@ namespace proofmass::report {
 /// What the model takes the channel to hold.
 [[nodiscard]] std::string model_words(estimate::TuneModel model);
 
+/// Why this model was chosen, and which samples it was tuned on: one or two sentences.
+[[nodiscard]] std::string choice_words(const estimate::TuneChoice& choice);
+
+/// "as tuned", "Q four times"
+[[nodiscard]] std::string case_words(const estimate::GainCase& one);
+
 /// What a user of the model calls the figures that a verdict would move.
 [[nodiscard]] NoiseNames noise_names(estimate::TuneModel model);
 
 /// Parameters, one a row.
 [[nodiscard]] Table parameters_table(const TuneReport& report);
 /// Settling of each case, and what each step comes to.
-[[nodiscard]] Table settling_table(const TuneStudy& study);
-[[nodiscard]] Table step_table(const TuneStudy& study);
+[[nodiscard]] Table settling_table(const estimate::TuneStudy& study);
+[[nodiscard]] Table step_table(const estimate::TuneStudy& study);
 
 }  // namespace proofmass::report

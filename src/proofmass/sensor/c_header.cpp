@@ -14,14 +14,14 @@
 namespace proofmass::sensor {
 namespace {
 
-/// The character as an identifier may have it: a small letter, a digit or '_'.
+/// The character as permitted in an identifier: a lower-case letter, a digit or '_'.
 char identifier_char(char c) {
   if (c >= 'A' && c <= 'Z') return static_cast<char>(c - 'A' + 'a');
   const bool allowed = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
   return allowed ? c : '_';
 }
 
-/// "ADXL335 at the rim" as "adxl335_at_the_rim"; never two '_' in a row, which C++ reserves.
+/// "ADXL335 at the rim" as "adxl335_at_the_rim"; never two consecutive '_', which C++ reserves.
 std::string identifier(const SensorModel& model) {
   std::string out;
   for (const char c : model.name)
@@ -38,7 +38,7 @@ std::string capitals(std::string text) {
   return text;
 }
 
-/// What an SI unit is called in a name: "_mps2".
+/// Suffix of a name for an SI unit: "_mps2".
 std::string_view suffix(std::string_view si_symbol) {
   struct Suffix {
     std::string_view symbol, name;
@@ -56,7 +56,7 @@ std::string_view suffix(std::string_view si_symbol) {
   return found == suffixes.end() ? std::string_view() : found->name;
 }
 
-/// Where the figures come from, said once if it is the same for all.
+/// Origin of the figures, written once if it is the same for all.
 std::string origins(const AxisFigures& figures) {
   const auto text = [](const std::optional<Figure>& f) {
     return !f ? std::string("not known") : f->origin.empty() ? "origin not said" : f->origin;
@@ -66,7 +66,7 @@ std::string origins(const AxisFigures& figures) {
   return comment_text(fmt::format("x: {}; y: {}; z: {}", x, y, z));
 }
 
-/// Writes definitions, and remembers the first that no float can hold.
+/// Writes definitions, and keeps the first value that does not fit a float.
 class Definitions {
  public:
   explicit Definitions(std::string prefix) : prefix_(std::move(prefix)) {}
@@ -124,7 +124,7 @@ class Definitions {
   std::string prefix_, text_, too_large_;
 };
 
-/// The unit of the reading that the calibration corrects, where firmware can do so on every axis.
+/// The unit of the reading that the calibration corrects, if firmware can do so on every axis.
 Result<std::string> firmware_unit(const Calibration& calibration) {
   auto unit = reading_unit(calibration);
   if (!unit || *unit == "m/s^2") return unit;
@@ -137,7 +137,7 @@ Result<std::string> firmware_unit(const Calibration& calibration) {
   return unit;
 }
 
-/// How the reading comes about, for the one who writes the firmware.
+/// Description of the reading for the author of the firmware.
 std::string reading_text(const Electrical& electrical, std::string_view unit) {
   const bool ratiometric = electrical.reference_supply.has_value();
   const bool by_volts = missing_axes(electrical.sensitivity).empty() &&

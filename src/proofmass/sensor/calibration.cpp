@@ -24,7 +24,7 @@ Error missing(const Channel& channel, std::string_view figure) {
                                       " (not 0) in the sensor file"};
 }
 
-/// A unit that a calibration's scale may have, and what its reading then is.
+/// A permitted unit of a calibration's scale, and the corresponding reading.
 struct Reading {
   std::string_view scale, bias;
   Quantity quantity;
@@ -33,7 +33,7 @@ constexpr std::array<Reading, 3> readings{{{"1", "m/s^2", Quantity::acceleration
                                            {"V/(m/s^2)", "V", Quantity::voltage},
                                            {"counts/(m/s^2)", "counts", Quantity::counts}}};
 
-/// The first figure that is not in that SI unit; nullptr if there is none.
+/// The first figure whose SI unit differs; nullptr if there is none.
 const Figure* first_not_in(std::string_view si_symbol, const AxisFigures& figures) {
   for (const auto& figure : figures)
     if (figure && figure->unit.si_symbol != si_symbol) return &*figure;
@@ -61,7 +61,7 @@ Quantity quantity_of_lsb(const Figure& lsb) {
   return lsb.unit.si_symbol == "V" ? Quantity::voltage : Quantity::acceleration;
 }
 
-/// V_ref / V_s at each sample, or one number where no supply is recorded.
+/// V_ref / V_s at each sample, or one number if no supply is recorded.
 Result<std::vector<double>> supply_correction(const Electrical& electrical,
                                               const Recording& recording) {
   if (!electrical.reference_supply) return std::vector{1.0};
@@ -83,7 +83,7 @@ void multiply(std::vector<double>& values, const std::vector<double>& by) {
   for (std::size_t k = 0; k < values.size(); ++k) values[k] *= by.size() == 1 ? by[0] : by[k];
 }
 
-/// One channel as the calibration's reading; see Electrical for the equations.
+/// Conversion of one channel to the calibration's reading; see Electrical for the equations.
 struct Nominal {
   const Electrical& electrical;
   const std::vector<double>& supply_correction;
@@ -110,7 +110,7 @@ struct Nominal {
     return values;
   }
 
-  /// What the LSB has turned into volts or an acceleration, back.
+  /// Reverses the conversion of counts to volts or acceleration by the LSB.
   Result<std::vector<double>> to_counts(std::vector<double> values, const Channel& channel) const {
     if (!electrical.lsb || electrical.lsb->si() == 0.0 ||
         quantity_of_lsb(*electrical.lsb) != channel.unit.quantity)
@@ -141,7 +141,7 @@ void correct(const Calibration& calibration, Columns& columns) {
   const auto M = correction_matrix(calibration);
   const std::array<double, 3> bias{si_or(calibration.bias[0], 0.0), si_or(calibration.bias[1], 0.0),
                                    si_or(calibration.bias[2], 0.0)};
-  // T is upper triangular: row i needs the columns from i on only, which are not yet overwritten.
+  // T is upper triangular: row i uses only the columns from i on, which are not yet overwritten.
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t k = 0; k < columns[row].size(); ++k) {
       double sum = 0.0;
@@ -152,7 +152,7 @@ void correct(const Calibration& calibration, Columns& columns) {
     }
 }
 
-/// True where T mixes an axis into another that was recorded, and that axis was not.
+/// True if T couples an axis that was not recorded into one that was.
 bool lacks_an_axis(const Calibration& calibration, const Columns& columns) {
   const auto M = correction_matrix(calibration);
   for (std::size_t row = 0; row < 3; ++row)

@@ -39,7 +39,8 @@ Status check_figures(const MeasuredCalibration& measured) {
   return Done{};
 }
 
-/// That it is symmetric, has no negative variance in any direction, and is that of the stds.
+/// Checks that it is symmetric, has no negative variance in any direction, and agrees with the
+/// stds.
 Status check_covariance(const MeasuredCalibration& measured) {
   const auto& C = *measured.covariance;
   const auto figures = nine_measured(measured);

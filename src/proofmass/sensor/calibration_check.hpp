@@ -8,19 +8,19 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/sensor/calibration_update.hpp"
 
-// Whether a measured calibration can be one.
+// Validity checks of a measured calibration.
 namespace proofmass::sensor {
 
-/// The nine figures in the order of the covariance, and what they are called.
+/// The nine figures in the order of the covariance, and their names.
 [[nodiscard]] std::array<std::optional<Uncertain>, 9> nine_measured(
     const MeasuredCalibration& measured);
 inline constexpr std::array<std::string_view, 9> nine_names{
     "bias x",  "bias y",          "bias z",          "scale x",        "scale y",
     "scale z", "misalignment yz", "misalignment zy", "misalignment zx"};
 
-/// That something was measured, numbers are finite, standard deviations not negative, and the
-/// covariance, if there is one, symmetric, without a negative variance, and that of the standard
-/// deviations. Errors: invalid_argument, not_finite.
+/// Checks that something was measured, that numbers are finite, that standard deviations are not
+/// negative, and that the covariance, if present, is symmetric, positive semidefinite and
+/// consistent with the standard deviations. Errors: invalid_argument, not_finite.
 [[nodiscard]] Status check_measured(const MeasuredCalibration& measured);
 
 }  // namespace proofmass::sensor

@@ -29,7 +29,7 @@ struct Spread {
   Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(9, 9);
 };
 
-/// Of the figures that are not carried over; an Error names one without a standard deviation.
+/// For the figures that are not carried over; an Error names one without a standard deviation.
 Result<Spread> spread_of(const Calibration& mine, const Calibration& other) {
   const auto figures = nine_figures(mine);
   const auto others = nine_figures(other);
@@ -55,7 +55,7 @@ Result<Spread> spread_of(const Calibration& mine, const Calibration& other) {
   return spread;
 }
 
-/// One of the two files: how the error moves with one standard deviation of each of its figures.
+/// One of the two files: change of the error for one standard deviation of each of its figures.
 struct Side {
   std::array<Affine, 9> columns;
   Eigen::MatrixXd correlation, root;  ///< root · rootᵀ = correlation
@@ -69,7 +69,7 @@ struct Side {
   }
 };
 
-/// `error` gives e(u) with another calibration in this side's place.
+/// `error` gives e(u) with another calibration on this side.
 template <class ErrorOf>
 Result<Side> side_of(const Calibration& mine, const Calibration& other, ErrorOf error) {
   const auto spread = spread_of(mine, other);
@@ -95,7 +95,7 @@ Result<Side> side_of(const Calibration& mine, const Calibration& other, ErrorOf 
   return side;
 }
 
-/// The largest value of a function on the unit sphere: the best of many directions, improved.
+/// Maximum of a function on the unit sphere: the best of many directions, refined.
 template <class Function>
 LargestError largest(Function f) {
   std::vector<std::pair<double, Vector3d>> tried;
@@ -142,7 +142,7 @@ void add_scatter(const Side& side, Random& random, Affine& error) {
   Eigen::VectorXd draws(9);
   for (double& x : draws) x = random.normal();
   Eigen::VectorXd moved = side.root * draws;
-  // Half a step of the generator keeps the probability off 0, where there is no quantile.
+  // Half a step of the generator keeps the probability away from 0, where the quantile is infinite.
   if (side.dof) {
     const double p = random.unit() + 0x1p-54;
     moved *= std::sqrt(*side.dof / chi_square_quantile(p, *side.dof));
@@ -153,7 +153,7 @@ void add_scatter(const Side& side, Random& random, Affine& error) {
   }
 }
 
-/// Fills by_chance_95 from pairs of calibrations that differ by their uncertainty alone.
+/// Computes by_chance_95 from pairs of calibrations that differ by their uncertainty alone.
 void put_chance(const Side& before, const Side& after, CalibrationEffect& effect) {
   constexpr int pairs = 4000;
   const std::vector<Vector3d> directions = spread_directions(250);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double g = standard_gravity_mps2;
 
-/// Bias and scale without unit, and so many standard deviations.
+/// Bias and scale without unit, and their standard deviations.
 SensorModel calibrated(const std::array<double, 3>& bias,
                        const std::array<double, 3>& scale,
                        std::optional<double> bias_std = 0.0,
@@ -30,7 +30,7 @@ TEST(CalibrationEffect, OfABiasIsTheBiasEverywhereAndTiltsMostWhereItLiesAcross)
       calibration_effect(calibrated({0, 0, 0}, {1, 1, 1}), calibrated({0.03, 0, 0.04}, {1, 1, 1}))
           .value();
   EXPECT_NEAR(effect.force_mps2.value, 0.05, 1e-12);
-  // The sine rule: the angle is largest where it stands opposite to g in a right triangle.
+  // Sine rule: the angle is largest if it is opposite g in a right triangle.
   EXPECT_NEAR(effect.angle_rad.value, std::asin(0.05 / g), 1e-12);
   EXPECT_EQ(effect.force_mps2.std, 0.0);
   EXPECT_EQ(effect.force_mps2.by_chance_95, 0.0);
@@ -43,7 +43,7 @@ TEST(CalibrationEffect, OfAScaleIsLargestAlongItsAxis) {
           .value();
   EXPECT_NEAR(effect.force_mps2.value, 0.01 * g, 1e-12);
   EXPECT_NEAR(std::abs(effect.force_mps2.up.y()), 1.0, 1e-9);
-  // diag(1, k, 1) turns a direction by (k − 1)/(2 √k) at most.
+  // diag(1, k, 1) rotates a direction by at most (k − 1)/(2 √k).
   EXPECT_NEAR(effect.angle_rad.value, std::atan(0.01 / (2.0 * std::sqrt(1.01))), 1e-12);
 }
 
@@ -74,7 +74,8 @@ TEST(CalibrationEffect, AddsTheUncertaintiesOfBothFiles) {
   EXPECT_TRUE(effect.without_std.empty());
 }
 
-// Of one scale with standard deviation s the largest error is g |δ|, whose 95 % is at 1.96 g s.
+// For one scale with standard deviation s the largest error is g |δ|, whose 95 % quantile is 1.96 g
+// s.
 TEST(CalibrationEffect, ByChanceIsTheQuantileOfTheLargestError) {
   SensorModel before, after;
   before.calibration.scale[2] = make_figure(1.0, "1", "old");
@@ -83,9 +84,9 @@ TEST(CalibrationEffect, ByChanceIsTheQuantileOfTheLargestError) {
   after.calibration.scale[2]->std = 1e-4;
   auto effect = calibration_effect(before, after).value();
   EXPECT_NEAR(*effect.force_mps2.by_chance_95 / (1.96e-4 * g), 1.0, 0.04);
-  // diag(1, 1, k) turns a direction by half of k − 1.
+  // diag(1, 1, k) rotates a direction by half of k − 1.
   EXPECT_NEAR(*effect.angle_rad.by_chance_95 / 0.98e-4, 1.0, 0.04);
-  // Two degrees of freedom scatter more: Student's t has its 97.5 % at 4.303.
+  // With two degrees of freedom Student's t has its 97.5 % quantile at 4.303.
   after.calibration.dof = make_figure(2.0, "1", "");
   effect = calibration_effect(before, after).value();
   EXPECT_NEAR(*effect.force_mps2.by_chance_95 / (4.303e-4 * g), 1.0, 0.1);
@@ -111,7 +112,7 @@ TEST(CalibrationEffect, TakesCorrelationsFromTheCovariance) {
     C[3][3] = 1e-4 / (g * g);
     C[0][3] = C[3][0] = r * 1e-4 / g;
     const auto effect = calibration_effect(before, after).value();
-    // At u = +x the error is −(b + g (k − 1))/k: both add up for r = 1 and cancel for r = −1.
+    // At u = +x the error is −(b + g (k − 1))/k: the two parts add for r = 1 and cancel for r = −1.
     EXPECT_NEAR(effect.force_mps2.up.x(), 1.0, 1e-6);
     EXPECT_NEAR(*effect.force_mps2.std, 0.01 * std::sqrt(2.0 + 2.0 * r), 3e-4);
   }

@@ -24,7 +24,7 @@ void add_supply(const SensorModel& model, Recording& recording) {
   recording.channels.push_back(std::move(channel));
 }
 
-/// What apply() makes of a reading in that unit, seen from the readings 0, e_x, e_y and e_z.
+/// The affine map of apply() for readings in that unit, from the readings 0, e_x, e_y and e_z.
 Result<Affine> force_of_reading(const SensorModel& model, const std::string& unit) {
   Recording recording;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -55,7 +55,7 @@ Result<Affine> error_between(const SensorModel& before,
   if (!old_force) return old_force.error().at("OLD");
   const auto new_force = force_of_reading(after, unit);
   if (!new_force) return new_force.error().at("NEW");
-  // apply()'s matrix is upper triangular: row i needs the axes from i on only.
+  // apply()'s matrix is upper triangular: row i uses only the axes from i on.
   const auto reading = new_force->matrix.triangularView<Eigen::Upper>();
   const Matrix3d inverse = reading.solve(Matrix3d::Identity());
   const Matrix3d A = old_force->matrix * inverse;
@@ -63,7 +63,7 @@ Result<Affine> error_between(const SensorModel& before,
                old_force->offset - A * new_force->offset};
   if (!error.matrix.allFinite() || !error.offset.allFinite())
     return Error{Errc::invalid_argument, "the two calibrations are too far apart to compare"};
-  // Below this there is nothing but the rounding of the arithmetic itself.
+  // Differences below this are rounding errors.
   constexpr double rounding_mps2 = 1e-11;
   if (error.matrix.cwiseAbs().maxCoeff() < rounding_mps2 &&
       error.offset.cwiseAbs().maxCoeff() < rounding_mps2)

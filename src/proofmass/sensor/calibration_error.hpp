@@ -6,7 +6,7 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/sensor/sensor_model.hpp"
 
-// What one sensor file makes wrong where another is right.
+// Error of one sensor file relative to another.
 namespace proofmass::sensor {
 
 /// v(u) = matrix u + offset.
@@ -18,14 +18,14 @@ struct Affine {
   }
 };
 
-/// e(u) of calibration_effect.hpp, in m/s^2 at 1 g, for readings in that unit: "m/s^2", "V" or
+/// e(u) of calibration_effect.hpp, in m/s^2 at 1 g, for readings in the given unit: "m/s^2", "V" or
 /// "counts". Errors: invalid_argument (a file cannot be applied to such readings).
 [[nodiscard]] Result<Affine> error_between(const SensorModel& before,
                                            const SensorModel& after,
                                            const std::string& unit);
 
 /// A unit of readings to which both files can be applied: that of one of the calibrations, or else
-/// the rawest; where there is none, that of `after`.
+/// the rawest; if there is none, that of `after`.
 [[nodiscard]] std::string common_unit(const SensorModel& before, const SensorModel& after);
 
 }  // namespace proofmass::sensor

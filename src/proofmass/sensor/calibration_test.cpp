@@ -64,7 +64,7 @@ TEST(ApplySensor, UndoesTheModelEquation) {
   EXPECT_TRUE(recording.notes.empty());
 }
 
-// The thesis prints 1.98 V for −1 g; its own sensor gives 1.32 V.
+// The thesis prints 1.98 V for −1 g; the sensor described in it gives 1.32 V.
 TEST(ApplySensor, ReadsVoltsOfTheThesissSensor) {
   Recording recording = recording_of({{1.32, 1.65, 1.98}}, volts);
   ASSERT_TRUE(apply(thesis_sensor(), recording));
@@ -77,7 +77,7 @@ TEST(ApplySensor, ReadsVoltsOfTheThesissSensor) {
 TEST(ApplySensor, FollowsTheSupplyOfARatiometricSensor) {
   SensorModel model = thesis_sensor();
   model.electrical.supply_channel = "supply";
-  // Half the supply plus 0.1 of it is 1 g at any supply.
+  // Half the supply plus a tenth of it is 1 g at any supply.
   Recording recording = recording_of({{0.6 * 3.3, 0, 0}, {0.6 * 3.0, 0, 0}}, volts);
   recording.channels.push_back({"supply", parse_unit("mV").value(), {3300.0, 3000.0}});
   ASSERT_TRUE(apply(model, accelerometer_triads(recording).at(0), recording));
@@ -120,7 +120,7 @@ TEST(ApplySensor, TakesCountsThroughTheLsb) {
   EXPECT_NEAR(recording.channels[2].values[0], -standard_gravity_mps2 / 2, 1e-12);
 }
 
-// Parameters of the kind that calibrations in counts publish.
+// Parameters typical of published calibrations in counts.
 TEST(ApplySensor, TakesACalibrationInCountsDirectly) {
   SensorModel model;
   model.calibration.bias = make_axis_figures({33123.8, 33275.2, 32364.5}, "counts", "");

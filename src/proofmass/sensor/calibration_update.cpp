@@ -22,7 +22,7 @@ std::string listed(const std::vector<std::string_view>& items) {
   return fmt::format("{}", fmt::join(items, ", "));
 }
 
-/// What a reading in volts has to be multiplied by: V_ref / V_s; see Electrical.
+/// Factor for a reading in volts: V_ref / V_s; see Electrical.
 Result<double> supply_factor(const Electrical& electrical, const MeasuredCalibration& measured) {
   if (!electrical.reference_supply) return 1.0;
   const double reference_v = electrical.reference_supply->si();
@@ -39,10 +39,10 @@ Result<double> supply_factor(const Electrical& electrical, const MeasuredCalibra
   return electrical.supply ? reference_v / electrical.supply->si() : 1.0;
 }
 
-/// Units of the figures, and what turns them into those that are written.
+/// Units of the figures, and the conversion to those written.
 struct Units {
   FigureUnit bias, scale;
-  double factor = 1.0;  ///< of volts: V_ref / V_s
+  double factor = 1.0;  ///< for volts: V_ref / V_s
 };
 
 Result<Units> units_of(const Electrical& electrical, const MeasuredCalibration& measured) {
@@ -90,7 +90,7 @@ void put_stability(const MeasuredCalibration& measured,
   }
 }
 
-/// In SI, and symmetric to the last bit, as a sensor file must have it.
+/// In SI, and exactly symmetric, as a sensor file requires.
 Covariance written(const Covariance& covariance, const Units& units) {
   const auto factor = [&](std::size_t k) {
     return k < 3 ? units.factor * units.bias.to_si : k < 6 ? units.factor * units.scale.to_si : 1.0;
@@ -102,7 +102,7 @@ Covariance written(const Covariance& covariance, const Units& units) {
   return out;
 }
 
-/// Figures that are there and were not measured now.
+/// Existing figures that were not measured now.
 std::vector<std::string_view> kept_figures(const MeasuredCalibration& measured,
                                            Calibration& calibration) {
   const auto figures = nine_measured(measured);
@@ -142,7 +142,7 @@ void put_covariance(const MeasuredCalibration& measured,
   }
 }
 
-/// Under what the calibration holds.
+/// Stores the conditions of the calibration.
 void put_conditions(const MeasuredCalibration& measured,
                     Calibration& calibration,
                     std::vector<Note>& notes) {
@@ -177,7 +177,7 @@ Status put_identity(const MeasuredCalibration& measured, SensorModel& model) {
   return Done{};
 }
 
-/// That the figures go together, of which only apply() knows.
+/// Checks that the figures are consistent, by apply().
 Status check_together(const Calibration& calibration) {
   SensorModel alone;
   alone.calibration = calibration;
@@ -190,7 +190,7 @@ Status check_together(const Calibration& calibration) {
                    "write to a file that is not there yet"};
 }
 
-/// Without a scale, an axis in volts or counts cannot be read.
+/// Without a scale, an axis in volts or counts cannot be converted.
 void note_unreadable_axes(const Calibration& calibration,
                           const Units& units,
                           std::vector<Note>& notes) {

@@ -12,49 +12,54 @@
 
 namespace proofmass::sensor {
 
-/// What a calibration found, as Calibration has it: bias and scale of x, y, z and α_yz, α_zy, α_zx
-/// in rad, of readings to which no other calibration was applied. What it did not find is absent.
+/// Result of a calibration, laid out as in Calibration: bias and scale of x, y, z and α_yz, α_zy,
+/// α_zx in rad, for readings without any other calibration. Figures that were not determined are
+/// absent.
 struct MeasuredCalibration {
   std::array<std::optional<Uncertain>, 3> bias, scale, misalignment;
-  std::string bias_unit = "m/s^2";  ///< of the reading: "m/s^2", "V" or "counts", or a multiple
+  std::string bias_unit = "m/s^2";  ///< unit of the reading: "m/s^2", "V", "counts", or a multiple
   std::string scale_unit = "1";     ///< "1", "V/(m/s^2)" or "counts/(m/s^2)", or a multiple
-  /// Of bias x y z, scale x y z, misalignment, in the units above and rad.
+  /// Covariance of bias x y z, scale x y z, misalignment, in the units above and rad.
   std::optional<std::array<std::array<double, 9>, 9>> covariance;
   /// Calibration::stability, in the unit of the bias.
   std::array<std::optional<double>, 3> stability{};
-  /// False where part of the uncertainty is not known: figures are then written without standard
+  /// False if part of the uncertainty is unknown: figures are then written without standard
   /// deviations, and there must be no covariance.
   bool std_known = true;
-  /// Effective degrees of freedom of the standard deviations; absent: so many that it does not
-  /// matter. Who compares two calibrations takes more scatter for chance where they are few.
+  /// Effective degrees of freedom of the standard deviations; absent: many. A comparison of two
+  /// calibrations allows for more scatter if they are few.
   std::optional<double> dof;
-  std::optional<Uncertain> gravity_mps2;  ///< that was taken for true; a std of 0 is not written
-  std::optional<double> temperature_k;    ///< of the sensor
-  /// Of readings in volts of a ratiometric sensor: the supply at which they were taken, V_ref where
-  /// they were brought to it already. Absent: the file's electrical.supply.
+  std::optional<Uncertain> gravity_mps2;  ///< assumed gravity; a std of 0 is not written
+  std::optional<double> temperature_k;    ///< temperature of the sensor
+  /// For readings in volts of a ratiometric sensor: the supply during the calibration, or V_ref if
+  /// the readings are already scaled to it. Absent: the file's electrical.supply.
   std::optional<double> supply_v;
   std::string origin;              ///< "proofmass calibrate poses.csv, 24 positions"
-  std::string name, serial, date;  ///< of the sensor and of the day (ISO 8601), where known
+  std::string name, serial, date;  ///< sensor's name and number; date (ISO 8601), if known
 };
 
-/// Puts the calibration into the model; what was not measured stays. Volts are brought to the
-/// reference supply, as apply() will bring the readings. An old covariance goes as soon as one of
-/// its figures is replaced; the new one is kept if it covers every figure there is; of degrees of
-/// freedom the fewest hold where figures stay. Gravity and temperature go where all biases and
-/// scales are replaced and nobody says them anew. Returns what a person should know of it: what
-/// was kept from before, and what had to go.
+/// Stores the calibration in the model; figures that were not measured are kept.
 ///
-/// Errors: invalid_argument (nothing measured, units that do not go together or are not those of
-/// the figures that stay, a scale of 0, a negative std, a covariance that is none or not of these
-/// stds, a supply that nobody knows, the serial number of another sensor),
-/// not_finite. The model is then as it was.
+/// - Volts are scaled to the reference supply, as apply() scales the readings.
+/// - An old covariance is dropped as soon as one of its figures is replaced; the new one is kept if
+///   it covers every existing figure.
+/// - If old figures are kept, the smaller number of degrees of freedom applies.
+/// - Gravity and temperature are dropped if all biases and scales are replaced and no new value is
+///   given.
+///
+/// Returns notes for the user: what was kept from before, and what was dropped.
+///
+/// Errors: invalid_argument (nothing measured, units that are inconsistent or differ from those of
+/// the figures kept, a scale of 0, a negative std, an invalid covariance or one that disagrees with
+/// the stds, an unknown supply, the serial number of another sensor), not_finite. The model is then
+/// unchanged.
 [[nodiscard]] Result<std::vector<Note>> update_calibration(SensorModel& model,
                                                            const MeasuredCalibration& measured);
 
-/// The same in a sensor file, of which all else stays as it is, save comments; a file that is not
-/// there is made, with the sensor named after it.
-/// Errors: as above, and those of read_sensor_file and write_sensor_file. The file is then as it
-/// was.
+/// The same in a sensor file. Everything else in it is kept, except comments; a missing file is
+/// created, with the sensor named after it.
+/// Errors: as above, and those of read_sensor_file and write_sensor_file. The file is then
+/// unchanged.
 [[nodiscard]] Result<std::vector<Note>> update_calibration(const std::string& path,
                                                            const MeasuredCalibration& measured);
 

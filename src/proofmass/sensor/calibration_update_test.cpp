@@ -21,7 +21,7 @@ Covariance covariance_of(const std::array<double, 9>& std) {
   return C;
 }
 
-// Figures of the kind that calibrations of raw counts publish.
+// Figures typical of published calibrations of raw counts.
 MeasuredCalibration in_counts() {
   MeasuredCalibration m;
   m.bias = {Uncertain{33123.83, stds[0]}, Uncertain{33275.16, stds[1]},
@@ -72,7 +72,7 @@ Recording recording_of(const std::array<double, 3>& reading, const std::string& 
   return recording;
 }
 
-/// That the file's calibration turns a reading of the force back into it.
+/// Checks that the file's calibration converts a reading of the force back to it.
 void expect_undone(const SensorModel& model, Recording recording, double tolerance) {
   constexpr std::array<double, 3> f{3.0, -5.0, 7.8};
   const Status done = apply(model, recording);
@@ -147,7 +147,7 @@ TEST(CalibrationUpdate, InVoltsOfARatiometricSensorHoldsAtAnySupply) {
   EXPECT_NEAR((*model.calibration.covariance)[0][0], 1e-6 * 9.0 / 10.89, 1e-20);
   EXPECT_NEAR((*model.calibration.covariance)[8][8], stds[8] * stds[8], 1e-20);
 
-  // The same sensor at a supply that the recording has in a channel of its own.
+  // The same sensor with a supply recorded in a separate channel.
   model.electrical.supply_channel = "rail";
   Recording at_2_7 = recording_of({v[0] * 2.7 / 3.3, v[1] * 2.7 / 3.3, v[2] * 2.7 / 3.3}, "V");
   at_2_7.channels.push_back({"rail", parse_unit("V").value(), {2.7}});
@@ -272,7 +272,7 @@ TEST(CalibrationUpdate, KeepsTheFewestDegreesOfFreedomWhereFiguresStay) {
   EXPECT_FALSE(model.calibration.dof);
 }
 
-// Six figures of a fit that took the axes for orthogonal, with its own 9 × 9.
+// Six figures of a fit that assumed orthogonal axes, with its own 9 × 9 covariance.
 TEST(CalibrationUpdate, KeepsACovarianceThatCoversAllThatIsThere) {
   MeasuredCalibration six = in_counts();
   six.misalignment = {};

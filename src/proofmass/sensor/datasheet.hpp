@@ -6,7 +6,7 @@
 
 #include "proofmass/core/units.hpp"
 
-// The figures of the makers' datasheets, in SI, as data.
+// Figures of the manufacturers' datasheets, in SI, as data.
 namespace proofmass::sensor {
 
 /// One line of a datasheet's table.
@@ -14,13 +14,13 @@ struct Limits {
   std::optional<double> min, typ, max;
 };
 
-/// A three-axis analog accelerometer whose output is a fraction of its supply.
-/// Axes in the order x, y, z where they differ.
+/// A three-axis analog accelerometer whose output is a fraction of its supply. Axes in the order x,
+/// y, z where they differ.
 struct AnalogAccelerometer {
-  double reference_supply_v;  ///< at which the figures below hold
+  double reference_supply_v;  ///< supply of the figures below
   double reference_temp_c;
   Limits supply_v;
-  Limits full_scale_mps2;  ///< either way
+  Limits full_scale_mps2;  ///< in either direction
   Limits sensitivity_v_per_mps2;
   std::array<Limits, 3> zero_g_v;
   std::array<double, 3> noise_density_mps2_rthz;  ///< one-sided; does not scale with the supply
@@ -62,23 +62,23 @@ inline constexpr AnalogAccelerometer adxl335{
 };
 
 /// −3 dB frequency of the output with a capacitor to ground, f = 1 / (2π R C): 0.1 µF gives 50 Hz.
-/// The resistance of one specimen is within ±15 %.
+/// The resistance of an individual device is within ±15 %.
 [[nodiscard]] constexpr double filter_bandwidth_hz(const AnalogAccelerometer& sensor,
                                                    double capacitance_f) {
   return 1.0 / (2.0 * std::numbers::pi * sensor.filter_resistance_ohm * capacitance_f);
 }
 
-/// rms of white noise of one-sided density ND behind a one-pole filter: ND √(π/2 · bandwidth).
+/// rms of white noise of one-sided density ND after a one-pole filter: ND √(π/2 · bandwidth).
 /// Source: ADXL335 datasheet, "Design trade-offs" (which rounds π/2 to 1.6).
 [[nodiscard]] double filtered_noise_rms(double density_rthz, double bandwidth_hz);
 
-/// A data acquisition card that switches one converter from channel to channel.
+/// A data acquisition card that multiplexes one converter over its channels.
 struct AcquisitionCard {
   int bits_differential, bits_single_ended;
   std::array<double, 8> ranges_differential_v;  ///< ±
   double range_single_ended_v;                  ///< ±
-  double rate_hz;                               ///< all channels together
-  bool simultaneous;  ///< false: channels of one scan are not of one instant
+  double rate_hz;                               ///< aggregate over all channels
+  bool simultaneous;  ///< false: channels of one scan are sampled one after another
   bool antialias_filter;
 };
 
@@ -95,7 +95,7 @@ inline constexpr AcquisitionCard usb6009{
     .antialias_filter = false,
 };
 
-/// One step of a converter over ±range_v: 2 range / 2^bits.
+/// Quantisation step of a converter over ±range_v: 2 range / 2^bits.
 [[nodiscard]] constexpr double lsb_v(double range_v, int bits) {
   return 2.0 * range_v / static_cast<double>(1ULL << bits);
 }

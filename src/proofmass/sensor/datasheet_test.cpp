@@ -18,7 +18,7 @@ TEST(FilterBandwidth, IsThatOfTheDatasheetsCapacitors) {
   EXPECT_NEAR(filter_bandwidth_hz(adxl335, 0.01e-6), 500.0, 3.0);
 }
 
-// 0.0184 m/s² rms is what the thesis's sensor shows behind 100 Hz; 1.34 mg behind 50 Hz.
+// 0.0184 m/s² rms is the noise of the thesis's sensor after 100 Hz; 1.34 mg after 50 Hz.
 TEST(FilteredNoise, IsTheThesissAt100Hz) {
   EXPECT_NEAR(filtered_noise_rms(adxl335.noise_density_mps2_rthz[0], 100.0), 0.0184, 5e-5);
   EXPECT_NEAR(filtered_noise_rms(adxl335.noise_density_mps2_rthz[0], 50.0), 1.34e-3 * g, 2e-4);

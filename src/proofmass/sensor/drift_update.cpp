@@ -13,7 +13,7 @@
 namespace proofmass::sensor {
 namespace {
 
-/// One figure: its name, its unit, where it is measured and where it goes.
+/// One figure: its name, its unit, its source and its destination.
 struct Term {
   std::string_view name, unit;
   Uncertain MeasuredDrift::* measured;

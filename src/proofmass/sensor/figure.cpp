@@ -29,13 +29,13 @@ std::string_view si_symbol_of(Quantity quantity) {
   }
 }
 
-/// Factor to SI of a unit of that quantity; nullopt for any other unit.
+/// Factor to SI of a unit of the given quantity; nullopt for any other unit.
 std::optional<double> factor(std::string_view text, Quantity quantity) {
   const auto unit = parse_unit(text);
   return unit && unit->quantity == quantity ? std::optional(unit->to_si) : std::nullopt;
 }
 
-/// What stands before one of the endings: "ug" of "ug/rtHz".
+/// The part before one of the endings: "ug" of "ug/rtHz".
 std::optional<std::string_view> before(std::string_view text,
                                        std::initializer_list<std::string_view> endings) {
   for (const std::string_view ending : endings)
@@ -55,7 +55,7 @@ std::optional<FigureUnit> plain_unit(std::string_view text) {
                     unit->offset_si};
 }
 
-/// An acceleration per root of hertz, per root of a second, or per time.
+/// An acceleration per square root of hertz, per square root of a second, or per time.
 std::optional<FigureUnit> noise_unit(std::string_view text) {
   const std::string symbol(text);
   if (const auto accel = before(text, {"/sqrt(Hz)", "/rtHz", "/√Hz"})) {

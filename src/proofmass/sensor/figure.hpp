@@ -7,27 +7,27 @@
 
 namespace proofmass::sensor {
 
-/// A unit of a sensor's figure as written, and what turns a value in it into SI:
-/// si = value · to_si + offset_si.
+/// Unit of a sensor's figure as written, and its conversion to SI: si = value · to_si + offset_si.
 struct FigureUnit {
   std::string symbol = "1";     ///< as written: "ug/sqrt(Hz)"
-  std::string si_symbol = "1";  ///< what it becomes: "m/s^2/sqrt(Hz)"
+  std::string si_symbol = "1";  ///< its SI equivalent: "m/s^2/sqrt(Hz)"
   double to_si = 1.0;
   double offset_si = 0.0;  ///< nonzero for degrees Celsius only
   friend bool operator==(const FigureUnit&, const FigureUnit&) = default;
 };
 
-/// Reads what core's parse_unit reads and, beyond it: "1", "%", "ppm", "Hz", "kHz"; an acceleration
-/// per "sqrt(Hz)", "rtHz" or "√Hz", per "sqrt(s)" and per a time; "m/s^3", "m/s^3/sqrt(Hz)" (which
-/// is m/s^2/sqrt(s)); volts or counts per acceleration, "V/g" or "mV/(m/s^2)". nullopt if unknown.
+/// Parses all units of core's parse_unit and, in addition: "1", "%", "ppm", "Hz", "kHz"; an
+/// acceleration per "sqrt(Hz)", "rtHz" or "√Hz", per "sqrt(s)" and per a time; "m/s^3",
+/// "m/s^3/sqrt(Hz)" (which is m/s^2/sqrt(s)); volts or counts per acceleration, "V/g" or
+/// "mV/(m/s^2)". nullopt if unknown.
 [[nodiscard]] std::optional<FigureUnit> parse_figure_unit(std::string_view text);
 
-/// One figure of a sensor, as its author wrote it down.
+/// One figure of a sensor, as its author wrote it.
 struct Figure {
   double value = 0.0;
-  std::optional<double> std;  ///< one standard deviation, in the same unit, where known
+  std::optional<double> std;  ///< one standard deviation, in the same unit, if known
   FigureUnit unit;
-  std::string origin;  ///< where it came from: "ADXL335 datasheet rev. B, table 1"
+  std::string origin;  ///< its source: "ADXL335 datasheet rev. B, table 1"
 
   [[nodiscard]] double si() const { return value * unit.to_si + unit.offset_si; }
   [[nodiscard]] std::optional<double> std_si() const {
@@ -36,13 +36,13 @@ struct Figure {
   friend bool operator==(const Figure&, const Figure&) = default;
 };
 
-/// A figure in a unit that parse_figure_unit knows (anything else is a bug of the caller).
+/// A figure in a unit known to parse_figure_unit (a precondition).
 [[nodiscard]] Figure make_figure(double value, std::string_view unit, std::string_view origin);
 
-/// One figure for each of the axes x, y, z, where known.
+/// One figure for each of the axes x, y, z, if known.
 using AxisFigures = std::array<std::optional<Figure>, 3>;
 
-/// The same three values in one unit.
+/// Three values with one unit and origin.
 [[nodiscard]] AxisFigures make_axis_figures(const std::array<double, 3>& values,
                                             std::string_view unit,
                                             std::string_view origin);

@@ -9,19 +9,19 @@
 
 namespace proofmass::sensor {
 
-/// One place of a sensor file where a figure may stand, and the figure if there is one.
+/// An entry that a sensor file can have, and its figure if present.
 struct FigureSlot {
   std::string section, key;         ///< "calibration", "bias"
   std::optional<std::size_t> axis;  ///< 0, 1, 2; absent for a figure of the whole sensor
   std::optional<Figure> figure;
 
-  /// "x", or "yz" of a misalignment; empty for a figure of the whole sensor.
+  /// "x", or "yz" for a misalignment; empty for a figure of the whole sensor.
   [[nodiscard]] std::string axis_name() const;
   /// "calibration.bias x"
   [[nodiscard]] std::string name() const;
 };
 
-/// Every slot in the order of the file: the same ones whatever the model.
+/// All slots in the order of the file; the same for every model.
 [[nodiscard]] std::vector<FigureSlot> figure_slots(const SensorModel& model);
 
 }  // namespace proofmass::sensor

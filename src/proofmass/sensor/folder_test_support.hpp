@@ -10,7 +10,7 @@
 
 namespace proofmass::sensor {
 
-/// A folder of one's own for a test's files, gone after it.
+/// A temporary folder for a test's files, removed after the test.
 class FolderTest : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder_); }

@@ -7,7 +7,7 @@
 
 namespace proofmass::sensor {
 
-/// A class of accelerometers by the bias that is left after calibration.
+/// A class of accelerometers by the residual bias after calibration.
 struct Grade {
   std::string_view name;
   double bias_mps2;

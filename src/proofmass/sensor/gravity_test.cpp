@@ -13,7 +13,7 @@ TEST(Gravity, EqualsThePublishedFiguresOfTheEllipsoid) {
   EXPECT_NEAR(gravity_mps2({.latitude_rad = -90.0 * rad_per_deg}), 9.8321849378, 1e-9);
 }
 
-// The mean over the ellipsoid's surface is published too, and hangs on every latitude.
+// The mean over the ellipsoid's surface is published too, and depends on all latitudes.
 TEST(Gravity, AveragesToThePublishedMean) {
   constexpr double e2 = 0.00669437999014;
   constexpr int steps = 20000;

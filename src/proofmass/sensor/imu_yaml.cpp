@@ -9,7 +9,7 @@
 namespace proofmass::sensor {
 namespace {
 
-/// YAML 1.1 takes 1e-05 for a text: a number has a point.
+/// YAML 1.1 parses 1e-05 as text: a number needs a decimal point.
 std::string yaml_number(double value) {
   std::string text = fmt::format("{}", value);
   if (text.find('.') == std::string::npos) text.insert(std::min(text.find('e'), text.size()), ".0");
@@ -43,7 +43,7 @@ std::string yaml_axes(const AxisFigures& figures) {
   return out;
 }
 
-/// The largest of the axes that are known; 0 if none is.
+/// The largest of the known axes; 0 if none is known.
 double worst(const AxisFigures& figures) {
   double largest = 0.0;
   for (const auto& figure : figures)

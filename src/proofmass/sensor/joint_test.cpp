@@ -14,14 +14,13 @@ namespace {
 
 using Eigen::Index;
 
-/// The part of both calibrations that was measured twice, figures in units of the standard
-/// deviation of their change.
+/// The figures that both calibrations measured, in units of the standard deviation of their change.
 struct Shared {
   Eigen::VectorXd change;
   Eigen::MatrixXd old_part, new_part;
 };
 
-/// An Error says why there is nothing to be tested.
+/// An Error gives the reason if there is nothing to test.
 Result<Shared> shared_part(const Calibration& before, const Calibration& after) {
   const auto olds = nine_figures(before), news = nine_figures(after);
   std::vector<std::size_t> both;

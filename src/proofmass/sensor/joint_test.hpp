@@ -6,11 +6,11 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/sensor/sensor_comparison.hpp"
 
-// All figures of two calibrations at once.
+// Joint test of all figures of two calibrations.
 namespace proofmass::sensor {
 
-/// The test of what both calibrations measured, each for itself, in the same units; p_adjusted is
-/// left. Errors: not_observable (nothing to be tested; the message says why).
+/// The test of the figures that both calibrations measured independently, in the same units;
+/// p_adjusted is not set. Errors: not_observable (nothing to test; the message gives the reason).
 [[nodiscard]] Result<JointTest> joint_test(const SensorModel& before, const SensorModel& after);
 
 /// Degrees of freedom of the calibration's standard deviations; absent: many.

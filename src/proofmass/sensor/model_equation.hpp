@@ -9,7 +9,7 @@
 // The full model equation of a linear accelerometer.
 namespace proofmass::sensor {
 
-/// The coefficients of E(a, ω), E being the output in its own unit [V, counts, m/s^2 …]. SI: no g.
+/// The coefficients of E(a, ω), E the output in its own unit [V, counts, m/s^2 …]. SI: no g.
 /// Source: IEEE Std 1293-2018, annex on the model equation, as written in the thesis of M. A. Lele
 /// (2010), section 2.3.
 // NOLINTBEGIN(readability-identifier-naming): these are the standard's names.
@@ -24,8 +24,8 @@ struct ModelEquation {
   double delta_o = 0.0;  ///< misalignment about the output axis [rad]
   double delta_p = 0.0;  ///< misalignment about the pendulous axis [rad]
   double Kip = 0.0;      ///< cross-coupling of input and pendulous axis [1/(m/s^2)]
-  double Kio = 0.0;      ///< of input and output axis [1/(m/s^2)]
-  double Kpo = 0.0;      ///< of pendulous and output axis [1/(m/s^2)]
+  double Kio = 0.0;      ///< cross-coupling of input and output axis [1/(m/s^2)]
+  double Kpo = 0.0;      ///< cross-coupling of pendulous and output axis [1/(m/s^2)]
   double Kpp = 0.0;      ///< cross-axis nonlinearity, pendulous axis [1/(m/s^2)]
   double Koo = 0.0;      ///< cross-axis nonlinearity, output axis [1/(m/s^2)]
   double Kspin = 0.0;    ///< spin correction [m/s^2 per (rad/s)^2]
@@ -34,8 +34,8 @@ struct ModelEquation {
 };
 // NOLINTEND(readability-identifier-naming)
 
-/// What acts on the accelerometer: specific force along its input, pendulous and output axes
-/// (i, p, o), rates about the first two, angular acceleration about the third.
+/// Input of the model equation: specific force along the input, pendulous and output axes (i, p,
+/// o), angular rates about the first two, angular acceleration about the third.
 struct Motion {
   double ai_mps2 = 0.0, ap_mps2 = 0.0, ao_mps2 = 0.0;
   double omega_i_radps = 0.0, omega_p_radps = 0.0;
@@ -73,15 +73,15 @@ enum class Coefficient : std::size_t {
 // NOLINTEND(readability-identifier-naming)
 inline constexpr std::size_t coefficient_count = 16;
 
-/// One coefficient: the single place for its name, units and meaning.
+/// One coefficient: the single definition of its name, units and meaning.
 struct CoefficientInfo {
   Coefficient coefficient;
   std::string_view name;           ///< as in JSON and on the command line: "K2"
-  std::string_view symbol;         ///< as people write it: "K₂"
-  std::string_view unit;           ///< in SI, "{}" standing for the unit of the output in K1's
-  std::string_view standard_unit;  ///< as the standard gives it: "g/g²"
+  std::string_view symbol;         ///< typeset form: "K₂"
+  std::string_view unit;           ///< in SI; "{}" is replaced by the unit of the output in K1's
+  std::string_view standard_unit;  ///< unit in the standard: "g/g²"
   int power_of_g;                  ///< value in the standard's unit = value in SI · g^power
-  std::string_view description;    ///< a few words
+  std::string_view description;    ///< short description
   double ModelEquation::* member;
 };
 
@@ -90,13 +90,13 @@ struct CoefficientInfo {
 
 [[nodiscard]] const CoefficientInfo& info(Coefficient coefficient);
 
-/// By name, upper and lower case alike; also "K0'" and "K1'". Absent if there is none such.
+/// Lookup by name, ignoring case; also "K0'" and "K1'". Absent if unknown.
 [[nodiscard]] std::optional<Coefficient> coefficient_named(std::string_view name);
 
-/// A coefficient's value as the standard gives it, in units of g = 9.80665 m/s².
+/// A coefficient's value in the standard's unit, with g = 9.80665 m/s².
 [[nodiscard]] double in_standard_unit(Coefficient coefficient, double value);
 
-/// What the coefficient is multiplied by inside the bracket: ∂(E/K1)/∂coefficient; a_i for K1.
+/// The factor of the coefficient inside the bracket: ∂(E/K1)/∂coefficient; a_i for K1.
 [[nodiscard]] double term(Coefficient coefficient, const Motion& motion);
 
 }  // namespace proofmass::sensor

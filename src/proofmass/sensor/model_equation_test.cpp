@@ -30,7 +30,7 @@ TEST(ModelEquation, ScalesWhateverStandsInTheBracket) {
   EXPECT_DOUBLE_EQ(output(equation, busy), 0.0336 * bracket);
 }
 
-// Every term written out by hand as the standard prints it.
+// Every term written out as in the standard.
 TEST(ModelEquation, IsTheStandardsWithAllSixteenCoefficients) {
   const ModelEquation c{.K1 = 2.0,
                         .K0 = 0.1,
@@ -60,7 +60,7 @@ TEST(ModelEquation, HasNoAsymmetryWhereNothingPullsAlongTheInputAxis) {
   EXPECT_EQ(output({.K0_asym = 1.0, .K1_asym = 1.0}, {.ap_mps2 = g}), 0.0);
 }
 
-// sin θ along the input, cos θ along the pendulous axis: the harmonics of methods/calibration.
+// sin θ along the input axis, cos θ along the pendulous axis: the harmonics of methods/calibration.
 TEST(ModelEquation, TumbledAboutTheOutputAxisHasTheHarmonicsOfTheTumbleTest) {
   const ModelEquation c{.K0 = 0.3, .K2 = 2e-3, .K3 = 1e-4, .delta_o = 0.01, .Kpp = 5e-4};
   for (const double theta : {0.0, 0.7, 2.0, 4.5}) {
@@ -87,7 +87,7 @@ TEST(Coefficients, AreListedInTheirOwnOrderUnderDifferentNames) {
   EXPECT_EQ(symbols.size(), coefficient_count);
 }
 
-// Each column of the design is the derivative by the member that the list names.
+// Each column of the design is the derivative with respect to the listed member.
 TEST(Coefficients, HaveTheTermThatTheOutputChangesByWithTheirMember) {
   for (const CoefficientInfo& one : coefficients()) {
     ModelEquation with;

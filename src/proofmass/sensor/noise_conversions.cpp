@@ -11,7 +11,7 @@
 namespace proofmass::sensor {
 namespace {
 
-/// Largest Allan deviation of a first-order Markov process over √(psd T), as published.
+/// Maximum Allan deviation of a first-order Markov process over √(psd T), as published.
 constexpr double markov_peak = 0.4365;
 
 }  // namespace

@@ -31,7 +31,7 @@ TEST(NoiseConversions, TheFilteredRmsIsTheSameFromEitherDensity) {
 }
 
 TEST(NoiseConversions, TheFilteredRmsIsTheIntegralOfTheSpectrum) {
-  // f = BW tan u makes ∫ N² / (1 + (f/BW)²) df over all f a sum of equal terms.
+  // The substitution f = BW tan u makes ∫ N² / (1 + (f/BW)²) df over all f a sum of equal terms.
   const double n = 3e-3, bandwidth_hz = 7.0;
   double sum = 0.0;
   const int steps = 1000;
@@ -47,7 +47,7 @@ TEST(NoiseConversions, TheFilteredRmsIsTheIntegralOfTheSpectrum) {
 
 TEST(NoiseConversions, ASampleOfWhiteNoiseHasItsDensityTimesTheRate) {
   EXPECT_DOUBLE_EQ(sample_variance_m2ps4({.white_mps2_rthz = 2e-3, .rate_hz = 100.0}), 4e-4);
-  // A wide filter changes nothing; behind a narrow one the rate does not matter.
+  // A wide filter changes nothing; after a narrow one the rate does not matter.
   EXPECT_DOUBLE_EQ(
       sample_variance_m2ps4({.white_mps2_rthz = 2e-3, .rate_hz = 100.0, .bandwidth_hz = 1600.0}),
       4e-4);
@@ -60,7 +60,7 @@ TEST(NoiseConversions, ASampleOfWhiteNoiseHasItsDensityTimesTheRate) {
 TEST(NoiseConversions, ASamplesVarianceIsThatOfTheSampledOnePoleFilterOrUpToAThirdMore) {
   const double n = 2e-3, rate_hz = 100.0;
   for (const double bandwidth_hz : {0.5, 5.0, 31.8, 50.0, 100.0, 1000.0}) {
-    // The filter sampled is x' = φ x + w, whose density at f = 0 is what is measured as N².
+    // The sampled filter is x' = φ x + w, whose density at f = 0 is the measured N².
     const double phi = std::exp(-2.0 * std::numbers::pi * bandwidth_hz / rate_hz);
     const double exact = n * n * rate_hz * (1.0 - phi) / (1.0 + phi);
     const double ratio =
@@ -146,7 +146,7 @@ TEST(NoiseConversions, AMinimumOfWhiteNoiseAndRandomWalkReadsAsFlickerThatIsNotT
 }
 
 TEST(FoldedDensity, IsTheFiltersVarianceSpreadOverTheBandWhereTheFilterIsWide) {
-  // Samples far apart are independent: variance = density · rate.
+  // Samples far apart in time are independent: variance = density · rate.
   const FilteredWhite noise{.white_mps2_rthz = 2e-3, .bandwidth_hz = 1600.0};
   const double density = folded_density_rthz(noise, 100.0);
   EXPECT_NEAR(density * density * 100.0 / std::pow(filtered_rms_mps2(noise), 2), 1.0, 1e-9);

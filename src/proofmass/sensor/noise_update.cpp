@@ -15,7 +15,7 @@ namespace {
 /// 95 % of a normal distribution lies below this many standard deviations.
 constexpr double one_sided_95 = 1.6448536269514722;
 
-/// One coefficient: its name, its unit, where it is measured and where it goes.
+/// One coefficient: its name, its unit, its source and its destination.
 struct Term {
   std::string_view name, unit;
   MeasuredCoefficient MeasuredNoise::* measured;
@@ -42,7 +42,7 @@ Status check(const Uncertain& figure) {
   return Done{};
 }
 
-/// What is known of a coefficient; nullopt if nothing is.
+/// Value or bound of a coefficient; nullopt if neither is known.
 std::optional<Uncertain> known(const MeasuredCoefficient& coefficient) {
   if (coefficient.identified) return coefficient.identified;
   if (coefficient.upper_95) return Uncertain{0.0, *coefficient.upper_95 / one_sided_95};

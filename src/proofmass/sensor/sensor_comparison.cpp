@@ -12,7 +12,7 @@
 namespace proofmass::sensor {
 namespace {
 
-/// What a figure stands for rather than what the sensor is.
+/// True for a figure that describes a condition, not the sensor.
 bool is_condition(const FigureSlot& slot) {
   if (slot.section == "calibration")
     return slot.key == "gravity" || slot.key == "temperature" || slot.key == "dof" ||
@@ -25,7 +25,7 @@ bool is_calibration(const FigureComparison& figure) {
          !is_condition(figure.before);
 }
 
-/// With the biases as uncertain as they are from one session to another.
+/// The model with session-to-session uncertainties of the biases.
 SensorModel over_sessions(SensorModel model) {
   Calibration& calibration = model.calibration;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -40,7 +40,8 @@ SensorModel over_sessions(SensorModel model) {
   return model;
 }
 
-/// Two calibrations by what each session repeats say nothing of what lies between the sessions.
+/// Calibrations with only the repeatability within each session do not account for changes between
+/// sessions.
 void note_repeatability(const SensorModel& before,
                         const SensorModel& after,
                         std::vector<Note>& notes) {
@@ -63,7 +64,7 @@ double p_of(double change, double std, std::optional<double> dof) {
   return dof ? student_t_p(z, *dof) : chi_square_p(std::min(z * z, 1e6), 1.0);
 }
 
-/// Everything of one figure but what hangs on the other tests.
+/// The comparison of one figure, without the parts that depend on the other tests.
 FigureComparison compared(FigureSlot before,
                           FigureSlot after,
                           std::optional<double> old_dof,
@@ -113,7 +114,7 @@ std::vector<FigureComparison> compared(const SensorModel& before, const SensorMo
   return figures;
 }
 
-/// Holm's adjusted probabilities, in the order of the given ones.
+/// Holm's adjusted probabilities, in the order of the input.
 std::vector<double> holm(const std::vector<double>& p) {
   std::vector<std::size_t> order(p.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
@@ -129,7 +130,7 @@ std::vector<double> holm(const std::vector<double>& p) {
 }
 
 /// Adjusts the probabilities of the figures for which `chosen` holds, and of the joint test if it
-/// is among them. Returns how many tests there were.
+/// is included. Returns the number of tests.
 template <class Chosen>
 std::size_t adjust(SensorComparison& comparison, bool with_joint, Chosen chosen) {
   std::vector<double> p;
@@ -150,7 +151,7 @@ std::size_t adjust(SensorComparison& comparison, bool with_joint, Chosen chosen)
   return p.size();
 }
 
-/// Adjusts all probabilities together: the calibration as a whole first, if it can be.
+/// Adjusts all probabilities together: the calibration as a whole first, if possible.
 void adjust(SensorComparison& comparison) {
   if (!comparison.joint) {
     comparison.tests = adjust(comparison, false, [](const FigureComparison&) { return true; });
@@ -164,7 +165,7 @@ void adjust(SensorComparison& comparison) {
       figure.p_adjusted = std::max(*figure.p_adjusted, comparison.joint->p_adjusted);
 }
 
-/// What the verdicts on some figures come to.
+/// Combined verdict on some figures.
 template <class Chosen>
 Verdict verdict_on(const SensorComparison& comparison, bool with_joint, Chosen chosen) {
   const auto any = [&](Verdict verdict) {
@@ -197,7 +198,7 @@ void note_other_sensor(const SensorModel& before,
                                         before.serial, after.serial)});
 }
 
-/// The effect is of readings in m/s^2; what makes them of volts or counts may have changed too.
+/// The effect is for readings in m/s^2; the conversion to volts or counts may have changed too.
 void note_electrical(const SensorModel& before,
                      const SensorModel& after,
                      const SensorComparison& comparison,
@@ -218,7 +219,7 @@ void note_electrical(const SensorModel& before,
                      "other readings in m/s^2 by them, which the largest error does not contain"});
 }
 
-/// Circumstances that explain changes of figures.
+/// Notes circumstances that may explain changes of figures.
 void note_circumstances(const SensorModel& before,
                         const SensorModel& after,
                         std::vector<Note>& notes) {
@@ -292,7 +293,7 @@ std::string_view words_of(Verdict verdict) {
     case Verdict::cannot_tell:
       break;
   }
-  return "cannot be told";
+  return "undetermined";
 }
 
 }  // namespace proofmass::sensor

@@ -16,12 +16,14 @@ constexpr std::array<double, 9> truth{33123.8, 33275.2, 32364.5, 414.4, 412.0,
                                       414.6,   0.003,   -0.009,  0.021};
 constexpr std::array<double, 9> stds{0.25, 0.14, 0.15, 0.027, 0.014, 0.016, 1.3e-4, 4.8e-4, 1.2e-4};
 
-/// Every pair of figures is correlated by 0.6: one error that all share beside nine of their own.
+/// Every pair of figures has a correlation of 0.6: one common error in addition to nine individual
+/// ones.
 constexpr double shared = 0.6;
 
 using Normal = std::normal_distribution<double>;
 
-/// A calibration of the truth with errors of its covariance, as a fit with `dof` would state it.
+/// A calibration of the true values with errors from its covariance, as a fit with `dof` would
+/// report it.
 SensorModel drawn(std::mt19937_64& engine, bool with_covariance, std::optional<double> dof) {
   Normal normal;
   double factor = 1.0;
@@ -84,7 +86,7 @@ TEST(SensorComparison, AlarmsInFivePercentWhereTheUncertaintyIsItselfUncertain) 
   EXPECT_NEAR(alarm_rate(true, 6.0, 4000), 0.05, 0.015);
 }
 
-// Holm's method does not know how the figures are correlated, and may only be too careful.
+// Holm's method ignores the correlation of the figures, and can only be conservative.
 TEST(SensorComparison, AlarmsInFivePercentAtMostWithoutCovariances) {
   const double rate = alarm_rate(false, std::nullopt, 4000);
   EXPECT_LT(rate, 0.05);
@@ -157,7 +159,7 @@ TEST(SensorComparison, TestsTheCalibrationAsAWholeByChiSquare) {
   std::mt19937_64 engine(3);
   const SensorModel before = drawn(engine, true, std::nullopt);
   SensorModel after = before;
-  // Of equicorrelated figures, all moved by their own standard deviation of the change: the
+  // For equicorrelated figures, all shifted by their own standard deviation of the change: the
   // eigenvector (1, …, 1) with eigenvalue 1 + 8 · 0.6.
   for (auto* figure : nine_figures(after.calibration)) {
     (*figure)->value += std::sqrt(2.0) * *(*figure)->std;

@@ -5,13 +5,13 @@
 
 #include "proofmass/sensor/sensor_model.hpp"
 
-// Wording that the exports share.
+// Text functions shared by the exports.
 namespace proofmass::sensor {
 
-/// The text on one line, and harmless inside a comment: nothing in it opens, ends or continues one.
+/// The text on one line, safe inside a comment: it cannot open, end or continue one.
 [[nodiscard]] std::string comment_text(std::string_view text);
 
-/// The sensor's name for a comment, or else `otherwise`.
+/// The sensor's name for a comment, or `otherwise` if it has none.
 [[nodiscard]] std::string name_or(const SensorModel& model, std::string_view otherwise);
 
 /// "x, z": the axes without that figure.

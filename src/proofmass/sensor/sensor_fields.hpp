@@ -11,8 +11,8 @@ namespace proofmass::sensor {
 inline constexpr std::array<std::string_view, 5> sections{"sensor", "electrical", "calibration",
                                                           "noise", "drift"};
 
-/// Every figure of a sensor file, once: section, key, SI units of which one must be its own,
-/// member. A figure is added by a line here. Model is SensorModel or const SensorModel.
+/// Every figure of a sensor file, once: section, key, permitted SI units, member. To add a figure,
+/// add a line here. Model is SensorModel or const SensorModel.
 template <class Model, class Visit>
 void visit_figures(Model& model, Visit&& visit) {
   using Units = std::initializer_list<std::string_view>;
@@ -54,7 +54,7 @@ auto nine_figures(C& calibration) {
   return std::array{&bx, &by, &bz, &sx, &sy, &sz, &yz, &zy, &zx};
 }
 
-/// The same for what is text.
+/// The same for text entries.
 template <class Model, class Visit>
 void visit_texts(Model& model, Visit&& visit) {
   visit("sensor", "name", model.name);

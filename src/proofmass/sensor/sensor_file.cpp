@@ -17,13 +17,13 @@ namespace {
 
 using Units = std::initializer_list<std::string_view>;
 
-/// Where in the file a figure stands, and what it may be measured in.
+/// Location of a figure in the file, and its permitted units.
 struct Place {
   std::string path;  ///< "noise.white"
   Units units;
 };
 
-/// Throws away nothing: every failure leaves through here, with its line.
+/// Thrown on every failure, with its line.
 struct Failure {
   Error error;
 };
@@ -80,7 +80,7 @@ void only_known_keys(const toml::table& table, const Place& place) {
            "is not known; a figure has value, std, unit and origin");
 }
 
-/// The figure of a table, on three axes; of a table {} on none.
+/// The figure of a table, on three axes; an empty table {} gives none.
 AxisFigures table_figures(const toml::node& node, const Place& place) {
   const toml::table* table = node.as_table();
   if (table == nullptr)
@@ -145,7 +145,7 @@ std::array<std::array<double, 9>, 9> covariance(const toml::node& node) {
   return matrix;
 }
 
-/// Makes a value print on one line, as it must behind "key = ".
+/// Makes a value print on one line, as required after "key = ".
 void make_inline(toml::node& node) {
   if (toml::table* table = node.as_table()) {
     table->is_inline(true);
@@ -163,7 +163,7 @@ std::string toml_of(toml::node& node) {
   return out.str();
 }
 
-/// Takes what it knows out of the tree, so that what is left is what it does not know.
+/// Removes the known entries from the tree; the remainder is unknown.
 class Reader {
  public:
   explicit Reader(toml::table& root) : root_(root) {

@@ -12,8 +12,8 @@
 namespace proofmass::sensor {
 namespace {
 
-/// Lets one change at a time happen in a folder, so that none is lost between reading and writing;
-/// file systems that know no locks have none.
+/// Serialises changes in a folder, so that none is lost between reading and writing; has no effect
+/// on file systems without locks.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder)
@@ -37,7 +37,7 @@ Status change_sensor_file(const std::string& path,
   const FolderLock lock(std::filesystem::path(path).parent_path());
   SensorModel model;
   std::error_code unknown;
-  // Where it cannot be told whether there is a file, there may be one that must not be lost.
+  // If the existence of the file is uncertain, assume that it exists and must not be lost.
   if (std::filesystem::exists(path, unknown) || unknown) {
     auto file = read_sensor_file(path);
     if (!file) return file.error();

@@ -29,7 +29,7 @@ std::string key_text(std::string_view key) {
   return bare ? std::string(key) : toml_string(key);
 }
 
-/// The end that the figures of the three axes may have in common.
+/// The trailing part that the figures of the three axes may share.
 std::string unit_and_origin(const Figure& figure) {
   std::string out = fmt::format(", unit = {}", toml_string(figure.unit.symbol));
   if (!figure.origin.empty()) out += fmt::format(", origin = {}", toml_string(figure.origin));
@@ -43,7 +43,7 @@ std::string figure_text(const std::optional<Figure>& figure) {
   return out + unit_and_origin(*figure);
 }
 
-/// True where one table can hold all three.
+/// True if one table can hold all three.
 bool alike(const AxisFigures& figures) {
   return std::ranges::all_of(figures, [&](const std::optional<Figure>& f) {
     return f && f->unit == figures[0]->unit && f->origin == figures[0]->origin &&

@@ -7,20 +7,20 @@
 
 #include "proofmass/sensor/figure.hpp"
 
-// What is known of one accelerometer: the value types in which the analyses meet. Every figure
-// carries its unit, its standard deviation and its origin; Figure::si() gives it in the SI unit
-// that stands beside each member.
+// Model of one accelerometer: the value types shared by the analyses. Every figure carries its
+// unit, its standard deviation and its origin; Figure::si() gives it in the SI unit stated with
+// each member.
 namespace proofmass::sensor {
 
-/// From the force on the sensor to what is recorded, nominally:
+/// Nominal relation between specific force and recorded value:
 ///
 ///     V = zero_g_fraction · V_s + sensitivity · (V_s / V_ref) · f,   counts = V / lsb,
 ///
 /// with the supply V_s and the reference V_ref. A sensor without reference_supply is not
-/// ratiometric: V_s / V_ref is then 1, and its zero stands at zero_g_fraction · supply.
+/// ratiometric: V_s / V_ref is then 1, and its zero is at zero_g_fraction · supply.
 /// Source: ADXL335 datasheet rev. B, "Use with operating voltages other than 3 V".
 struct Electrical {
-  std::optional<Figure> supply;            ///< V_s in V, where no channel records it
+  std::optional<Figure> supply;            ///< V_s in V, if no channel records it
   std::optional<Figure> reference_supply;  ///< V_ref in V, at which sensitivity holds
   std::string supply_channel;              ///< the recording's channel with V_s, if any
   AxisFigures sensitivity;                 ///< V/(m/s^2)
@@ -36,32 +36,32 @@ struct Electrical {
 ///                                                   [0   1    −α_zx]
 ///                                                   [0   0     1   ],
 ///
-/// and so reading = diag(scale) T⁻¹ f + bias. The reading is the recorded acceleration in m/s^2
-/// where scale has no unit, in volts (of a ratiometric sensor: brought to V_ref) where it is per
-/// volt, in counts where it is per count; bias is in the unit of the reading.
+/// equivalently reading = diag(scale) T⁻¹ f + bias. The reading is the recorded acceleration in
+/// m/s^2 if scale has no unit, in volts (for a ratiometric sensor: scaled to V_ref) if it is per
+/// volt, in counts if it is per count; bias is in the unit of the reading.
 /// Source: D. Tedaldi, A. Pretto, E. Menegatti, A robust and easy to implement method for IMU
-/// calibration without external equipments, ICRA 2014 (their K is diag(1/scale),
-/// their bias is minus ours).
+/// calibration without external equipments, ICRA 2014 (their K is diag(1/scale), their bias is
+/// minus ours).
 struct Calibration {
   AxisFigures bias;          ///< m/s^2, V or counts
   AxisFigures scale;         ///< 1, V/(m/s^2) or counts/(m/s^2)
   AxisFigures misalignment;  ///< α_yz, α_zy, α_zx in rad
-  /// Of bias x y z, scale x y z, misalignment, row by row, in SI.
+  /// Covariance of bias x y z, scale x y z, misalignment, row by row, in SI.
   std::optional<std::array<std::array<double, 9>, 9>> covariance;
-  /// Standard deviation of the bias from one session to another, in the unit of bias: what the
-  /// repeatability within one recording, of which bias.std and covariance are, does not hold.
+  /// Standard deviation of the bias from one session to another, in the unit of bias. It is not
+  /// included in bias.std and covariance, which describe the repeatability within one recording.
   AxisFigures stability;
   std::optional<Figure> dof;          ///< 1, effective degrees of freedom of the std; absent: many
-  std::optional<Figure> gravity;      ///< m/s^2, that the calibration took for true
-  std::optional<Figure> temperature;  ///< K, at which it was made
-  /// Standard deviation in rad of the angle between the sensor's axes and its case, which no
-  /// calibration against gravity alone can see.
+  std::optional<Figure> gravity;      ///< m/s^2, assumed in the calibration
+  std::optional<Figure> temperature;  ///< K, during the calibration
+  /// Standard deviation in rad of the angle between the sensor's axes and its case, which is not
+  /// observable in a calibration against gravity alone.
   std::optional<Figure> alignment_std;
   friend bool operator==(const Calibration&, const Calibration&) = default;
 };
 
-/// Coefficients of the Allan variance, σ²(τ) = 3 Q²/τ² + N²/τ + (2 ln2/π) B² + K² τ/3 + R² τ²/2.
-/// N is the two-sided density: a datasheet's one-sided one is √2 larger.
+/// Coefficients of the Allan variance, σ²(τ) = 3 Q²/τ² + N²/τ + (2 ln2/π) B² + K² τ/3 + R² τ²/2. N
+/// is the two-sided density; a datasheet's one-sided density is √2 larger.
 /// Source: IEEE Std 952-1997, annex C.
 struct NoiseModel {
   AxisFigures white;         ///< N in m/s^2/sqrt(Hz)
@@ -72,14 +72,14 @@ struct NoiseModel {
   friend bool operator==(const NoiseModel&, const NoiseModel&) = default;
 };
 
-/// Warm-up of the bias after switching on: a1 (1 − e^(−t/T)) + a2.
+/// Warm-up of the bias after power-on: a1 (1 − e^(−t/T)) + a2.
 struct DriftModel {
   AxisFigures a1, a2;         ///< m/s^2
   AxisFigures time_constant;  ///< T in s
   friend bool operator==(const DriftModel&, const DriftModel&) = default;
 };
 
-/// A line of a sensor file that this version does not know, kept so that it is written back.
+/// A line of a sensor file that is unknown to this version, kept so that it is written back.
 struct UnknownEntry {
   std::string section;  ///< empty: outside any section
   std::string key;

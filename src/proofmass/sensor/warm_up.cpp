@@ -13,7 +13,7 @@
 namespace proofmass::sensor {
 namespace {
 
-using Gradient = std::array<double, 3>;  // by a1, a2, T
+using Gradient = std::array<double, 3>;  // with respect to a1, a2, T
 
 Uncertain with_std(double value, const Gradient& gradient, const WarmUp& warm_up) {
   double variance = 0.0;
@@ -36,7 +36,7 @@ double variance_of(const std::optional<Figure>& figure) {
   return std * std;
 }
 
-/// One channel without its departure; an error where it is no acceleration.
+/// One channel without its departure; an error if it is not an acceleration.
 Result<std::vector<double>> without(const WarmUp& gone,
                                     const Channel& channel,
                                     const TimeBase& time,

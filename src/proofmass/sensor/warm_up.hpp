@@ -8,10 +8,10 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/sensor/sensor_model.hpp"
 
-// The warm-up of a bias as what it is to an estimator: a known input.
+// The warm-up of a bias as a known input of an estimator.
 namespace proofmass::sensor {
 
-/// The bias of one axis, t since switching on:
+/// The bias of one axis, t since power-on:
 ///
 ///     b(t) = a2 + a1 (1 − e^(−t/T)),     ḃ = (a1 + a2 − b)/T,  b(0) = a2.
 ///
@@ -20,28 +20,28 @@ struct WarmUp {
   double a1_mps2 = 0.0;
   double a2_mps2 = 0.0;
   double time_constant_s = 1.0;                       ///< T, positive
-  std::array<std::array<double, 3>, 3> covariance{};  ///< of a1, a2, T, in SI
+  std::array<std::array<double, 3>, 3> covariance{};  ///< covariance of a1, a2, T, in SI
 
-  /// a1 + a2: what the bias settles at, and the known input of its differential equation.
+  /// a1 + a2: the settled bias, and the known input of its differential equation.
   [[nodiscard]] double settled_mps2() const { return a1_mps2 + a2_mps2; }
 };
 
-/// The warm-up of axis 0, 1 or 2. A sensor file holds standard deviations and no correlations, so
-/// the covariance is diagonal, and 0 where a figure has no std. A fit that has not seen several T
-/// leaves a1 and T correlated, and the std of the bias is then a rough one.
+/// The warm-up of axis 0, 1 or 2. A sensor file has standard deviations but no correlations, so the
+/// covariance is diagonal, and 0 for a figure without std. A fit to a recording shorter than
+/// several T leaves a1 and T correlated, and the std of the bias is then approximate.
 /// Errors: invalid_argument (a1, a2 or T is missing, T is not positive; the message names the
 /// figure).
 [[nodiscard]] Result<WarmUp> warm_up_of(const DriftModel& drift, std::size_t axis);
 
-/// b(t) and the standard deviation that a1, a2 and T leave in it, to first order; t ≥ 0.
+/// b(t) and its standard deviation due to a1, a2 and T, to first order; t ≥ 0.
 [[nodiscard]] Uncertain bias_at(const WarmUp& warm_up, double since_switch_on_s);
 
-/// A stretch of time since switching on, 0 ≤ from ≤ to.
+/// An interval of time since power-on, 0 ≤ from ≤ to.
 struct OnTime {
   double from_s = 0.0, to_s = 0.0;
 };
 
-/// Mean of b over the stretch, as an average over it reads; b itself where it has no length.
+/// Mean of b over the interval; b itself if the interval has no length.
 [[nodiscard]] Uncertain mean_bias(const WarmUp& warm_up, const OnTime& stretch);
 
 struct SettlingOptions {
@@ -49,10 +49,10 @@ struct SettlingOptions {
   double time_constant_s;  ///< > 0
 };
 
-/// What a step of time does to anything that settles exponentially, exactly for any dt.
+/// One time step of any exponentially settling quantity, exact for any dt.
 struct SettlingStep {
   double phi;      ///< e^(−dt/T)
-  double settled;  ///< 1 − φ, to full precision where dt is short
+  double settled;  ///< 1 − φ, to full precision for small dt
 };
 [[nodiscard]] SettlingStep settling_step(const SettlingOptions& options);
 
@@ -63,29 +63,28 @@ struct WarmUpStep {
 };
 [[nodiscard]] WarmUpStep warm_up_step(const WarmUp& warm_up, double dt_s);
 
-/// How far the bias is from where it settles: b(t) − (a1 + a2) = −a1 e^(−t/T), again a warm-up,
-/// with −a1 for its a2. This is the part that estimators take out, because the rest, a1 + a2, is
-/// the bias of the warmed-up sensor, which is what a calibration finds, and a2 as fitted to a
-/// recording at rest holds whatever gravity the axis saw.
+/// Deviation of the bias from its settled value: b(t) − (a1 + a2) = −a1 e^(−t/T), again a warm-up,
+/// with −a1 for its a2. Estimators remove this part only: the remainder a1 + a2 is the bias of the
+/// warmed-up sensor, which a calibration determines, and a2 fitted to a static recording includes
+/// any gravity on the axis.
 [[nodiscard]] WarmUp departure(const WarmUp& warm_up);
 
 struct WarmUpOptions {
-  double since_switch_on_s = 0.0;  ///< how long the sensor had been on at the first sample, ≥ 0
+  double since_switch_on_s = 0.0;  ///< time from power-on to the first sample, ≥ 0
 };
 
-/// Takes the departure of each axis out of the sensor's channels, f ← f + a1 e^(−t/T), so that they
-/// read as those of a warmed-up sensor; they are brought to m/s². Drift is in the unit and axes of
-/// calibrated channels: apply() comes before. An axis without figures is left alone, and a note
-/// says so.
+/// Removes the departure of each axis from the sensor's channels, f ← f + a1 e^(−t/T), so that they
+/// are those of a warmed-up sensor; they are converted to m/s². Drift is in the unit and axes of
+/// calibrated channels: call apply() first. An axis without figures is unchanged, with a note.
 ///
-/// Errors: invalid_argument (no axis of these has figures, or one has some of them only; a channel
-/// is no acceleration; the recording has no time). The recording is then as it was.
+/// Errors: invalid_argument (none of these axes has figures, or one has only some; a channel is not
+/// an acceleration; the recording has no time). The recording is then unchanged.
 [[nodiscard]] Status remove_warm_up(const DriftModel& drift,
                                     const Triad& triad,
                                     const WarmUpOptions& options,
                                     Recording& recording);
 
-/// Whether any figure of a warm-up is known.
+/// True if any figure of a warm-up is known.
 [[nodiscard]] bool has_warm_up(const DriftModel& drift);
 
 }  // namespace proofmass::sensor

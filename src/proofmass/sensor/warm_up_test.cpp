@@ -165,7 +165,7 @@ TEST(Departure, IsAsUncertainAsA1AndTLeaveIt) {
 TEST(Departure, KnowsHowA1AndTAreCorrelated) {
   WarmUp warm_up = thesis_warm_up();
   warm_up.covariance = {{{4e-4, 0.0, 0.08}, {0.0, 1e-4, 0.0}, {0.08, 0.0, 25.0}}};
-  // After T: ∂/∂a1 = −e⁻¹, ∂/∂T = −e⁻¹ a1/T of the departure; 1 − e⁻¹ and −e⁻¹ a1/T of the bias.
+  // At T: ∂/∂a1 = −e⁻¹, ∂/∂T = −e⁻¹ a1/T for the departure; 1 − e⁻¹ and −e⁻¹ a1/T for the bias.
   const double phi = std::exp(-1.0), by_T = phi * 0.25 / 70.0, risen = 1.0 - phi;
   EXPECT_NEAR(bias_at(departure(warm_up), 70.0).std,
               std::sqrt(phi * phi * 4e-4 + by_T * by_T * 25.0 + 2.0 * phi * by_T * 0.08), 1e-15);

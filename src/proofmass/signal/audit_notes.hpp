@@ -7,11 +7,11 @@
 #include "proofmass/signal/running_channel.hpp"
 #include "proofmass/signal/sample_times.hpp"
 
-// What an audit found, in sentences.
+// Findings of an audit as sentences.
 namespace proofmass::signal {
 
-/// How places are named: by line where first_line is above 0, else by sample, and by time if that
-/// is known.
+/// How positions are named: by line if first_line is above 0, else by sample; also by time if it is
+/// known.
 struct PlaceWords {
   std::size_t first_line = 0;
   bool is_timed = false;
@@ -19,13 +19,13 @@ struct PlaceWords {
 
 void tell_timing(const TimingAudit& timing, std::vector<Note>& notes);
 
-/// Odd values, with their places.
+/// Notes odd values with their positions.
 void tell_values(const std::string& name,
                  const RunningChannel& channel,
                  const PlaceWords& words,
                  std::vector<Note>& notes);
 
-/// Values set aside, clipping, and a channel that is stuck. rate_hz: 0 if unknown.
+/// Notes excluded values, clipping, and a stuck channel. rate_hz: 0 if unknown.
 void tell_channel(const ChannelAudit& channel, double rate_hz, std::vector<Note>& notes);
 
 void tell_zero_rows(const OddValues& rows, const PlaceWords& words, std::vector<Note>& notes);

@@ -24,7 +24,7 @@ Recording recording_of(std::vector<double> values) {
   return recording;
 }
 
-/// The same with one value a stamp.
+/// The same with one value per stamp.
 Recording stamped(std::vector<double> stamps_s, double rate_hz) {
   Recording recording = recording_of(std::vector<double>(stamps_s.size(), 1.0));
   recording.time = {TimeSource::stamps, "t", rate_hz, std::move(stamps_s), {}};
@@ -85,7 +85,7 @@ TEST(Lsb, IsTheStepOfTheConverter) {
     std::vector<double> values = noise(20'000, 3.0 * lsb);
     for (double& x : values) x = std::round(x / lsb) * lsb;
     EXPECT_NEAR(find_lsb(values).value(), lsb, 1e-9 * lsb);
-    // Written with few decimals, and with a few values that are off the grid.
+    // Written with few decimals, and with a few off-grid values.
     for (double& x : values) x = std::round(x / (0.02 * lsb)) * 0.02 * lsb;
     values[7] = 0.37 * lsb;
     EXPECT_NEAR(find_lsb(values).value(), lsb, 0.02 * lsb);
@@ -120,7 +120,7 @@ TEST(Clipping, IsNotSeenInASineOrInAFewLevelsOfNoise) {
   EXPECT_EQ(audit(recording_of(levels)).channels[0].clipped, 0u);
 }
 
-/// Coarse readings of what lies between these levels, each held for 1000 samples, with noise.
+/// Coarsely quantised measurements of these levels, each held for 1000 samples, with noise.
 std::vector<double> coarse_positions(const std::vector<double>& levels, double step, double std) {
   const std::vector<double> errors = noise(1000 * levels.size(), std);
   std::vector<double> out;
@@ -132,7 +132,7 @@ std::vector<double> coarse_positions(const std::vector<double>& levels, double s
 TEST(Clipping, IsNotSeenInCoarseReadings) {
   constexpr double step = 0.0383;
   for (const double std : {0.05, 0.1, 0.2, 0.4}) {
-    // The offset brings each level to anywhere between two steps.
+    // The offset places each level anywhere between two quantisation steps.
     for (int k = 0; k < 10; ++k) {
       const double offset = 0.1 * k * step;
       const RecordingAudit found = audit(recording_of(coarse_positions(
@@ -156,7 +156,7 @@ TEST(Clipping, IsSeenInCoarseReadings) {
     values.push_back(std::round(std::clamp(30.0 * std::sin(0.05 * k), -rail, rail) / step) * step);
   const auto at_rail =
       std::ranges::count_if(values, [&](double x) { return std::abs(x) > rail - 0.5 * step; });
-  // But for a visit of one or two samples.
+  // Except for a visit of one or two samples.
   EXPECT_NEAR(static_cast<double>(audit(recording_of(values)).channels[0].clipped),
               static_cast<double>(at_rail), 2.0);
 }
@@ -168,7 +168,7 @@ TEST(Clipping, IsNotSeenInAValueThatIsHeldForOnce) {
   EXPECT_EQ(audit(recording_of(values)).channels[0].clipped, 0u);
 }
 
-/// A motion of three strengths that follow one another again and again.
+/// A motion of three alternating amplitudes.
 std::vector<double> uneven_motion(double strength) {
   std::vector<double> out;
   for (int k = 0; k < 20'000; ++k) {
@@ -320,9 +320,9 @@ TEST(Timing, TheRateIsAsUncertainAsTheLineThroughTheStamps) {
   std::vector<double> stamps_s;
   for (std::size_t k = 0; k < errors_s.size(); ++k)
     stamps_s.push_back(0.01 * static_cast<double>(k) + errors_s[k]);
-  // Of a straight line: the noise of a stamp times the root of 12 / n^3, a second as a share.
+  // For a straight line: the noise of a stamp times the root of 12 / n^3, relative to one second.
   const double expected_hz = 1e-3 / 0.01 * 100.0 * std::sqrt(12.0 / std::pow(4000.0, 3.0));
-  // The true rate is off from the line by a few of these, which counts as well.
+  // The true rate differs from the line by a few of these, which counts as well.
   const double std_hz = audit(stamped(stamps_s, 100.0)).timing.rate_std_hz.value();
   EXPECT_GT(std_hz, 0.5 * expected_hz);
   EXPECT_LT(std_hz, 3.0 * expected_hz);

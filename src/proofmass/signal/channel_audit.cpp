@@ -8,8 +8,8 @@
 namespace proofmass::signal {
 namespace {
 
-/// A difference between neighbouring distinct values, and how often the rarer of the two is read: a
-/// value that is off the grid once weighs little.
+/// A difference between adjacent distinct values, weighted by the number of occurrences of the
+/// rarer one: a single off-grid value has little weight.
 struct Difference {
   double size = 0.0;
   double weight = 0.0;
@@ -29,13 +29,14 @@ std::vector<Difference> differences_of(View<double> sorted) {
   return out;
 }
 
-/// A step, and by weight how much of the differences are whole multiples of it to within 15 %.
+/// A step, and the weighted fraction of the differences that are whole multiples of it to within 15
+/// %.
 struct GridFit {
   double step = 0.0;
   double on_grid = 0.0;
 };
 
-/// Improves on a rough step: the sum of the differences over the sum of the multiples they are.
+/// Refines an approximate step: the sum of the differences over the sum of their multiples.
 GridFit fit_grid(const std::vector<Difference>& differences, double step) {
   GridFit fit{step, 0.0};
   for (int pass = 0; pass < 2; ++pass) {
@@ -48,7 +49,7 @@ GridFit fit_grid(const std::vector<Difference>& differences, double step) {
       const double n = std::round(size / fit.step);
       if (n < 1.0 || std::abs(size / fit.step - n) > 0.15) continue;
       on_grid += weight;
-      // Large gaps say little about a step that is not yet known well.
+      // Large differences carry little information while the step is inaccurate.
       if (n > 4.0) continue;
       sum += weight * size;
       multiples += weight * n;
@@ -69,7 +70,8 @@ std::optional<double> find_lsb_of_plausible(std::vector<double> values) {
   sizes.reserve(differences.size());
   for (const Difference& difference : differences) sizes.push_back(difference.size);
   std::ranges::sort(sizes);
-  // The smallest difference is the step unless a few values are off the grid: then look higher.
+  // The smallest difference is the step unless a few values are off the grid: then try higher
+  // quantiles.
   for (const double p : {0.0, 0.01, 0.05, 0.25, 0.5}) {
     const auto at = static_cast<std::size_t>(p * static_cast<double>(sizes.size() - 1));
     const GridFit fit = fit_grid(differences, sizes[at]);

@@ -18,21 +18,21 @@ inline constexpr double least_normal = 0x1p-126;
   return value != 0.0 && std::abs(value) < least_normal;
 }
 
-/// Finite, of a size that a measurement can have, and not denormal.
+/// True if finite, of a plausible magnitude, and not denormal.
 [[nodiscard]] inline bool is_plausible(double value) {
   return std::abs(value) <= absurd_magnitude && !is_denormal(value);
 }
 
-/// The value, or NaN where it is no measurement.
+/// The value, or NaN if it is not plausible.
 [[nodiscard]] inline double plausible_or_nan(double value) {
   return is_plausible(value) ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The step of the converter behind a series, or nullopt if it looks continuous: told by a
+/// The quantisation step of a series, or nullopt if it looks continuous; determined from a
 /// ThinnedSample of 2^18 of its plausible values.
 [[nodiscard]] std::optional<double> find_lsb(View<double> series);
 
-/// The same of a sample of plausible values.
+/// The same from a sample of plausible values.
 [[nodiscard]] std::optional<double> find_lsb_of_plausible(std::vector<double> values);
 
 }  // namespace proofmass::signal

@@ -13,7 +13,7 @@
 namespace proofmass::signal {
 namespace {
 
-// So many that the compiler keeps the loop over them, and makes it one over vectors.
+// Large enough for the compiler to keep the inner loop and vectorise it.
 constexpr std::size_t lanes = 64;
 using Lanes = std::array<double, lanes>;
 
@@ -21,7 +21,7 @@ double total(const Lanes& sums) {
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-// 0 of a value that is_plausible, else above. Without a branch; every comparison with NaN is false.
+// 0 if is_plausible, else positive. Branch-free; every comparison with NaN is false.
 [[gnu::always_inline]] inline double oddness(double value) {
   const double size = std::abs(value);
   const double small = size < least_normal ? 1.0 : 0.0, zero = size == 0.0 ? 1.0 : 0.0;

@@ -5,41 +5,41 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/view.hpp"
 
-// The loops in which the time of an audit goes, compiled for the vector units of several
-// processors; a fixed order of summation gives every one of them the same digits.
+// The loops that take most of an audit's time, compiled for the vector units of several processors.
+// A fixed order of summation gives the same digits on all of them.
 namespace proofmass::signal {
 
-/// What one look at a chunk of values tells.
+/// Statistics of one chunk of values.
 struct ChunkFigures {
-  bool plausible = true;  ///< all of them; if not, the others mean nothing
+  bool plausible = true;  ///< true if all values are; otherwise the other members are meaningless
   double sum = 0.0;
   double min = 0.0, max = 0.0;
 };
 
-/// Of one value or more.
+/// Precondition: non-empty.
 [[nodiscard]] ChunkFigures chunk_figures(View<double> values);
 
 /// Σ (x − mean)²
 [[nodiscard]] double squares_about(View<double> values, double mean);
 
-/// Whether any value is that before it once more.
+/// True if any value equals the previous one.
 [[nodiscard]] bool has_repeats(View<double> values);
 
-/// Values for which sign · x is below the bound.
+/// Number of values for which sign · x is below the bound.
 [[nodiscard]] std::size_t count_below(View<double> values, double sign, double bound);
 
-/// How the steps between stamps depart from the nominal one.
+/// Deviations of the stamp intervals from the nominal one.
 struct StepFigures {
-  bool regular = true;   ///< all of them within half a nominal step of it
-  double squares = 0.0;  ///< Σ (step − nominal)², if so
+  bool regular = true;   ///< true if all intervals are within half a nominal period of it
+  double squares = 0.0;  ///< Σ (interval − nominal)², valid if regular
 };
 
-/// Of the steps between neighbours.
+/// Statistics of the intervals between adjacent stamps.
 [[nodiscard]] StepFigures step_figures(View<double> stamps_s, double nominal_s);
 
-/// Adds a chunk's figures to those of all before it, by the formula for two samples of any size.
-/// Source: T. F. Chan, G. H. Golub, R. J. LeVeque, Updating formulae and a pairwise algorithm for
-/// computing sample variances, Stanford STAN-CS-79-773 (1979), equation 2.1.
+/// Merges a chunk's statistics into the accumulated moments, by the formula for two samples of any
+/// size. Source: T. F. Chan, G. H. Golub, R. J. LeVeque, Updating formulae and a pairwise algorithm
+/// for computing sample variances, Stanford STAN-CS-79-773 (1979), equation 2.1.
 void add_chunk(Moments& moments, const ChunkFigures& figures, View<double> values);
 
 }  // namespace proofmass::signal

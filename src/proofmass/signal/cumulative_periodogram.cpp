@@ -16,15 +16,15 @@ namespace {
 constexpr std::size_t most_values_at_once = 65'536;
 constexpr std::size_t stretch = 8192;
 
-/// Whether all prime factors are 31 or less.
+/// True if all prime factors are 31 or less.
 bool transforms_quickly(std::size_t n) {
   for (std::size_t p = 2; p <= 31; ++p)
     while (n % p == 0) n /= p;
   return n == 1;
 }
 
-/// Ordinates of the periodogram between zero and half the rate, up to a factor, and of how many
-/// periodograms they are the sum.
+/// Ordinates of the periodogram between zero and half the rate, up to a factor, and the number of
+/// periodograms summed.
 struct Ordinates {
   std::vector<double> values;
   double averaged = 1.0;
@@ -61,7 +61,8 @@ Ordinates by_stretches(View<double> series, double mean) {
 double kolmogorov_p(double lambda) {
   double sum = 0.0;
   if (lambda < 1.0) {
-    // The same by Poisson's summation: the other series does not converge as λ goes to zero.
+    // The same by Poisson's summation, because the other series does not converge as λ goes to
+    // zero.
     if (lambda < 0.1) return 1.0;
     for (int j = 1; j <= 9; j += 2)
       sum += std::exp(-std::pow(j * std::numbers::pi / lambda, 2) / 8.0);
@@ -77,7 +78,7 @@ PeriodogramTest test_cumulative_periodogram(View<double> series, double mean) {
       series.size() > most_values_at_once ? by_stretches(series, mean) : at_once(series, mean);
   const double total = std::reduce(ordinates.begin(), ordinates.end());
   const double steps = averaged * static_cast<double>(ordinates.size()) - 1.0;
-  if (!(total > 0.0)) return {1.0, 0.0};  // everything at half the rate
+  if (!(total > 0.0)) return {1.0, 0.0};  // all power is at half the rate
   PeriodogramTest test;
   double sum = 0.0, position = 0.0;
   for (std::size_t j = 0; j + 1 < ordinates.size(); ++j) {

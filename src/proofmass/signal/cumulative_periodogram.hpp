@@ -9,9 +9,9 @@ struct PeriodogramTest {
   double p = 0.0;
 };
 
-/// How far the cumulative periodogram of ten or more finite values, not all equal, departs from
-/// that of white noise, as whiteness.hpp says. Of up to 65 536 values it takes the first n' ≤ n,
-/// n' the largest number without a prime factor above 31: the transform is slow at others.
+/// Deviation of the cumulative periodogram of ten or more finite values, not all equal, from that
+/// of white noise; see whiteness.hpp. For up to 65 536 values it uses the first n' ≤ n, n' the
+/// largest number without a prime factor above 31, because the transform is slow otherwise.
 /// Cost: O(n log n).
 [[nodiscard]] PeriodogramTest test_cumulative_periodogram(View<double> series, double mean);
 

@@ -5,23 +5,23 @@
 
 namespace proofmass::signal {
 
-/// Allan variance of means over so many samples, from so many pairs of neighbouring means.
+/// Allan variance of means over a number of samples, and the number of pairs of adjacent means
+/// used.
 struct AllanLevel {
   double samples = 1.0, variance = 0.0, pairs = 0.0;
 };
 
-/// Allan variances of means over 1, 2, 4, … values that come one by one,
+/// Online Allan variances of non-overlapping means over 1, 2, 4, … values,
 ///
-///     σ²(m) = ½ mean (ȳ_{2k+1} − ȳ_{2k})²,
+///     σ²(m) = ½ mean (ȳ_{2k+1} − ȳ_{2k})².
 ///
-/// of means that do not overlap. Memory: a few numbers for each octave. Cost: two differences a
-/// value.
+/// Memory: a few numbers per octave. Cost: two differences per value.
 class DyadicLadder {
  public:
   void add(double value);
-  /// No pair reaches over this point: what follows is another stretch.
+  /// Starts a new segment: no pair spans this point.
   void break_off();
-  /// Of the octaves that have a pair; a value stands for so many samples.
+  /// Levels of the octaves that have a pair; each value represents `samples_a_value` samples.
   [[nodiscard]] std::vector<AllanLevel> levels(double samples_a_value) const;
 
  private:

@@ -62,7 +62,7 @@ TEST(EvenGrid, TakesAStampThatWasLateForNoHole) {
   std::vector<double> stamps_s;
   stamps_s.reserve(100);
   for (int k = 0; k < 100; ++k) stamps_s.push_back(0.01 * k);
-  // Five samples held up by 40 ms and handed over at once.
+  // Five samples delayed by 40 ms and delivered together.
   for (std::size_t k = 50; k < 55; ++k) stamps_s[k] = 0.01 * 54 + 1e-4 * static_cast<double>(k);
   const auto grid = even_grid(stamped(stamps_s, 100.0), 100);
   ASSERT_TRUE(grid);

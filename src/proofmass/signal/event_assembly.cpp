@@ -8,7 +8,7 @@
 namespace proofmass::signal {
 namespace {
 
-/// The largest departure in a stretch from the median of a second at either side.
+/// The largest deviation in a segment from the median of a second on either side.
 double size_of_knock(View<double> series, const Stretch& at, double rate_hz) {
   const std::size_t side = std::max<std::size_t>(16, samples_in(1.0, rate_hz));
   std::vector<double> beside;
@@ -26,7 +26,7 @@ double size_of_knock(View<double> series, const Stretch& at, double rate_hz) {
   return size;
 }
 
-/// Two steps that cancel within seconds are a knock.
+/// Two steps that cancel within seconds are an outlier.
 void pair_steps(std::vector<Step>& steps, std::vector<Hit>& hits, double rate_hz) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -42,7 +42,7 @@ void pair_steps(std::vector<Step>& steps, std::vector<Hit>& hits, double rate_hz
   steps.resize(kept);
 }
 
-/// The change of the mean over up to two seconds at either side, not beyond another step.
+/// The change of the mean over up to two seconds on either side, limited by adjacent steps.
 double size_of_step(const Source& source, View<Step> steps, std::size_t k, double rate_hz) {
   const Step& step = steps[k];
   const std::size_t before = step.at - (k > 0 ? steps[k - 1].at : 0);
@@ -54,8 +54,8 @@ double size_of_step(const Source& source, View<Step> steps, std::size_t k, doubl
   return std::isnan(size) ? step.size : size;
 }
 
-/// A burst that took a step with it hid the level beside the step. Seen from beyond the burst the
-/// level may turn out not to have changed: then it was the burst's tail that looked like a step.
+/// A burst that coincides with a step hides the level next to the step. Measured beyond the burst,
+/// the level may be unchanged: then the tail of the burst only resembled a step.
 void settle_burst(const Source& source, Event& event, double rate_hz) {
   const std::size_t side = samples_in(2.0, rate_hz), margin = samples_in(0.5, rate_hz);
   const std::size_t behind = event.last + 1 + margin;
@@ -72,8 +72,9 @@ void settle_burst(const Source& source, Event& event, double rate_hz) {
   event.size = size_of_knock(source.series, {event.first, event.last}, rate_hz);
 }
 
-/// A knock rings on below what finds it. Its end moves on, tenth of a second by tenth, while these
-/// means differ from the level seconds later by more than four times what those before it scatter.
+/// An outlier decays below its detection threshold. Extends its end in tenths of a second while
+/// these means differ from the level seconds later by more than four times the scatter of the means
+/// before it.
 void follow_to_its_end(const Source& source, Event& event, double rate_hz) {
   const std::size_t w = std::max<std::size_t>(4, samples_in(0.1, rate_hz));
   constexpr std::size_t windows = 20, farthest = 50;
@@ -92,22 +93,22 @@ void follow_to_its_end(const Source& source, Event& event, double rate_hz) {
   }
 }
 
-/// Gives each step the size that the series around it shows.
+/// Measures the size of each step from the surrounding series.
 void measure_steps(const Source& source, std::vector<Step>& steps, double rate_hz) {
   std::vector<double> sizes(steps.size());
   for (std::size_t k = 0; k < steps.size(); ++k) sizes[k] = size_of_step(source, steps, k, rate_hz);
   for (std::size_t k = 0; k < steps.size(); ++k) steps[k].size = sizes[k];
 }
 
-/// Whether a hit is of the step's own making: a step sets the knock filter off beside it, in a
-/// window as long as that it was seen through.
+/// True if a hit is caused by the step itself: a step triggers the outlier filter next to it, in a
+/// window as long as that of its detection.
 bool lies_beside(const Stretch& at, const Step& step, double rate_hz) {
   const std::size_t reach =
       std::max<std::size_t>(32, 2 * std::min(step.window, samples_in(0.5, rate_hz)));
   return at.first <= step.at + reach && step.at <= at.last + reach;
 }
 
-/// An event for each step, widened by the hits beside it, and then one for each other hit.
+/// One event for each step, extended by adjacent hits, then one for each remaining hit.
 std::vector<Event> events_from(View<double> series,
                                const std::vector<Hit>& hits,
                                const std::vector<Step>& steps,
@@ -132,7 +133,7 @@ std::vector<Event> events_from(View<double> series,
   return events;
 }
 
-/// A knock that reaches into what a step has taken gives way.
+/// Truncates an outlier that overlaps a step.
 void part_overlapping(std::vector<Event>& events) {
   for (std::size_t k = 1; k < events.size(); ++k) {
     if (events[k].first > events[k - 1].last) continue;

@@ -6,11 +6,11 @@
 #include "proofmass/signal/event_source.hpp"
 #include "proofmass/signal/events.hpp"
 
-// From hits and steps to events.
+// Assembles hits and steps into events.
 namespace proofmass::signal {
 
-/// Joins the hits near to one another, pairs the steps that cancel, gives each step the hits beside
-/// it, and measures what results. The events ascend and do not overlap.
+/// Joins nearby hits, pairs steps that cancel, assigns adjacent hits to each step, and measures the
+/// result. The events ascend and do not overlap.
 [[nodiscard]] std::vector<Event> assemble(const Source& source,
                                           std::vector<Hit> hits,
                                           std::vector<Step> steps,

@@ -9,7 +9,7 @@
 namespace proofmass::signal {
 namespace {
 
-/// The split of a stretch in two constants that leaves the least squares.
+/// Splits a segment into two constants with the least squares.
 std::size_t place_of_step(const Source& source, std::size_t first, std::size_t count) {
   const std::vector<double> x = source.read(first, count);
   double mean = 0.0;
@@ -34,7 +34,7 @@ std::size_t place_of_step(const Source& source, std::size_t first, std::size_t c
   return place;
 }
 
-/// The step filter about a place, through windows of w samples.
+/// Output of the step filter at a position, with windows of w samples.
 double step_output(const Source& source, std::size_t place, std::size_t w) {
   if (place < 2 * w) return nan;
   return 0.5 * (mean_of(source, place - 2 * w, w) - 3.0 * mean_of(source, place - w, w) +
@@ -49,7 +49,7 @@ bool is_sharp(const Source& source, std::size_t place, std::size_t w, double siz
   return true;
 }
 
-/// Whether the outputs two and a half to four windows away are far below `size`, unlike beside a
+/// True if the outputs two and a half to four windows away are far below `size`, unlike next to a
 /// bend.
 bool stands_alone(View<double> outputs, std::size_t k, std::size_t width, double size) {
   const std::size_t first = k > 4 * width ? k - 4 * width : 0;
@@ -70,7 +70,7 @@ bool is_peak(View<double> outputs, std::size_t k, std::size_t width) {
   return true;
 }
 
-/// The places in blocks whose largest output is above the bar, ascending.
+/// The positions in blocks whose largest output exceeds the threshold, ascending.
 std::vector<std::size_t> places_above(const std::vector<Tally>& blocks,
                                       const Bar& bar,
                                       std::size_t places) {
@@ -83,7 +83,7 @@ std::vector<std::size_t> places_above(const std::vector<Tally>& blocks,
   return result;
 }
 
-/// Steps that windows of `width` blocks show, added to those known.
+/// Adds the steps found with windows of `width` blocks.
 void find_steps(const Record& record,
                 const Level& level,
                 View<double> m,
@@ -113,7 +113,7 @@ void find_steps(const Record& record,
   }
 }
 
-/// Knocks that windows of `width` blocks show, which then are missing from the level.
+/// Finds outliers with windows of `width` blocks and marks them as missing in the level.
 void find_knocks(
     const Record& record, Level& level, View<double> m, std::size_t width, std::vector<Hit>& hits) {
   if (m.size() < 5 * width) return;

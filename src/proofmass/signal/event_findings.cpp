@@ -40,7 +40,7 @@ double departure(View<double> m, std::size_t k, std::size_t w, bool ends) {
   }
   if (!ends) return nan;
   const std::ptrdiff_t way = std::isnan(from_after) ? -1 : 1;
-  // Divided by √2, it scatters as the output of the filter in the open.
+  // The factor 1/√2 gives the same scatter as the filter output away from the ends.
   return (m[k] - at(way) - 0.5 * at(2 * way) + 0.5 * at(4 * way)) * (0.5 * std::numbers::sqrt2);
 }
 

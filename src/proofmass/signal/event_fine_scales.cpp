@@ -7,7 +7,7 @@
 namespace proofmass::signal {
 namespace {
 
-/// The filter, a stretch of the series at a time.
+/// The filter, for one segment of the series at a time.
 class FineScales {
  public:
   static constexpr std::size_t stretch = 32 * fine_block;
@@ -18,13 +18,13 @@ class FineScales {
     open(first);
   }
 
-  /// Reads the stretch that begins at `first`.
+  /// Reads the segment that begins at `first`.
   void open(std::size_t first) {
     source_.read(static_cast<std::ptrdiff_t>(first) - static_cast<std::ptrdiff_t>(margin), m_);
     w_ = 1;
   }
 
-  /// On to windows of twice the length.
+  /// Doubles the length of the windows.
   void widen() {
     average_pairs(m_.data(), wider_.data(), m_.size() - w_, w_);
     std::fill(wider_.end() - static_cast<std::ptrdiff_t>(w_), wider_.end(), nan);
@@ -47,7 +47,7 @@ class FineScales {
   [[nodiscard]] std::size_t window() const { return w_; }
 
  private:
-  /// Where the filter lacks samples it judges by those that are there.
+  /// Where the filter lacks samples, uses those present.
   [[nodiscard]] Tally tally_with_gaps(std::size_t b) const {
     std::array<double, fine_block> outputs{};
     for (std::size_t k = 0; k < fine_block; ++k) {
@@ -66,7 +66,8 @@ class FineScales {
 
 constexpr std::size_t blocks_per_stretch = FineScales::stretch / fine_block;
 
-/// Adds the samples of block `b` that clear the bar; the stretch opened begins at block `begin`.
+/// Adds the samples of block `b` that exceed the threshold; the open segment begins at block
+/// `begin`.
 void add_hits_of_block(const FineScales& fine,
                        std::size_t begin,
                        std::size_t b,
@@ -79,7 +80,8 @@ void add_hits_of_block(const FineScales& fine,
   }
 }
 
-/// Looks again at the stretch that begins at block `begin`, read only if a block of it stood out.
+/// Searches the segment that begins at block `begin` again; it is read only if one of its blocks
+/// has a detection.
 void add_hits_of_stretch(FineScales& fine,
                          std::size_t begin,
                          const FineTallies& blocks,

@@ -9,19 +9,19 @@
 #include "proofmass/signal/event_source.hpp"
 #include "proofmass/signal/event_thresholds.hpp"
 
-// The knock filter over windows of 1, 2, 4 and 8 samples. Every sample is filtered once to know how
-// the outputs scatter, and once more only in the blocks where one stood out.
+// The outlier filter over windows of 1, 2, 4 and 8 samples. Every sample is filtered once to
+// determine the scatter of the outputs, and again only in the blocks with a detection.
 namespace proofmass::signal {
 
 inline constexpr std::size_t fine_scales = 4;
 
-/// One tally for every block of every scale.
+/// One tally per block and scale.
 using FineTallies = std::array<std::vector<Tally>, fine_scales>;
 
-/// Where the filter lacks samples, of the departure from those that are there.
+/// Where the filter lacks samples, tallies the deviation from those present.
 [[nodiscard]] FineTallies tally_fine_scales(const Source& source);
 
-/// Looks again, with a level that the knock itself does not move, where a block stood out.
+/// Filters the blocks with a detection again, with a level that excludes the outlier itself.
 [[nodiscard]] std::vector<Hit> hits_on_fine_scales(const Source& source,
                                                    const FineTallies& blocks,
                                                    const std::array<Bar, fine_scales>& bars);

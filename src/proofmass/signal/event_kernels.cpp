@@ -14,7 +14,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::size_t lanes = 8;  // partial sums and maxima of a block
 
-// Four at a time: vectors of eight are slow where the processor has none so long.
+// Four at a time: vectors of eight are slow on processors without registers of that length.
 constexpr std::size_t quad = 4;
 using Quad [[gnu::vector_size(quad * sizeof(double))]] = double;
 using QuadBits [[gnu::vector_size(quad * sizeof(double))]] = std::int64_t;

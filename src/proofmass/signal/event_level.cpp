@@ -13,7 +13,7 @@ struct Part {
   float weight;
 };
 
-/// The mean of the samples that are there, and their share.
+/// Mean of the samples present, and their fraction.
 Part part_of(View<double> block) {
   double sum = 0.0;
   double count = 0.0;

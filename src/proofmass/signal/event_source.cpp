@@ -66,7 +66,7 @@ Grain grain_of(View<double> series) {
   constexpr std::size_t block = 64;
   for (std::size_t k = 1; k < series.size();) {
     const std::size_t end = std::min(k + block, series.size());
-    // Most often no two neighbours are equal, which is quickly seen.
+    // Fast path: usually no two adjacent values are equal.
     if (const double least = least_difference(series.subspan(k - 1, end - k + 1)); least > 0.0) {
       quantum = std::min(quantum, least);
       change_at(k);

@@ -9,13 +9,14 @@
 namespace proofmass::signal {
 namespace {
 
-/// Enough values, evenly taken, to know quantiles well.
+/// Number of evenly spaced values that is sufficient for accurate quantiles.
 constexpr std::size_t sample_size = 8192;
 std::size_t stride_of(std::size_t size) {
   return size / sample_size + 1;
 }
 
-/// Where a Gumbel law with the quartiles of `largest` stands once in a hundred records of `blocks`.
+/// Level that a Gumbel law with the quartiles of `largest` exceeds once in a hundred records of
+/// `blocks`.
 double gumbel_reach(std::vector<double> largest, std::size_t blocks) {
   if (largest.size() < 4) return 0.0;
   const auto at = [&](std::size_t rank) {
@@ -32,8 +33,8 @@ double gumbel_reach(std::vector<double> largest, std::size_t blocks) {
   return middle + beta * (std::log(100.0 * static_cast<double>(blocks)) - 0.3665);
 }
 
-/// The median of `seen` values or `least`, whichever is more, from the values above `least` alone:
-/// most groups are spared the search.
+/// The median of `seen` values or `least`, whichever is larger, computed from the values above
+/// `least` alone: most groups need no search.
 double median_above(std::span<double> above, std::size_t seen, double least) {
   const std::size_t below = seen - above.size();
   if (seen / 2 < below || above.empty()) return least;
@@ -44,7 +45,7 @@ double median_above(std::span<double> above, std::size_t seen, double least) {
 
 constexpr double sigma_per_mean = 1.2533141373155003;  ///< √(π/2)
 
-/// The median scale of the whole record, `floor` at least.
+/// The median scale of the whole record, at least `floor`.
 double scale_of_record(const std::vector<Tally>& blocks, double floor) {
   std::vector<double> all;
   for (std::size_t b = 0; b < blocks.size(); b += stride_of(blocks.size()))
@@ -52,7 +53,7 @@ double scale_of_record(const std::vector<Tally>& blocks, double floor) {
   return std::max(floor, all.empty() ? 0.0 : median_of(all));
 }
 
-/// The median scale of a group's blocks, `least` at least; `above` is room to work in.
+/// The median scale of a group's blocks, at least `least`; `above` is scratch space.
 double scale_of_group(View<Tally> blocks, double least, std::vector<double>& above) {
   above.resize(blocks.size());
   std::size_t seen = 0;

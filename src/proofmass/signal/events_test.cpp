@@ -15,13 +15,14 @@ using Series = std::vector<double>;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double rate_hz = 100.0;
 
-/// Noises with the same numbers on every platform.
+/// Noise generators with the same numbers on every platform.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : engine_(seed) {}
 
   double uniform() { return (static_cast<double>(engine_() >> 11U) + 0.5) * 0x1p-53; }
-  double normal() {  // twelve uniforms would cut the tails; Box and Muller's does not
+  double normal() {  // a sum of twelve uniforms would cut the tails; Box and Muller's method does
+                     // not
     return std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
   }
   std::size_t below(std::size_t end) { return engine_() % end; }
@@ -37,7 +38,7 @@ class Noise {
     for (double& x : series) x = sum += step * x;
     return series;
   }
-  /// Near 1/f over the octaves of 1 … 2^12 samples.
+  /// Approximately 1/f over the octaves of 1 … 2^12 samples.
   Series flicker(std::size_t size) {
     Series series(size, 0.0);
     for (double tau = 1.0; tau < 5000.0; tau *= 4.0) {
@@ -60,7 +61,7 @@ class Noise {
       series[k] += amplitude * std::sin(phase + turn * static_cast<double>(k));
     return series;
   }
-  /// A resonance of quality Q that white noise drives, and white noise on it.
+  /// A resonance of quality Q driven by white noise, plus white noise.
   Series hump(std::size_t size, double rms, double frequency_hz, double quality) {
     const double turn = 2.0 * std::numbers::pi * frequency_hz / rate_hz;
     const double r = std::exp(-0.5 * turn / quality);
@@ -206,7 +207,7 @@ TEST(Knock, HasItsPlaceAndSize) {
     const auto events = events_of(series);
     expect_one(events, EventKind::knock, at, 8);
     EXPECT_NEAR(events[0].size, -40.0, 0.5);
-    // The level is less well known at an end.
+    // The level is less certain at an end.
     const double gain = at == 0 || at == 9'999 ? std::sqrt(2.5) : std::sqrt(1.25);
     EXPECT_NEAR(events[0].significance, 40.0 / gain, 4.0) << at;
   }
@@ -412,7 +413,7 @@ TEST(Events, AKnockThatDiesAwaySlowlyIsNoStep) {
   EXPECT_EQ(events[0].kind, EventKind::knock);
   EXPECT_NEAR(events[0].size, 150.0, 5.0);
   EXPECT_NEAR(static_cast<double>(events[0].first), 30'000.0, 10.0);
-  // 150 σ have died away to 1 σ after 100 samples.
+  // 150 σ decay to 1 σ after 100 samples.
   EXPECT_GT(events[0].last, 30'080U);
   EXPECT_LT(events[0].last, 30'200U);
 }

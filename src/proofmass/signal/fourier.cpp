@@ -20,7 +20,7 @@ std::size_t largest_prime_factor(std::size_t n) {
   return n > 1 ? n : largest;
 }
 
-/// exp(−iπ k / n), with k brought into one turn first so that large k lose no digits.
+/// exp(−iπ k / n), with k reduced to one turn first so that large k lose no digits.
 std::complex<double> turn(std::uint64_t k, std::size_t n) {
   const double angle =
       -std::numbers::pi * static_cast<double>(k % (2 * n)) / static_cast<double>(n);
@@ -48,7 +48,7 @@ Complexes bluestein(const std::vector<double>& v) {
 }
 
 Complexes fourier_transform(const std::vector<double>& v) {
-  // The library's way with a prime factor p takes N p steps.
+  // The library takes N p steps for a prime factor p.
   if (largest_prime_factor(v.size()) > 31) return bluestein(v);
   Complexes spectrum;
   Eigen::FFT<double>().fwd(spectrum, v);

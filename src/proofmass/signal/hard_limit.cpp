@@ -9,12 +9,12 @@
 namespace proofmass::signal {
 namespace {
 
-constexpr std::size_t window = 8;         // samples that are looked at for being level
-constexpr std::size_t fewest_visits = 8;  // visits by which a limit can be told
-constexpr double band = 5.0;              // of the noise: what counts as being at the limit
-constexpr double level_noise = 1.7;  // of the noise: the scatter of eight samples in 99 % of cases
+constexpr std::size_t window = 8;         // samples per window that is tested for a constant level
+constexpr std::size_t fewest_visits = 8;  // minimum number of visits for a decision
+constexpr double band = 5.0;              // half width of the limit, in noise standard deviations
+constexpr double level_noise = 1.7;  // in noise stds: scatter of eight samples in 99 % of cases
 
-/// A short stretch.
+/// A short segment.
 struct Window {
   double mean = 0.0, std = 0.0;
 };
@@ -28,13 +28,13 @@ std::vector<Window> windows_of(View<double> series) {
   return out;
 }
 
-/// The level that the highest values stay at, and the noise there.
+/// The level at which the highest values stay, and the noise there.
 struct Ceiling {
   double level = 0.0, noise = 0.0;
   [[nodiscard]] double edge() const { return level - band * noise; }
 };
 
-/// Means and scatters of the windows that lie level within `reach` of the ceiling.
+/// Means and scatters of the constant windows within `reach` of the ceiling.
 Ceiling refined(const std::vector<Window>& windows, const Ceiling& rough) {
   Moments means;
   double squares = 0.0;
@@ -48,7 +48,7 @@ Ceiling refined(const std::vector<Window>& windows, const Ceiling& rough) {
   return {means.mean, std::sqrt(squares / static_cast<double>(means.count))};
 }
 
-/// Whether the level stretches near the ceiling are all at it, as far as their noise lets tell.
+/// True if the constant segments near the ceiling are all at it, within their noise.
 bool is_one_level(const std::vector<Window>& windows, const Ceiling& ceiling) {
   Moments means;
   for (const Window& one : windows)
@@ -69,20 +69,20 @@ std::optional<Ceiling> find_ceiling(const std::vector<Window>& windows, const Ex
       levels.push_back(one.mean);
   Ceiling ceiling{median_or_zero(levels), quiet};
   for (int pass = 0; pass < 2 && ceiling.noise > 0.0; ++pass) ceiling = refined(windows, ceiling);
-  // Without noise it is the extreme that is read again and again.
+  // Without noise the signal is at the extreme itself, repeatedly.
   if (!(ceiling.noise > 0.0) || ceiling.noise > extent.range() / 25.0) return std::nullopt;
   if (extent.high > ceiling.level + 6.0 * ceiling.noise) return std::nullopt;
   return is_one_level(windows, ceiling) ? std::optional(ceiling) : std::nullopt;
 }
 
-/// One stay at the ceiling: how steeply it was come to and left, a sample.
+/// One visit to the ceiling: slopes of arrival and departure, per sample.
 struct Visit {
   std::size_t first = 0, end = 0;
   double rise = 0.0, fall = 0.0;
-  bool is_smooth = false;  ///< the slopes go on further away from the ceiling
+  bool is_smooth = false;  ///< the slopes continue further from the ceiling
   [[nodiscard]] double duration() const { return static_cast<double>(end - first); }
   [[nodiscard]] double slope() const { return std::min(rise, fall); }
-  /// What a parabola of these slopes and this duration rises to above the ceiling.
+  /// Height above the ceiling of a parabola with these slopes and this duration.
   [[nodiscard]] double height() const { return slope() * duration() / 4.0; }
 };
 
@@ -118,7 +118,7 @@ double median_of(const std::vector<Visit>& visits, auto figure) {
   return median_or_zero(figures);
 }
 
-/// Whether the signal runs into the ceiling as into something that it would have gone beyond.
+/// True if the signal would have continued beyond the ceiling.
 bool are_run_into(const std::vector<Visit>& visits, double noise, double range) {
   const auto steep = static_cast<std::size_t>(std::ranges::count_if(visits, [&](const Visit& v) {
     return v.is_smooth && v.slope() > 0.0 && v.height() > 12.0 * noise;
@@ -136,13 +136,13 @@ double median_slope_at(View<double> series, double level) {
   return median_or_zero(slopes);
 }
 
-/// Whether the slope decays towards the ceiling, as that of a signal that settles does.
+/// True if the slope decays towards the ceiling, as for a signal that settles.
 bool settles(View<double> series, const Ceiling& ceiling, double range) {
   const double near = median_slope_at(series, ceiling.level - 6.0 * ceiling.noise - 0.02 * range);
   return near < 0.35 * median_slope_at(series, ceiling.level - 0.2 * range);
 }
 
-/// Stretches in which the signal stays at other levels, between the extremes.
+/// Segments in which the signal stays at other levels, between the extremes.
 std::size_t count_holds_elsewhere(const std::vector<Window>& windows,
                                   const Ceiling& ceiling,
                                   const Extent& extent,
@@ -166,8 +166,8 @@ std::size_t count_holds_elsewhere(const std::vector<Window>& windows,
   return holds;
 }
 
-/// Of each visit the slope at the ceiling over that a third of the range below; whether they are
-/// all about 1.
+/// For each visit the ratio of the slope at the ceiling to that a third of the range below; true if
+/// all are about 1.
 bool have_straight_flanks(View<double> series, const std::vector<Visit>& visits, double below) {
   std::vector<double> ratios;
   for (const Visit& visit : visits) {
@@ -186,8 +186,7 @@ bool have_straight_flanks(View<double> series, const std::vector<Visit>& visits,
   return std::abs(middle - 1.0) < 0.04 && median_or_zero(ratios) < 0.08;
 }
 
-/// Whether the flanks behind each excursion are those of the sine of this period, and no straight
-/// lines.
+/// True if the flanks after each excursion are those of a sine of this period, not straight lines.
 bool are_flanks_of_a_sine(View<double> series,
                           const std::vector<Excursion>& excursions,
                           double lowest,

@@ -7,7 +7,7 @@
 namespace proofmass::signal {
 namespace {
 
-constexpr std::size_t nearby = 8;  // samples about a long step that may make up for it
+constexpr std::size_t nearby = 8;  // samples near a long interval that may compensate for it
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void HoleFinder::add(View<double> stamps_s, std::vector<Hole>& holes) {
     decide_by_band(false, holes);
   else
     decide(false, holes);
-  // What the next undecided sample may be compared with is kept.
+  // Keeps the stamps with which the next undecided sample may be compared.
   const std::size_t needed = std::min(recent_.size(), samples_ - decided_ + nearby);
   recent_.erase(recent_.begin(), recent_.end() - static_cast<std::ptrdiff_t>(needed));
 }
@@ -41,7 +41,7 @@ void HoleFinder::count(double missing, std::vector<Hole>& holes) {
   missing_ += missing;
   if (!(missing >= 1.0)) return;
   ++hole_count_;
-  // Of a size that no recording has, only check() says.
+  // Limited: beyond any recording's size, which check() rejects.
   holes.push_back({decided_, static_cast<std::size_t>(std::min(missing, 0x1p62))});
 }
 
@@ -82,14 +82,15 @@ void HoleFinder::decide(bool is_end, std::vector<Hole>& holes) {
   }
 }
 
-// Samples missing before the one at this place of the recent ones, whose step is a long one.
+// Samples missing before the one at this index of the recent ones, which follows a long interval.
 double HoleFinder::missing_before(std::size_t at) const {
   const double by_step = std::round((recent_[at] - recent_[at - 1]) * rate_hz_) - 1.0;
   const std::size_t first = at - std::min(at, nearby);
   const std::size_t last = std::min(at + nearby, recent_.size() - 1);
   const double by_others =
       std::round((recent_[last] - recent_[first]) * rate_hz_) - static_cast<double>(last - first);
-  // Where another hole is near, the others count it too; by_step bounds what this one has of it.
+  // Near another hole, the neighbours count that one too; by_step bounds the contribution of this
+  // one.
   return std::max(0.0, std::min(by_step, by_others));
 }
 

@@ -11,33 +11,33 @@
 
 namespace proofmass::signal {
 
-/// Decides where samples are missing from their stamps as these come: the one place where
-/// even_grid() and RunningEvenGrid have it from.
+/// Decides from the stamps, as they arrive, where samples are missing. Shared by even_grid() and
+/// RunningEvenGrid.
 class HoleFinder {
  public:
-  /// band_s: of the TimeBase.
+  /// band_s: that of the TimeBase.
   explicit HoleFinder(double rate_hz, double band_s = 0.0) : rate_hz_(rate_hz) {
     if (band_s > 0.0) band_.emplace(1.0 / rate_hz, band_s);
   }
-  /// Rows behind a sample that may be needed to decide on it.
+  /// Maximum number of later rows needed to decide on a sample.
   static constexpr std::size_t most_undecided = StampBand::ahead;
 
-  /// Appends the holes that can be told by now.
+  /// Appends the holes that are determined by now.
   void add(View<double> stamps_s, std::vector<Hole>& holes);
-  /// Appends the holes among the last samples; when all stamps are added.
+  /// Appends the holes among the last samples; call after all stamps are added.
   void finish(std::vector<Hole>& holes);
-  /// Samples without stamps: none of them is missing.
+  /// Adds samples without stamps: none is missing.
   void add_even(std::size_t samples) { decided_ = samples_ += samples; }
 
-  /// Samples of which it is known what is missing before them.
+  /// Number of samples for which the number missing before them is determined.
   [[nodiscard]] std::size_t decided() const { return decided_; }
   [[nodiscard]] std::size_t samples() const { return samples_; }
   [[nodiscard]] double missing() const { return missing_; }
   [[nodiscard]] std::size_t hole_count() const { return hole_count_; }
 
-  /// Errors: corrupt, where more than 3 × `samples` + `spare` are missing.
+  /// Errors: corrupt, if more than 3 × `samples` + `spare` are missing.
   [[nodiscard]] Status check(std::size_t samples, double spare) const;
-  /// Rate, samples, missing and jitter of what was added; no list of holes.
+  /// Rate, samples, missing and jitter so far, without the list of holes.
   [[nodiscard]] EvenGrid grid() const;
 
  private:
@@ -48,12 +48,12 @@ class HoleFinder {
 
   double rate_hz_;
   std::optional<StampBand> band_;
-  std::vector<double> recent_;  ///< stamps from some before the first undecided sample on
+  std::vector<double> recent_;  ///< stamps, from a few before the first undecided sample
   std::size_t samples_ = 0, decided_ = 0;
   double first_s_ = 0.0, last_s_ = 0.0;
   double missing_ = 0.0;
   std::size_t hole_count_ = 0;
-  double squares_ = 0.0;  ///< of (step · rate − 1) over the steps that are not long
+  double squares_ = 0.0;  ///< sum of (interval · rate − 1)² over the intervals that are not long
   std::size_t regular_ = 0;
   bool ascending_ = true;
 };

@@ -10,7 +10,7 @@ namespace proofmass::signal {
 namespace {
 
 constexpr std::size_t side_by_side = 2 * lanes;
-/// Sixteen transforms side by side of eight times as many elements take 8 MiB.
+/// Sixteen parallel transforms of eight times as many elements take 8 MiB.
 constexpr std::size_t most_lags_by_stretches = 8192;
 
 double loaded(const Stretches& s, double value) {
@@ -18,7 +18,7 @@ double loaded(const Stretches& s, double value) {
   return s.presence ? 1.0 : value - s.mean;
 }
 
-/// Σ_j power[j] exp(2πi jk/T) / T for k = 0 … lags, power being even in j and given to T/2.
+/// Σ_j power[j] exp(2πi jk/T) / T for k = 0 … lags; power is even in j and given up to T/2.
 std::vector<double> products_of_power(const std::vector<double>& power, std::size_t lags) {
   const std::size_t half = power.size() - 1;
   std::vector<std::complex<double>> spectrum(2 * half);
@@ -31,8 +31,8 @@ std::vector<double> products_of_power(const std::vector<double>& power, std::siz
   return sums;
 }
 
-/// Products within each stretch, added up. They do not wrap around if a stretch and `lags` zeros
-/// fit into the transform.
+/// Products within each segment, summed. There is no wrap-around if a segment and `lags` zeros fit
+/// into the transform.
 std::vector<double> products_within(const Stretches& stretches,
                                     std::size_t first,
                                     std::size_t lags) {
@@ -47,8 +47,8 @@ std::vector<double> products_within(const Stretches& stretches,
   return products_of_power(fourier.real_power(power), lags);
 }
 
-/// Every pair up to `lags` apart lies in a stretch that begins every `step` and is `lags` longer.
-/// One that lies in two of them lies in their overlap, and is taken off again.
+/// Segments begin every `step` and are `lags` longer, so they contain every pair up to `lags`
+/// apart. Pairs contained in two segments lie in their overlap, and are subtracted again.
 std::vector<double> sums_by_stretches(Stretches stretches, std::size_t lags) {
   const std::size_t reach = std::max<std::size_t>(lags, 8);
   stretches.step = 6 * std::bit_ceil(reach);
@@ -84,7 +84,7 @@ void load_stretches(const Stretches& s, std::size_t first, std::vector<LaneCompl
   double* const out = reinterpret_cast<double*>(x.data());
   std::fill_n(out, x.size() * side_by_side, 0.0);
   const std::size_t size = s.series.size();
-  // A few values of each stretch in turn: sixteen whole ones would evict one another from the
+  // A few values of each segment in turn: sixteen whole ones would evict one another from the
   // cache.
   for (std::size_t block = 0; block < s.length; block += lanes)
     for (std::size_t stretch = 0; stretch < side_by_side; ++stretch) {

@@ -10,8 +10,8 @@
 namespace proofmass::signal {
 namespace {
 
-/// One pass over a block of 4q elements, into four blocks of q: those of the frequencies 0, 1, 2,
-/// 3 modulo 4.
+/// One pass over a block of 4q elements, into four blocks of q: the frequencies 0, 1, 2, 3 modulo
+/// 4.
 PM_VECTOR_CLONES void pass_by_four(LaneComplex* x, const double* w, std::size_t q) {
   for (std::size_t j = 0; j < q; ++j, ++x, w += 6) {
     const LaneComplex a = x[0], b = x[q], c = x[2 * q], d = x[3 * q];
@@ -43,7 +43,7 @@ PM_VECTOR_CLONES void add_squares(const LaneComplex* x, LaneReal* sums, std::siz
   for (std::size_t j = 0; j < n; ++j) sums[j].value += x[j].re * x[j].re + x[j].im * x[j].im;
 }
 
-/// Depth first, so that the small blocks are done while they are in the nearest cache.
+/// Depth first, so that the small blocks are processed while in the nearest cache.
 void transform(LaneComplex* x, std::size_t n, const std::vector<double>* twiddles) {
   if (n == 1) return;
   if (n == 2) return pass_by_two(x);
@@ -51,7 +51,7 @@ void transform(LaneComplex* x, std::size_t n, const std::vector<double>* twiddle
   for (std::size_t block = 0; block < 4; ++block) transform(x + block * n / 4, n / 4, twiddles + 1);
 }
 
-/// Where transform() leaves frequency k.
+/// Index of frequency k in the output of transform().
 std::size_t place(std::size_t k, std::size_t n) {
   return n <= 2 ? k : (k % 4) * (n / 4) + place(k / 4, n / 4);
 }
@@ -93,8 +93,8 @@ PM_VECTOR_CLONES void load_segments(const SegmentBatch& batch, std::vector<LaneC
   double* const out = reinterpret_cast<double*>(x.data());
   constexpr std::size_t row = 2 * lanes;
   if (batch.segments < row) std::memset(out, 0, x.size() * sizeof(LaneComplex));
-  // In blocks of one cache line of each segment: sixteen whole segments side by side would evict
-  // one another.
+  // In blocks of one cache line of each segment: sixteen whole segments in parallel would evict one
+  // another.
   for (std::size_t block = 0; block < 2 * batch.half; block += lanes)
     for (std::size_t s = 0; s < batch.segments; ++s) {
       const double* const samples = batch.samples + s * batch.half + block;

@@ -6,22 +6,22 @@
 
 namespace proofmass::signal {
 
-/// Follows one axis for the least step, and for the least that is soon taken back, as noise does
-/// between two codes of a converter.
+/// Tracks the smallest step of an axis and the smallest reversed step, such as noise between two
+/// codes of a converter.
 class QuantumSeeker {
  public:
   explicit QuantumSeeker(std::size_t soon) : soon_(soon) {}
 
   void add(std::size_t k, double x) {
     if (x == now_) return;
-    const double step = std::abs(x - now_);  // NaN at first, which is less than nothing
+    const double step = std::abs(x - now_);  // NaN at first, for which every comparison is false
     if (step < least_) least_ = step;
     if (x == before_ && step < least_returned_ && k - changed_ <= soon_) least_returned_ = step;
     before_ = now_;
     now_ = x;
     changed_ = k;
   }
-  /// Zero where the least step is never taken back: it is one between levels.
+  /// Zero if the smallest step is never reversed: it is then a step between levels.
   [[nodiscard]] double quantum() const {
     return std::isfinite(least_) && least_returned_ <= 1.5 * least_ ? least_ : 0.0;
   }

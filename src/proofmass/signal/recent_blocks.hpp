@@ -13,7 +13,7 @@
 
 namespace proofmass::signal {
 
-/// The blocks of the last while, of samples that come one by one.
+/// The most recent blocks of a stream of samples.
 class RecentBlocks {
  public:
   static constexpr std::size_t most = 512;
@@ -23,10 +23,13 @@ class RecentBlocks {
 
   RecentBlocks(std::size_t axes, const RestOptions& options) : axes_(axes), options_(options) {}
 
-  /// How many blocks are full since the last call. Where the rate is not known, rows wait until two
-  /// seconds of stamps tell it. Stamps that step by more than a window, or back, are a gap: more
-  /// than a window of missing blocks. A block that is loud by `noise`, which may not be known, but
-  /// quiet less one outlier, goes without it.
+  /// Returns the number of blocks completed since the last call.
+  ///
+  /// - If the rate is unknown, rows wait until two seconds of stamps determine it.
+  /// - Stamps that jump by more than a window, or backwards, count as a gap: more than a window of
+  ///   missing blocks.
+  /// - A block that is noisy relative to `noise` (which may be unknown) but quiet without one
+  ///   outlier is stored without it.
   [[nodiscard]] std::size_t add(double time_s,
                                 View<double> values,
                                 const std::optional<RestNoise>& noise);
@@ -43,13 +46,13 @@ class RecentBlocks {
 
   std::size_t axes_;
   RestOptions options_;
-  std::vector<double> waiting_s_, waiting_;  ///< rows until the rate is known
+  std::vector<double> waiting_s_, waiting_;  ///< pending rows until the rate is known
   bool begun_ = false;
-  std::size_t shortest_ = 0;  ///< samples of a rest
+  std::size_t shortest_ = 0;  ///< minimum length of a rest, in samples
   double window_s_ = 0.0;
   RestBlocks blocks_;
   std::vector<Span> spans_;
-  std::array<std::vector<double>, most_axes> open_;  ///< the block that is not full
+  std::array<std::vector<double>, most_axes> open_;  ///< the incomplete block
   Span open_span_{};
   std::array<QuantumSeeker, most_axes> seekers_{QuantumSeeker(0), QuantumSeeker(0),
                                                 QuantumSeeker(0)};

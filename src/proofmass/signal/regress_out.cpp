@@ -63,14 +63,14 @@ double std_of_slope(const std::vector<Block>& blocks, const Line& line) {
     before = residual;
   }
   if (!(squares > 0.0)) return 0.0;
-  // Beyond this a correlation found in so few blocks is no figure to divide by.
+  // A larger correlation, from so few blocks, is not reliable enough to divide by.
   const double r = std::clamp(lagged / squares, 0.0, 0.98);
   const double degrees = static_cast<double>(blocks.size()) - 2.0;
   return std::sqrt(squares / degrees / line.squares * (1.0 + r) / (1.0 - r));
 }
 
 void subtract(std::span<double> series, const std::vector<Block>& blocks, const Line& line) {
-  std::size_t b = 0;  // of the two blocks between whose middles a sample lies, the first
+  std::size_t b = 0;  // first of the two blocks whose centres enclose the sample
   for (std::size_t k = 0; k < series.size(); ++k) {
     const auto place = static_cast<double>(k);
     while (b + 2 < blocks.size() && blocks[b + 1].middle < place) ++b;

@@ -22,7 +22,8 @@ constexpr std::array<std::pair<ResampleMethod, std::string_view>, 5> methods{
      {ResampleMethod::nearest, "nearest"},
      {ResampleMethod::mean, "mean"}}};
 
-/// Samples from 0 to `duration_s`; so many that they are refused where they cannot be counted.
+/// Number of samples from 0 to `duration_s`; very large if it cannot be counted, so that it is
+/// rejected.
 std::size_t count_of(double duration_s, double rate_hz) {
   const double count = std::floor(duration_s * rate_hz * (1.0 + 1e-12) + 1e-6) + 1.0;
   return count < 1e15 ? static_cast<std::size_t>(std::max(count, 0.0)) : std::size_t{1} << 50;
@@ -41,7 +42,7 @@ std::vector<Channel> channels_on(const Recording& recording, const Resampler& re
   return out;
 }
 
-/// Labels whose samples there still are, by their times.
+/// Labels whose samples still exist, by their times.
 std::vector<Label> labels_on(const Recording& recording, const TimeGrid& grid) {
   std::vector<Label> out;
   for (const Label& label : recording.labels) {
@@ -86,7 +87,7 @@ Result<Recording> on_grid(const Recording& recording, ResampleMethod method, con
   return out;
 }
 
-/// When each recording begins and ends, in seconds from the first that begins.
+/// Start and end of each recording, in seconds from the earliest start.
 struct Spans {
   std::int64_t origin_ns = 0;
   std::vector<double> starts_s;
@@ -106,7 +107,7 @@ Spans spans_of(std::span<const Recording> recordings) {
   out.to_s = 1e300;
   for (const Recording& recording : recordings) {
     const auto start_ns = recording.time.start_ns.value_or(out.origin_ns);
-    // In two steps, as the difference of two stamps can be more than 63 bits hold.
+    // In two steps, because the difference of two stamps can exceed 63 bits.
     const double start_s = static_cast<double>(static_cast<std::uint64_t>(start_ns) -
                                                static_cast<std::uint64_t>(out.origin_ns)) /
                            1e9;
@@ -117,7 +118,7 @@ Spans spans_of(std::span<const Recording> recordings) {
   return out;
 }
 
-/// Names of which each is there once.
+/// Makes the names unique.
 void name_apart(std::vector<Channel>& channels, const std::vector<std::string>& sources) {
   std::multiset<std::string> names;
   for (const Channel& channel : channels) names.insert(channel.name);

@@ -9,37 +9,38 @@
 
 namespace proofmass::signal {
 
-/// How values between samples are found.
+/// Interpolation method.
 enum class ResampleMethod {
-  sinc,     ///< band-limited, with a filter against aliases where the rate goes down
-  linear,   ///< a straight line from sample to sample
-  cubic,    ///< the polynomial through the two samples on either side
-  nearest,  ///< the sample that is next in time
-  mean,     ///< of the samples within half a new step: only to lower rates
+  sinc,     ///< band-limited, with an anti-aliasing filter if the rate decreases
+  linear,   ///< linear between samples
+  cubic,    ///< polynomial through the two samples on either side
+  nearest,  ///< nearest sample in time
+  mean,     ///< mean of the samples within half a new period: only to lower rates
 };
 /// "sinc", "linear", …; nullopt for any other word.
 [[nodiscard]] std::optional<ResampleMethod> parse_resample_method(std::string_view word);
 [[nodiscard]] std::string_view name_of(ResampleMethod method);
 
 struct ResampleOptions {
-  double target_hz = 0.0;  ///< 0: the recording's own rate; of several the highest
+  double target_hz = 0.0;  ///< 0: the recording's own rate; for several recordings the highest
   ResampleMethod method = ResampleMethod::sinc;
 };
 
-/// The recording on an even grid of its first sample's time on: method and rate are told in a note.
-/// What is missing stays missing: NaN in gaps (signal/even_grid.hpp) and beside samples that are no
-/// number. A sample counter is always taken from the nearest sample. Lines of the file no longer
-/// hold: first_line is 0.
-/// Errors: invalid_argument (a rate that is none, mean to a higher rate, more than 2^31 samples, no
-/// rate known), corrupt (stamps that go back; gaps of more than four times the samples).
-/// Cost: O(N); sinc 64 products a sample of the higher rate.
+/// The recording on an even grid that starts at its first sample; method and rate are reported in a
+/// note. Missing data stay missing: NaN in gaps (signal/even_grid.hpp) and next to samples that are
+/// not finite. A sample counter is always taken from the nearest sample. Line numbers of the file
+/// no longer apply: first_line is 0.
+/// Errors: invalid_argument (invalid rate, mean to a higher rate, more than 2^31 samples, no rate
+/// known), corrupt (stamps that run backwards; gaps of more than four times the samples).
+/// Cost: O(N); sinc 64 products per sample of the higher rate.
 [[nodiscard]] Result<Recording> resample(const Recording& recording,
                                          const ResampleOptions& options);
 
-/// Several recordings of one clock on one grid, where they overlap, as one: where channels' names
-/// clash they are preceded by the recording's source ("gyro.x"). A recording that does not say when
-/// it began is taken to begin with the earliest, with a note of Severity::warning.
-/// Errors: as resample(), naming the recording; too_few_samples (no overlap). Expects one at least.
+/// Joins several recordings of one clock on one grid, over their common interval. Channels with
+/// equal names are prefixed with the recording's source ("gyro.x"). A recording without a start
+/// time is assumed to start with the earliest, with a note of Severity::warning.
+/// Errors: as resample(), with the recording's name; too_few_samples (no overlap). Expects at least
+/// one.
 [[nodiscard]] Result<Recording> join(std::span<const Recording> recordings,
                                      const ResampleOptions& options);
 

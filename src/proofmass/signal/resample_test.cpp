@@ -44,7 +44,7 @@ std::vector<double> jittered(double rate_hz, std::size_t count, double jitter) {
   return out;
 }
 
-/// The largest error against x(t), a stretch at either end left out.
+/// The largest error relative to x(t), excluding a margin at either end.
 template <class Function>
 double worst(const Recording& got, Function x, double margin_s = 0.0) {
   double most = 0.0;
@@ -98,7 +98,7 @@ TEST(Resample, SincRejectsWhatWouldBeAnAlias) {
 }
 
 TEST(Resample, SincKeepsTheVarianceOfABand) {
-  // White noise at 200 Hz: at 50 Hz 0.23 of its variance is left, the part below 0.92 · 25 Hz.
+  // White noise at 200 Hz: at 50 Hz 0.23 of its variance remains, the part below 0.92 · 25 Hz.
   std::mt19937_64 random(2);
   std::normal_distribution<double> normal;
   const auto noise = [&](double) { return normal(random); };
@@ -158,7 +158,7 @@ TEST(Resample, KeepsWhatIsNoNumberNoNumber) {
     ASSERT_TRUE(got.has_value());
     std::size_t missing = 0;
     for (const double x : got->channels[0].values) missing += std::isnan(x) ? 1 : 0;
-    // 1.49 … 1.51 s, the ends excluded.
+    // 1.49 … 1.51 s, ends excluded.
     EXPECT_EQ(missing, 7u) << name_of(method);
   }
 }

@@ -14,7 +14,7 @@ namespace proofmass::signal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-/// Times nearer to a sample than this part of a step are the sample's: it is rounding.
+/// A time within this fraction of a period of a sample is the sample's: the difference is rounding.
 constexpr double same_time = 1e-6;
 
 /// The value at x of the cubic through four points. Source: J. L. Lagrange (1795); E. Waring
@@ -30,12 +30,12 @@ double lagrange(const std::array<double, 4>& at, const std::array<double, 4>& va
   return sum;
 }
 
-/// On the straight line; std::lerp() makes a number of a left end that is none.
+/// Linear interpolation. std::lerp() can return a number although the left end is NaN.
 double along(double left, double right, double fraction) {
   return left + fraction * (right - left);
 }
 
-/// Whether four samples are near enough to evenly spaced for a cubic not to swing.
+/// True if four samples are even enough for a cubic not to overshoot.
 bool are_near_even(const std::array<double, 4>& at) {
   const auto [least, most] = std::minmax({at[1] - at[0], at[2] - at[1], at[3] - at[2]});
   return least > 0.0 && most <= 3.0 * least;
@@ -145,7 +145,7 @@ std::vector<double> Resampler::cubic(View<double> values, const std::vector<Plac
       out.push_back(std::isnan(fraction) ? nan : values[before]);
       continue;
     }
-    // Of the stretch without gaps the four samples about the time, or the four at its end.
+    // The four samples around the time, or the four at the end, of the segment without gaps.
     while (behind != first_behind_.end() && *behind <= before) ++behind;
     const std::size_t begin = behind == first_behind_.begin() ? 0 : *std::prev(behind);
     const std::size_t end = behind == first_behind_.end() ? values.size() : *behind;
@@ -211,7 +211,7 @@ std::vector<double> Resampler::mean(View<double> values) const {
     Moments within;
     for (std::size_t k = first; k < times_.size() && times_[k] < t + half_s; ++k)
       within.add(values[k]);
-    // At the ends half of them are there, and that is enough.
+    // At the ends half of them exist, which is sufficient.
     out.push_back(static_cast<double>(within.count) >= 0.4 * expected ? within.mean : nan);
   }
   return out;

@@ -11,7 +11,7 @@
 
 namespace proofmass::signal {
 
-/// Even times: from_s + j / rate_hz for j < count, in seconds since a recording's first sample.
+/// Even times: from_s + j / rate_hz for j < count, in seconds from a recording's first sample.
 struct TimeGrid {
   double from_s = 0.0;
   double rate_hz = 1.0;
@@ -20,12 +20,19 @@ struct TimeGrid {
   [[nodiscard]] double at(std::size_t j) const { return from_s + static_cast<double>(j) / rate_hz; }
 };
 
-/// Brings channels of one time base onto another grid. Where they were taken is worked out once.
-/// sinc: Σ x_k h(t − t_k) / Σ h(t − t_k) with h(d) = sinc(c d r) · Kaiser(d), r the rate of the
-/// recording, 32 zeros of the sinc to either side, c = 1 to higher rates and 0.92 · target / r to
-/// lower ones. A sine up to 0.8 of the lower rate's half comes back within 6e-5 of its amplitude,
-/// one above the lower rate's half is less than 4e-5 of it, 32 / c samples away from ends and gaps.
-/// Uneven stamps (by more than a thousandth of a step) are first brought to the even grid by cubic.
+/// Resamples channels of one time base onto another grid; the grid positions are computed once.
+///
+///     sinc: Σ x_k h(t − t_k) / Σ h(t − t_k),   h(d) = sinc(c d r) · Kaiser(d),
+///
+/// r the rate of the recording, 32 zeros of the sinc on either side, c = 1 to higher rates and 0.92
+/// · target / r to lower ones.
+///
+/// - A sine up to 0.8 of half the lower rate is reproduced within 6e-5 of its amplitude; one above
+///   half the lower rate is attenuated to less than 4e-5. Both hold 32 / c samples away from ends
+///   and gaps.
+/// - Uneven stamps (by more than a thousandth of a period) are first interpolated to the even grid
+///   by cubic.
+///
 /// Source: J. F. Kaiser, "Nonrecursive digital filter design using the I0-sinh window function",
 /// IEEE Int. Symp. Circuits and Systems (1974); A. V. Oppenheim and R. W. Schafer, Discrete-Time
 /// Signal Processing, 3rd ed. (2010), section 7.6.
@@ -37,15 +44,15 @@ class Resampler {
                                               ResampleMethod method,
                                               const TimeGrid& to);
 
-  /// The values at the grid's times. Expects as many as there are samples.
+  /// The values at the grid's times. Expects one value per sample.
   [[nodiscard]] std::vector<double> apply(View<double> values) const;
-  /// The nearest sample at each of them, whatever the method: for counts.
+  /// The nearest sample at each grid time, independent of the method: for counters.
   [[nodiscard]] std::vector<double> nearest(View<double> values) const;
 
  private:
   struct Place {
-    std::size_t before = 0;  ///< the sample before, or at, the time
-    double fraction = 0.0;   ///< of the way to the next; NaN: no value here
+    std::size_t before = 0;  ///< the last sample at or before the time
+    double fraction = 0.0;   ///< fraction of the interval to the next; NaN: no value here
   };
 
   [[nodiscard]] std::vector<Place> places_of(const TimeGrid& grid) const;
@@ -58,12 +65,12 @@ class Resampler {
 
   ResampleMethod method_ = ResampleMethod::sinc;
   TimeGrid to_;
-  EvenGrid own_;                           ///< of the recording
-  std::vector<double> times_;              ///< of the samples
-  std::vector<std::size_t> first_behind_;  ///< samples in front of which something is missing
-  bool is_even_ = true;                    ///< the samples stand on their own grid
-  std::vector<Place> places_;              ///< of the new times among the samples
-  std::vector<Place> own_places_;  ///< of the own grid's times, where the samples are not even
+  EvenGrid own_;                           ///< grid of the recording
+  std::vector<double> times_;              ///< times of the samples
+  std::vector<std::size_t> first_behind_;  ///< samples preceded by missing ones
+  bool is_even_ = true;                    ///< the samples lie on their own grid
+  std::vector<Place> places_;              ///< positions of the new times among the samples
+  std::vector<Place> own_places_;  ///< positions of the own grid's times, if the samples are uneven
 };
 
 }  // namespace proofmass::signal

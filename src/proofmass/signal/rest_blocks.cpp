@@ -13,10 +13,10 @@ namespace {
 
 using Axes = View<View<double>>;
 
-/// The samples of block k but for `left_out`.
+/// The samples of block k except `left_out`.
 RestBlock block_of(Axes axes, const RestBlocks& blocks, std::size_t k, std::size_t left_out) {
   RestBlock block;
-  PerAxis anchor{};  // keeps the digits where the level is far from zero
+  PerAxis anchor{};  // preserves digits where the level is far from zero
   PerAxis sum{};
   PerAxis last{};
   for (std::size_t s = blocks.first_sample(k); s < blocks.end_sample(k); ++s) {
@@ -93,7 +93,7 @@ RestBlock without_outlier(Axes axes,
                           const PerAxis& variance) {
   const std::size_t first = blocks.first_sample(k);
   const std::size_t end = blocks.end_sample(k);
-  PerAxis middle{};  // a mean would follow the outlier
+  PerAxis middle{};  // median: a mean would follow the outlier
   std::vector<double> values;
   values.reserve(end - first);
   for (std::size_t a = 0; a < axes.size(); ++a) {

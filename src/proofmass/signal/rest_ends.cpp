@@ -14,7 +14,7 @@ constexpr double level = 0.9995;
 void trim_edges(const RestBlocks& blocks, RestRun& run) {
   if (run.first > 0) ++run.first;
   if (run.end < blocks.at.size()) --run.end;
-  // An outlier at the very end is motion, or a reading from before the first.
+  // An outlier at the very end is motion, or a sample from before the rest.
   const auto is_bad = [&](std::size_t k) { return blocks.at[k].cleaned || blocks.missing(k); };
   while (run.first < run.end && is_bad(run.first)) ++run.first;
   while (run.first < run.end && is_bad(run.end - 1)) --run.end;
@@ -35,7 +35,7 @@ void trim_loud_ends(const RestBlocks& blocks, const RestNoise& noise, RestRun& r
   while (run.size() > width && loudness(blocks, noise, run.end - width, width) > bound) --run.end;
 }
 
-/// Σ_a (m_a − M_a)² / variance_a between the means of two stretches of blocks.
+/// Σ_a (m_a − M_a)² / variance_a between the means of two segments of blocks.
 double departure(const RestBlocks& blocks,
                  const PerAxis& variance,
                  const RestRun& stretch,
@@ -88,9 +88,9 @@ bool agree(const RestBlocks& blocks,
          chi_square_quantile(level, static_cast<double>(blocks.axes));
 }
 
-/// Whether what lies between two rests moved the sensor to another place: the readings, less the
-/// level on both sides and integrated twice, come to more than noise makes of them. The unit does
-/// not count; a knock moves nothing far.
+/// True if the sensor changed position between two rests: the measurements minus the level on both
+/// sides, integrated twice, exceed the effect of noise. Independent of the unit; a shock causes no
+/// large displacement.
 bool moves(const RestBlocks& blocks,
            const RestNoise& noise,
            const RestRun& one,
@@ -101,7 +101,7 @@ bool moves(const RestBlocks& blocks,
   const auto end = static_cast<double>(blocks.end_sample(next.first - 1));
   const double samples = end - static_cast<double>(blocks.first_sample(one.end));
   for (std::size_t a = 0; a < blocks.axes; ++a) {
-    double moved = 0.0;  // in steps of time squared
+    double moved = 0.0;  // in units of sample periods squared
     for (std::size_t k = one.end; k < next.first; ++k) {
       const auto first = static_cast<double>(blocks.first_sample(k));
       const auto last = static_cast<double>(blocks.end_sample(k));
@@ -109,7 +109,7 @@ bool moves(const RestBlocks& blocks,
       if (blocks.at[k].count > 0.0)
         moved += (blocks.at[k].mean[a] - level) * (last - first) * (end - 0.5 * (first + last));
     }
-    // White noise over n samples, and the level's own error, n²/2 of it.
+    // White noise over n samples, plus the error of the level itself, times n²/2.
     const double of_level =
         0.25 * noise.block_variance[a] * (1.0 / before.count + 1.0 / after.count);
     const double variance = noise.block_variance[a] * samples * samples * samples / 3.0 +

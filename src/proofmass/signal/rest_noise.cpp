@@ -21,8 +21,8 @@ struct Window {
 };
 using Set = View<Window>;
 
-/// Of the axis that is loudest against its own quietest twentieth: a motion along one axis is none
-/// the less a motion.
+/// Uses the axis that is noisiest relative to its own 5 % quantile: motion along one axis is
+/// motion.
 void set_levels(std::size_t axes, std::vector<Window>& windows) {
   std::vector<double> logs(windows.size());
   for (Window& window : windows) window.level = -std::numeric_limits<double>::infinity();
@@ -59,7 +59,7 @@ double mean_by_median(std::span<double> values, double dof) {
   return median_of(values) / (root * root * root);
 }
 
-/// So many windows are enough for a median, evenly out of the set.
+/// A number of windows sufficient for a median, evenly taken from the set.
 std::vector<Window> some_of(Set set) {
   constexpr std::size_t most = 2048;
   const std::size_t stride = set.size() / most + 1;
@@ -69,8 +69,9 @@ std::vector<Window> some_of(Set set) {
   return some;
 }
 
-/// Adds the Allan variance of means over the width of `sums`: up to half a window from within the
-/// windows of the set, above from one window of it to the next. False if too few follow each other.
+/// Adds the Allan variance of means over the width of `sums`: up to half a window within the
+/// windows of the set, above from one window of the set to the next. False if too few are
+/// consecutive.
 bool add_allan_variance(const RestBlocks& blocks,
                         const BlockSums& sums,
                         const std::vector<Window>& some,
@@ -131,7 +132,7 @@ RestNoise noise_of(const RestBlocks& blocks, Set set) {
   return noise;
 }
 
-/// How many of the windows, sorted by level, are constant on every axis.
+/// Number of windows, sorted by level, that are constant on every axis.
 std::size_t constant_windows(const RestBlocks& blocks, Set sorted) {
   const auto is_constant = [&](const Window& window) {
     for (std::size_t a = 0; a < blocks.axes; ++a)
@@ -141,7 +142,7 @@ std::size_t constant_windows(const RestBlocks& blocks, Set sorted) {
   return static_cast<std::size_t>(std::ranges::find_if_not(sorted, is_constant) - sorted.begin());
 }
 
-/// The set that begins with each window, as the index behind its last.
+/// The set that begins with each window, as the index past its last.
 std::vector<std::size_t> ends_of_sets(Set sorted, double width) {
   std::vector<std::size_t> ends(sorted.size());
   std::size_t end = 0;
@@ -152,9 +153,8 @@ std::vector<std::size_t> ends_of_sets(Set sorted, double width) {
   return ends;
 }
 
-/// The windows whose two halves have means as near to each other as noise leaves them,
-/// Σ_a (m_a − m′_a)² / (var m_a + var m′_a) ≤ 2 χ²_{0.999}(A), with variances by that within
-/// blocks.
+/// The windows whose two halves have means that agree within noise, Σ_a (m_a − m′_a)² / (var m_a +
+/// var m′_a) ≤ 2 χ²_{0.999}(A), with the variances within blocks.
 std::vector<Window> calm_part(const RestBlocks& blocks, Set set) {
   const double bound = 2.0 * chi_square_quantile(0.999, static_cast<double>(blocks.axes));
   const std::size_t half = blocks.window / 2;
@@ -193,7 +193,7 @@ std::optional<RestNoise> find_rest_noise(const RestBlocks& blocks) {
   const auto size_of = [&](std::size_t k) { return ends[k] - k; };
   const auto set_from = [&](std::size_t k) { return Set(windows).subspan(k, size_of(k)); };
 
-  // A sensor that is stuck for a while is no quiet one.
+  // A sensor that is stuck temporarily is not quiet.
   const std::size_t constant = constant_windows(blocks, windows);
   std::size_t lowest = constant < windows.size() && size_of(constant) > 2 * constant ? constant : 0;
   while (lowest + least_windows < windows.size() && size_of(lowest) < least_windows) ++lowest;
@@ -208,7 +208,7 @@ std::optional<RestNoise> find_rest_noise(const RestBlocks& blocks) {
   if (noise.unrest < 1.0) return noise;
   if (const RestNoise quietest = noise_of(blocks, set_from(lowest)); quietest.unrest < 1.0)
     return quietest;
-  // Slow turns may be as quiet as rests and more.
+  // Slow rotations may be as quiet as rests, or quieter.
   const std::vector<Window> calm = calm_part(blocks, set_from(fullest));
   if (calm.size() < least_windows) return noise;
   const RestNoise calmest = noise_of(blocks, calm);

@@ -9,7 +9,7 @@
 namespace proofmass::signal {
 namespace {
 
-/// What χ² over its degrees of freedom exceeds somewhere in one recording in a hundred.
+/// The bound that χ² over its degrees of freedom exceeds somewhere in one recording in a hundred.
 double bound_of(const RestBlocks& blocks, double dof) {
   const double tests = 10.0 * static_cast<double>(blocks.at.size()) + 1.0;
   return chi_square_quantile(1.0 - 1e-2 / tests, dof) / dof;
@@ -19,13 +19,13 @@ double dof_of_block(const RestBlocks& blocks) {
   return static_cast<double>(blocks.axes * (blocks.block - 1));
 }
 
-/// Runs of the blocks that pass; missing blocks pass if they are no more than a window.
+/// Runs of the blocks that pass; up to a window of missing blocks passes as well.
 template <class Passes>
 void add_runs(const RestBlocks& blocks,
               RestRun within,
               Passes&& passes,
               std::vector<RestRun>& runs) {
-  RestRun run{within.first, within.first};  // up to its last block that is there
+  RestRun run{within.first, within.first};  // up to its last block that is present
   const auto close = [&](std::size_t next) {
     if (run.end > run.first) runs.push_back(run);
     run = {next, next};
@@ -42,7 +42,7 @@ void add_runs(const RestBlocks& blocks,
   close(within.end);
 }
 
-/// Adds the parts of a run that belong to no loud window.
+/// Adds the parts of a run that are in no noisy window.
 void add_quiet_parts(const RestBlocks& blocks,
                      const RestNoise& noise,
                      double bound,
@@ -61,7 +61,7 @@ void add_quiet_parts(const RestBlocks& blocks,
   add_runs(blocks, run, [&](std::size_t k) { return !loud[k - run.first]; }, out);
 }
 
-/// Whether the windows before and from `boundary` on hold enough to compare their means.
+/// True if the windows before and after `boundary` contain enough samples to compare their means.
 bool can_compare(const RestBlocks& blocks, const BlockSums& sums, std::size_t boundary) {
   const double enough = 0.5 * static_cast<double>(sums.width * blocks.block);
   return sums.count[boundary - sums.width] >= enough && sums.count[boundary] >= enough;
@@ -95,7 +95,7 @@ PerAxis allan_variance_of(const RestBlocks& blocks,
   return allan;
 }
 
-/// Adds the parts of the run between boundaries where the means on either side differ.
+/// Splits the run at boundaries where the means on either side differ, and adds the parts.
 void add_still_parts(const RestBlocks& blocks,
                      const BlockSums& sums,
                      const PerAxis& bound,
@@ -109,7 +109,7 @@ void add_still_parts(const RestBlocks& blocks,
     double sum = 0.0;
     for (std::size_t a = 0; a < blocks.axes; ++a) sum += sums.half_square(a, k - width) / bound[a];
     if (sum <= 1.0) continue;
-    // At the first boundary that has a window before it nobody knows where the motion began.
+    // At the first boundary with a complete window before it, the start of the motion is unknown.
     if (k > run.first + width) out.push_back({first, k});
     first = k;
     last_cut = k;

@@ -6,18 +6,19 @@
 #include "proofmass/signal/rest_blocks.hpp"
 #include "proofmass/signal/rest_noise.hpp"
 
-// Runs of blocks in which neither the noise nor the mean tells of motion.
+// Runs of blocks in which neither the noise nor the mean indicates motion.
 namespace proofmass::signal {
 
-/// Blocks from first to end − 1, of which neither the first nor the last is missing.
+/// Blocks from first to end − 1; neither the first nor the last is missing.
 struct RestRun {
   std::size_t first, end;
   [[nodiscard]] std::size_t size() const { return end - first; }
 };
 
-/// How loud blocks and windows of them may be: Σ_a squares_a / σ_a² ≤ 9 χ²_{1−p}(Σ_a (n − 1)).
+/// Maximum noise of blocks and of windows of blocks: Σ_a squares_a / σ_a² ≤ 9 χ²_{1−p}(Σ_a (n −
+/// 1)).
 struct QuietTest {
-  double block_bound, window_bound;  ///< of loudness()
+  double block_bound, window_bound;  ///< bounds on loudness()
 
   explicit QuietTest(const RestBlocks& blocks);
   [[nodiscard]] bool passes(const RestBlocks& blocks, const RestNoise& noise, std::size_t k) const {
@@ -25,29 +26,30 @@ struct QuietTest {
   }
 };
 
-/// Takes one outlier out of each block that is quiet without it.
+/// Removes one outlier from each block that is quiet without it.
 void clean_outliers(View<View<double>> axes, RestBlocks& blocks, const RestNoise& noise);
 
-/// Takes out windows that repeat one reading where the sensor has more noise than its converter
-/// hides.
+/// Excludes windows that repeat one value although the sensor's noise exceeds the quantisation
+/// step.
 void drop_stuck(RestBlocks& blocks, const RestNoise& noise);
 
-/// Runs of blocks that are quiet, each for itself and in windows. Missing blocks divide a run where
-/// more than a window of them follow each other.
+/// Runs of blocks that are quiet, individually and in windows. More than a window of consecutive
+/// missing blocks splits a run.
 [[nodiscard]] std::vector<RestRun> quiet_runs(const RestBlocks& blocks, const RestNoise& noise);
 
-/// What remains of the runs where the means m of neighbouring windows over 1, 2, 4, … blocks up to
-/// 16 windows of the variance agree:
+/// The parts of the runs in which the means m of adjacent windows over 1, 2, 4, … blocks up to 16
+/// variance windows agree:
 ///
 ///     Σ_a (m_a⁺ − m_a⁻)² / (2 r_a σ_a²(τ)) ≤ 2.25 χ²_{1−p}(A),
 ///
-/// σ²(τ) being the Allan variance at rest and r_a the run's noise_ratio. From one window on σ²(τ)
-/// is the median over the runs that are left; it may grow with τ as for a random walk, not faster,
-/// and stays where there are too few data, as for flicker noise. It is added to `noise`. p is such
-/// that one recording in a hundred has a false alarm.
+/// σ²(τ) the Allan variance at rest and r_a the run's noise_ratio.
 ///
-/// A run is cut where the means differ, so that a step divides it; blocks between two cuts or
-/// nearer than τ to one are lost where the run creeps.
+/// - From one window on, σ²(τ) is the median over the remaining runs. It may grow with τ at most as
+///   for a random walk, and is constant, as for flicker noise, if there is too little data. It is
+///   added to `noise`.
+/// - p corresponds to one recording in a hundred with a false alarm.
+/// - A run is cut where the means differ, so that a step splits it. Where the run drifts, blocks
+///   between two cuts, or closer than τ to one, are lost.
 [[nodiscard]] std::vector<RestRun> still_runs(const RestBlocks& blocks,
                                               RestNoise& noise,
                                               std::vector<RestRun> runs);

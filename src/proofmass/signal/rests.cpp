@@ -24,7 +24,7 @@ Rest rest_of(const RestBlocks& blocks, const RestRun& run) {
   return rest;
 }
 
-/// Of one sample about the mean of its window, over all runs.
+/// Standard deviation of one sample about the mean of its window, over all runs.
 std::vector<double> std_over(const RestBlocks& blocks, const std::vector<RestRun>& runs) {
   PerAxis squares{};
   double free = 0.0;

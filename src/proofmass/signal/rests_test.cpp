@@ -12,7 +12,7 @@ namespace {
 
 using namespace rests_test;
 
-/// The same rests, each at most `margin` samples too short at either end and not too long.
+/// The same rests, each at most `margin` samples shorter at either end, and not longer.
 void expect_rests(const std::vector<Rest>& found,
                   const std::vector<Rest>& truth,
                   std::size_t margin) {
@@ -196,7 +196,7 @@ TEST(Rests, BeginWhenTheSensorHasSettled) {
     const double start_s = static_cast<double>(search.rests[k].first - made.rests[k].first) / 100.0;
     const double rest_s =
         static_cast<double>(search.rests[k].last - search.rests[k].first + 1) / 100.0;
-    // What is left of the settling moves the mean by less than five of its standard deviations.
+    // The remaining settling shifts the mean by less than five of its standard deviations.
     const double bias = 10.0 * 0.4 / rest_s * std::exp(-start_s / 0.4);
     EXPECT_LT(bias, 5.0 / std::sqrt(100.0 * rest_s)) << start_s;
     EXPECT_LT(start_s, 2.0);
@@ -223,15 +223,15 @@ TEST(Rests, DoNotHoldASensorThatIsHeld) {
   expect_rests(made.search().rests, made.rests, 15);
 }
 
-/// Ten seconds to three minutes that are all rest.
+/// Ten seconds to three minutes, entirely at rest.
 struct Still {
   const char* name;
   double seconds;
-  /// The reading in units of white noise, given its index and the noise.
+  /// The measurement in units of white noise, given its index and the noise.
   double (*reading)(std::size_t k, Noise& noise, double& state);
 };
 
-// GoogleTest looks for a printer of this very name.
+// GoogleTest requires a printer of exactly this name.
 // NOLINTNEXTLINE(readability-identifier-naming)
 void PrintTo(const Still& still, std::ostream* out) {
   *out << still.name;

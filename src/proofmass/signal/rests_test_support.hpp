@@ -19,7 +19,7 @@ inline constexpr double pi = std::numbers::pi;
 
 using Vector = std::array<double, 3>;
 
-/// Noises with the same numbers on every platform.
+/// Noise generators with the same numbers on every platform.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : engine_(seed) {}
@@ -36,7 +36,7 @@ class Noise {
   std::mt19937_64 engine_;
 };
 
-/// What a sensor read that was laid down in one position after the other, gravity being 9.81.
+/// Synthetic measurements of a sensor placed in one position after another, gravity 9.81.
 struct Session {
   double rate_hz = 100.0;
   std::array<std::vector<double>, 3> axis{};
@@ -56,7 +56,7 @@ struct Session {
       add({9.81 * up[0], 9.81 * up[1], 9.81 * up[2]});
     rests.push_back({first, size() - 1});
   }
-  /// At an even pace to another position, shaking by up to `shake`.
+  /// Turns at a constant rate to another position, with vibration up to `shake`.
   void turn(double seconds, Noise& noise, double shake = 1.0) {
     const Vector from = up;
     do up = noise.direction();

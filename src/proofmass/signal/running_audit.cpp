@@ -14,8 +14,8 @@
 namespace proofmass::signal {
 namespace {
 
-// Everything is done in chunks that begin at multiples of this, lest it matter how the recording is
-// cut. Short enough that a chunk stays in the first cache while it is looked at.
+// All processing is in chunks that begin at multiples of this, so that the result does not depend
+// on the block boundaries. Short enough for a chunk to stay in the first-level cache.
 constexpr std::size_t chunk = ValueExcerpts::piece;
 
 std::size_t sample_capacity(std::size_t channels) {
@@ -67,12 +67,12 @@ struct RunningAudit::State {
   std::vector<std::size_t> inertial;
   std::vector<std::size_t> zero_rows;
   OddValues zeros;
-  std::size_t samples = 0;  ///< judged
+  std::size_t samples = 0;  ///< processed samples
   double last_s = 0.0;
   bool has_stamps = false, is_finished = false;
-  std::vector<std::vector<double>> waiting;  ///< rows that make no chunk yet
+  std::vector<std::vector<double>> waiting;  ///< rows that do not fill a chunk yet
   std::vector<double> waiting_stamps_s;
-  std::vector<View<double>> views;  ///< of the chunk under way
+  std::vector<View<double>> views;  ///< views of the current chunk
 };
 
 void RunningAudit::State::take(const Block& block, std::size_t from, std::size_t rows) {
@@ -107,8 +107,8 @@ void RunningAudit::State::take_views(View<double> stamps_s) {
   samples += rows;
 }
 
-// Gravity alone keeps a sensor that works from reading zero on all inertial channels, three at
-// least.
+// Gravity alone keeps a working sensor from an output of zero on all inertial channels, if there
+// are at least three.
 void RunningAudit::State::find_zero_rows(const SampleTimes& times) {
   if (inertial.size() < 3) return;
   if (!std::ranges::all_of(inertial, [&](std::size_t c) { return channels[c].has_zero(); })) return;
@@ -162,7 +162,7 @@ RecordingAudit RunningAudit::finish(const Recording& head) {
   const PlaceWords words{head.first_line, s.rate_hz > 0.0 || s.has_stamps};
   std::size_t c = 0;
   for (const Channel& channel : head.channels) {
-    // A channel may be missing from the head by now, but those that are there keep their order.
+    // A channel may be missing from the head by now, but the others keep their order.
     if (head.channels.size() < s.channels.size())
       while (c < s.names.size() && s.names[c] != channel.name) ++c;
     PM_EXPECTS(c < s.channels.size());

@@ -8,32 +8,33 @@
 
 namespace proofmass::signal {
 
-/// Judges a recording that comes in pieces, in one pass; audit() is a fold over it. However the
-/// recording is cut, the result is the same to the last digit.
+/// Audits a recording in blocks, in one pass; audit() uses it. The result does not depend on the
+/// block boundaries, to the last digit.
 ///
-/// All that RecordingAudit counts is counted exactly. The LSB is told by a ThinnedSample of 2^18
-/// plausible values of a channel (fewer beyond 32 channels): up to there by all of them. So is how
-/// much lies beside a rail, where that is more than the 2^13 values of a ValueTail. Limits with
-/// noise behind them and soft ones are told by ValueExcerpts of 2^17 values.
+/// - All counts of RecordingAudit are exact.
+/// - The LSB is determined from a ThinnedSample of 2^18 plausible values per channel (fewer beyond
+///   32 channels), which holds all values of shorter recordings. So is the number of values near a
+///   rail, if it exceeds the 2^13 values of a ValueTail.
+/// - Limits with noise added afterwards and soft limits are determined from ValueExcerpts of 2^17
+///   values.
 ///
-/// Memory: 3.3 MiB a channel at most, 106 MiB in all up to 1024 channels; the lists of gaps and of
-/// rows of zeros end at most_listed. Cost: about 1.5 ns a value.
+/// Memory: at most 3.3 MiB per channel, 106 MiB in all up to 1024 channels; the lists of gaps and
+/// of all-zero rows end at most_listed. Cost: about 1.5 ns per value.
 class RunningAudit {
  public:
   /// head: channels without values, their names and units, the time base without stamps (its rate
-  /// is what gaps and jitter are judged by), first_line.
+  /// is the reference for gaps and jitter), first_line.
   explicit RunningAudit(const Recording& head);
   RunningAudit(RunningAudit&&) noexcept;
   RunningAudit& operator=(RunningAudit&&) noexcept;
   ~RunningAudit();
 
-  /// The samples behind those added before, of the head's channels; with stamps in every block or
-  /// in none.
+  /// The next samples, of the head's channels; with stamps in every block or in none.
   void add(const Block& block);
 
-  /// Once, when all is added. `head` is the recording's as known at the end: format, notes, names
-  /// and units, the time base with the stamps that were mended; channels that turned out to be none
-  /// may be missing from it.
+  /// Call once, after all samples are added. `head` is the recording's as known at the end: format,
+  /// notes, names and units, the time base with the corrected stamps; columns that turned out not
+  /// to be channels may be missing from it.
   [[nodiscard]] RecordingAudit finish(const Recording& head);
 
  private:

@@ -27,7 +27,7 @@ double normal() {
   return distribution(generator());
 }
 
-/// A channel of one of several characters, odd values, held ones and a constant stretch in it.
+/// A channel of one of several kinds, with odd values, held values and a constant segment.
 std::vector<double> some_channel(std::size_t n) {
   const auto character = static_cast<int>(5.0 * uniform());
   const double clip = 1.0 + uniform(), held = uniform() < 0.5 ? 0.0 : uniform();
@@ -164,7 +164,7 @@ TEST(RunningAudit, SaysTheSameOfMoreValuesThanItKeeps) {
   EXPECT_NEAR(whole.channels[0].lsb.value(), 0.25, 1e-12);
 }
 
-/// Runs of equal values, counted plainly.
+/// Runs of equal values, counted by the definition.
 struct PlainRuns {
   std::size_t longest = 0, longest_start = 0, at_max = 0;
 };
@@ -202,7 +202,7 @@ TEST(RunningAudit, CountsARailThatIsReachedInPieces) {
   Recording recording;
   recording.time.rate_hz = 100.0;
   std::vector<double> values;
-  // Each crest is cut off higher than the one before, until the rail is found.
+  // Each crest is clipped at a higher level than the one before, until the rail is found.
   for (int k = 0; k < 60'000; ++k)
     values.push_back(std::min(0.0002 * k * std::sin(0.01 * k), 5.0) + 20.0);
   recording.channels.push_back({"Acc_X", *parse_unit("m/s^2"), values});
@@ -244,7 +244,7 @@ TEST(RunningAudit, TakesNotesUnitsAndMendedStampsFromTheHeadAtTheEnd) {
   head.notes.push_back({Severity::bad, "the file breaks off"});
   head.time.mended_backwards = head.time.mended = 1000;
   head.channels[3].unit = *parse_unit("K");
-  // A column that turned out to hold words.
+  // A column that turned out to contain words.
   head.channels.erase(head.channels.begin() + 1);
   const RecordingAudit found = running.finish(head);
   ASSERT_EQ(found.channels.size(), 4U);

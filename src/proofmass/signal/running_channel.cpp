@@ -16,8 +16,8 @@ bool has_range(Quantity quantity) {
          quantity == Quantity::voltage || quantity == Quantity::counts;
 }
 
-/// Samples in runs of three or more at a rail, if the signal piles up there: more often than in the
-/// fiftieth of the range beside it, and not just for once as a value that is held is.
+/// Samples in runs of three or more at a rail, if the signal accumulates there: more often than in
+/// the adjacent fiftieth of the range, and in more than one held value.
 std::size_t count_clipped(const RailRuns& at,
                           std::size_t longest_elsewhere,
                           double beside,
@@ -27,7 +27,7 @@ std::size_t count_clipped(const RailRuns& at,
   return is_rail && at.rail != 0.0 && static_cast<double>(at.samples) > beside ? at.samples : 0;
 }
 
-/// Stretches of eight samples or more that stay within one step of a converter.
+/// Segments of eight samples or more that stay within one quantisation step.
 struct Stays {
   std::vector<double> at_rails;  ///< their lengths
   std::vector<double> elsewhere;
@@ -53,8 +53,8 @@ Stays stays_of(View<double> series, double low, double high, double lsb) {
   return out;
 }
 
-/// Whether the channel stays at other values, too, for as long as at its extremes, and a third as
-/// often: then it is the motion that holds them.
+/// True if the channel stays at other values, too, for as long as at its extremes, and a third as
+/// often: then the motion holds them.
 bool holds_other_values(View<double> series, double low, double high, double lsb) {
   const Stays stays = stays_of(series, low, high, lsb);
   const double usual = median(stays.at_rails).value_or(0.0);
@@ -75,7 +75,7 @@ Clipping clipping_of(RangeLimit::Kind kind) {
   return Clipping::undetermined;
 }
 
-/// Limits that are not read as one value; where the two sides differ, the plainer one is told.
+/// Limits that are not a single value; if the two sides differ, the clearer one is reported.
 void judge_crests(ChannelAudit& audit, const ValueExcerpts& excerpts) {
   std::vector<double> series = excerpts.values();
   const auto high = find_upper_limit(series);
@@ -115,7 +115,7 @@ void RunningChannel::add(View<double> values, const SampleTimes& times) {
   runs_.add(values, times.first, times, last_.min, last_.max);
 }
 
-// All but the runs and the excerpts.
+// All statistics except the runs and the excerpts.
 void RunningChannel::add_plausible(View<double> values) {
   add_chunk(moments_, last_, values);
   sample_.add(values);
@@ -124,7 +124,7 @@ void RunningChannel::add_plausible(View<double> values) {
 }
 
 void RunningChannel::add_odd(View<double> values, const SampleTimes& times) {
-  // Without a branch: which values are odd, nobody can guess.
+  // Branch-free: odd values are unpredictable.
   plausible_.resize(values.size());
   std::size_t count = 0;
   for (const double value : values) {
@@ -181,7 +181,7 @@ ChannelAudit RunningChannel::finish(const Channel& channel) {
 void RunningChannel::judge_range(ChannelAudit& audit) const {
   const double range = moments_.max - moments_.min;
   if (!has_range(audit.unit.quantity) || !(range > 0.0)) return;
-  // Of a handful of levels the outermost are no rails, only the ends of the noise.
+  // With only a few levels, the outermost are not rails but the ends of the noise.
   constexpr double fewest_levels = 32.0;
   if (audit.lsb && range < fewest_levels * *audit.lsb) return;
   judge_rails(audit);

@@ -15,7 +15,7 @@
 
 namespace proofmass::signal {
 
-/// Values of one odd kind.
+/// Odd values of one kind.
 struct OddValues {
   std::size_t count = 0;
   Place first, last;
@@ -26,18 +26,18 @@ struct OddValues {
   }
 };
 
-/// Judges one channel that comes in chunks. The same chunks give the same digits.
+/// Audits one channel in chunks. The same chunks give the same digits.
 class RunningChannel {
  public:
   explicit RunningChannel(std::size_t sample_capacity);
 
-  /// The values of samples times.first, times.first + 1, …
+  /// Adds the values of samples times.first, times.first + 1, …
   void add(View<double> values, const SampleTimes& times);
 
-  /// Once. `channel` gives the name and the unit.
+  /// Call once. `channel` gives the name and the unit.
   [[nodiscard]] ChannelAudit finish(const Channel& channel);
 
-  /// Whether zero may have been read in the chunk added last.
+  /// True if the last chunk may contain a zero.
   [[nodiscard]] bool has_zero() const { return last_.min <= 0.0 && last_.max >= 0.0; }
 
   [[nodiscard]] const OddValues& nan() const { return nan_; }
@@ -59,7 +59,7 @@ class RunningChannel {
   ValueTail lowest_, highest_;
   ValueExcerpts excerpts_;
   OddValues nan_, infinite_, absurd_, denormal_;
-  std::vector<double> plausible_;  ///< of a chunk with odd values, those that are not
+  std::vector<double> plausible_;  ///< the plausible values of a chunk that contains others
 };
 
 }  // namespace proofmass::signal

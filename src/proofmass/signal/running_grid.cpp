@@ -11,8 +11,8 @@ namespace proofmass::signal {
 namespace {
 
 constexpr std::size_t piece_places = 4096;
-// How much more may be missing than of a recording that ends here, as long as it goes on: a
-// second's work.
+// Additional missing samples allowed while the recording continues, relative to one that ends here:
+// a second of computation.
 constexpr double patience = 1e8;
 
 }  // namespace
@@ -40,7 +40,8 @@ Status RunningEvenGrid::add(const Block& block, const GridSink& sink) {
   if (Status possible = finder_.check(std::max(finder_.samples(), expected_), patience); !possible)
     return possible;
   lay(block, sink);
-  // What is not laid is in the block, but for what waited before and still does.
+  // Samples not yet on the grid are in the block, except those that were pending before and still
+  // are.
   const std::size_t from = rows - std::min(rows, finder_.samples() - laid_);
   for (std::size_t c = 0; c < held_.size(); ++c) {
     const std::size_t kept = finder_.samples() - laid_ - (rows - from);
@@ -64,7 +65,7 @@ Result<EvenGrid> RunningEvenGrid::finish(const GridSink& sink) {
   return grid;
 }
 
-// Of the samples that wait and those of the block, all that are decided, with the holes.
+// Passes on all decided samples, pending ones and those of the block, with the holes.
 void RunningEvenGrid::lay(const Block& block, const GridSink& sink) {
   for (const Hole& hole : fresh_) {
     copy(block, laid_, hole.before, sink);

@@ -14,33 +14,32 @@
 
 namespace proofmass::signal {
 
-/// Takes a few consecutive places of the grid: one view a channel, equally long, NaN where there is
-/// no sample or none that is_plausible. The views are valid during the call.
+/// Receives a few consecutive grid points: one view per channel, of equal length, NaN where there
+/// is no plausible sample. The views are valid during the call.
 using GridSink = std::function<void(std::span<const View<double>> channels)>;
 
-/// Lays a recording that comes in pieces on an even grid: what even_grid() and on_even_grid() do of
-/// a whole one, place by place the same. A sample behind a long step waits for the eight that
-/// follow it; the others go on at once.
+/// Maps a recording in blocks onto an even grid; identical point by point to even_grid() and
+/// on_even_grid() of the whole recording. A sample after a long interval waits for the eight that
+/// follow it; the others are passed on at once.
 ///
-/// Where a sample stands hangs on the nominal rate alone. The rate that the grid has over the whole
-/// duration is only known at the end; it moves no place.
+/// Positions depend on the nominal rate alone. The mean rate of the grid is known only at the end
+/// and does not change them.
 class RunningEvenGrid {
  public:
-  /// time: its rate, which must be known; stamps are not looked at. expected_samples: 0 if not
-  /// known.
+  /// time: its rate must be known; stamps are ignored. expected_samples: 0 if unknown.
   RunningEvenGrid(const TimeBase& time, std::size_t channels, std::size_t expected_samples = 0);
 
-  /// The samples behind those added before; with stamps in every block or in none. The sink gets
-  /// pieces of at most 4096 places, however long a hole is.
-  /// Errors: corrupt (gaps by far longer than the recording can be; see finish()).
+  /// The next samples; with stamps in every block or in none. The sink gets at most 4096 points per
+  /// call, however long a hole is.
+  /// Errors: corrupt (gaps far longer than the recording can be; see finish()).
   [[nodiscard]] Status add(const Block& block, const GridSink& sink);
 
-  /// Hands over what was waiting; once, when all is added. Of the holes the first most_holes are
+  /// Passes on the pending samples; call once, after all are added. At most most_holes holes are
   /// listed.
-  /// Errors: as of even_grid().
+  /// Errors: as even_grid().
   [[nodiscard]] Result<EvenGrid> finish(const GridSink& sink);
 
-  /// Holes so far, all of them.
+  /// Number of holes so far.
   [[nodiscard]] std::size_t hole_count() const { return finder_.hole_count(); }
 
   static constexpr std::size_t most_holes = std::size_t{1} << 20;
@@ -53,10 +52,10 @@ class RunningEvenGrid {
 
   HoleFinder finder_;
   std::size_t expected_;
-  std::size_t laid_ = 0;                   ///< samples handed over or in the piece
-  std::vector<std::vector<double>> held_;  ///< samples that wait, a channel each
+  std::size_t laid_ = 0;                   ///< samples passed on or in the current piece
+  std::vector<std::vector<double>> held_;  ///< pending samples, one vector per channel
   std::vector<std::vector<double>> piece_;
-  std::size_t filled_ = 0;  ///< places of the piece
+  std::size_t filled_ = 0;  ///< points in the current piece
   std::vector<Hole> fresh_, listed_;
   bool has_stamps_ = false;
 };

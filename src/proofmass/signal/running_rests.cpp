@@ -15,7 +15,7 @@
 namespace proofmass::signal {
 namespace {
 
-constexpr std::size_t unseen_blocks = 2;  ///< at the end, in which motion may have begun
+constexpr std::size_t unseen_blocks = 2;  ///< at the end, where motion may have begun
 
 double level_of(const RestNoise& noise, std::size_t axes) {
   double level = 0.0;
@@ -35,9 +35,9 @@ struct RunningRests::State {
 
   std::size_t axis_count;
   RecentBlocks recent;
-  std::size_t closed = 0, since_rest = 0;  ///< blocks
+  std::size_t closed = 0, since_rest = 0;  ///< in blocks
   std::optional<RestNoise> noise;
-  RestRun rest{0, 0};  ///< in the recent blocks
+  RestRun rest{0, 0};  ///< index into the recent blocks
   RestState told;
 };
 
@@ -152,7 +152,8 @@ std::vector<AllanLevel> RunningRests::levels(std::size_t axis) const {
     ladder.add(block.mean[axis]);
   }
   if (count == 0.0) return {};
-  // Differences of neighbours that share a sample tell as much as two thirds of them apart.
+  // Differences of adjacent samples overlap: they carry as much information as two thirds as many
+  // independent ones.
   std::vector<AllanLevel> levels{{1.0, steps / count, count / 1.5}};
   const std::vector<AllanLevel> slower = ladder.levels(static_cast<double>(blocks.block));
   levels.insert(levels.end(), slower.begin(), slower.end());

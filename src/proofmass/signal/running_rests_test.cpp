@@ -13,7 +13,7 @@ using namespace rests_test;
 
 constexpr double window_s = 0.5;
 
-/// A rest as it was told last, and the state at its end.
+/// A rest as last reported, and the state at its end.
 struct Told {
   RestState state;
   std::vector<AllanLevel> levels;
@@ -237,7 +237,7 @@ TEST(RunningRests, MeasureTheRateWhereNobodySaysIt) {
   live.follow(made);
   expect_near(live.told, made, 0.4);
   EXPECT_EQ(live.rests.samples_a_block(), 4U);
-  // A clock that stands still is no reason to wait for ever.
+  // A clock that does not advance must not cause an endless wait.
   Follower dead(0.0, 1);
   for (std::size_t k = 0; k < 6000; ++k) dead.add(0.0, std::array{noise_std * noise.normal()});
   EXPECT_FALSE(dead.phases.empty());
@@ -259,7 +259,7 @@ TEST(RunningRests, KnowTheMeanAndTheNoiseOfEachOctave) {
     count += 1.0;
     EXPECT_NEAR(rest.noise_std[2] / noise_std, 1.0, 0.1);
     for (const AllanLevel& level : live.told[0].levels) {
-      constexpr double enough = 8.0;  // for chi-square to be near to normal
+      constexpr double enough = 8.0;  // for chi-square to be approximately normal
       if (level.pairs < enough) continue;
       EXPECT_NEAR(level.variance * level.samples / (noise_std * noise_std), 1.0,
                   5.0 * std::sqrt(2.0 / level.pairs))

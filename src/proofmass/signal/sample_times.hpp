@@ -6,17 +6,17 @@
 
 namespace proofmass::signal {
 
-/// A sample and its time: where something was seen.
+/// A sample and its time: the location of a finding.
 struct Place {
   std::size_t sample = 0;
-  double s = 0.0;  ///< since the first sample; its number where no rate is known
+  double s = 0.0;  ///< seconds from the first sample; the sample number if no rate is known
 };
 
 /// The times of a few consecutive samples.
 struct SampleTimes {
-  std::size_t first = 0;  ///< sample that stamps_s begins with
-  View<double> stamps_s;  ///< empty: the samples are even
-  double rate_hz = 0.0;   ///< 0: unknown
+  std::size_t first = 0;  ///< sample of the first stamp
+  View<double> stamps_s;  ///< empty: the samples are evenly spaced
+  double rate_hz = 0.0;   ///< 0 if unknown
 
   [[nodiscard]] Place at(std::size_t k) const {
     const auto number = static_cast<double>(k);

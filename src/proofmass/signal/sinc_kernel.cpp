@@ -40,7 +40,7 @@ SincKernel::SincKernel(double cutoff)
     const double x = static_cast<double>(i) / static_cast<double>(entries_a_zero);
     const double edge = x / static_cast<double>(zeros);
     const double window = bessel_i0(kaiser_beta * std::sqrt(1.0 - edge * edge)) / full;
-    // Whole numbers of zeros are zeros: samples come back as they are.
+    // Exact zeros of the sinc: samples are reproduced exactly.
     const bool is_zero = i > 0 && i % entries_a_zero == 0;
     table_.push_back(is_zero ? 0.0 : cutoff * sinc(x) * window);
   }

@@ -6,14 +6,14 @@
 
 namespace proofmass::signal {
 
-/// c · sinc(c d) · Kaiser window, d in samples: what a band-limited series is interpolated with.
-/// Zero from 32 zeros of the sinc on to either side; β = 8. Kept as a table that is read linearly,
-/// good to 1e-7 of the peak.
+/// c · sinc(c d) · Kaiser window, d in samples: the kernel of band-limited interpolation. Zero
+/// beyond 32 zeros of the sinc on either side; β = 8. Stored as a table with linear interpolation,
+/// accurate to 1e-7 of the peak.
 class SincKernel {
  public:
   static constexpr std::size_t zeros = 32;
 
-  /// `cutoff` in (0, 1]: the highest frequency that is let through, in halves of the sample rate.
+  /// `cutoff` in (0, 1]: the highest frequency passed, relative to half the sample rate.
   explicit SincKernel(double cutoff);
 
   [[nodiscard]] double half_width() const { return half_width_; }  ///< samples

@@ -23,7 +23,7 @@ std::vector<double> weights_of(double delay) {
   return weights;
 }
 
-/// The channel on the even grid, delayed, and back at the samples there are.
+/// The channel on the even grid, delayed, and evaluated at the recorded samples.
 std::vector<double> moved(View<double> values, double delay, const EvenGrid& grid) {
   const std::vector<double> even = delayed(on_even_grid(values, grid), delay);
   std::vector<double> out;
@@ -48,7 +48,7 @@ std::vector<double> delayed(View<double> series, double delay) {
   std::vector<double> out(series.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::ptrdiff_t k = 0; k < size; ++k) {
     const auto value = [&](std::ptrdiff_t i) { return series[static_cast<std::size_t>(i)]; };
-    // The two samples that the moment lies between; at the very end there is but one.
+    // The two samples around the time; at the very end there is only one.
     const std::ptrdiff_t beside = std::clamp(k + other, std::ptrdiff_t{0}, size - 1);
     if (!std::isfinite(value(k)) || !std::isfinite(value(beside))) continue;
     double sum = 0.0;

@@ -9,19 +9,19 @@
 namespace proofmass::signal {
 namespace {
 
-// Heights that are looked at, of that of the highest crest above the median.
+// Heights that are evaluated, relative to the highest crest above the median.
 constexpr std::array<double, 8> heights{0.0, 0.15, 0.3, 0.45, 0.6, 0.7, 0.8, 0.9};
 constexpr std::size_t at_half = 4, near_top = 6, at_top = 7;
-// Crossings without which the slope at a height is not known.
+// Minimum number of crossings for a slope estimate.
 constexpr std::size_t fewest_crossings = 16;
 
-/// How the series crosses a height.
+/// Crossings of one height by the series.
 struct Crossing {
   double level = 0.0;
-  double square = 0.0;                 ///< mean square of the slope, without that of the noise
-  double rising = 0.0, falling = 0.0;  ///< of the slopes of either sign
+  double square = 0.0;                 ///< mean square of the slope, noise removed
+  double rising = 0.0, falling = 0.0;  ///< mean square of the slopes of either sign
   double count = 0.0;
-  double above = 0.0;  ///< samples
+  double above = 0.0;  ///< samples above the height
 };
 
 double mean_square(const std::vector<double>& slopes, bool rising) {
@@ -45,7 +45,8 @@ Crossing crossing_at(View<double> series, double level, double noise) {
   return out;
 }
 
-/// White noise of the series, by its second differences; by half of them where others are larger.
+/// White noise of the series, from its second differences; from the lower half of them if others
+/// are larger.
 double noise_of(View<double> series) {
   std::vector<double> squares;
   for (std::size_t k = 2; k < series.size(); ++k)
@@ -59,8 +60,8 @@ double noise_of(View<double> series) {
 
 using Profile = std::array<Crossing, heights.size()>;
 
-/// The mean square of the slope at each height, over what one oscillation has; the largest of the
-/// lower heights is 1.
+/// The mean square of the slope at each height, relative to that of one oscillation; the largest of
+/// the lower heights is 1.
 std::array<double, heights.size()> steepness_of(const Profile& profile) {
   std::array<double, heights.size()> out{};
   for (std::size_t k = 0; k < heights.size(); ++k)
@@ -70,8 +71,8 @@ std::array<double, heights.size()> steepness_of(const Profile& profile) {
   return out;
 }
 
-/// What a parabola of the slopes at this height, as wide as the excursions, rises to, over what the
-/// crests do: 1 for an oscillation, more for flat crests.
+/// Height of a parabola with the slopes at this height and the width of the excursions, relative to
+/// the crests: 1 for an oscillation, more for flat crests.
 double fullness(const Crossing& at, double left) {
   const double duration = at.above / (0.5 * at.count);
   return duration * std::sqrt(std::max(0.0, at.square)) / (4.0 * left);
@@ -81,14 +82,14 @@ bool are_crests_bent(const Profile& profile, double height, double noise) {
   const Crossing &half = profile[at_half], &top = profile[at_top], &near = profile[near_top];
   const auto is_known = [](const Crossing& one) { return one.count >= double{fewest_crossings}; };
   if (!std::ranges::all_of(profile, is_known)) return false;
-  // Many of the crests reach there; more crossings are those of noise about a level.
+  // Many of the crests reach this height; more crossings are due to noise about a level.
   if (top.count < 0.25 * half.count || top.count > 1.3 * half.count) return false;
   if (top.square < square(2.0 * noise / 3.0)) return false;
   const auto steepness = steepness_of(profile);
   const bool is_bent = steepness[at_top] < 0.5 && steepness[near_top] < 0.75 &&
                        steepness[at_half] > steepness[near_top] &&
                        steepness[near_top] > steepness[at_top];
-  // A level that is held is fuller than any crest that is bent.
+  // A held level is flatter than any compressed crest.
   const auto is_crest = [](double full) { return full > 1.0 && full < 4.0; };
   return is_bent && is_crest(fullness(half, height * (1.0 - heights[at_half]))) &&
          is_crest(fullness(near, height * (1.0 - heights[near_top]))) &&
@@ -98,7 +99,7 @@ bool are_crests_bent(const Profile& profile, double height, double noise) {
 }  // namespace
 
 std::optional<RangeLimit> find_soft_limit(View<double> series) {
-  constexpr double outermost = 8.0;  // values that may be accidents
+  constexpr double outermost = 8.0;  // number of values that may be outliers
   const double middle = median_or_zero(series);
   const double share =
       1.0 - outermost / static_cast<double>(std::max<std::size_t>(series.size(), 9));

@@ -12,14 +12,14 @@ namespace proofmass::signal {
 namespace {
 
 constexpr double cell_octaves = 0.125;
-constexpr double reach = 1.5 * 0.6931471805599453;  ///< of the local fit, in ln f, to either side
+constexpr double reach = 1.5 * 0.6931471805599453;  ///< half width of the local fit, in ln f
 constexpr std::size_t fewest_cells = 9;
 
-/// A group of neighbouring bins.
+/// A group of adjacent bins.
 struct Cell {
   double log_frequency;  ///< ln of the mean bin number
   double log_level;      ///< ln of its PSD, unbiased for the median
-  double weight;         ///< √ of the bins behind it; 0 where all are left out
+  double weight;         ///< √ of the number of bins; 0 if all are excluded
 };
 
 std::vector<Cell> cells_of(const Spectrum& spectrum, const std::vector<bool>& left_out) {
@@ -65,8 +65,8 @@ Vector3 solve(std::array<Vector3, 3> A, Vector3 b) {
   return b;
 }
 
-/// The parabola c₀ + c₁ u + c₂ u², u = ln f − ln f₀, of least Σ weight |log_level − parabola|, at
-/// u = 0; by least squares with weights 1/|residual|.
+/// The parabola c₀ + c₁ u + c₂ u², u = ln f − ln f₀, that minimises Σ weight |log_level −
+/// parabola|, at u = 0; by least squares with weights 1/|residual|.
 double local_level(View<Cell> cells, double at) {
   Vector3 c{};
   for (int pass = 0; pass < 15; ++pass) {
@@ -83,14 +83,14 @@ double local_level(View<Cell> cells, double at) {
         for (std::size_t j = 0; j <= i; ++j) A[i][j] += weight * powers[i] * powers[j];
       }
     }
-    // A touch of damping: too few cells that count must not make it singular.
+    // Slight damping, so that too few cells with weight do not make it singular.
     A[2][2] += 1e-9 * (A[0][0] + A[2][2]);
     c = solve(A, b);
   }
   return c[0];
 }
 
-/// The cells within reach of the one at `index`, and at least fewest_cells that count.
+/// The cells within reach of the one at `index`, and at least fewest_cells with nonzero weight.
 View<Cell> neighbourhood(const std::vector<Cell>& cells, std::size_t index) {
   const double at = cells[index].log_frequency;
   std::size_t first = index, last = index + 1, counting = cells[index].weight > 0.0 ? 1 : 0;

@@ -12,9 +12,9 @@
 namespace proofmass::signal {
 namespace {
 
-// The top fifth of the band is left to filters against aliases.
+// The upper fifth of the band is reserved for anti-aliasing filters.
 constexpr double used_share = 0.8;
-// Half of what one pole takes off over the octave behind its corner.
+// Half the attenuation of one pole over the octave above its corner.
 constexpr double even_db = 2.0;
 constexpr double steps_per_octave = 8.0;
 
@@ -40,14 +40,14 @@ std::optional<Octave> read_octave(const Spectrum& spectrum,
   if (2 * psd.size() < last - first) return std::nullopt;
   const double edf = spectrum.edf_per_bin;
   const double level = *median(psd) * edf / chi_square_quantile(0.5, edf);
-  // π/2: a median is that much less certain than a mean.
+  // π/2: variance of a median relative to a mean.
   const double relative =
       std::sqrt(2.0 / edf * bins_per_independent_bin * 1.5708 / static_cast<double>(psd.size()));
   return Octave{first, last, level, level * relative, 10.0 * std::log10(high / low)};
 }
 
-// Lower comes first, but the even ones before the others; what might only be lower by chance has to
-// be so by four standard deviations.
+// Lower is better, but flat octaves precede the others. If the difference may be due to chance, it
+// has to exceed four standard deviations.
 bool is_better(const Octave& a, const Octave& b) {
   const bool a_even = a.unevenness_db <= even_db, b_even = b.unevenness_db <= even_db;
   if (a_even != b_even) return a_even;

@@ -6,9 +6,9 @@
 
 namespace proofmass::signal {
 
-/// The lowest level that a spectrum keeps for an octave: the median, corrected for its bias, of the
-/// bins of the octave below 0.8 of half the rate that is lowest among those whose background is
-/// even within 2 dB; lines are left out. Where none is so even, the most even one.
+/// The lowest level that a spectrum keeps for an octave: the bias-corrected median of the bins of
+/// the lowest octave below 0.8 of half the rate whose background is flat within 2 dB, lines
+/// excluded. If none is flat enough, the flattest one.
 [[nodiscard]] SpectralFloor measure_floor(const Spectrum& spectrum,
                                           const std::vector<double>& background,
                                           const std::vector<bool>& in_line);

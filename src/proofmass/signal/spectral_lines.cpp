@@ -11,21 +11,21 @@
 namespace proofmass::signal {
 namespace {
 
-constexpr double false_alarm_probability = 1e-3;  ///< of a whole spectrum
+constexpr double false_alarm_probability = 1e-3;  ///< for a whole spectrum
 constexpr double least_excess = 1.259;            ///< 1 dB
-constexpr double least_skirt = 1.06;              ///< the background is known to about 3 %
+constexpr double least_skirt = 1.06;              ///< the background is accurate to about 3 %
 constexpr std::size_t smoothed_bins = 5;
 constexpr std::size_t fewest_bins = 33;
 constexpr std::size_t wide_bins = 12;
 constexpr double least_prominence = 1.12;  ///< 0.5 dB
-constexpr std::size_t half_lobe = 2;       ///< bins from a line's middle to its first zero
+constexpr std::size_t half_lobe = 2;       ///< bins from a line's centre to its first zero
 
 /// Bins [first, last).
 struct Region {
   std::size_t first, last;
 };
 
-/// A spectrum and the background it is judged by.
+/// A spectrum and the background it is compared with.
 struct Judged {
   const Spectrum& spectrum;
   const std::vector<double>& background;
@@ -41,7 +41,7 @@ struct Judged {
     return spectrum.rate_hz / static_cast<double>(spectrum.segment);
   }
 
-  /// Mean of the ratio over the bins about k.
+  /// Mean ratio over the bins about k.
   [[nodiscard]] double smoothed_ratio(std::size_t k) const {
     const std::size_t first = std::max(k, first_judged_bin + half_lobe) - half_lobe;
     const std::size_t last = std::min(k + half_lobe + 1, end());
@@ -67,7 +67,7 @@ struct Judged {
   }
 };
 
-/// Ratios to the background that a line's peak and its skirt exceed.
+/// Minimum ratios to the background of a line's peak and its skirt.
 struct Thresholds {
   double peak, skirt;
 };
@@ -81,7 +81,7 @@ Thresholds thresholds_of(const Judged& judged) {
       std::max(least_skirt, chi_square_quantile(0.95, smoothed_edf) / smoothed_edf)};
 }
 
-/// Bins above the threshold, each grown to where it meets the background, neighbours joined.
+/// Bins above the threshold, each extended until it meets the background, adjacent regions joined.
 std::vector<Region> regions_above(const Judged& judged, const Thresholds& thresholds) {
   std::vector<Region> regions;
   for (std::size_t k = first_judged_bin; k < judged.end(); ++k) {
@@ -102,13 +102,13 @@ std::vector<Region> regions_above(const Judged& judged, const Thresholds& thresh
   return regions;
 }
 
-/// Narrower than an octave at half its height; a few bins near zero always are.
+/// Narrower than an octave at half its height; a few bins near zero always satisfy this.
 bool is_narrow(const Judged& judged, Region region) {
   const Region half = judged.half_height(region);
   return half.last - half.first <= 2 * half_lobe || half.last < 2 * half.first;
 }
 
-/// The bins next to a region that are in no region themselves, as many as `count`.
+/// The nearest `count` bins next to a region that are in no region themselves.
 std::vector<std::size_t> flank(const Judged& judged,
                                const std::vector<Region>& regions,
                                std::size_t from,
@@ -123,8 +123,9 @@ std::vector<std::size_t> flank(const Judged& judged,
   return bins;
 }
 
-/// Tells a line from the shoulder of a filter, which the background cuts short: a wide one must be
-/// higher than the spectrum on both sides of it, a narrow one stand out of its neighbours too.
+/// Distinguishes a line from the shoulder of a filter, which the background underestimates: a wide
+/// one must be higher than the spectrum on both sides, a narrow one must also exceed its
+/// neighbours.
 bool is_peak(const Judged& judged,
              const std::vector<Region>& regions,
              const Thresholds& thresholds,
@@ -168,7 +169,7 @@ SpectralLine measure_line(const Judged& judged, Region region) {
   for (std::size_t k = region.first; k < region.last; ++k) {
     const double psd = judged.spectrum.one_sided_psd[k], excess = std::max(judged.excess(k), 0.0);
     power += judged.excess(k);
-    // A steady tone does not fluctuate, only the noise on it: non-central chi-square.
+    // A steady tone does not fluctuate, only its noise does: non-central chi-square.
     variance += (psd * psd - (is_tone ? excess * excess : 0.0)) * 2.0 / edf;
   }
   power = std::max(power, 0.0) * bin_hz;
@@ -203,7 +204,8 @@ LineReport find_lines(const Spectrum& spectrum) {
   if (bins < fewest_bins || is_silent) return report;
 
   std::vector<Region> found;
-  // Lines lift the background that is fitted with them in it; without them it shows more of them.
+  // Lines raise a background that is fitted with them included; without them, more of each is
+  // visible.
   for (int pass = 0; pass < 4; ++pass) {
     report.background = spectral_background(spectrum, report.in_line);
     const Judged judged{spectrum, report.background};

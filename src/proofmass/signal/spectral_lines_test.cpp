@@ -8,7 +8,7 @@
 namespace proofmass::signal::spectral_lines_test {
 namespace {
 
-/// Independent values of variance 1, evenly distributed: quick, and normal in the spectrum.
+/// Independent uniform values of variance 1: fast, and normal in the spectrum.
 class White {
  public:
   explicit White(std::uint64_t seed) : engine_(seed) {}
@@ -186,7 +186,7 @@ TEST(SpectralFloor, IsTheWhiteLevelUnderARandomWalk) {
   const SpectralFloor floor = lines_of(series, 100.0).floor;
   EXPECT_NEAR(floor.one_sided_density, std::sqrt(2.0 / 100.0), 0.01 * std::sqrt(2.0 / 100.0));
   EXPECT_LT(std::abs(floor.one_sided_density - std::sqrt(0.02)), 5.0 * floor.std);
-  EXPECT_GT(floor.low_hz, 0.3);  // random walk and white noise meet at 0.16 Hz
+  EXPECT_GT(floor.low_hz, 0.3);  // random walk and white noise cross at 0.16 Hz
 }
 
 TEST(SpectralFloor, IsReadBelowAFiltersCorner) {

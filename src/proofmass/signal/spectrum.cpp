@@ -28,7 +28,7 @@ std::vector<double> hann_window(std::size_t length) {
   return window;
 }
 
-/// 1/36 of a Hann window: the correlation of the powers of neighbouring segments of white noise.
+/// 1/36 for a Hann window: the correlation of the powers of adjacent segments of white noise.
 constexpr double neighbour_correlation = 1.0 / 36.0;
 
 double equivalent_degrees_of_freedom(std::size_t segments) {
@@ -89,7 +89,7 @@ struct SpectrumAccumulator::State {
   LaneFourier fourier;
   std::vector<double> window;
   double window_power = 0.0;
-  std::vector<double> buffer;  ///< samples from the start of the next segment on
+  std::vector<double> buffer;  ///< samples from the start of the next segment
   std::vector<LaneComplex> work;
   std::vector<LaneReal> sums;
   std::size_t averaged = 0;

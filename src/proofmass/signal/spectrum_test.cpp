@@ -13,7 +13,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Independent values of variance 1, evenly distributed.
+/// Independent uniform values of variance 1.
 std::vector<double> white_noise(std::size_t n, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   std::vector<double> series(n);
@@ -38,7 +38,7 @@ double integral(const Spectrum& spectrum) {
          spectrum.rate_hz / static_cast<double>(spectrum.segment);
 }
 
-/// Welch's estimate at one bin, sum by sum.
+/// Welch's estimate at one bin, by the definition.
 double by_definition(const std::vector<double>& x, double rate_hz, std::size_t L, std::size_t k) {
   double total = 0.0, segments = 0.0;
   for (std::size_t at = 0; at + L <= x.size(); at += L / 2, ++segments) {
@@ -95,7 +95,7 @@ TEST(Welch, OfAConstantIsZero) {
 
 TEST(Welch, IntegratesWhiteNoiseToItsVariance) {
   const std::vector<double> x = white_noise(1'000'000, 1);
-  // 4 standard deviations of the variance of a million evenly distributed values.
+  // 4 standard deviations of the variance of a million uniform values.
   EXPECT_NEAR(integral(spectrum_of(x, 200.0, 4096)), 1.0, 4.0 * std::sqrt(0.8e-6));
 }
 
@@ -147,7 +147,7 @@ TEST(Welch, PassesOverSegmentsThatAreMostlyMissing) {
   std::vector<double> x = white_noise(64 * 100, 3);
   std::fill(x.begin() + 640, x.begin() + 1280, nan);
   const Spectrum spectrum = spectrum_of(x, 1.0, 64);
-  EXPECT_EQ(spectrum.averaged, 179u);  // one of the two on the edges has its peak in the gap
+  EXPECT_EQ(spectrum.averaged, 179u);  // one of the two at the edges has its peak in the gap
   EXPECT_NEAR(integral(spectrum), 1.0, 0.05);
 }
 

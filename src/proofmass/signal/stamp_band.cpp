@@ -6,9 +6,9 @@
 namespace proofmass::signal {
 namespace {
 
-constexpr double wander = 1.0 / 4096.0;  // of the width, a row
-constexpr double most_reach = 1024.0;    // rows about the likeliest that are tried
-constexpr double slack = 0.02;           // of a step: sums of doubles, and a clock's own jitter
+constexpr double wander = 1.0 / 4096.0;  // drift of the band per row, relative to its width
+constexpr double most_reach = 1024.0;    // rows tried on either side of the likeliest
+constexpr double slack = 0.02;           // in steps: rounding of sums, and the clock's own jitter
 
 }  // namespace
 
@@ -16,7 +16,7 @@ bool StampBand::holds(double stamp) const {
   return !has_begun_ || stamp - first_ - number_ * step_ <= low_ + width_ + slack * step_;
 }
 
-/// How far outside the band the stamps lie in the mean, if so many rows are missing before them.
+/// Mean distance of the stamps outside the band, if `missing` rows are missing before them.
 double StampBand::outside(View<double> next, double missing) const {
   double sum = 0.0;
   for (std::size_t k = 0; k < next.size(); ++k) {
@@ -30,7 +30,7 @@ double StampBand::missing_before(View<double> next) const {
   if (next.empty() || holds(next.front())) return 0.0;
   const double off = next.front() - first_ - number_ * step_;
   const double likely = std::floor((off - low_) / step_);
-  // A count of rows, however far a stamp jumps.
+  // Limits the count of rows for any jump of a stamp.
   const double reach = std::min(std::ceil(width_ / step_) + 1.0, most_reach);
   const double as_is = outside(next, 0.0);
   double best = 0.0;
@@ -58,14 +58,14 @@ void StampBand::take(double stamp, double missing) {
   strain_ += std::max({0.0, off - (low_ + width_), (high_ - width_) - off});
   low_ = std::min(low_ + wander * width_, off);
   high_ = std::max(high_ - wander * width_, off);
-  // What lies outside moves the band: it is the latest that counts.
+  // A stamp outside the band moves it: the latest one counts.
   if (off >= high_) low_ = std::max(low_, high_ - width_);
   if (off <= low_) high_ = std::min(high_, low_ + width_);
 }
 
 namespace {
 
-/// Takes them all; `see` is told of each what is missing before it.
+/// Takes all stamps; `see` is called for each with the number missing before it.
 StampBand take_all(View<double> stamps, double step, double width, auto see) {
   StampBand band(step, width);
   for (std::size_t k = 0; k < stamps.size(); ++k) {

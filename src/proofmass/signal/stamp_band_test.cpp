@@ -10,7 +10,7 @@
 namespace proofmass::signal::stamp_band_test {
 namespace {
 
-/// Stamps of samples 0, 1, … but for those missing, in whole ticks.
+/// Stamps of samples 0, 1, … except those missing, in whole ticks.
 std::vector<double> whole_ticks(std::size_t samples,
                                 double step,
                                 const std::vector<std::size_t>& missing) {
@@ -49,7 +49,7 @@ TEST(StampBand, TellsMissingPacketsFromPackets) {
   EXPECT_NEAR(numbers_in_band(stamps, 1.0, 16.0).back(), 5999.0, 16.0);
 }
 
-// Where a row more is no other number, counting rows would never end.
+// If one more row does not change the number, counting rows would not terminate.
 TEST(StampBand, EndsWhereAStampJumpsBeyondAllRows) {
   std::vector<double> stamps = whole_ticks(100, 1.2, {});
   stamps.push_back(1e20);

@@ -8,10 +8,10 @@
 
 namespace proofmass::signal {
 
-/// Values of a series of any length, in order and evenly spread over it: all of them up to
-/// `capacity`, then one out of each 2^k, with k as large as it must be. Which of the 2^k is drawn
-/// by a hash of the place, so that no period of the series comes through. The same series always
-/// gives the same sample, in whatever pieces it comes.
+/// A subsample of a series of any length, in order and evenly spread: all values up to `capacity`,
+/// then one of every 2^k, with the smallest sufficient k. The one is chosen by a hash of its
+/// position, so that no period of the series is aliased. The same series gives the same sample,
+/// however it is divided into blocks.
 class ThinnedSample {
  public:
   static constexpr std::size_t usual_capacity = std::size_t{1} << 18;
@@ -23,7 +23,7 @@ class ThinnedSample {
 
   [[nodiscard]] View<double> values() const& { return kept_; }
   [[nodiscard]] std::vector<double> values() && { return std::move(kept_); }
-  /// Values of the series for one of the sample.
+  /// Fraction: values of the series per value of the sample.
   [[nodiscard]] double share() const {
     return kept_.empty() ? 1.0 : static_cast<double>(seen_) / static_cast<double>(kept_.size());
   }
@@ -34,7 +34,7 @@ class ThinnedSample {
   std::size_t capacity_;
   std::vector<double> kept_;
   std::size_t seen_ = 0;
-  std::size_t next_ = 0;  ///< place of the value that is taken next
+  std::size_t next_ = 0;  ///< position of the next value to be taken
   unsigned level_ = 0;    ///< k
 };
 

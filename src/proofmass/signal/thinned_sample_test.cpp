@@ -37,7 +37,7 @@ TEST(ThinnedSample, IsTheWholeSeriesUpToItsCapacity) {
 TEST(ThinnedSample, HasOneValueOutOfEachOfItsWindows) {
   ThinnedSample sample(64);
   sample.add(ramp(1000));
-  // 1000 places make windows of 16 where no more than 64 are kept: 62 whole ones.
+  // 1000 positions form windows of 16 if at most 64 are kept: 62 whole ones.
   ASSERT_GE(sample.values().size(), 62U);
   ASSERT_LE(sample.values().size(), 63U);
   for (std::size_t k = 0; k < sample.values().size(); ++k)
@@ -57,7 +57,7 @@ TEST(ThinnedSample, IsTheSameHoweverTheSeriesIsCut) {
 }
 
 TEST(ThinnedSample, DoesNotFallIntoStepWithAPeriodOfTheSeries) {
-  // Places a power of two apart would read one phase of this, for ever the same.
+  // Positions a power of two apart would always see the same phase of this series.
   ThinnedSample sample(1024);
   std::vector<double> series(1 << 18);
   for (std::size_t k = 0; k < series.size(); ++k)

@@ -32,7 +32,7 @@ void RunningTiming::add(View<double> stamps_s) {
   }
 }
 
-// The holes found by now, as gaps; and forgets the stamps that none can be found among any more.
+// Converts the holes found by now to gaps; drops the stamps that cannot contain another.
 void RunningTiming::take_holes() {
   const std::size_t first = stamps_ - recent_.size();
   if (band_s_ > 0.0)
@@ -44,7 +44,7 @@ void RunningTiming::take_holes() {
   recent_.erase(recent_.begin(), recent_.end() - static_cast<std::ptrdiff_t>(kept));
 }
 
-// The samples of which it is known by now what is missing before them.
+// Processes the samples for which the number missing before them is determined.
 void RunningTiming::take_numbers() {
   const std::size_t first = stamps_ - recent_.size();
   auto hole = fresh_.begin();
@@ -59,10 +59,10 @@ void RunningTiming::take_numbers() {
   }
 }
 
-// That of a line through the stamps, and what the usual step is off from it. Where all steps are
-// whole numbers of nominal ones and some rows are missing by them, the stamps may as well be
-// rounded to a step: then up to one row in the longest stretch without a hole is none that is
-// missing, and the rate that much lower.
+// Standard deviation of the fitted line's rate, and the deviation of the usual interval from it. If
+// all intervals are whole numbers of nominal periods and some rows are missing by them, the stamps
+// may be rounded to a period. Then up to one row in the longest segment without a hole may not be
+// missing, and the rate may be that much lower.
 std::optional<double> RunningTiming::rate_std_hz() const {
   const auto line = line_.rate();
   if (!line) return std::nullopt;
@@ -70,7 +70,7 @@ std::optional<double> RunningTiming::rate_std_hz() const {
   if (band_s_ == 0.0 && in_whole_steps_ && holes_.hole_count() > 0)
     variance += square(rate_hz_ / static_cast<double>(longest_unbroken_)) / 3.0;
   const double std_hz = std::sqrt(variance);
-  // Below this it is the rounding of doubles.
+  // Below this it is floating-point rounding.
   if (std_hz < 1e-12 * rate_hz_) return std::nullopt;
   return std_hz;
 }
@@ -112,7 +112,7 @@ TimingAudit RunningTiming::finish(const TimeBase& time) {
     if (time.source == TimeSource::stamps) out.jitter_s = 0.0;
   } else if (regular_ > 0) {
     const double jitter_s = std::sqrt(squares_ / static_cast<double>(regular_));
-    // Below this it is the rounding of doubles, not of a clock.
+    // Below this it is floating-point rounding, not jitter of a clock.
     out.jitter_s = jitter_s * rate_hz_ < 1e-9 ? 0.0 : jitter_s;
   }
   return out;

@@ -12,10 +12,10 @@
 
 namespace proofmass::signal {
 
-/// Judges the stamps of a recording that come in chunks.
+/// Audits the stamps of a recording in chunks.
 class RunningTiming {
  public:
-  /// The base without stamps; of a rate of 0 if none is known.
+  /// The time base without stamps; its rate is 0 if unknown.
   explicit RunningTiming(const TimeBase& time)
       : rate_hz_(time.rate_hz),
         band_s_(time.rate_hz > 0.0 ? time.band_s : 0.0),
@@ -23,8 +23,8 @@ class RunningTiming {
 
   void add(View<double> stamps_s);
 
-  /// All of a TimingAudit but what a counter says of lost rows. `time` is the base as known at the
-  /// end.
+  /// A TimingAudit without the rows that a counter reports as lost. `time` is the base as known at
+  /// the end.
   [[nodiscard]] TimingAudit finish(const TimeBase& time);
 
  private:
@@ -36,15 +36,15 @@ class RunningTiming {
 
   double rate_hz_;
   double band_s_;
-  HoleFinder holes_;  ///< for the rate of the long run, and the gaps where there is a band
+  HoleFinder holes_;  ///< for the long-run rate, and for the gaps if there is a band
   std::vector<Hole> fresh_;
-  std::vector<double> recent_;  ///< stamps that a hole may still be found among
+  std::vector<double> recent_;  ///< stamps among which a hole may still be found
   RateLine line_;
-  std::size_t numbered_ = 0;  ///< stamps in the line
-  double next_number_ = 0.0;  ///< of the sample that comes next, missing ones counted
+  std::size_t numbered_ = 0;  ///< stamps in the fitted line
+  double next_number_ = 0.0;  ///< number of the next sample, missing ones counted
   std::size_t unbroken_ = 0;  ///< samples since the last hole
   std::size_t longest_unbroken_ = 0;
-  bool in_whole_steps_ = true;  ///< every step a whole number of nominal ones
+  bool in_whole_steps_ = true;  ///< every interval is a whole number of nominal periods
   std::size_t stamps_ = 0;
   double last_s_ = 0.0;
   TimingAudit found_;  ///< counts and gaps

@@ -7,7 +7,7 @@
 
 namespace proofmass::signal {
 
-// Sixteen stretches, or fewer that are a piece long.
+// Sixteen segments, or fewer of one piece each.
 ValueExcerpts::ValueExcerpts(std::size_t capacity)
     : stretch_(std::max(piece, capacity / 16 / piece * piece)),
       capacity_(std::max(capacity / stretch_, std::size_t{1}) * stretch_) {}
@@ -19,7 +19,7 @@ void ValueExcerpts::add(View<double> values) {
   if (number % stride_ != 0) return;
   kept_.insert(kept_.end(), values.begin(), values.end());
   if (kept_.size() <= capacity_) return;
-  // Each second stretch is left out; the last one is under way, and of an even number.
+  // Every second segment is dropped; the last one is incomplete and has an even number.
   std::size_t count = 0;
   for (std::size_t from = 0; from < kept_.size(); from += 2 * stretch_) {
     const std::size_t length = std::min(stretch_, kept_.size() - from);

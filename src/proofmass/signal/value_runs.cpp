@@ -14,8 +14,8 @@ void RailRuns::add_approach(std::size_t run, double before, double earlier) {
 bool RailRuns::is_run_into(double lsb) const {
   const auto steep =
       std::ranges::count_if(approaches, [&](double step) { return step > 1.99 * lsb; });
-  // A jump from one position to another ends at an extreme too, but seldom; and where the extreme
-  // is a level of rest, its noise reaches it anew again and again.
+  // A jump between positions ends at an extreme too, but rarely; and if the extreme is a static
+  // level, its noise reaches it repeatedly.
   return steep >= 2 && static_cast<std::size_t>(steep) * 4 >= approaches.size();
 }
 
@@ -67,7 +67,7 @@ void ValueRuns::add(
   take_long_runs(rest, first + k, times);
 }
 
-// All but one that goes on behind the values.
+// All except one that continues beyond the values.
 void ValueRuns::take_rail_runs(View<double> values, std::size_t first, const SampleTimes& times) {
   const double low = low_.rail, high = high_.rail;
   for (std::size_t k = 0; k < values.size();) {
@@ -79,7 +79,7 @@ void ValueRuns::take_rail_runs(View<double> values, std::size_t first, const Sam
     while (end < values.size() && values[end] == values[k]) ++end;
     if (end < values.size()) {
       take_run(values[k], end - k, times.at(first + k));
-      // What stands before the chunk is not known: there are others.
+      // The values before the chunk are unknown; other runs exist.
       if (k >= 2)
         (values[k] == low ? low_ : high_).add_approach(end - k, values[k - 1], values[k - 2]);
     }
@@ -88,8 +88,8 @@ void ValueRuns::take_rail_runs(View<double> values, std::size_t first, const Sam
 }
 
 // Away from the rails only a run longer than the longest elsewhere counts. One that begins at k or
-// later, but not behind k + longest, covers that place: looking back from there, most of the values
-// need not be looked at. The run at the end goes on.
+// later, but not after k + longest, contains that position. Searching backwards from there skips
+// most of the values. The run at the end continues.
 void ValueRuns::take_long_runs(View<double> values, std::size_t first, const SampleTimes& times) {
   std::size_t k = 0;
   const auto start_of = [&](std::size_t at) {

@@ -16,7 +16,7 @@ std::size_t count_beside(View<double> values, double extreme, double width) {
 }  // namespace
 
 void ValueTail::add(View<double> values, double extreme) {
-  // Most of a long series lies beyond the tail: few parts need a look at each value.
+  // Most values of a long series lie beyond the tail: only a few parts need a check of each value.
   constexpr std::size_t part = 64;
   for (std::size_t from = 0; from < values.size() && sign_ * extreme < below_; from += part) {
     const View<double> some = values.subspan(from, std::min(part, values.size() - from));

@@ -9,8 +9,8 @@
 
 namespace proofmass::signal {
 
-/// The lowest values of a series that comes in pieces, or the highest, each as often as it is read:
-/// how many lie close to the extreme is known exactly, as long as they are few.
+/// The lowest values of a series in blocks, or the highest, with repetitions: the number of values
+/// close to the extreme is exact as long as it is small.
 class ValueTail {
  public:
   enum class Side { lowest, highest };
@@ -19,11 +19,12 @@ class ValueTail {
   explicit ValueTail(Side side, std::size_t capacity = usual_capacity)
       : sign_(side == Side::lowest ? 1.0 : -1.0), capacity_(capacity) {}
 
-  /// Finite values, and the most extreme of them on this side.
+  /// Adds finite values; `extreme` is the most extreme of them on this side.
   void add(View<double> values, double extreme);
 
-  /// Of a series that is all in `sample` or in this tail: values within `width` of the extreme, but
-  /// not the extreme itself. Beyond the tail's capacity: by the sample.
+  /// For a series that is entirely in `sample` or in this tail: number of values within `width` of
+  /// the extreme, excluding the extreme itself. Beyond the tail's capacity: estimated from the
+  /// sample.
   [[nodiscard]] double beside(double width, const ThinnedSample& sample) const;
 
  private:
@@ -31,8 +32,8 @@ class ValueTail {
 
   double sign_;
   std::size_t capacity_;
-  std::vector<double> kept_;                                ///< times sign_
-  double below_ = std::numeric_limits<double>::infinity();  ///< only such are still of interest
+  std::vector<double> kept_;                                ///< multiplied by sign_
+  double below_ = std::numeric_limits<double>::infinity();  ///< limit of relevant values
 };
 
 }  // namespace proofmass::signal

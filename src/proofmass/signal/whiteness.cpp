@@ -55,7 +55,7 @@ std::size_t lags_for(std::size_t values) {
   return std::min(root, most_lags);
 }
 
-/// The autocorrelation, its bounds and Q. `length` counts the missing values too.
+/// The autocorrelation, its bounds and Q. `length` includes the missing values.
 void test_autocorrelation(const LaggedProducts& products,
                           std::size_t length,
                           std::size_t fitted_parameters,
@@ -79,8 +79,8 @@ void test_autocorrelation(const LaggedProducts& products,
       chi_square_p(test.ljung_box, static_cast<double>(test.lags - fitted_parameters));
 }
 
-/// The lower median, found among the values of its bin: sorting around it in a copy of everything
-/// takes several times as long. Bins reach four standard deviations to either side.
+/// The lower median, found among the values of its bin: a partial sort of a full copy takes several
+/// times as long. Bins extend to four standard deviations on either side.
 double lower_median(View<double> values, double mean, double std) {
   constexpr std::size_t bins = 4096;
   const auto bin = [=](double x) {
@@ -126,7 +126,7 @@ void test_runs(View<double> values, double median, WhitenessTest& test) {
   const auto& [high, runs] = imbalance(not_below) < imbalance(above) ? not_below : above;
   const double mean = 1.0 + 2.0 * high * (n - high) / n;
   const double variance = (mean - 1.0) * (mean - 2.0) / (n - 1.0);
-  // One value against all others leaves nothing to be seen.
+  // A single value on one side gives a constant number of runs.
   test.runs_z = variance > 0.0 ? (runs - mean) / std::sqrt(variance) : 0.0;
   test.runs_p = std::erfc(std::abs(test.runs_z) / std::numbers::sqrt2);
 }
@@ -145,7 +145,7 @@ Result<WhitenessTest> test_series(View<double> series, double scale_s, std::size
   const double mean = valid.sum / valid.count;
   const LaggedProducts products = lagged_products(series, mean, test.lags);
   const double std = std::sqrt(products.sums[0] / valid.count);
-  // Rounding alone makes means of equal samples differ by more than nothing.
+  // Rounding alone makes means of equal samples differ slightly.
   if (!(std > 1e-12 * std::abs(mean)))
     return Error{Errc::not_observable, "the block means are all equal"};
   if (!std::isfinite(std)) return Error{Errc::not_finite, "the squares of the residuals overflow"};

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Normal deviates that are the same on every platform.
+/// Normal deviates, identical on every platform.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : engine_(seed) {}
@@ -167,7 +167,7 @@ TEST(KolmogorovP, AgreesWithTables) {
   EXPECT_EQ(kolmogorov_p(0.0), 1.0);
 }
 
-/// How often each test rejects at 5 %.
+/// Number of rejections of each test at 5 %.
 struct Rejections {
   void add(const WhitenessTest& test) {
     runs += 1.0;
@@ -180,8 +180,8 @@ struct Rejections {
   double runs = 0.0, ljung_box = 0.0, periodogram = 0.0, signs = 0.0, joint = 0.0, inside = 0.0;
 };
 
-// With 2000 series a share of 5 % has a standard deviation of 0.5 %. Runs of 30 signs come in whole
-// numbers, and the joint verdict is stricter the more the three tests agree.
+// With 2000 series a rate of 5 % has a standard deviation of 0.5 %. Runs of 30 signs are integers,
+// and the joint test is stricter the more the three tests agree.
 void expect_five_percent(const Rejections& count) {
   EXPECT_NEAR(count.ljung_box / count.runs, 0.05, 0.016);
   EXPECT_NEAR(count.periodogram / count.runs, 0.05, 0.016);
@@ -227,18 +227,19 @@ TEST(Whiteness, OfALongWhiteSeriesIsRejectedOnceInTwenty) {
   EXPECT_NEAR(count.signs / count.runs, 0.05, 0.06);
 }
 
-// A sine that fits its stretches puts C at zero before its frequency and at one after.
+// A sine with a whole number of periods per segment makes C zero before its frequency and one
+// after.
 TEST(Whiteness, OfALongSineDepartsByTheShareOfTheBandBeyondIt) {
   std::vector<double> series(10 * 8192);
   for (std::size_t k = 0; k < series.size(); ++k)
     series[k] = std::sin(2.0 * std::numbers::pi * static_cast<double>(k % 32) / 32.0);
   const auto test = test_whiteness(series, {.rate_hz = 1.0, .scale_s = 1.0}).value();
-  // The line is ordinate 256 of the 4095 of each stretch; C[j] has 10 · 4095 − 1 steps.
+  // The line is ordinate 256 of the 4095 of each segment; C[j] has 10 · 4095 − 1 steps.
   EXPECT_NEAR(test.periodogram_excess, 1.0 - 2559.0 / 40949.0, 1e-12);
   EXPECT_EQ(test.periodogram_p, 0.0);
 }
 
-// methods/drift.md: the validation by ten lags at the sample interval passes where the standard
+// methods/drift.md: the validation by ten lags at the sample interval passes although the standard
 // deviation of a fitted time constant is understated seven times.
 TEST(Whiteness, FindsARandomWalkUnderWhiteNoiseAtALongerScale) {
   Noise noise(9);

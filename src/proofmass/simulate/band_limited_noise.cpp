@@ -8,7 +8,7 @@ namespace proofmass::simulate {
 
 BandLimitedNoise::BandLimitedNoise(double rms, double bandwidth_hz, Random random) {
   if (rms == 0.0) return;
-  // One frequency in each of as many equal bands: an even spectrum that does not repeat.
+  // One frequency in each of this many equal bands: a flat spectrum that does not repeat.
   constexpr std::size_t count = 64;
   amplitude_ = rms * std::sqrt(2.0 / count);
   const double band_radps = 2.0 * std::numbers::pi * bandwidth_hz / count;

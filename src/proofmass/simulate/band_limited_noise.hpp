@@ -7,8 +7,8 @@
 
 namespace proofmass::simulate {
 
-/// Gaussian noise with an even spectrum from 0 to a highest frequency, as a function of time that
-/// can be asked anywhere: a sum of sines of equal amplitude with random frequencies and phases.
+/// Gaussian noise with a flat spectrum from 0 to a maximum frequency, as a function of time that
+/// can be evaluated anywhere: a sum of sines of equal amplitude with random frequencies and phases.
 /// Source: M. Shinozuka, G. Deodatis, Appl. Mech. Rev. 44 (1991) 191, with random frequencies.
 class BandLimitedNoise {
  public:

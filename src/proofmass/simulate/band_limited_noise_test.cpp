@@ -22,7 +22,7 @@ TEST(BandLimitedNoise, HasItsRmsAndNothingAboveItsBand) {
     before = now;
   }
   EXPECT_NEAR(values.std(), 0.5, 0.01);
-  // The rms slope of an even spectrum up to B is 2π B rms / √3.
+  // The rms slope of a flat spectrum up to B is 2π B rms / √3.
   EXPECT_NEAR(steps.std(), 0.5 * 2.0 * std::numbers::pi * 10.0 / std::numbers::sqrt3, 0.6);
   for (const auto& c : noise.components())
     EXPECT_LE(c.frequency_radps, 2.0 * std::numbers::pi * 10.0);

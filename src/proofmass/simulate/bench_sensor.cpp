@@ -103,7 +103,7 @@ double BenchSensor::reading_mps2(std::size_t axis, const SensorMotion& motion) c
                                          .omega_dot_o_radps2 = motion.omega_dot_radps2(o)});
 }
 
-// Zero and sensitivity follow the supply, the noise does not.
+// Zero and sensitivity scale with the supply, the noise does not.
 double BenchSensor::volts(std::size_t axis, double reading_mps2, double noise_mps2) const {
   const ProcedureSensor& s = options_.sensor;
   const ProcedureSupply& supply = options_.supply;
@@ -159,8 +159,8 @@ sensor::SensorModel BenchSensor::model() const {
   if (options_.daq.bits > 0)
     model.electrical.lsb = sensor::make_figure(daq_lsb_v(options_.daq), "V", origin);
 
-  // An output in m/s² is calibrated as it stands; volts and counts come by [electrical] first,
-  // which takes out what is ratiometric.
+  // An output in m/s² is calibrated directly; volts and counts are first converted by [electrical],
+  // which removes the ratiometric part.
   std::array<sensor::ModelEquation, 3> equations = recorded_equations();
   const double excess_v = supply.actual_v - supply.reference_v;
   if (options_.output != RigOutput::acceleration)

@@ -10,29 +10,29 @@
 
 namespace proofmass::simulate {
 
-/// What acts on a sensor, in its own axes.
+/// Motion of a sensor, in its own axes.
 struct SensorMotion {
   Eigen::Vector3d force_mps2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d omega_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d omega_dot_radps2 = Eigen::Vector3d::Zero();
 };
 
-/// The sensor of a procedure with everything that the seed draws for it.
+/// The sensor of a procedure with all values drawn for it from the seed.
 class BenchSensor {
  public:
   explicit BenchSensor(const ProcedureOptions& options);
 
   /// Reading in m/s² without drift and noise.
   [[nodiscard]] double reading_mps2(std::size_t axis, const SensorMotion& motion) const;
-  /// Clipped, on the supply, converted.
+  /// Clipped, scaled by the supply, converted.
   [[nodiscard]] double recorded(std::size_t axis, double reading_mps2, double noise_mps2) const;
-  /// The same of means: the converter is left out.
+  /// The same for means: without the converter.
   [[nodiscard]] double mean_recorded(std::size_t axis,
                                      double reading_mps2,
                                      double noise_mps2) const;
   /// Noise of 1 m/s² in the recording's unit.
   [[nodiscard]] double noise_gain() const;
-  /// True where rates act on the reading.
+  /// True if angular rates affect the reading.
   [[nodiscard]] bool feels_rates() const;
 
   [[nodiscard]] const std::array<sensor::ModelEquation, 3>& equations() const { return reading_; }
@@ -50,13 +50,13 @@ class BenchSensor {
   RecordedOutput output_;
 };
 
-/// The drift of one axis, sample by sample or by means over stretches.
+/// The drift of one axis, per sample or as means over intervals.
 class BenchDrift {
  public:
   BenchDrift(const ProcedureOptions& options, std::size_t axis, std::size_t trial);
-  /// At t_s, not before the last time asked for.
+  /// At t_s, not before the last time requested.
   double at(double t_s);
-  /// Mean from start_s to end_s, not before the last time asked for.
+  /// Mean from start_s to end_s, not before the last time requested.
   double mean_over(double start_s, double end_s);
 
  private:

@@ -8,10 +8,10 @@
 
 #include "proofmass/simulate/procedure.hpp"
 
-// What the tests of the procedures share.
+// Shared by the tests of the procedures.
 namespace proofmass::simulate {
 
-/// A procedure whose sensor has its errors but neither noise nor drift.
+/// A procedure whose sensor has its errors, but no noise or drift.
 inline ProcedureOptions noise_free(Procedure procedure) {
   ProcedureOptions options = default_options(procedure);
   options.sensor.noise_rms_mps2 = {};
@@ -40,7 +40,7 @@ struct Triple {
   const std::vector<double>&x, &y, &z;
 };
 
-/// What the true equations make of a force at rest.
+/// Output of the true equations for a static force.
 inline Eigen::Vector3d expected(const ProcedureTruth& truth, const Eigen::Vector3d& f) {
   Eigen::Vector3d E;
   for (Eigen::Index i = 0; i < 3; ++i)

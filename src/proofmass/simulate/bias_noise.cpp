@@ -14,16 +14,16 @@ double time_constant_s(std::size_t j) {
   return shortest_s * std::pow(ratio, static_cast<double>(j));
 }
 
-/// Mean over d and value at its end of a process of unit variance that starts at 0; x = d/T.
+/// Mean over d and final value of a process of unit variance that starts at 0; x = d/T.
 struct Stretch {
   double memory;      ///< e^(−x)
-  double mean_share;  ///< of the start in the mean, (1 − e^(−x))/x
+  double mean_share;  ///< weight of the start in the mean, (1 − e^(−x))/x
   double mean_variance, end_variance, covariance;
 };
 
 Stretch stretch(double x) {
   const double lost = -std::expm1(-x);  // 1 − e^(−x)
-  // ∫∫ of e^(−|s−t|) less what the start explains; for small x the differences cancel.
+  // ∫∫ of e^(−|s−t|) minus the part explained by the start; for small x the differences cancel.
   const double mean_variance =
       x < 1e-2 ? x * (2.0 / 3.0 - x / 2.0) : (2.0 * (x - lost) - lost * lost) / (x * x);
   return {1.0 - lost, lost / x, mean_variance, lost * (2.0 - lost), lost * lost / x};

@@ -35,7 +35,7 @@ TEST(BiasNoise, TheWalksAllanVarianceGrowsAsATimeOverThree) {
   }
 }
 
-// The mean over a second asked for at once, and as the mean of 40 values.
+// The mean over one second computed directly, and as the mean of 40 values.
 TEST(BiasNoise, AMeanIsDistributedAsThatOfTheValues) {
   const BiasNoise::Strength strength{.flicker_mps2 = 1.0, .walk_mps2_rts = 0.7};
   BiasNoise whole(strength, Random(3, "whole")), parts(strength, Random(4, "parts"));

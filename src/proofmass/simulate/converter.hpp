@@ -7,16 +7,16 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/simulate/rig.hpp"
 
-// From a sensor's voltage to what stands in the recording.
+// Conversion of a sensor's voltage to the recorded value.
 namespace proofmass::simulate {
 
-/// A step of the converter in V; bits must not be 0.
+/// Quantisation step in V; bits must not be 0.
 [[nodiscard]] double daq_lsb_v(const RigDaq& daq);
 
-/// What the converter makes of a voltage.
+/// A voltage after the converter.
 [[nodiscard]] double converted_v(double v, const RigDaq& daq);
 
-/// The words that stand for them in a description.
+/// The words for the outputs in a description.
 inline constexpr std::array<std::pair<RigOutput, std::string_view>, 3> output_words{
     {{RigOutput::acceleration, "acceleration"},
      {RigOutput::voltage, "voltage"},
@@ -28,12 +28,12 @@ inline constexpr std::array<std::pair<RigOutput, std::string_view>, 3> output_wo
 /// A unit by its symbol; an unknown one keeps the symbol.
 [[nodiscard]] Unit unit(std::string_view symbol);
 
-/// A channel's way from volts to the recording.
+/// Conversion of a channel from volts to the recorded unit.
 struct RecordedOutput {
   RigOutput output = RigOutput::acceleration;
   RigDaq daq;
-  double zero_v = 0.0;                  ///< nominally
-  double sensitivity_v_per_mps2 = 1.0;  ///< nominally
+  double zero_v = 0.0;                  ///< nominal
+  double sensitivity_v_per_mps2 = 1.0;  ///< nominal
 
   /// A converted voltage in the recording's unit.
   [[nodiscard]] double written(double v) const;

@@ -44,7 +44,7 @@ void must_be_empty(const toml::table& table, std::string_view section) {
                      section));
 }
 
-// The shortest decimal that, read and converted, is `member` again; the nearest where none is.
+// The shortest decimal that reads back and converts to exactly `member`; the nearest if none does.
 std::string value_text(double member, double to_si) {
   const double value = member / to_si;
   for (int digits = 1; digits < 17; ++digits) {

@@ -12,25 +12,25 @@
 #include "proofmass/simulate/converter.hpp"
 #include "proofmass/simulate/rig.hpp"
 
-// What the descriptions of rig and procedure (TOML) share: visitors that fill options from text and
+// Shared by the descriptions of rig and procedure (TOML): visitors that fill options from text and
 // print them, for functions visit(key, member, unit of the file in SI, comment).
 namespace proofmass::simulate {
 
-/// The words that stand for an enumeration's values in a description; one overload for each.
+/// The words for an enumeration's values in a description; one overload each.
 [[nodiscard]] inline auto choices(RigOutput /*which*/) {
   return output_words;
 }
 
 namespace description {
 
-/// Thrown while a description is read; parse() makes it the Result's error.
+/// Thrown while a description is read; parse() converts it to the Result's error.
 struct Failure {
   Error error;
 };
 
 [[noreturn]] void fail(const toml::node& node, std::string_view key, std::string_view why);
 
-/// What fills a member from a node; one overload for each kind of member.
+/// Fills a member from a node; one overload for each type of member.
 struct Fill {
   const toml::node& node;
   std::string_view key;
@@ -60,7 +60,7 @@ struct Fill {
   }
 };
 
-/// Visits a section's fields, and takes out of its table what it has read.
+/// Visits a section's fields, and removes the entries it has read from the table.
 struct Take {
   toml::table& table;
 
@@ -75,7 +75,7 @@ struct Take {
 
 void must_be_empty(const toml::table& table, std::string_view section);
 
-/// [name], if it is there.
+/// Reads [name], if present.
 template <class Read>
 void read_section(toml::table& root, std::string_view name, Read read) {
   toml::node* node = root.get(name);
@@ -86,7 +86,7 @@ void read_section(toml::table& root, std::string_view name, Read read) {
   root.erase(name);
 }
 
-/// All of [[name]], if there is one; they replace what was there.
+/// Reads all of [[name]], if present; they replace the defaults.
 template <class Item, class Read>
 void read_list(toml::table& root, std::string_view name, std::vector<Item>& items, Read read) {
   toml::node* node = root.get(name);
@@ -119,7 +119,7 @@ template <class Choice>
   return {};
 }
 
-/// "key = value      # why" on a line of its own.
+/// "key = value      # why" on one line.
 [[nodiscard]] std::string line(std::string_view key, std::string_view value, std::string_view why);
 
 struct Print {
@@ -133,7 +133,7 @@ struct Print {
   }
 };
 
-/// Parses TOML and hands its root to `read`, which may throw Failure. Errors carry `name`.
+/// Parses TOML and passes its root to `read`, which may throw Failure. Errors carry `name`.
 template <class Options>
 [[nodiscard]] Result<Options> parse(std::string_view text,
                                     std::string_view name,
@@ -152,7 +152,7 @@ template <class Options>
   }
 }
 
-/// A file's text; `what` is what it should describe.
+/// A file's text; `what` is the kind of description.
 /// Errors: unreadable.
 [[nodiscard]] Result<std::string> text_of(const std::string& path, std::string_view what);
 

@@ -10,7 +10,7 @@
 
 namespace proofmass::simulate {
 
-/// Keeps the first thing that is wrong.
+/// Keeps the first error found.
 class Verdict {
  public:
   void require(bool holds, std::string_view where, std::string_view what) {
@@ -23,7 +23,7 @@ class Verdict {
   void operator()(std::string_view key, const std::array<double, N>& values, double, const auto&) {
     for (const double v : values) require(std::isfinite(v), key, "must be finite numbers");
   }
-  template <class Other>  // switches, counts and choices are finite by nature
+  template <class Other>  // switches, counts and choices are always finite
   void operator()(std::string_view, const Other&, double, const auto&) {}
 
   [[nodiscard]] Status status() const {

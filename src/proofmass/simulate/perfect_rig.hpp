@@ -7,12 +7,12 @@
 #include "proofmass/simulate/bench_test_support.hpp"
 #include "proofmass/simulate/rig.hpp"
 
-// What the tests of the rig share.
+// Shared by the tests of the rig.
 namespace proofmass::simulate {
 
 inline constexpr double g = standard_gravity_mps2;
 
-/// The thesis's wheel, its axle level, with sensors that have no errors and no delay.
+/// The thesis's wheel with a level axle and sensors without errors or delay.
 inline RigOptions perfect() {
   RigOptions options;
   options.bias_spread_mps2 = 0.0;

@@ -33,7 +33,7 @@ TEST(PoseMeans, WithoutNoiseAreThoseOfTheRecording) {
     const PoseMeans drawn = draw_pose_means(options).value();
     const auto expected = means_of(result);
     ASSERT_EQ(drawn.means.size(), expected.size());
-    // A mean over samples is half a step early against one over the time.
+    // A mean over samples is half a period early relative to one over time.
     for (std::size_t k = 0; k < expected.size(); ++k)
       EXPECT_LT((drawn.means[k].mean - expected[k]).norm(), 2e-6) << k;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -60,7 +60,7 @@ TEST(PoseMeans, ScatterAsTheySay) {
   EXPECT_NEAR(z.std(), 1.0, 4.0 / std::sqrt(18000.0));
 }
 
-// Of the scatter of the samples' own means, seed by seed, against that of drawn means.
+// Compares the scatter of the sample means over the seeds with that of the drawn means.
 TEST(PoseMeans, ScatterAsThoseOfRecordings) {
   ProcedureOptions options = default_options(Procedure::six_position);
   options.timing.dwell_s = 3.0;

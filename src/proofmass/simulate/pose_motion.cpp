@@ -12,8 +12,8 @@
 namespace proofmass::simulate {
 namespace {
 
-/// Upward acceleration of something lifted within the first 0.4 of a move and set down within the
-/// last.
+/// Vertical acceleration of something lifted within the first 0.4 of a move and set down within the
+/// last 0.4.
 double heave_mps2(double s, double move_s, double lift_m) {
   constexpr double part = 0.4;
   const double scale = lift_m / (part * part * move_s * move_s);
@@ -22,7 +22,7 @@ double heave_mps2(double s, double move_s, double lift_m) {
   return 0.0;
 }
 
-/// The shortest turn from one direction to the other, done to the share s of it.
+/// The shortest rotation from one direction to the other, completed to the fraction s.
 Eigen::Vector3d partly_turned(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double s) {
   const Eigen::Vector3d across = from.cross(to);
   const double sine = across.norm();
@@ -117,7 +117,7 @@ double PoseMotion::moving_rad(double PlannedPose::* angle, double t_s) const {
   return here + (next.*angle - here) * minimum_jerk(s).place;
 }
 
-// Dies within the settling, exactly.
+// Decays to exactly zero within the settling.
 Eigen::Vector3d PoseMotion::swing(std::size_t pose, double t_s) const {
   const PlannedPose& p = plan_[pose];
   if (t_s >= p.rest_s) return Eigen::Vector3d::Zero();
@@ -148,7 +148,7 @@ Eigen::Vector3d PoseMotion::up_in_hand(std::size_t next, double t_s) const {
   return (straight + swell(s) * wobble_.at(t_s)).normalized();
 }
 
-// Without a turn about the vertical: u' = u × ω, hence ω = u' × u.
+// Without rotation about the vertical: u' = u × ω, hence ω = u' × u.
 Eigen::Vector3d PoseMotion::omega_in_hand(std::size_t next, double t_s) const {
   constexpr double h = 1e-3;
   const Eigen::Vector3d slope = (up_in_hand(next, t_s + h) - up_in_hand(next, t_s - h)) / (2.0 * h);

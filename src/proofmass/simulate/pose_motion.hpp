@@ -22,18 +22,18 @@ class TripleNoise {
   std::array<BandLimitedNoise, 3> axes_;
 };
 
-/// What the sensor feels at any time of a procedure: exact rest in every position after it has
-/// settled, and in between smooth turns, by the table or by a hand that lifts, sways, trembles and
-/// sets down. Force and rates are continuous.
+/// Motion of the sensor at any time of a procedure: exact rest in every position after settling,
+/// and smooth rotations in between, by the table or by hand (lifting, sway, tremor, setting down).
+/// Force and rates are continuous.
 class PoseMotion {
  public:
   PoseMotion(const ProcedureOptions& options, std::vector<PlannedPose> plan, bool with_rates);
   [[nodiscard]] SensorMotion at(double t_s) const;
-  /// Number of the position at whose rest t_s lies; 0 between them.
+  /// Number of the position whose rest contains t_s; 0 between rests.
   [[nodiscard]] std::size_t rest_at(double t_s) const;
-  /// The position it stands in or is on its way to.
+  /// The current position, or the next one while moving.
   [[nodiscard]] const PlannedPose& aimed_at(double t_s) const;
-  /// An angle of the table that its positions have, in between as the table moves.
+  /// An angle of the table given per position; in between it follows the table.
   [[nodiscard]] double moving_rad(double PlannedPose::* angle, double t_s) const;
 
  private:
@@ -42,7 +42,7 @@ class PoseMotion {
     double start_s, duration_s;
     Eigen::Vector3d peak_mps2;
   };
-  /// What is drawn for the way to a position and its settling.
+  /// Random values of the move to a position and of its settling.
   struct Arrival {
     std::vector<Knock> knocks;
     Eigen::Vector3d swing_mps2;

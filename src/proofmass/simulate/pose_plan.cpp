@@ -12,7 +12,7 @@
 namespace proofmass::simulate {
 namespace {
 
-/// The table's scale: its error at each position it is set to, in the order of setting.
+/// The table's scale: its error at each position, in the order of setting.
 class IndexedTable {
  public:
   explicit IndexedTable(const ProcedureOptions& options)
@@ -41,7 +41,8 @@ class IndexedTable {
   std::vector<double> position_error_rad_;
 };
 
-/// How the sensor sits on the table: see ProcedureTable; then turned a little about its own axes.
+/// Mounting of the sensor on the table: see ProcedureTable; then a small rotation about its own
+/// axes.
 Eigen::Matrix3d mounted(const ProcedureTable& table,
                         int plane,
                         double mount_rad,
@@ -89,7 +90,8 @@ std::vector<PlannedPose> table_poses(const ProcedureOptions& options) {
   return poses;
 }
 
-/// A direction as a hand finds it: off by a normal draw about each of the two axes across it.
+/// A direction as positioned by hand: with a normal error about each of the two axes perpendicular
+/// to it.
 Eigen::Vector3d placed(const Eigen::Vector3d& direction, double std_rad, Random& random) {
   const Eigen::Vector3d across = direction.unitOrthogonal();
   const double first = random.normal(), second = random.normal();
@@ -151,7 +153,7 @@ void set_times(const ProcedureOptions& options, std::vector<PlannedPose>& poses)
 }  // namespace
 
 std::uint64_t session_seed(const ProcedureOptions& options) {
-  // Random mixes its seed, so any step that leads elsewhere will do.
+  // Random mixes its seed, so any increment gives a different stream.
   return options.seed + 0x9E3779B97F4A7C15U * options.session;
 }
 

@@ -8,8 +8,8 @@
 
 namespace proofmass::simulate {
 
-/// One position of a procedure. The sensor stands in it from stand_s to end_s and is at exact rest
-/// from rest_s on.
+/// One position of a procedure. The sensor is in it from stand_s to end_s and at exact rest from
+/// rest_s on.
 struct PlannedPose {
   double stand_s = 0.0, rest_s = 0.0, end_s = 0.0;
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< along the force, in the sensor's axes
@@ -18,19 +18,20 @@ struct PlannedPose {
   int plane = 0;
   double mount_rad = 0.0, commanded_rad = 0.0, angle_rad = 0.0;
   Eigen::Matrix3d R_sensor_table = Eigen::Matrix3d::Identity();
-  bool turned_here = false;  ///< by the table, from the position before; else by hand
+  bool turned_here = false;  ///< from the previous position by the table; else by hand
 };
 
-/// All positions in their order, with the times at which they are taken.
+/// All positions in order, with their times.
 [[nodiscard]] std::vector<PlannedPose> plan_poses(const ProcedureOptions& options);
 
-/// The positions as the truth tells them.
+/// The positions as stored in the truth.
 [[nodiscard]] std::vector<TruePose> true_poses(const std::vector<PlannedPose>& plan);
 
-/// The seed of what another session draws anew: all but the sensor and the table's own errors.
+/// The seed of the values that another session draws anew: all except the sensor and the table's
+/// own errors.
 [[nodiscard]] std::uint64_t session_seed(const ProcedureOptions& options);
 
-/// Turns its positions by a table.
+/// True if the positions are set by a table.
 [[nodiscard]] bool is_on_table(Procedure procedure);
 
 /// Unit force in the table's axes, (sinθ cosβ, cosθ cosβ, sinβ).

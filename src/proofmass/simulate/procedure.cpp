@@ -41,7 +41,7 @@ std::vector<Channel> triad(const char* name, std::string_view unit_symbol, std::
   return channels;
 }
 
-/// The channels of the sensor and the truth beside them.
+/// The channels of the sensor and the truth series.
 class Series {
  public:
   Series(const ProcedureOptions& options, std::vector<PlannedPose> plan)
@@ -127,7 +127,7 @@ class Series {
   double rested_ = 0.0;
 };
 
-/// The axis that points upwards, or downwards: "x_up"; of other positions their number.
+/// The axis that points upwards or downwards: "x_up"; the number for other positions.
 std::string label_of(const ProcedureOptions& options, const TruePose& pose) {
   if (options.procedure == Procedure::multi_position)
     return "position_" + std::to_string(pose.number);
@@ -139,7 +139,7 @@ std::string label_of(const ProcedureOptions& options, const TruePose& pose) {
   return "angle_" + std::to_string(std::lround(pose.commanded_rad / rad_per_deg));
 }
 
-/// Marks the rests in the recording, as a person would who notes what he does.
+/// Labels the rests in the recording, as a user who takes notes would.
 void label(const ProcedureOptions& options, ProcedureResult& result) {
   const double last = static_cast<double>(result.recording.samples() - 1);
   for (const TruePose& pose : result.truth.poses)

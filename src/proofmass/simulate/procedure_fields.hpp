@@ -8,8 +8,8 @@
 #include "proofmass/simulate/procedure.hpp"
 
 // Every key of a procedure's description, once: visit(key, member, unit of the file in SI,
-// comment). A key is added by a line here; reading, writing and the check for finite numbers
-// follow. The sections that rig_fields.hpp has too ([daq]) are visited by its functions.
+// comment). To add a key, add a line here; reading, writing and the check for finite numbers
+// follow. Sections that rig_fields.hpp has too ([daq]) are visited by its functions.
 namespace proofmass::simulate {
 
 template <class Options, class Visit>

@@ -34,7 +34,7 @@ namespace {
 using description::read_section;
 using description::Take;
 
-/// The sections in their order; each is visited by the function beside its name.
+/// The sections in order; each is visited by the function beside its name.
 template <class Options, class Section>
 void for_each_section(Options& o, Section&& section) {
   section("timing", [&](auto&& visit) { visit_timing(o.timing, visit); });

@@ -8,20 +8,20 @@
 
 namespace proofmass::simulate {
 
-/// Reads a description of that procedure (TOML). A key that is absent keeps its default. Angles in
-/// degrees, coefficients of the model equation in the standard's units (g/g² and kin).
-/// Errors: unreadable, corrupt (no TOML), invalid_argument (it is of another procedure, an unknown
-/// key, a value of the wrong kind or one that check() refuses; the message names file, line and key
-/// where there is one).
+/// Reads a description of the given procedure (TOML). An absent key has its default. Angles in
+/// degrees, coefficients of the model equation in the standard's units (g/g² etc.).
+/// Errors: unreadable, corrupt (not TOML), invalid_argument (a different procedure, an unknown key,
+/// a value of the wrong type or rejected by check(); the message names file, line and key if there
+/// is one).
 [[nodiscard]] Result<ProcedureOptions> read_procedure_file(const std::string& path,
                                                            Procedure procedure);
 
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; `name` is the file name in messages.
 [[nodiscard]] Result<ProcedureOptions> parse_procedure_file(std::string_view text,
                                                             std::string_view name,
                                                             Procedure procedure);
 
-/// A description that reads back as the same options, with a comment on every key.
+/// A description that parses to the same options, with a comment on every key.
 [[nodiscard]] std::string format_procedure_file(const ProcedureOptions& options);
 
 }  // namespace proofmass::simulate

@@ -103,7 +103,7 @@ TEST(Procedure, AtRestNothingMovesAndBetweenItDoes) {
   }
 }
 
-// At 10 kHz a step of force would stand out; the steepest there is, a knock of 12 ms, does not.
+// At 10 kHz a step of force would be visible; the steepest feature, a shock of 12 ms, is not one.
 TEST(Procedure, TheForceIsContinuous) {
   for (const Procedure p : {Procedure::tumble, Procedure::multi_position}) {
     ProcedureOptions options = noise_free(p);

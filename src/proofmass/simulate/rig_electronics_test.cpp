@@ -65,7 +65,7 @@ TEST(RigElectronics, SkewedChannelsAreSampledOneAfterTheOther) {
     ASSERT_NEAR(column(rig.recording, "acc1_y")[k], g * std::cos(2.0 * (t + 5e-4)), 1e-12);
     ASSERT_NEAR(column(rig.recording, "acc2_y")[k], g * std::cos(2.0 * (t + 4 * 5e-4)), 1e-12);
     ASSERT_NEAR(column(rig.truth, "angle")[k], 2.0 * t, 1e-12);
-    // The truth is that of the scan's instant, the reading that of its own.
+    // The truth is at the time of the scan, the sample at its own time.
     ASSERT_NEAR(column(rig.truth, "bias2_z")[k], 50.0 * (1.0 - std::exp(-t)), 1e-12);
     const double own_bias = 50.0 * (1.0 - std::exp(-(t + 5 * 5e-4)));
     ASSERT_NEAR(column(rig.recording, "acc2_z")[k], std::min(own_bias, full_scale), 1e-12);
@@ -122,7 +122,7 @@ TEST(RigElectronics, NoiseDoesNotFollowTheSupply) {
   for (std::size_t k = 0; k < steady.size(); ++k) ASSERT_NEAR(steady[k], rippled[k], 1e-11);
 }
 
-// The way a user goes: the twin's own sensor file takes its counts back to the forces.
+// As in use: the twin's own sensor file converts its counts back to the forces.
 TEST(RigElectronics, ItsSensorModelsTakeCountsBackToForces) {
   RigOptions options = perfect();
   const RigResult clean = simulated(options);

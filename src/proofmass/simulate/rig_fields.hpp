@@ -3,8 +3,8 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/simulate/rig.hpp"
 
-// Every key of a rig's description, once: visit(key, member, unit of the file in SI, comment).
-// A key is added by a line here; reading, writing and the check for finite numbers follow.
+// Every key of a rig's description, once: visit(key, member, unit of the file in SI, comment). To
+// add a key, add a line here; reading, writing and the check for finite numbers follow.
 namespace proofmass::simulate {
 
 template <class Options, class Visit>

@@ -8,16 +8,16 @@
 
 namespace proofmass::simulate {
 
-/// Reads a rig's description (TOML). A key that is absent keeps its default; [[segment]] and
-/// [[sensor]] replace the default profile and the default pair. Angles in degrees, speeds in rpm.
-/// Errors: unreadable, corrupt (no TOML), invalid_argument (an unknown key, a value of the wrong
-/// kind or one that check() refuses; the message names file, line and key where there is one).
+/// Reads a rig's description (TOML). An absent key has its default; [[segment]] and [[sensor]]
+/// replace the default profile and the default pair. Angles in degrees, speeds in rpm.
+/// Errors: unreadable, corrupt (not TOML), invalid_argument (an unknown key, a value of the wrong
+/// type or rejected by check(); the message names file, line and key if there is one).
 [[nodiscard]] Result<RigOptions> read_rig_file(const std::string& path);
 
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; `name` is the file name in messages.
 [[nodiscard]] Result<RigOptions> parse_rig_file(std::string_view text, std::string_view name);
 
-/// A description that reads back as the same options, with a comment on every key.
+/// A description that parses to the same options, with a comment on every key.
 [[nodiscard]] std::string format_rig_file(const RigOptions& options);
 
 }  // namespace proofmass::simulate

@@ -33,7 +33,8 @@ RigOptions unusual() {
   return o;
 }
 
-// Equal in everything that a file can say: their texts are.
+// Checks that the options are equal in everything that a file can express, by comparing their
+// texts.
 void expect_same(const RigOptions& a, const RigOptions& b) {
   EXPECT_EQ(format_rig_file(a), format_rig_file(b));
 }

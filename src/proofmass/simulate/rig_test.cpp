@@ -42,9 +42,8 @@ TEST(Rig, HalfSumIsGravityAndHalfDifferenceTheMotion) {
   }
 }
 
-// Bias and warm-up are what limits a plain atan2 of the two sensors' sum (methods/wheel.md: 0.99°
-// rms as the mean of three seeds): to first order by (b_x cos θ − b_y sin θ)/g, b the truth's mean
-// bias.
+// Bias and warm-up limit a plain atan2 of the two sensors' sum (methods/wheel.md: 0.99° rms as the
+// mean of three seeds): to first order by (b_x cos θ − b_y sin θ)/g, b the true mean bias.
 TEST(Rig, TruthsBiasesExplainTheErrorOfAPlainAtan2) {
   Moments rms_deg;
   RigOptions options;
@@ -104,7 +103,7 @@ TEST(Rig, ForceIsThePathsSecondDerivativeLessGravity) {
   sensor.mounting_rad = -0.7;
   const RigResult rig = simulated(options);
   const WheelMotion motion(0.4, options.wheel.profile, options.wheel.ripple, options.seed);
-  // Rolling without slip on the ground below: the hub goes back as the angle goes forward.
+  // Rolling without slip on the ground below: the hub moves backwards as the angle increases.
   const auto path = [&](double t) {
     const double at = motion.at(t).angle_rad;
     return std::pair{-0.31 * at + 0.23 * std::cos(at + 1.1), 0.23 * std::sin(at + 1.1)};
@@ -137,7 +136,7 @@ TEST(Rig, TiltedAxleMovesGravityIntoTheSpinAxis) {
   }
 }
 
-// Tilting the board by small angles leans its z axis towards x (about y) and −y (about x).
+// Tilting the board by small angles rotates its z axis towards x (about y) and −y (about x).
 TEST(Rig, TiltedBoardKeepsTheLengthOfTheForce) {
   RigOptions options = perfect();
   options.sensors[0].tilt_y_rad = 0.02;
@@ -213,7 +212,7 @@ TEST(Rig, SameSeedSameNumbers) {
 TEST(Rig, OneEffectLeavesTheNumbersOfTheOthersAlone) {
   RigOptions options;
   options.wheel.profile[0].duration_s = 1.0;
-  options.sensors[0].filter_signal = false;  // which the walk would pass too
+  options.sensors[0].filter_signal = false;  // which would filter the walk too
   const RigResult before = simulated(options);
   options.sensors[0].bias_walk_mps2_rts = {0.1, 0.1, 0.1};
   const RigResult after = simulated(options);

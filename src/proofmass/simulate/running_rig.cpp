@@ -13,7 +13,7 @@
 namespace proofmass::simulate {
 namespace {
 
-/// A sensor at one instant: what its axes have in common.
+/// State of a sensor at one time, shared by its axes.
 class SensorNow {
  public:
   SensorNow(const RigOptions& options, std::size_t index) : twin(options, index) {}
@@ -27,7 +27,7 @@ class SensorNow {
 
   SensorTwin twin;
   Eigen::Vector3d force_mps2 = Eigen::Vector3d::Zero();  ///< in its own axes
-  double warm_up = 0.0;                                  ///< share of it that is there
+  double warm_up = 0.0;                                  ///< fraction of it reached
 
  private:
   double t_s_ = std::numeric_limits<double>::quiet_NaN();
@@ -48,7 +48,7 @@ class ChannelTwin {
   void step_walk() { axis_.step_walk(); }
   [[nodiscard]] bool is_filtered() const { return sensor_.twin.sensor.filter_signal; }
 
-  /// The filter's input is linear between the instants that it is told.
+  /// The filter's input is linear between the given times.
   void filter_to(const Instant& now) { filtered_mps2_ = filter_.next(now.t_s, reading_mps2(now)); }
 
   [[nodiscard]] double recorded(const Instant& now) {
@@ -67,7 +67,7 @@ class ChannelTwin {
     return axis_.reading_mps2(sensor_.twin.M.row(row_).dot(sensor_.force_mps2), sensor_.warm_up);
   }
 
-  /// Zero and sensitivity follow the supply, the noise does not.
+  /// Zero and sensitivity scale with the supply, the noise does not.
   [[nodiscard]] double volts(double reading_mps2, double noise_mps2, double supply_v) const {
     const RigSensor& s = sensor_.twin.sensor;
     const double ratio = supply_v / nominal_v_;
@@ -98,7 +98,7 @@ std::string place_of(std::size_t sensor, std::size_t axis) {
   return std::to_string(sensor + 1) + "_" + "xyz"[axis];
 }
 
-/// Longer by so many rows.
+/// Extends the columns by `rows`.
 void lengthen(RunningRig::Columns& columns, std::size_t count, std::size_t rows) {
   columns.resize(count);
   for (std::vector<double>& column : columns) column.resize(column.size() + rows);
@@ -153,12 +153,12 @@ class RunningRig::Scans {
   std::uint64_t next = 0;
 
  private:
-  /// When the card comes to a channel; `scans` counts from the first.
+  /// Time at which the card samples a channel; `scans` counts from the first.
   [[nodiscard]] double time_s(double scans, std::size_t channel) const {
     return scans / options.rate_hz + options.daq.skew_s * static_cast<double>(channel);
   }
 
-  // Channel by channel at each instant, so that it is one instant for all where there is no skew.
+  // Channel by channel at each time, so that all share one time if there is no skew.
   void filter() {
     constexpr std::size_t substeps = 8;
     for (std::size_t i = next == 0 ? substeps : 1; i <= substeps; ++i) {

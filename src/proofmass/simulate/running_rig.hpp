@@ -12,11 +12,11 @@
 
 namespace proofmass::simulate {
 
-/// The rig while it turns: the numbers of simulate_rig(), in pieces of any size. Past the end of
-/// its speed profile it keeps the last speed.
+/// The rig in real time: the numbers of simulate_rig(), in blocks of any size. After the end of its
+/// speed profile it keeps the last speed.
 class RunningRig {
  public:
-  /// Channels in a recording's order. Rows are appended; the vectors keep their memory.
+  /// Channels in the recording's order. Rows are appended; the vectors keep their capacity.
   using Columns = std::vector<std::vector<double>>;
 
   /// Errors: invalid_argument (the message names the option).
@@ -25,18 +25,18 @@ class RunningRig {
   RunningRig& operator=(RunningRig&&) noexcept;
   ~RunningRig();
 
-  /// What RigResult says, the channels without values.
+  /// As in RigResult, the channels without values.
   [[nodiscard]] const Recording& recording() const;
   [[nodiscard]] const Recording& truth() const;
   [[nodiscard]] const std::vector<sensor::SensorModel>& sensors() const;
 
   /// Number of the next scan.
   [[nodiscard]] std::uint64_t scan() const;
-  /// Scans up to the end of the speed profile.
+  /// Number of scans up to the end of the speed profile.
   [[nodiscard]] std::uint64_t profile_scans() const;
 
-  /// Appends the next `scans` rows, and the truth beside them where it is asked for.
-  /// Cost: where the card has no skew, the motion is reckoned once for all channels of a scan.
+  /// Appends the next `scans` rows, and the truth if requested.
+  /// Cost: if the card has no skew, the motion is computed once for all channels of a scan.
   void run(std::size_t scans, Columns& recorded, Columns* truth = nullptr);
 
  private:

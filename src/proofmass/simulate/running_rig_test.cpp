@@ -8,7 +8,7 @@
 namespace proofmass::simulate::running_rig_test {
 namespace {
 
-/// Whatever a rig can have, at once.
+/// All features of a rig combined.
 RigOptions everything() {
   RigOptions options;
   options.daq = {.bits = 16, .skew_s = 1e-4};
@@ -23,7 +23,7 @@ RigOptions everything() {
   return options;
 }
 
-/// In pieces of so many scans, the last one shorter.
+/// In blocks of the given number of scans, the last one shorter.
 void run_in_pieces(const RigOptions& options,
                    std::size_t piece,
                    RunningRig::Columns& recorded,

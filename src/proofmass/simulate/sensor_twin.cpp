@@ -14,7 +14,7 @@
 namespace proofmass::simulate {
 namespace {
 
-/// An even draw within ± limit has this standard deviation, as a fraction of the limit.
+/// Standard deviation of a uniform draw within ± limit, as a fraction of the limit.
 constexpr double even_std = 1.0 / std::numbers::sqrt3;
 
 void draw_bias(const RigOptions& options, std::size_t index, RigSensor& sensor) {
@@ -120,8 +120,8 @@ double AxisTwin::reading_mps2(double u_mps2, double warm_up) const {
   return std::clamp(bent + bias_mps2(warm_up), -full_scale, full_scale);
 }
 
-// White noise behind one pole is a first-order autoregression at evenly spaced instants, exactly.
-// Each kind draws from a stream of its own: one that is not there need not be drawn.
+// White noise after one pole is exactly a first-order autoregression at evenly spaced times. Each
+// kind draws from its own stream: one that is disabled need not be drawn.
 double AxisTwin::next_noise_mps2() {
   double noise = filtered_mps2_;
   if (filtered_rms_ > 0.0)
@@ -136,7 +136,7 @@ void AxisTwin::step_walk() {
 }
 
 sensor::Calibration calibration_of(const Eigen::Matrix3d& M, const Axes& bias_mps2) {
-  // M⁻¹ = Q U: a calibration against gravity finds U, the rotation Q it cannot see.
+  // M⁻¹ = Q U: a calibration against gravity finds U; the rotation Q is not observable.
   const Eigen::Matrix3d U = positive_qr(M.inverse()).U;
   const Eigen::Vector3d scale = U.diagonal().cwiseInverse();
   sensor::Calibration calibration;
@@ -177,7 +177,7 @@ sensor::SensorModel model_of(const SensorTwin& twin, const RigOptions& options, 
   model.calibration = calibration_of(twin.M, warmed_up);
   model.calibration.gravity = sensor::make_figure(options.gravity_mps2, "m/s^2", origin);
   model.calibration.alignment_std = sensor::make_figure(twin.alignment_std_rad, "rad", origin);
-  Axes white{};  // N as sampled: below the filter's corner both kinds are flat
+  Axes white{};  // N as sampled: both kinds are flat below the filter's corner
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const sensor::FilteredWhite filtered{sensor::two_sided_density(s.noise_density_mps2_rthz[axis]),
                                          s.bandwidth_hz};

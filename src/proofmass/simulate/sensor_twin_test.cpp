@@ -11,7 +11,7 @@
 namespace proofmass::simulate::sensor_twin_test {
 namespace {
 
-/// A rig with one sensor and nothing wrong with it.
+/// A rig with one error-free sensor.
 RigOptions perfect_sensor() {
   RigOptions options;
   options.bias_spread_mps2 = 0.0;
@@ -104,7 +104,7 @@ TEST(SensorTwin, PlainNoiseIsWhiteAndHasItsRms) {
   EXPECT_NEAR(autocorrelation(noise, 1), 0.0, 5.0 / std::sqrt(1e5));
 }
 
-// Behind one pole the autocorrelation is e^(−2π f t), and the rms ND √(π/2 f).
+// After one pole the autocorrelation is e^(−2π f t), and the rms ND √(π/2 f).
 TEST(SensorTwin, FilteredNoiseHasTheFiltersRmsAndMemory) {
   RigOptions options = perfect_sensor();
   options.rate_hz = 1000.0;
@@ -127,12 +127,13 @@ TEST(OnePole, AnswersAStepAndASineAsItsEquationSays) {
   OnePole sine(10.0);
   double last = 0.0;
   for (int k = 0; k <= 40000; ++k) last = sine.next(k * 1e-4, std::sin(rad_per_turn * k * 1e-3));
-  // At its corner: 1/√2 of the amplitude, an eighth of a turn late; 4 s are 40 whole turns.
+  // At its corner: 1/√2 of the amplitude, a delay of an eighth of a period; 4 s are 40 whole
+  // periods.
   EXPECT_NEAR(last, std::sin(-std::numbers::pi / 4.0) / std::numbers::sqrt2, 1e-5);
   EXPECT_NEAR(step.next(0.1 + tau, 3.0), 3.0, 1e-2);
   OnePole ramp(10.0);
   (void)ramp.next(0.0, 0.0);
-  EXPECT_NEAR(ramp.next(50.0 * tau, 50.0 * tau), 49.0 * tau, 1e-12);  // a ramp arrives tau late
+  EXPECT_NEAR(ramp.next(50.0 * tau, 50.0 * tau), 49.0 * tau, 1e-12);  // a ramp is delayed by tau
 }
 
 TEST(SensorTwin, DatasheetErrorsStayInsideTheDatasheetAndFillIt) {
@@ -158,7 +159,8 @@ TEST(SensorTwin, DatasheetErrorsStayInsideTheDatasheetAndFillIt) {
               std::hypot(0.01, 0.1 * rad_per_deg) / std::sqrt(3.0), 1e-15);
 }
 
-// The calibration undoes everything but a rotation, and the rotation is about as large as it says.
+// The calibration corrects everything except a rotation, and the rotation is about as large as
+// stated.
 TEST(SensorTwin, ItsModelCalibratesItUpToARotation) {
   RigOptions options = perfect_sensor();
   options.sensors[0].cross_axis = {0.01, -0.02, 0.005, 0.01, -0.01, 0.02};
@@ -213,7 +215,7 @@ TEST(SensorTwin, ItsNoiseFigureIsTheTwoSidedDensityThatTheRecordingShows) {
   options.rate_hz = 100.0;
   const auto model = model_of(SensorTwin(options, 0), options, 0);
   EXPECT_DOUBLE_EQ(model.noise.white[0]->si(), 0.002);
-  // The filter's corner stands at the rate: three times the power is folded into the band.
+  // The filter's corner is at the sample rate: three times the power is aliased into the band.
   const double folded = std::numbers::pi / std::tanh(std::numbers::pi);
   EXPECT_NEAR(model.noise.white[1]->si(), 1.5e-3 * std::sqrt(0.5 * folded), 1e-15);
   EXPECT_NEAR(model.noise.white[2]->si(), std::sqrt(9e-6 + 8e-6 * folded), 1e-15);

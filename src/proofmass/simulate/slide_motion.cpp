@@ -17,7 +17,7 @@ Eigen::Matrix3d turned_by(const Eigen::Vector3d& rotation) {
   return Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
 }
 
-/// Evenly over all rotations. Source: K. Shoemake, Graphics Gems III (1992), page 124.
+/// Uniform over all rotations. Source: K. Shoemake, Graphics Gems III (1992), page 124.
 Eigen::Matrix3d any_rotation(Random& random) {
   const double u = random.unit(), a = random.phase(), b = random.phase();
   const double low = std::sqrt(1.0 - u), high = std::sqrt(u);
@@ -38,7 +38,7 @@ Eigen::Matrix3d mounting_of(const ProcedureOptions& options) {
       .toRotationMatrix();
 }
 
-/// Place, velocity and acceleration along the line, done to the share s of a stroke.
+/// Position, velocity and acceleration along the line at the fraction s of a stroke.
 Way way_of(SlideProfile profile, double s) {
   if (profile == SlideProfile::minimum_jerk) return minimum_jerk(s);
   constexpr double pi = std::numbers::pi;
@@ -115,7 +115,7 @@ std::size_t SlideMotion::last_rest(double t_s) const {
   return after == rests_.begin() ? 0 : static_cast<std::size_t>(after - rests_.begin()) - 1;
 }
 
-/// From the mounting, as a rotation vector, after the rest of that index.
+/// Rotation vector from the mounting, after the rest with that index.
 Eigen::Vector3d SlideMotion::turn_at(std::size_t rest, double t_s) const {
   if (rest + 1 == rests_.size() || t_s <= rests_[rest].end_s) return turns_rad_[rest];
   const double from_s = rests_[rest].end_s, to_s = rests_[rest + 1].stand_s;
@@ -138,7 +138,7 @@ void SlideMotion::move_along(double t_s, SlideState& state) const {
   state.accel_mps2 = length_m * way.accel / (duration_s * duration_s);
 }
 
-/// Rates by the rotations from a little before to now and from now to a little after.
+/// Rates from the rotations from shortly before to now and from now to shortly after.
 Eigen::Matrix3d SlideMotion::rotate(std::size_t rest, double t_s, SlideState& state) const {
   const Eigen::Vector3d turn = turn_at(rest, t_s);
   const Eigen::Matrix3d R = turned_by(turn);

@@ -11,19 +11,19 @@
 
 namespace proofmass::simulate {
 
-/// A carriage at one instant.
+/// State of the carriage at one time.
 struct SlideState {
   double along_m = 0.0, velocity_mps = 0.0, accel_mps2 = 0.0;
-  std::size_t stroke = 0;  ///< number of the one under way; 0: none
+  std::size_t stroke = 0;  ///< number of the current stroke; 0: none
   std::size_t rest = 0;    ///< number of the rest; 0: none
-  double turn_rad = 0.0;   ///< from the attitude at the first rest
-  /// In the sensor's axes: what acts on it, and the share of gravity in it.
+  double turn_rad = 0.0;   ///< rotation from the attitude at the first rest
+  /// In the sensor's axes: its motion, and the gravity part of the force.
   SensorMotion motion;
   Eigen::Vector3d gravity_mps2 = Eigen::Vector3d::Zero();
 };
 
-/// What a sensor on a slide feels at any time: exact rest between the strokes, and strokes of the
-/// chosen profile, with the rotation, the wobble and the vibration that are asked for.
+/// Motion of a sensor on a slide at any time: exact rest between the strokes, and strokes of the
+/// selected profile, with rotation, wobble and vibration as configured.
 class SlideMotion {
  public:
   explicit SlideMotion(const ProcedureOptions& options);
@@ -31,7 +31,7 @@ class SlideMotion {
   [[nodiscard]] SlideState at(double t_s) const;
   [[nodiscard]] const std::vector<PlannedPose>& rests() const { return rests_; }
   [[nodiscard]] const std::vector<TrueStroke>& strokes() const { return strokes_; }
-  /// Its direction in the sensor's axes at the first rest.
+  /// Direction of the line in the sensor's axes at the first rest.
   [[nodiscard]] Eigen::Vector3d line() const;
 
  private:
@@ -45,9 +45,9 @@ class SlideMotion {
   ProcedureSlide slide_;
   double gravity_mps2_;
   std::vector<PlannedPose> rests_;
-  std::vector<Eigen::Vector3d> turns_rad_;  ///< of each rest from the mounting, about its axes
+  std::vector<Eigen::Vector3d> turns_rad_;  ///< rotation of each rest from the mounting
   std::vector<TrueStroke> strokes_;
-  Eigen::Vector3d direction_;  ///< of the line; z upwards
+  Eigen::Vector3d direction_;  ///< direction of the line; z upwards
   Eigen::Matrix3d mounting_;   ///< from the sensor's axes
   bool turns_ = false;
   TripleNoise wobble_, vibration_;

@@ -32,7 +32,7 @@ void append(Recording& recording,
         {name + "_" + "xyz"[axis], unit(unit_symbol), std::move(values[axis])});
 }
 
-/// Of the second sensor everything is drawn anew.
+/// For the second sensor everything is drawn anew.
 ProcedureOptions with_another_seed(ProcedureOptions options) {
   options.seed ^= 0xD1B54A32D192ED03U;
   return options;
@@ -52,7 +52,7 @@ class Accelerometer {
         read(reserved(samples)),
         force(reserved(samples)),
         drift(reserved(samples)) {}
-  Accelerometer(const Accelerometer&) = delete;  // the drifts refer to the options
+  Accelerometer(const Accelerometer&) = delete;  // the drifts hold references to the options
   Accelerometer& operator=(const Accelerometer&) = delete;
 
   void take(double t_s, const SlideState& state) {
@@ -93,7 +93,7 @@ class Accelerometer {
   Samples read, force, drift;
 };
 
-/// Its bias walks; one draw of it for the sensor, the walk for the session.
+/// Its bias is a random walk: one draw of the bias for the sensor, the walk for the session.
 class Gyro {
  public:
   Gyro(const ProcedureOptions& options, std::size_t samples)

@@ -7,7 +7,7 @@
 
 namespace proofmass::simulate {
 
-/// Fills the recording, the truth beside it and what the truth says of sensor, strokes and line.
+/// Fills the recording, the truth series, and the truth's sensor, strokes and line.
 void record_slide(const ProcedureOptions& options,
                   std::size_t samples,
                   ProcedureResult& result,

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double g = standard_gravity_mps2;
 
-/// Neither noise nor errors: the recording is the force.
+/// No noise and no errors: the recording is the force.
 ProcedureOptions perfect() {
   ProcedureOptions options = noise_free(Procedure::slide);
   options.sensor.bias_spread_mps2 = 0.0;
@@ -29,7 +29,7 @@ ProcedureOptions perfect() {
   return options;
 }
 
-/// Once and twice integrated by the trapezoidal rule.
+/// Integral by the trapezoidal rule.
 std::vector<double> integral(const std::vector<double>& values, double step_s) {
   std::vector<double> sums{0.0};
   for (std::size_t k = 1; k < values.size(); ++k)
@@ -82,7 +82,7 @@ TEST(Slide, VelocityAndDisplacementAreTheIntegralsOfTheAcceleration) {
     const ProcedureResult result = simulated(options);
     const auto velocity = integral(column(result.truth_series, "acceleration"), 5e-4);
     const auto along = integral(column(result.truth_series, "velocity"), 5e-4);
-    // The harmonic profile's force jumps at rests, by half a sample's worth of velocity at most.
+    // The harmonic profile's force jumps at rests, by at most half a sample's worth of velocity.
     const double jump = profile == SlideProfile::harmonic ? 5e-3 : 1e-5;
     EXPECT_LT(furthest(velocity, column(result.truth_series, "velocity")), jump);
     EXPECT_LT(furthest(along, column(result.truth_series, "displacement")), 1e-5);
@@ -119,7 +119,7 @@ TEST(Slide, RepetitionsFollowEachOtherWithoutARest) {
   ASSERT_EQ(result.truth.strokes.size(), 10U);
   for (std::size_t k = 1; k < 10; ++k)
     EXPECT_EQ(result.truth.strokes[k].start_s, result.truth.strokes[k - 1].end_s);
-  // At the bottom the bar is at its fullest force: π²/2 · L/T² beside gravity.
+  // At the bottom the force is at its maximum: π²/2 · L/T² in addition to gravity.
   const auto bottom = static_cast<std::size_t>((4.0 + 2.0) * options.rate_hz);
   EXPECT_NEAR(column(result.recording, "acc_z")[bottom],
               g + 0.5 * std::numbers::pi * std::numbers::pi * 0.4, 1e-9);
@@ -134,7 +134,7 @@ TEST(Slide, AGyroscopeIntegratesToTheTurnBetweenRests) {
   options.slide.gyro = true;
   const ProcedureResult result = simulated(options);
   const Triple gyro(result.recording, "gyro");
-  // Small steps one after another: up' = up × ω.
+  // Small consecutive steps: up' = up × ω.
   Eigen::Vector3d up = result.truth.poses[0].force_mps2.normalized();
   for (std::size_t k = 1; k < gyro.x.size(); ++k) {
     const Eigen::Vector3d step = 0.5 * (gyro(k - 1) + gyro(k)) / options.rate_hz;

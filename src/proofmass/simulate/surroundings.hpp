@@ -9,23 +9,23 @@
 
 namespace proofmass::simulate {
 
-/// What moves and supplies the sensors at one instant.
+/// Motion and supply of the sensors at one time.
 struct Instant {
   double t_s = std::numeric_limits<double>::quiet_NaN();
   WheelState wheel;
   Eigen::Vector3d still_mps2;  ///< force at the axle, in the wheel's axes
   double supply_v = 0.0;
 
-  /// Force at p on the wheel, in the wheel's axes; the equation stands in rig.hpp.
+  /// Force at p on the wheel, in the wheel's axes; see the equation in rig.hpp.
   [[nodiscard]] Eigen::Vector3d force_mps2(const Eigen::Vector3d& p) const;
 };
 
-/// All that moves and supplies the sensors, as functions of time.
+/// Motion and supply of the sensors as functions of time.
 class Surroundings {
  public:
   explicit Surroundings(const RigOptions& options);
 
-  /// Reckoned once where one channel after the other asks for the same instant.
+  /// Computed once if consecutive channels use the same time.
   [[nodiscard]] const Instant& at(double t_s);
   [[nodiscard]] double duration_s() const { return motion_.duration_s(); }
 

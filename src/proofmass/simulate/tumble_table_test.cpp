@@ -14,14 +14,14 @@ ProcedureOptions tumble() {
   return noise_free(Procedure::tumble);
 }
 
-/// The reading of x at rest, position by position.
+/// The reading of x at rest, per position.
 std::vector<double> readings_of_x(const ProcedureOptions& options) {
   std::vector<double> E;
   for (const PoseMean& mean : draw_pose_means(options).value().means) E.push_back(mean.mean.x());
   return E;
 }
 
-// The four-point formulas of IEEE Std 1293, each with what the full equation puts into it.
+// The four-point formulas of IEEE Std 1293, each with the terms that the full equation adds.
 TEST(TumbleTable, FourPositionsGiveTheFourPointFormulas) {
   ProcedureOptions options = noise_free(Procedure::four_position);
   options.sensor.equation[0] = {.K2 = 1e-4, .K3 = 2e-6, .delta_o = 3e-3, .Kpp = 5e-5};
@@ -58,7 +58,8 @@ TEST(TumbleTable, ForwardBackwardRemountedAndPlanesMultiply) {
   EXPECT_EQ(readings_of_x(options).size(), 98U);
 }
 
-// At 0° the second axis points upwards, at 90° the first; turned on the table both downwards.
+// At 0° the second axis points upwards, at 90° the first; turned on the table, both point
+// downwards.
 TEST(TumbleTable, PutsInputAndThenPendulousOrOutputAxisIntoThePlane) {
   ProcedureOptions options = tumble();
   options.table.planes = 2;
@@ -111,7 +112,7 @@ TEST(TumbleTable, APositionErrsAlikeEveryTimeASettingDoesNot) {
   EXPECT_GT(std::abs(error(24) - error(0)), 1e-6);
 }
 
-// Fully known: θ moves by minimum jerk, so its greatest acceleration is 10/√3 Δθ/T².
+// Known exactly: θ follows minimum jerk, so its maximum acceleration is 10/√3 Δθ/T².
 TEST(TumbleTable, TurningIsFeltThroughTheRatesTerms) {
   ProcedureOptions options = tumble();
   options.rate_hz = 1000.0;

@@ -52,7 +52,7 @@ WheelState WheelMotion::at(double t_s) const {
   const double speed = piece.speed_radps + piece.accel_radps2 * dt;  // ω0
   const double phi = piece.angle_rad + piece.speed_radps * dt + 0.5 * piece.accel_radps2 * dt * dt;
 
-  // θ = Φ + Σ (a/n)(cos φ − cos(nΦ + φ)), and its first two derivatives by time.
+  // θ = Φ + Σ (a/n)(cos φ − cos(nΦ + φ)), and its first two time derivatives.
   double angle = start_angle_rad_ + phi, rate = 1.0, bend = 0.0;
   for (const Sine& s : ripple_) {
     const double argument = s.order * phi + s.phase_rad;

@@ -5,31 +5,31 @@
 
 namespace proofmass::simulate {
 
-/// A stretch of the wheel's speed: from the speed before to speed_radps, linearly within ramp_s,
-/// then that speed to the end. ramp_s = 0 is a step, whose impulse of acceleration no sample sees;
-/// speed 0 is a rest, a change of sign a reversal. The first stretch starts at rest if it has a
-/// ramp, at its own speed if not.
+/// A segment of the wheel's speed: linear from the previous speed to speed_radps within ramp_s,
+/// then constant to the end. ramp_s = 0 is a step, whose impulse of acceleration is between
+/// samples; speed 0 is a rest, a change of sign a reversal. The first segment starts at rest if it
+/// has a ramp, at its own speed if not.
 struct SpeedSegment {
   double duration_s = 0.0;
   double speed_radps = 0.0;
   double ramp_s = 0.0;
 };
 
-/// What the speed really does about the commanded one ω0, whose integral is Φ:
-/// ω = ω0 (1 + Σ a_i sin(n_i Φ + φ_i)), phases by the seed. In terms of Φ it integrates in closed
-/// form, dies with the speed and repeats with the turns as that of a motor or gear does.
+/// Ripple of the actual speed about the commanded one ω0, whose integral is Φ: ω = ω0 (1 + Σ a_i
+/// sin(n_i Φ + φ_i)), phases by the seed. As a function of Φ it integrates in closed form, vanishes
+/// with the speed and repeats with the turns like that of a motor or gear.
 struct SpeedRipple {
-  double fraction = 0.0;             ///< of one sine at `order`, at its crest
+  double fraction = 0.0;             ///< amplitude of one sine at `order`
   double order = 1.0;                ///< n, cycles per revolution
-  double random_fraction_rms = 0.0;  ///< of noise with an even spectrum of orders
-  double random_max_order = 10.0;    ///< from 0 to this
+  double random_fraction_rms = 0.0;  ///< noise with a flat spectrum of orders
+  double random_max_order = 10.0;    ///< upper limit of the orders, from 0
 };
 
 struct WheelState {
   double angle_rad = 0.0, speed_radps = 0.0, accel_radps2 = 0.0;
 };
 
-/// The wheel's motion, exact at any time: no step is integrated. Behind its profile it keeps the
+/// The wheel's motion, exact at any time: no numerical integration. After its profile it keeps the
 /// last speed.
 class WheelMotion {
  public:

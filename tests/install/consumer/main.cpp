@@ -1,5 +1,5 @@
-// Uses what every exported library hides (Ceres, fmt, zlib, lzma, toml++, nlohmann), so that a
-// dependency missing from the package is a link error here.
+// Uses the private dependencies of every exported library (Ceres, fmt, zlib, lzma, toml++,
+// nlohmann), so that a dependency missing from the package is a link error here.
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "proofmass/serve/folder.hpp"
+#include "proofmass/serve/request.hpp"
+
+namespace proofmass::serve {
+
+struct BenchOptions {
+  Folder folder;
+  std::string program;                   ///< path of the proofmass that runs the verbs
+  std::vector<std::string> environment;  ///< it has
+  std::string work_folder;               ///< for results and views, until this goes
+  std::string verbs_json;                ///< the table of verbs and their flags
+  std::size_t jobs_at_a_time = 2;
+};
+
+/// What stands behind the page: the recordings of a folder, views of them, and analyses. Everything
+/// that reads a file of unknown origin runs in a process of its own.
+///
+///     GET    /api/info                       {version, folder, only}
+///     GET    /api/verbs                      verbs_json
+///     GET    /api/recordings                 {recordings: [...], sensor_files: [...], left}
+///     GET    /api/recording?file=            {json, page}: what `inspect` says
+///     PUT    /api/files/NAME                 {name}: adds a file, never over another
+///     GET    /api/view?file=                 {state, fraction, stage, head}; opens it
+///     GET    /api/view/window?file=&from=&to=&pixels=
+///     GET    /api/view/figures?file=&from=&to=
+///     GET    /api/view/noise?file=&from=&to=&channel=   the page of `noise` for this stretch
+///     GET    /api/analyses                   {analyses: [...]}
+///     POST   /api/analyses                   {verb, files, options} → {id}
+///     GET    /api/analyses/ID                its state
+///     DELETE /api/analyses/ID                cancels it
+///     GET    /api/analyses/ID/result.json, page.json, report.html, series.csv, sensor.toml
+///
+/// Everything else is 404. Errors are {"error": text}.
+class Bench {
+ public:
+  explicit Bench(BenchOptions options);
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+  ~Bench();
+
+  /// May be called from several threads at once.
+  [[nodiscard]] Response answer(const Request& request);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace proofmass::serve
