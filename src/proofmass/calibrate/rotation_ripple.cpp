@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 
 constexpr Index parts = 2 * highest_ripple;
-// Those that the sensor's terms are confounded with: once a turn cos and sin, twice a turn sin.
+// Those confounded with the sensor's terms: once a turn cos and sin, twice a turn sin.
 constexpr std::array<Index, 3> shared{0, 1, 3};
 constexpr double normal_95 = 1.959964;
 constexpr double inexact = 1.05;  // the model of first order holds to a few per cent
@@ -37,13 +37,13 @@ void add_harmonic(std::size_t axis, int n, Eigen::Vector2d ab, Eigen::Ref<Eigen:
   into(from + sine_column(n) + 1) += c * ab(0) - s * ab(1);
 }
 
-// The first axis's C1 is taken up by the phase, which turns the second with it.
+// The first axis's C1 is absorbed by the phase, which shifts the second with it.
 void keep_phase(Eigen::Ref<Eigen::VectorXd> moved) {
   const double by = moved(2);
   for (Index from = 0; from < moved.size(); from += harmonic_count) moved(from + 2) -= by;
 }
 
-// The sensor's terms that a ripple does not imitate: q₁ − p₂, p₁ + q₂, t₁ + t₂ of 1.
+// The sensor's terms that differ from a ripple: q₁ − p₂, p₁ + q₂, t₁ + t₂ of 1.
 Eigen::MatrixXd sensor_terms() {
   Eigen::MatrixXd terms = Eigen::MatrixXd::Zero(2 * harmonic_count, 3);
   const Index p = sine_column(2), q = p + 1, t = sine_column(3), second = harmonic_count;
@@ -54,7 +54,7 @@ Eigen::MatrixXd sensor_terms() {
   return terms;
 }
 
-// Hotelling's T² of so many dimensions.
+// p-value by Hotelling's T² in this many dimensions.
 double chance_of(const Eigen::VectorXd& v, const Eigen::MatrixXd& C, double dof) {
   const auto dimensions = static_cast<double>(v.size());
   const double below = dof - dimensions + 1.0;
@@ -91,7 +91,7 @@ RippleMoments ripple_moments(const RotationState& state) {
   return out;
 }
 
-// All axes' harmonics, one behind the other.
+// All axes' harmonics, concatenated.
 Eigen::VectorXd stacked(const RotationState& state) {
   Eigen::VectorXd all(state.size());
   for (std::size_t axis = 0; axis < state.axes; ++axis)
@@ -195,13 +195,13 @@ Eigen::MatrixXd section_inverse(Eigen::MatrixXd H) {
   return inverse;
 }
 
-// What is known of a ripple n times a turn beside its size.
+// Properties of a ripple n times a turn, in addition to its size.
 struct RippleVerdict {
   SpeedRipple ripple;
   double sensor_bound = 0.0;  // of what the sensor may add where the ripple is accepted, 95 %
 };
 
-// 95 % bound of a term that is as large as `seen` were, at random.
+// 95 % bound of a random term of the size of those in `seen`.
 double bound_by(const Eigen::VectorXd& seen) {
   const auto n = static_cast<double>(seen.size());
   return student_t_quantile(0.975, n) * seen.norm() / std::sqrt(n);
@@ -341,7 +341,7 @@ struct CommonSplit {
   Eigen::VectorXd sensor;
 };
 
-// Takes the ripples' part out of the blocks' scores.
+// Removes the ripples' part from the blocks' scores.
 CommonSplit common_split(const RotationState& state,
                          const RotationSolver& solver,
                          RotationEstimate& estimate) {
@@ -392,7 +392,7 @@ void separate_ripples(const RotationState& state,
         estimate.bounds.push_back(verdict.sensor_bound * M.col(part));
         continue;
       }
-      // Left with the sensor, though it may be the ripple's.
+      // Left with the sensor, though it may be due to the ripple.
       estimate.harmonics += ripple.mean(part) * M.col(part);
       estimate.blocks.scores += M.col(part) * split.ripple_scores.row(part);
       // What noise makes of it is in the scatter already: a third of its standard deviation is

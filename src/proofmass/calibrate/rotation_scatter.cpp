@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Index;
 
-// The scores of one figure, block by block.
+// The scores of one result, block by block.
 struct Blocks {
   std::vector<double> z;
   std::vector<std::size_t> section;
@@ -24,7 +24,7 @@ void for_each_section(const std::vector<std::size_t>& section, F&& f) {
   }
 }
 
-// Sums of so many neighbours of one section; what is left over goes to the last of its section.
+// Sums of neighbours of one section; a remainder is added to the last of its section.
 Blocks joined(const Blocks& blocks, std::size_t to_one) {
   Blocks out;
   for_each_section(blocks.section, [&](std::size_t begin, std::size_t end) {
@@ -67,7 +67,7 @@ Variance variance_of(const Blocks& blocks) {
   return {sum, squares_over_dof > 0.0 ? sum * sum / squares_over_dof : all};
 }
 
-// Correlation of neighbours, less what independent blocks about their means are expected to have.
+// Correlation of neighbours, minus its expectation for independent blocks about their means.
 double neighbours_correlation(const Blocks& blocks) {
   double squares = 0.0, products = 0.0, sections = 0.0;
   for_each_section(blocks.section, [&](std::size_t begin, std::size_t end) {

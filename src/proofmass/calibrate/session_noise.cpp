@@ -18,10 +18,10 @@ using Matrices = std::array<MatrixXd, 3>;
 
 constexpr std::size_t most_poses = 300;  // the cost is their cube
 constexpr double most_pairs = 150.0;
-/// Variance of a mean by the wander over that by white noise.
+/// Ratio of a mean's variance due to drift to that due to white noise.
 constexpr std::array<double, 10> ratios{0.0, 0.1, 0.25, 0.6, 1.5, 4.0, 10.0, 25.0, 60.0, 150.0};
 
-// Wanders of unit strength over all sessions.
+// Drift of unit coefficient over all sessions.
 struct Units {
   MatrixXd flicker, walk;
   VectorXd samples;         // of each rest
@@ -62,7 +62,7 @@ struct GridPoint {
   std::array<double, 3> white{};  // N² of each axis, over all sessions
 };
 
-// The rests' part of the score, with the white noise that fits best.
+// The rests' part of the score, with the best-fitting white noise.
 void score_rests(View<RestSession> sessions, GridPoint& at) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double pairs = 0.0, sum = 0.0, logs = 0.0;
@@ -112,7 +112,7 @@ Residuals residuals_of(View<Pose> poses, const MultiPosition& fit) {
   out.J.resize(n, 9);
   out.r.resize(n);
   out.of_mean.resize(n, 3);
-  // Columns of the size of one: biases by the scale, scales by themselves.
+  // Columns of unit size: biases by the scale, scales by themselves.
   Parameters size = Parameters::Ones();
   size.head<3>() = size.segment<3>(3) = p.segment<3>(3);
   for (Index row = 0; row < n; ++row) {
@@ -129,7 +129,7 @@ Residuals residuals_of(View<Pose> poses, const MultiPosition& fit) {
 constexpr double one_is_bad = 0.05;
 constexpr double bad_by_mps2 = 0.1;
 
-// The residuals' part: ln|C| + ln|JᵀC⁻¹J| + rᵀQr, and what it would be were one position bad.
+// The residuals' part: ln|C| + ln|JᵀC⁻¹J| + rᵀQr, and its value if one position were bad.
 double score_of(const Residuals& residuals, const Matrices& C) {
   const auto n = static_cast<Index>(residuals.used.size());
   MatrixXd of_lengths = MatrixXd::Zero(n, n);
@@ -155,7 +155,7 @@ double score_of(const Residuals& residuals, const Matrices& C) {
          2.0 * std::log(likelihood);
 }
 
-// A half of the probability at zero, the rest over the others.
+// Half of the probability at zero, the rest over the others.
 double prior_score(double ratio) {
   constexpr double others = static_cast<double>(ratios.size() - 1);
   return ratio == 0.0 ? 2.0 * std::log(2.0) : 2.0 * std::log(2.0 * others);

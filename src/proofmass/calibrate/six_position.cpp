@@ -10,7 +10,7 @@
 namespace proofmass::calibrate {
 namespace {
 
-// One side up: the mean of the poses given for it.
+// One side up: the mean of its poses.
 struct Side {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -54,8 +54,8 @@ Result<std::array<Side, 6>> sides_of(View<Pose> poses) {
   return sides;
 }
 
-// What the noise of the means does, and what placing does that is taken for exact; `across` is each
-// row's part across its axis, squared, over the whole.
+// Contributions of the noise of the means, and of the placement assumed exact; `across` is each
+// row's squared part across its axis over the whole.
 std::vector<UncertaintyShare> shares_of_sides(const std::array<Side, 6>& sides,
                                               const Parameters& estimate,
                                               const Eigen::Vector3d& across,

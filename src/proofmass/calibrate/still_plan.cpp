@@ -64,7 +64,7 @@ RestVerdict StillPlan::judge(const signal::RunningRests& rests) {
     last_s_ = now.newest_s;
     ++blocks_;
   }
-  // Seldom enough that chance is not mistaken for a floor some time or other.
+  // So seldom that chance is not mistaken for a floor.
   if (std::has_single_bit(blocks_)) wanted_s_ = wanted_s(now);
   const double left_s = wanted_s_ - (now.until_s - now.since_s);
   return {.enough = left_s <= 0.0, .seconds_left = std::max(0.0, left_s)};

@@ -35,7 +35,7 @@ Sums sums_of(const std::vector<LinePoint>& points, const std::vector<double>& we
   return s;
 }
 
-// Weights depend on the slope, through the uncertainty of x: a few rounds settle it.
+// Weights depend on the slope, through the uncertainty of x: a few iterations suffice.
 SupplyLine fitted(const std::vector<LinePoint>& points) {
   constexpr int rounds = 5;
   const bool stated = std::ranges::all_of(
@@ -64,7 +64,7 @@ SupplyLine fitted(const std::vector<LinePoint>& points) {
   if (!line.std_known) return line;
   if (by_residuals) line.dof = dof;
   const double factor = by_residuals ? rss / dof : 1.0;
-  // Residuals of exact numbers are rounding, which is no certainty.
+  // Residuals of exact numbers are rounding, which does not imply certainty.
   const double least = rounding * (size + rounding);
   const double n = static_cast<double>(points.size());
   line.level.std = std::max(std::sqrt(factor / s.weight), least / std::sqrt(n));
@@ -166,7 +166,7 @@ Status check_points(View<SupplyPoint> points, const SupplyOptions& options) {
   return Done{};
 }
 
-// nullopt where the axis was not calibrated twice.
+// nullopt if the axis was not calibrated twice.
 Result<std::optional<SupplyAxis>> find_axis(View<SupplyPoint> points,
                                             std::size_t axis,
                                             double reference_v) {

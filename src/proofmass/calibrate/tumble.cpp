@@ -69,7 +69,8 @@ TumbleErrors errors_of(View<TumblePosition> positions,
   return errors;
 }
 
-// Fits once for K1 and the drift, and again with what follows from them in units of the output.
+// Fits once for K1 and the drift, and again with quantities derived from them in units of the
+// output.
 TumbleRegression regress(const TumbleDesign& design,
                          const Eigen::VectorXd& outputs,
                          TumbleErrors errors,
@@ -77,7 +78,7 @@ TumbleRegression regress(const TumbleDesign& design,
   const double indexing = options.indexing_std_rad.value_or(assumed_indexing_std_rad);
   const double wander = options.drift_std_mps2.value_or(assumed_drift_std_mps2);
   TumbleRegression found = regress_tumble(design.A, outputs, errors);
-  // Without a scale for the scatter, or residuals, there is no standard deviation to be widened.
+  // Without a scale for the scatter, or residuals, there is no standard deviation to widen.
   const double swing = std::abs(swing_of(design, found.beta));
   const bool exact = indexing <= 0.0 && wander <= 0.0;
   if (exact || !found.has_scale || !(found.sigma > 0.0) || !(swing > 0.0)) return found;
@@ -124,7 +125,7 @@ Status check_swing(const TumbleSolution& solution, double largest_output) {
   return Done{};
 }
 
-// A bias of more than this is no bias but the output's nominal zero, half the supply or so.
+// A larger value is not a bias but the output's nominal zero, such as half the supply.
 constexpr double largest_bias_g = 2.0;
 
 void add_zero_note(const TumbleOptions& options, TumbleFit& fit) {
@@ -136,7 +137,7 @@ void add_zero_note(const TumbleOptions& options, TumbleFit& fit) {
         options.output_unit.empty() ? "" : " ", options.output_unit));
 }
 
-// A misfit that no position alone explains.
+// A misfit not explained by a single position.
 void add_unnamed_note(TumbleFit& fit) {
   constexpr double beyond_chance = 0.01;
   const bool named = std::any_of(fit.positions.begin(), fit.positions.end(),

@@ -9,7 +9,7 @@
 namespace proofmass::calibrate {
 namespace {
 
-// One coefficient with the linear form that its numerator is.
+// One coefficient with the linear form of its numerator.
 struct Form {
   TumbleCoefficient coefficient;
   std::vector<std::pair<std::size_t, double>> parts;  // column, factor
@@ -156,11 +156,11 @@ void find_bias(const TumbleSolution& solution, TumbleFit& fit) {
   fit.bias_output_std = std::sqrt(std::max(L.dot(covariance * L), 0.0));
 }
 
-// Welch and Satterthwaite: of a sum of shares, one of which has so many degrees of freedom.
+// Welch–Satterthwaite: for a sum of shares, one of which has finite degrees of freedom.
 void judge(TumbleCoefficient& coefficient, double variance, double noise, double dof) {
   coefficient.std = std::sqrt(std::max(variance, 0.0));
   if (dof > 0.0 && noise > 0.0) coefficient.dof = dof * variance * variance / (noise * noise);
-  // The sum of the degrees of freedom alone would trust a scatter that is small by chance.
+  // The sum of the degrees of freedom alone would overrate a scatter that is small by chance.
   const double rest = std::max(variance - noise, 0.0);
   coefficient.half_width_95 =
       std::hypot(coverage_factor(0.95, dof) * std::sqrt(std::max(noise, 0.0)),

@@ -23,19 +23,19 @@ class SizeSearch {
     const TumbleSolved plain = solve_tumble(A, y, errors, {});
     const auto dof = static_cast<double>(A.rows() - A.cols());
     scatter_ = std::sqrt(plain.chi_square / dof);
-    // Angle and drift of the size of the noise or, where that is larger, of the residuals.
+    // Angle and drift of the size of the noise or, if larger, of the residuals.
     const double noise = errors.noise_known ? std::max(1.0, scatter_) : scatter_;
     const double output = noise * errors.noise_std.mean();
     const double lever = errors.lever.cwiseAbs().maxCoeff();
-    // A stated noise is at least what it is stated to be: 1.
+    // A stated noise is at least its stated value: 1.
     constexpr double above_lowest = 31.6227766;
     unit_ = {.noise = errors.noise_known ? above_lowest : noise,
              .indexing_rad = lever > 0.0 ? output / lever : 0.0,
              .drift = output};
   }
 
-  /// ln L, less 2 where the bias is to wander farther than assumed: errors of the angles alone are
-  /// the simpler explanation of large residuals.
+  /// ln L, minus 2 if the bias drift exceeds the assumption: errors of the angles alone are the
+  /// simpler explanation of large residuals.
   [[nodiscard]] double of(const TumbleSizes& sizes) const {
     constexpr double simpler = 2.0;
     const bool beyond = errors_.drift_assumed && sizes.drift > 1.001 * errors_.drift_std;
@@ -230,11 +230,12 @@ TumbleSizes find_sizes(const Eigen::MatrixXd& A,
     if (p < fits_p) {
       climb(true);
     } else if (search.misfits() && best - search.of(scattered) < decisive) {
-      // Larger errors of all readings explain the residuals nearly as well: one of them is wrong.
+      // Larger errors of all positions explain the residuals nearly as well: one of them is an
+      // outlier.
       sizes.noise = search.scatter();
     }
   } else if (best - plain < 2.0) {
-    // Nothing asks for other errors than scatter, which then has all of the residuals.
+    // Only scatter is needed, which then explains all of the residuals.
     at = {.noise = scatter,
           .indexing_rad = errors.indexing_assumed ? 0.0 : errors.indexing_std_rad,
           .drift = errors.drift_assumed ? 0.0 : errors.drift_std};

@@ -99,7 +99,7 @@ struct WheelFit {
   std::vector<TurnsCandidate> turns_candidates;  ///< if there are doubts
   /// Radius of each sensor from the recording alone, if one was given.
   std::vector<Uncertain> free_radius_m;
-  std::optional<Uncertain> given_radius_m;  ///< the given radius, if consistent
+  std::optional<Uncertain> given_radius_m;  ///< the given radius, as far as it is trusted
   WheelSeries series;                       ///< output of filter and smoother, including time_s
 };
 

@@ -14,8 +14,9 @@ namespace {
 
 constexpr double converter_range_v = 5.0;
 
-// The thesis's sensor on its wheel: the figures of table 5.1 in a sensor that has the noise of the
-// datasheet and no other error. It does not say how long it stood; a minute, here.
+// The thesis's sensor on its wheel: the values of table 5.1 in a sensor with the noise of the
+// datasheet and no other error. The thesis does not state the duration at rest; a minute is used
+// here.
 simulate::ProcedureOptions tumble_of_table_5_1(std::uint64_t seed, double gravity_mps2) {
   simulate::ProcedureOptions options = simulate::default_options(simulate::Procedure::tumble);
   options.seed = seed;

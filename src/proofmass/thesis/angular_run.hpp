@@ -9,11 +9,11 @@
 // The angular model of section 4.4 over one revolution.
 namespace proofmass::thesis {
 
-/// Section 4.4 put right: 4 states from α alone.
+/// Section 4.4 corrected: 4 states from α alone.
 struct AngularRun {
   std::vector<double> raw_radps2;
   std::vector<double> filtered_accel, smoothed_accel;  ///< rad/s²
-  std::vector<double> filtered_rad, smoothed_rad;      ///< way since the start
+  std::vector<double> filtered_rad, smoothed_rad;      ///< angle since the start
   std::vector<double> filtered_std_rad;
 };
 

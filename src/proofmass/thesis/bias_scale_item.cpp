@@ -50,7 +50,7 @@ TumbleQuantity bias_quantity(const TumbledAxis& axis) {
   return level_at_0 ? TumbleQuantity::K0 : TumbleQuantity::K0_up_down;
 }
 
-// A coefficient as a finding, or why there is none.
+// A coefficient as a finding, or the reason for its absence.
 void put(const TumbledAxis& axis, TumbleQuantity quantity, Finding& finding) {
   const TumbleCoefficient* found = axis.fit.find(quantity);
   const Shown as = shown(quantity);
@@ -93,7 +93,7 @@ void add_axis(const TumbledAxes& axes, const PrintedAxis& printed, std::vector<F
   for (Finding* finding : {&bias, &scale, &other}) all.push_back(std::move(*finding));
 }
 
-// What the thesis's own readings give: half their sum and half their difference.
+// Results from the thesis's own measurements: half their sum and half their difference.
 void add_worked(std::vector<Finding>& all) {
   const PrintedAxis &x = printed_x(), &y = printed_y();
   const auto half_sum = [](const PrintedAxis& a) { return 0.5 * (a.at_0_mps2 + a.at_180_mps2); };

@@ -33,7 +33,7 @@ report::Band band_of(const BiasTrack& track, std::string label, Ink ink) {
   return band;
 }
 
-/// All axes, each less its value at the end, so that they can be compared.
+/// All axes, each minus its value at the end, for comparison.
 report::Figure all_axes(const StaticTest& test) {
   constexpr std::array inks{Ink::blue, Ink::orange, Ink::green, Ink::purple, Ink::red, Ink::grey};
   report::Figure figure{
@@ -51,7 +51,7 @@ report::Figure all_axes(const StaticTest& test) {
   return figure;
 }
 
-/// One axis behind its warm-up, where the two filters differ most.
+/// One axis without its warm-up, where the two filters differ most.
 report::Figure filters_of(const StaticTest& test, std::size_t at) {
   const BiasTracks& tracks = *test.axes[at].tracks;
   const auto& drift = *test.axes[at].drift;
@@ -85,7 +85,7 @@ report::Figure filters_of(const StaticTest& test, std::size_t at) {
   return figure;
 }
 
-/// Errors in µg of one estimate, or how well it is known where there is no truth.
+/// Errors in µg of one estimate, or its uncertainty without a truth.
 std::string error_words(const BiasTrack& track) {
   if (track.rms_error_mps2) return significant(*track.rms_error_mps2 / ug, 3);
   return track.t_s.empty() ? "none" : "± " + significant(track.last_mps2.std / ug, 3);

@@ -78,8 +78,8 @@ BiasTrack raw_track(const Readings& readings) {
   return track;
 }
 
-// Innovations larger than the model has them say that there is more noise than it knows of: the
-// variances are widened by as much. Source: R. T. Birge, Phys. Rev. 40 (1932) 207.
+// Innovations larger than modelled indicate additional noise: the variances are scaled accordingly.
+// Source: R. T. Birge, Phys. Rev. 40 (1932) 207.
 BiasTrack track_of(const Readings& readings,
                    const LinearRun<1, 1>& run,
                    estimate::PackedGaussian<1> LinearStep::* which) {
@@ -134,17 +134,17 @@ BiasTrack track_by_thesis(const Readings& readings, const PlainFit& fit) {
   return track_of(readings, filter_linear(*series, start), &LinearStep::filtered);
 }
 
-/// Two-sided density of the white noise that drives all that drifts, over short times.
+/// Two-sided density of the white noise that drives all drift, over short times.
 double wander_psd_m2ps5(const characterise::DriftNoise& noise, double duration_s) {
   double psd = noise.random_walk * noise.random_walk + noise.markov * noise.markov;
   if (noise.flicker > 0.0) {
-    // The process that stands for flicker at times a tenth of the record.
+    // The Markov process that approximates flicker at times a tenth of the record.
     psd += sensor::markov_of_flicker({noise.flicker, 0.1 * duration_s}).psd_m2ps5;
   }
   return psd;
 }
 
-/// Ours: the readings about a curve beside which the bias walks.
+/// Ours: the measurements about a curve, with a random-walk bias.
 Result<LinearRun<1, 1>> run_beside(const Readings& readings, const DriftAnalysis& drift) {
   const characterise::DriftCurve& curve = drift.fit.curve;
   const double white = drift.fit.noise.white;

@@ -34,7 +34,7 @@ const std::array<PrintedRow, 4> printed{{
 }};
 constexpr std::array<std::string_view, 4> time_keys{"1s", "10s", "1min", "1h"};
 
-/// What a bias costs a navigator that keeps itself level by its accelerometers, over ½ b t²:
+/// Position error of a navigator levelled by its accelerometers due to a bias, over ½ b t²:
 ///
 ///     (b/ω²)(1 − cos ωt) / (½ b t²),   ω² = g/R
 ///

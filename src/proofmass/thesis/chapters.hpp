@@ -17,8 +17,7 @@ struct Chapter {
 /// The number before the point of the id: "2" of "table 2.1".
 [[nodiscard]] std::string chapter_key(const Item& item);
 
-/// Chapters that have items, in the order in which the first of each stands. The items must outlive
-/// what is returned.
+/// Chapters that have items, in the order of the first of each. The items must outlive the result.
 [[nodiscard]] std::vector<Chapter> chapters(const std::vector<Item>& items);
 
 }  // namespace proofmass::thesis

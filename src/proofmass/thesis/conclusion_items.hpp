@@ -5,7 +5,7 @@
 #include "proofmass/thesis/item.hpp"
 #include "proofmass/thesis/wheel_study.hpp"
 
-// What the thesis concludes of the wheel, and its speeds.
+// The thesis's conclusions on the wheel, and its speeds.
 namespace proofmass::thesis {
 
 /// Section 6.1 and table A.1.

@@ -6,8 +6,8 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/simulate/rig.hpp"
 
-// What the tests of docs/errata.md share: the thesis's wheel, its axle level, with sensors that
-// have neither errors nor delay.
+// Shared by the tests of docs/errata.md: the thesis's wheel with a level axle, and sensors with
+// neither errors nor delay.
 namespace proofmass::thesis::errata {
 
 inline constexpr double g = standard_gravity_mps2;
@@ -35,7 +35,7 @@ inline std::vector<double> column(const Recording& recording, std::string_view n
   return recording.find(name)->values;
 }
 
-/// The first reading of one channel.
+/// The first measurement of one channel.
 inline double first(const simulate::RigOptions& options, std::string_view name) {
   return column(simulate::simulate_rig(options).value().recording, name).front();
 }

@@ -2,11 +2,11 @@
 
 #include "proofmass/thesis/first_turn.hpp"
 
-// Where the first revolution of a record begins and ends.
+// Beginning and end of the first revolution of a record.
 namespace proofmass::thesis {
 
-/// From its whole record to its first revolution. Expects all estimates and readings over the whole
-/// record.
+/// Cuts the whole record to its first revolution. Expects all estimates and measurements over the
+/// whole record.
 void cut_to_first_revolution(FirstTurn& turn);
 
 }  // namespace proofmass::thesis

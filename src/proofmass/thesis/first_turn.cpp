@@ -38,7 +38,7 @@ std::vector<double> at_times(const std::vector<double>& at_s,
   for (std::size_t i = 0; i < at_s.size(); ++i) {
     while (k + 2 < time_s.size() && time_s[k + 1] <= at_s[i]) ++k;
     const double share = (at_s[i] - time_s[k]) / (time_s[k + 1] - time_s[k]);
-    // A value that is missing spoils no more than its own place.
+    // A missing value affects only its own sample.
     out[i] = share <= 0.0   ? values[k]
              : share >= 1.0 ? values[k + 1]
                             : values[k] + share * (values[k + 1] - values[k]);
@@ -74,7 +74,7 @@ void take_truth(const WheelRecord& record, FirstTurn& turn) {
   turn.accel_radps2 = record.true_accel_radps2;
 }
 
-/// Of a sensor as the wheel model found it.
+/// Time stamps of a sensor as estimated by the wheel model.
 struct SensorClock {
   std::array<double, 3> spin_axis{0.0, 0.0, 1.0};
   double late_s = 0.0;  ///< its stamps, against the first sensor's

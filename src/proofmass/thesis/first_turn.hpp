@@ -11,7 +11,7 @@
 #include "proofmass/thesis/wheel_rig.hpp"
 #include "proofmass/thesis/wheel_runs.hpp"
 
-// The first revolution of a record, as every estimator of section 5.4 is judged on it.
+// The first revolution of a record, on which every estimator of section 5.4 is evaluated.
 namespace proofmass::thesis {
 
 /// An angle through the revolution.
@@ -19,14 +19,14 @@ struct AngleEstimate {
   std::vector<double> angle_rad, std_rad;
 };
 
-/// The way the wheel turns counts positive here.
+/// The direction of rotation is positive here.
 struct FirstTurn {
   std::string source;
   bool simulated = false;
-  bool whole = false;      ///< the record holds a whole revolution
+  bool whole = false;      ///< the record contains a full revolution
   bool from_rest = false;  ///< which starts at rest
   double gravity_mps2 = 0.0;
-  double set_speed_radps = 0.0;     ///< 0: not known
+  double set_speed_radps = 0.0;     ///< 0: unknown
   std::vector<double> time_s = {};  ///< from the start of the motion
   /// [sensor][0 outward, 1 forward], both in the axes of the first sensor.
   std::vector<std::array<std::vector<double>, 2>> force_mps2 = {};
@@ -42,22 +42,22 @@ struct FirstTurn {
   std::vector<double> moved_std_rad = {};
   std::vector<double> smoothed_accel_radps2 = {};  ///< of the wheel model
   Uncertain mean_speed_radps = {};                 ///< by the wheel model, over the fastest turn
-  std::vector<std::string> notes = {};             ///< what was taken for granted
+  std::vector<std::string> notes = {};             ///< assumptions
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
-  /// The sample at that time; absent if the revolution does not last so long.
+  /// The sample at that time; absent if the revolution is shorter.
   [[nodiscard]] std::optional<std::size_t> sample_at(double t_s) const;
-  /// Of the sensors along their circle, by an angle; empty without a radius.
+  /// Path of the sensors along their circle, for an angle; empty without a radius.
   [[nodiscard]] std::vector<double> path_m(const std::vector<double>& angle_rad) const;
 };
 
-/// Runs the wheel model over the record (over no more than its first 20 000 samples) and cuts out
-/// the first revolution.
-/// Errors: those of estimate_wheel(), too_few_samples (it hardly moves); with the record's name.
+/// Runs the wheel model over the record (at most its first 20 000 samples) and cuts out the first
+/// revolution. Errors: those of estimate_wheel(), too_few_samples (it hardly moves); with the
+/// record's name.
 [[nodiscard]] Result<FirstTurn> first_turn(const WheelRecord& record, double gravity_mps2);
 
-/// The same of a simulated record, by a single pass of the wheel model. Expects
-/// record = simulate_wheel(run).
+/// first_turn() of a simulated record, by a single pass of the wheel model. Expects record =
+/// simulate_wheel(run).
 [[nodiscard]] FirstTurn first_turn(const RigRun& run, const WheelRecord& record);
 
 enum class WheelAxis : std::size_t { outward, forward };
@@ -67,8 +67,8 @@ enum class Fusion {
   gravity_left_in,    ///< axes parallel, half the sum; of one sensor its reading
 };
 
-/// x1 and x2, or y1 and y2, as one signal. nullopt where gravity is to cancel and there is only one
-/// sensor, or the second does not sit opposite.
+/// x1 and x2, or y1 and y2, as one signal. nullopt if gravity must cancel and there is only one
+/// sensor, or the second is not opposite.
 [[nodiscard]] std::optional<FusedReading> fuse(const FirstTurn& turn, WheelAxis axis, Fusion how);
 
 }  // namespace proofmass::thesis

@@ -9,14 +9,14 @@
 // Appendix A.1: both axes of both sensors in one filter of fourteen states.
 namespace proofmass::thesis {
 
-/// What comes out of it as a path.
+/// Its results as a path.
 struct FourAxes {
   PathError roll_filtered, roll_smoothed;  ///< mean of the positions of y1 and y2
   PathError all_filtered, all_smoothed;    ///< mean of all four
 };
 
-/// The thesis's filter put right (a row of H for each axis, the warm-up as known input), W = 1 for
-/// each axis, the second sensor turned by 180° so that gravity cancels in the means. nullopt
+/// The thesis's filter corrected (a row of H for each axis, the warm-up as known input), W = 1 for
+/// each axis, the second sensor rotated by 180° so that gravity cancels in the means. nullopt
 /// without a pair or a radius. Errors: of the filter, with the recording's name.
 [[nodiscard]] Result<std::optional<FourAxes>> four_axes(const FirstTurn& turn);
 

@@ -7,36 +7,36 @@
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/estimate/gain_study.hpp"
 
-// Section 5.2: readings of a simulated acceleration, and what the PVA filter makes of them.
+// Section 5.2: measurements of a simulated acceleration, and the PVA filter's estimates from them.
 namespace proofmass::thesis {
 
 /// The two axes of the simulation: a = sin t and a = cos t, in m/s².
 enum class SimulatedAxis { x, y };
 
-/// One set of readings of one axis at 0, Δ, 2Δ, …: the truth with white noise of variance R.
+/// One set of measurements of one axis at 0, Δ, 2Δ, …: the truth with white noise of variance R.
 struct SimulatedReadings {
   std::vector<double> time_s, truth_mps2, reading_mps2, filtered_mps2, smoothed_mps2;
 };
 
-/// The filter's Q, R, step, duration and P₀ are those of the study; it begins at zero. Another set
+/// The filter's Q, R, step, duration and P₀ are those of the study; it starts at zero. Another set
 /// is another draw of the noise.
 [[nodiscard]] SimulatedReadings simulate_readings(const estimate::GainStudyOptions& options,
                                                   SimulatedAxis axis,
                                                   std::uint64_t seed,
                                                   std::size_t set = 0);
 
-/// rms of the errors over the whole time; std is the scatter from one set of readings to another.
+/// rms errors over the whole time; std is the scatter between sets of measurements.
 struct ReadingErrors {
   Uncertain reading, filtered, smoothed;
 };
 
-/// Mean and scatter over so many sets (two or more).
+/// Mean and scatter over this number of sets (two or more).
 [[nodiscard]] ReadingErrors reading_errors(const estimate::GainStudyOptions& options,
                                            SimulatedAxis axis,
                                            std::uint64_t seed,
                                            std::size_t sets);
 
-/// What the settled filter makes of sin ωt: H(z) = k/(1 − (1 − k) z⁻¹), z = e^(jωΔ).
+/// Response of the settled filter to sin ωt: H(z) = k/(1 − (1 − k) z⁻¹), z = e^(jωΔ).
 struct FilterResponse {
   double amplitude = 0.0;  ///< of the output
   double delay_s = 0.0;

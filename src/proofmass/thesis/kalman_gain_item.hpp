@@ -4,7 +4,7 @@
 #include "proofmass/thesis/item.hpp"
 #include "proofmass/thesis/thesis_paths.hpp"
 
-// Section 5.4: the gain of the filter that found the paths.
+// Section 5.4: the gain of the filter of the paths.
 namespace proofmass::thesis {
 
 /// Figure 5.16. Expects paths = thesis_paths(reading).

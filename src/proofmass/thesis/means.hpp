@@ -7,8 +7,8 @@
 
 namespace proofmass::thesis {
 
-/// Means of `by` samples each: NaN where half of them or more are not finite, else that of the
-/// others. Samples at the end that do not fill one are left out.
+/// Means of `by` samples each: NaN if half of them or more are not finite, else that of the others.
+/// An incomplete block at the end is omitted.
 [[nodiscard]] std::vector<double> means_over(View<double> samples, std::size_t by);
 
 }  // namespace proofmass::thesis

@@ -30,8 +30,8 @@ constexpr double rated_torque_nm = 220.0 * inch_pound_nm, rated_radps = 31.0 * r
 constexpr double rated_v = 90.0, rated_a = 1.27, plate_w = horsepower_w / 8.0;
 constexpr double rated_w = rated_torque_nm * rated_radps, electric_w = rated_v * rated_a;
 
-// The most that the winding can eat of the electric power is what does not reach the gear; all the
-// rest of the 90 V is the back-EMF, which grows with the speed.
+// Maximum power loss in the winding: the electric power that does not reach the gear; the rest of
+// the 90 V is the back-EMF, which is proportional to the speed.
 constexpr double back_emf_v = plate_w / rated_a;
 constexpr double no_load_rpm = 31.0 * rated_v / back_emf_v;
 

@@ -9,10 +9,10 @@
 #include "proofmass/thesis/thesis_paths.hpp"
 #include "proofmass/thesis/wheel_study.hpp"
 
-// What the items of section 5.4 on one pair of axes have in common.
+// Shared by the items of section 5.4 on one pair of axes.
 namespace proofmass::thesis {
 
-/// What the thesis says of one pair of axes.
+/// Statements of the thesis on one pair of axes.
 struct Pair {
   WheelAxis axis;
   const char *accel_id, *path_id;

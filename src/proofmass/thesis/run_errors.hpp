@@ -10,10 +10,10 @@
 #include "proofmass/thesis/first_turn.hpp"
 #include "proofmass/thesis/thesis_paths.hpp"
 
-// How far each estimator is off within one revolution.
+// Errors of each estimator within one revolution.
 namespace proofmass::thesis {
 
-/// Of a path along the sensors' circle, m, or of an angle, rad; estimate less reference.
+/// Error of a path along the sensors' circle, m, or of an angle, rad; estimate minus reference.
 struct PathError {
   double at_2s = 0.0;  ///< or at the end of a shorter revolution
   double half = 0.0;   ///< at half of the revolution's time
@@ -29,16 +29,16 @@ struct ThesisErrors {
 struct RunErrors {
   /// y1 and y2, and x1 and x2, fused so that gravity cancels; absent without a pair.
   std::optional<ThesisErrors> roll, pitch;
-  std::optional<ThesisErrors> roll_gravity, pitch_gravity;  ///< gravity left in
-  /// The wheel model, m; of the angle itself, and of the way since the start. The smoothed ones are
-  /// absent where they are the reference.
+  std::optional<ThesisErrors> roll_gravity, pitch_gravity;  ///< gravity not cancelled
+  /// The wheel model, m; of the angle itself, and of the change since the start. The smoothed ones
+  /// are absent if they are the reference.
   std::optional<PathError> wheel_filtered, wheel_smoothed, wheel_moved;
 };
 
-/// What to work out: all of it costs four filters and smoothers of the thesis.
+/// What to compute: all of it costs four filters and smoothers of the thesis.
 enum class Detail { all, tangential };
 
-/// Errors: those of thesis_paths(). All are absent where the sensors' radius is not known.
+/// Errors: those of thesis_paths(). All are absent if the sensors' radius is unknown.
 [[nodiscard]] Result<RunErrors> run_errors(const FirstTurn& turn, Detail detail);
 
 [[nodiscard]] PathError path_error(const FirstTurn& turn,
@@ -55,7 +55,7 @@ using Pick = std::function<std::optional<double>(const RunErrors&)>;
                           PathError ThesisErrors::* method,
                           double PathError::* what);
 
-/// Root mean square over the runs, with its own standard deviation from their scatter; of one run
+/// Root mean square over the runs, with its own standard deviation from their scatter; for one run
 /// the absolute value. nullopt if a run has no such number.
 [[nodiscard]] std::optional<Uncertain> rms_over(const std::vector<RunErrors>& runs,
                                                 const Pick& pick);

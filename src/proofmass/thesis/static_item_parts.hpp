@@ -8,26 +8,26 @@
 #include "proofmass/thesis/item.hpp"
 #include "proofmass/thesis/static_bias.hpp"
 
-// What the items of the static test have in common.
+// Shared by the items of the static test.
 namespace proofmass::thesis {
 
-/// An acceleration that people read in mg.
+/// An acceleration displayed in mg.
 [[nodiscard]] Finding milli_g(std::string key, std::string label);
 /// A time in s.
 [[nodiscard]] Finding seconds(std::string key, std::string label);
 /// A share, shown in %.
 [[nodiscard]] Finding percent(std::string key, std::string label);
 
-/// The axis of table 4.1: the second, a y axis, or where it could not be analysed the first that
+/// The axis of table 4.1: the second, a y axis, or if it could not be analysed the first that
 /// could.
 [[nodiscard]] std::size_t fitted_axis(const StaticTest& test);
 /// The axis of figure 5.2: the first that could be analysed.
 [[nodiscard]] std::size_t first_axis(const StaticTest& test);
 
-/// As the figures of `drift` take it. The axis must have been analysed.
+/// As expected by the figures of `drift`. The axis must have been analysed.
 [[nodiscard]] report::ChannelDrift channel_of(const StaticTest& test, std::size_t axis);
 
-/// What was found of the warm-up, as a sentence: "No warm-up can be told: steps …."
+/// The verdict on the warm-up, as a sentence: "No warm-up can be told: steps …."
 [[nodiscard]] std::string verdict_sentence(const StaticTest& test, std::size_t axis);
 
 /// "one sample in 25", "every sample".

@@ -2,7 +2,7 @@
 
 #include "proofmass/thesis/thesis_report.hpp"
 
-// Made-up items whose every number is known, for the tests of this module.
+// Made-up items with known numbers, for the tests of this module.
 namespace proofmass::thesis {
 
 inline Finding fake_finding(std::string key,
@@ -24,8 +24,8 @@ inline report::Figure fake_figure() {
           .curves = {{"ours", {0.0, 1.0, 2.0}, {0.0, 1.0, 4.0}}}};
 }
 
-/// Three items of two chapters: one number the same, one off by a factor, one that nobody can tell,
-/// and one of ours alone.
+/// Three items of two chapters: one equal number, one off by a factor, one that is not
+/// determinable, and one of ours alone.
 inline ThesisReport fake_report() {
   Finding lost = fake_finding("lost", 1.0, std::nullopt);
   lost.reason = "the recording is too short";

@@ -6,40 +6,42 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
 
-// The thesis's way from accelerations to a path: double integration, its filter and its smoother.
+// The thesis's method from accelerations to a path: double integration, its filter and its
+// smoother.
 namespace proofmass::thesis {
 
-/// Readings along one axis, or several fused into one signal, taken for the acceleration of a path.
+/// Measurements along one axis, or several fused into one signal, treated as the acceleration of a
+/// path.
 struct FusedReading {
   std::vector<double> time_s;
-  std::vector<double> accel_mps2;  ///< NaN where there is no reading
-  double variance_m2ps4 = 1.0;     ///< of one
-  Uncertain bias_mps2 = {};        ///< at the first sample, as known beforehand
-  double bias_rise_mps2 = 0.0;     ///< what the warm-up still adds
-  double time_constant_s = 70.0;   ///< in which
+  std::vector<double> accel_mps2;  ///< NaN where missing
+  double variance_m2ps4 = 1.0;     ///< variance of one measurement
+  Uncertain bias_mps2 = {};        ///< at the first sample, prior
+  double bias_rise_mps2 = 0.0;     ///< remaining change by the warm-up
+  double time_constant_s = 70.0;   ///< time constant of that
   Uncertain start_speed_mps = {};  ///< of the path
 };
 
 /// The path from its start, one entry a sample.
 struct ThesisPaths {
-  std::vector<double> integrated_m;  ///< the readings as they are, integrated twice
+  std::vector<double> integrated_m;  ///< raw measurements, integrated twice
   std::vector<double> filtered_m, filtered_std_m;
   std::vector<double> smoothed_m, smoothed_std_m;
   std::vector<double> filtered_accel_mps2, smoothed_accel_mps2;
   std::vector<double> gain;  ///< of the acceleration: what of an innovation goes into it
 };
 
-/// Section 4.3 with its slips mended (docs/errata.md): states p, v, a and the bias ε,
+/// Section 4.3 with its errors corrected (docs/errata.md): states p, v, a and the bias ε,
 ///
 ///     ε[k] = φ ε[k−1] + (1 − φ)(a1 + a2),  φ = e^(−Δ/T),  z = a + ε + v,  H = [0 0 1 1],
 ///
-/// white jerk of density W = 1, P0 = 100 for the acceleration; the position's start is known, the
-/// speed's and the bias's are as well as the reading says. Smoothed by Rauch, Tung and Striebel.
-/// Errors: invalid_argument, not_finite, with the sample.
+/// white jerk of density W = 1, P0 = 100 for the acceleration; the start position is known, the
+/// start speed and bias have the uncertainty of `reading`. Rauch–Tung–Striebel smoother. Errors:
+/// invalid_argument, not_finite, with the sample.
 [[nodiscard]] Result<ThesisPaths> thesis_paths(const FusedReading& reading);
 
-/// Integrated twice from a speed, straight between samples; a reading that is missing is taken from
-/// its neighbours.
+/// Double integral from an initial speed, linear between samples; missing measurements are
+/// interpolated.
 [[nodiscard]] std::vector<double> integrated_twice(View<double> time_s,
                                                    View<double> accel,
                                                    double start_speed);

@@ -10,10 +10,10 @@
 // The parts of section 5.1.2.
 namespace proofmass::thesis {
 
-/// Figure 5.4: what the maker promises in each orientation, at 3.3 V.
+/// Figure 5.4: the manufacturer's specification in each orientation, at 3.3 V.
 [[nodiscard]] Item orientation_item();
 
-/// What the thesis prints of one axis.
+/// The thesis's printed values of one axis.
 struct PrintedAxis {
   std::string name;  ///< "x"
   double at_0_mps2;  ///< the worked readings of 5.1.2
@@ -21,14 +21,14 @@ struct PrintedAxis {
   double worked_mps2;  ///< what 5.1.2 prints as their half sum
   double bias_mps2;    ///< table 5.1
   double scale_error;  ///< table 5.1, a fraction
-  /// The axis of the record that stands for it.
+  /// The corresponding axis of the record.
   std::optional<TumbledAxis> TumbledAxes::* place;
 };
 
 [[nodiscard]] const PrintedAxis& printed_x();
 [[nodiscard]] const PrintedAxis& printed_y();
 
-/// Why an axis is not there: what was refused, in one sentence.
+/// Why an axis is absent: the reason for its rejection, in one sentence.
 [[nodiscard]] std::string absent_words(const PrintedAxis& printed, const TumbledAxes& axes);
 
 /// Figure 5.5 or 5.6.

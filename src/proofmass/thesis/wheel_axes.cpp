@@ -30,8 +30,8 @@ Eigen::Vector3d first_in_plane(const Eigen::Vector3d& axis) {
   return (next - axis.dot(next) * axis).normalized();
 }
 
-/// With the radius held, at one speed the bias stands for the mounting and its std says too little:
-/// then the builder of the rig knows better.
+/// With the radius held, at one speed the bias is not separable from the mounting and its std is
+/// too small: the builder's values are then more reliable.
 bool is_known(const WheelRecord& record, const std::optional<Uncertain>& mounting_rad) {
   return !record.radius_m && mounting_rad && mounting_rad->std < well_known_rad;
 }

@@ -7,24 +7,24 @@
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/thesis/wheel_runs.hpp"
 
-// Outward and forward: the axes in which the thesis's formulas are written.
+// Outward and forward: the axes of the thesis's formulas.
 namespace proofmass::thesis {
 
-/// How the sensors of a record lie on its wheel.
+/// Mounting of a record's sensors on its wheel.
 struct WheelGeometry {
   double sense = 1.0;  ///< −1: it turns negative about the first sensor's spin axis
-  /// Of each sensor's first in-plane axis, about the axle the way it turns, from the spoke of the
-  /// first sensor.
+  /// Angle of each sensor's first in-plane axis, about the axle in the direction of rotation, from
+  /// the spoke of the first sensor.
   std::vector<double> turned_rad;
   bool opposite = false;                ///< the second sensor, as far from the axle as the first
-  std::vector<std::string> notes = {};  ///< what was taken for granted
+  std::vector<std::string> notes = {};  ///< assumptions
 };
 
-/// Of simulate_wheel()'s records.
+/// Geometry of simulate_wheel()'s records.
 [[nodiscard]] WheelGeometry rig_geometry();
 
-/// From what the wheel model found; what it did not find is taken as on the thesis's rig (x
-/// outward, two opposite sensors with parallel axes), and a note says so.
+/// From the wheel model's estimates; what it did not determine is assumed as on the thesis's rig (x
+/// outward, two opposite sensors with parallel axes), and a note reports it.
 [[nodiscard]] WheelGeometry geometry_of(const WheelRecord& record,
                                         const estimate::WheelSolution& solution);
 

@@ -20,8 +20,9 @@ using Prior = estimate::FilterState<Model::states>;
 constexpr std::size_t averaged = 2;
 constexpr estimate::Gate open{};  // the twin's noise has no outliers
 
-/// On the readings' variance in the pass that finds what to be linear about: scales of 10 % and an
-/// angle off by as much make the first predictions wrong by many times the noise.
+/// Factor on the measurement variance in the pass that finds the linearisation point: scale errors
+/// of 10 % and an equal error of the angle make the first predictions wrong by many times the
+/// noise.
 constexpr double doubt = 100.0;
 
 /// What a model needs to point at.

@@ -5,16 +5,19 @@
 #include "proofmass/thesis/first_turn.hpp"
 #include "proofmass/thesis/wheel_rig.hpp"
 
-// One run of the wheel's model over a simulated record, for the many that stand behind a band.
+// One run of the wheel's model over a simulated record, for the many runs of a band.
 namespace proofmass::thesis {
 
-/// The angle through the whole record by the filter and smoother of estimate/wheel_model.hpp, told
-/// that the wheel starts at rest and nothing of its sensors' errors: what estimate_wheel() finds
-/// after many passes, in three. The noise, which it would find too, is taken from the rig: readings
-/// by the datasheet, jerk by the two ends of the ramp, snap by the ripple, the biases' walk by the
-/// warm-up; so is the delay of the sensors' filters. The filter is the live one: each epoch knows
-/// only what came before it. Readings are averaged two by two. Expects a record of
-/// simulate_wheel(run).
+/// The angle through the whole record by the filter and smoother of estimate/wheel_model.hpp, with
+/// a start at rest and unknown sensor errors: the result of estimate_wheel()'s many passes in
+/// three.
+///
+/// - The noise comes from the rig instead of an estimate: measurement noise from the datasheet,
+///   jerk from the two ends of the ramp, snap from the ripple, the biases' random walk from the
+///   warm-up; so does the delay of the sensors' filters.
+/// - The filter is causal: each epoch uses only earlier data. Measurements are averaged in pairs.
+///
+/// Expects a record of simulate_wheel(run).
 struct WheelPass {
   std::vector<double> time_s;
   AngleEstimate filtered, smoothed;

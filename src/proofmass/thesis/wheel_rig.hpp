@@ -28,15 +28,15 @@ inline constexpr double ramp_s = 0.5;       ///< from rest to the speed
 struct RigRun {
   std::uint64_t seed = 1;
   double speed_radps = 11.0 * radps_per_rpm;
-  double turns = 1.0;             ///< recorded at least
+  double turns = 1.0;             ///< recorded, at least
   bool datasheet_errors = false;  ///< else noise, biases and warm-up only
   double gravity_mps2 = standard_gravity_mps2;
 };
 
 /// One run from rest, two opposite ADXL335, x of each outward and y forward, so that gravity
-/// cancels in the sums of their signals as in (4.59); the start angle is the seed's. Bias and
-/// warm-up are of the size of tables 5.1 and 4.1; what is known of them beforehand is what a tumble
-/// test of another day tells: all but 2 mg. Errors: invalid_argument. Same run, same numbers.
+/// cancels in the sums of their signals as in (4.59); the start angle depends on the seed. Bias and
+/// warm-up have the size of tables 5.1 and 4.1; their prior is the result of a tumble test on
+/// another day, within 2 mg. Errors: invalid_argument. The same run gives the same numbers.
 [[nodiscard]] Result<WheelRecord> simulate_wheel(const RigRun& run);
 
 }  // namespace proofmass::thesis

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double thesis_speed_radps = 11.0 * radps_per_rpm;
 
-/// A quarter more than a turn, so that the speed can be told over a whole one behind the ramp.
+/// A quarter more than a turn, so that the speed can be determined over a full one after the ramp.
 constexpr double turns = 1.25;
 
 Result<RunErrors> errors_of(const RigRun& run) {

@@ -15,7 +15,7 @@ namespace proofmass::thesis {
 
 /// At one speed.
 struct SpeedStudy {
-  double speed_radps = 0.0;     ///< set, or as measured
+  double speed_radps = 0.0;     ///< as set, or as measured
   FirstTurn turn;               ///< by estimate_wheel(): the user's record, or the first seed's run
   std::vector<RunErrors> runs;  ///< one for each seed; of a record its own
   std::vector<RunErrors> datasheet;  ///< with all errors of the datasheet; of a record none

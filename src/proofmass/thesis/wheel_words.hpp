@@ -9,10 +9,10 @@
 #include "proofmass/thesis/item.hpp"
 #include "proofmass/thesis/wheel_study.hpp"
 
-// Words, figures and curves that the wheel's items share.
+// Words, values and curves shared by the wheel's items.
 namespace proofmass::thesis {
 
-/// A quantity in its SI unit and as people read it.
+/// A quantity in its SI unit and its display unit.
 struct Kind {
   const char* si_unit;
   const char* symbol;
@@ -32,12 +32,12 @@ inline constexpr Kind percent{"", "%", 0.01};
 inline constexpr Kind plain{"", "", 1.0};
 }  // namespace kind
 
-/// Findings of one item; `ours` is absent with the reason given last by why().
+/// Findings of one item; an absent `ours` gets the last reason given by why().
 class Findings {
  public:
-  /// Of what is absent from now on.
+  /// Reason for absent values from now on.
   void why(std::string reason) { reason_ = std::move(reason); }
-  /// What the thesis prints, in the unit that is shown, beside ours in SI.
+  /// The thesis's value, in the display unit, and ours in SI.
   void add(std::string key,
            std::string label,
            const Kind& kind,
@@ -50,22 +50,22 @@ class Findings {
   std::vector<Finding> findings_;
 };
 
-/// "0.24 ± 0.03 m", in the unit shown; "not known" where there is no figure.
+/// "0.24 ± 0.03 m", in the display unit; "not known" without a value.
 [[nodiscard]] std::string said(const std::optional<Uncertain>& figure, const Kind& kind);
 
 /// Of a speed's runs, as it was set: "11".
 [[nodiscard]] std::string rpm_words(const SpeedStudy& speed);
 
-/// "rms over 50 simulated runs", or of a recording what its errors are counted from.
+/// "rms over 50 simulated runs", or for a recording the reference of its errors.
 [[nodiscard]] std::string how_counted(const WheelStudy& study);
 
-/// Why a pair's, or a path's, figures are absent; empty where nothing is.
+/// Why a pair's, or a path's, values are absent; empty if none is.
 [[nodiscard]] std::string why_absent(const FirstTurn& turn);
 
-/// What was taken for granted, and what is short, as sentences behind an item's note.
+/// Assumptions and limitations, as sentences after an item's note.
 [[nodiscard]] std::string caveats(const WheelStudy& study);
 
-/// What errors are counted from.
+/// Reference of the errors.
 [[nodiscard]] const char* reference_name(const FirstTurn& turn);
 
 /// With nothing in it yet.
