@@ -53,7 +53,8 @@ def perform(job: dict[str, Any]) -> dict[str, Any]:
 
 def _local(arguments: list[str], scratch: str) -> tuple[list[str], dict[str, str]]:
     """The arguments with a copy of each recording that a URL names, and the URL of each copy."""
-    words, fetched = [], {}
+    words: list[str] = []
+    fetched: dict[str, str] = {}
     for word in arguments:
         if "://" in word and not word.startswith("-"):
             fsspec = importlib.import_module("fsspec")
@@ -68,7 +69,7 @@ def _local(arguments: list[str], scratch: str) -> tuple[list[str], dict[str, str
 
 def _result_of(future: Any, job: int) -> dict[str, Any]:
     if future.status == "finished":
-        return future.result()
+        return dict(future.result())
     problem = future.exception() if future.status == "error" else "cancelled by the scheduler"
     words = f"{type(problem).__name__}: {problem}" if isinstance(problem, BaseException) else str(problem)
     return {"job": job, "status": 1, "signal": 0, "timed_out": False, "seconds": 0.0, "words": words, "document": ""}

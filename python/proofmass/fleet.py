@@ -102,7 +102,7 @@ def _run(words: list[str]) -> Result:
     environment = {**os.environ, "PROOFMASS_PYTHON": sys.executable, "PYTHONPATH": paths}
     with tempfile.TemporaryDirectory(prefix="proofmass-") as folder:
         files = [_File(folder) / name for name in ("found.json", "found.html")]
-        command = [program, *words, "--json", files[0], "--report", files[1]]
+        command = [program, *words, "--json", str(files[0]), "--report", str(files[1])]
         ran = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, env=environment)
         if ran.returncode != 0:
             line = ran.stderr.strip().rpartition("\n")[2].removeprefix("proofmass: ")
