@@ -24,7 +24,7 @@ class Serve(CommandTest):
             stderr=subprocess.PIPE, text=True, env={**os.environ, **(environment or {})})
         self.addCleanup(server.stdout.close)
         self.addCleanup(server.stderr.close)
-        self.addCleanup(server.wait, 30)
+        self.addCleanup(server.wait, 120)
         self.addCleanup(server.kill)
         self.link = server.stdout.readline().strip()
         self.assertRegex(self.link, r"^http://[^/]+:\d+/\?token=[0-9a-f]{32}$")
@@ -35,7 +35,7 @@ class Serve(CommandTest):
         headers = {"Authorization": "Bearer " + self.token, **headers}
         request = urllib.request.Request(self.base + path, data=body, method=method, headers=headers)
         try:
-            with urllib.request.urlopen(request, timeout=60) as answer:
+            with urllib.request.urlopen(request, timeout=120) as answer:
                 return answer.status, answer.read(), answer.headers
         except urllib.error.HTTPError as refused:
             with refused:
@@ -47,7 +47,7 @@ class Serve(CommandTest):
         return parse_json(body.decode())
 
     def ended(self, number):
-        for _ in range(600):
+        for _ in range(5000):
             state = self.get(f"/api/analyses/{number}")
             if state["state"] not in ("waiting", "running"):
                 return state
@@ -60,7 +60,7 @@ class Serve(CommandTest):
         return parse_json(body.decode())["id"]
 
     def view(self, name):
-        for _ in range(600):
+        for _ in range(5000):
             state = self.get("/api/view?file=" + name)
             if state["state"] == "done":
                 return state["head"]
@@ -75,7 +75,7 @@ class Serve(CommandTest):
             self.assertEqual(self.ask("/?token=" + self.token)[0], 200)
             self.assertEqual(len(os.listdir(place)), 1)
             server.send_signal(signal.SIGINT)
-            rest, errors = server.communicate(timeout=20)
+            rest, errors = server.communicate(timeout=120)
             self.assertEqual((rest, errors, server.returncode), ("", "", INTERRUPTED))
             self.assertEqual(os.listdir(place), [])
         self.assertEqual(self.leftovers(), [])
@@ -84,7 +84,7 @@ class Serve(CommandTest):
         server = self.start()
         self.begin(verb="wheel", files=["rig.csv"], options={"radius": 0.1})
         server.send_signal(signal.SIGTERM)
-        server.communicate(timeout=20)
+        server.communicate(timeout=120)
         self.assertEqual(server.returncode, INTERRUPTED)
 
     def test_two_runs_have_two_tokens(self):
@@ -122,10 +122,10 @@ class Serve(CommandTest):
         server = self.start("--listen", "127.0.0.2")
         self.assertEqual(self.ask("/api/info")[0], 200)
         server.send_signal(signal.SIGINT)
-        self.assertEqual(server.communicate(timeout=20)[1], "")
+        self.assertEqual(server.communicate(timeout=120)[1], "")
         server = self.start("--listen", "0.0.0.0")
         server.send_signal(signal.SIGINT)
-        self.assertIn("nothing is encrypted", server.communicate(timeout=20)[1])
+        self.assertIn("nothing is encrypted", server.communicate(timeout=120)[1])
 
     def test_says_why_it_cannot_begin(self):
         self.start()
@@ -138,7 +138,7 @@ class Serve(CommandTest):
     def test_lists_what_inspect_says(self):
         self.write("bad.csv", b"no,table\n")
         self.start()
-        for _ in range(600):
+        for _ in range(5000):
             listed = self.get("/api/recordings")
             if listed["left"] == 0:
                 break

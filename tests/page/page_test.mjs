@@ -21,6 +21,7 @@ if (!chromium || !chromiumPath) {
 }
 
 const program = process.env.PROOFMASS;
+const patience = 180_000; // ms; other builds may run on this machine
 const shots = process.env.PROOFMASS_SCREENSHOTS; // a folder, to look at what was seen
 const folder = mkdtempSync(join(tmpdir(), "proofmass-page-"));
 let server, browser, link;
@@ -56,6 +57,7 @@ const base = () => link.split("/?")[0];
 async function open(query = "", { width = 1280, height = 900, scheme = "light" } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, acceptDownloads: true });
   const page = await context.newPage();
+  page.setDefaultTimeout(patience);
   const problems = [];
   page.on("pageerror", (error) => problems.push(String(error)));
   page.on("console", (said) => said.type() === "error" && !/403/.test(said.text()) && problems.push(said.text()));
@@ -79,7 +81,7 @@ async function run(page, verb, file, options = "") {
   await page.goto(`${base()}/?v=analysis&verb=${verb}&file=${file}${options}`);
   await page.waitForSelector("button[type=submit]:not([disabled])");
   await page.click("button[type=submit]");
-  await page.waitForSelector(".conclusion", { timeout: 60000 });
+  await page.waitForSelector(".conclusion", { timeout: patience });
 }
 
 test("without a token the page shows nothing of the folder", async () => {
@@ -101,7 +103,7 @@ test("the token leaves the address, and a reload keeps the view", async () => {
 
 test("the list shows what inspect says, and its keys work", async () => {
   const { page, close } = await open();
-  await page.waitForFunction(() => document.querySelectorAll(".row canvas").length === 4, null, { timeout: 60000 });
+  await page.waitForFunction(() => document.querySelectorAll(".row canvas").length === 4, null, { timeout: patience });
   const row = page.locator('[role=option]', { hasText: "rig.csv" }).first();
   assert.match(await row.innerText(), /200 Hz[\s\S]*20 s[\s\S]*6/);
   await page.keyboard.press("/");
@@ -160,7 +162,7 @@ test("a recording is zoomed, panned and reset, and a stretch goes to an analysis
 
 test("spectrum and Allan deviation are of what is in view", async () => {
   const { page, close } = await open("v=recording&file=quiet.csv");
-  await page.waitForSelector(".side .legend", { timeout: 60000 });
+  await page.waitForSelector(".side .legend", { timeout: patience });
   const text = await page.locator(".side").innerText();
   assert.match(text, /Spectrum/);
   assert.match(text, /Allan deviation/i);
@@ -219,7 +221,7 @@ test("a run is cancelled, and one that fails says why", async () => {
   await page.waitForSelector("button[type=submit]:not([disabled])");
   await page.click("button[type=submit]");
   await page.click("button:has-text('Cancel')", { timeout: 5000 }).catch(() => undefined);
-  await page.waitForSelector(".failure, .conclusion", { timeout: 60000 });
+  await page.waitForSelector(".failure, .conclusion", { timeout: patience });
   await close();
 });
 
@@ -238,7 +240,7 @@ test("axe finds nothing serious in any view, in light and dark, on a desk and on
     const { page, close } = await open("", how);
     const visit = async (view, query, ready) => {
       await page.goto(`${base()}/?${query}`);
-      await page.waitForSelector(ready, { timeout: 60000 });
+      await page.waitForSelector(ready, { timeout: patience });
       await page.waitForTimeout(400);
       const wide = await page.evaluate(() => document.querySelector("main").scrollWidth - document.querySelector("main").clientWidth);
       assert.ok(wide <= 1, `${view} ${name}: ${wide} px too wide`);

@@ -59,7 +59,7 @@ class BenchTest : public testing::Test {
     return json::parse(ask("GET", fmt::format("/api/analyses/{}", id)).body);
   }
   json ended(std::uint64_t id) {
-    for (int k = 0; k < 500; ++k) {
+    for (int k = 0; k < 6000; ++k) {
       const json state = state_of(id);
       if (state["state"] != "waiting" && state["state"] != "running") return state;
       std::this_thread::sleep_for(10ms);
@@ -89,7 +89,7 @@ TEST_F(BenchTest, SaysWhyARunFailed) {
 
 TEST_F(BenchTest, ShowsProgressAndCancels) {
   const std::uint64_t id = begin("wait.csv");
-  for (int k = 0; k < 500 && state_of(id)["fraction"] != 0.4; ++k)
+  for (int k = 0; k < 6000 && state_of(id)["fraction"] != 0.4; ++k)
     std::this_thread::sleep_for(10ms);
   EXPECT_EQ(state_of(id)["stage"], "waiting");
   EXPECT_EQ(ask("DELETE", fmt::format("/api/analyses/{}", id)).status, 200U);

@@ -17,7 +17,7 @@ ChildCommand shell(const std::string& script) {
 
 JobStatus ended(const JobQueue& queue, std::uint64_t id) {
   using namespace std::chrono_literals;
-  for (int k = 0; k < 1000; ++k) {
+  for (int k = 0; k < 6000; ++k) {
     const JobStatus status = queue.status(id).value();
     if (status.state != JobState::waiting && status.state != JobState::running) return status;
     std::this_thread::sleep_for(10ms);
