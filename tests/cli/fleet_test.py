@@ -240,9 +240,9 @@ class Fleet(FleetTest):
         self.recording("a.csv")
         os.mkfifo(self.folder / "b.csv")  # nobody writes into it
         self.write("m.csv", "path\na.csv\nb.csv\n")
-        document = self.document("fleet", "inspect", "m.csv", "--into", "results", "--timeout", "1")
+        document = self.document("fleet", "inspect", "m.csv", "--into", "results", "--timeout", "4")
         self.assertEqual(self.counts(document), (2, 1, 0, 1))
-        self.assertIn("took longer than 1 s", document["failed"][0]["reason"])
+        self.assertIn("took longer than 4 s", document["failed"][0]["reason"])
 
     def test_status_and_words_of_what_cannot_be(self):
         self.fleet(sensors=1, files=2, broken=(0,))
