@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "exit_status.hpp"
@@ -21,48 +21,50 @@
 namespace proofmass::app {
 namespace {
 
-std::vector<std::size_t> axes_of(const Triad& triad) {
-  std::vector<std::size_t> indices;
-  for (const auto& axis : {triad.x, triad.y, triad.z}) {
-    if (axis) indices.push_back(*axis);
-  }
-  return indices;
-}
-
-void bring_to_si(Channel& channel, const std::string& file) {
-  if (channel.unit.quantity != Quantity::acceleration) {
-    const bool raw =
-        channel.unit.quantity == Quantity::voltage || channel.unit.quantity == Quantity::counts;
-    throw Failure(usage,
-                  fmt::format("{}: channel {}: expected an acceleration, but it is in {}: give {}",
-                              file, channel.name,
-                              channel.unit.symbol.empty() ? "no known unit" : channel.unit.symbol,
-                              raw ? "a --sensor file with its sensitivity" : "--unit"));
-  }
-  const Unit unit = channel.unit;
-  for (double& value : channel.values) value = unit.si(value);
-  channel.unit = *parse_unit("m/s^2");
-}
-
 // One sensor file for all accelerometers, or one for each.
 const sensor::SensorModel& model_of(const std::vector<sensor::SensorModel>& models, std::size_t k) {
   return models[models.size() > 1 ? k : 0];
 }
 
-// A recording's only acceleration, whose name ends in no axis: that of a one-axis sensor, called x.
-// A magnitude is along no axis.
-std::optional<Triad> lone_accelerometer(const Recording& recording) {
-  std::optional<Triad> lone;
-  for (std::size_t k = 0; k < recording.channels.size(); ++k) {
-    if (recording.channels[k].unit.quantity != Quantity::acceleration) continue;
-    std::string name = recording.channels[k].name;
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    for (const char* word : {"absolute", "magnitude", "norm", "total"})
-      if (lone || name.find(word) != std::string::npos) return std::nullopt;
-    lone = Triad{recording.channels[k].name, k, {}, {}};
+// The flag that helps where the accelerometers of a recording cannot be used.
+std::string flag_hint(const std::vector<sensor::SensorModel>& models, const Recording& recording) {
+  const std::vector<Triad> triads = accelerometer_triads(recording);
+  if (triads.empty()) return ": name its channels with --channel, their unit with --unit";
+  for (const Triad& triad : triads)
+    for (const auto& axis : {triad.x, triad.y, triad.z}) {
+      if (!axis || !models.empty()) continue;
+      const Quantity quantity = recording.channels[*axis].unit.quantity;
+      if (quantity == Quantity::acceleration) continue;
+      return quantity == Quantity::voltage || quantity == Quantity::counts
+                 ? ": give a --sensor file with its sensitivity"
+                 : ": give --unit";
+    }
+  return {};
+}
+
+Failure failure_of(const Error& error,
+                   const std::vector<sensor::SensorModel>& models,
+                   const std::vector<Recording>& recordings) {
+  std::string hint;
+  for (const Recording& recording : recordings)
+    if (hint.empty()) hint = flag_hint(models, recording);
+  return {status_of(error, Stage::reading), error.message + hint};
+}
+
+std::vector<std::size_t> named_channels(const std::vector<std::string>& names,
+                                        const Recording& head) {
+  std::vector<std::size_t> channels(names.empty() ? head.channels.size() : 0);
+  std::iota(channels.begin(), channels.end(), std::size_t{0});
+  for (const std::string& name : names) {
+    const Channel* channel = head.find(name);
+    if (channel == nullptr) {
+      std::string known;
+      for (const Channel& other : head.channels) known += (known.empty() ? "" : ", ") + other.name;
+      throw Failure(usage, fmt::format("--channel {}: {} has {}", name, head.source, known));
+    }
+    channels.push_back(static_cast<std::size_t>(channel - head.channels.data()));
   }
-  return lone;
+  return channels;
 }
 
 Result<sensor::SensorFile> sensor_file(const std::string& path, const InputFlags& flags) {
@@ -167,23 +169,11 @@ Recording cut_to_window(Recording recording, const InputFlags& flags) {
 }
 
 std::vector<Accelerometer> accelerometers(const std::vector<Recording>& recordings) {
-  std::vector<Accelerometer> found;
-  for (std::size_t k = 0; k < recordings.size(); ++k) {
-    std::vector<Triad> triads = accelerometer_triads(recordings[k]);
-    if (triads.empty()) {
-      if (auto lone = lone_accelerometer(recordings[k])) triads.push_back(std::move(*lone));
-    }
-    for (const Triad& triad : triads) {
-      const std::string& file = recordings[k].source;
-      found.push_back({k, triad, triads.size() > 1 ? file + ": " + triad.name : file});
-    }
-    if (triads.empty()) {
-      throw Failure(usage, recordings[k].source +
-                               ": no accelerometer channel found: name them with "
-                               "--channel and say --unit");
-    }
-  }
-  return found;
+  auto found = sensor::accelerometers(recordings);
+  if (!found)
+    throw Failure(usage, found.error().message +
+                             ": name its channels with --channel, their unit with --unit");
+  return std::move(found).value();
 }
 
 std::vector<sensor::SensorModel> load_sensors(const InputFlags& flags, std::vector<Note>& notes) {
@@ -200,25 +190,17 @@ std::vector<sensor::SensorModel> load_sensors(const InputFlags& flags, std::vect
 void calibrate(const std::vector<sensor::SensorModel>& models,
                const std::vector<Accelerometer>& found,
                std::vector<Recording>& recordings) {
-  if (models.size() > 1 && models.size() != found.size()) {
-    throw Failure(usage,
-                  fmt::format("--sensor: {} files for {} accelerometers: give one for all or "
-                              "one for each",
-                              models.size(), found.size()));
-  }
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    Recording& recording = recordings[found[k].recording];
-    if (!models.empty()) {
-      const Status status = sensor::apply(model_of(models, k), found[k].triad, recording);
-      if (!status) {
-        throw Failure(status_of(status.error(), Stage::reading),
-                      status.error().at(found[k].name).message);
-      }
-    }
-    for (const std::size_t axis : axes_of(found[k].triad)) {
-      bring_to_si(recording.channels[axis], recording.source);
-    }
-  }
+  const Status done = sensor::apply(models, found, recordings);
+  if (!done) throw failure_of(done.error(), models, recordings);
+}
+
+sensor::CalibratedBlocks calibrated_blocks(const InputFlags& flags,
+                                           const Recording& head,
+                                           std::vector<Note>& notes) {
+  const std::vector<sensor::SensorModel> models = load_sensors(flags, notes);
+  auto blocks = sensor::CalibratedBlocks::make(head, named_channels(flags.channels, head), models);
+  if (!blocks) throw failure_of(blocks.error(), models, {head});
+  return std::move(blocks).value();
 }
 
 std::optional<double> on_at_start_s(const InputFlags& flags) {

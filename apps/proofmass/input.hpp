@@ -10,6 +10,7 @@
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/io/read_recording.hpp"
+#include "proofmass/sensor/calibrated_channels.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 
 // From the input flags to recordings.
@@ -39,15 +40,9 @@ namespace proofmass::app {
 /// What --from and --to leave. Throws Failure.
 [[nodiscard]] Recording cut_to_window(Recording recording, const InputFlags& flags);
 
-/// One accelerometer of the input: its channels of a recording.
-struct Accelerometer {
-  std::size_t recording = 0;
-  Triad triad;
-  std::string name;  ///< the file's, with the triad's where the file has several
-};
+using sensor::Accelerometer;
 
-/// The accelerometers of all recordings, in their order; a lone acceleration whose name ends in no
-/// axis is the x of one. Throws Failure if there is none.
+/// sensor::accelerometers(), or Failure.
 [[nodiscard]] std::vector<Accelerometer> accelerometers(const std::vector<Recording>& recordings);
 
 /// The sensor files of --sensor, with the supply of --supply in place of their own. Their notes are
@@ -55,11 +50,17 @@ struct Accelerometer {
 [[nodiscard]] std::vector<sensor::SensorModel> load_sensors(const InputFlags& flags,
                                                             std::vector<Note>& notes);
 
-/// Applies the sensor files, one for all accelerometers or one for each, and brings every
-/// accelerometer channel to m/s^2. Throws Failure where a channel's unit is not known.
+/// sensor::apply() to accelerometers, or Failure.
 void calibrate(const std::vector<sensor::SensorModel>& models,
                const std::vector<Accelerometer>& found,
                std::vector<Recording>& recordings);
+
+/// Samples that come a block at a time, of the channels that --channel leaves, calibrated by
+/// --sensor. The sensor files' notes are added to `notes`. Throws Failure: no accelerometer, a unit
+/// that is not known, a sensor file for another unit.
+[[nodiscard]] sensor::CalibratedBlocks calibrated_blocks(const InputFlags& flags,
+                                                         const Recording& head,
+                                                         std::vector<Note>& notes);
 
 /// How long the sensors had been on at the first sample that is kept, where --since-switch-on says
 /// so of the first in the file.

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "accel_figures.hpp"
-#include "calibrated_samples.hpp"
 #include "exit_status.hpp"
 #include "gyroscope.hpp"
 #include "input.hpp"
@@ -15,29 +14,32 @@
 namespace proofmass::app {
 namespace {
 
+using sensor::CalibratedBlocks;
 using Made = Result<std::unique_ptr<LiveAnalysis>>;
 
 // An analysis of samples that are calibrated on their way to it.
 class Calibrated final : public LiveAnalysis {
  public:
-  Calibrated(CalibratedSamples samples, std::unique_ptr<LiveAnalysis> analysis)
+  Calibrated(CalibratedBlocks samples, std::unique_ptr<LiveAnalysis> analysis)
       : samples_(std::move(samples)), analysis_(std::move(analysis)) {}
 
   [[nodiscard]] const std::vector<Channel>& columns() const override {
     return analysis_->columns();
   }
   [[nodiscard]] Status add(const Block& samples, Rows& out) override {
-    return analysis_->add(samples_.apply(samples), out);
+    const Result<Block> calibrated = samples_.apply(samples);
+    if (!calibrated) return calibrated.error();
+    return analysis_->add(*calibrated, out);
   }
   [[nodiscard]] Status finish(Rows& out) override { return analysis_->finish(out); }
   [[nodiscard]] std::vector<Note> take_notes() override { return analysis_->take_notes(); }
 
  private:
-  CalibratedSamples samples_;
+  CalibratedBlocks samples_;
   std::unique_ptr<LiveAnalysis> analysis_;
 };
 
-Made make_wheel(const RecordCommand& command, const CalibratedSamples& samples) {
+Made make_wheel(const RecordCommand& command, const CalibratedBlocks& samples) {
   estimate::LiveWheelOptions options;
   for (const Accelerometer& one : samples.accelerometers()) options.sensors.push_back(one.triad);
   options.rate_hz = samples.head().time.rate_hz;
@@ -56,7 +58,7 @@ Made make_wheel(const RecordCommand& command, const CalibratedSamples& samples) 
 }
 
 // The one accelerometer that an estimate other than the wheel's is of.
-const Triad& only_accelerometer(const CalibratedSamples& samples) {
+const Triad& only_accelerometer(const CalibratedBlocks& samples) {
   const auto& found = samples.accelerometers();
   if (found.size() == 1) return found.front().triad;
   std::string names;
@@ -65,7 +67,7 @@ const Triad& only_accelerometer(const CalibratedSamples& samples) {
 }
 
 Made make_tilt(const RecordCommand& command,
-               const CalibratedSamples& samples,
+               const CalibratedBlocks& samples,
                std::vector<Note>& notes) {
   estimate::LiveTiltOptions options;
   options.accelerometer = only_accelerometer(samples);
@@ -78,7 +80,7 @@ Made make_tilt(const RecordCommand& command,
   return estimate::live_tilt(options);
 }
 
-Made make_track(const RecordCommand& command, const CalibratedSamples& samples) {
+Made make_track(const RecordCommand& command, const CalibratedBlocks& samples) {
   estimate::LiveTrackOptions options;
   options.sensor = only_accelerometer(samples);
   if (!command.axis.empty()) options.axis = parse_axis(command.axis);
@@ -93,7 +95,7 @@ Made make_track(const RecordCommand& command, const CalibratedSamples& samples) 
 }
 
 Made make_analysis(const RecordCommand& command,
-                   const CalibratedSamples& samples,
+                   const CalibratedBlocks& samples,
                    std::vector<Note>& notes) {
   if (command.estimate == "tilt") return make_tilt(command, samples, notes);
   if (command.estimate == "track") return make_track(command, samples);
@@ -108,7 +110,7 @@ acquire::MakeAnalysis make_estimate(const RecordCommand& command,
   if (command.estimate.empty()) return {};
   return [&](const acquire::SourceHead& head) -> Made {
     try {
-      CalibratedSamples samples(command.input, head.recording, notes);
+      CalibratedBlocks samples = calibrated_blocks(command.input, head.recording, notes);
       auto analysis = make_analysis(command, samples, notes);
       if (!analysis) return analysis;
       view.estimating((*analysis)->columns());

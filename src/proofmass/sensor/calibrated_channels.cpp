@@ -1,0 +1,128 @@
+#include "proofmass/sensor/calibrated_channels.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+#include <optional>
+#include <utility>
+
+#include "proofmass/sensor/calibration.hpp"
+
+namespace proofmass::sensor {
+namespace {
+
+// A recording's only acceleration, whose name ends in no axis: that of a one-axis sensor, called x.
+// A magnitude is along no axis.
+std::optional<Triad> lone_accelerometer(const Recording& recording) {
+  std::optional<Triad> lone;
+  for (std::size_t k = 0; k < recording.channels.size(); ++k) {
+    if (recording.channels[k].unit.quantity != Quantity::acceleration) continue;
+    std::string name = recording.channels[k].name;
+    std::ranges::transform(name, name.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const char* word : {"absolute", "magnitude", "norm", "total"})
+      if (lone || name.find(word) != std::string::npos) return std::nullopt;
+    lone = Triad{recording.channels[k].name, k, {}, {}};
+  }
+  return lone;
+}
+
+void bring_to_si(Channel& channel, const char* symbol) {
+  for (double& value : channel.values) value = channel.unit.si(value);
+  channel.unit = *parse_unit(symbol);
+}
+
+Status bring_to_si(const Triad& triad, Recording& recording) {
+  for (const auto& axis : {triad.x, triad.y, triad.z}) {
+    if (!axis) continue;
+    Channel& channel = recording.channels[*axis];
+    if (channel.unit.quantity != Quantity::acceleration)
+      return Error{
+          Errc::invalid_argument,
+          fmt::format("{}: channel {}: expected an acceleration, but it is in {}", recording.source,
+                      channel.name,
+                      channel.unit.symbol.empty() ? "no known unit" : channel.unit.symbol)};
+    bring_to_si(channel, "m/s^2");
+  }
+  return Done{};
+}
+
+}  // namespace
+
+Result<std::vector<Accelerometer>> accelerometers(const std::vector<Recording>& recordings) {
+  std::vector<Accelerometer> found;
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    std::vector<Triad> triads = accelerometer_triads(recordings[k]);
+    if (triads.empty())
+      if (auto lone = lone_accelerometer(recordings[k])) triads.push_back(std::move(*lone));
+    const std::string& file = recordings[k].source;
+    if (triads.empty())
+      return Error{Errc::invalid_argument, file + ": no accelerometer channel found"};
+    for (const Triad& triad : triads)
+      found.push_back({k, triad, triads.size() > 1 ? file + ": " + triad.name : file});
+  }
+  return found;
+}
+
+Status apply(const std::vector<SensorModel>& models,
+             const std::vector<Accelerometer>& found,
+             std::vector<Recording>& recordings) {
+  if (models.size() > 1 && models.size() != found.size())
+    return Error{Errc::invalid_argument,
+                 fmt::format("{} sensor files for {} accelerometers: expected one for all or one "
+                             "for each",
+                             models.size(), found.size())};
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    Recording& recording = recordings[found[k].recording];
+    if (!models.empty()) {
+      const Status applied = apply(models[models.size() > 1 ? k : 0], found[k].triad, recording);
+      if (!applied) return applied.error().at(found[k].name);
+    }
+    if (Status done = bring_to_si(found[k].triad, recording); !done) return done;
+  }
+  return Done{};
+}
+
+Result<CalibratedBlocks> CalibratedBlocks::make(const Recording& head,
+                                                std::vector<std::size_t> channels,
+                                                std::vector<SensorModel> models) {
+  CalibratedBlocks out;
+  out.models_ = std::move(models);
+  out.channels_ = std::move(channels);
+  Recording& piece = out.pieces_.emplace_back();
+  piece.source = head.source;
+  piece.time = head.time;
+  for (const std::size_t c : out.channels_) {
+    Channel& channel = piece.channels.emplace_back(head.channels[c]);
+    channel.values.clear();
+    out.units_.push_back(channel.unit);
+  }
+  auto found = sensor::accelerometers(out.pieces_);
+  if (!found) return found.error();
+  out.found_ = std::move(found).value();
+  if (Status done = out.to_si(); !done) return done.error();
+  out.head_ = out.pieces_.front();
+  return out;
+}
+
+Status CalibratedBlocks::to_si() {
+  if (Status done = sensor::apply(models_, found_, pieces_); !done) return done;
+  for (Channel& channel : pieces_.front().channels)
+    if (channel.unit.quantity == Quantity::angular_rate) bring_to_si(channel, "rad/s");
+  return Done{};
+}
+
+Result<Block> CalibratedBlocks::apply(const Block& raw) {
+  Recording& piece = pieces_.front();
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const View<double> values = raw.channels[channels_[i]];
+    piece.channels[i].unit = units_[i];
+    piece.channels[i].values.assign(values.begin(), values.end());
+  }
+  if (Status done = to_si(); !done) return done.error();
+  Block block{raw.first, {}, raw.stamps_s};
+  for (const Channel& channel : piece.channels) block.channels.emplace_back(channel.values);
+  return block;
+}
+
+}  // namespace proofmass::sensor
