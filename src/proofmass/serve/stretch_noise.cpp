@@ -25,7 +25,7 @@ Result<std::string> stretch_noise(const Recording& recording) {
   shown.name = channel.name;
   shown.unit = unit;
   shown.analysis = std::move(analysis).value();
-  return report::page_json(report::noise_page(report));
+  return report::page_json(report::describe(report).page);
 }
 
 }  // namespace proofmass::serve
