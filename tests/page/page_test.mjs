@@ -125,11 +125,14 @@ test("a recording is zoomed, panned and reset, and a stretch goes to an analysis
   const view = () => { const at = new URL(page.url()).searchParams; return [Number(at.get("from")), Number(at.get("to"))]; };
   const canvas = page.locator('canvas[aria-label="acc1_x against time"]');
   await canvas.waitFor();
+  await page.waitForSelector(".head >> text=nothing wrong with it");
+  await page.waitForSelector(".side .legend");
   const box = await canvas.boundingBox();
   await page.mouse.move(box.x + box.width * 0.4, box.y + 40);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width * 0.6, box.y + 40, { steps: 4 });
   await page.mouse.up();
+  await page.waitForFunction(() => location.search.includes("from="), null, { timeout: 8000 });
   const zoomed = view();
   assert.ok(zoomed[0] > 6 && zoomed[1] < 14 && zoomed[1] - zoomed[0] > 3, String(zoomed));
   await page.mouse.wheel(0, -400);

@@ -209,6 +209,10 @@ export function recordingView(main: HTMLElement, file: string): View {
       stack.append(element);
       strips.push({ channel: k, canvas, value, element });
     });
+    buildCounts();
+  }
+  function buildCounts(): void {
+    if (!head) return;
     const clipped = (details?.json?.channels ?? []).filter((channel) => channel.clipped > 0);
     const gaps = details?.json?.timing.gaps ?? [];
     replace(
@@ -459,7 +463,8 @@ export function recordingView(main: HTMLElement, file: string): View {
         const faults = notes.filter((one) => one.severity === "bad").length;
         const warnings = notes.filter((one) => one.severity === "warning").length;
         replace(verdict, faults > 0 ? light("bad", `${faults} ${faults === 1 ? "fault" : "faults"} in the data`) : warnings > 0 ? light("warning", `${warnings} ${warnings === 1 ? "thing" : "things"} to know`) : light("good", "nothing wrong with it"));
-        return build();
+        // The strips stay: somebody may be dragging on one.
+        return buildCounts();
       }
       await pause(400);
     }
