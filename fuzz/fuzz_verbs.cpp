@@ -15,12 +15,11 @@
 #include <string>
 #include <string_view>
 #include <unistd.h>
-#include <variant>
 #include <vector>
 
 #include "../apps/proofmass/command_line.hpp"
 #include "../apps/proofmass/exit_status.hpp"
-#include "../apps/proofmass/verbs.hpp"
+#include "../apps/proofmass/verb.hpp"
 
 namespace {
 
@@ -146,7 +145,7 @@ void run_command(std::vector<std::string> words) {
     const auto command =
         app::parse_command_line(static_cast<int>(arguments.size()), arguments.data());
     require(command.has_value());
-    std::visit([](const auto& chosen) { app::run(chosen); }, *command);
+    command->run();
   } catch (const app::Failure& failure) {
     return check_refusal(failure.what());
   }

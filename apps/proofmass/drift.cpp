@@ -53,6 +53,7 @@ void add_drift_flags(CLI::App& verb, DriftCommand& command) {
       verb, command.output,
       "write block means, curve, its standard deviation, and the bias less white noise");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer("Example:\n  proofmass drift rest.csv --rate 100 --unit g --report drift.html");
 }

@@ -33,6 +33,7 @@ void add_inspect_flags(CLI::App& verb, InspectCommand& command) {
                 "store minima and maxima at every scale beside each file, as FILE.pyramid.npz, for "
                 "plots at any zoom without reading it again");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   add_memory_flag(verb, command.input);
   verb.footer("Example:\n  proofmass inspect wheel.csv --report wheel.html");

@@ -66,6 +66,7 @@ void add_noise_flags(CLI::App& verb, NoiseCommand& command) {
   add_input_flags(verb, command.input);
   add_output_file(verb, command.output, "write the deviation curves");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   add_memory_flag(verb, command.input);
   verb.footer("Example:\n  proofmass noise rest.csv --rate 100 --unit g --report noise.html");
