@@ -13,6 +13,7 @@
 #include <map>
 #include <set>
 #include <thread>
+#include <tuple>
 #include <unistd.h>
 
 #include "command_line.hpp"
@@ -352,6 +353,9 @@ void Run::write_tables() {
 }
 
 Status Run::run_here(const std::vector<std::size_t>& order) {
+  // A child inherits the locks that other threads hold, and nobody who would release them: the
+  // thread that sums up the inputs has to end before the first fork.
+  if (command_.output.invocation) std::ignore = command_.output.invocation->provenance();
   return fleet::run_pool(
       order,
       {.processes = report_.processes,

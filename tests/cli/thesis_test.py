@@ -31,7 +31,7 @@ class Links(html.parser.HTMLParser):
         self.ids += [found["id"]] if "id" in found else []
         if tag == "a":
             self.targets.append(found["href"])
-        if tag in ("script", "link", "img", "iframe") or "src" in found:
+        if tag in ("link", "img", "iframe") or "src" in found:
             self.fetched.append(tag)
 
 

@@ -176,7 +176,7 @@ class Tumble(CommandTest):
         found = self.document("tumble", "r.csv")
         self.assertEqual(len(found["positions"]), 9)
         self.expect_near(found["K1"], K1)
-        self.assertIn("stands still", found["source"])
+        self.assertIn("is constant", found["source"])
 
     def test_an_angle_that_is_shown_before_the_table_stands_still(self):
         lines = rests([*range(0, 360, 30), 0], encoder=True).splitlines()

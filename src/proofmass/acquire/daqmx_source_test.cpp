@@ -177,7 +177,7 @@ TEST(DaqmxSource, OfAnOldDriverCountsByTheHostsClockAndSaysSo) {
   EXPECT_EQ(taken.rows_before_loss, 200U);
   EXPECT_GE(taken.lost, 1U);
   ASSERT_EQ(taken.notes.size(), 1U);
-  EXPECT_NE(taken.notes.front().text.find("does not tell"), std::string::npos);
+  EXPECT_NE(taken.notes.front().text.find("does not report"), std::string::npos);
   EXPECT_NE(taken.notes.front().text.find(fmt::format("clock {} rows are missing", taken.lost)),
             std::string::npos)
       << taken.notes.front().text;

@@ -28,7 +28,7 @@ TEST(CrossAxis, IsNoNumberWhereItIsNotToldFromZero) {
   const CrossAxis found = cross_axis_sensitivity({1e-3, 0.5e-3}, diagonal(1e-6, 1e-6)).value();
   EXPECT_FALSE(found.value);
   EXPECT_GT(found.p, 0.01);
-  EXPECT_NE(found.reason.find("not told from zero"), std::string::npos);
+  EXPECT_NE(found.reason.find("not distinguishable from zero"), std::string::npos);
   EXPECT_GT(found.upper_95, 1.1e-3);
 }
 

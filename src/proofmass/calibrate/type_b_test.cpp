@@ -78,7 +78,7 @@ TEST(TypeBText, SaysInOneLineWhatWasExpected) {
   says("temperature,bias,2 K * 1 mg", "2 K * 1 mg/K");
   says("temperature,bias,2 V * 1 mg/K", "2 K * 1 mg/K");
   says("a,bias,1 mg,square", "student-t");
-  says("a,bias,1 mg,student-t", "the degrees of freedom behind student-t");
+  says("a,bias,1 mg,student-t", "the degrees of freedom after student-t");
   says("a,bias,1 mg,normal,0.5", "degrees of freedom of 1 or more");
   says("a,bias,1 mg,normal,ten", "degrees of freedom of 1 or more");
 }

@@ -107,6 +107,7 @@ Error no_process() {
 Result<Child> start(std::size_t job, const PoolOptions& options, const PoolWork& work) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return no_process();
+  std::fflush(nullptr);  // what is buffered here would be written by the child, too
   const pid_t parent = ::getpid();
   const pid_t process = ::fork();
   if (process == 0) be_job(job, ends[1], parent, options, work);

@@ -66,7 +66,8 @@ Item turning_accel_item(const WheelStudy& study, const std::optional<AngularRun>
   item.note =
       "α = (f_t1 − f_t2)/(2R), not \"radius × linear acceleration\": 1 mg of bias is 0.1 rad/s². "
       "From "
-      "α alone the bias is not seen, only the sum; the wheel model determines it from the rotation of gravity. "
+      "α alone the bias is not seen, only the sum; the wheel model determines it "
+      "from the rotation of gravity. "
       "Its error is largest at the two ends of the ramp, where α leaps." +
       caveats(study);
   return item;
