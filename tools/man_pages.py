@@ -43,7 +43,7 @@ def read_help(text: bytes) -> Help:
                 group.append((name, what.strip()))
             else:
                 group[-1] = (group[-1][0], f"{group[-1][1]} {what.strip()}".strip())
-        elif re.fullmatch(r"[A-Z][a-z]+:", text) and not text.startswith("Example"):
+        elif re.fullmatch(r"[A-Z][a-z]+( [a-z]+)?:", text) and not text.startswith("Example"):
             group = found.groups.setdefault(text[:-1], [])
         elif text or found.footer:
             group = None
