@@ -23,8 +23,8 @@ struct FleetCommand {
   std::string by;                   ///< column: recordings with one value are analysed as one
   std::string shard;                ///< "2/4"; empty: by the environment
   std::string dask, program;        ///< the scheduler's address; Proofmass on its workers
-  std::vector<std::string> limits;  ///< of summary: "white<2e-3"
-  double false_share = 0.05;        ///< of summary: among the sensors that it calls out of family
+  std::vector<std::string> limits;  ///< `summary`: "white<2e-3"
+  double false_share = 0.05;  ///< `summary`: expected among the sensors reported out of family
   OutputFlags output;
 };
 

@@ -58,7 +58,7 @@ std::string text_in(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Of an object storage: whether its bytes have changed is not looked at.
+// An object in storage; a change of its bytes is not detected.
 bool is_url(const std::string& path) {
   return path.find("://") != std::string::npos;
 }
@@ -231,7 +231,7 @@ int Run::run_child(const Job& job) const {
   return run_command(static_cast<int>(arguments.size()), words.data());
 }
 
-// The last line that the verb said; its own name before it is left away.
+// The last line of the verb's standard error, without the program's name at its beginning.
 std::string last_words(const std::string& words) {
   constexpr std::string_view name = "proofmass: ";
   const std::size_t at = words.rfind(name);
@@ -240,7 +240,7 @@ std::string last_words(const std::string& words) {
   return words.substr(from, words.find('\n', from) - from);
 }
 
-// The recording's own name before the reason is left away, as it stands beside it.
+// The reason without the recording's name at its beginning, which is reported beside it.
 std::string why_it_failed(const Job& job,
                           const fleet::Ended& ended,
                           const std::optional<double>& timeout_s) {

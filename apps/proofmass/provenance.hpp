@@ -29,7 +29,7 @@ class Invocation {
   std::unique_ptr<Sums> sums_;
 };
 
-/// Of the source that the program was built from; empty where it is not known.
+/// Commit of the source that the program was built from; empty if unknown.
 [[nodiscard]] std::string program_commit();
 
 /// SHA-256 of a regular file in hexadecimal; empty where it cannot be read, and of anything else.

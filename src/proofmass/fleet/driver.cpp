@@ -94,7 +94,7 @@ class Driver {
     return read_into(output_, received_);
   }
 
-  /// The next complete line; empty where there is none.
+  /// The next complete line; empty if there is none.
   [[nodiscard]] std::string line() {
     const std::size_t end = received_.find('\n');
     if (end == std::string::npos) return {};

@@ -16,7 +16,7 @@ struct DriverOptions {
   std::vector<std::string> command;  ///< the driver's program and its arguments
   std::string program;               ///< Proofmass on the workers; empty: theirs
   double timeout_s = 0.0;            ///< a job that runs longer is ended; 0: none is
-  std::size_t memory_bytes = 0;      ///< of a job; 0: no limit
+  std::size_t memory_bytes = 0;      ///< limit of a job; 0: none
 };
 
 /// What the driver's jobs are, and who takes their results.

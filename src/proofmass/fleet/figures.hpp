@@ -21,7 +21,7 @@ struct InputSum {
 /// What a table keeps of a document.
 struct DocumentRows {
   std::vector<Row> rows;         ///< one a channel, or one where there are no channels
-  std::vector<InputSum> inputs;  ///< of its provenance
+  std::vector<InputSum> inputs;  ///< from its provenance
   std::string version, commit;
 };
 

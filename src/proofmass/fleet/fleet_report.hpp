@@ -25,7 +25,7 @@ struct FleetReport {
   std::string dask;           ///< address of the scheduler; empty: processes of this machine
   std::size_t processes = 1;  ///< 0: as many as its workers have
   double elapsed_s = 0.0;
-  double busy_s = 0.0;  ///< of all processes together
+  double busy_s = 0.0;  ///< sum over all processes
   std::vector<Note> notes;
 };
 

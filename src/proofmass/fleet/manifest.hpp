@@ -15,17 +15,17 @@ namespace proofmass::fleet {
 /// Named fields of one recording, in the manifest's order.
 using ManifestFields = std::vector<std::pair<std::string, std::string>>;
 
-/// The field of that name; empty where there is none.
+/// The field of that name; empty if there is none.
 [[nodiscard]] std::string_view manifest_field(const ManifestFields& fields, std::string_view name);
 
 /// One recording with its flags, or several that are analysed as one.
 struct Job {
   std::string path;                ///< as it is opened: relative to the working folder
-  std::vector<std::string> flags;  ///< of this recording alone
+  std::vector<std::string> flags;  ///< for this recording only
   ManifestFields columns;          ///< all others of the manifest: sensor, temperature, date, …
   /// Recordings of a group, in the order of time; `path` is then the group's name.
   std::vector<std::string> parts = {};
-  std::vector<double> starts_s = {};  ///< of the parts; empty: not known
+  std::vector<double> starts_s = {};  ///< start of each part; empty: unknown
 
   /// The same for the same recording and flags, whatever the other columns say.
   [[nodiscard]] std::string id() const;

@@ -40,7 +40,7 @@ void point_streams(const std::string& output, int errors) {
   ::_exit(1);
 }
 
-// Of private writable memory, which is what a process takes; reserved addresses cost nothing.
+// Limits private writable memory; reserved addresses cost nothing.
 void limit_memory(std::size_t bytes) {
   if (bytes == 0) return;
   struct rlimit now{};

@@ -13,7 +13,7 @@ namespace proofmass::fleet {
 struct PoolOptions {
   std::size_t processes = 1;     ///< at once
   double timeout_s = 0.0;        ///< a job that runs longer is ended; 0: none is
-  std::size_t memory_bytes = 0;  ///< of a job, beyond what is mapped when it begins; 0: no limit
+  std::size_t memory_bytes = 0;  ///< limit of a job beyond what is mapped at its start; 0: none
 };
 
 /// How a job's process ended.

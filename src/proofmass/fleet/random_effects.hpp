@@ -13,7 +13,7 @@ namespace proofmass::fleet {
 /// One sensor's values of a figure, with their standard deviations where known.
 struct SensorValues {
   std::vector<double> values;
-  std::vector<double> stds;  ///< of each value; empty: not known
+  std::vector<double> stds;  ///< standard deviation of each value; empty: unknown
 };
 
 /// The model y_ij = μ + b_i + e_ij with b_i ~ N(0, τ²) between sensors and e_ij ~ N(0, σ²) within.

@@ -22,10 +22,10 @@ namespace proofmass::fleet {
 /// What became of one recording: a line of a journal.
 struct Entry {
   std::string verb, path;
-  std::vector<std::string> own_flags;  ///< of the manifest, for this recording
+  std::vector<std::string> own_flags;  ///< from the manifest, for this recording
   std::vector<std::string> flags;      ///< all that the verb was run with
   ManifestFields columns;
-  std::vector<std::string> parts;  ///< of a group its recordings
+  std::vector<std::string> parts;  ///< the recordings of a group
   std::vector<InputSum> inputs;
   std::string version, commit;
   double ended_s = 0.0;          ///< seconds since 1970

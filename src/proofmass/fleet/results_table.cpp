@@ -47,7 +47,7 @@ TableCell cell_of(const std::string& text) {
   return value;
 }
 
-// Of one recording and channel, in the table's order.
+// The row of one recording and channel, in the table's order.
 Row full_row(const Entry& entry, const Row& figures) {
   Row row{{"file", entry.path}};
   std::set<std::string> taken{"file", "verb", "flags", "document", "report"};

@@ -130,7 +130,7 @@ class Collector {
   Summary* summary_;
   std::map<std::pair<std::string, std::string>, std::size_t> places_;
   std::map<std::string, std::size_t> sensors_;
-  std::vector<std::size_t> by_path_;  // sensors that only the recordings' names tell apart
+  std::vector<std::size_t> by_path_;  // sensors that differ only in the recordings' names
 };
 
 Quantiles quantiles_of(const FigureSummary& figure) {

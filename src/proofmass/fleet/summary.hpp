@@ -40,7 +40,7 @@ struct Quantiles {
 /// A sensor that does not belong to its family.
 struct Outlier {
   std::size_t sensor = 0;
-  double mean = 0.0;  ///< of its values
+  double mean = 0.0;  ///< mean of its values
   double z = 0.0;     ///< robust standard deviations from the family
   double p = 1.0, adjusted_p = 1.0;
 };
@@ -60,7 +60,7 @@ struct FigureSummary {
   Quantiles quantiles;
   bool is_tested = false;  ///< against a family of sensors
   std::vector<Outlier> outliers;
-  std::optional<RandomEffects> type;  ///< of the sensors in the family
+  std::optional<RandomEffects> type;  ///< the sensors in the family
   std::optional<Trend> per_day, per_kelvin;
   double per_day_adjusted_p = 1.0, per_kelvin_adjusted_p = 1.0;
   std::vector<Yield> yields;
@@ -68,7 +68,7 @@ struct FigureSummary {
 };
 
 struct SummaryOptions {
-  double false_share = 0.05;  ///< of what is called out of family, or a trend, at most, expected
+  double false_share = 0.05;  ///< expected share of false alarms, at most
   std::vector<Limit> limits;
 };
 

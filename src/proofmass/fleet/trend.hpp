@@ -15,9 +15,9 @@ struct TrendPoint {
 };
 
 struct Trend {
-  Uncertain slope;  ///< of y per unit of x
+  Uncertain slope;  ///< change of y per unit of x
   Bounds slope_95;
-  double p = 1.0;              ///< of no dependence
+  double p = 1.0;              ///< p-value of no dependence
   bool within_sensors = true;  ///< false: no sensor was measured at two x, so that sensors' own
                                ///< differences and the dependence are not separable
 };

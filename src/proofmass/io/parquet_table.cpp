@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view parquet_magic = "PAR1";
 
-// Of parquet.thrift.
+// Constants of parquet.thrift.
 constexpr std::int64_t type_double = 5, type_byte_array = 6;
 constexpr std::int64_t optional_field = 1, converted_utf8 = 0;
 constexpr std::int64_t encoding_plain = 0, encoding_rle = 3, codec_none = 0, page_data = 0;

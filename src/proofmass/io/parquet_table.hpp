@@ -14,7 +14,7 @@
 // Spark read them.
 namespace proofmass::io {
 
-/// A field: none, a figure or a text (UTF-8). A figure that is not finite is none.
+/// A field: null, a number or a text (UTF-8). A number that is not finite is written as null.
 using TableCell = std::variant<std::monostate, double, std::string>;
 
 struct TableColumn {

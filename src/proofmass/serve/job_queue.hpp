@@ -19,7 +19,7 @@ struct JobStatus {
   double fraction = 0.0;  ///< done, of the stage
   std::string stage{};
   std::vector<std::string> messages{};  ///< lines of its standard error: notes, the error
-  ChildEnd end{};                       ///< of one that has ended
+  ChildEnd end{};                       ///< how it ended
   double seconds = 0.0;                 ///< that it has run
 };
 

@@ -56,7 +56,7 @@ bool is_acceleration(const Json& channel) {
   return unit && unit->quantity == Quantity::acceleration;
 }
 
-// The curve of that label among a section's plots; null where there is none.
+// The curve of that label among a section's plots; null if there is none.
 Json curve_named(const Json& section, const std::string& label) {
   for (const Json& figure : section.at("figures"))
     for (const Json& curve : figure.at("curves"))
@@ -64,7 +64,7 @@ Json curve_named(const Json& section, const std::string& label) {
   return {};
 }
 
-// Of the accelerations, or where there is none of the first channels.
+// The accelerations, or the first channels if there are none.
 Json thumbnails_of(const Json& channels, const Json& page) {
   constexpr std::size_t most = 3;
   std::vector<std::size_t> wanted;

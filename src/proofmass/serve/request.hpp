@@ -36,8 +36,8 @@ struct RequestHead {
 struct Request {
   std::string method;
   Target target;
-  std::string body;         ///< of all methods but PUT
-  std::string body_path{};  ///< of PUT: a temporary file that goes with the request
+  std::string body;         ///< all methods except PUT
+  std::string body_path{};  ///< PUT: a temporary file, removed with the request
 };
 
 struct Response {

@@ -20,8 +20,8 @@ struct ServerLimits {
   std::chrono::milliseconds stall{30'000};  ///< a body that stops coming, an answer not taken
   std::uint32_t head_bytes = 16U << 10;
   std::uint64_t body_bytes = std::uint64_t{1} << 20;
-  std::uint64_t upload_bytes = std::uint64_t{16} << 30;  ///< of a PUT
-  double requests_per_s = 400.0;  ///< of all peers together, once as many more are used up
+  std::uint64_t upload_bytes = std::uint64_t{16} << 30;  ///< limit of a PUT
+  double requests_per_s = 400.0;  ///< all peers together, after a burst of as many
 };
 
 struct ServerOptions {

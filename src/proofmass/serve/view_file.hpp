@@ -57,7 +57,7 @@ class ViewWriter {
 /// largest of equal runs of them.
 struct ViewWindow {
   bool are_samples = false;
-  std::vector<double> time_s;            ///< of each sample, or of each run's first
+  std::vector<double> time_s;            ///< time of each sample, or of the first of each run
   std::vector<std::vector<double>> min;  ///< one list a channel; NaN where there is no value
   std::vector<std::vector<double>> max;  ///< empty where are_samples
 };
@@ -79,7 +79,7 @@ class ViewFile {
   /// from_s < to_s, pixels ≥ 1.
   /// Cost: O(pixels · 256) at any zoom.
   [[nodiscard]] ViewWindow window(const Stretch& stretch, std::size_t pixels) const;
-  /// Of each channel. Cost: O(samples of the stretch).
+  /// Statistics of each channel. Cost: O(samples of the stretch).
   [[nodiscard]] std::vector<StretchFigures> figures(const Stretch& stretch) const;
   /// The samples of a stretch, those of one channel alone.
   /// Errors: invalid_argument (no such channel, more than `most` samples), too_few_samples.
