@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "measure.hpp"
+#include "proofmass/estimate/fast/uniform_smoother.hpp"
 #include "proofmass/estimate/motion_models.hpp"
-#include "proofmass/estimate/uniform_smoother.hpp"
 
 namespace {
 

@@ -13,9 +13,9 @@
 #include <zlib.h>
 
 #include "measure.hpp"
-#include "proofmass/io/crc32.hpp"
-#include "proofmass/io/mcap_reader.hpp"
-#include "proofmass/io/recording_writers.hpp"
+#include "proofmass/io/bytes/crc32.hpp"
+#include "proofmass/io/mcap/reader.hpp"
+#include "proofmass/io/reading/recording_writers.hpp"
 
 namespace {
 

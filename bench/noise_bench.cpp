@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "measure.hpp"
-#include "proofmass/characterise/difference_variance.hpp"
+#include "proofmass/characterise/allan/difference_variance.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/characterise/noise_fit.hpp"
 

@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "measure.hpp"
-#include "proofmass/io/byte_source.hpp"
-#include "proofmass/io/tdms_specimens.hpp"
-#include "proofmass/io/tdms_table.hpp"
+#include "proofmass/io/bytes/byte_source.hpp"
+#include "proofmass/io/tdms/specimens.hpp"
+#include "proofmass/io/tdms/table.hpp"
 
 namespace {
 

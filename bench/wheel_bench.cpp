@@ -16,7 +16,7 @@
 #include <sys/resource.h>
 #include <vector>
 
-#include "proofmass/estimate/wheel_model.hpp"
+#include "proofmass/estimate/wheel/model.hpp"
 
 namespace {
 

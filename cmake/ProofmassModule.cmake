@@ -2,13 +2,13 @@ include(GNUInstallDirs)
 include(ProofmassUnits)
 include(ProofmassTests)
 
-# proofmass_module(NAME [TEXT] [USES modules...]
+# proofmass_module(NAME [TEXT] [USES modules...] [ROOMS "room: rooms" ...]
 #                  HEADERS ... [UNITS "name: sources" ...] [SOURCES ...] [KERNELS ...]
 #                  [TESTS ...] [SLOW_TESTS ...] [LINKS targets...] [USES_PRIVATELY targets...])
 #
 # One folder, one library, one test program; SLOW_TESTS form a second program, labelled slow. USES is
-# the only list of the modules that this one may include; tools/check_layers.py checks the #include
-# lines against it. LINKS are libraries used in headers (Eigen); USES_PRIVATELY those used only in
+# the only list of the modules that this one may include, ROOMS of the subfolders that a subfolder may
+# include; tools/check_layers.py checks the #include lines against both. LINKS are libraries used in headers (Eigen); USES_PRIVATELY those used only in
 # .cpp files.
 #
 # The sources of a unit are compiled together (ProofmassUnits.cmake). SOURCES are compiled one by one,
@@ -17,7 +17,7 @@ include(ProofmassTests)
 # generate text and pages, for which -O1 is sufficient and halves the compile time.
 function(proofmass_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "TEXT" ""
-    "USES;HEADERS;UNITS;SOURCES;KERNELS;TESTS;SLOW_TESTS;LINKS;USES_PRIVATELY")
+    "USES;ROOMS;HEADERS;UNITS;SOURCES;KERNELS;TESTS;SLOW_TESTS;LINKS;USES_PRIVATELY")
   set(target proofmass_${name})
   add_library(${target} STATIC ${arg_SOURCES} ${arg_KERNELS})
   add_library(proofmass::${name} ALIAS ${target})

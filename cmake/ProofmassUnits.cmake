@@ -44,7 +44,7 @@ endfunction()
 # a source must be unique in the unit; tools/check_layers.py checks this.
 function(proofmass_units target)
   foreach(unit IN LISTS ARGN)
-    if(NOT unit MATCHES "^([a-z0-9_]+): +([a-z0-9_. \n]+)$")
+    if(NOT unit MATCHES "^([a-z0-9_]+): +([a-z0-9_./ \n]+)$")
       message(FATAL_ERROR "${target}: expected \"name: sources\", got \"${unit}\"")
     endif()
     set(name ${CMAKE_MATCH_1})

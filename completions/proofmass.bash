@@ -1,4 +1,4 @@
-# bash completion of proofmass: asks the program itself (apps/proofmass/completion.hpp).
+# bash completion of proofmass: asks the program itself (apps/proofmass/cli/completion.hpp).
 
 # Puts the words before the cursor, which bash has cut at ':' and '=' too, together again as they
 # were typed: into `typed`.

@@ -1,4 +1,4 @@
-# fish completion of proofmass: asks the program itself (apps/proofmass/completion.hpp).
+# fish completion of proofmass: asks the program itself (apps/proofmass/cli/completion.hpp).
 
 function __proofmass_complete
     set -l typed (commandline -opc)

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "proofmass/estimate/linear_gaussian.hpp"
+#include "proofmass/estimate/filter/linear_gaussian.hpp"
 #include "proofmass/estimate/motion_models.hpp"
 
 namespace pm = proofmass::estimate;

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-#include "proofmass/estimate/linear_gaussian.hpp"
+#include "proofmass/estimate/filter/linear_gaussian.hpp"
 
 namespace pm = proofmass::estimate;
 

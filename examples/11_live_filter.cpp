@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "proofmass/estimate/live_filter.hpp"
+#include "proofmass/estimate/filter/live_filter.hpp"
 #include "proofmass/estimate/motion_models.hpp"
 
 namespace pm = proofmass::estimate;

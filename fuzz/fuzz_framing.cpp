@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "proofmass/acquire/framing.hpp"
+#include "proofmass/acquire/framing/framing.hpp"
 
 namespace {
 

@@ -4,12 +4,12 @@
 #include <string_view>
 #include <vector>
 
-#include "proofmass/io/hdf5_catalogue.hpp"
-#include "proofmass/io/hdf5_choice.hpp"
-#include "proofmass/io/hdf5_labels.hpp"
-#include "proofmass/io/hdf5_reader.hpp"
-#include "proofmass/io/hdf5_stream.hpp"
-#include "proofmass/io/watched_child.hpp"
+#include "proofmass/io/bytes/watched_child.hpp"
+#include "proofmass/io/hdf5/catalogue.hpp"
+#include "proofmass/io/hdf5/choice.hpp"
+#include "proofmass/io/hdf5/labels.hpp"
+#include "proofmass/io/hdf5/reader.hpp"
+#include "proofmass/io/hdf5/stream.hpp"
 
 namespace {
 
@@ -85,7 +85,8 @@ void take_figures(std::string_view bytes) {
 // The library that unpacks the file is not ours to mend, and it runs in a process of its own: a
 // process for every input would make a few a second. So the bytes are taken for what such a process
 // says, of the contents and of the figures, and for the list of contents in it; that files of any
-// bytes are read or refused, however the library takes them, is the business of io/hdf5_test.cpp.
+// bytes are read or refused, however the library takes them, is the business of
+// io/hdf5/hdf5_test.cpp.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   listen_to(bytes);

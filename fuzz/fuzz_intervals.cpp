@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "proofmass/io/interval_list.hpp"
+#include "proofmass/io/positions/interval_list.hpp"
 
 /// Reads bytes of any kind as a list of intervals, and holds what comes back to what it promises.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

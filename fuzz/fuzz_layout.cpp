@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "check_reading.hpp"
-#include "proofmass/io/zip_specimens.hpp"
+#include "proofmass/io/archive/zip_specimens.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::array<const char*, 9> names{"Accelerometer.csv",

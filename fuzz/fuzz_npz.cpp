@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "check_reading.hpp"
-#include "proofmass/io/npz_specimens.hpp"
+#include "proofmass/io/numpy/npz_specimens.hpp"
 
 // The bytes are taken for arrays less their magic, parted by the word NEXT, and put into an archive
 // with the checksums that chance does not find.

@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "proofmass/io/parquet_child.hpp"
+#include "proofmass/io/parquet/child.hpp"
 
 // DuckDB unpacks the file in a process of its own, which is not ours to mend: the bytes are taken
 // for what such a process says of the contents.

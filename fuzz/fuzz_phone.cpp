@@ -5,11 +5,11 @@
 #include <string_view>
 #include <vector>
 
-#include "proofmass/acquire/phyphox_cursor.hpp"
-#include "proofmass/acquire/phyphox_messages.hpp"
-#include "proofmass/acquire/phyphox_plan.hpp"
-#include "proofmass/acquire/sensor_merge.hpp"
-#include "proofmass/acquire/sensor_server_messages.hpp"
+#include "proofmass/acquire/phone/phyphox_cursor.hpp"
+#include "proofmass/acquire/phone/phyphox_messages.hpp"
+#include "proofmass/acquire/phone/phyphox_plan.hpp"
+#include "proofmass/acquire/phone/sensor_merge.hpp"
+#include "proofmass/acquire/phone/sensor_server_messages.hpp"
 
 // What phones say, in place of which anybody may say anything.
 namespace {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "proofmass/io/byte_source.hpp"
-#include "proofmass/io/pyramid_file.hpp"
+#include "proofmass/io/bytes/byte_source.hpp"
+#include "proofmass/io/pyramid/file.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "proofmass/io/mcap_salvage.hpp"
+#include "proofmass/io/mcap/salvage.hpp"
 
 namespace {
 

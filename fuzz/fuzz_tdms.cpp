@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "check_reading.hpp"
-#include "proofmass/io/tdms_table.hpp"
+#include "proofmass/io/tdms/table.hpp"
 
 namespace {
 

@@ -17,8 +17,8 @@
 #include <unistd.h>
 #include <vector>
 
-#include "../apps/proofmass/command_line.hpp"
-#include "../apps/proofmass/exit_status.hpp"
+#include "../apps/proofmass/cli/command_line.hpp"
+#include "../apps/proofmass/cli/exit_status.hpp"
 #include "../apps/proofmass/verb.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "check_reading.hpp"
-#include "proofmass/io/ximu_specimens.hpp"
+#include "proofmass/io/ximu/specimens.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string bytes = proofmass::io::specimen::ximu_date_time(1) +

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the specimens in fuzz/corpus/hdf5, from which the fuzzer starts and which io/hdf5_test.cpp
+"""Writes the specimens in fuzz/corpus/hdf5, from which the fuzzer starts and which io/hdf5/hdf5_test.cpp
 reads. By hand, with h5py 3.7 and NumPy: the files are kept, as other versions write other bytes.
 The list of contents beside them, groups.contents, is encode(list_hdf5()) of groups.h5."""
 from pathlib import Path

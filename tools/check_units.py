@@ -17,7 +17,7 @@ from collections import defaultdict
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-UNIT = re.compile(r'"([a-z0-9_]+):\s+([a-z0-9_.\s]+)"')
+UNIT = re.compile(r'"([a-z0-9_]+):\s+([a-z0-9_./\s]+\.cpp)"')
 OWN_CLASS = re.compile(r"(?:const )?(?:\w+::)*[A-Z]\w+(?:<[^(),]*>)?(?: ?[&*])?(?= )")
 
 

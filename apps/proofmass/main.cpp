@@ -1,5 +1,5 @@
-#include "console.hpp"
-#include "run_command.hpp"
+#include "cli/console.hpp"
+#include "cli/run_command.hpp"
 
 int main(int argc, char** argv) {
   proofmass::app::watch_for_interrupts();

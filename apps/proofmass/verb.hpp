@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "common_flags.hpp"
-#include "distinct_files.hpp"
+#include "cli/common_flags.hpp"
+#include "cli/distinct_files.hpp"
 
 namespace CLI {
 class App;

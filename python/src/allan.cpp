@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "cli/exit_status.hpp"
 #include "computing.hpp"
 #include "errors.hpp"
-#include "exit_status.hpp"
 #include "module.hpp"
-#include "noise_options.hpp"
+#include "noise/options.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "recording.hpp"
 #include "words.hpp"

@@ -1,6 +1,6 @@
 #include "errors.hpp"
 
-#include "exit_status.hpp"
+#include "cli/exit_status.hpp"
 
 namespace py = pybind11;
 

@@ -11,7 +11,7 @@
 #include "computing.hpp"
 #include "errors.hpp"
 #include "module.hpp"
-#include "proofmass/estimate/matrix_series.hpp"
+#include "proofmass/estimate/fast/matrix_series.hpp"
 
 namespace py = pybind11;
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "live_estimate.hpp"
-#include "live_view.hpp"
 #include "module.hpp"
 #include "proofmass/core/live_analysis.hpp"
+#include "record/live_estimate.hpp"
+#include "record/live_view.hpp"
 #include "recording.hpp"
 #include "words.hpp"
 

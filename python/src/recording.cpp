@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "command_line.hpp"
+#include "cli/command_line.hpp"
 #include "computing.hpp"
 #include "errors.hpp"
-#include "input.hpp"
+#include "input/input.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/io/recording_in_memory.hpp"
 #include "proofmass/report/inspect_report.hpp"

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/distinct_files.hpp"
 #include "computing.hpp"
-#include "distinct_files.hpp"
 #include "host.hpp"
 #include "module.hpp"
 #include "recording.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "command_line.hpp"
+#include "cli/command_line.hpp"
 #include "errors.hpp"
 
 // Options of Python's functions are the command's flags, and are checked where these are.

@@ -8,7 +8,7 @@
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/tilt.hpp"
-#include "proofmass/estimate/tilt_axis.hpp"
+#include "proofmass/estimate/tilt/axis.hpp"
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "proofmass/core/units.hpp"
 #include "proofmass/estimate/tune.hpp"
-#include "proofmass/estimate/tune_score.hpp"
+#include "proofmass/estimate/tune/score.hpp"
 #include "proofmass/io/read_recording.hpp"
 #include "published_data.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "proofmass/acquire/record_session.hpp"
+#include "proofmass/acquire/recorder/session.hpp"
 #include "proofmass/acquire/source_uri.hpp"
 
 namespace proofmass::acquire {

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "proofmass/acquire/record_test_support.hpp"
-#include "proofmass/acquire/scripted_source_test_support.hpp"
+#include "proofmass/acquire/recorder/record_test_support.hpp"
+#include "proofmass/acquire/stream/scripted_source_test_support.hpp"
 
 namespace proofmass::acquire::recorder_test {
 namespace {

@@ -4,8 +4,8 @@
 #include <system_error>
 #include <unistd.h>
 
-#include "proofmass/acquire/part_file.hpp"
-#include "proofmass/io/mcap_salvage.hpp"
+#include "proofmass/acquire/recorder/part_file.hpp"
+#include "proofmass/io/mcap/salvage.hpp"
 
 namespace proofmass::acquire {
 namespace {

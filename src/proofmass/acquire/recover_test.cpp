@@ -13,9 +13,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "proofmass/acquire/record_test_support.hpp"
-#include "proofmass/acquire/scripted_source_test_support.hpp"
-#include "proofmass/io/mcap_salvage.hpp"
+#include "proofmass/acquire/recorder/record_test_support.hpp"
+#include "proofmass/acquire/stream/scripted_source_test_support.hpp"
+#include "proofmass/io/mcap/salvage.hpp"
 
 namespace proofmass::acquire::recover_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "proofmass/calibrate/type_b.hpp"
+#include "proofmass/calibrate/uncertainty/type_b.hpp"
 
 // Repeatability of a bias between sessions.
 namespace proofmass::calibrate {

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "proofmass/calibrate/confounded_words.hpp"
-#include "proofmass/calibrate/identifiability.hpp"
+#include "proofmass/calibrate/model_equation/confounded_words.hpp"
+#include "proofmass/calibrate/model_equation/identifiability.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/number_words.hpp"
 #include "proofmass/fit/variable_projection.hpp"

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "proofmass/calibrate/ellipsoid_start.hpp"
-#include "proofmass/calibrate/given_directions.hpp"
-#include "proofmass/calibrate/multi_position_parts.hpp"
-#include "proofmass/calibrate/norm_fit.hpp"
-#include "proofmass/calibrate/pose_design.hpp"
-#include "proofmass/calibrate/pose_selection.hpp"
-#include "proofmass/calibrate/six_position.hpp"
+#include "proofmass/calibrate/multi_position/ellipsoid_start.hpp"
+#include "proofmass/calibrate/multi_position/given_directions.hpp"
+#include "proofmass/calibrate/multi_position/norm_fit.hpp"
+#include "proofmass/calibrate/multi_position/parts.hpp"
+#include "proofmass/calibrate/multi_position/pose_design.hpp"
+#include "proofmass/calibrate/multi_position/pose_selection.hpp"
+#include "proofmass/calibrate/multi_position/six_position.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "proofmass/calibrate/type_b_effect.hpp"
+#include "proofmass/calibrate/uncertainty/type_b_effect.hpp"
 
 namespace proofmass::calibrate {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "proofmass/calibrate/multi_position.hpp"
-#include "proofmass/calibrate/type_b.hpp"
+#include "proofmass/calibrate/uncertainty/type_b.hpp"
 #include "proofmass/calibrate/uncertainty_budget.hpp"
 
 // Uncertainty budget of a multi-position calibration.

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "proofmass/calibrate/budget_test_support.hpp"
 #include "proofmass/calibrate/multi_position_check.hpp"
+#include "proofmass/calibrate/uncertainty/budget_test_support.hpp"
 
 namespace proofmass::calibrate::multi_position_budget_test {
 namespace {

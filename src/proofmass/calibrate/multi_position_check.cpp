@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 #include <limits>
 
-#include "proofmass/calibrate/draw.hpp"
+#include "proofmass/calibrate/multi_position/norm_model.hpp"
 #include "proofmass/calibrate/multi_position_budget.hpp"
-#include "proofmass/calibrate/norm_model.hpp"
-#include "proofmass/calibrate/redrawn_poses.hpp"
-#include "proofmass/calibrate/type_b_effect.hpp"
+#include "proofmass/calibrate/uncertainty/draw.hpp"
+#include "proofmass/calibrate/uncertainty/redrawn_poses.hpp"
+#include "proofmass/calibrate/uncertainty/type_b_effect.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/contract.hpp"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "proofmass/calibrate/monte_carlo.hpp"
 #include "proofmass/calibrate/multi_position.hpp"
-#include "proofmass/calibrate/type_b.hpp"
+#include "proofmass/calibrate/uncertainty/monte_carlo.hpp"
+#include "proofmass/calibrate/uncertainty/type_b.hpp"
 
 // Monte Carlo check of the uncertainty of a multi-position calibration.
 namespace proofmass::calibrate {

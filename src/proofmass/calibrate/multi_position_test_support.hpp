@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "proofmass/calibrate/multi_position.hpp"
-#include "proofmass/calibrate/norm_model.hpp"
+#include "proofmass/calibrate/multi_position/norm_model.hpp"
 
 // Random sensors and positions, by independent formulas.
 namespace proofmass::calibrate::test {

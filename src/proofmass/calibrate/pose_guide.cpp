@@ -3,7 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "proofmass/calibrate/guide_plan.hpp"
+#include "proofmass/calibrate/guide/plan.hpp"
 #include "proofmass/core/contract.hpp"
 
 namespace proofmass::calibrate {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <string_view>
 
+#include "proofmass/calibrate/guide/turned_axes.hpp"
 #include "proofmass/calibrate/multi_position.hpp"
-#include "proofmass/calibrate/turned_axes.hpp"
 #include "proofmass/core/random.hpp"
 #include "proofmass/core/units.hpp"
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <limits>
 
-#include "proofmass/calibrate/dwell_noise.hpp"
+#include "proofmass/calibrate/multi_position/dwell_noise.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "proofmass/calibrate/dwell_noise.hpp"
+#include "proofmass/calibrate/multi_position/dwell_noise.hpp"
 
 namespace proofmass::calibrate::pose_means_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "proofmass/calibrate/norm_model.hpp"
+#include "proofmass/calibrate/multi_position/norm_model.hpp"
 
 namespace proofmass::calibrate {
 namespace {

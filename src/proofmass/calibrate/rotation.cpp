@@ -7,12 +7,12 @@
 #include <numbers>
 #include <utility>
 
-#include "proofmass/calibrate/rotation_delay.hpp"
-#include "proofmass/calibrate/rotation_pass.hpp"
-#include "proofmass/calibrate/rotation_results.hpp"
-#include "proofmass/calibrate/rotation_ripple.hpp"
-#include "proofmass/calibrate/rotation_turns.hpp"
-#include "proofmass/calibrate/rotation_words.hpp"
+#include "proofmass/calibrate/rotating/delay.hpp"
+#include "proofmass/calibrate/rotating/pass.hpp"
+#include "proofmass/calibrate/rotating/results.hpp"
+#include "proofmass/calibrate/rotating/ripple.hpp"
+#include "proofmass/calibrate/rotating/turns.hpp"
+#include "proofmass/calibrate/rotating/words.hpp"
 #include "proofmass/core/units.hpp"
 
 namespace proofmass::calibrate {

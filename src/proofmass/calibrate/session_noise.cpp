@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "proofmass/calibrate/bias_wander.hpp"
-#include "proofmass/calibrate/norm_model.hpp"
+#include "proofmass/calibrate/multi_position/norm_model.hpp"
 #include "proofmass/core/linalg.hpp"
 
 namespace proofmass::calibrate {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "proofmass/calibrate/draw.hpp"
+#include "proofmass/calibrate/uncertainty/draw.hpp"
 
 namespace proofmass::calibrate::supply_test {
 namespace {

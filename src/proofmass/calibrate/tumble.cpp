@@ -4,11 +4,11 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "proofmass/calibrate/tumble_coefficients.hpp"
-#include "proofmass/calibrate/tumble_design.hpp"
-#include "proofmass/calibrate/tumble_findings.hpp"
-#include "proofmass/calibrate/tumble_regression.hpp"
-#include "proofmass/calibrate/tumble_words.hpp"
+#include "proofmass/calibrate/tumble/coefficients.hpp"
+#include "proofmass/calibrate/tumble/design.hpp"
+#include "proofmass/calibrate/tumble/findings.hpp"
+#include "proofmass/calibrate/tumble/regression.hpp"
+#include "proofmass/calibrate/tumble/words.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/number_words.hpp"
 #include "proofmass/core/units.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "proofmass/calibrate/tumble_model.hpp"
+#include "proofmass/calibrate/tumble/model.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
 
@@ -36,7 +36,7 @@ struct TumbleOptions {
   /// Degrees of freedom of the positions' noise; 0: infinite.
   double noise_dof = 0.0;
   std::string output_unit = "m/s^2";  ///< unit of the outputs; for the coefficients' units
-  /// Phase between the table's angle and the sensor's in each plane: see tumble_axes.hpp.
+  /// Phase between the table's angle and the sensor's in each plane: see tumble/axes.hpp.
   std::array<double, 2> phase_rad{};
 };
 
@@ -136,7 +136,7 @@ struct TumbleFit {
 ///   with both directions, indexing with several mountings); then P, T, C3.
 /// - A term is omitted if its column is not independent to 5 % or if no redundancy would remain
 ///   (three positions for C3, which is a test; none for the drift if noise is stated).
-/// - The coefficients follow, K1 = (S + 3 T)/g and so on: tumble_model.hpp.
+/// - The coefficients follow, K1 = (S + 3 T)/g and so on: tumble/model.hpp.
 /// - cov = σ² (AᵀWA)⁻¹ + the shares of indexing, of nonlinear drift, and of gravity; σ² from the
 ///   residuals, minus what the others explain of them, or from the stated noise. For errors that
 ///   are assumed, not stated, see find_sizes().

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "proofmass/calibrate/correlation.hpp"
+#include "proofmass/calibrate/uncertainty/correlation.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/contract.hpp"
 

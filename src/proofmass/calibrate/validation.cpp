@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "proofmass/calibrate/norm_model.hpp"
+#include "proofmass/calibrate/multi_position/norm_model.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/contract.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "proofmass/characterise/statistic.hpp"
+#include "proofmass/characterise/allan/statistic.hpp"
 
 namespace proofmass::characterise {
 

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <limits>
 
-#include "proofmass/characterise/drift_evidence.hpp"
-#include "proofmass/characterise/drift_fit.hpp"
+#include "proofmass/characterise/drift/evidence.hpp"
+#include "proofmass/characterise/drift/fit.hpp"
 #include "proofmass/core/recording.hpp"
 
 namespace proofmass::characterise {

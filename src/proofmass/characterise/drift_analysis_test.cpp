@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "proofmass/characterise/drift_test_support.hpp"
+#include "proofmass/characterise/drift/drift_test_support.hpp"
 
 namespace proofmass::characterise::drift_analysis_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <numbers>
 
-#include "proofmass/characterise/drift_shapes.hpp"
+#include "proofmass/characterise/drift/shapes.hpp"
 #include "proofmass/core/contract.hpp"
 
 namespace proofmass::characterise {

@@ -17,7 +17,7 @@ namespace proofmass::characterise {
 ///
 ///     y(t) = a2 + a1 (1 − e^(−t/T)) + a1' (1 − e^(−t/T')) + a3 t + Σ s_j [t ≥ t_j]
 ///
-/// or, if another shape is as likely as the exponential, a2 + a1 g(t/T) of drift_shapes.hpp; for
+/// or, if another shape is as likely as the exponential, a2 + a1 g(t/T) of drift/shapes.hpp; for
 /// the sine T is the period and a1' the amplitude of the cosine.
 enum class DriftShape {
   constant,               ///< a2

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string_view>
 
-#include "proofmass/characterise/drift_state.hpp"
-#include "proofmass/characterise/drift_test_support.hpp"
+#include "proofmass/characterise/drift/drift_test_support.hpp"
+#include "proofmass/characterise/drift/state.hpp"
 
 namespace proofmass::characterise::drift_model_test {
 namespace {

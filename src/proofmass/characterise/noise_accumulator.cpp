@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "proofmass/characterise/averaging_times.hpp"
+#include "proofmass/characterise/allan/averaging_times.hpp"
 #include "proofmass/characterise/noise_fit.hpp"
 
 namespace proofmass::characterise {

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
-#include "proofmass/characterise/deviation_curve.hpp"
-#include "proofmass/characterise/difference_variance.hpp"
-#include "proofmass/characterise/low_band.hpp"
+#include "proofmass/characterise/allan/deviation_curve.hpp"
+#include "proofmass/characterise/allan/difference_variance.hpp"
+#include "proofmass/characterise/noise/low_band.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/signal/spectrum.hpp"
 

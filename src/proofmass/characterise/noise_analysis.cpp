@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 #include <limits>
 
-#include "proofmass/characterise/deviation_curve.hpp"
+#include "proofmass/characterise/allan/deviation_curve.hpp"
+#include "proofmass/characterise/noise/checks.hpp"
+#include "proofmass/characterise/noise/notes.hpp"
+#include "proofmass/characterise/noise/parts.hpp"
 #include "proofmass/characterise/noise_accumulator.hpp"
-#include "proofmass/characterise/noise_checks.hpp"
-#include "proofmass/characterise/noise_notes.hpp"
-#include "proofmass/characterise/noise_parts.hpp"
 #include "proofmass/characterise/record_overview.hpp"
 
 namespace proofmass::characterise {

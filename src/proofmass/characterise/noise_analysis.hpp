@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "proofmass/characterise/averaging_times.hpp"
+#include "proofmass/characterise/allan/averaging_times.hpp"
 #include "proofmass/characterise/deviation.hpp"
 #include "proofmass/characterise/noise_model.hpp"
 #include "proofmass/characterise/stationarity.hpp"
@@ -77,7 +77,7 @@ struct NoiseAnalysis {
 ///   are interpolated linearly. The degrees of freedom shrink with the share of remaining terms.
 /// - Statistics that need the whole record use its longest stretch without a gap of more than eight
 ///   samples.
-/// - Beyond a million samples terms start at every sixteenth of τ (difference_variance.hpp).
+/// - Beyond a million samples terms start at every sixteenth of τ (allan/difference_variance.hpp).
 /// - The coefficients come from the spectrum (noise_fit.hpp), without its lines.
 /// - If the noise is not stationary, the results are averages over the recording, and their
 ///   intervals span those of its parts.

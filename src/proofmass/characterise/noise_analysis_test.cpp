@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "proofmass/characterise/noise_test_support.hpp"
+#include "proofmass/characterise/noise/noise_test_support.hpp"
 #include "proofmass/characterise/test_support.hpp"
 
 namespace proofmass::characterise::noise_analysis_test {
@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
                    {256, 0.012447414}}}));
 
 /// How far from Stable32's limits ours may be: where its degrees of freedom are others than those
-/// of SP 1065 (edf_test.cpp), and half a unit of the last digit printed.
+/// of SP 1065 (allan/edf_test.cpp), and half a unit of the last digit printed.
 double tolerance_of(Statistic statistic, const test::Stable32Row& row) {
   const bool modified_total = statistic == Statistic::mtotdev || statistic == Statistic::ttotdev;
   if (modified_total && row.m >= 10) return row.alpha == 0 ? 0.032 : 0.065;

@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "proofmass/characterise/noise_search.hpp"
-#include "proofmass/characterise/record_needed.hpp"
-#include "proofmass/characterise/slow_wave.hpp"
-#include "proofmass/characterise/spectral_groups.hpp"
-#include "proofmass/characterise/strength_intervals.hpp"
+#include "proofmass/characterise/noise/record_needed.hpp"
+#include "proofmass/characterise/noise/search.hpp"
+#include "proofmass/characterise/noise/slow_wave.hpp"
+#include "proofmass/characterise/noise/spectral_groups.hpp"
+#include "proofmass/characterise/noise/strength_intervals.hpp"
 #include "proofmass/core/statistics.hpp"
 
 namespace proofmass::characterise {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "proofmass/characterise/low_band.hpp"
+#include "proofmass/characterise/noise/low_band.hpp"
 #include "proofmass/characterise/noise_model.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/signal/spectral_lines.hpp"
@@ -35,7 +35,7 @@ struct NoiseEvidence {
 ///   the boundary S. G. Self, K.-Y. Liang, J. Amer. Statist. Assoc. 82 (1987) 605. A standard
 ///   deviation is that of the selected model.
 ///
-/// Coverage by simulation: noise_coverage_slow_test.cpp.
+/// Coverage by simulation: noise/coverage_slow_test.cpp.
 ///
 /// Errors: too_few_samples (fewer than 100 samples, or than 16 in one piece). Cost: O(blocks log
 /// blocks), then some thousand passes over a few hundred groups.

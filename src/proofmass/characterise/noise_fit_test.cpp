@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "proofmass/characterise/noise_test_support.hpp"
+#include "proofmass/characterise/noise/noise_test_support.hpp"
 
 namespace proofmass::characterise::noise_fit_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "proofmass/characterise/term_spectra.hpp"
+#include "proofmass/characterise/noise/term_spectra.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <utility>
 
-#include "proofmass/characterise/averaging_times.hpp"
-#include "proofmass/characterise/deviation_curve.hpp"
-#include "proofmass/characterise/difference_variance.hpp"
-#include "proofmass/characterise/noise_checks.hpp"
-#include "proofmass/characterise/noise_notes.hpp"
+#include "proofmass/characterise/allan/averaging_times.hpp"
+#include "proofmass/characterise/allan/deviation_curve.hpp"
+#include "proofmass/characterise/allan/difference_variance.hpp"
+#include "proofmass/characterise/noise/checks.hpp"
+#include "proofmass/characterise/noise/notes.hpp"
 
 namespace proofmass::characterise {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "proofmass/core/number_words.hpp"
-#include "proofmass/signal/chunk_figures.hpp"
+#include "proofmass/signal/audit/chunk_figures.hpp"
 
 namespace proofmass::characterise {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
-#include "proofmass/signal/thinned_sample.hpp"
+#include "proofmass/signal/audit/thinned_sample.hpp"
 #include "proofmass/signal/value_tail.hpp"
 
 namespace proofmass::characterise {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "proofmass/characterise/drift_evidence.hpp"
-#include "proofmass/characterise/drift_fit.hpp"
-#include "proofmass/characterise/run_blocks.hpp"
-#include "proofmass/characterise/run_noise.hpp"
-#include "proofmass/characterise/run_scatter.hpp"
+#include "proofmass/characterise/drift/evidence.hpp"
+#include "proofmass/characterise/drift/fit.hpp"
+#include "proofmass/characterise/runs/blocks.hpp"
+#include "proofmass/characterise/runs/noise.hpp"
+#include "proofmass/characterise/runs/scatter.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "proofmass/characterise/run_test_support.hpp"
+#include "proofmass/characterise/runs/run_test_support.hpp"
 
 namespace proofmass::characterise::run_set_test {
 namespace {

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "proofmass/characterise/noise/noise_test_support.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
-#include "proofmass/characterise/noise_test_support.hpp"
 
 namespace proofmass::characterise::stationarity_test {
 namespace {

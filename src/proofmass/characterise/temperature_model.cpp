@@ -4,8 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "proofmass/characterise/temperature_blocks.hpp"
-#include "proofmass/characterise/temperature_regression.hpp"
+#include "proofmass/characterise/temperature/blocks.hpp"
+#include "proofmass/characterise/temperature/regression.hpp"
 #include "proofmass/core/contract.hpp"
 
 namespace proofmass::characterise {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "proofmass/characterise/noise_test_support.hpp"
+#include "proofmass/characterise/noise/noise_test_support.hpp"
 
 namespace proofmass::characterise::temperature_model_test {
 namespace {

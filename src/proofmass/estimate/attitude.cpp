@@ -7,7 +7,7 @@
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/linalg.hpp"
-#include "proofmass/estimate/attitude_model.hpp"
+#include "proofmass/estimate/attitude/model.hpp"
 
 namespace proofmass::estimate {
 namespace {

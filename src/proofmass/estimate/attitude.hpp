@@ -10,7 +10,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
-#include "proofmass/estimate/gaussian.hpp"
+#include "proofmass/estimate/filter/gaussian.hpp"
 #include "proofmass/estimate/rotation.hpp"
 #include "proofmass/sensor/gravity.hpp"
 #include "proofmass/signal/rests.hpp"

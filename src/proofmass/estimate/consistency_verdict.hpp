@@ -5,7 +5,7 @@
 
 #include "proofmass/estimate/consistency.hpp"
 
-// Verdict from the innovation statistics. Private to the module's consistency*.cpp.
+// Verdict from the innovation statistics.
 namespace proofmass::estimate {
 
 /// Standard deviation s of normal innovations truncated at the gate c, from the mean square of the

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "proofmass/estimate/steady_state.hpp"
+#include "proofmass/estimate/fast/steady_state.hpp"
 
 // Benefit of a fixed lag, computed from the model: the reduction of each state's steady-state
 // variance by waiting for further measurements.

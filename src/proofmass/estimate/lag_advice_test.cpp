@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "proofmass/estimate/fixed_lag.hpp"
-#include "proofmass/estimate/lag_test_support.hpp"
+#include "proofmass/estimate/filter/fixed_lag.hpp"
+#include "proofmass/estimate/filter/lag_test_support.hpp"
 
 namespace proofmass::estimate::lag_advice_test {
 namespace {

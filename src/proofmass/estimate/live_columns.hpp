@@ -5,8 +5,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 
-// Components of the online analyses' columns, and their common options. Private to the module's
-// live*.
+// Components of the online analyses' columns, and their common options.
 namespace proofmass::estimate {
 
 [[nodiscard]] inline Channel live_column(const char* name, Quantity quantity, const char* symbol) {

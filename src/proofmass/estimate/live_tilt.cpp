@@ -9,10 +9,10 @@
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/live_columns.hpp"
-#include "proofmass/estimate/live_instants.hpp"
-#include "proofmass/estimate/live_tilt_filter.hpp"
-#include "proofmass/estimate/tilt_record.hpp"
-#include "proofmass/estimate/tilt_rest.hpp"
+#include "proofmass/estimate/tilt/live_filter.hpp"
+#include "proofmass/estimate/tilt/record.hpp"
+#include "proofmass/estimate/tilt/rest.hpp"
+#include "proofmass/estimate/wheel/live_instants.hpp"
 
 namespace proofmass::estimate {
 namespace {

@@ -10,11 +10,11 @@
 
 #include "proofmass/core/units.hpp"
 #include "proofmass/estimate/live_columns.hpp"
-#include "proofmass/estimate/live_instants.hpp"
-#include "proofmass/estimate/live_track_axis.hpp"
-#include "proofmass/estimate/live_track_filter.hpp"
-#include "proofmass/estimate/live_track_rests.hpp"
-#include "proofmass/estimate/track_motion.hpp"
+#include "proofmass/estimate/track/live_axis.hpp"
+#include "proofmass/estimate/track/live_filter.hpp"
+#include "proofmass/estimate/track/live_rests.hpp"
+#include "proofmass/estimate/track/motion.hpp"
+#include "proofmass/estimate/wheel/live_instants.hpp"
 
 namespace proofmass::estimate {
 namespace {

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "proofmass/estimate/counted_new.hpp"
-#include "proofmass/estimate/live_track_scale.hpp"
+#include "proofmass/estimate/filter/counted_new.hpp"
 #include "proofmass/estimate/live_track_test_support.hpp"
+#include "proofmass/estimate/track/live_scale.hpp"
 
 namespace proofmass::estimate::live_track_test {
 namespace {

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "proofmass/estimate/live_columns.hpp"
-#include "proofmass/estimate/live_instants.hpp"
-#include "proofmass/estimate/live_wheel_filter.hpp"
-#include "proofmass/estimate/live_wheel_start.hpp"
-#include "proofmass/estimate/wheel_joint.hpp"
+#include "proofmass/estimate/wheel/joint.hpp"
+#include "proofmass/estimate/wheel/live_filter.hpp"
+#include "proofmass/estimate/wheel/live_instants.hpp"
+#include "proofmass/estimate/wheel/live_start.hpp"
 
 namespace proofmass::estimate {
 namespace {

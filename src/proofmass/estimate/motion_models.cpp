@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "proofmass/estimate/bias_models.hpp"
+#include "proofmass/estimate/models/bias_models.hpp"
 
 namespace proofmass::estimate {
 namespace {

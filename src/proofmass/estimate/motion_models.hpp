@@ -1,6 +1,6 @@
 #pragma once
 
-#include "proofmass/estimate/linear_gaussian.hpp"
+#include "proofmass/estimate/filter/linear_gaussian.hpp"
 
 // Motion along one axis, measured by an accelerometer.
 namespace proofmass::estimate {

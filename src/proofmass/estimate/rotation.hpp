@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "proofmass/estimate/gaussian.hpp"
+#include "proofmass/estimate/filter/gaussian.hpp"
 
 // Rotations in space; depends on Eigen/Core only.
 namespace proofmass::estimate {

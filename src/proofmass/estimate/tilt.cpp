@@ -2,11 +2,11 @@
 
 #include <string>
 
-#include "proofmass/estimate/tilt_instants.hpp"
-#include "proofmass/estimate/tilt_motion.hpp"
-#include "proofmass/estimate/tilt_record.hpp"
-#include "proofmass/estimate/tilt_rest_search.hpp"
-#include "proofmass/estimate/tilt_still.hpp"
+#include "proofmass/estimate/tilt/instants.hpp"
+#include "proofmass/estimate/tilt/motion.hpp"
+#include "proofmass/estimate/tilt/record.hpp"
+#include "proofmass/estimate/tilt/rest_search.hpp"
+#include "proofmass/estimate/tilt/still.hpp"
 
 namespace proofmass::estimate {
 namespace {

@@ -11,7 +11,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/consistency.hpp"
-#include "proofmass/estimate/tilt_angles.hpp"
+#include "proofmass/estimate/tilt/angles.hpp"
 #include "proofmass/sensor/gravity.hpp"
 #include "proofmass/sensor/sensor_model.hpp"
 #include "proofmass/signal/rests.hpp"
@@ -107,13 +107,14 @@ struct TiltSolution {
   std::vector<Note> notes;
 };
 
-/// Roll and pitch (tilt_angles.hpp) of a sensor from the direction of gravity.
+/// Roll and pitch (tilt/angles.hpp) of a sensor from the direction of gravity.
 ///
 /// At rest: the mean over each rest. Its variance is that of batch means, which accounts for
 /// correlated noise, plus the sensor file's flicker and random walk over that time, the covariance
-/// of the calibration at that force, and the alignment of the case (tilt_rest.hpp).
+/// of the calibration at that force, and the alignment of the case (tilt/rest.hpp).
 ///
-/// On a moving base: an extended Kalman filter and the fixed-interval smoother (kalman.hpp) over
+/// On a moving base: an extended Kalman filter and the fixed-interval smoother (filter/kalman.hpp)
+/// over
 ///
 ///     g' = exp(−[(ω − b) Δ]×) g,   a' = e^(−Δ/τ) R a + w,   b' = b + w_b,   f = g + a + n,
 ///
@@ -122,7 +123,7 @@ struct TiltSolution {
 /// - g the reaction to gravity in sensor axes, so that no orientation is singular;
 /// - a the acceleration of the base, which rotates in the sensor axes as g does. Its variance rises
 ///   with the square of the recent departure of the force from a mean that rotates with the sensor
-///   (tilt_accel.hpp), so the accelerometer is down-weighted while the base is shaken;
+///   (tilt/accel.hpp), so the accelerometer is down-weighted while the base is shaken;
 /// - ω measured by the gyroscope. Without one, ω is that of a great circle, driven by white angular
 ///   acceleration.
 ///

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/tilt_model.hpp"
-#include "proofmass/estimate/tilt_rest.hpp"
+#include "proofmass/estimate/tilt/model.hpp"
+#include "proofmass/estimate/tilt/rest.hpp"
 #include "proofmass/estimate/tilt_test_support.hpp"
 
 namespace proofmass::estimate::tilt_test {

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/track_carried.hpp"
-#include "proofmass/estimate/track_findings.hpp"
-#include "proofmass/estimate/track_hypotheses.hpp"
-#include "proofmass/estimate/track_pva.hpp"
-#include "proofmass/estimate/track_settle.hpp"
-#include "proofmass/estimate/track_strokes.hpp"
-#include "proofmass/estimate/track_turns.hpp"
+#include "proofmass/estimate/track/carried.hpp"
+#include "proofmass/estimate/track/findings.hpp"
+#include "proofmass/estimate/track/hypotheses.hpp"
+#include "proofmass/estimate/track/pva.hpp"
+#include "proofmass/estimate/track/settle.hpp"
+#include "proofmass/estimate/track/strokes.hpp"
+#include "proofmass/estimate/track/turns.hpp"
 
 namespace proofmass::estimate {
 namespace {

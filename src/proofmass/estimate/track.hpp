@@ -61,7 +61,7 @@ struct TimeSpan {
 
 enum class TrackModel {
   inertial,  ///< the acceleration is known input between stops
-  pva,       ///< it is a measured state driven by white jerk: see track_pva.hpp
+  pva,       ///< it is a measured state driven by white jerk: see track/pva.hpp
   fused,     ///< as pva, measured by several accelerometers
 };
 

@@ -9,9 +9,9 @@
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/linalg.hpp"
-#include "proofmass/estimate/tune_interval.hpp"
-#include "proofmass/estimate/tune_problem.hpp"
-#include "proofmass/estimate/tune_start.hpp"
+#include "proofmass/estimate/tune/interval.hpp"
+#include "proofmass/estimate/tune/problem.hpp"
+#include "proofmass/estimate/tune/start.hpp"
 
 namespace proofmass::estimate {
 namespace {

@@ -11,7 +11,7 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/estimate/consistency.hpp"
-#include "proofmass/estimate/tune_model.hpp"
+#include "proofmass/estimate/tune/model.hpp"
 
 // Noise parameters of a filter's model, estimated from the recording to be filtered.
 namespace proofmass::estimate {

@@ -6,7 +6,7 @@
 
 #include "proofmass/core/view.hpp"
 #include "proofmass/estimate/tune.hpp"
-#include "proofmass/estimate/tune_model.hpp"
+#include "proofmass/estimate/tune/model.hpp"
 #include "proofmass/signal/rests.hpp"
 
 // Which model suits a recording, and which of its samples to tune it on.

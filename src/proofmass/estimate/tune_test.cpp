@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "proofmass/core/random.hpp"
-#include "proofmass/estimate/tune_problem.hpp"
+#include "proofmass/estimate/tune/problem.hpp"
 
 namespace proofmass::estimate::tune_test {
 namespace {

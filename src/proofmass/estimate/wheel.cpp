@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/wheel_findings.hpp"
-#include "proofmass/estimate/wheel_joint.hpp"
-#include "proofmass/estimate/wheel_plain.hpp"
-#include "proofmass/estimate/wheel_plane.hpp"
+#include "proofmass/estimate/wheel/findings.hpp"
+#include "proofmass/estimate/wheel/joint.hpp"
+#include "proofmass/estimate/wheel/plain.hpp"
+#include "proofmass/estimate/wheel/plane.hpp"
 
 namespace proofmass::estimate {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "proofmass/estimate/wheel.hpp"
 
-// Test recordings of wheels, by kinematics in the complex plane, independent of wheel_model.hpp.
+// Test recordings of wheels, by kinematics in the complex plane, independent of wheel/model.hpp.
 namespace proofmass::estimate::test {
 
 constexpr double pi = std::numbers::pi;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "proofmass/core/result.hpp"
-#include "proofmass/io/parquet_table.hpp"
+#include "proofmass/io/parquet/table.hpp"
 
 // A verb's JSON document as rows of a table.
 namespace proofmass::fleet {

@@ -9,7 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "proofmass/io/parquet_table.hpp"
+#include "proofmass/io/parquet/table.hpp"
 
 namespace proofmass::fleet {
 namespace {

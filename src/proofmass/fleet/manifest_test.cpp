@@ -5,7 +5,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
-#include "proofmass/io/parquet_table.hpp"
+#include "proofmass/io/parquet/table.hpp"
 
 namespace proofmass::fleet::manifest_test {
 namespace {

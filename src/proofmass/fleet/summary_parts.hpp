@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "proofmass/fleet/summary.hpp"
-#include "proofmass/report/page.hpp"
+#include "proofmass/report/page/page.hpp"
 
 // Parts of the description of a summary.
 namespace proofmass::fleet {

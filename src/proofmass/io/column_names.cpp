@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "proofmass/io/csv_columns.hpp"
+#include "proofmass/io/csv/columns.hpp"
 
 namespace proofmass::io {
 namespace {

@@ -8,7 +8,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
-#include "proofmass/io/csv_header.hpp"
+#include "proofmass/io/csv/header.hpp"
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/io/stamp_reader.hpp"
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string_view>
 
-#include "proofmass/io/byte_source.hpp"
+#include "proofmass/io/bytes/byte_source.hpp"
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/io/table_file.hpp"
 

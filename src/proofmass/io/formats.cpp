@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <array>
 
-#include "proofmass/io/csv_reader.hpp"
+#include "proofmass/io/csv/reader.hpp"
 #include "proofmass/io/foreign_formats.hpp"
-#include "proofmass/io/hdf5_reader.hpp"
-#include "proofmass/io/lvm_reader.hpp"
-#include "proofmass/io/mat_reader.hpp"
-#include "proofmass/io/mcap_reader.hpp"
-#include "proofmass/io/npy_reader.hpp"
-#include "proofmass/io/parquet_reader.hpp"
-#include "proofmass/io/tdms_reader.hpp"
-#include "proofmass/io/wav_reader.hpp"
-#include "proofmass/io/ximu_reader.hpp"
-#include "proofmass/io/zip_reader.hpp"
+#include "proofmass/io/hdf5/reader.hpp"
+#include "proofmass/io/layouts/zip_reader.hpp"
+#include "proofmass/io/lvm/reader.hpp"
+#include "proofmass/io/matlab/mat_reader.hpp"
+#include "proofmass/io/mcap/reader.hpp"
+#include "proofmass/io/numpy/npy_reader.hpp"
+#include "proofmass/io/parquet/reader.hpp"
+#include "proofmass/io/tdms/reader.hpp"
+#include "proofmass/io/wav/reader.hpp"
+#include "proofmass/io/ximu/reader.hpp"
 
 namespace proofmass::io {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "proofmass/io/byte_source.hpp"
+#include "proofmass/io/bytes/byte_source.hpp"
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/io/table_file.hpp"
 

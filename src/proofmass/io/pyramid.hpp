@@ -64,7 +64,7 @@ class PyramidBuilder {
 };
 
 /// Stores a pyramid beside its recording, as "<path>.pyramid.npz", which NumPy opens; see
-/// pyramid_file.hpp for its contents.
+/// pyramid/file.hpp for its contents.
 /// Errors: unreadable (no such file, or not a regular one; cannot be written), unsupported (4 GiB
 /// or more).
 [[nodiscard]] Status store_pyramid(const Pyramid& pyramid, const std::string& recording_path);

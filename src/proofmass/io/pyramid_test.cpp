@@ -9,7 +9,7 @@
 #include <random>
 #include <unistd.h>
 
-#include "proofmass/io/pyramid_file.hpp"
+#include "proofmass/io/pyramid/file.hpp"
 #include "proofmass/io/test_support.hpp"
 
 namespace proofmass::io::pyramid_test {

@@ -6,11 +6,11 @@
 #include <iterator>
 #include <new>
 
-#include "proofmass/io/archive_tables.hpp"
-#include "proofmass/io/byte_source.hpp"
-#include "proofmass/io/finish_recording.hpp"
+#include "proofmass/io/bytes/byte_source.hpp"
 #include "proofmass/io/formats.hpp"
-#include "proofmass/io/open_recording.hpp"
+#include "proofmass/io/layouts/tables.hpp"
+#include "proofmass/io/reading/finish_recording.hpp"
+#include "proofmass/io/reading/open_recording.hpp"
 
 namespace proofmass::io {
 namespace {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "proofmass/io/channel_units.hpp"
-#include "proofmass/io/finish_recording.hpp"
+#include "proofmass/io/reading/channel_units.hpp"
+#include "proofmass/io/reading/finish_recording.hpp"
 #include "proofmass/io/time_base.hpp"
 #include "proofmass/signal/resample.hpp"
 

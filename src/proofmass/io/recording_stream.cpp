@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "proofmass/io/channel_units.hpp"
-#include "proofmass/io/finish_recording.hpp"
-#include "proofmass/io/open_recording.hpp"
-#include "proofmass/io/raw_rows.hpp"
-#include "proofmass/io/running_time.hpp"
+#include "proofmass/io/reading/channel_units.hpp"
+#include "proofmass/io/reading/finish_recording.hpp"
+#include "proofmass/io/reading/open_recording.hpp"
+#include "proofmass/io/reading/raw_rows.hpp"
 #include "proofmass/io/shown_text.hpp"
-#include "proofmass/signal/counter.hpp"
+#include "proofmass/io/time/running_time.hpp"
+#include "proofmass/signal/resample/counter.hpp"
 
 namespace proofmass::io {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
-#include "proofmass/io/wording.hpp"
+#include "proofmass/io/text/wording.hpp"
 
 namespace proofmass::io {
 namespace {

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <tuple>
 
-#include "proofmass/io/channel_units.hpp"
-#include "proofmass/io/csv_header.hpp"
+#include "proofmass/io/csv/header.hpp"
 #include "proofmass/io/names.hpp"
+#include "proofmass/io/reading/channel_units.hpp"
 
 namespace proofmass::io {
 namespace {

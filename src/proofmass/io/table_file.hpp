@@ -10,7 +10,7 @@
 
 #include "proofmass/core/result.hpp"
 #include "proofmass/io/read_recording.hpp"
-#include "proofmass/io/recording_reader.hpp"
+#include "proofmass/io/reading/recording_reader.hpp"
 
 namespace proofmass::io {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "proofmass/io/running_time.hpp"
+#include "proofmass/io/time/running_time.hpp"
 
 namespace proofmass::io {
 

@@ -50,10 +50,10 @@ struct TimeBaseFound {
 /// preamble.
 ///
 /// - Unit of stamps: from the header, else from their magnitude (stamp_unit.hpp).
-/// - Wraps are unwrapped and invalid stamps corrected (stamps.hpp); gaps and repeats are kept.
+/// - Wraps are unwrapped and invalid stamps corrected (time/stamps.hpp); gaps and repeats are kept.
 /// - The rate is 1 / median interval. If the stamps are rounded to more than 1 % of an interval, it
 ///   is 1 / mean of the intervals within one rounding of the median; if they come in bursts, the
-///   long-run rate (stamp_steps.hpp).
+///   long-run rate (time/stamp_steps.hpp).
 /// - Stamps that equal k / rate to the last bit are dropped: the base is then uniform.
 ///
 /// Equal to RunningTimeBase with all rows at once, except that the rate is determined from all of

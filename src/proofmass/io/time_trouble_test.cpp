@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "proofmass/io/running_time.hpp"
 #include "proofmass/io/test_support.hpp"
+#include "proofmass/io/time/running_time.hpp"
 
 namespace proofmass::io::time_trouble_test {
 namespace {

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 #include <iterator>
 
-#include "proofmass/io/mat_specimens.hpp"
+#include "proofmass/io/matlab/mat_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
-#include "proofmass/io/ximu_specimens.hpp"
+#include "proofmass/io/ximu/specimens.hpp"
 
 namespace proofmass::io::truncation_test {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "proofmass/core/new_file.hpp"
-#include "proofmass/io/output_file.hpp"
-#include "proofmass/io/recording_writers.hpp"
+#include "proofmass/io/bytes/output_file.hpp"
+#include "proofmass/io/reading/recording_writers.hpp"
 
 namespace proofmass::io {
 namespace {

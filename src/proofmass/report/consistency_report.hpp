@@ -6,7 +6,7 @@
 
 #include "proofmass/estimate/consistency.hpp"
 #include "proofmass/report/fields.hpp"
-#include "proofmass/report/page.hpp"
+#include "proofmass/report/page/page.hpp"
 
 // Consistency of a filter, as every estimating verb reports it.
 namespace proofmass::report {

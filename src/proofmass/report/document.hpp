@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "proofmass/report/fields.hpp"
-#include "proofmass/report/page.hpp"
+#include "proofmass/report/page/page.hpp"
 
 namespace proofmass::report {
 

@@ -5,7 +5,7 @@
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/report/inspect_report.hpp"
-#include "proofmass/report/thinning.hpp"
+#include "proofmass/report/page/thinning.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {

@@ -6,7 +6,7 @@
 
 #include "proofmass/core/recording.hpp"
 #include "proofmass/report/document.hpp"
-#include "proofmass/report/figure.hpp"
+#include "proofmass/report/page/figure.hpp"
 #include "proofmass/signal/audit.hpp"
 
 namespace proofmass::report {

@@ -5,7 +5,7 @@
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/version.hpp"
 #include "proofmass/report/json.hpp"
-#include "proofmass/report/page.hpp"
+#include "proofmass/report/page/page.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {

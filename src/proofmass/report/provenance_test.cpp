@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proofmass/report/json.hpp"
-#include "proofmass/report/page.hpp"
+#include "proofmass/report/page/page.hpp"
 
 namespace proofmass::report::provenance_test {
 namespace {

@@ -5,8 +5,8 @@
 #include "proofmass/core/version.hpp"
 #include "proofmass/report/budget_report.hpp"
 #include "proofmass/report/json.hpp"
-#include "proofmass/report/wheel_fake.hpp"
-#include "proofmass/report/wheel_figures.hpp"
+#include "proofmass/report/wheel/fake.hpp"
+#include "proofmass/report/wheel/figures.hpp"
 
 namespace proofmass::report::report_test {
 namespace {

@@ -7,20 +7,20 @@
 #include <nlohmann/json.hpp>
 
 #include "proofmass/report/budget_report.hpp"
-#include "proofmass/report/calibrate_fake.hpp"
+#include "proofmass/report/calibrate/fake.hpp"
 #include "proofmass/report/convert_report.hpp"
-#include "proofmass/report/drift_fake.hpp"
+#include "proofmass/report/drift/fake.hpp"
 #include "proofmass/report/inspect_report.hpp"
 #include "proofmass/report/model_equation_report.hpp"
-#include "proofmass/report/noise_fake.hpp"
+#include "proofmass/report/noise/fake.hpp"
 #include "proofmass/report/recover_report.hpp"
 #include "proofmass/report/rotation_report.hpp"
 #include "proofmass/report/schema_test_support.hpp"
-#include "proofmass/report/tilt_fake.hpp"
-#include "proofmass/report/track_fake.hpp"
-#include "proofmass/report/tumble_fake.hpp"
-#include "proofmass/report/tune_fake.hpp"
-#include "proofmass/report/wheel_fake.hpp"
+#include "proofmass/report/tilt/fake.hpp"
+#include "proofmass/report/track/fake.hpp"
+#include "proofmass/report/tumble/fake.hpp"
+#include "proofmass/report/tune/fake.hpp"
+#include "proofmass/report/wheel/fake.hpp"
 
 namespace proofmass::report::schema_test {
 namespace {

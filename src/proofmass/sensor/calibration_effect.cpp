@@ -13,7 +13,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/sensor/calibration_error.hpp"
-#include "proofmass/sensor/sensor_fields.hpp"
+#include "proofmass/sensor/file/fields.hpp"
 
 namespace proofmass::sensor {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "proofmass/sensor/calibration.hpp"
 #include "proofmass/sensor/calibration_check.hpp"
-#include "proofmass/sensor/sensor_fields.hpp"
-#include "proofmass/sensor/sensor_file_change.hpp"
+#include "proofmass/sensor/file/change.hpp"
+#include "proofmass/sensor/file/fields.hpp"
 
 namespace proofmass::sensor {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "proofmass/sensor/calibration.hpp"
-#include "proofmass/sensor/folder_test_support.hpp"
+#include "proofmass/sensor/file/folder_test_support.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 
 namespace proofmass::sensor::calibration_update_test {

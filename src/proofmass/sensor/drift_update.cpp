@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/sensor/sensor_file_change.hpp"
+#include "proofmass/sensor/file/change.hpp"
 
 namespace proofmass::sensor {
 namespace {

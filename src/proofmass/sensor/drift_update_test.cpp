@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "proofmass/sensor/folder_test_support.hpp"
+#include "proofmass/sensor/file/folder_test_support.hpp"
 #include "proofmass/sensor/noise_update.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 #include "proofmass/sensor/warm_up.hpp"

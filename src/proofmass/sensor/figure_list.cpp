@@ -4,7 +4,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "proofmass/sensor/sensor_fields.hpp"
+#include "proofmass/sensor/file/fields.hpp"
 
 namespace proofmass::sensor {
 

@@ -7,7 +7,7 @@
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/linalg.hpp"
-#include "proofmass/sensor/sensor_fields.hpp"
+#include "proofmass/sensor/file/fields.hpp"
 
 namespace proofmass::sensor {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "proofmass/sensor/folder_test_support.hpp"
+#include "proofmass/sensor/file/folder_test_support.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 
 namespace proofmass::sensor::noise_update_test {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "proofmass/sensor/sensor_fields.hpp"
+#include "proofmass/sensor/file/fields.hpp"
 
 namespace proofmass::sensor::sensor_comparison_test {
 namespace {

@@ -10,7 +10,7 @@
 #include <toml++/toml.h>
 #include <utility>
 
-#include "proofmass/sensor/sensor_fields.hpp"
+#include "proofmass/sensor/file/fields.hpp"
 
 namespace proofmass::sensor {
 namespace {

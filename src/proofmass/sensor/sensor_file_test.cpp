@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include <vector>
 
-#include "proofmass/sensor/sensor_file_change.hpp"
+#include "proofmass/sensor/file/change.hpp"
 
 namespace proofmass::sensor::sensor_file_test {
 namespace {

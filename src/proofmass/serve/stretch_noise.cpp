@@ -1,8 +1,8 @@
 #include "proofmass/serve/stretch_noise.hpp"
 
 #include "proofmass/characterise/noise_analysis.hpp"
-#include "proofmass/report/noise_report.hpp"
-#include "proofmass/report/page_json.hpp"
+#include "proofmass/report/noise/report.hpp"
+#include "proofmass/report/page/json.hpp"
 #include "proofmass/signal/even_grid.hpp"
 
 namespace proofmass::serve {

@@ -104,7 +104,8 @@ struct RecordingAudit {
 ///   adjacent fiftieth of the range; only for channels that a converter's range can clip. If the
 ///   LSB is known, the signal must also run into the rail, because a coarsely quantised crest or a
 ///   static position stays at its extreme for long as well.
-/// - If there is no rail: see range_limit.hpp for limits with noise added afterwards and for soft
+/// - If there is no rail: see audit/range_limit.hpp for limits with noise added afterwards and for
+/// soft
 ///   limits.
 ///
 /// For LSB and clipping of recordings of more than 131 072 samples see running_audit.hpp. Cost: one

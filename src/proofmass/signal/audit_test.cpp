@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "proofmass/signal/audit/value_excerpts.hpp"
 #include "proofmass/signal/channel_audit.hpp"
-#include "proofmass/signal/value_excerpts.hpp"
 
 namespace proofmass::signal::audit_test {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "proofmass/signal/thinned_sample.hpp"
+#include "proofmass/signal/audit/thinned_sample.hpp"
 
 namespace proofmass::signal {
 namespace {

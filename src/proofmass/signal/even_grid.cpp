@@ -6,7 +6,7 @@
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/signal/channel_audit.hpp"
-#include "proofmass/signal/hole_finder.hpp"
+#include "proofmass/signal/resample/hole_finder.hpp"
 
 namespace proofmass::signal {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/signal/event_assembly.hpp"
-#include "proofmass/signal/event_coarse_scales.hpp"
-#include "proofmass/signal/event_fine_scales.hpp"
+#include "proofmass/signal/events/assembly.hpp"
+#include "proofmass/signal/events/coarse_scales.hpp"
+#include "proofmass/signal/events/fine_scales.hpp"
 
 namespace proofmass::signal {
 namespace {

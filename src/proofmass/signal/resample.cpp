@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/signal/counter.hpp"
+#include "proofmass/signal/resample/counter.hpp"
 #include "proofmass/signal/resampler.hpp"
 
 namespace proofmass::signal {

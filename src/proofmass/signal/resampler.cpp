@@ -8,7 +8,7 @@
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/signal/sinc_kernel.hpp"
+#include "proofmass/signal/resample/sinc_kernel.hpp"
 
 namespace proofmass::signal {
 namespace {

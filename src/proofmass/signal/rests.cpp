@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/signal/rest_ends.hpp"
-#include "proofmass/signal/rest_lengths.hpp"
+#include "proofmass/signal/rests/ends.hpp"
+#include "proofmass/signal/rests/lengths.hpp"
 
 namespace proofmass::signal {
 namespace {

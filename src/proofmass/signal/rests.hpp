@@ -31,13 +31,14 @@ struct RestSearch {
 /// Finds the intervals in which a sensor of one to three axes was static, from its noise where the
 /// recording is quietest. In blocks of an eighth of a window:
 ///
-/// 1. The noise is that of the quietest well-filled set of windows (see rest_noise.hpp). If the
+/// 1. The noise is that of the quietest well-filled set of windows (see rests/noise.hpp). If the
 ///    means of its windows vary as much as the samples, as in a hand, on a pendulum or on a turning
 ///    wheel, there is no rest. An oscillation shorter than two blocks counts as vibration.
-/// 2. A rest is at most three times as noisy, which allows for other positions (see rest_runs.hpp).
+/// 2. A rest is at most three times as noisy, which allows for other positions (see
+/// rests/runs.hpp).
 /// 3. Means of adjacent intervals of 1, 2, 4, … blocks up to 16 windows agree within the Allan
 ///    deviation of the rests: a slow rotation is excluded, drift is not.
-/// 4. Ends that are noisier than the rest or deviate from it are removed (rest_ends.hpp). At least
+/// 4. Ends that are noisier than the rest or deviate from it are removed (rests/ends.hpp). At least
 ///    one block is lost next to motion, so a rest has to last four blocks more than shortest_s.
 ///
 /// Neither offsets nor the unit matter. Settling over seconds, if it is as slow as in most of the

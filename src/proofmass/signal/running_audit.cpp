@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/signal/audit_notes.hpp"
-#include "proofmass/signal/counter.hpp"
-#include "proofmass/signal/running_channel.hpp"
-#include "proofmass/signal/timing_audit.hpp"
-#include "proofmass/signal/value_excerpts.hpp"
+#include "proofmass/signal/audit/audit_notes.hpp"
+#include "proofmass/signal/audit/running_channel.hpp"
+#include "proofmass/signal/audit/timing_audit.hpp"
+#include "proofmass/signal/audit/value_excerpts.hpp"
+#include "proofmass/signal/resample/counter.hpp"
 
 namespace proofmass::signal {
 namespace {

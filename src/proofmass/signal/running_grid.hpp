@@ -10,7 +10,7 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/even_grid.hpp"
-#include "proofmass/signal/hole_finder.hpp"
+#include "proofmass/signal/resample/hole_finder.hpp"
 
 namespace proofmass::signal {
 

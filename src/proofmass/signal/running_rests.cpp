@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/signal/recent_blocks.hpp"
-#include "proofmass/signal/rest_blocks.hpp"
-#include "proofmass/signal/rest_ends.hpp"
-#include "proofmass/signal/rest_noise.hpp"
-#include "proofmass/signal/rest_runs.hpp"
+#include "proofmass/signal/rests/blocks.hpp"
+#include "proofmass/signal/rests/ends.hpp"
+#include "proofmass/signal/rests/noise.hpp"
+#include "proofmass/signal/rests/recent_blocks.hpp"
+#include "proofmass/signal/rests/runs.hpp"
 
 namespace proofmass::signal {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/signal/even_grid.hpp"
-#include "proofmass/signal/sinc_kernel.hpp"
+#include "proofmass/signal/resample/sinc_kernel.hpp"
 
 namespace proofmass::signal {
 namespace {

@@ -10,10 +10,10 @@
 namespace proofmass::signal {
 
 /// A series delayed by a fraction of a sample: y_k = x(k − delay), by a windowed sinc
-/// (sinc_kernel.hpp). NaN where one of the two adjacent samples is NaN. Within 32 samples of the
-/// ends and of NaN the remaining weights are normalised. Frequencies up to 0.84 of half the sample
-/// rate are reproduced within 1e-4 of their amplitude. Expects |delay| ≤ 1. Cost: O(N), 64 products
-/// per sample.
+/// (resample/sinc_kernel.hpp). NaN where one of the two adjacent samples is NaN. Within 32 samples
+/// of the ends and of NaN the remaining weights are normalised. Frequencies up to 0.84 of half the
+/// sample rate are reproduced within 1e-4 of their amplitude. Expects |delay| ≤ 1. Cost: O(N), 64
+/// products per sample.
 [[nodiscard]] std::vector<double> delayed(View<double> series, double delay);
 
 /// Corrects the skew of a multiplexer, which samples the channels of a row one after another, the

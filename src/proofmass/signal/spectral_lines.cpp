@@ -5,8 +5,8 @@
 #include <iterator>
 
 #include "proofmass/core/chi_square.hpp"
-#include "proofmass/signal/spectral_background.hpp"
-#include "proofmass/signal/spectral_floor.hpp"
+#include "proofmass/signal/spectrum/background.hpp"
+#include "proofmass/signal/spectrum/floor.hpp"
 
 namespace proofmass::signal {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/signal/lane_fourier.hpp"
+#include "proofmass/signal/spectrum/lane_fourier.hpp"
 
 namespace proofmass::signal {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proofmass/signal/chunk_figures.hpp"
+#include "proofmass/signal/audit/chunk_figures.hpp"
 
 namespace proofmass::signal {
 namespace {

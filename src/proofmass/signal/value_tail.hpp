@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "proofmass/core/view.hpp"
-#include "proofmass/signal/thinned_sample.hpp"
+#include "proofmass/signal/audit/thinned_sample.hpp"
 
 namespace proofmass::signal {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "proofmass/core/chi_square.hpp"
-#include "proofmass/signal/cumulative_periodogram.hpp"
-#include "proofmass/signal/lagged_products.hpp"
+#include "proofmass/signal/spectrum/cumulative_periodogram.hpp"
+#include "proofmass/signal/spectrum/lagged_products.hpp"
 
 namespace proofmass::signal {
 namespace {

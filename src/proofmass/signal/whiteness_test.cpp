@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "proofmass/signal/cumulative_periodogram.hpp"
+#include "proofmass/signal/spectrum/cumulative_periodogram.hpp"
 
 namespace proofmass::signal::whiteness_test {
 namespace {

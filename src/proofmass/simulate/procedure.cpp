@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "proofmass/core/random.hpp"
-#include "proofmass/simulate/bench_sensor.hpp"
-#include "proofmass/simulate/pose_motion.hpp"
-#include "proofmass/simulate/pose_plan.hpp"
-#include "proofmass/simulate/slide_series.hpp"
+#include "proofmass/simulate/procedure/bench_sensor.hpp"
+#include "proofmass/simulate/procedure/pose_motion.hpp"
+#include "proofmass/simulate/procedure/pose_plan.hpp"
+#include "proofmass/simulate/procedure/slide_series.hpp"
 
 namespace proofmass::simulate {
 namespace {

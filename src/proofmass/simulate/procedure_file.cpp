@@ -3,10 +3,10 @@
 #include <array>
 #include <utility>
 
-#include "proofmass/simulate/description.hpp"
-#include "proofmass/simulate/procedure_fields.hpp"
-#include "proofmass/simulate/rig_fields.hpp"
-#include "proofmass/simulate/slide_fields.hpp"
+#include "proofmass/simulate/procedure/fields.hpp"
+#include "proofmass/simulate/procedure/slide_fields.hpp"
+#include "proofmass/simulate/rig/description.hpp"
+#include "proofmass/simulate/rig/fields.hpp"
 
 namespace proofmass::simulate {
 

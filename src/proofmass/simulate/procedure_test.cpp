@@ -6,7 +6,7 @@
 #include <string>
 
 #include "proofmass/sensor/calibration.hpp"
-#include "proofmass/simulate/bench_test_support.hpp"
+#include "proofmass/simulate/rig/bench_test_support.hpp"
 
 namespace proofmass::simulate::procedure_test {
 namespace {

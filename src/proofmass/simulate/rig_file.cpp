@@ -1,7 +1,7 @@
 #include "proofmass/simulate/rig_file.hpp"
 
-#include "proofmass/simulate/description.hpp"
-#include "proofmass/simulate/rig_fields.hpp"
+#include "proofmass/simulate/rig/description.hpp"
+#include "proofmass/simulate/rig/fields.hpp"
 
 namespace proofmass::simulate {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/simulate/perfect_rig.hpp"
+#include "proofmass/simulate/rig/perfect_rig.hpp"
 #include "proofmass/simulate/wheel_motion.hpp"
 
 namespace proofmass::simulate::rig_test {

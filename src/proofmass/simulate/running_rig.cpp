@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "proofmass/simulate/converter.hpp"
-#include "proofmass/simulate/sensor_twin.hpp"
-#include "proofmass/simulate/surroundings.hpp"
+#include "proofmass/simulate/rig/converter.hpp"
+#include "proofmass/simulate/rig/sensor_twin.hpp"
+#include "proofmass/simulate/rig/surroundings.hpp"
 
 namespace proofmass::simulate {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-#include "proofmass/simulate/perfect_rig.hpp"
+#include "proofmass/simulate/rig/perfect_rig.hpp"
 
 namespace proofmass::simulate::running_rig_test {
 namespace {

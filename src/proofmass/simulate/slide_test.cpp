@@ -8,8 +8,8 @@
 #include <string>
 
 #include "proofmass/sensor/calibration.hpp"
-#include "proofmass/simulate/bench_test_support.hpp"
 #include "proofmass/simulate/procedure_file.hpp"
+#include "proofmass/simulate/rig/bench_test_support.hpp"
 
 namespace proofmass::simulate::slide_test {
 namespace {

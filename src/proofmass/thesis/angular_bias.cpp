@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "proofmass/calibrate/tumble_dwells.hpp"
+#include "proofmass/calibrate/tumble/dwells.hpp"
 #include "proofmass/sensor/datasheet.hpp"
 #include "proofmass/simulate/procedure.hpp"
-#include "proofmass/thesis/tumble_parts.hpp"
+#include "proofmass/thesis/bias/tumble_parts.hpp"
 
 namespace proofmass::thesis {
 namespace {

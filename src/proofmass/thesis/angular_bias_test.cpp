@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "proofmass/core/random.hpp"
-#include "proofmass/thesis/bias_scale_limits.hpp"
-#include "proofmass/thesis/tumble_parts.hpp"
+#include "proofmass/thesis/bias/bias_scale_limits.hpp"
+#include "proofmass/thesis/bias/tumble_parts.hpp"
 
 namespace proofmass::thesis::angular_bias_test {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "proofmass/thesis/gain_figures.hpp"
-#include "proofmass/thesis/gain_parts.hpp"
+#include "proofmass/thesis/gain/figures.hpp"
+#include "proofmass/thesis/gain/parts.hpp"
 
 namespace proofmass::thesis {
 

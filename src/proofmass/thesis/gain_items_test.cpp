@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "proofmass/thesis/gain_figures.hpp"
-#include "proofmass/thesis/gain_readings.hpp"
+#include "proofmass/thesis/gain/figures.hpp"
+#include "proofmass/thesis/gain/readings.hpp"
 
 namespace proofmass::thesis::gain_items_test {
 namespace {

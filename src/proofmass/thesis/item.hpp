@@ -6,8 +6,8 @@
 
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/core/units.hpp"
-#include "proofmass/report/figure.hpp"
-#include "proofmass/report/page.hpp"
+#include "proofmass/report/page/figure.hpp"
+#include "proofmass/report/page/page.hpp"
 
 // One table or figure of the thesis compared with ours.
 namespace proofmass::thesis {

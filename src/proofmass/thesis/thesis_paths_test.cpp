@@ -8,9 +8,9 @@
 
 #include "proofmass/core/random.hpp"
 #include "proofmass/core/units.hpp"
-#include "proofmass/estimate/fusion_model.hpp"
 #include "proofmass/estimate/gain_study.hpp"
-#include "proofmass/thesis/wheel_rig.hpp"
+#include "proofmass/estimate/models/fusion_model.hpp"
+#include "proofmass/thesis/wheel/rig.hpp"
 
 namespace proofmass::thesis::thesis_paths_test {
 namespace {

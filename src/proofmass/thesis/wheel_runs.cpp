@@ -4,11 +4,11 @@
 #include <iterator>
 #include <utility>
 
-#include "proofmass/thesis/conclusion_items.hpp"
-#include "proofmass/thesis/speed_items.hpp"
-#include "proofmass/thesis/turning_items.hpp"
-#include "proofmass/thesis/wheel_path_items.hpp"
-#include "proofmass/thesis/wheel_study.hpp"
+#include "proofmass/thesis/motor/speed_items.hpp"
+#include "proofmass/thesis/motor/turning_items.hpp"
+#include "proofmass/thesis/motor/wheel_path_items.hpp"
+#include "proofmass/thesis/wheel/conclusion_items.hpp"
+#include "proofmass/thesis/wheel/study.hpp"
 
 namespace proofmass::thesis {
 

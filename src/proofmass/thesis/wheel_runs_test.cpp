@@ -8,9 +8,9 @@
 #include <string>
 
 #include "proofmass/core/units.hpp"
-#include "proofmass/thesis/first_turn.hpp"
-#include "proofmass/thesis/run_errors.hpp"
-#include "proofmass/thesis/wheel_rig.hpp"
+#include "proofmass/thesis/wheel/first_turn.hpp"
+#include "proofmass/thesis/wheel/rig.hpp"
+#include "proofmass/thesis/wheel/run_errors.hpp"
 
 namespace proofmass::thesis::wheel_runs_test {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "proofmass/core/units.hpp"
-#include "proofmass/report/figure.hpp"
+#include "proofmass/report/page/figure.hpp"
 #include "proofmass/thesis/item.hpp"
-#include "proofmass/thesis/wheel_study.hpp"
+#include "proofmass/thesis/wheel/study.hpp"
 
 // Words, values and curves shared by the wheel's items.
 namespace proofmass::thesis {

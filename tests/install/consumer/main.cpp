@@ -13,7 +13,7 @@
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/fit/curve.hpp"
 #include "proofmass/io/read_recording.hpp"
-#include "proofmass/report/wheel_report.hpp"
+#include "proofmass/report/wheel/report.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 #include "proofmass/signal/audit.hpp"
 #include "proofmass/simulate/rig.hpp"

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/common_flags.hpp"
+
+namespace proofmass::app {
+
+/// Positions of a turntable at rest; or, by a flag, a wheel that turns or the model equation alone.
+struct CalibrateCommand {
+  std::vector<std::string> files;
+  std::string rests;  ///< --rests: list of intervals
+  std::optional<double> shortest_rest_s;
+  bool means = false, keep_suspects = false, six_position = false;
+  std::optional<int> parameters;  ///< 6, 9 or 12
+  std::optional<double> gravity_std_mps2, temperature_c, bias_stability_mg;
+  double orthogonality_std_deg = 0.57, placement_std_deg = 1.0;
+  std::vector<double> supplies_v;
+  std::vector<std::string> type_b, validate;
+  std::size_t monte_carlo = 200;  ///< draws; 0: no check
+  std::string name, serial, date;
+  std::string update_sensor;
+  InputFlags input;
+  OutputFlags output;
+};
+
+/// The verb. Throws Failure.
+void run_calibrate(const CalibrateCommand& command);
+
+}  // namespace proofmass::app

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <exception>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "proofmass/core/result.hpp"
+
+namespace proofmass::app {
+
+/// What the command ends with: docs and scripts rely on these numbers. An interrupt ends it with
+/// 130 (cli/console.hpp).
+enum ExitStatus : int {
+  done = 0,
+  failed = 1,
+  usage = 2,
+  bad_input = 3,
+  bad_device = 4,
+  bad_data = 5,  ///< done, but the data are bad: only with --strict
+};
+
+/// What ends a verb early: main() prints the one line and returns the status.
+class Failure : public std::exception {
+ public:
+  Failure(ExitStatus status, std::string message, std::optional<Errc> code = {})
+      : status_(status), message_(std::move(message)), code_(code) {}
+  [[nodiscard]] ExitStatus status() const { return status_; }
+  /// The code of the library's error that caused it; empty if none did.
+  [[nodiscard]] std::optional<Errc> code() const { return code_; }
+  [[nodiscard]] const char* what() const noexcept override { return message_.c_str(); }
+
+ private:
+  ExitStatus status_;
+  std::string message_;
+  std::optional<Errc> code_;
+};
+
+/// At what an error arose, which decides what it means for the exit status.
+enum class Stage { reading, computing, writing };
+
+[[nodiscard]] ExitStatus status_of(const Error& error, Stage stage);
+
+/// The value, or a Failure.
+template <class T>
+[[nodiscard]] T need(Result<T> result, Stage stage) {
+  if (!result) {
+    const Error& error = result.error();
+    throw Failure(status_of(error, stage), error.message, error.code);
+  }
+  return std::move(result).value();
+}
+
+}  // namespace proofmass::app

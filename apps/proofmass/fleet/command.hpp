@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/common_flags.hpp"
+
+namespace proofmass::app {
+
+inline constexpr const char* fleet_name = "fleet";
+
+/// A verb for many recordings; or, with the verb "summary", what they show together.
+struct FleetCommand {
+  std::string verb;
+  std::string manifest;            ///< a table or a folder of recordings; of summary the results
+  std::vector<std::string> flags;  ///< the verb's, as they were typed
+  std::string into;
+  std::optional<std::size_t> processes;
+  std::optional<double> memory_mb, timeout_s;
+  bool force = false, reports = false;
+  std::string by;                   ///< column: recordings with one value are analysed as one
+  std::string shard;                ///< "2/4"; empty: by the environment
+  std::string dask, program;        ///< the scheduler's address; Proofmass on its workers
+  std::vector<std::string> limits;  ///< `summary`: "white<2e-3"
+  double false_share = 0.05;  ///< `summary`: expected among the sensors reported out of family
+  OutputFlags output;
+};
+
+}  // namespace proofmass::app

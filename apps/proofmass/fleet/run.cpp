@@ -1,0 +1,448 @@
+#include "fleet/run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <thread>
+#include <tuple>
+#include <unistd.h>
+
+#include "cli/command_line.hpp"
+#include "cli/console.hpp"
+#include "cli/exit_status.hpp"
+#include "cli/provenance.hpp"
+#include "cli/run_command.hpp"
+#include "fleet/shard.hpp"
+#include "input/input.hpp"
+#include "proofmass/core/version.hpp"
+#include "proofmass/fleet/driver.hpp"
+#include "proofmass/fleet/figures.hpp"
+#include "proofmass/fleet/pool.hpp"
+#include "proofmass/io/shown_text.hpp"
+#include "proofmass/report/wording.hpp"
+
+namespace proofmass::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using fleet::Entry;
+using fleet::FleetReport;
+using fleet::Job;
+
+constexpr double bytes_per_megabyte = 1e6;
+
+std::size_t processors() {
+  return std::max(1U, std::thread::hardware_concurrency());
+}
+
+double free_memory_mb() {
+  std::ifstream file("/proc/meminfo");
+  constexpr double usual_mb = 2048.0;
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("MemAvailable:")) return std::stod(line.substr(13)) * 1024.0 / 1e6;
+  return usual_mb;
+}
+
+std::string text_in(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// An object in storage; a change of its bytes is not detected.
+bool is_url(const std::string& path) {
+  return path.find("://") != std::string::npos;
+}
+
+std::vector<std::string> files_of_job(const Job& job) {
+  return job.parts.empty() ? std::vector{job.path} : job.parts;
+}
+
+/// One fleet on its way.
+class Run {
+ public:
+  Run(const FleetCommand& command,
+      std::vector<Job> jobs,
+      fleet::Results results,
+      fleet::Shard shard);
+
+  FleetReport finish();
+
+ private:
+  [[nodiscard]] std::vector<std::string> flags_of(const Job& job) const;
+  /// Relative to the folder; and where it is while it is written.
+  [[nodiscard]] static std::string document_of(const Job& job) {
+    return "documents/" + fleet::document_stem(job) + ".json";
+  }
+  [[nodiscard]] std::string part_of(const Job& job) const {
+    return (fs::path(command_.into) /
+            (document_of(job) + ".part-" + std::to_string(report_.shard.i)))
+        .string();
+  }
+  [[nodiscard]] std::vector<std::string> arguments_of(const Job& job) const;
+  [[nodiscard]] bool is_done_already(const Job& job);
+  [[nodiscard]] int run_child(const Job& job) const;
+  [[nodiscard]] Entry entry_of(const Job& job, const fleet::Ended& ended) const;
+  void read_document(const Job& job, Entry& entry) const;
+  [[nodiscard]] bool ended(const fleet::Ended& ended);
+  [[nodiscard]] bool goes_on(std::size_t running);
+  void keep(const Entry& entry);
+  void show(std::size_t running);
+  std::vector<std::size_t> plan();
+  void share_memory();
+  [[nodiscard]] Status run_here(const std::vector<std::size_t>& order);
+  [[nodiscard]] Status run_by_dask(const std::vector<std::size_t>& order);
+  void write_tables();
+
+  const FleetCommand& command_;
+  std::vector<Job> jobs_;
+  std::vector<std::uintmax_t> bytes_;
+  fleet::Results results_;
+  FleetReport report_;
+  std::set<std::size_t> retried_;
+  std::uintmax_t bytes_to_do_ = 0, bytes_done_ = 0;
+  std::size_t to_do_ = 0, ended_ = 0;
+  double memory_mb_ = 0.0;
+  Clock::time_point begun_ = Clock::now();
+  Panel panel_;
+};
+
+Run::Run(const FleetCommand& command,
+         std::vector<Job> jobs,
+         fleet::Results results,
+         fleet::Shard shard)
+    : command_(command),
+      jobs_(std::move(jobs)),
+      results_(std::move(results)),
+      panel_(command.output) {
+  report_.manifest = command.manifest;
+  report_.analysis = command.verb;
+  report_.folder = command.into;
+  report_.jobs = jobs_.size();
+  report_.shard = shard;
+  report_.dask = command.dask;
+  share_memory();
+  for (const Job& job : jobs_) {
+    std::uintmax_t bytes = 0;
+    for (const std::string& file : files_of_job(job)) {
+      std::error_code problem;
+      const std::uintmax_t size = fs::file_size(file, problem);
+      if (!problem) bytes += size;
+    }
+    bytes_.push_back(bytes);
+  }
+}
+
+// Among the processes here; a worker's is its own business unless --memory bounds it.
+void Run::share_memory() {
+  constexpr double least_mb = 64.0, share_of_free = 0.75;
+  const bool here = command_.dask.empty();
+  report_.processes = here ? command_.processes.value_or(processors()) : 0;
+  const auto sharers = static_cast<double>(here ? report_.processes : 1);
+  const double all_mb = command_.memory_mb.value_or(here ? share_of_free * free_memory_mb() : 0.0);
+  memory_mb_ = all_mb / sharers;
+  if (memory_mb_ < least_mb && (here || command_.memory_mb))
+    throw Failure(usage, fmt::format("--memory: {} MB for {:.0f} processes: each needs {} at least",
+                                     report::compact(all_mb, 3), sharers, least_mb));
+}
+
+std::vector<std::string> Run::flags_of(const Job& job) const {
+  std::vector<std::string> flags = fleet::merged_flags(command_.flags, job.flags);
+  if (job.parts.empty()) return flags;
+  flags.emplace_back("--as-one");
+  if (!job.starts_s.empty())
+    flags.push_back(fmt::format("--starts={}", fmt::join(job.starts_s, ",")));
+  return flags;
+}
+
+std::vector<std::string> Run::arguments_of(const Job& job) const {
+  const std::string stem = fleet::document_stem(job);
+  const fs::path folder(command_.into);
+  std::vector<std::string> arguments{"proofmass", command_.verb};
+  const std::vector<std::string> files = files_of_job(job), flags = flags_of(job);
+  arguments.insert(arguments.end(), files.begin(), files.end());
+  arguments.insert(arguments.end(), flags.begin(), flags.end());
+  arguments.insert(arguments.end(), {"--quiet", "--json", "-"});
+  if (command_.reports) {
+    arguments.emplace_back("--report");
+    arguments.push_back((folder / "reports" / (stem + ".html")).string());
+  }
+  // A table kept whole is copied by the analysis; a larger one is read in pieces.
+  if (memory_mb_ > 0.0 && (command_.verb == "inspect" || command_.verb == "noise")) {
+    constexpr double copies = 4.0;
+    arguments.emplace_back("--memory");
+    arguments.push_back(fmt::format("{:.0f}", memory_mb_ / copies));
+  }
+  return arguments;
+}
+
+// The same bytes, of sensor files too, the same flags, by this program.
+bool Run::is_done_already(const Job& job) {
+  auto entry = results_.find(job.id());
+  if (command_.force || !entry || entry->verb != command_.verb || entry->flags != flags_of(job) ||
+      entry->parts != job.parts || entry->version != version() ||
+      entry->commit != program_commit() || (!entry->failure.empty() && !entry->is_lasting))
+    return false;
+  const bool has_document =
+      !entry->failure.empty() || fs::exists(fs::path(command_.into) / entry->document);
+  const bool lacks_report = command_.reports && entry->failure.empty() && entry->report.empty();
+  if (!has_document || lacks_report) return false;
+  for (const fleet::InputSum& input : entry->inputs)
+    if (!is_url(input.path) && input.sha256 != sha256_of(input.path)) return false;
+  if (entry->columns != job.columns) {
+    entry->columns = job.columns;
+    keep(*entry);
+  }
+  if (entry->failure.empty())
+    ++report_.skipped;
+  else
+    report_.failed.push_back({job.path, entry->failure});
+  return true;
+}
+
+// What is to be done, largest first.
+std::vector<std::size_t> Run::plan() {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < jobs_.size() && !interruption_waits(); ++k) {
+    if (is_done_already(jobs_[k])) continue;
+    order.push_back(k);
+    bytes_to_do_ += bytes_[k];
+  }
+  std::ranges::stable_sort(order,
+                           [&](std::size_t a, std::size_t b) { return bytes_[a] > bytes_[b]; });
+  to_do_ = order.size();
+  return order;
+}
+
+int Run::run_child(const Job& job) const {
+  std::vector<std::string> arguments = arguments_of(job);
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  return run_command(static_cast<int>(arguments.size()), words.data());
+}
+
+// The last line of the verb's standard error, without the program's name at its beginning.
+std::string last_words(const std::string& words) {
+  constexpr std::string_view name = "proofmass: ";
+  const std::size_t at = words.rfind(name);
+  if (at == std::string::npos) return io::clean_text(words.substr(0, words.find('\n')));
+  const std::size_t from = at + name.size();
+  return words.substr(from, words.find('\n', from) - from);
+}
+
+// The reason without the recording's name at its beginning, which is reported beside it.
+std::string why_it_failed(const Job& job,
+                          const fleet::Ended& ended,
+                          const std::optional<double>& timeout_s) {
+  if (ended.timed_out)
+    return fmt::format("took longer than {} s (--timeout)",
+                       report::compact(timeout_s.value_or(0.0), 4));
+  if (ended.signal != 0)
+    return fmt::format("its process was ended by signal {} ({})", ended.signal,
+                       ::strsignal(ended.signal));
+  std::string words = last_words(ended.words);
+  if (words.starts_with(job.path + ": ")) words.erase(0, job.path.size() + 2);
+  return words.empty() ? fmt::format("ended with status {}", ended.status) : words;
+}
+
+void Run::read_document(const Job& job, Entry& entry) const {
+  const std::string stem = fleet::document_stem(job);
+  entry.document = document_of(job);
+  const std::string path = (fs::path(command_.into) / entry.document).string();
+  std::error_code problem;
+  fs::rename(part_of(job), path, problem);
+  auto found = fleet::rows_of_document(text_in(path));
+  if (!found) {
+    entry.failure = entry.document + ": " + found.error().message;
+    return;
+  }
+  fleet::DocumentRows rows = std::move(found).value();
+  entry.rows = std::move(rows.rows);
+  entry.inputs = std::move(rows.inputs);
+  if (command_.reports) entry.report = "reports/" + stem + ".html";
+}
+
+Entry Run::entry_of(const Job& job, const fleet::Ended& ended) const {
+  Entry entry;
+  entry.verb = command_.verb;
+  entry.path = job.path;
+  entry.own_flags = job.flags;
+  entry.flags = flags_of(job);
+  entry.columns = job.columns;
+  entry.parts = job.parts;
+  entry.version = version();
+  entry.commit = program_commit();
+  entry.seconds = ended.seconds;
+  if (ended.status == done && ended.signal == 0)
+    read_document(job, entry);
+  else
+    entry.failure = why_it_failed(job, ended, command_.timeout_s);
+  if (!entry.failure.empty()) {
+    entry.is_lasting = ended.status == bad_input || ended.status == usage;
+    for (const std::string& file : files_of_job(job))
+      entry.inputs.push_back({file, sha256_of(file)});
+    entry.document.clear();
+    std::error_code problem;
+    fs::remove(fs::path(command_.into) / document_of(job), problem);
+    fs::remove(part_of(job), problem);
+  }
+  return entry;
+}
+
+void Run::keep(const Entry& entry) {
+  Entry stamped = entry;
+  stamped.ended_s =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  const Status added = results_.append(stamped);
+  if (!added) throw Failure(failed, added.error().message);
+}
+
+bool Run::ended(const fleet::Ended& ended) {
+  const Job& job = jobs_[ended.job];
+  report_.busy_s += ended.seconds;
+  const Entry entry = entry_of(job, ended);
+  // What dies, hangs or runs out of memory may do better beside others; what is refused will not.
+  if (!entry.failure.empty() && !entry.is_lasting && retried_.insert(ended.job).second) return true;
+  keep(entry);
+  ++ended_;
+  bytes_done_ += bytes_[ended.job];
+  if (entry.failure.empty()) {
+    ++report_.done;
+  } else {
+    report_.failed.push_back({job.path, entry.failure});
+    panel_.wipe();
+    show_line("failed: " + io::clean_text(job.path + ": " + entry.failure), command_.output);
+  }
+  return false;
+}
+
+void Run::show(std::size_t running) {
+  if (!panel_.is_shown()) return;
+  constexpr double width = 30.0, soonest_s = 2.0;
+  const double share = bytes_to_do_ == 0
+                           ? 0.0
+                           : static_cast<double>(bytes_done_) / static_cast<double>(bytes_to_do_);
+  const double gone_s = std::chrono::duration<double>(Clock::now() - begun_).count();
+  const auto full = static_cast<std::size_t>(share * width);
+  std::string line =
+      fmt::format("[{}{}] {} of {} recordings, {} running, {} failed", std::string(full, '='),
+                  std::string(30 - full, ' '), ended_, to_do_, running, report_.failed.size());
+  if (share > 0.0 && gone_s > soonest_s)
+    line += ", " + report::duration_words(std::ceil(gone_s * (1.0 - share) / share)) + " left";
+  panel_.show({line});
+}
+
+bool Run::goes_on(std::size_t running) {
+  show(running);
+  return !interruption_waits();
+}
+
+void Run::write_tables() {
+  const Status written = fleet::write_tables(command_.into);
+  if (!written) throw Failure(status_of(written.error(), Stage::writing), written.error().message);
+}
+
+Status Run::run_here(const std::vector<std::size_t>& order) {
+  // A child inherits the locks that other threads hold, and nobody who would release them: the
+  // thread that sums up the inputs has to end before the first fork.
+  if (command_.output.invocation) std::ignore = command_.output.invocation->provenance();
+  return fleet::run_pool(
+      order,
+      {.processes = report_.processes,
+       .timeout_s = command_.timeout_s.value_or(0.0),
+       .memory_bytes = static_cast<std::size_t>(memory_mb_ * bytes_per_megabyte)},
+      {.run = [&](std::size_t job) { return run_child(jobs_[job]); },
+       .output = [&](std::size_t job) { return part_of(jobs_[job]); },
+       .ended = [&](const fleet::Ended& one) { return ended(one); },
+       .goes_on = [&](std::size_t running) { return goes_on(running); }});
+}
+
+Status Run::run_by_dask(const std::vector<std::size_t>& order) {
+  ignore_broken_pipes();
+  const char* python = std::getenv("PROOFMASS_PYTHON");
+  const fleet::DriverOptions options{
+      .command = {python == nullptr ? "python3" : python, "-m", "proofmass._dask", command_.dask},
+      .program = command_.program,
+      .timeout_s = command_.timeout_s.value_or(0.0),
+      .memory_bytes = static_cast<std::size_t>(memory_mb_ * bytes_per_megabyte)};
+  const Status ran =
+      fleet::run_driver(order, options,
+                        {.arguments =
+                             [&](std::size_t job) {
+                               std::vector<std::string> words = arguments_of(jobs_[job]);
+                               words.erase(words.begin());  // the program
+                               return words;
+                             },
+                         .output = [&](std::size_t job) { return part_of(jobs_[job]); },
+                         .ended = [&](const fleet::Ended& one) { return ended(one); },
+                         .goes_on = [&](std::size_t running) { return goes_on(running); }});
+  return ran ? ran : Status(ran.error().at("--dask"));
+}
+
+FleetReport Run::finish() {
+  if (command_.reports) fs::create_directories(fs::path(command_.into) / "reports");
+  const std::vector<std::size_t> order = plan();
+  const Status ran = command_.dask.empty() ? run_here(order) : run_by_dask(order);
+  panel_.wipe();
+  write_tables();
+  if (!ran) throw Failure(failed, ran.error().message);
+  report_.elapsed_s = std::chrono::duration<double>(Clock::now() - begun_).count();
+  std::ranges::sort(report_.failed, {}, &fleet::FailedJob::file);
+  if (interruption_waits())
+    show_line(fmt::format("{} of {} recordings are done; the same command goes on from there",
+                          report_.done + report_.skipped + report_.failed.size(), report_.jobs),
+              command_.output);
+  return report_;
+}
+
+// One recording's command line, read to its end: what makes no sense ends the fleet before it
+// begins.
+void check_flags(const FleetCommand& command, const std::vector<std::string>& flags) {
+  for (const std::string& flag : flags)
+    for (const char* one_for_all : {"--output", "-o", "--update-sensor"})
+      if (flag.substr(0, flag.find('=')) == one_for_all)
+        throw Failure(usage, flag + " names one file for all recordings: leave it out");
+  std::vector<std::string> arguments{"proofmass", command.verb, command.manifest};
+  arguments.insert(arguments.end(), flags.begin(), flags.end());
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  [[maybe_unused]] const auto parsed =
+      parse_command_line(static_cast<int>(arguments.size()), words.data());
+}
+
+}  // namespace
+
+FleetReport run_fleet(const FleetCommand& command) {
+  if (command.into.empty())
+    throw Failure(usage, "--into: required: the folder that the results go to");
+  const fleet::Shard shard = parse_shard(command.shard);
+  std::vector<Job> jobs =
+      need(fleet::read_manifest(command.manifest, duckdb_library()), Stage::reading);
+  if (!command.by.empty()) {
+    if (command.verb != "noise") throw Failure(usage, "--by: of noise alone");
+    jobs = need(fleet::grouped_by(jobs, command.by), Stage::reading);
+  }
+  std::set<std::vector<std::string>> seen;
+  for (const Job& job : jobs)
+    if (seen.insert(job.flags).second)
+      check_flags(command, fleet::merged_flags(command.flags, job.flags));
+  if (shard.n > 1) jobs = fleet::shard_of(jobs, shard.i, shard.n);
+  fleet::Results results = need(fleet::Results::open(command.into, shard), Stage::writing);
+  FleetReport report;
+  without_interruption(
+      [&] { report = Run(command, std::move(jobs), std::move(results), shard).finish(); });
+  return report;
+}
+
+}  // namespace proofmass::app

@@ -1,0 +1,126 @@
+#include "input/gyroscope.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+
+#include "proofmass/core/units.hpp"
+
+namespace proofmass::app {
+namespace {
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+bool is_letter(char c) {
+  return std::isalpha(static_cast<unsigned char>(c)) != 0;
+}
+
+// The word that names the kind of sensor, in the order in which they are looked for.
+constexpr std::array<std::string_view, 14> kinds{"accelerometer",
+                                                 "acceleration",
+                                                 "accel",
+                                                 "acc",
+                                                 "angular velocity",
+                                                 "angular rate",
+                                                 "angularrate",
+                                                 "angularvelocity",
+                                                 "gyroscope",
+                                                 "gyro",
+                                                 "gyr",
+                                                 "omega",
+                                                 "rate",
+                                                 "linear "};
+
+// A name with its kind of sensor and its axis taken out: "imu_gyr_x" is "imu_?_?" of axis x.
+struct AxisOf {
+  std::string sensor;
+  std::size_t axis = 3;  // 3: none
+};
+
+// The last x, y or z that is no part of a longer word, after its kind is gone: "gx", "wx" too.
+AxisOf axis_of(const std::string& name) {
+  std::string text = lower(name);
+  for (const std::string_view kind : kinds) {
+    const std::size_t at = text.find(kind);
+    if (at != std::string::npos) text.replace(at, kind.size(), "?");
+  }
+  for (std::size_t i = text.size(); i-- > 0;) {
+    if (text[i] < 'x' || text[i] > 'z') continue;
+    if (i + 1 < text.size() && is_letter(text[i + 1])) continue;
+    std::size_t word = i;
+    while (word > 0 && is_letter(text[word - 1])) --word;
+    const std::string stem = text.substr(word, i - word);
+    if (!stem.empty() && stem != "a" && stem != "g" && stem != "w" && stem != "f") continue;
+    const auto axis = static_cast<std::size_t>(text[i] - 'x');
+    std::string sensor = text.substr(0, word) + text.substr(i + 1);
+    std::erase_if(sensor, [](char c) { return c == '?' || c == '_' || c == ' ' || c == '.'; });
+    return {sensor, axis};
+  }
+  return {};
+}
+
+bool may_be_gyroscope(const Channel& channel) {
+  if (channel.unit.quantity == Quantity::angular_rate) return true;
+  return channel.unit.quantity == Quantity::unknown &&
+         lower(channel.name).find("gyr") != std::string::npos;
+}
+
+struct Gyroscope {
+  std::string sensor;
+  std::array<std::optional<std::size_t>, 3> channels{};
+  [[nodiscard]] bool whole() const { return channels[0] && channels[1] && channels[2]; }
+};
+
+std::vector<Gyroscope> gyroscopes(const Recording& recording) {
+  std::vector<Gyroscope> found;
+  for (std::size_t k = 0; k < recording.channels.size(); ++k) {
+    if (!may_be_gyroscope(recording.channels[k])) continue;
+    const AxisOf of = axis_of(recording.channels[k].name);
+    if (of.axis > 2) continue;
+    auto place = std::ranges::find(found, of.sensor, &Gyroscope::sensor);
+    if (place == found.end()) place = found.insert(found.end(), {of.sensor, {}});
+    if (!place->channels[of.axis]) place->channels[of.axis] = k;
+  }
+  std::erase_if(found, [](const Gyroscope& one) { return !one.whole(); });
+  return found;
+}
+
+}  // namespace
+
+std::optional<GyroscopeChannels> find_gyroscope(const Recording& recording,
+                                                const Triad& accelerometer) {
+  const std::vector<Gyroscope> found = gyroscopes(recording);
+  if (found.empty()) return std::nullopt;
+  const auto first = accelerometer.x ? accelerometer.x : accelerometer.y;
+  const std::size_t any = first ? *first : accelerometer.z.value_or(0);
+  const std::string sensor = axis_of(recording.channels[any].name).sensor;
+  const auto own = std::ranges::find(found, sensor, &Gyroscope::sensor);
+  if (own == found.end() && found.size() > 1) return std::nullopt;
+  const Gyroscope& one = own == found.end() ? found.front() : *own;
+  return GyroscopeChannels{*one.channels[0], *one.channels[1], *one.channels[2]};
+}
+
+std::array<std::vector<double>, 3> rates_radps(const Recording& recording,
+                                               const GyroscopeChannels& channels,
+                                               const std::string& unit_if_unknown,
+                                               std::vector<Note>& notes) {
+  std::array<std::vector<double>, 3> rates;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Channel& channel = recording.channels[channels[axis]];
+    const bool known = channel.unit.quantity == Quantity::angular_rate;
+    const Unit unit = known ? channel.unit : *parse_unit(unit_if_unknown);
+    if (!known && axis == 0)
+      notes.push_back({Severity::warning,
+                       fmt::format("{} and its like: no unit: taken to be {}; --rate-unit says "
+                                   "otherwise",
+                                   channel.name, unit_if_unknown)});
+    rates[axis] = channel.values;
+    for (double& value : rates[axis]) value = unit.si(value);
+  }
+  return rates;
+}
+
+}  // namespace proofmass::app

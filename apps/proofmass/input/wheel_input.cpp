@@ -1,0 +1,115 @@
+#include "input/wheel_input.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <fmt/format.h>
+#include <optional>
+
+#include "cli/console.hpp"
+#include "cli/exit_status.hpp"
+#include "input/gyroscope.hpp"
+#include "input/input.hpp"
+#include "proofmass/sensor/calibration.hpp"
+
+namespace proofmass::app {
+namespace {
+
+constexpr double s_per_ns = 1e-9;
+
+std::optional<std::int64_t> end_ns(const Recording& recording) {
+  if (!recording.time.start_ns) return std::nullopt;
+  return *recording.time.start_ns + static_cast<std::int64_t>(recording.duration_s() / s_per_ns);
+}
+
+// Two recordings are of one clock if their clock's readings overlap.
+bool share_a_clock(const Recording& a, const Recording& b) {
+  const auto &a_start = a.time.start_ns, &b_start = b.time.start_ns;
+  return a_start && b_start && *a_start <= *end_ns(b) && *b_start <= *end_ns(a);
+}
+
+estimate::WheelSensor wheel_sensor(const Recording& recording,
+                                   const Accelerometer& from,
+                                   double begin_s,
+                                   const GyroscopeUse& gyroscope,
+                                   std::vector<Note>& notes) {
+  estimate::WheelSensor sensor;
+  sensor.name = from.name;
+  sensor.time_s.resize(recording.samples());
+  for (std::size_t k = 0; k < sensor.time_s.size(); ++k) {
+    sensor.time_s[k] = begin_s + recording.time.at(k);
+  }
+  const Triad& triad = from.triad;
+  if (triad.axes() < 2) {
+    throw Failure(usage, from.name +
+                             ": one axis only: an accelerometer needs two in the plane of the "
+                             "wheel");
+  }
+  // Of two axes the pair is turned on until the missing one is z, which keeps it right-handed.
+  std::array order{triad.x, triad.y, triad.z};
+  while (order[2] && triad.axes() == 2) std::rotate(order.begin(), order.begin() + 1, order.end());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (order[axis]) sensor.accel_mps2[axis] = recording.channels[*order[axis]].values;
+  }
+  if (!gyroscope.wanted || triad.axes() < 3) return sensor;
+  if (const auto channels = find_gyroscope(recording, triad))
+    sensor.rate_radps = rates_radps(recording, *channels, gyroscope.unit_if_unknown, notes);
+  return sensor;
+}
+
+void keep_notes(const std::vector<Recording>& recordings, std::vector<Note>& notes) {
+  for (const Recording& recording : recordings) {
+    for (const Note& note : recording.notes) {
+      const bool several = recordings.size() > 1;
+      notes.push_back({note.severity, several ? recording.source + ": " + note.text : note.text});
+    }
+  }
+}
+
+}  // namespace
+
+WheelInput wheel_input(const std::vector<std::string>& files,
+                       const InputFlags& flags,
+                       const GyroscopeUse& gyroscope,
+                       const OutputFlags& output) {
+  WheelInput input;
+  std::vector<Recording> recordings;
+  for (const std::string& file : files) {
+    recordings.push_back(load(file, flags, progress_bar(output)));
+    if (recordings.back().time.source == TimeSource::none) {
+      throw Failure(usage, file + ": no time column and no --rate: give --rate HZ or --time NAME");
+    }
+  }
+  const auto models = load_sensors(flags, input.notes);
+  const std::vector<Accelerometer> found = accelerometers(recordings);
+  if (found.size() > 2) {
+    std::string names;
+    for (const Accelerometer& one : found) names += (names.empty() ? "" : ", ") + one.name;
+    throw Failure(usage,
+                  fmt::format("{} accelerometers ({}), expected one or two: choose with --channel",
+                              found.size(), names));
+  }
+  calibrate(models, found, recordings);
+  remove_warm_up(flags, models, found, recordings, input.notes);
+  keep_notes(recordings, input.notes);
+  input.clocks_shared =
+      recordings.size() == 1 || share_a_clock(recordings.front(), recordings.back());
+  for (const Accelerometer& one : found) {
+    const Recording& recording = recordings[one.recording];
+    double begin_s = 0.0;
+    if (recordings.size() == 2 && input.clocks_shared) {
+      const std::int64_t first =
+          std::min(*recordings[0].time.start_ns, *recordings[1].time.start_ns);
+      begin_s = static_cast<double>(*recording.time.start_ns - first) * s_per_ns;
+    }
+    input.sensors.push_back(wheel_sensor(recording, one, begin_s, gyroscope, input.notes));
+  }
+  if (!models.empty()) {
+    input.alignment_std_rad = sensor::alignment_std_rad(models.front()).value_or(0.0);
+    if (const auto& bandwidth = models.front().electrical.bandwidth[0])
+      input.bandwidth_hz = bandwidth->value;
+  }
+  return input;
+}
+
+}  // namespace proofmass::app

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/common_flags.hpp"
+#include "proofmass/core/recording.hpp"
+#include "proofmass/estimate/wheel.hpp"
+
+// From one or two recordings of a turning wheel to its accelerometers.
+namespace proofmass::app {
+
+struct WheelInput {
+  std::vector<estimate::WheelSensor> sensors;
+  bool clocks_shared = true;
+  double alignment_std_rad = 0.0;
+  std::optional<double> bandwidth_hz{};  ///< of the sensor file
+  std::vector<Note> notes;
+};
+
+/// What is done with the channels of a gyroscope.
+struct GyroscopeUse {
+  bool wanted = true;
+  std::string unit_if_unknown = "rad/s";
+};
+
+/// One or two accelerometers of one run, calibrated and in m/s^2, with the gyroscopes beside them.
+/// Throws Failure.
+[[nodiscard]] WheelInput wheel_input(const std::vector<std::string>& files,
+                                     const InputFlags& flags,
+                                     const GyroscopeUse& gyroscope,
+                                     const OutputFlags& output);
+
+}  // namespace proofmass::app

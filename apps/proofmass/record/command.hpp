@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "cli/common_flags.hpp"
+
+namespace proofmass::app {
+
+/// Of `record`: a procedure that a person is led through, and what is made of it.
+struct GuideFlags {
+  std::string procedure;                 ///< tumble, multi-position or static; empty: none
+  std::optional<std::size_t> positions;  ///< --positions
+  std::optional<double> target_std_mg;   ///< --target-std
+  std::optional<double> minutes;         ///< --minutes, of static
+  std::string update_sensor;             ///< of the verb that follows
+};
+
+/// Live samples to disk; or, with `list`, what is there to record from.
+struct RecordCommand {
+  std::string source;
+  bool list = false;
+  std::optional<double> duration_s, rotate_s, rotate_mb;
+  std::string trigger;  ///< "acc_x > 2"
+  double trigger_before_s = 1.0, trigger_after_s = 1.0;
+  bool reconnect = false;
+  double stall_s = 2.0, stall_end_s = 30.0;
+  std::string estimate;  ///< wheel, track or tilt; empty: none
+  GuideFlags guide;
+  std::optional<double> lag_s, radius_m, bandwidth_hz;
+  std::string axis;  ///< of the wheel's axle, or of the motion
+  InputFlags input;  ///< rate, unit, channels, sensors, supply and gravity
+  OutputFlags output;
+};
+
+}  // namespace proofmass::app

@@ -1,0 +1,125 @@
+#include "record/live_estimate.hpp"
+
+#include <utility>
+
+#include "cli/exit_status.hpp"
+#include "input/accel_figures.hpp"
+#include "input/gyroscope.hpp"
+#include "input/input.hpp"
+#include "proofmass/estimate/live_tilt.hpp"
+#include "proofmass/estimate/live_track.hpp"
+#include "proofmass/estimate/live_wheel.hpp"
+#include "proofmass/sensor/calibration.hpp"
+
+namespace proofmass::app {
+namespace {
+
+using sensor::CalibratedBlocks;
+using Made = Result<std::unique_ptr<LiveAnalysis>>;
+
+// An analysis of samples that are calibrated on their way to it.
+class Calibrated final : public LiveAnalysis {
+ public:
+  Calibrated(CalibratedBlocks samples, std::unique_ptr<LiveAnalysis> analysis)
+      : samples_(std::move(samples)), analysis_(std::move(analysis)) {}
+
+  [[nodiscard]] const std::vector<Channel>& columns() const override {
+    return analysis_->columns();
+  }
+  [[nodiscard]] Status add(const Block& samples, Rows& out) override {
+    const Result<Block> calibrated = samples_.apply(samples);
+    if (!calibrated) return calibrated.error();
+    return analysis_->add(*calibrated, out);
+  }
+  [[nodiscard]] Status finish(Rows& out) override { return analysis_->finish(out); }
+  [[nodiscard]] std::vector<Note> take_notes() override { return analysis_->take_notes(); }
+
+ private:
+  CalibratedBlocks samples_;
+  std::unique_ptr<LiveAnalysis> analysis_;
+};
+
+Made make_wheel(const RecordCommand& command, const CalibratedBlocks& samples) {
+  estimate::LiveWheelOptions options;
+  for (const Accelerometer& one : samples.accelerometers()) options.sensors.push_back(one.triad);
+  options.rate_hz = samples.head().time.rate_hz;
+  if (command.lag_s) options.lag_s = *command.lag_s;
+  options.wheel.gravity_mps2 = gravity_mps2(command.input);
+  options.wheel.radius_m = command.radius_m;
+  options.wheel.bandwidth_hz = command.bandwidth_hz;
+  if (!command.axis.empty()) options.wheel.spin_axis = parse_axis(command.axis);
+  if (!samples.models().empty()) {
+    const sensor::SensorModel& model = samples.models().front();
+    options.wheel.alignment_std_rad = sensor::alignment_std_rad(model).value_or(0.0);
+    if (const auto& bandwidth = model.electrical.bandwidth[0]; bandwidth && !command.bandwidth_hz)
+      options.wheel.bandwidth_hz = bandwidth->value;
+  }
+  return estimate::live_wheel(options);
+}
+
+// The one accelerometer that an estimate other than the wheel's is of.
+const Triad& only_accelerometer(const CalibratedBlocks& samples) {
+  const auto& found = samples.accelerometers();
+  if (found.size() == 1) return found.front().triad;
+  std::string names;
+  for (const Accelerometer& one : found) names += (names.empty() ? "" : ", ") + one.triad.name;
+  throw Failure(usage, "several accelerometers (" + names + "): choose one with --channel");
+}
+
+Made make_tilt(const RecordCommand& command,
+               const CalibratedBlocks& samples,
+               std::vector<Note>& notes) {
+  estimate::LiveTiltOptions options;
+  options.accelerometer = only_accelerometer(samples);
+  if (const auto gyroscope = find_gyroscope(samples.head(), options.accelerometer))
+    options.gyroscope = Triad{"gyroscope", (*gyroscope)[0], (*gyroscope)[1], (*gyroscope)[2]};
+  options.rate_hz = samples.head().time.rate_hz;
+  if (command.lag_s) options.lag_s = *command.lag_s;
+  options.tilt.gravity_mps2 = uncertain_gravity_mps2(command.input, std::nullopt, notes);
+  if (!samples.models().empty()) options.tilt.calibration = samples.models().front().calibration;
+  return estimate::live_tilt(options);
+}
+
+Made make_track(const RecordCommand& command, const CalibratedBlocks& samples) {
+  estimate::LiveTrackOptions options;
+  options.sensor = only_accelerometer(samples);
+  if (!command.axis.empty()) options.axis = parse_axis(command.axis);
+  options.rate_hz = samples.head().time.rate_hz;
+  if (command.lag_s) options.lag_s = *command.lag_s;
+  if (!samples.models().empty()) {
+    const sensor::SensorModel& model = samples.models().front();
+    options.figures = figures_of(model, false);
+    options.scale_std = scale_std_of(model.calibration).value_or(options.scale_std);
+  }
+  return estimate::live_track(options);
+}
+
+Made make_analysis(const RecordCommand& command,
+                   const CalibratedBlocks& samples,
+                   std::vector<Note>& notes) {
+  if (command.estimate == "tilt") return make_tilt(command, samples, notes);
+  if (command.estimate == "track") return make_track(command, samples);
+  return make_wheel(command, samples);
+}
+
+}  // namespace
+
+acquire::MakeAnalysis make_estimate(const RecordCommand& command,
+                                    LiveView& view,
+                                    std::vector<Note>& notes) {
+  if (command.estimate.empty()) return {};
+  return [&](const acquire::SourceHead& head) -> Made {
+    try {
+      CalibratedBlocks samples = calibrated_blocks(command.input, head.recording, notes);
+      auto analysis = make_analysis(command, samples, notes);
+      if (!analysis) return analysis;
+      view.estimating((*analysis)->columns());
+      return std::unique_ptr<LiveAnalysis>(
+          std::make_unique<Calibrated>(std::move(samples), std::move(analysis).value()));
+    } catch (const Failure& failure) {
+      return Error{Errc::invalid_argument, failure.what()};
+    }
+  };
+}
+
+}  // namespace proofmass::app

@@ -1,0 +1,212 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include "proofmass/calibrate/direction_words.hpp"
+#include "proofmass/calibrate/guide/fit.hpp"
+#include "proofmass/calibrate/guide/plan.hpp"
+#include "proofmass/core/units.hpp"
+
+namespace proofmass::calibrate {
+namespace {
+
+constexpr double again_rad = 10.0 * rad_per_deg;  // closer to another counts as that position again
+constexpr double unmoved_rad = 1.5 * rad_per_deg;  // closer to the previous counts as not moved
+
+/// Faces, edges and corners of a cube, in this order.
+std::vector<Eigen::Vector3i> sides() {
+  std::vector<Eigen::Vector3i> out{{0, 0, 1},  {0, 0, -1}, {1, 0, 0},
+                                   {-1, 0, 0}, {0, 1, 0},  {0, -1, 0}};
+  for (const int axes : {2, 3})
+    for (int code = 0; code < 27; ++code) {
+      const Eigen::Vector3i side(1 - code / 9, 1 - code / 3 % 3, 1 - code % 3);
+      if (side.cwiseAbs().sum() == axes) out.push_back(side);
+    }
+  return out;
+}
+
+class MultiPositionPlan final : public GuidePlan {
+ public:
+  explicit MultiPositionPlan(const GuideOptions& options)
+      : options_(options),
+        fewest_(options.positions.value_or(12)),
+        length_(3, options.shortest_rest_s, options.longest_rest_s) {
+    if (options.one_g)
+      reader_ = ForceReader{.correction = Eigen::Matrix3d::Identity() / *options.one_g};
+    choose_next();
+  }
+
+  std::string prompt() const override;
+  std::optional<std::string> refusal(const Eigen::Vector3d& mean) const override;
+  RestVerdict judge(const signal::RunningRests& rests) override;
+  std::vector<GuideStep> take(std::vector<Pose>& poses) override;
+  std::string lost_words(double seconds) override {
+    return fmt::format("It moved after {:.1f} s: lay it down so again, and let go of it.", seconds);
+  }
+  void skip() override {
+    skipped_.push_back(next_up_);
+    choose_next();
+    done_ = next_words_.empty();
+  }
+  bool done() const override { return done_; }
+  std::string place_words(const Eigen::Vector3d& mean) const override {
+    return reader_ ? direction_words(reader_->force(mean)) : "";
+  }
+  std::string off_words(const Eigen::Vector3d& mean) const override;
+
+ private:
+  void choose_next();
+  [[nodiscard]] std::optional<double> std_of_rest() const;
+  [[nodiscard]] std::vector<Eigen::Vector3d> taken() const;
+  [[nodiscard]] std::vector<GuideStep> suspects();
+
+  GuideOptions options_;
+  std::size_t fewest_;
+  RestLength length_;
+  std::vector<Pose> poses_;
+  double noise_dof_ = 0.0;
+  std::optional<ForceReader> reader_;
+  std::optional<GuideFit> fit_;
+  std::vector<Eigen::Vector3d> skipped_;
+  std::vector<std::size_t> told_suspects_;
+  Eigen::Vector3d next_up_ = Eigen::Vector3d::Zero();
+  std::string next_words_;
+  bool done_ = false;
+};
+
+std::string MultiPositionPlan::prompt() const {
+  std::string text =
+      fmt::format("Position {}: {}, and let go of it.", poses_.size() + 1, next_words_);
+  if (fit_ && fit_->has_nine() && poses_.size() >= fewest_)
+    text += fmt::format(" So far readings of 1 g are good to {:.2g} mg; {:.2g} mg is asked for.",
+                        1e3 * fit_->error_g(), 1e3 * options_.target_std_g);
+  return text;
+}
+
+std::optional<std::string> MultiPositionPlan::refusal(const Eigen::Vector3d& mean) const {
+  if (poses_.empty()) return std::nullopt;
+  double nearest = std::numeric_limits<double>::infinity();
+  std::size_t which = 0;
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    double apart = (mean - poses_[k].mean).norm();
+    if (reader_) {
+      const Eigen::Vector3d a = reader_->force(mean), b = reader_->force(poses_[k].mean);
+      apart = std::atan2(a.cross(b).norm(), a.dot(b));
+    }
+    if (apart > nearest) continue;
+    nearest = apart;
+    which = k;
+  }
+  if (!reader_) {
+    // A radian is half the largest possible distance; from the first two no more is known.
+    double widest = 0.0;
+    for (const Pose& one : poses_)
+      for (const Pose& other : poses_) widest = std::max(widest, (one.mean - other.mean).norm());
+    const double noise = std::sqrt(poses_.back().mean_covariance.trace());
+    nearest /= std::max(0.5 * widest, 100.0 * noise);
+  }
+  if (nearest > again_rad) return std::nullopt;
+  if (which + 1 == poses_.size() && nearest < unmoved_rad) return "";
+  return fmt::format("That is pose {} again: turn it further.", which + 1);
+}
+
+RestVerdict MultiPositionPlan::judge(const signal::RunningRests& rests) {
+  const RestVerdict verdict = length_.judge(rests, std_of_rest());
+  if (!verdict.enough) return verdict;
+  length_.keep(rests);
+  noise_dof_ = verdict.dof;
+  return verdict;
+}
+
+std::optional<double> MultiPositionPlan::std_of_rest() const {
+  if (options_.one_g) return 0.5 * options_.target_std_g * *options_.one_g;
+  if (!fit_) return std::nullopt;
+  return 0.5 * options_.target_std_g * fit_->one_g();
+}
+
+std::vector<GuideStep> MultiPositionPlan::take(std::vector<Pose>& poses) {
+  poses_ = poses;
+  fit_ = GuideFit::of(poses_, noise_dof_);
+  if (fit_) reader_ = fit_->reader();
+  choose_next();
+  std::vector<GuideStep> steps = suspects();
+  const bool nine = fit_ && fit_->has_nine();
+  const bool good = nine && poses_.size() >= fewest_ && fit_->error_g() <= options_.target_std_g;
+  const bool most = poses_.size() >= 3 * fewest_ || next_words_.empty();
+  if (!good && !most) return steps;
+  done_ = true;
+  steps.push_back(
+      {GuideKind::enough,
+       fmt::format(
+           "{} positions{}.", poses_.size(),
+           nine ? fmt::format(": readings of 1 g are good to {:.2g} mg by bias, scale and angles",
+                              1e3 * fit_->error_g())
+                : std::string(" do not determine bias, scale and angles"))});
+  return steps;
+}
+
+std::vector<Eigen::Vector3d> MultiPositionPlan::taken() const {
+  std::vector<Eigen::Vector3d> out = skipped_;
+  if (reader_)
+    for (const Pose& pose : poses_) out.push_back(reader_->force(pose.mean).normalized());
+  return out;
+}
+
+void MultiPositionPlan::choose_next() {
+  const std::vector<Eigen::Vector3d> before = taken();
+  next_words_.clear();
+  if (fit_ && fit_->has_nine()) {
+    const NextPose next = fit_->next(before);
+    next_up_ = next.up;
+    next_words_ = next.words;
+    return;
+  }
+  // While the poses' orientations are unknown, the requested ones are assumed.
+  std::size_t unseen = reader_ ? 0 : poses_.size();
+  constexpr double apart_rad = 25.0 * rad_per_deg;
+  for (const Eigen::Vector3i& side : sides()) {
+    const Eigen::Vector3d up = side.cast<double>().normalized();
+    if (unseen > 0) {
+      --unseen;
+      continue;
+    }
+    const bool near = std::ranges::any_of(
+        before, [&](const Eigen::Vector3d& other) { return up.dot(other) > std::cos(apart_rad); });
+    if (near) continue;
+    next_up_ = up;
+    next_words_ = laying_words(side);
+    return;
+  }
+}
+
+std::string MultiPositionPlan::off_words(const Eigen::Vector3d& mean) const {
+  if (!reader_) return "";
+  const Eigen::Vector3d up = reader_->force(mean).normalized();
+  const double off = std::atan2(up.cross(next_up_).norm(), up.dot(next_up_));
+  return fmt::format("{}; {:.0f}° from the next position", direction_words(up), off / rad_per_deg);
+}
+
+std::vector<GuideStep> MultiPositionPlan::suspects() {
+  std::vector<GuideStep> steps;
+  if (!fit_ || !fit_->has_nine()) return steps;
+  for (std::size_t k = 0; k < fit_->poses().size(); ++k) {
+    const bool told = std::ranges::find(told_suspects_, k) != told_suspects_.end();
+    if (!fit_->poses()[k].suspect || told) continue;
+    told_suspects_.push_back(k);
+    steps.push_back(
+        {GuideKind::redo, fmt::format("Pose {} contradicts the others and is left out; it was {}.",
+                                      k + 1, place_words(poses_[k].mean))});
+  }
+  return steps;
+}
+
+}  // namespace
+
+std::unique_ptr<GuidePlan> multi_position_plan(const GuideOptions& options) {
+  return std::make_unique<MultiPositionPlan>(options);
+}
+
+}  // namespace proofmass::calibrate

@@ -1,0 +1,287 @@
+#include "proofmass/characterise/allan/difference_variance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "proofmass/characterise/allan/difference_kernels.hpp"
+#include "proofmass/core/contract.hpp"
+
+namespace proofmass::characterise {
+namespace {
+
+// So short that a chunk and its comparison data stay in the first-level cache.
+constexpr std::size_t chunk = 2048;
+// Minimum number of points of a decimated level for a pass over its factors.
+constexpr std::size_t batch = 256;
+// Interval between subtractions of polynomials invisible to the differences.
+constexpr std::size_t rebase_every = 1 << 16;
+// At most one in this many samples of a term may be missing.
+constexpr std::size_t missing_share = 16;
+
+bool is_modified(Statistic statistic) {
+  return statistic == Statistic::mdev || statistic == Statistic::tdev;
+}
+
+bool overlaps(Statistic statistic) {
+  return statistic != Statistic::adev && statistic != Statistic::hdev;
+}
+
+std::size_t order_of(Statistic statistic) {
+  return statistic == Statistic::adev || statistic == Statistic::oadev ? 2 : 3;
+}
+
+double divisor(Statistic statistic, double m) {
+  if (is_modified(statistic)) return 2.0 * m * m * m * m;
+  return (order_of(statistic) == 2 ? 2.0 : 6.0) * m * m;
+}
+
+// How often a factor may be halved with this many terms per τ.
+std::size_t level_of(std::size_t m, std::size_t least_overlap) {
+  std::size_t level = 0;
+  while (m % 2 == 0 && m / 2 >= least_overlap) {
+    m /= 2;
+    ++level;
+  }
+  return level;
+}
+
+bool all_finite(View<double> samples) {
+  // One infinity or NaN makes the sum of x·0 a NaN; the loop is branch-free with parallel sums.
+  std::array<double, 8> sums{};
+  std::size_t k = 0;
+  for (; k + sums.size() <= samples.size(); k += sums.size())
+    for (std::size_t lane = 0; lane < sums.size(); ++lane) sums[lane] += samples[k + lane] * 0.0;
+  for (; k < samples.size(); ++k) sums[0] += samples[k] * 0.0;
+  return std::accumulate(sums.begin(), sums.end(), 0.0) == 0.0;
+}
+
+double mean_of_finite(View<double> samples) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const double x : samples) {
+    if (!std::isfinite(x)) continue;
+    sum += x;
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+}  // namespace
+
+DifferenceVariances::DifferenceVariances(Statistic statistic,
+                                         View<std::size_t> factors,
+                                         std::size_t least_overlap)
+    : statistic_(statistic), factor_count_(factors.size()) {
+  PM_EXPECTS(statistic <= Statistic::ohdev);
+  levels_.resize(1);
+  for (std::size_t at = 0; at < factors.size(); ++at) {
+    PM_EXPECTS(factors[at] > 0 && (at == 0 || factors[at] > factors[at - 1]));
+    const std::size_t level = overlaps(statistic) ? level_of(factors[at], least_overlap) : 0;
+    if (levels_.size() <= level) levels_.resize(level + 1);
+    const std::size_t spacing = factors[at] >> level;
+    levels_[level].factors.push_back({at, spacing});
+    levels_[level].span = std::max(levels_[level].span, order_of(statistic) * spacing);
+  }
+}
+
+std::size_t DifferenceVariances::stride(Statistic statistic,
+                                        std::size_t m,
+                                        std::size_t least_overlap) {
+  return overlaps(statistic) ? std::size_t{1} << level_of(m, least_overlap) : m;
+}
+
+void DifferenceVariances::add(View<double> samples) {
+  for (std::size_t from = 0; from < samples.size(); from += chunk) {
+    const View<double> part = samples.subspan(from, std::min(chunk, samples.size() - from));
+    samples_ += part.size();
+    if (points_ == 0) begin();
+    if (!started_) offset_ = mean_of_finite(part);
+    if (gap_ == 0 && all_finite(part)) {
+      add_complete(part);
+    } else {
+      std::ranges::for_each(part, [this](double y) { add_one(y); });
+    }
+    process(batch);
+    if (since_rebase_ >= rebase_every) rebase();
+  }
+}
+
+// θ[0], and before it Θ[0].
+void DifferenceVariances::begin() {
+  if (is_modified(statistic_)) append_point();
+  append_point();
+}
+
+void DifferenceVariances::add_complete(View<double> samples) {
+  Level& level = levels_.front();
+  const std::size_t before = level.points.size();
+  level.points.resize(before + samples.size());
+  double* point = level.points.data() + before;
+  // Copies, which stay in registers, as members might alias the target of `point`.
+  double theta = theta_, big_theta = big_theta_;
+  const double offset = offset_;
+  if (is_modified(statistic_)) {
+    for (const double y : samples) *point++ = big_theta += theta += y - offset;
+  } else {
+    for (const double y : samples) *point++ = theta += y - offset;
+  }
+  theta_ = theta;
+  big_theta_ = big_theta;
+  if (missing_ > 0) level.missing.resize(level.points.size(), missing_);
+  level.fresh += samples.size();
+  points_ += samples.size();
+  since_rebase_ += samples.size();
+  last_ = samples.back();
+  started_ = true;
+}
+
+void DifferenceVariances::add_one(double y) {
+  if (!std::isfinite(y)) {
+    ++gap_;
+    return;
+  }
+  if (started_ && gap_ > 0) close_gap(y);
+  gap_ = 0;
+  add_sample(y);
+  last_ = y;
+  started_ = true;
+}
+
+// The samples of a gap, interpolated linearly between its neighbours.
+void DifferenceVariances::close_gap(double next) {
+  // Counting starts with the first missing sample.
+  if (missing_ == 0) {
+    for (Level& level : levels_) level.missing.assign(level.points.size(), 0);
+  }
+  const double step = (next - last_) / static_cast<double>(gap_ + 1);
+  for (std::size_t k = 1; k <= gap_; ++k) {
+    ++missing_;
+    add_sample(last_ + step * static_cast<double>(k));
+    if (k % chunk == 0) process(batch);
+  }
+}
+
+void DifferenceVariances::add_sample(double y) {
+  theta_ += y - offset_;
+  ++since_rebase_;
+  append_point();
+}
+
+void DifferenceVariances::append_point() {
+  Level& level = levels_.front();
+  big_theta_ += theta_;
+  level.points.push_back(is_modified(statistic_) ? big_theta_ : theta_);
+  if (missing_ > 0) level.missing.push_back(missing_);
+  ++level.fresh;
+  ++points_;
+}
+
+// Completes terms with the new points, level after level, once there are enough of them.
+void DifferenceVariances::process(std::size_t worth) {
+  levels_.front().newest = points_ - 1;
+  for (std::size_t k = 0; k < levels_.size(); ++k) {
+    Level& level = levels_[k];
+    if (k > 0 && level.fresh < worth) return;
+    for (Factor& factor : level.factors) take(level, factor, std::size_t{1} << k);
+    if (k + 1 < levels_.size()) decimate(level, levels_[k + 1]);
+    level.fresh = 0;
+    forget(level);
+  }
+}
+
+void DifferenceVariances::decimate(const Level& from, Level& to) const {
+  const std::size_t size = from.points.size();
+  std::size_t e = size - from.fresh;
+  if ((from.newest + 1 - from.fresh) % 2 != 0) ++e;
+  if (e >= size) return;
+  const std::size_t count = (size - e + 1) / 2, before = to.points.size();
+  to.points.resize(before + count);
+  for (std::size_t k = 0; k < count; ++k) to.points[before + k] = from.points[e + 2 * k];
+  if (missing_ > 0) {
+    to.missing.resize(before + count);
+    for (std::size_t k = 0; k < count; ++k) to.missing[before + k] = from.missing[e + 2 * k];
+  }
+  to.newest = from.newest / 2;
+  to.fresh += count;
+}
+
+// Drops points that no later term needs, occasionally.
+void DifferenceVariances::forget(Level& level) {
+  if (level.points.size() < 2 * level.span + 2 * chunk) return;
+  const auto old = static_cast<std::ptrdiff_t>(level.points.size() - level.span);
+  level.points.erase(level.points.begin(), level.points.begin() + old);
+  if (missing_ > 0) level.missing.erase(level.missing.begin(), level.missing.begin() + old);
+}
+
+void DifferenceVariances::take(const Level& level, Factor& factor, std::size_t stride) const {
+  const std::size_t size = level.points.size();
+  const std::size_t span = order_of(statistic_) * factor.spacing;
+  if (level.fresh == 0 || level.newest < span) return;
+  // Of a term that ends at place e, the first point must be there: its number is e + first_number.
+  const std::size_t first_fresh = size - level.fresh;
+  const std::size_t first_number = level.newest + 1 - size;
+  const std::size_t begin = std::max(first_fresh, span > first_number ? span - first_number : 0);
+  if (begin >= size) return;
+  const bool complete = missing_ == 0 || level.missing[size - 1] == level.missing[begin - span];
+  if (complete && overlaps(statistic_)) {
+    factor.sum += squared_differences(level.points.data() + begin - span, factor, size - begin);
+    factor.terms += size - begin;
+    return;
+  }
+  const std::size_t step = overlaps(statistic_) ? 1 : factor.spacing;
+  const std::size_t allowed = span * stride / missing_share;
+  for (std::size_t e = begin + (step - (begin + first_number) % step) % step; e < size; e += step) {
+    if (missing_ > 0 && level.missing[e] - level.missing[e - span] > allowed) continue;
+    factor.sum += squared_differences(level.points.data() + e - span, factor, 1);
+    ++factor.terms;
+  }
+}
+
+double DifferenceVariances::squared_differences(const double* x,
+                                                const Factor& factor,
+                                                std::size_t n) const {
+  return order_of(statistic_) == 2 ? squared_second_differences(x, factor.spacing, n)
+                                   : squared_third_differences(x, factor.spacing, n);
+}
+
+// Differences of order d are invariant to polynomials below that order. These are subtracted from
+// the stored points to keep the integral small for any length and drift of the series.
+void DifferenceVariances::rebase() {
+  const double slope = theta_ / static_cast<double>(since_rebase_);
+  const auto now = static_cast<double>(points_ - 1);
+  for (std::size_t k = 0; k < levels_.size(); ++k) {
+    Level& level = levels_[k];
+    const auto stride = static_cast<double>(std::size_t{1} << k);
+    double number =
+        static_cast<double>(level.newest + 1) - static_cast<double>(level.points.size());
+    for (double& point : level.points) {
+      const double t = number * stride - now;
+      point -= is_modified(statistic_) ? big_theta_ + theta_ * t + slope * t * (t + 1.0) / 2.0
+                                       : theta_ + slope * t;
+      number += 1.0;
+    }
+  }
+  offset_ += slope;
+  theta_ = 0.0;
+  big_theta_ = 0.0;
+  since_rebase_ = 0;
+}
+
+std::vector<PhaseVariance> DifferenceVariances::finish() const {
+  std::vector<PhaseVariance> variances(factor_count_);
+  DifferenceVariances last = *this;
+  if (points_ > 0) last.process(0);
+  for (std::size_t k = 0; k < last.levels_.size(); ++k) {
+    for (const Factor& factor : last.levels_[k].factors) {
+      if (factor.terms == 0) continue;
+      const auto m = static_cast<double>(factor.spacing << k);
+      variances[factor.at] = {
+          factor.sum / (static_cast<double>(factor.terms) * divisor(statistic_, m)), factor.terms};
+    }
+  }
+  return variances;
+}
+
+}  // namespace proofmass::characterise

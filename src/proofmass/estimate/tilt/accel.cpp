@@ -1,0 +1,171 @@
+#include "proofmass/estimate/tilt/accel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/rotation.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+// Averaging time of the force's scatter, in correlation times: long enough that few weights depend
+// on the measurements to which they apply.
+constexpr double memory_times = 60.0, least_memory_s = 2.0, most_memory_s = 20.0;
+// Degrees of freedom of the scatter: the three axes share the error of the running mean and of τ.
+constexpr double effective_dof = 10.0;
+// Lower limit of the acceleration in motion, relative to gravity.
+constexpr double least_accel = 2e-3;
+constexpr double longest_s = 2.0;
+
+// Departures of the force, rotated to one static frame for the autocorrelation.
+struct Departures {
+  std::vector<Mat<3>> vectors;
+  std::vector<double> time_s;
+};
+
+// Lag at which the pooled autocorrelation has fallen to 1/e.
+double correlation_time(const Departures& found, double step_s) {
+  const std::size_t size = found.vectors.size();
+  double zero = 0.0;
+  for (const Mat<3>& v : found.vectors) zero += v.squaredNorm();
+  if (size < 3 || !(zero > 0.0)) return step_s;
+  zero /= static_cast<double>(size);
+  double last = 1.0;
+  const auto most = static_cast<std::size_t>(std::min(longest_s / step_s, 2000.0));
+  for (std::size_t lag = 1; lag <= most && lag < size / 2; ++lag) {
+    double sum = 0.0;
+    for (std::size_t k = lag; k < size; ++k) sum += found.vectors[k].dot(found.vectors[k - lag]);
+    const double r = sum / (static_cast<double>(size - lag) * zero);
+    constexpr double target = 0.36787944117144233;
+    if (r <= target)
+      return step_s * (static_cast<double>(lag) - (target - r) / std::max(last - r, 1e-12));
+    last = r;
+  }
+  return longest_s;
+}
+
+// (tr S⁸)^(1/8): the largest eigenvalue if it dominates, 3^(1/8) times that if all are equal.
+double largest_eigenvalue(const Mat<3, 3>& S) {
+  const double size = S.trace();
+  if (!(size > 0.0)) return 0.0;
+  const Mat<3, 3> once = S / size, twice = once * once, four = twice * twice;
+  return size * std::pow(four.squaredNorm(), 0.125);
+}
+
+BaseAccel base_accel_over(const TiltInstants& instants,
+                          const Mat<3>& rate_bias,
+                          const TiltKnown& known,
+                          double memory_s,
+                          double mean_memory_s) {
+  BaseAccel out;
+  const bool gyroscope = !instants.rate_radps.empty();
+  BaseScatter scatter(memory_s, mean_memory_s, gyroscope);
+  Departures departures;
+  Mat<3, 3> back = Mat<3, 3>::Identity();
+  std::vector<double> steps, differences;
+  const Mat<3>* last = nullptr;
+  const Mat<3, 3> least = square(least_accel * known.gravity_mps2) * Mat<3, 3>::Identity();
+  // The estimate of the first seconds applies from the start on.
+  double early_s = 0.0;
+  for (std::size_t k = 0; k < instants.step_s.size() && early_s < memory_s; ++k) {
+    const double h = instants.step_s[k];
+    early_s += h;
+    scatter.turn(h, gyroscope ? Mat<3>(instants.rate_radps[k] - rate_bias) : Mat<3>::Zero());
+    const Mat<3>& f = instants.force_mps2[k];
+    if (f.allFinite()) scatter.add(f, known.gravity_mps2);
+  }
+  scatter.restart();
+  for (std::size_t k = 0; k < instants.step_s.size(); ++k) {
+    const double h = instants.step_s[k];
+    if (gyroscope) {
+      const Mat<3> rate = instants.rate_radps[k] - rate_bias;
+      if (rate.allFinite()) back = back * rotation_by(Mat<3>(-h * rate)).transpose();
+      scatter.turn(h, rate);
+    } else {
+      scatter.turn(h, Mat<3>::Zero());
+    }
+    const Mat<3>& f = instants.force_mps2[k];
+    if (f.allFinite()) {
+      const auto departure = scatter.add(f, known.gravity_mps2);
+      if (instants.resting[k] == 0) {
+        if (departure.since_s) steps.push_back(*departure.since_s);
+        if (last) differences.push_back((f - *last)(static_cast<Eigen::Index>(k % 3)));
+        departures.vectors.emplace_back(back * departure.mps2);
+      }
+      last = &f;
+    }
+    out.cov_m2ps4.push_back(scatter.covariance(known.gravity_mps2, known.norm_std_mps2) + least);
+  }
+  const double step_s = median(steps).value_or(0.01);
+  out.time_s = std::max(correlation_time(departures, step_s), 0.5 * step_s);
+  out.reading_std_mps2 = std::max(
+      1e-4 * known.gravity_mps2, std::numbers::sqrt2 / 2.0 * robust_std(differences).value_or(0.0));
+  return out;
+}
+
+}  // namespace
+
+void BaseScatter::turn(double step_s, const Mat<3>& rate_radps) {
+  since_s_ += step_s;
+  if (!gyroscope_) return;
+  if (rate_radps.allFinite()) {
+    const Mat<3, 3> R = rotation_by(Mat<3>(-step_s * rate_radps));
+    mean_ = R * mean_;
+    scatter_.sum = R * scatter_.sum * R.transpose();
+  } else {
+    begun_ = false;  // no mean is carried over the gap
+  }
+}
+
+BaseScatter::Departure BaseScatter::add(const Mat<3>& force, double gravity_mps2) {
+  if (!begun_) mean_ = force;
+  mean_ += (1.0 - std::exp(-since_s_ / mean_memory_s_)) * (force - mean_);
+  Departure departure{force - mean_, std::nullopt};
+  const double fade = std::exp(-since_s_ / memory_s_);
+  if (begun_) {
+    scatter_.add(departure.mps2 * departure.mps2.transpose(), fade);
+    departure.since_s = since_s_;
+  }
+  const double off = force.norm() - gravity_mps2;
+  norm_.add(square(off), fade);
+  excess_.add(off, fade);
+  begun_ = true;
+  since_s_ = 0.0;
+  return departure;
+}
+
+Mat<3, 3> BaseScatter::covariance(double gravity_mps2, double norm_std_mps2) const {
+  const Mat<3, 3> one = Mat<3, 3>::Identity(), departed = scatter_.mean();
+  const double along = norm_.mean();
+  if (gyroscope_) return std::max(along, largest_eigenvalue(departed)) * one;
+  if (!(mean_.norm() > 0.0)) return along * one;
+  const Mat<3> up = mean_.normalized();
+  const Mat<3, 3> level = one - up * up.transpose();
+  const Mat<3, 3> across = level * departed * level;
+  const double most = 2.0 * gravity_mps2 * (std::abs(excess_.mean()) + norm_std_mps2);
+  return along * one + std::min(1.0, most / std::max(across.trace(), 1e-12)) * across;
+}
+
+BaseAccel base_accel(const TiltInstants& instants,
+                     const Mat<3>& rate_bias,
+                     const TiltKnown& known,
+                     double mean_memory_s) {
+  const BaseAccel first =
+      base_accel_over(instants, rate_bias, known, least_memory_s, mean_memory_s);
+  const double memory_s = std::clamp(memory_times * first.time_s, least_memory_s, most_memory_s);
+  BaseAccel out = base_accel_over(instants, rate_bias, known, memory_s, mean_memory_s);
+  // The running mean has removed part of the slow component: M/(M + τ) is left.
+  const double taken = 1.0 + out.time_s / mean_memory_s;
+  out.time_s *= taken;
+  // A scatter over so few correlation times follows Student's t; with gyroscope the largest
+  // eigenvalue in all directions is wide enough.
+  const double wider =
+      instants.rate_radps.empty() ? student_t_quantile(0.975, effective_dof) / 1.959964 : 1.0;
+  for (Mat<3, 3>& cov : out.cov_m2ps4) cov *= wider * wider * taken;
+  return out;
+}
+
+}  // namespace proofmass::estimate

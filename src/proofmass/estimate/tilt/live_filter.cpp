@@ -1,0 +1,202 @@
+#include "proofmass/estimate/tilt/live_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/tilt/instants.hpp"
+#include "proofmass/estimate/tilt/motion.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+/// Averaging times of the force's scatter, the base's acceleration: the larger of the two counts,
+/// so that a slow acceleration is not forgotten while it passes through zero.
+constexpr double memory_s = 6.0, long_memory_s = 30.0;
+/// Initial acceleration of the base, in m/s², and its decay time.
+constexpr double unknown_accel_mps2 = 1.0, unknown_fade_s = 2.0;
+/// Averaging time of the reference force, with and without gyroscope.
+constexpr double mean_memory_s = 2.0, free_mean_memory_s = 20.0;
+/// Lower limits of the acceleration, relative to gravity, and of its correlation time.
+constexpr double least_accel = 2e-3, least_time_s = 0.05, longest_time_s = 2.0;
+/// Degrees of freedom of the scatter, as in base_accel().
+constexpr double effective_dof = 10.0;
+/// Initial angular acceleration of a base without gyroscope, rad/s²/√Hz: that of a hand.
+constexpr double free_drive = 1.0;
+/// Interval over which the parallel filters are compared.
+constexpr double predicted_s = 5.0;
+constexpr double apart_s = 0.1;
+
+Mat<3, 3> least_cov(double gravity_mps2) {
+  return square(least_accel * gravity_mps2) * Mat<3, 3>::Identity();
+}
+
+double step_of(const std::vector<LiveInstant>& instants) {
+  return (instants.back().time_s - instants.front().time_s) /
+         static_cast<double>(instants.size() - 1);
+}
+
+/// White noise of one measurement, from the differences of neighbours.
+double difference_std(const std::vector<LiveInstant>& instants, std::size_t vector) {
+  std::vector<double> differences;
+  for (std::size_t k = 1; k < instants.size(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      const double step = instants[k].vectors[vector](i) - instants[k - 1].vectors[vector](i);
+      if (std::isfinite(step)) differences.push_back(step);
+    }
+  return robust_std(differences).value_or(0.0) / std::numbers::sqrt2;
+}
+
+/// Norm of these measurements, if it can be that of gravity.
+double norm_of(const std::vector<LiveInstant>& instants, double gravity_mps2) {
+  std::vector<double> norms;
+  for (const LiveInstant& instant : instants)
+    if (instant.has(0)) norms.push_back(instant.vectors[0].norm());
+  const double usual = median(norms).value_or(gravity_mps2);
+  return std::abs(usual - gravity_mps2) < 0.03 * gravity_mps2 ? usual : gravity_mps2;
+}
+
+std::size_t instants_in(double time_s, double step_s) {
+  return static_cast<std::size_t>(std::max(1L, std::lround(time_s / step_s)));
+}
+
+}  // namespace
+
+void RunningCorrelation::add(const Mat<3>& departure, double weight) {
+  Mat<3>& before = ring_[added_ % ring_.size()];
+  if (added_ >= ring_.size()) {
+    product_ += weight * (departure.dot(before) - product_);
+    square_ += weight * (0.5 * (departure.squaredNorm() + before.squaredNorm()) - square_);
+  }
+  before = departure;
+  ++added_;
+}
+
+double RunningCorrelation::time() const {
+  const double r = square_ > 0.0 ? product_ / square_ : 0.0;
+  return -1.0 / std::log(std::clamp(r, std::exp(-2.0), 0.999));
+}
+
+LiveTiltFilter::LiveTiltFilter(const std::vector<LiveInstant>& first,
+                               const LiveTiltOptions& options)
+    : gyroscope_(options.gyroscope.has_value()),
+      usual_step_s_(step_of(first)),
+      scatter_(memory_s, gyroscope_ ? mean_memory_s : free_mean_memory_s, gyroscope_),
+      long_scatter_(long_memory_s, gyroscope_ ? mean_memory_s : free_mean_memory_s, gyroscope_),
+      correlation_(instants_in(apart_s, usual_step_s_)),
+      apart_s_(static_cast<double>(instants_in(apart_s, usual_step_s_)) * usual_step_s_),
+      window_(instants_in(options.lag_s, usual_step_s_)),
+      times_s_(window_.lag() + 1) {
+  known_.gravity_mps2 = norm_of(first, options.tilt.gravity_mps2.value);
+  known_.rate_bias_std_radps = options.tilt.rate_bias_std_radps;
+  known_.rate_bias_walk_radps_rts = options.tilt.rate_bias_walk_radps_rts;
+  known_.rate_scale_std = options.tilt.rate_scale_std;
+  motion_.gyroscope = gyroscope_;
+  motion_.reading_std_mps2 = std::max(1e-4 * known_.gravity_mps2, difference_std(first, 0));
+  motion_.accel_time_s = least_time_s;
+  motion_.drive = gyroscope_
+                      ? std::clamp(difference_std(first, 1) * std::sqrt(usual_step_s_), 1e-5, 1e-2)
+                      : free_drive;
+  known_.rest_std_mps2.setConstant(motion_.reading_std_mps2);
+  now_.step_s.assign(2, 0.0);
+  now_.force_mps2.assign(2, Mat<3>::Zero());
+  now_.resting.assign(2, 0);
+  now_.accel_cov_m2ps4.assign(2, least_cov(known_.gravity_mps2));
+  if (gyroscope_) now_.rate_radps.assign(2, Mat<3>::Zero());
+  now_.rate_at_radps = now_.rate_radps;
+}
+
+void LiveTiltFilter::read(const LiveInstant& instant) {
+  const double step_s = instants_ == 0 ? 0.0 : instant.time_s - time_s_;
+  time_s_ = instant.time_s;
+  now_.step_s[1] = step_s;
+  now_.force_mps2[1] = instant.vectors[0];
+  if (!gyroscope_) return;
+  const Mat<3>& rate = instant.vectors[1];
+  const Mat<3> before = instants_ == 0 ? rate : now_.rate_at_radps[1];
+  now_.rate_at_radps[1] = rate;
+  now_.rate_radps[1] = rate_over(before, rate, step_s, longest_bridge_s(usual_step_s_));
+}
+
+/// Estimates the base's acceleration from the force up to now.
+void LiveTiltFilter::follow_motion() {
+  const Mat<3> bias = gyroscope_ ? Mat<3>(state_.x.mean.tail<3>()) : Mat<3>::Zero();
+  const Mat<3> rate = gyroscope_ ? Mat<3>(now_.rate_radps[1] - bias) : bias;
+  scatter_.turn(now_.step_s[1], rate);
+  long_scatter_.turn(now_.step_s[1], rate);
+  unknown_ *= std::exp(-now_.step_s[1] / unknown_fade_s);
+  const Mat<3>& f = now_.force_mps2[1];
+  if (!f.allFinite()) return;
+  const auto departure = scatter_.add(f, known_.gravity_mps2);
+  long_scatter_.add(f, known_.gravity_mps2);
+  correlation_.add(departure.mps2, usual_step_s_ / memory_s);
+  double time_s = std::clamp(correlation_.time() * apart_s_, least_time_s, longest_time_s);
+  // As in base_accel(): the statistical uncertainty, and the part removed by the running mean.
+  const double taken = 1.0 + time_s / (gyroscope_ ? mean_memory_s : free_mean_memory_s);
+  const double wider = student_t_quantile(0.975, effective_dof) / 1.959964;
+  motion_.accel_time_s = time_s * taken;
+  const Mat<3, 3> late = scatter_.covariance(known_.gravity_mps2, known_.norm_std_mps2),
+                  long_ago = long_scatter_.covariance(known_.gravity_mps2, known_.norm_std_mps2);
+  now_.accel_cov_m2ps4[1] =
+      wider * wider * taken * (late.trace() > long_ago.trace() ? late : long_ago) +
+      square(unknown_accel_mps2) * unknown_ * Mat<3, 3>::Identity() +
+      least_cov(known_.gravity_mps2);
+}
+
+void LiveTiltFilter::step(const LiveInstant& instant) {
+  read(instant);
+  follow_motion();
+  if (instants_ == 0) {
+    now_.force_mps2[0] = now_.force_mps2[1];
+    now_.accel_cov_m2ps4[0] = now_.accel_cov_m2ps4[1];
+  }
+  const TiltModel model(now_, known_, motion_);
+  if (instants_ == 0) state_ = model.start();
+  advance(model, instants_ == 0 ? 0 : 1, tilt_gate, state_, step_);
+  const double fade = std::exp(-now_.step_s[1] / predicted_s);
+  predicted_ = fade * predicted_ + tilt_log_likelihood(step_, model.accel_readings(1));
+  window_.push(step_);
+  times_s_[instants_ % times_s_.size()] = time_s_;
+  ++instants_;
+  nis_ = step_.count == 0 ? std::numeric_limits<double>::quiet_NaN() : 0.0;
+  for (int i = 0; i < step_.count; ++i)
+    nis_ += step_.updates[static_cast<std::size_t>(i)].nis() / step_.count;
+}
+
+LiveTiltBank::LiveTiltBank(const std::vector<LiveInstant>& first, const LiveTiltOptions& options) {
+  const auto add = [&](double factor) {
+    filters_.push_back(std::make_unique<LiveTiltFilter>(first, options));
+    filters_.back()->turn_more(factor);
+  };
+  add(1.0);
+  if (options.gyroscope) return;
+  add(apart);
+  add(1.0 / apart);
+}
+
+void LiveTiltBank::step(const LiveInstant& instant) {
+  for (const auto& filter : filters_) filter->step(instant);
+  if (filters_.size() == 1 || instant.time_s < next_s_) return;
+  constexpr double every_s = 0.25;
+  next_s_ = instant.time_s + every_s;
+  choose();
+}
+
+void LiveTiltBank::choose() {
+  constexpr double clear = 1.0, least = 0.02, most = 5.0;
+  const auto gain = [this](std::size_t k) {
+    return filters_[k]->predicted() - filters_[0]->predicted();
+  };
+  const double drive = filters_[0]->drive();
+  const bool up = gain(1) > clear && drive < most;
+  if (!up && !(gain(2) > clear && drive > least)) return;
+  // The better filter becomes the middle one, with the two others beside it.
+  const std::size_t better = up ? 1 : 2, other = up ? 2 : 1;
+  const double factor = up ? apart : 1.0 / apart;
+  std::swap(filters_[0], filters_[better]);
+  filters_[better]->turn_more(factor * factor);
+  filters_[other]->turn_more(factor);
+}
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "proofmass/estimate/filter/fixed_lag.hpp"
+#include "proofmass/estimate/live_tilt.hpp"
+#include "proofmass/estimate/tilt/accel.hpp"
+#include "proofmass/estimate/tilt/model.hpp"
+#include "proofmass/estimate/wheel/live_instants.hpp"
+
+// tilt/model.hpp's filter, online.
+namespace proofmass::estimate {
+
+/// Correlation time of the base's acceleration, from the correlation of its departures with those a
+/// tenth of a second before.
+class RunningCorrelation {
+ public:
+  explicit RunningCorrelation(std::size_t instants_apart) : ring_(instants_apart) {}
+  void add(const Mat<3>& departure, double weight);
+  /// In units of the distance, at least one half.
+  [[nodiscard]] double time() const;
+
+ private:
+  std::vector<Mat<3>> ring_;
+  std::size_t added_ = 0;
+  double product_ = 0.0, square_ = 0.0;
+};
+
+class LiveTiltFilter {
+ public:
+  /// Initialised from the first epochs; at least two of them.
+  LiveTiltFilter(const std::vector<LiveInstant>& first, const LiveTiltOptions& options);
+
+  /// Processes one epoch. Does not allocate.
+  void step(const LiveInstant& instant);
+
+  /// Direction of gravity's reaction at the last epoch, m/s².
+  [[nodiscard]] const Gaussian<3>& now() const { return window_.state(0); }
+  /// Gravity's reaction `lag_s` before; null if that is before the first epoch.
+  [[nodiscard]] const Gaussian<3>* lagged() const {
+    return window_.size() > window_.lag() ? &window_.state(window_.lag()) : nullptr;
+  }
+  [[nodiscard]] double lagged_time_s() const { return times_s_[instants_ % times_s_.size()]; }
+  [[nodiscard]] double nis() const { return nis_; }
+
+  /// Scales the assumed strength of the base's rotation from here on.
+  void turn_more(double factor) { motion_.drive *= factor; }
+  [[nodiscard]] double drive() const { return motion_.drive; }
+  /// ln L of the innovations of the last seconds.
+  [[nodiscard]] double predicted() const { return predicted_; }
+
+ private:
+  void read(const LiveInstant& instant);
+  void follow_motion();
+
+  bool gyroscope_;
+  double usual_step_s_ = 0.01;
+  TiltInstants now_;  ///< two epochs: 0 the first, 1 any later
+  TiltKnown known_;
+  TiltMotion motion_;
+  BaseScatter scatter_, long_scatter_;
+  double unknown_ = 1.0;  ///< remaining share of the initial uncertainty of the base's acceleration
+  RunningCorrelation correlation_;
+  double apart_s_ = 0.1;
+  FilterState<9> state_;
+  StepOf<TiltModel> step_;
+  FixedLag<9, 3> window_;
+  std::vector<double> times_s_;
+  double time_s_ = 0.0, nis_ = std::numeric_limits<double>::quiet_NaN();
+  std::size_t instants_ = 0;
+  double predicted_ = 0.0;
+};
+
+/// The filter; without gyroscope also two parallel ones that assume √10 times stronger and weaker
+/// rotation of the base. If one of them has predicted the last seconds better, all are shifted.
+class LiveTiltBank {
+ public:
+  LiveTiltBank(const std::vector<LiveInstant>& first, const LiveTiltOptions& options);
+  void step(const LiveInstant& instant);
+  [[nodiscard]] const LiveTiltFilter& best() const { return *filters_.front(); }
+
+ private:
+  static constexpr double apart = 3.1622776601683795;
+  void choose();
+
+  std::vector<std::unique_ptr<LiveTiltFilter>> filters_;  ///< the middle, the stronger, the weaker
+  double next_s_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,221 @@
+#include "proofmass/estimate/tilt/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/filter/relinearised.hpp"
+#include "proofmass/estimate/tilt/rest.hpp"
+#include "proofmass/estimate/tilt/still.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+// Consecutive smoothers, each linearised about the previous path.
+constexpr int gyroscope_passes = 3;
+
+void set(TiltSolution& solution, std::size_t k, const TiltAngles& angles, bool smoothed) {
+  TiltSeries& s = solution.series;
+  const auto put = [k](std::vector<double>& value, std::vector<double>& std,
+                       const std::optional<Uncertain>& angle) {
+    value[k] = angle ? angle->value : no_value;
+    std[k] = angle ? angle->std : no_value;
+  };
+  if (smoothed) {
+    put(s.roll_rad, s.roll_std_rad, angles.roll_rad);
+    put(s.pitch_rad, s.pitch_std_rad, angles.pitch_rad);
+  } else {
+    put(s.filtered_roll_rad, s.filtered_roll_std_rad, angles.roll_rad);
+    put(s.filtered_pitch_rad, s.filtered_pitch_std_rad, angles.pitch_rad);
+  }
+}
+
+}  // namespace
+
+double tilt_log_likelihood(const StepOf<TiltModel>& step, int readings) {
+  double sum = 0.0;
+  for (int i = 0; i < readings; ++i) {
+    const Update<9>& u = step.updates[static_cast<std::size_t>(i)];
+    const double off = std::sqrt(u.nis()), huber = tilt_gate.huber;
+    const double loss = off <= huber ? 0.5 * off * off : huber * (off - 0.5 * huber);
+    sum -= loss + 0.5 * std::log(2.0 * std::numbers::pi * u.expected);
+  }
+  return sum;
+}
+
+double tilt_log_likelihood(const TiltInstants& instants,
+                           const TiltKnown& known,
+                           const TiltMotion& motion) {
+  const TiltModel model(instants, known, motion);
+  FilterState<9> state = model.start();
+  double sum = 0.0;
+  filter(model, 0, model.size(), tilt_gate, state,
+         [&](std::size_t k, const StepOf<TiltModel>& step) {
+           if (instants.resting[k] != 0) return;
+           sum += tilt_log_likelihood(step, model.accel_readings(k));
+         });
+  return sum;
+}
+
+TiltMotion fit_tilt_motion(const TiltInstants& instants,
+                           const TiltKnown& known,
+                           const BaseAccel& accel,
+                           bool gyroscope) {
+  std::vector<double> moving;
+  for (std::size_t k = 0; k < accel.cov_m2ps4.size(); ++k)
+    if (instants.resting[k] == 0) moving.push_back(std::sqrt(accel.cov_m2ps4[k].trace() / 3.0));
+  TiltMotion motion{.gyroscope = gyroscope,
+                    .drive = known.rate_noise_radps_rthz.value_or(usual_rate_noise_radps_rthz),
+                    .accel_std_mps2 = median(moving).value_or(0.0),
+                    .accel_time_s = accel.time_s,
+                    .reading_std_mps2 = accel.reading_std_mps2,
+                    .rest_std_mps2 = known.rest_std_mps2.mean(),
+                    .gravity_mps2 = known.gravity_mps2};
+  if (gyroscope) return motion;
+  double best = -std::numeric_limits<double>::infinity();
+  double found = 1.0;
+  const auto look = [&](double log_drive) {
+    TiltMotion trial = motion;
+    trial.drive = std::exp(log_drive);
+    const double value = tilt_log_likelihood(instants, known, trial);
+    if (value > best) {
+      best = value;
+      found = trial.drive;
+    }
+  };
+  for (int i = -3; i <= 3; ++i) look(1.5 * i);  // 0.011 … 90 rad/s²/√Hz
+  for (const double width : {0.75, 0.375, 0.19}) {
+    const double middle = std::log(found);
+    look(middle - width);
+    look(middle + width);
+  }
+  motion.drive = found;
+  return motion;
+}
+
+Mat<3> rate_bias_of(const TiltInstants& instants,
+                    const TiltKnown& known,
+                    const TiltMotion& motion) {
+  const TiltModel model(instants, known, motion);
+  Mat<3> bias = Mat<3>::Zero();
+  smooth(
+      model, model.start(), tilt_gate, [](std::size_t, const auto&) {},
+      [&](std::size_t k, const auto& step, const Hindsight<9>& later) {
+        if (k == model.size() / 2) bias = later.mean(step.filtered).template tail<3>();
+      });
+  return bias;
+}
+
+namespace {
+
+// The filter's results, epoch by epoch.
+class FilterNotes {
+ public:
+  FilterNotes(const TiltInstants& instants,
+              const TiltModel& model,
+              const ForceSpread& spread,
+              TiltSolution& solution)
+      : instants_(instants),
+        model_(model),
+        spread_(spread),
+        solution_(solution),
+        check_({.channels = {"x", "y", "z"}, .rate_hz = rate_hz(instants)}) {}
+
+  void operator()(std::size_t k, const StepOf<TiltModel>& step) {
+    set(solution_, k,
+        spread_.angles(step.filtered.mean.head<3>(), step.filtered.cov.topLeftCorner<3, 3>()),
+        false);
+    double weight = model_.accel_readings(k) == 0 ? 0.0 : 1.0;
+    std::size_t row = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool read = std::isfinite(instants_.force_mps2[k](static_cast<Eigen::Index>(axis)));
+      if (!read || instants_.resting[k] != 0) check_.miss(axis);
+      if (!read) continue;
+      const Update<9>& u = step.updates[row++];
+      weight = std::min(weight, u.expected / u.variance);
+      if (instants_.resting[k] == 0) check_.add(axis, u.innovation, u.expected, u.used);
+    }
+    solution_.series.weight[k] = static_cast<float>(weight);
+    if (row > 0 && weight < 0.5) ++solution_.told_less;
+  }
+  [[nodiscard]] Consistency judge() const { return check_.judge(); }
+
+ private:
+  static double rate_hz(const TiltInstants& instants) {
+    const double step_s = median(View<double>(instants.step_s).subspan(1)).value_or(1.0);
+    return step_s > 0.0 ? 1.0 / step_s : 1.0;
+  }
+
+  const TiltInstants& instants_;
+  const TiltModel& model_;
+  const ForceSpread& spread_;
+  TiltSolution& solution_;
+  ConsistencyCheck check_;
+};
+
+// Final results, at the last sample.
+void set_final(const Mat<9>& mean,
+               const Mat<9, 9>& cov,
+               const ForceSpread& spread,
+               TiltSolution& solution) {
+  const Mat<3> g = mean.head<3>();
+  const Mat<3, 3> cov_g = cov.topLeftCorner<3, 3>();
+  solution.final = spread.angles(g, cov_g);
+  solution.shares = {.noise = direction_std_rad(g, cov_g),
+                     .calibration = direction_std_rad(g, spread.calibration(g)),
+                     .alignment = direction_std_rad(g, spread.alignment(g))};
+  if (!solution.motion->gyroscope) return;
+  solution.rate_bias_radps.emplace();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Eigen::Index>(6 + i);
+    (*solution.rate_bias_radps)[i] = {mean(row), std::sqrt(cov(row, row))};
+  }
+}
+
+}  // namespace
+
+void run_tilt(const TiltInstants& instants,
+              const TiltKnown& known,
+              const TiltOptions& options,
+              TiltSolution& solution) {
+  TiltMotion& motion = *solution.motion;
+  const TiltModel model(instants, known, motion);
+  Mat<3> rounding = Mat<3>::Zero();
+  for (const TiltRest& rest : solution.rests) rounding = rounding.cwiseMax(rest.rounding_m2ps4);
+  const ForceSpread spread(options, rounding);
+  motion.log_likelihood = tilt_log_likelihood(instants, known, motion);
+  FilterNotes notes(instants, model, spread, solution);
+  std::vector<Mat<9>> path(model.size()), next(model.size());
+  // Without gyroscope the Jacobian is that of a slow rotation: sufficient for filtering, not for
+  // iteration.
+  const int passes = motion.gyroscope ? gyroscope_passes : 1;
+  const auto progress = [&](int pass) {
+    if (options.progress) options.progress("smoothing", static_cast<double>(pass) / passes);
+  };
+  progress(0);
+  const auto keep = [&](int pass) {
+    return [&, pass](std::size_t k, const auto& step, const Hindsight<9>& later) {
+      next[k] = later.mean(step.filtered);
+      if (pass + 1 < passes) return;
+      const Mat<3, 3> cov = later.template cov<3>(step.filtered);
+      set(solution, k, spread.angles(next[k].template head<3>(), cov), true);
+      set_up(solution.series, k, next[k].template head<3>());
+      if (k + 1 == next.size()) set_final(next[k], step.filtered.cov, spread, solution);
+    };
+  };
+  smooth(model, model.start(), tilt_gate, notes, keep(0));
+  for (int pass = 1; pass < passes; ++pass) {
+    progress(pass);
+    path.swap(next);
+    for (Mat<9>& x : path) x.head<3>() *= known.gravity_mps2 / x.head<3>().norm();
+    smooth(
+        detail::LinearAbout<TiltModel>{model, path.data()},
+        model.start_about(path.front().head<3>()), tilt_gate, [](std::size_t, const auto&) {},
+        keep(pass));
+  }
+  solution.consistency = notes.judge();
+}
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,165 @@
+#include "proofmass/estimate/tilt/rest_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "proofmass/core/linalg.hpp"
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/tilt/rest.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+constexpr std::size_t fewest_to_fit = 16;
+
+// Legendre's polynomials up to the fourth, which are orthogonal on [−1, 1].
+Mat<5> legendre(double t) {
+  const double s = t * t;
+  return (Mat<5>() << 1.0, t, 1.5 * s - 0.5, (2.5 * s - 1.5) * t, (4.375 * s - 3.75) * s + 0.375)
+      .finished();
+}
+
+// Mean square residual of one axis about a fourth-degree polynomial, over an interval extended by
+// half its length at either end.
+double left_of_polynomial(View<double> axis, const signal::Rest& rest) {
+  const std::size_t half = (rest.last - rest.first + 1) / 2;
+  const std::size_t from = rest.first - std::min(rest.first, half),
+                    to = std::min(rest.last + half, axis.size() - 1);
+  const auto at = [&](std::size_t k) {
+    return legendre(2.0 * static_cast<double>(k - from) / static_cast<double>(to - from) - 1.0);
+  };
+  Mat<5, 5> normal = Mat<5, 5>::Zero();
+  Mat<5> sums = Mat<5>::Zero();
+  std::optional<double> offset;  // subtracted to keep the squares precise
+  double count = 0.0, squares = 0.0;
+  for (std::size_t k = from; k <= to; ++k)
+    if (std::isfinite(axis[k])) {
+      if (!offset) offset = axis[k];
+      const double value = axis[k] - *offset;
+      const Mat<5> shape = at(k);
+      normal += shape * shape.transpose();
+      sums += value * shape;
+      squares += value * value;
+      count += 1.0;
+    }
+  if (count < static_cast<double>(fewest_to_fit)) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, squares - sums.dot(positive_inverse(normal) * sums)) / count;
+}
+
+// Drift of the level of a sensor at rest: 2 mg, that of a poor MEMS accelerometer over minutes.
+// `sure`: additional standard deviations of a block's mean.
+constexpr double wander_mps2 = 2e-3 * standard_gravity_mps2, sure = 4.0;
+
+// The level of one axis over a rest, block by block; NaN for a block without measurements.
+struct BlockLevels {
+  std::vector<double> means;
+  double room = 0.0;  // allowed departure of a block from the mean of the previous ones
+  double sum = 0.0, count = 0.0;
+
+  void begin() { sum = count = 0.0; }
+  [[nodiscard]] bool stands(std::size_t b) const {
+    return count == 0.0 || !std::isfinite(means[b]) || std::abs(means[b] - sum / count) <= room;
+  }
+  void take(std::size_t b) {
+    if (!std::isfinite(means[b])) return;
+    sum += means[b];
+    count += 1.0;
+  }
+};
+
+// Noise of a block's mean from second differences, which eliminate a steady change, or that of
+// white measurements if larger.
+double noise_of_means(const std::vector<double>& means, double white) {
+  std::vector<double> bends;
+  for (std::size_t b = 2; b < means.size(); ++b)
+    bends.push_back((means[b] - 2.0 * means[b - 1] + means[b - 2]) / std::sqrt(6.0));
+  return std::max(white, robust_std(bends).value_or(0.0));
+}
+
+BlockLevels levels_of(
+    View<double> axis, const signal::Rest& rest, std::size_t block, double noise, double step) {
+  BlockLevels out;
+  for (std::size_t k = rest.first; k + block <= rest.last + 1; k += block) {
+    const Moments here = moments(axis.subspan(k, block));
+    out.means.push_back(here.count > 0 ? here.mean : no_value);
+  }
+  const double white = noise / std::sqrt(static_cast<double>(block));
+  out.room = sure * noise_of_means(out.means, white) + wander_mps2 + step;
+  return out;
+}
+
+// The parts of a rest with constant levels. A block is lost at either side of a cut.
+void add_standing(const signal::Rest& rest,
+                  std::size_t block,
+                  std::size_t shortest,
+                  std::vector<BlockLevels>& axes,
+                  std::vector<signal::Rest>& out) {
+  const std::size_t blocks = axes.front().means.size();
+  std::size_t first = rest.first;
+  const auto add = [&](std::size_t last) {
+    if (last + 1 >= first + shortest) out.push_back({first, last});
+  };
+  for (std::size_t b = 0; b < blocks; ++b) {
+    if (!std::ranges::all_of(axes, [b](const BlockLevels& axis) { return axis.stands(b); })) {
+      const std::size_t cut = rest.first + b * block;
+      if (cut >= first + block) add(cut - block - 1);
+      first = cut + block;
+      for (BlockLevels& axis : axes) axis.begin();
+      continue;
+    }
+    for (BlockLevels& axis : axes) axis.take(b);
+  }
+  add(rest.last);
+}
+
+double usual_rate_hz(const std::vector<double>& time_s) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < time_s.size(); ++k) steps.push_back(time_s[k] - time_s[k - 1]);
+  const double step = median(steps).value_or(0.0);
+  return step > 0.0 ? 1.0 / step : 0.0;
+}
+
+}  // namespace
+
+signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options) {
+  std::vector<View<double>> axes;
+  std::vector<double> steps;
+  const auto converter = converter_steps(record);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (record.accel_mps2[i].empty()) continue;
+    axes.emplace_back(record.accel_mps2[i]);
+    steps.push_back(converter ? (*converter)[i] : 0.0);
+  }
+  signal::RestSearch found = signal::find_rests(
+      axes, {.rate_hz = usual_rate_hz(record.time_s), .shortest_s = options.shortest_rest_s});
+  const std::size_t block = std::max<std::size_t>(1, found.window / 2);
+  std::vector<signal::Rest> standing;
+  for (const signal::Rest& rest : found.rests) {
+    std::vector<BlockLevels> levels;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      levels.push_back(levels_of(axes[i], rest, block, found.noise_std[i], steps[i]));
+    add_standing(rest, block, found.window, levels, standing);
+  }
+  if (!found.rests.empty() && standing.empty())
+    found.why_none = "wherever it is quiet the level changes";
+  found.rests = std::move(standing);
+  return found;
+}
+
+void drop_smooth_rests(const TiltRecord& record, signal::RestSearch& found) {
+  constexpr double edge = 1.5;  // times the noise
+  std::erase_if(found.rests, [&](const signal::Rest& rest) {
+    std::size_t row = 0;
+    for (const auto& axis : record.accel_mps2) {
+      if (axis.empty()) continue;
+      const double noise = found.noise_std[row++];
+      if (left_of_polynomial(axis, rest) > square(edge * noise)) return false;
+    }
+    return true;
+  });
+}
+
+}  // namespace proofmass::estimate

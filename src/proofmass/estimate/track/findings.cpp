@@ -1,0 +1,194 @@
+#include "proofmass/estimate/track/findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace proofmass::estimate {
+namespace {
+
+[[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...) {
+  char buffer[512];
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(buffer, sizeof buffer, format, arguments);
+  va_end(arguments);
+  return buffer;
+}
+
+constexpr double degree = 0.017453292519943295;
+
+void tell_of_rests(const TrackOptions& options, TrackSolution& solution) {
+  auto& notes = solution.notes;
+  if (solution.rests_by_quietness)
+    notes.push_back({Severity::info,
+                     "no noise of a resting sensor to go by (readings of several sensors fused, or "
+                     "smoothed): rests are where it is quiet against the motion"});
+  const bool decided = solution.alternatives.empty() && !solution.too_many_in_doubt;
+  if (solution.cruises > 0 && decided)
+    notes.push_back(
+        {Severity::warning,
+         text("%zu quiet stretches are taken as constant speed instead of rest: the "
+              "velocities integrated up to them cancel, which a tilt or bias would not cause",
+              solution.cruises)});
+  if (solution.plateaus > 0 && decided)
+    notes.push_back({Severity::info,
+                     text("%zu quiet stretches are taken as constant acceleration: the magnitude "
+                          "of the readings differs there from that at rest",
+                          solution.plateaus)});
+  if (solution.false_rests > 0)
+    notes.push_back(
+        {Severity::info,
+         text("%zu short quiet stretches are no rests: velocity and level there are not "
+              "what the motion between the long rests leads to",
+              solution.false_rests)});
+  if (solution.no_motion_shown)
+    notes.push_back(
+        {Severity::info,
+         "no motion stands out of the noise: the interval holds what a slow one between "
+         "the two ends could hide"});
+  else if (solution.rests.size() == 1 && options.fixes.empty())
+    notes.push_back({Severity::warning,
+                     "only one rest: no second one checks the velocity, so that the band rests on "
+                     "what is usual; let the sensor lie still for 2 s at the end too"});
+}
+
+void tell_of_scale(const TrackSignal& signal,
+                   const TrackOptions& options,
+                   TrackSolution& solution) {
+  if (options.scale_std) return;
+  if (signal.resting_norm_mps2 && signal.gravity == GravityContent::present)
+    solution.notes.push_back(
+        {Severity::info,
+         text(
+             "not calibrated: gravity reads %.4g m/s^2 at rest where it is %.4g; lengths are taken "
+             "to be good to %.2g %%",
+             *signal.resting_norm_mps2, options.gravity_mps2, 100.0 * solution.scale_std)});
+  else
+    solution.notes.push_back(
+        {Severity::info, text("not calibrated: the scale of the readings is taken to be good "
+                              "to %.2g %%; --sensor FILE.toml says better",
+                              100.0 * solution.scale_std)});
+}
+
+void tell_of_turning(TrackSolution& solution) {
+  constexpr double noticed_rad = 1.0 * degree;
+  if (solution.turned_rad && *solution.turned_rad > noticed_rad && !solution.axis_in_world)
+    solution.notes.push_back(
+        {Severity::warning,
+         text("between two rests the sensor turned by %.2g deg: gravity leans into the axis, which "
+              "the band holds as far as the rests show it; gyroscope channels would determine it",
+              *solution.turned_rad / degree)});
+}
+
+void tell_of_alternatives(TrackSolution& solution) {
+  if (solution.too_many_in_doubt)
+    solution.notes.push_back(
+        {Severity::bad,
+         "the integrated velocity is far from 0 at more than sixteen quiet stretches: rests cannot "
+         "be distinguished from motion at constant speed, and no displacement is given. State when "
+         "the sensor stood still with --still FILE"});
+  if (solution.alternatives.empty()) return;
+  std::string all;
+  for (const TrackAlternative& one : solution.alternatives) {
+    std::string where;
+    for (const TimeSpan& span : one.no_rests)
+      where += text("%s%.1f to %.1f s", where.empty() ? "" : ", ", span.start_s, span.end_s);
+    all += text("%s%.3g m with probability %.2g (%s)", all.empty() ? "" : "; ",
+                one.displacement_m.value, one.probability,
+                where.empty() ? "all of them rests" : ("under way " + where).c_str());
+  }
+  solution.notes.push_back(
+      {Severity::bad, "rests cannot be distinguished from motion at constant speed: " + all +
+                          "; no displacement is given. State when the sensor stood still with "
+                          "--still FILE, or --rests ends"});
+}
+
+// Errors in motion that are absent at rest are mostly gravity, as the sensor tilts.
+void tell_of_leaning(const TrackOptions& options, TrackSolution& solution) {
+  constexpr double noticed_rad = 1.0 * degree;
+  const MotionErrorFigures& error = solution.motion_error;
+  const double t = std::max(solution.budget.longest_motion_s, 1e-3);
+  const double accel = std::hypot(error.jump_mps2, error.lean_mps2_rthz / std::sqrt(t),
+                                  error.walk_mps2_rts * std::sqrt(t));
+  const double lean_rad = accel / options.gravity_mps2;
+  if (solution.axis_in_world || lean_rad < noticed_rad) return;
+  solution.notes.push_back(
+      {Severity::warning,
+       text("in motion the readings err by some %.2g m/s^2, as if the sensor leaned by %.2g deg: "
+            "the figures are approximate; a gyroscope would resolve it",
+            accel, lean_rad / degree)});
+}
+
+void tell_of_jerk(TrackSolution& solution) {
+  if (!solution.suspected_jerk) return;
+  solution.notes.push_back(
+      {Severity::bad,
+       "the readings behave like the rate of change of an acceleration (jerk), not like an "
+       "acceleration: twice integrated they stay away from 0 while the sensor shakes as if under "
+       "way, and come back to 0 where it rests, as a velocity does; no displacement is given. If "
+       "they are accelerations, --take-as-acceleration says so"});
+}
+
+}  // namespace
+
+Error no_stop(const TrackSignal& signal) {
+  return {Errc::not_observable,
+          (signal.stops.why_none.empty() ? std::string("the sensor never lay still")
+                                         : signal.stops.why_none) +
+              "; without a rest the bias cannot be distinguished from motion: let the sensor lie "
+              "still for "
+              "2 s before and after, say where it stood with --still FILE, or give positions with "
+              "--fixes FILE"};
+}
+
+Error hidden_motion() {
+  return {
+      Errc::not_observable,
+      "nearly all of the recording looks like rest, yet its readings integrate to a velocity far "
+      "beyond what their noise does: slow motion cannot be distinguished from drift; say when the "
+      "sensor "
+      "stood still with --still FILE"};
+}
+
+double scale_std(const TrackSignal& signal,
+                 const TrackOptions& options,
+                 const TrackSolution& solution) {
+  constexpr double unknown = 0.01;
+  if (options.scale_std) return *options.scale_std;
+  if (!signal.resting_norm_mps2 || signal.gravity != GravityContent::present) return unknown;
+  const double upwards =
+      std::max(0.003, std::abs(*signal.resting_norm_mps2 / options.gravity_mps2 - 1.0));
+  double cosine = solution.axis[2];
+  if (!solution.axis_in_world) {
+    cosine = 0.0;
+    for (std::size_t a = 0; a < 3; ++a)
+      cosine += solution.axis[a] * signal.reference_mps2[a] / *signal.resting_norm_mps2;
+  }
+  const double up = std::min(cosine * cosine, 1.0);
+  return std::sqrt(up * upwards * upwards +
+                   (1.0 - up) * std::max(unknown, upwards) * std::max(unknown, upwards));
+}
+
+void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackSolution& solution) {
+  tell_of_jerk(solution);
+  tell_of_alternatives(solution);
+  tell_of_rests(options, solution);
+  tell_of_turning(solution);
+  if (!solution.suspected_jerk) tell_of_leaning(options, solution);
+  tell_of_scale(signal, options, solution);
+  if (solution.missing > 0)
+    solution.notes.push_back(
+        {Severity::warning,
+         text("%zu samples without a reading: straight lines are drawn across them, with the doubt "
+              "of the motion around",
+              solution.missing)});
+  if (solution.travel_share < 0.8 && !solution.axis_given)
+    solution.notes.push_back(
+        {Severity::warning, text("only %.0f %% of the motion is along one axis: the displacement "
+                                 "is that along its longest direction",
+                                 100.0 * solution.travel_share)});
+}
+
+}  // namespace proofmass::estimate

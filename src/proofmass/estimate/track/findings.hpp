@@ -1,0 +1,23 @@
+#pragma once
+
+#include "proofmass/estimate/track/signal.hpp"
+
+// Notes on a track for the user.
+namespace proofmass::estimate {
+
+/// Why no result is possible, and what to record.
+[[nodiscard]] Error no_stop(const TrackSignal& signal);
+
+/// Why the assumed rests may be motion.
+[[nodiscard]] Error hidden_motion();
+
+/// Relative uncertainty of the measurements' scale along the solution's axis: as given; else 1 %,
+/// but along gravity its departure at rest from the expected value, at least 0.3 %.
+[[nodiscard]] double scale_std(const TrackSignal& signal,
+                               const TrackOptions& options,
+                               const TrackSolution& solution);
+
+/// Adds the notes.
+void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackSolution& solution);
+
+}  // namespace proofmass::estimate

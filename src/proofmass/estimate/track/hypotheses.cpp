@@ -1,0 +1,282 @@
+#include "proofmass/estimate/track/hypotheses.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "proofmass/estimate/track/walk.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+double log_normal_density(double x, double std) {
+  return -0.5 * (x * x / (std * std) + std::log(2.0 * std::numbers::pi * std * std));
+}
+
+/// Density of the logarithm of an interval's noise over that of the quietest.
+double log_loudness_density(double log_ratio, QuietStretch kind) {
+  constexpr double same_std = 0.1;
+  const bool rests = kind == QuietStretch::rest;
+  const double same = rests ? 0.75 : 0.3, louder_std = rests ? 0.5 : 0.8;
+  return std::log(same * std::exp(log_normal_density(log_ratio, same_std)) +
+                  (1.0 - same) * 2.0 * std::exp(log_normal_density(log_ratio, louder_std)));
+}
+
+double log_prior(QuietStretch kind, bool at_an_end) {
+  const double no_rest = at_an_end ? 1e-3 : 0.1;
+  return std::log(kind == QuietStretch::rest ? 1.0 - no_rest : no_rest);
+}
+
+/// Knots of one stretch: that of the arrival, and those on the way through.
+struct StretchKnots {
+  std::size_t arrival = 0, first = 0, end = 0;
+  double level_mps2 = 0.0, level_std_mps2 = 0.0;
+};
+
+std::vector<StretchKnots> stretches_in(const std::vector<InertialEpoch>& knots) {
+  std::vector<StretchKnots> found;
+  for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+    if (knots[k].resting || !knots[k + 1].resting) continue;
+    StretchKnots stretch{k, k + 1, k + 1};
+    double weight = 0.0, sum = 0.0;
+    for (; stretch.end < knots.size() && knots[stretch.end].resting; ++stretch.end) {
+      const InertialEpoch& knot = knots[stretch.end];
+      if (std::isnan(knot.level_mps2)) continue;
+      weight += 1.0 / knot.level_variance;
+      sum += knot.level_mps2 / knot.level_variance;
+    }
+    stretch.level_mps2 = weight > 0.0 ? sum / weight : 0.0;
+    stretch.level_std_mps2 = weight > 0.0 ? 1.0 / std::sqrt(weight) : 1.0;
+    found.push_back(stretch);
+  }
+  return found;
+}
+
+/// Alternatives to a rest: its level equals that of a neighbour, or it does not.
+std::vector<QuietStretch> other_kinds(const std::vector<StretchKnots>& stretches) {
+  constexpr double wander_mps2 = 0.02;
+  std::vector<QuietStretch> kinds(stretches.size(), QuietStretch::cruise);
+  for (std::size_t i = 1; i + 1 < stretches.size(); ++i) {
+    const auto apart = [&](std::size_t j) {
+      const double std = std::hypot(stretches[i].level_std_mps2, stretches[j].level_std_mps2);
+      return std::abs(stretches[i].level_mps2 - stretches[j].level_mps2) > wander_mps2 + 5.0 * std;
+    };
+    if (apart(i - 1) && apart(i + 1)) kinds[i] = QuietStretch::plateau;
+  }
+  return kinds;
+}
+
+void make_cruise(const StretchKnots& stretch,
+                 double speed_std_mps,
+                 std::vector<InertialEpoch>& knots) {
+  knots[stretch.arrival].velocity_std_mps = speed_std_mps;
+  for (std::size_t k = stretch.first; k < stretch.end; ++k) knots[k].cruising = true;
+}
+
+/// Integrates the measurements instead of using them as bias measurements; returns the log density
+/// about a level of their own, for as many as without_middles() keeps of a rest.
+double make_plateau(const StretchKnots& stretch, std::vector<InertialEpoch>& knots) {
+  constexpr double accel_std_mps2 = 0.5;
+  constexpr std::size_t counted = 6;
+  double log_density = log_normal_density(stretch.level_mps2, accel_std_mps2);
+  knots[stretch.arrival].velocity_std_mps = std::numeric_limits<double>::quiet_NaN();
+  knots[stretch.arrival].arrives_at_rest = false;
+  for (std::size_t k = stretch.first; k < stretch.end; ++k) {
+    InertialEpoch& knot = knots[k];
+    const double level = std::isnan(knot.level_mps2) ? stretch.level_mps2 : knot.level_mps2;
+    if (k > stretch.first && k < stretch.first + counted && knot.level_variance > 0.0)
+      log_density += log_normal_density(level - stretch.level_mps2, std::sqrt(knot.level_variance));
+    knot.resting = false;
+    knot.velocity_step_mps = level * knot.dt_s;
+    knot.position_step_m = 0.5 * level * knot.dt_s * knot.dt_s;
+    knot.level_mps2 = std::numeric_limits<double>::quiet_NaN();
+  }
+  if (stretch.end < knots.size()) knots[stretch.end].leaves_rest = false;
+  return log_density;
+}
+
+/// Log evidence of the measurements, given the type of each interval.
+double log_evidence_of(const std::vector<QuietStretch>& kinds,
+                       const std::vector<StretchKnots>& stretches,
+                       const std::vector<InertialEpoch>& knots,
+                       const AxisRun& run) {
+  const bool cruises = std::ranges::find(kinds, QuietStretch::cruise) != kinds.end();
+  const std::vector<double> speeds_mps = cruises ? std::vector{0.3, 3.0, 30.0} : std::vector{0.0};
+  std::vector<double> logs;
+  for (const double speed_mps : speeds_mps) {
+    std::vector<InertialEpoch> labelled = knots;
+    double log_density = 0.0;
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+      if (kinds[i] == QuietStretch::cruise) make_cruise(stretches[i], speed_mps, labelled);
+      if (kinds[i] == QuietStretch::plateau) log_density += make_plateau(stretches[i], labelled);
+    }
+    logs.push_back(log_density + log_evidence(without_middles(labelled), run.noise, run.start));
+  }
+  const double best = std::ranges::max(logs);
+  double sum = 0.0;
+  for (const double one : logs) sum += std::exp(one - best);
+  return best + std::log(sum / static_cast<double>(logs.size()));
+}
+
+constexpr std::size_t most_doubtful = 16;
+
+/// The intervals next to closure velocities.
+std::vector<std::size_t> doubtful(const std::vector<Closure>& closures, std::size_t stretches) {
+  constexpr double left_over_share = 0.25, least_mps = 0.05;
+  std::vector<bool> is_doubtful(stretches, false);
+  for (std::size_t i = 0; i < closures.size(); ++i) {
+    const double speed = std::abs(closures[i].velocity_mps);
+    if (speed < left_over_share * closures[i].fastest_mps || speed < least_mps) continue;
+    const std::size_t at = stretches - closures.size() + i;
+    is_doubtful[at - 1] = is_doubtful[at] = true;
+  }
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < stretches; ++i)
+    if (is_doubtful[i]) found.push_back(i);
+  return found;
+}
+
+/// Candidates that are not rests if the closure velocities accumulate, as they do if the sensor
+/// never stops: those at more than a quarter of the highest such speed, and all plateaus.
+std::uint32_t by_summed_velocities(const std::vector<Closure>& closures,
+                                   const std::vector<StretchKnots>& stretches,
+                                   const std::vector<InertialEpoch>& knots,
+                                   const std::vector<QuietStretch>& other,
+                                   const std::vector<std::size_t>& candidates) {
+  std::vector<double> speed_mps(stretches.size(), 0.0);
+  double v = 0.0, highest = 0.0;
+  for (std::size_t i = 1; i < stretches.size(); ++i) {
+    const std::size_t closure = closures.size() + i;
+    if (closure >= stretches.size()) v += closures[closure - stretches.size()].velocity_mps;
+    speed_mps[i] = std::abs(v);
+    highest = std::max(highest, speed_mps[i]);
+    if (other[i] != QuietStretch::plateau) continue;
+    for (std::size_t k = stretches[i].first; k < stretches[i].end; ++k)
+      v += stretches[i].level_mps2 * knots[k].dt_s;
+  }
+  std::uint32_t mask = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (other[candidates[i]] == QuietStretch::plateau || speed_mps[candidates[i]] > 0.25 * highest)
+      mask |= std::uint32_t{1} << i;
+  return mask;
+}
+
+/// Climbs from each start to a most likely combination, by one or two intervals at a time, and
+/// stores all combinations visited, which include the neighbours of the most likely one, and its
+/// opposite.
+template <class LogPosterior>
+class Climb {
+ public:
+  using Mask = std::uint32_t;
+
+  Climb(std::size_t candidates, std::array<Mask, 2> starts, LogPosterior log_posterior)
+      : count_(candidates), log_posterior_(std::move(log_posterior)) {
+    for (const Mask start : starts) climb_from(start);
+  }
+  [[nodiscard]] const std::map<Mask, double>& seen() const { return seen_; }
+
+ private:
+  void climb_from(Mask best) {
+    see(best);
+    for (bool climbs = true; climbs;) {
+      const Mask from = best;
+      for (std::size_t i = 0; i < count_; ++i) take_better(from ^ bit(i), best);
+      for (std::size_t i = 0; best == from && i < count_; ++i)
+        for (std::size_t j = 0; j < i; ++j) take_better(from ^ bit(i) ^ bit(j), best);
+      if (best == from) take_better(from ^ (bit(count_) - 1), best);
+      climbs = best != from;
+    }
+  }
+  static Mask bit(std::size_t i) { return Mask{1} << i; }
+  double see(Mask mask) {
+    const auto [at, is_new] = seen_.try_emplace(mask, 0.0);
+    if (is_new) at->second = log_posterior_(mask);
+    return at->second;
+  }
+  void take_better(Mask mask, Mask& best) {
+    if (see(mask) > seen_.at(best)) best = mask;
+  }
+
+  std::size_t count_;
+  LogPosterior log_posterior_;
+  std::map<Mask, double> seen_{};
+};
+
+}  // namespace
+
+void drop_plateaus(TrackSignal& signal) {
+  std::vector<signal::Rest>& rests = signal.stops.rests;
+  if (signal.axes.size() != 3 || signal.gravity != GravityContent::present || rests.size() < 2)
+    return;
+  const std::vector<RestLevel> levels = rest_levels(signal);
+  const auto agree = [&](const RestLevel& a, const RestLevel& b) {
+    // An uncalibrated sensor measures another norm of gravity in another orientation.
+    constexpr double bias_mps2 = 0.5, wander_mps2 = 0.02;
+    const double sine2 = std::max(0.0, 1.0 - std::pow(a.cosine_to(b), 2));
+    return std::abs(a.length_mps2 - b.length_mps2) <=
+           5.0 * std::hypot(a.std_mps2, b.std_mps2) + wander_mps2 + bias_mps2 * std::sqrt(sine2);
+  };
+  const auto agreeing_s = [&](const RestLevel& level) {
+    double sum = 0.0;
+    for (const RestLevel& other : levels) sum += agree(level, other) ? other.duration_s : 0.0;
+    return sum;
+  };
+  const auto most = std::ranges::max_element(levels, {}, agreeing_s);
+  std::vector<signal::Rest> kept;
+  for (std::size_t i = 0; i < rests.size(); ++i)
+    if (agree(*most, levels[i])) kept.push_back(rests[i]);
+  signal.stops.plateaus += rests.size() - kept.size();
+  rests = std::move(kept);
+}
+
+std::vector<StopHypothesis> stop_hypotheses(const TrackSignal& signal,
+                                            const AxisRun& run,
+                                            const std::vector<Closure>& closures) {
+  const std::size_t count = signal.stops.rests.size();
+  const std::vector<QuietStretch> all_rests(count, QuietStretch::rest);
+  const std::vector<std::size_t> candidates =
+      closures.size() < count ? doubtful(closures, count) : std::vector<std::size_t>{};
+  const std::vector<InertialEpoch> knots = join_epochs(run.made.epochs, run.made.knots);
+  const std::vector<StretchKnots> stretches = stretches_in(knots);
+  if (candidates.empty() || stretches.size() != count) return {{all_rests, 1.0}};
+  if (candidates.size() > most_doubtful) return {};
+  const std::vector<QuietStretch> other = other_kinds(stretches);
+  const std::vector<double> noise = rest_noises(signal);
+  const double quietest = std::ranges::min(noise);
+  const auto kinds_of = [&](std::uint32_t mask) {
+    std::vector<QuietStretch> kinds = all_rests;
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+      if (mask >> i & 1) kinds[candidates[i]] = other[candidates[i]];
+    return kinds;
+  };
+  const std::array<std::uint32_t, 2> starts{
+      0, by_summed_velocities(closures, stretches, knots, other, candidates)};
+  const Climb climb(candidates.size(), starts, [&](std::uint32_t mask) {
+    const std::vector<QuietStretch> kinds = kinds_of(mask);
+    if (std::ranges::find(kinds, QuietStretch::rest) == kinds.end())
+      return -std::numeric_limits<double>::infinity();
+    double log = log_evidence_of(kinds, stretches, knots, run);
+    for (const std::size_t i : candidates)
+      log += log_prior(kinds[i], i == 0 || i + 1 == count) +
+             log_loudness_density(quietest > 0.0 ? std::log(noise[i] / quietest) : 0.0, kinds[i]);
+    return log;
+  });
+  const auto log_of = [](const auto& one) { return one.second; };
+  const double best = std::ranges::max_element(climb.seen(), {}, log_of)->second;
+  double sum = 0.0;
+  for (const auto& [mask, log] : climb.seen()) sum += std::exp(log - best);
+  std::vector<StopHypothesis> hypotheses;
+  for (const auto& [mask, log] : climb.seen())
+    hypotheses.push_back({kinds_of(mask), std::exp(log - best) / sum});
+  std::ranges::sort(hypotheses, std::greater{}, &StopHypothesis::probability);
+  std::erase_if(hypotheses, [](const StopHypothesis& one) { return one.probability < 1e-3; });
+  return hypotheses;
+}
+
+}  // namespace proofmass::estimate

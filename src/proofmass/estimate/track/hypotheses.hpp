@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "proofmass/estimate/track/motion.hpp"
+
+// Decides which quiet intervals are rests.
+namespace proofmass::estimate {
+
+/// A sensor at constant speed measures the same as at rest, and one at constant acceleration is as
+/// quiet.
+enum class QuietStretch { rest, cruise, plateau };
+
+struct StopHypothesis {
+  std::vector<QuietStretch> stretches;  ///< one for each of the signal's stops
+  double probability = 1.0;
+};
+
+/// Removes stops whose level has another norm than the others': the norm of gravity does not depend
+/// on the orientation, so the sensor accelerates there. Three axes with gravity only.
+void drop_plateaus(TrackSignal& signal);
+
+/// Hypotheses for the stops, by falling probability; none below 1e-3. One hypothesis, all rests,
+/// unless more than a quarter of the speed remains at some stop.
+///
+/// - Likelihood: of all closure velocities and levels, with the errors of motion integrated out as
+///   in motion_error(). A cruise between two rests makes one closure velocity and the next cancel;
+///   a tilt or a jump of the bias does not.
+/// - Prior: an interval between others is a rest nine times in ten, the first and the last 999
+///   times in 1000; a cruise has a speed of about 0.3, 3 or 30 m/s; it is usually, and a rest
+///   seldom, louder than the quietest interval.
+/// - Constant speed of the frame is not distinguishable from rest: only these priors separate a
+///   recording that ends in motion from one that began in motion.
+///
+/// Absent if more than sixteen intervals are ambiguous. Cost: 343 passes over the knots for each
+/// combination tried, three times with a cruise: n + 1 for each step of the climb and n²/2 at its
+/// end, with n ambiguous intervals.
+[[nodiscard]] std::vector<StopHypothesis> stop_hypotheses(const TrackSignal& signal,
+                                                          const AxisRun& run,
+                                                          const std::vector<Closure>& closures);
+
+}  // namespace proofmass::estimate

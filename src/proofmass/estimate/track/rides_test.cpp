@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include "proofmass/estimate/track/rides_test_support.hpp"
+
+namespace proofmass::estimate::track_rides_test {
+namespace {
+
+using rides::Draw;
+
+void expect_held(const rides::Held& held) {
+  EXPECT_EQ(held.given, held.recordings);
+  EXPECT_GE(held.held, held.recordings - 1);
+  EXPECT_EQ(held.wrong, 0);
+}
+
+// At constant speed it is as quiet as at rest, and so it is where the speed rises evenly.
+TEST(TrackRides, ALiftThatDoesNotShakeWentWhereItWent) {
+  const auto held = rides::held_by([](Draw& draw) { return rides::lift(draw, 1, 0.0); }, 1, 12);
+  expect_held(held);
+  EXPECT_LT(held.rms_m(), 1.0);
+}
+
+TEST(TrackRides, ThreeRidesOfALiftAddUp) {
+  expect_held(rides::held_by([](Draw& draw) { return rides::lift(draw, 3, 1.0); }, 1, 4));
+}
+
+TEST(TrackRides, ACartAtConstantSpeedDoesNotRest) {
+  const auto held = rides::held_by(rides::cart, 1, 12);
+  expect_held(held);
+  EXPECT_LT(held.rms_m(), 0.2);
+}
+
+// A frame at constant speed is exactly one at rest.
+TEST(TrackRides, WhereARecordingBeginsUnderWayThereIsNoFigureButAlternatives) {
+  Draw draw(3);
+  const rides::RideRecord made = rides::record(rides::begun_under_way(draw), draw);
+  const TrackSolution found = estimate_track(made.sensor, {}).value();
+  EXPECT_FALSE(found.smoother);
+  ASSERT_GE(found.alternatives.size(), 2U);
+  double sum = 0.0;
+  bool holds_truth = false;
+  for (const TrackAlternative& one : found.alternatives) {
+    sum += one.probability;
+    const double scale = 0.03 * std::abs(made.displacement_m);
+    holds_truth = holds_truth || std::abs(one.displacement_m.value - made.displacement_m) <
+                                     3.0 * one.displacement_m.std + scale;
+  }
+  EXPECT_LE(sum, 1.0 + 1e-9);
+  EXPECT_TRUE(holds_truth);
+}
+
+TEST(TrackRides, StrongMotionAlongOneAxisIsNoRest) {
+  const auto held = rides::held_by(rides::shaken, 1, 12);
+  EXPECT_GE(held.given, 8);
+  EXPECT_GE(held.held, held.given - 1);
+  EXPECT_LE(held.wrong, 1);  // by chance one of them holds its speed for a second and a half
+}
+
+TEST(TrackRides, StrokesShorterThanHalfASecondAreKept) {
+  const auto held = rides::held_by([](Draw& draw) { return rides::strokes(draw, 0.35); }, 1, 12);
+  expect_held(held);
+  EXPECT_LT(held.rms_m(), 0.01);
+}
+
+TEST(TrackRides, SlowStrokesBetweenShortRestsAreNoRests) {
+  const auto held = rides::held_by(rides::slow_strokes, 1, 12);
+  expect_held(held);
+  EXPECT_LT(held.rms_m(), 0.03);
+}
+
+// What shakes in motion alone may be aliased, and then it is in what the measurements integrate to.
+TEST(TrackRides, WhatShakesInMotionAloneIsInTheBand) {
+  const auto held = rides::held_by([](Draw& draw) { return rides::lift(draw, 1, 6.0); }, 1, 12);
+  EXPECT_EQ(held.given, 12);
+  EXPECT_GE(held.held, 10);
+  EXPECT_EQ(held.wrong, 0);
+}
+
+TEST(TrackRides, OnRequestOnlyTheEndsAreRests) {
+  Draw draw(5);
+  const rides::RideRecord made = rides::record(rides::lift(draw, 1, 0.0), draw);
+  const TrackSolution found = estimate_track(made.sensor, {.only_end_rests = true}).value();
+  EXPECT_EQ(found.rests.size(), 2U);
+  ASSERT_TRUE(found.smoother.has_value());
+  EXPECT_NEAR(found.smoother->displacement_m.value, made.displacement_m,
+              found.smoother->half_width_95_m);
+}
+
+TEST(TrackRides, ASlideWithinTheNoiseIsNeverZeroAndSure) {
+  const auto held = rides::held_by(rides::slow_slide, 1, 12);
+  EXPECT_GE(held.held, held.given - 1);
+  EXPECT_EQ(held.wrong, 0);
+}
+
+}  // namespace
+}  // namespace proofmass::estimate::track_rides_test

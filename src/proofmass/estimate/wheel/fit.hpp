@@ -1,0 +1,131 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "proofmass/core/progress.hpp"
+#include "proofmass/core/quantity.hpp"
+#include "proofmass/estimate/wheel.hpp"
+#include "proofmass/estimate/wheel/model.hpp"
+
+// From planar measurements to the wheel's angle: initial motion, noise, lever arms and constants,
+// then the smoother. The steps of estimate_wheel().
+namespace proofmass::estimate {
+
+/// The measurements of one or two sensors on one time line.
+struct WheelReadings {
+  double gravity_mps2 = standard_gravity_mps2;  ///< its component in the plane of the wheel
+  double gravity_std_mps2 = 0.0;                ///< due to the unknown axle tilt
+  std::optional<double> given_rolling_radius_m;
+  Uncertain rolling_radius_m{};  ///< as set by assume_rolling_radius()
+  Uncertain delay_s{};           ///< of the sensors' filters
+  double phase_rad = 0.0;        ///< of the second sensor against the first, current estimate
+  RippleOrders orders = first_orders;
+  /// The hub vibrates by more than a sensor's noise, or more in motion than at rest, as under a
+  /// vehicle; set by settle_variance().
+  bool shakes = false;
+  std::vector<double> time_s;
+  std::vector<WheelInstant> instants;
+  std::vector<PlanarReadings> sensors;
+
+  /// 1 / mean step, without gaps; 0 if there is no step.
+  [[nodiscard]] double rate_hz() const;
+};
+
+/// The measurements averaged over `each` epochs: equivalent to all of them if the wheel turns
+/// little meanwhile, at a fraction of the cost.
+[[nodiscard]] WheelReadings averaged(const WheelReadings& readings, std::size_t each);
+
+/// Prior standard deviations of a sensor's constants, about zero.
+struct ConstantsPrior {
+  double bias_mps2 = 0.5, scale = 0.1, skew_rad = 0.03, phase_rad = 0.5, place_m = 0.3;
+  double ripple = 0.0;  ///< of each part, relative to the speed
+  double gyro_bias_radps = 0.1, gyro_scale = 0.03;
+};
+
+/// Prior for less than one turn: gravity covers only part of its circle, on which bias, scale and
+/// angle are not separable, so the prior is tighter.
+inline constexpr ConstantsPrior short_way_prior{0.2, 0.01, 0.01, 0.5, 0.1};
+
+/// Assumed rolling radius if it is not given, from the vibration: a vehicle's, uniform between 0
+/// and 0.4 m, or a bench's 0, with the uncertainty of a small, smooth wheel.
+void assume_rolling_radius(WheelReadings& readings);
+
+/// Initial motion of a filter.
+struct Beginning {
+  double angle_rad = 0.0, angle_std_rad = 0.6;
+  double speed_radps = 0.0, speed_std_radps = 1.0;
+};
+
+/// Current trajectory, and the parameters with which it was found.
+struct WheelTrack {
+  Beginning beginning;
+  WheelNoise noise;
+  WheelPath path;
+  double lost = 1.0;  ///< share of unexplained measurements, 0 … 1
+};
+
+/// Eight measurements a turn: the limit of the search and of the result.
+[[nodiscard]] constexpr double fastest_radps(double rate_hz) {
+  return rate_hz * rad_per_turn / 8.0;
+}
+
+/// Tracks a single sensor's phase through the recording with the first suitable noise parameters,
+/// from a grid of initial speeds and angles, since at speed and off the axle the first measurements
+/// do not show the direction of gravity. Sets the measurements' variance. `first` of the
+/// wheel_seeks sets of noise parameters are skipped if they have failed before.
+[[nodiscard]] WheelTrack find_track(WheelReadings& readings, std::size_t first = 0);
+inline constexpr std::size_t wheel_seeks = 4;
+
+/// An interval in which the predicted angle is less certain than lost_prediction_rad: the first and
+/// the last such epoch.
+struct WheelDoubt {
+  std::size_t first = 0, last = 0;
+  std::size_t widest = 0;               ///< where the prediction is least certain
+  Gaussian<wheel::moving> predicted{};  ///< that prediction, of the dynamic states
+};
+
+struct WheelFit {
+  /// All static states, in the state's order from wheel::first_of(0) on, with their covariance
+  /// (including the lever arms' uncertainty) and their prior.
+  Eigen::VectorXd constants;
+  Eigen::MatrixXd constants_cov, constants_prior_cov;
+  WheelTrack track;
+  Uncertain turns;
+  double ekf_turns = 0.0;
+  Consistency consistency;         ///< channels: along u and v of each sensor, without names
+  std::vector<WheelDoubt> doubts;  ///< after the first second
+  std::vector<TurnsCandidate> turns_candidates;  ///< if there are doubts
+  /// Radius of each sensor from the recording alone, if one was given.
+  std::vector<Uncertain> free_radius_m;
+  std::optional<Uncertain> given_radius_m;  ///< the given radius, as far as it is trusted
+  WheelSeries series;                       ///< output of filter and smoother, including time_s
+};
+
+/// Prior of the sensors' lever arms.
+struct PlacesPrior {
+  Eigen::VectorXd mean;  ///< (u, v) of each sensor, m
+  Eigen::MatrixXd cov;   ///< m²
+};
+
+/// Above this standard deviation of the predicted angle, a turn may be lost.
+inline constexpr double lost_prediction_rad = 0.8;
+
+/// Extent of a fit.
+enum class FitDepth {
+  whole,
+  /// Motion and noise on averaged measurements, for a sensor that is then fitted together with
+  /// another.
+  track,
+};
+
+/// Estimates noise, lever arms and constants about the track, then smooths. With FitDepth::track,
+/// the series is on the averages' time line and has only the smoother's own bands.
+[[nodiscard]] WheelFit fit_wheel(WheelReadings& readings,
+                                 WheelTrack track,
+                                 const PlacesPrior& places_prior,
+                                 FitDepth depth,
+                                 const Progress& progress);
+
+}  // namespace proofmass::estimate

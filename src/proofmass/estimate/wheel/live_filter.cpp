@@ -1,0 +1,299 @@
+#include "proofmass/estimate/wheel/live_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace proofmass::estimate {
+namespace {
+
+/// wheel_gate without its patience, which notice_surprise() replaces.
+constexpr Gate live_gate{wheel_gate.huber, wheel_gate.limit, std::numeric_limits<int>::max()};
+
+/// Interval over which the noise is estimated.
+constexpr double stretch_s = 1.0;
+/// Ratio of the alternative noise to the filter's own.
+constexpr double rival_factor = 3.1622776601683795;
+/// A smoothed mean NIS beyond this is significant: the motion exceeds the noise model.
+constexpr double surprising = 4.0;
+constexpr double surprise_instants = 10.0;
+/// An innovation beyond half of gravity, squared, is a lost phase rather than vibration of the hub.
+constexpr double most_shaking2 = 0.25;
+/// White jerk of a wheel turned by hand, rad²/s⁵: the level to which the noise is raised at once.
+constexpr double lively_jerk_psd = 100.0;
+/// Limits of the motion noise.
+constexpr double least_jerk_psd = 1e-4, most_jerk_psd = 1e4, least_bias_walk_psd = 2e-5;
+/// Above this the angle is lost.
+constexpr double lost_std_rad = 0.8;
+void scale_motion(WheelNoise& noise, double factor) {
+  noise.jerk_psd = std::clamp(noise.jerk_psd * factor, least_jerk_psd, most_jerk_psd);
+  noise.snap_psd *= factor;
+}
+
+template <int N>
+void widen_motion(Gaussian<N>& x) {
+  // Additional uncertainty, independent of the state: covariances with the past stay valid.
+  for (int i = 0; i < wheel::moving; ++i) x.cov(i, i) *= 4.0;
+}
+
+template <class Step>
+double log_likelihood_of(const Step& step) {
+  double sum = 0.0;
+  for (int i = 0; i < step.count; ++i) {
+    const auto& u = step.updates[static_cast<std::size_t>(i)];
+    sum -= 0.5 * (std::log(2.0 * std::numbers::pi * u.expected) + surprise(std::sqrt(u.nis())));
+  }
+  return sum;
+}
+
+}  // namespace
+
+template <int S>
+LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelStart& start,
+                                    std::size_t lag_instants,
+                                    double alignment_std_rad)
+    : planes_(start.planes),
+      variance_m2ps4_(start.variance_m2ps4),
+      alignment_variance_rad2_(alignment_std_rad * alignment_std_rad),
+      delay_std_s_(start.delay_s.std),
+      window_(lag_instants),
+      window_time_s_(lag_instants + 1),
+      window_places_(lag_instants + 1) {
+  now_.gravity_mps2 = start.gravity_mps2;
+  now_.rolling_radius_m.value = start.rolling_radius_m;
+  now_.phase_rad = start.phase_rad;
+  now_.delay_s = start.delay_s;
+  now_.instants.assign(2, {0.0, {0, S == 2 ? 0 : WheelInstant::no_row}});
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s)
+    now_.sensors.push_back({{0.0}, {0.0}, {variance_m2ps4_[s]}});
+  model_ = wheel_model<S>(now_, start.noise);
+  model_.places_held = true;
+  scale_motion(model_.noise, 1.0);
+  model_.noise.bias_walk_psd = std::max(model_.noise.bias_walk_psd, least_bias_walk_psd);
+  main_ = prior_state<S>(start.prior);
+  main_.x.mean.template tail<wheel::standing(S)>() = start.constants;
+  if (start.constants_cov.size() > 0) narrow_constants(start.constants_cov);
+  places_cov_ = start.places_cov;
+  for (int i = 0; i < places; ++i) seat(i);
+  rivals_[0] = {rival_factor, main_};
+  rivals_[1] = {1.0 / rival_factor, main_};
+}
+
+/// The constants get twice their estimated standard deviation, since the filter processes the same
+/// measurements again; at most their prior's, which would absorb the first motion. The lever arms
+/// stay held.
+template <int S>
+void LiveWheelFilter<S>::narrow_constants(const Eigen::MatrixXd& found_cov) {
+  constexpr int first = wheel::first_of(0), count = wheel::standing(S) - places;
+  const Mat<count> prior_std = main_.x.cov.diagonal().template segment<count>(first).cwiseSqrt();
+  Mat<count> by;
+  for (int i = 0; i < count; ++i) {
+    const double found_std = std::sqrt(found_cov(i, i));
+    by(i) = found_std > 0.0 ? std::min(2.0, prior_std(i) / found_std) : 0.0;
+  }
+  main_.x.cov.template block<count, count>(first, first) =
+      by.asDiagonal() * found_cov.topLeftCorner<count, count>() * by.asDiagonal();
+}
+
+template <int S>
+void LiveWheelFilter<S>::seat(int place) {
+  Moved& moved = moved_[static_cast<std::size_t>(place)];
+  moved.state = main_;
+  moved.state.x.mean(first_place + place) += place_step_m;
+}
+
+template <int S>
+void LiveWheelFilter<S>::read(const LiveInstant& instant) {
+  now_.instants[1].dt_s = instants_ == 0 ? 0.0 : instant.time_s - time_s_;
+  time_s_ = instant.time_s;
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
+    const Mat<3>& f = instant.vectors[s];
+    const Axis &u = planes_[s].u, &v = planes_[s].v;
+    now_.sensors[s].u_mps2[0] = f(0) * u[0] + f(1) * u[1] + f(2) * u[2];
+    now_.sensors[s].v_mps2[0] = f(0) * v[0] + f(1) * v[1] + f(2) * v[2];
+  }
+}
+
+/// For the measurements at this epoch. The product of the uncertainties of ω² or α and of a lever
+/// arm is noise not covered by the Jacobian.
+template <int S>
+void LiveWheelFilter<S>::set_variance() {
+  const double w = main_.x.mean(wheel::speed);
+  const double accel =
+      main_.x.cov(wheel::accel, wheel::accel) + model_.noise.jerk_psd * now_.instants[1].dt_s;
+  const double both = accel + 4.0 * w * w * main_.x.cov(wheel::speed, wheel::speed);
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
+    const auto at = static_cast<Eigen::Index>(2 * s);
+    now_.sensors[s].variance_m2ps4[0] =
+        variance_m2ps4_[s] + both * 0.5 * places_cov_.template block<2, 2>(at, at).trace();
+  }
+}
+
+template <int S>
+void LiveWheelFilter<S>::advance_all() {
+  const std::size_t k = instants_ == 0 ? 0 : 1;
+  for (std::size_t m = 0; m < moved_.size(); ++m) {
+    Moved& moved = moved_[m];
+    if (std::abs(moved.state.x.mean(wheel::angle) - main_.x.mean(wheel::angle)) > 1.0)
+      seat(static_cast<int>(m));  // it has slipped and contains no information
+    advance(model_, k, live_gate, moved.state, other_step_);
+    for (int i = 0; i < other_step_.count; ++i)
+      moved.innovations[static_cast<std::size_t>(i)] =
+          other_step_.updates[static_cast<std::size_t>(i)].innovation;
+  }
+  Model other = model_;
+  for (Rival& rival : rivals_) {
+    other.noise = model_.noise;
+    scale_motion(other.noise, rival.factor);
+    advance(other, k, live_gate, rival.state, other_step_);
+    rival.log_likelihood += log_likelihood_of(other_step_);
+  }
+  advance(model_, k, live_gate, main_, step_);
+  main_log_likelihood_ += log_likelihood_of(step_);
+  const std::size_t at = instants_ % window_time_s_.size();
+  window_.push(step_, model_.active());
+  window_time_s_[at] = time_s_;
+  expect();
+  window_places_[at] = places_variance();
+  ++instants_;
+}
+
+template <int S>
+void LiveWheelFilter<S>::step(const LiveInstant& instant) {
+  read(instant);
+  if (instants_ == 0) first_time_s_ = stretch_start_s_ = time_s_;
+  if (time_s_ > first_time_s_ + 1.0 && predicted_std_rad() > lost_std_rad) lost_ = true;
+  set_variance();
+  advance_all();
+  judge();
+  if (time_s_ - stretch_start_s_ >= stretch_s) end_stretch();
+}
+
+/// Of the angle at this epoch, before its measurements.
+template <int S>
+double LiveWheelFilter<S>::predicted_std_rad() const {
+  const auto to = model_.transition(main_.x.mean, 1);
+  const Mat<wheel::moving> from = to.F.row(wheel::angle).transpose();
+  return std::sqrt(
+      from.dot(main_.x.cov.template topLeftCorner<wheel::moving, wheel::moving>() * from) +
+      to.Q(wheel::angle, wheel::angle));
+}
+
+/// Updates measurement noise and motion noise from the innovations.
+template <int S>
+void LiveWheelFilter<S>::judge() {
+  int channel = 0;
+  double clipped = 0.0, innovation2 = 0.0;
+  nis_ = 0.0;
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
+    if (!model_.has_readings(s, 1)) continue;
+    for (int axis = 0; axis < 2; ++axis, ++channel) {
+      const auto& u = step_.updates[static_cast<std::size_t>(channel)];
+      const double expected = expected_[static_cast<std::size_t>(channel)];
+      const double nis = u.innovation * u.innovation / expected;
+      nis_ += nis;
+      clipped += std::min(nis, 4.0 * surprising);
+      innovation2 += std::min(u.innovation * u.innovation,
+                              most_shaking2 * now_.gravity_mps2 * now_.gravity_mps2);
+      if (!u.used) continue;
+      noise_[s].innovation2 += std::min(nis, 4.0 * wheel_gate.huber) * expected;
+      noise_[s].explained += expected - variance_m2ps4_[s];
+      noise_[s].readings += 1.0;
+    }
+  }
+  since_loosened_s_ += now_.instants[1].dt_s;
+  if (channel == 0) {
+    nis_ = std::numeric_limits<double>::quiet_NaN();
+    return;
+  }
+  nis_ /= channel;
+  recent_innovation2_ += (innovation2 / channel - recent_innovation2_) / surprise_instants;
+  notice_surprise(clipped / channel);
+}
+
+template <int S>
+void LiveWheelFilter<S>::notice_surprise(double mean_nis) {
+  surprise_ += (mean_nis - surprise_) / surprise_instants;
+  if (surprise_ < surprising) return;
+  surprise_ = 1.0;
+  loosened_ = since_loosened_s_ < 1.0 ? loosened_ + 1 : 1;
+  since_loosened_s_ = 0.0;
+  if (loosened_ > 8) lost_ = true;
+  loosen();
+}
+
+/// Increases the process noise and the measurement noise at once: a road shakes the hub as soon as
+/// the wheel rolls on it. The parallel filters and later innovations separate the two.
+template <int S>
+void LiveWheelFilter<S>::loosen() {
+  if (loosened_ > 1)
+    model_.noise.jerk_psd =
+        std::min(std::max(lively_jerk_psd, 10.0 * model_.noise.jerk_psd), most_jerk_psd);
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s)
+    variance_m2ps4_[s] = std::max(variance_m2ps4_[s], 0.5 * recent_innovation2_);
+  widen_motion(main_.x);
+  for (Moved& moved : moved_) widen_motion(moved.state.x);
+  forget_stretch();
+}
+
+/// Discards the noise statistics of the current interval.
+template <int S>
+void LiveWheelFilter<S>::forget_stretch() {
+  for (Rival& rival : rivals_) {
+    rival.state = main_;
+    rival.log_likelihood = 0.0;
+  }
+  main_log_likelihood_ = 0.0;
+  noise_ = {};
+  stretch_start_s_ = time_s_;
+}
+
+/// The measurement variance moves half way (in logarithm) to the interval's estimate.
+template <int S>
+void LiveWheelFilter<S>::adapt_variance(std::size_t sensor) {
+  const Noise said = noise_[sensor];
+  if (said.readings < 20.0) return;
+  const double found =
+      std::max(said.innovation2 - said.explained, 0.2 * said.innovation2) / said.readings;
+  double& variance = variance_m2ps4_[sensor];
+  if (found > 0.0) variance = std::sqrt(variance * found);
+}
+
+template <int S>
+void LiveWheelFilter<S>::end_stretch() {
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) adapt_variance(s);
+  const Rival& better =
+      rivals_[0].log_likelihood >= rivals_[1].log_likelihood ? rivals_[0] : rivals_[1];
+  if (better.log_likelihood > main_log_likelihood_) scale_motion(model_.noise, better.factor);
+  forget_stretch();
+}
+
+template <int S>
+LiveWheelRow LiveWheelFilter<S>::row() const {
+  const auto of = [&](const Gaussian<2>& x, int i, double by_places) {
+    const double late = x.mean(wheel::speed) * delay_std_s_;
+    const double more =
+        by_places + (i == wheel::angle ? alignment_variance_rad2_ + late * late : 0.0);
+    return Uncertain{x.mean(i), std::sqrt(std::max(x.cov(i, i), 0.0) + more)};
+  };
+  const Mat<2>& by_places = window_places_[(instants_ - 1) % window_places_.size()];
+  const Gaussian<2>& now = window_.state(0);
+  LiveWheelRow row{.angle_rad = of(now, wheel::angle, by_places(0)),
+                   .speed_radps = of(now, wheel::speed, by_places(1))};
+  row.nis = nis_;
+  if (window_.size() <= window_.lag()) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    row.smoothed_angle_rad = row.smoothed_speed_radps = {none, none};
+    return row;
+  }
+  const std::size_t oldest = instants_ % window_time_s_.size();
+  row.smoothed_time_s = window_time_s_[oldest];
+  const Gaussian<2>& then = window_.state(window_.lag());
+  row.smoothed_angle_rad = of(then, wheel::angle, window_places_[oldest](0));
+  row.smoothed_speed_radps = of(then, wheel::speed, window_places_[oldest](1));
+  return row;
+}
+
+template class LiveWheelFilter<1>;
+template class LiveWheelFilter<2>;
+
+}  // namespace proofmass::estimate

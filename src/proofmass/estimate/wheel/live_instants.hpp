@@ -1,0 +1,107 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "proofmass/core/block.hpp"
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/result.hpp"
+#include "proofmass/estimate/filter/gaussian.hpp"
+
+// From blocks of samples to the epochs of an online filter.
+namespace proofmass::estimate {
+
+/// Three channels of one vector, and their kind.
+struct LiveVector {
+  Triad channels;
+  bool is_rate = false;  ///< a gyroscope's; else an accelerometer's
+};
+
+inline constexpr std::size_t most_live_vectors = 4;
+
+struct LiveInstant {
+  double time_s = 0.0;
+  bool anew = false;  ///< the clock was set back: earlier epochs are on another time line
+  /// m/s² and rad/s, an axis without channel is 0; NaN without a plausible measurement.
+  std::array<Mat<3>, most_live_vectors> vectors{};
+
+  [[nodiscard]] bool has(std::size_t vector) const { return !std::isnan(vectors[vector](0)); }
+};
+
+struct LiveClock {
+  double rate_hz = 0.0;         ///< of the samples; 0: estimated from the first of them
+  double most_rate_hz = 500.0;  ///< faster samples are averaged down to this
+};
+
+/// Screens samples, and averages them so that there are at most `most_rate_hz` epochs a second: at
+/// that rate and below every sample is an epoch, available immediately. A mean ends where samples
+/// are missing. The result does not depend on the block size.
+class LiveInstants {
+ public:
+  LiveInstants(std::vector<LiveVector> vectors, const LiveClock& clock);
+
+  /// Calls visit(const LiveInstant&) for each complete epoch. Errors: invalid_argument (channels
+  /// that the block lacks, neither time stamps nor a known rate).
+  template <class Visit>
+  [[nodiscard]] Status add(const Block& samples, Visit&& visit) {
+    if (auto status = check(samples); !status) return status;
+    for (std::size_t row = 0; row < samples.rows(); ++row)
+      if (take(samples, row)) visit(static_cast<const LiveInstant&>(instant_));
+    return Done{};
+  }
+  /// The last mean, with fewer samples than the others.
+  template <class Visit>
+  void finish(Visit&& visit) {
+    if (close()) visit(static_cast<const LiveInstant&>(instant_));
+  }
+
+  /// Notes on measurements dropped since the last call.
+  [[nodiscard]] std::vector<Note> take_notes();
+
+ private:
+  struct Sum {
+    Mat<3> total = Mat<3>::Zero();
+    double count = 0.0;
+  };
+  struct Rejected {
+    std::size_t count = 0;
+    double last_s = 0.0;
+    const char* why = nullptr;
+  };
+
+  [[nodiscard]] Status check(const Block& samples) const;
+  [[nodiscard]] bool take(const Block& samples, std::size_t row);
+  [[nodiscard]] bool follows(double time_s);
+  void learn_rate(double time_s);
+  void sum_up(const Block& samples, std::size_t row, double time_s);
+  [[nodiscard]] bool close();
+
+  std::vector<LiveVector> vectors_;
+  LiveClock clock_;
+  std::size_t each_ = 1;       ///< samples in a mean
+  std::size_t rows_seen_ = 0;  ///< while the rate is being estimated
+  double first_time_s_ = 0.0;
+
+  std::array<Sum, most_live_vectors> sums_{};
+  double time_sum_s_ = 0.0;  ///< minus first_in_mean_s_ each
+  double first_in_mean_s_ = 0.0;
+  std::size_t in_mean_ = 0;
+  double last_time_s_ = -std::numeric_limits<double>::infinity();
+  double last_behind_s_ = 0.0;  ///< of the stamps earlier than the last
+  std::size_t behind_ = 0;      ///< number of those that ascend
+  bool anew_ = false, mean_is_anew_ = false;
+  LiveInstant instant_;
+
+  std::array<Rejected, most_live_vectors> rejected_{};
+  Rejected backwards_;
+  std::vector<Note> notes_;
+};
+
+/// "12.34" of seconds, for sentences.
+[[nodiscard]] std::string at_second(double time_s);
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "proofmass/core/result.hpp"
+#include "proofmass/estimate/live_wheel.hpp"
+#include "proofmass/estimate/wheel/live_instants.hpp"
+#include "proofmass/estimate/wheel/passes.hpp"
+#include "proofmass/estimate/wheel/plane.hpp"
+
+// Initialisation of a wheel from the first seconds.
+namespace proofmass::estimate {
+
+/// Initial values of the online filter.
+struct LiveWheelStart {
+  std::vector<WheelPlane> planes;  ///< of each sensor
+  double gravity_mps2 = standard_gravity_mps2, rolling_radius_m = 0.0, phase_rad = 0.0;
+  Uncertain delay_s{};  ///< of the sensors' filters
+  WheelNoise noise;
+  std::array<double, 2> variance_m2ps4{};  ///< of a measurement of each sensor, at the epochs' rate
+  WheelPrior prior;                        ///< of the state at the first epoch
+  /// Covariance of `constants`, the lever arms included; empty if the hub vibrates: vibration
+  /// biases constants that were fitted to a few seconds.
+  Eigen::MatrixXd constants_cov;
+  Eigen::VectorXd constants;  ///< initial linearisation point
+  Eigen::MatrixXd places_cov;
+  bool whole_turn = false;  ///< else the constants come from the prior rather than the data
+  std::vector<Note> notes;
+};
+
+/// Initialisation by estimate_wheel()'s methods. Errors: as for estimate_wheel().
+[[nodiscard]] Result<LiveWheelStart> find_wheel(const std::vector<LiveInstant>& instants,
+                                                const LiveWheelOptions& options);
+
+}  // namespace proofmass::estimate

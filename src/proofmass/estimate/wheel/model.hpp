@@ -1,0 +1,425 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/filter/kalman.hpp"
+
+// State-space model of accelerometers on a wheel that turns about a level axle.
+//
+// Each sensor has two axes u, v in the plane of the wheel, v a quarter turn ahead of u. With φ the
+// angle of u from the horizontal, r = (r_u, r_v) the sensor's lever arm in its own axes, ω and α
+// speed and acceleration of the wheel, and a_h = −ρ α the axle's acceleration for a wheel that
+// rolls on a radius ρ (0 on a bench),
+//
+//   f_u = g sin φ + a_h cos φ − ω² r_u − α r_v
+//   f_v = g cos φ − a_h sin φ − ω² r_v + α r_u
+//   z_u = (1 + s_u)(f_u + κ f_v) + b_u,   z_v = (1 + s_v)(f_v + κ f_u) + b_v,
+//
+// with biases b, scale errors s and a skew κ of the two axes. Sensor 1 has φ = θ, the wheel's
+// angle; sensor 2 has φ = θ + μ.
+//
+// Not observable, hence no states: a common rotation of both axes of sensor 1 against the wheel's
+// marks, and ρ, since a_h shifts the apparent gravity by −ρ α / g, as a shift of φ does. Source:
+// kinematics of a rigid body in a plane; for two opposite sensors with parallel axes, M. A. Lele
+// (2010), section 4.4, with α = a_t / R.
+//
+// The drive torque has a ripple that depends on the angle (unbalance, bearing, gear). The state's
+// angle Θ and speed Ω exclude the ripple; the wheel's own are
+//
+//   θ = Θ + Σ (c_n sin nΘ − s_n cos nΘ) / n,   ω = dθ/dt = Ω (1 + Σ c_n cos nΘ + s_n sin nΘ).
+//
+// A ripple once per turn resembles a scale error or a skew, by ω² r: without the ripple as a
+// nuisance parameter, scale, skew and lever arm would appear to be observable at one speed.
+//
+// A sensor's filter delays the motion by τ. Rotating quantities (gravity and hub acceleration) are
+// delayed by atan(ω τ) instead of ω τ and attenuated by the cosine of that (one pole). Its
+// gyroscope, if any, measures (1 + s_g) ω + b_g about the axle, with the same delay.
+namespace proofmass::estimate {
+
+/// Indices of each quantity in the state; those of a sensor are relative to first_of(sensor).
+namespace wheel {
+inline constexpr int angle = 0, speed = 1, accel = 2, jerk = 3, moving = 4;
+/// The angle at the first epoch is kept as a constant state, so that one covariance gives the
+/// variance of the turns since then.
+inline constexpr int start = 4;
+inline constexpr int bias = 0, scale = 2, skew = 4;  ///< of a sensor, relative to first_of
+
+[[nodiscard]] constexpr int first_of(int sensor) {
+  return 5 + 5 * sensor;
+}
+/// Phase of the second sensor against the first.
+inline constexpr int phase = first_of(2);
+inline constexpr int ripple_orders = 4;  ///< (c, s) for each
+[[nodiscard]] constexpr int ripple(int sensors) {
+  return first_of(sensors) + (sensors - 1);
+}
+/// Bias, rad/s, and scale error of each sensor's gyroscope.
+[[nodiscard]] constexpr int gyro(int sensors) {
+  return ripple(sensors) + 2 * ripple_orders;
+}
+/// The lever arms come last: once found they are held, and the filter runs on the states before
+/// them.
+[[nodiscard]] constexpr int places(int sensors) {
+  return gyro(sensors) + 2 * sensors;
+}
+[[nodiscard]] constexpr int states(int sensors) {
+  return places(sensors) + 2 * sensors;
+}
+/// Static states from first_of(0) on: the sensors' constants, the phase, the lever arms.
+[[nodiscard]] constexpr int standing(int sensors) {
+  return states(sensors) - first_of(0);
+}
+}  // namespace wheel
+
+/// Noise parameters of the filter; estimated from the recording by tune_wheel().
+struct WheelNoise {
+  /// Two-sided densities of the motion noise: white jerk, rad²/s⁵, for irregular speeds, and white
+  /// snap, rad²/s⁷, for smooth ones.
+  double jerk_psd = 1.0, snap_psd = 0.0;
+  double bias_walk_psd = 0.0;  ///< random walk of each bias, (m/s²)²/s
+};
+
+/// Orders 1 and 2 are always included, as they resemble scale, skew and bias.
+using RippleOrders = std::array<int, wheel::ripple_orders>;
+inline constexpr RippleOrders first_orders{1, 2, 3, 4};
+inline constexpr int highest_order = 12;
+
+/// Random walk of each part of the ripple, 1/s: a tenth of a per cent within ten seconds.
+inline constexpr double ripple_walk_psd = 1e-7;
+/// Random walk of a gyroscope's bias, (rad/s)²/s, and scale, 1/s: 0.06 deg/s and 0.3 % within ten
+/// seconds, for inclined axes, a turning frame, and its sensitivity to gravity and vibration. A
+/// gyroscope resolves the count and bridges disturbed intervals; against gravity it has no more
+/// weight than this.
+inline constexpr double gyro_bias_walk_psd = 1e-7, gyro_scale_walk_psd = 1e-6;
+
+/// Measurements of one sensor in the plane of the wheel, SI.
+struct PlanarReadings {
+  std::vector<double> u_mps2, v_mps2;  ///< NaN where missing
+  std::vector<double> variance_m2ps4;  ///< of each measurement, both axes alike
+  /// Gyroscope rate about the axle, NaN where missing; empty without one.
+  std::vector<double> speed_radps{};
+  double speed_variance = 0.0;  ///< variance of each, rad²/s²
+  std::size_t saturated_speeds = 0;
+
+  [[nodiscard]] bool has(std::size_t row) const {
+    return !std::isnan(u_mps2[row]) && !std::isnan(v_mps2[row]);
+  }
+};
+
+/// Result of an earlier pass, about which the measurements are linearised:
+///
+/// - about its constants always;
+/// - about its motion only during the first turn and where the filter's own prediction differs by
+///   half a radian, which is a cycle slip.
+///
+/// The prediction is independent of the current measurement. A smoothed motion is not, and Jacobian
+/// columns whose noise correlates with the measurements bias the fit.
+struct WheelPath {
+  std::vector<Mat<wheel::moving>> moving;
+  Eigen::VectorXd standing;  ///< in the state's order, from wheel::first_of(0) on
+};
+
+/// Coefficients of the lever arms at each epoch: the squared speed and the acceleration of a path,
+/// each averaged over a turn. The lever arms' columns in the Jacobian are ω² and α, known only
+/// through the measurements themselves. A filter that takes these noisy columns as exact overstates
+/// the information, and ripple within a turn would determine a lever arm through the motion model.
+/// The averages leave only the change of the mean force with speed.
+using WheelLevers = std::vector<Mat<2>>;
+
+/// One epoch of the merged time line and the row of each sensor measured then.
+struct WheelInstant {
+  static constexpr std::int64_t no_row = -1;
+  double dt_s = 0.0;  ///< since the previous epoch
+  std::array<std::int64_t, 2> row{no_row, no_row};
+  /// Wheel static: the measurements around keep their values, see mark_standing().
+  bool stands = false;
+};
+
+/// A wheel whose measurements are constant for this long is static: its speed is 0 with this
+/// standard deviation. On a rolling wheel, an angle that departs from rest with growing speed
+/// leaves the direction of the measurements unchanged, because the hub's acceleration compensates
+/// gravity's rotation.
+inline constexpr double standing_stretch_s = 0.5, standing_speed_radps = 0.05;
+
+template <int Sensors>
+struct WheelModel {
+  static constexpr int sensors_used = Sensors;
+  static constexpr int states = wheel::states(Sensors);
+  static constexpr int moving = wheel::moving;
+  static constexpr int channels = 3 * Sensors + 1;
+  using State = Mat<states>;
+
+  double gravity_mps2 = 0.0;      ///< its component in the plane of the wheel
+  double rolling_radius_m = 0.0;  ///< ρ; 0 for a fixed axle
+  double phase_rad = 0.0;         ///< of sensor 2; its state is the difference from this
+  double delay_s = 0.0;           ///< τ, of both sensors' filters
+  WheelNoise noise;
+  const std::vector<WheelInstant>* instants = nullptr;
+  std::array<const PlanarReadings*, 2> readings{};
+  const WheelPath* about = nullptr;  ///< nullptr: the plain extended filter
+
+  /// Number of leading epochs at which the measurements are linearised about the path. Until
+  /// gravity has rotated once, angle, biases and scales are not separable, and a Jacobian at a
+  /// prediction that is off by a tenth of a radian would make the filter overconfident
+  /// irreversibly.
+  std::size_t first_turn = 0;
+
+  const WheelLevers* levers = nullptr;  ///< for lever arms that are estimated, with `about`
+
+  bool places_held = false;            ///< they have no variance and are not updated
+  bool with_ripple = false;            ///< otherwise the ripple is 0
+  RippleOrders orders = first_orders;  ///< of the ripple, cycles a turn
+  bool with_gyro = false;
+  bool sensors_stand = false;  ///< constant biases and gyroscope parameters
+
+  [[nodiscard]] std::size_t size() const { return instants->size(); }
+  [[nodiscard]] int active() const {
+    if (!places_held) return states;
+    if (with_gyro) return wheel::places(Sensors);
+    return with_ripple ? wheel::gyro(Sensors) : wheel::ripple(Sensors);
+  }
+
+  /// The wheel's own motion, with the derivatives of angle, speed and acceleration by the state.
+  struct Motion {
+    double angle, speed, accel;
+    State by_angle, by_speed, by_accel;
+  };
+  [[nodiscard]] Motion motion(const State& x) const {
+    const double Theta = x(wheel::angle), Omega = x(wheel::speed), A = x(wheel::accel);
+    Motion now{Theta, Omega, A, State::Zero(), State::Zero(), State::Zero()};
+    now.by_angle(wheel::angle) = now.by_speed(wheel::speed) = now.by_accel(wheel::accel) = 1.0;
+    if (!with_ripple) return now;
+    double share = 0.0, slope = 0.0, curve = 0.0;  // Σ, and its first two derivatives by Θ
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+      const double n = orders[i];
+      const double cos_n = std::cos(n * Theta), sin_n = std::sin(n * Theta);
+      const int at = wheel::ripple(Sensors) + 2 * static_cast<int>(i);
+      const double c = x(at), s = x(at + 1);
+      now.angle += (c * sin_n - s * cos_n) / n;
+      share += c * cos_n + s * sin_n;
+      slope += n * (s * cos_n - c * sin_n);
+      curve -= n * n * (c * cos_n + s * sin_n);
+      now.by_angle(at) = sin_n / n;
+      now.by_angle(at + 1) = -cos_n / n;
+      now.by_speed(at) = Omega * cos_n;
+      now.by_speed(at + 1) = Omega * sin_n;
+      now.by_accel(at) = A * cos_n - Omega * Omega * n * sin_n;
+      now.by_accel(at + 1) = A * sin_n + Omega * Omega * n * cos_n;
+    }
+    now.speed = Omega * (1.0 + share);
+    now.accel = A * (1.0 + share) + Omega * Omega * slope;
+    now.by_angle(wheel::angle) = now.by_speed(wheel::speed) = now.by_accel(wheel::accel) =
+        1.0 + share;
+    now.by_speed(wheel::angle) = Omega * slope;
+    now.by_accel(wheel::angle) = A * slope + Omega * Omega * curve;
+    now.by_accel(wheel::speed) = 2.0 * Omega * slope;
+    return now;
+  }
+
+  /// The motion τ earlier, as the sensors measure it. Otherwise speed and lever arms would be out
+  /// of phase with gravity, whose phase shows the ripple; once per turn that resembles a skew.
+  [[nodiscard]] Motion motion_shown(const State& x) const {
+    State earlier = x;
+    for (const int i : {wheel::angle, wheel::speed, wheel::accel}) earlier(i) -= delay_s * x(i + 1);
+    Motion shown = motion(earlier);
+    for (State* slope : {&shown.by_angle, &shown.by_speed, &shown.by_accel})
+      for (const int i : {wheel::jerk, wheel::accel, wheel::speed})
+        (*slope)(i) -= delay_s * (*slope)(i - 1);
+    return shown;
+  }
+
+  [[nodiscard]] Transition<states, moving> transition(const State& x, std::size_t k) const {
+    const double t = (*instants)[k].dt_s, t2 = t * t, t3 = t2 * t, t4 = t2 * t2, t5 = t4 * t;
+    const double t6 = t3 * t3, t7 = t4 * t3;
+    Transition<states, moving> step;
+    // clang-format off
+    step.F << 1, t, t2 / 2, t3 / 6,
+              0, 1, t,      t2 / 2,
+              0, 0, 1,      t,
+              0, 0, 0,      1;
+    step.Q << t7 / 252, t6 / 72, t5 / 30, t4 / 24,
+              t6 / 72,  t5 / 20, t4 / 8,  t3 / 6,
+              t5 / 30,  t4 / 8,  t3 / 3,  t2 / 2,
+              t4 / 24,  t3 / 6,  t2 / 2,  t;
+    Mat<3, 3> rough;
+    rough << t5 / 20, t4 / 8, t3 / 6,
+             t4 / 8,  t3 / 3, t2 / 2,
+             t3 / 6,  t2 / 2, t;
+    // clang-format on
+    step.Q *= noise.snap_psd;
+    step.Q.template topLeftCorner<3, 3>() += noise.jerk_psd * rough;
+    step.mean = step.F * x.template head<moving>();
+    step.walk.setZero();
+    if (with_ripple)
+      step.walk.template segment<2 * wheel::ripple_orders>(wheel::ripple(Sensors))
+          .setConstant(ripple_walk_psd * t);
+    if (sensors_stand) return step;
+    for (int s = 0; s < Sensors; ++s)
+      step.walk.template segment<2>(wheel::first_of(s)).setConstant(noise.bias_walk_psd * t);
+    if (with_gyro)
+      for (int s = 0; s < Sensors; ++s)
+        step.walk.template segment<2>(wheel::gyro(Sensors) + 2 * s) << gyro_bias_walk_psd * t,
+            gyro_scale_walk_psd * t;
+    return step;
+  }
+
+  /// Whether epoch k has measurements of a sensor.
+  [[nodiscard]] bool has_readings(std::size_t sensor, std::size_t k) const {
+    const std::int64_t row = (*instants)[k].row[sensor];
+    return row != WheelInstant::no_row && readings[sensor]->has(static_cast<std::size_t>(row));
+  }
+
+  /// Whether epoch k has the gyroscope measurement of a sensor.
+  [[nodiscard]] bool has_speed(std::size_t sensor, std::size_t k) const {
+    if (!with_gyro || readings[sensor]->speed_radps.empty()) return false;
+    return !std::isnan(
+        readings[sensor]->speed_radps[static_cast<std::size_t>((*instants)[k].row[sensor])]);
+  }
+
+  void measure(const State& x, std::size_t k, Readings<states, channels>& out) const {
+    out.count = out.constraints = 0;
+    const State at_state = about == nullptr ? x : state_about(x, k);
+    const Motion now = motion_shown(at_state);
+    for (int s = 0; s < Sensors; ++s) {
+      const auto index = static_cast<std::size_t>(s);
+      if (!has_readings(index, k)) continue;
+      const PlanarReadings& sensor = *readings[index];
+      const auto at = static_cast<std::size_t>((*instants)[k].row[index]);
+      const int first = out.count;
+      const Mat<2> lever =
+          levers == nullptr ? Mat<2>(now.speed * now.speed, now.accel) : (*levers)[k];
+      read_sensor(at_state, now, lever, s, out);
+      auto& u = out.rows[static_cast<std::size_t>(first)];
+      auto& v = out.rows[static_cast<std::size_t>(first + 1)];
+      u.value = sensor.u_mps2[at];
+      v.value = sensor.v_mps2[at];
+      u.variance = v.variance = sensor.variance_m2ps4[at];
+      if (has_speed(index, k)) {
+        read_gyro(at_state, now, s, out);
+        auto& speed = out.rows[static_cast<std::size_t>(first + 2)];
+        speed.value = sensor.speed_radps[at];
+        speed.variance = sensor.speed_variance;
+      }
+      if (about == nullptr) continue;
+      for (int i = first; i < out.count; ++i) {
+        auto& row = out.rows[static_cast<std::size_t>(i)];
+        row.predicted += row.h.dot(x - at_state);
+      }
+    }
+    if ((*instants)[k].stands && (*instants)[k].dt_s > 0.0) read_standing(x, k, out);
+  }
+
+  /// Covariance reset of the motion, not of the sensors' constants: called after the gate has
+  /// rejected everything for a while. Restarts from the path if there is one.
+  void reopen(Gaussian<states>& x, std::size_t k) const {
+    if (about != nullptr) x.mean.template head<moving>() = about->moving[k];
+    const Mat<moving> open(1.0, 100.0, 100.0, 100.0);  // (1 rad)², (10 rad/s)², …
+    for (int i = 0; i < moving; ++i) {
+      x.cov.row(i).setZero();
+      x.cov.col(i).setZero();
+      x.cov(i, i) = open(i);
+    }
+  }
+
+ private:
+  [[nodiscard]] State state_about(const State& x, std::size_t k) const {
+    State at = x;
+    const bool slips = std::abs(x(wheel::angle) - about->moving[k](wheel::angle)) > 0.5;
+    // Lever arms that are estimated would at first outweigh gravity, and rotate the angle.
+    if (k < first_turn || slips || levers != nullptr) at.template head<moving>() = about->moving[k];
+    at.template tail<wheel::standing(Sensors)>() = about->standing;
+    if (places_held) at.template tail<2 * Sensors>() = x.template tail<2 * Sensors>();
+    return at;
+  }
+
+  /// One zero-speed measurement in each standing_stretch_s, distributed over time.
+  void read_standing(const State& x, std::size_t k, Readings<states, channels>& out) const {
+    out.constraints = 1;
+    auto& row = out.rows[static_cast<std::size_t>(out.count++)];
+    row.h.setZero();
+    row.h(wheel::speed) = 1.0;
+    row.predicted = x(wheel::speed);
+    row.value = 0.0;
+    row.variance =
+        square(standing_speed_radps) * std::max(1.0, standing_stretch_s / (*instants)[k].dt_s);
+  }
+
+  void read_gyro(const State& x, const Motion& now, int s, Readings<states, channels>& out) const {
+    const int at = wheel::gyro(Sensors) + 2 * s;
+    auto& row = out.rows[static_cast<std::size_t>(out.count++)];
+    row.h = (1.0 + x(at + 1)) * now.by_speed;
+    row.h(at) = 1.0;
+    row.h(at + 1) = now.speed;
+    row.predicted = (1.0 + x(at + 1)) * now.speed + x(at);
+  }
+
+  void read_sensor(const State& x,
+                   const Motion& now,
+                   const Mat<2>& lever,
+                   int s,
+                   Readings<states, channels>& out) const {
+    const int at = wheel::first_of(s);
+    const double w = now.speed, al = now.accel, late = w * delay_s;
+    const double weaker2 = 1.0 / (1.0 + late * late), weaker = std::sqrt(weaker2);
+    const double phi =
+        now.angle + (s > 0 ? phase_rad + x(wheel::phase) : 0.0) + late - std::atan(late);
+    const double sin_phi = std::sin(phi), cos_phi = std::cos(phi);
+    const int place = wheel::places(Sensors) + 2 * s;
+    const double ru = x(place), rv = x(place + 1);
+    const double g = weaker * gravity_mps2, hub = -weaker * rolling_radius_m * al;
+    // Forces and their derivatives in the sensor's true axes.
+    const double turn_u = g * cos_phi - hub * sin_phi;   // ∂f_u/∂φ
+    const double turn_v = -g * sin_phi - hub * cos_phi;  // ∂f_v/∂φ
+    const double fu = -turn_v - w * w * ru - al * rv;
+    const double fv = turn_u - w * w * rv + al * ru;
+    // By the speed: through the centripetal force, and through the rotating force, which is less
+    // delayed and attenuated.
+    const double sooner = delay_s * (1.0 - weaker2), fade = late * delay_s * weaker2;
+    const double by_w_u = -2.0 * w * ru + sooner * turn_u + fade * turn_v;
+    const double by_w_v = -2.0 * w * rv + sooner * turn_v - fade * turn_u;
+    const double by_al_u = -rv - weaker * rolling_radius_m * cos_phi;
+    const double by_al_v = ru + weaker * rolling_radius_m * sin_phi;
+    Mat<states> du = turn_u * now.by_angle + by_w_u * now.by_speed + by_al_u * now.by_accel;
+    Mat<states> dv = turn_v * now.by_angle + by_w_v * now.by_speed + by_al_v * now.by_accel;
+    if (s > 0) {
+      du(wheel::phase) = turn_u;
+      dv(wheel::phase) = turn_v;
+    }
+    du(place) = dv(place + 1) = -lever(0);
+    du(place + 1) = -lever(1);
+    dv(place) = lever(1);
+    // Through scale, skew and bias to the measurement.
+    const double su = 1.0 + x(at + wheel::scale), sv = 1.0 + x(at + wheel::scale + 1);
+    const double skew = x(at + wheel::skew);
+    auto& u = out.rows[static_cast<std::size_t>(out.count++)];
+    auto& v = out.rows[static_cast<std::size_t>(out.count++)];
+    u.h = su * (du + skew * dv);
+    v.h = sv * (dv + skew * du);
+    u.h(at + wheel::scale) = fu + skew * fv;
+    v.h(at + wheel::scale + 1) = fv + skew * fu;
+    u.h(at + wheel::skew) = su * fv;
+    v.h(at + wheel::skew) = sv * fu;
+    u.h(at + wheel::bias) = v.h(at + wheel::bias + 1) = 1.0;
+    u.predicted = su * (fu + skew * fv) + x(at + wheel::bias);
+    v.predicted = sv * (fv + skew * fu) + x(at + wheel::bias + 1);
+  }
+};
+
+// One epoch of the filter and of the smoother, compiled once, in wheel/model.cpp.
+extern template void advance(const WheelModel<1>&,
+                             std::size_t,
+                             const Gate&,
+                             FilterState<wheel::states(1)>&,
+                             StepOf<WheelModel<1>>&);
+extern template void advance(const WheelModel<2>&,
+                             std::size_t,
+                             const Gate&,
+                             FilterState<wheel::states(2)>&,
+                             StepOf<WheelModel<2>>&);
+extern template void look_back(Hindsight<wheel::states(1)>&, const StepOf<WheelModel<1>>&);
+extern template void look_back(Hindsight<wheel::states(2)>&, const StepOf<WheelModel<2>>&);
+
+}  // namespace proofmass::estimate

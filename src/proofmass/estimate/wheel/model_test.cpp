@@ -1,0 +1,352 @@
+#include "proofmass/estimate/wheel/model.hpp"
+
+#include <complex>
+#include <gtest/gtest.h>
+
+#include "proofmass/estimate/wheel_test_support.hpp"
+
+namespace proofmass::estimate::wheel_model_test {
+namespace {
+
+using test::Mount;
+using test::Normal;
+using test::Turning;
+
+template <int S>
+using State = Mat<wheel::states(S)>;
+
+/// Where the place of a sensor, along its u, stands in the state.
+int place_of(int sensors, int s) {
+  return wheel::places(sensors) + 2 * s;
+}
+
+/// A model with one epoch at which every sensor was read.
+template <int S>
+struct OneInstant {
+  std::vector<WheelInstant> instants{WheelInstant{0.01, {0, S == 2 ? 0 : WheelInstant::no_row}}};
+  std::array<PlanarReadings, 2> readings;
+  WheelModel<S> model;
+
+  OneInstant(double rolling_radius_m, double phase_rad) {
+    for (std::size_t s = 0; s < S; ++s) {
+      readings[s] = {{1.0}, {2.0}, {0.25}};
+      model.readings[s] = &readings[s];
+    }
+    model.gravity_mps2 = 9.8;
+    model.rolling_radius_m = rolling_radius_m;
+    model.phase_rad = phase_rad;
+    model.instants = &instants;
+  }
+
+  [[nodiscard]] Readings<WheelModel<S>::states, WheelModel<S>::channels> at(
+      const State<S>& x) const {
+    Readings<WheelModel<S>::states, WheelModel<S>::channels> out;
+    model.measure(x, 0, out);
+    return out;
+  }
+};
+
+/// A state with nothing at zero: any angle, up to 40 rad/s either way, places up to 0.3 m.
+template <int S>
+State<S> any_state(Normal& normal) {
+  State<S> x;
+  x.setZero();
+  x(wheel::angle) = 20.0 * (normal.uniform() - 0.5);
+  x(wheel::speed) = 80.0 * (normal.uniform() - 0.5);
+  x(wheel::accel) = 60.0 * (normal.uniform() - 0.5);
+  x(wheel::start) = normal();
+  for (int s = 0; s < S; ++s) {
+    const int at = wheel::first_of(s);
+    for (int i = 0; i < 2; ++i) {
+      x(at + wheel::bias + i) = normal();
+      x(place_of(S, s) + i) = 0.6 * (normal.uniform() - 0.5);
+      x(at + wheel::scale + i) = 0.1 * normal();
+    }
+    x(at + wheel::skew) = 0.1 * normal();
+    if (s > 0) x(wheel::phase) = normal();
+  }
+  return x;
+}
+
+template <int S>
+void expect_jacobian_of_differences(const OneInstant<S>& instant, int readings) {
+  Normal normal(17);
+  for (int trial = 0; trial < 50; ++trial) {
+    auto x = any_state<S>(normal);
+    if (instant.model.with_ripple)
+      for (int i = wheel::ripple(S); i < wheel::places(S); ++i) x(i) = 0.02 * normal();
+    const auto here = instant.at(x);
+    ASSERT_EQ(here.count, readings);
+    for (int j = 0; j < WheelModel<S>::states; ++j) {
+      const double h = 1e-5;
+      auto up = x, down = x;
+      up(j) += h;
+      down(j) -= h;
+      const auto above = instant.at(up), below = instant.at(down);
+      for (std::size_t i = 0; i < static_cast<std::size_t>(readings); ++i) {
+        const double slope = (above.rows[i].predicted - below.rows[i].predicted) / (2.0 * h);
+        EXPECT_NEAR(here.rows[i].h(j), slope, 1e-5 * (1.0 + std::abs(slope)))
+            << "reading " << i << ", state " << j;
+      }
+    }
+  }
+}
+
+TEST(WheelModel, JacobianOfOneSensorEqualsDifferences) {
+  expect_jacobian_of_differences(OneInstant<1>(0.0, 0.7), 2);
+}
+TEST(WheelModel, JacobianOfTwoSensorsEqualsDifferences) {
+  expect_jacobian_of_differences(OneInstant<2>(0.0, 0.7), 4);
+}
+TEST(WheelModel, JacobianOnARollingWheelEqualsDifferences) {
+  expect_jacobian_of_differences(OneInstant<2>(0.3, 0.7), 4);
+}
+TEST(WheelModel, JacobianWithRippleDelayAndGyroscopesEqualsDifferences) {
+  OneInstant<2> instant(0.3, 0.7);
+  instant.model.with_ripple = instant.model.with_gyro = true;
+  instant.model.orders = {1, 2, 5, 7};
+  instant.model.delay_s = 0.01;
+  for (PlanarReadings& sensor : instant.readings) sensor.speed_radps = {1.0};
+  expect_jacobian_of_differences(instant, 6);
+}
+
+// The rippling speed integrated by steps, from where its angle starts.
+TEST(WheelModel, SpeedAndAccelerationAreTheDerivativesOfTheRipplingAngle) {
+  WheelModel<1> model;
+  model.with_ripple = true;
+  model.orders = {1, 2, 3, 7};
+  State<1> x = State<1>::Zero();
+  for (int i = 0; i < 2 * wheel::ripple_orders; ++i) x(wheel::ripple(1) + i) = 0.01 * (i - 3);
+  x(wheel::angle) = 0.8;
+  x(wheel::speed) = 6.0;
+  x(wheel::accel) = 2.0;
+  const auto after = [&](double t) {
+    State<1> then = x;
+    then(wheel::angle) += 6.0 * t + t * t;
+    then(wheel::speed) += 2.0 * t;
+    return model.motion(then);
+  };
+  const double h = 1e-5;
+  const auto before = after(-h), now = after(0.0), then = after(h);
+  EXPECT_NEAR((then.angle - before.angle) / (2.0 * h), now.speed, 1e-6);
+  EXPECT_NEAR((then.speed - before.speed) / (2.0 * h), now.accel, 1e-5);
+}
+
+// One pole's answer to a turning vector: late by atan(ω τ), weaker by its cosine.
+TEST(WheelModel, AFilterReadsGravityLaterAndWeaker) {
+  OneInstant<1> instant(0.0, 0.0);
+  instant.model.delay_s = 0.02;
+  State<1> x = State<1>::Zero();
+  x(wheel::angle) = 1.1;
+  x(wheel::speed) = 30.0;
+  const std::complex<double> pole(1.0, 30.0 * 0.02);
+  const std::complex<double> read = std::polar(9.8, 1.1) / pole;
+  const auto& rows = instant.at(x).rows;
+  EXPECT_NEAR(rows[0].predicted, read.imag(), 1e-12);
+  EXPECT_NEAR(rows[1].predicted, read.real(), 1e-12);
+}
+
+// The same force by differentiating a point on the complex plane twice (wheel_test_support.hpp).
+TEST(WheelModel, PredictsExactlyWhatTheKinematicsOfAPointSay) {
+  Normal normal(3);
+  for (const double rolling_radius_m : {0.0, 0.31}) {
+    const OneInstant<2> instant(rolling_radius_m, 0.4);
+    for (int trial = 0; trial < 50; ++trial) {
+      const auto x = any_state<2>(normal);
+      const auto out = instant.at(x);
+      const Turning now{x(wheel::angle), x(wheel::speed), x(wheel::accel)};
+      const test::Site site{9.8, 0.0, rolling_radius_m};
+      for (int s = 0; s < 2; ++s) {
+        const int at = wheel::first_of(s);
+        Mount mount;
+        mount.turned_rad = s == 0 ? 0.0 : 0.4 + x(wheel::phase);
+        // The model has the place in the sensor's own axes, the mount in the wheel's.
+        mount.place_m = std::complex(x(place_of(2, s)), x(place_of(2, s) + 1)) *
+                        std::polar(1.0, mount.turned_rad);
+        mount.bias_mps2 = {x(at + wheel::bias), x(at + wheel::bias + 1)};
+        mount.scale = {1.0 + x(at + wheel::scale), 1.0 + x(at + wheel::scale + 1)};
+        mount.skew_rad = x(at + wheel::skew);
+        const auto expected = test::reading(test::force(now, mount, site), mount);
+        const auto row = static_cast<std::size_t>(2 * s);
+        EXPECT_NEAR(out.rows[row].predicted, expected[0], 1e-11);
+        EXPECT_NEAR(out.rows[row + 1].predicted, expected[1], 1e-11);
+      }
+    }
+  }
+}
+
+// Lele (2010), section 4.4: sensors at ±R with parallel axes; half the sum is gravity's phase, half
+// the difference −R ω² and R α.
+TEST(WheelModel, OfAnOppositePairSumIsGravityAndDifferenceIsTheMotion) {
+  constexpr double R = 0.1;
+  const OneInstant<2> instant(0.0, 0.0);
+  State<2> x;
+  x.setZero();
+  x(wheel::angle) = 0.6;
+  x(wheel::speed) = 3.0;
+  x(wheel::accel) = -5.0;
+  x(place_of(2, 0)) = R;
+  x(place_of(2, 1)) = -R;
+  const auto& rows = instant.at(x).rows;
+  EXPECT_NEAR(0.5 * (rows[0].predicted + rows[2].predicted), 9.8 * std::sin(0.6), 1e-14);
+  EXPECT_NEAR(0.5 * (rows[1].predicted + rows[3].predicted), 9.8 * std::cos(0.6), 1e-14);
+  EXPECT_NEAR(0.5 * (rows[0].predicted - rows[2].predicted), -R * 9.0, 1e-14);
+  EXPECT_NEAR(0.5 * (rows[1].predicted - rows[3].predicted), R * -5.0, 1e-14);
+}
+
+TEST(WheelModel, TakesValuesAndVariancesFromTheRowsOfTheInstant) {
+  OneInstant<2> instant(0.0, 0.0);
+  instant.readings[1] = {{0.0, 5.0}, {0.0, 6.0}, {9.0, 0.5}};
+  instant.instants[0].row = {0, 1};
+  const auto out = instant.at(State<2>::Zero());
+  const std::array values{1.0, 2.0, 5.0, 6.0}, variances{0.25, 0.25, 0.5, 0.5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(out.rows[i].value, values[i]);
+    EXPECT_EQ(out.rows[i].variance, variances[i]);
+  }
+}
+
+TEST(WheelModel, ASensorThatWasNotReadGivesNoReadings) {
+  OneInstant<2> instant(0.0, 0.0);
+  instant.instants[0].row[0] = WheelInstant::no_row;
+  const auto second_only = instant.at(State<2>::Zero());
+  EXPECT_EQ(second_only.count, 2);
+  EXPECT_EQ(second_only.rows[0].h(wheel::first_of(1) + wheel::bias), 1.0);
+  instant.readings[1].v_mps2[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(instant.at(State<2>::Zero()).count, 0);
+}
+
+TEST(WheelModel, TwoStepsEqualOneOfTwiceTheLength) {
+  std::vector<WheelInstant> instants{{0.0, {}}, {0.013, {}}, {0.026, {}}};
+  WheelModel<2> model;
+  model.instants = &instants;
+  model.noise = {.jerk_psd = 3.0, .snap_psd = 7.0, .bias_walk_psd = 1e-5};
+  State<2> x = State<2>::Zero();
+  x.head<wheel::moving>() << 0.5, -1.2, 3.0, 0.7;
+  const auto one = model.transition(x, 1), two = model.transition(x, 2);
+  EXPECT_TRUE(two.F.isApprox(one.F * one.F, 1e-14));
+  EXPECT_TRUE(two.Q.isApprox(one.F * one.Q * one.F.transpose() + one.Q, 1e-14));
+  EXPECT_TRUE(two.walk.isApprox(2.0 * one.walk, 1e-14));
+  EXPECT_TRUE(two.mean.isApprox(two.F * x.head<wheel::moving>(), 1e-14));
+}
+
+TEST(WheelModel, EachOfTheTwoDrivesIsThatOfItsOwnModel) {
+  std::vector<WheelInstant> instants{{0.0, {}}, {0.1, {}}};
+  WheelModel<1> model;
+  model.instants = &instants;
+  model.noise = {.jerk_psd = 3.0, .snap_psd = 0.0};
+  const auto rough = model.transition(State<1>::Zero(), 1);
+  EXPECT_DOUBLE_EQ(rough.Q(wheel::accel, wheel::accel), 3.0 * 0.1);
+  EXPECT_EQ(rough.Q(wheel::jerk, wheel::jerk), 0.0);
+  model.noise = {.jerk_psd = 0.0, .snap_psd = 3.0};
+  const auto smooth_drive = model.transition(State<1>::Zero(), 1);
+  EXPECT_DOUBLE_EQ(smooth_drive.Q(wheel::jerk, wheel::jerk), 3.0 * 0.1);
+  EXPECT_DOUBLE_EQ(smooth_drive.Q(wheel::accel, wheel::accel), 3.0 * 0.001 / 3.0);
+}
+
+TEST(WheelModel, OnlyTheBiasesWalk) {
+  std::vector<WheelInstant> instants{{0.0, {}}, {0.01, {}}};
+  WheelModel<2> model;
+  model.instants = &instants;
+  model.noise = {.jerk_psd = 1.0, .snap_psd = 2.0, .bias_walk_psd = 0.5};
+  const auto step = model.transition(State<2>::Zero(), 1);
+  for (int i = wheel::moving; i < wheel::states(2); ++i) {
+    const int one = i - wheel::first_of(0), two = i - wheel::first_of(1);
+    const bool is_bias = one == 0 || one == 1 || two == 0 || two == 1;
+    EXPECT_DOUBLE_EQ(step.walk(i), is_bias ? 0.005 : 0.0) << "state " << i;
+  }
+}
+
+// About a path the measurements are linear in the constants, exactly, and their slope owes nothing
+// to what the filter makes of them.
+TEST(WheelModel, AboutAPathTheConstantsEnterLinearly) {
+  Normal normal(5);
+  OneInstant<1> instant(0.0, 0.0);
+  const State<1> x = any_state<1>(normal);
+  WheelPath path;
+  path.moving.push_back(x.head<wheel::moving>());
+  path.standing = x.tail<wheel::standing(1)>();
+  const auto exact = instant.at(x);
+  instant.model.about = &path;
+  const auto at_path = instant.at(x);
+  EXPECT_NEAR(at_path.rows[0].predicted, exact.rows[0].predicted, 1e-12);
+  State<1> moved = x;
+  moved(wheel::first_of(0) + wheel::scale) += 0.1;
+  moved(wheel::first_of(0) + wheel::skew) += 0.1;
+  const auto beside = instant.at(moved);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(beside.rows[i].h, at_path.rows[i].h);
+    EXPECT_NEAR(beside.rows[i].predicted,
+                at_path.rows[i].predicted + at_path.rows[i].h.dot(moved - x), 1e-12);
+  }
+}
+
+// A filter shows what was τ earlier: measurements of a rippling wheel through a delay are, but for
+// the weakening of what turns, those of the undelayed wheel τ before.
+TEST(WheelModel, ADelayShowsTheMotionOfEarlier) {
+  Normal normal(6);
+  OneInstant<1> instant(0.0, 0.0);
+  instant.model.with_ripple = true;
+  State<1> x = any_state<1>(normal);
+  x(wheel::speed) = 4.0;
+  x(wheel::accel) = x(wheel::jerk) = 0.0;
+  x.segment<8>(wheel::ripple(1)).setConstant(0.01);
+  constexpr double late_s = 1e-3;
+  State<1> earlier = x;
+  earlier(wheel::angle) -= late_s * x(wheel::speed);
+  const auto undelayed = instant.at(earlier);
+  instant.model.delay_s = late_s;
+  const auto delayed = instant.at(x);
+  for (std::size_t i = 0; i < 2; ++i)
+    // g (ω τ)² / 2 of weakening, and nothing in proportion to τ.
+    EXPECT_NEAR(delayed.rows[i].predicted, undelayed.rows[i].predicted, 1.5e-4);
+}
+
+// That a wheel stands does not show whether the filter has its angle.
+TEST(WheelModel, StandingIsAConstraintOfTheSpeed) {
+  OneInstant<1> instant(0.0, 0.0);
+  State<1> x = State<1>::Zero();
+  x(wheel::speed) = 0.2;
+  EXPECT_EQ(instant.at(x).constraints, 0);
+  instant.instants[0].stands = true;
+  const auto out = instant.at(x);
+  ASSERT_EQ(out.count, 3);
+  EXPECT_EQ(out.constraints, 1);
+  EXPECT_EQ(out.rows[2].value, 0.0);
+  EXPECT_EQ(out.rows[2].predicted, 0.2);
+  EXPECT_EQ(out.rows[2].h, State<1>::Unit(wheel::speed));
+  // 0.01 s of half a second: fifty times the variance.
+  EXPECT_NEAR(out.rows[2].variance, 50.0 * square(standing_speed_radps), 1e-12);
+}
+
+TEST(WheelModel, ReopeningBeginsAgainFromThePath) {
+  WheelModel<1> model;
+  WheelPath path;
+  path.moving.assign(3, Mat<wheel::moving>(1.0, 2.0, 3.0, 4.0));
+  path.standing = Eigen::VectorXd::Zero(wheel::standing(1));
+  model.about = &path;
+  Gaussian<wheel::states(1)> x;
+  x.mean.setConstant(100.0);
+  model.reopen(x, 2);
+  EXPECT_EQ((x.mean.head<wheel::moving>()), path.moving[2]);
+  EXPECT_EQ(x.mean(wheel::start), 100.0);
+}
+
+TEST(WheelModel, ReopeningForgetsTheMotionAndKeepsTheConstants) {
+  const WheelModel<1> model;
+  Gaussian<wheel::states(1)> x;
+  x.cov.setConstant(0.1);
+  x.cov.diagonal().array() += 1.0;
+  const auto before = x.cov;
+  model.reopen(x, 0);
+  constexpr int moving = wheel::moving, rest = wheel::states(1) - wheel::moving;
+  EXPECT_EQ((x.cov.bottomRightCorner<rest, rest>()), (before.bottomRightCorner<rest, rest>()));
+  EXPECT_TRUE((x.cov.topRightCorner<moving, rest>().isZero()));
+  EXPECT_TRUE((x.cov.bottomLeftCorner<rest, moving>().isZero()));
+  EXPECT_EQ(x.cov(moving, moving), 1.1);
+  EXPECT_GE(x.cov(wheel::angle, wheel::angle), 1.0);
+  EXPECT_EQ(x.cov, x.cov.transpose());
+}
+
+}  // namespace
+}  // namespace proofmass::estimate::wheel_model_test

@@ -1,0 +1,258 @@
+#include "proofmass/estimate/wheel/plane.hpp"
+
+#include <gtest/gtest.h>
+
+#include "proofmass/estimate/wheel_test_support.hpp"
+
+namespace proofmass::estimate::wheel_plane_test {
+namespace {
+
+using test::Drive;
+using test::Mount;
+using test::record;
+using test::rpm;
+
+const Drive turning{{0.3, 20 * rpm}, {{8.0, 30 * rpm}}};
+
+double dot(const Axis& a, const Axis& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+WheelPlane plane_of(const WheelSensor& sensor, const std::optional<Axis>& given = {}) {
+  return find_plane(sensor, screen_rows(sensor), given).value();
+}
+
+void expect_right_handed(const WheelPlane& plane) {
+  EXPECT_NEAR(dot(plane.axis, plane.axis), 1.0, 1e-12);
+  EXPECT_NEAR(dot(plane.u, plane.u), 1.0, 1e-12);
+  EXPECT_NEAR(dot(plane.v, plane.v), 1.0, 1e-12);
+  EXPECT_NEAR(dot(plane.u, plane.v), 0.0, 1e-12);
+  EXPECT_NEAR(dot(plane.axis, plane.u), 0.0, 1e-12);
+  const Axis& u = plane.u;
+  const Axis& v = plane.v;
+  EXPECT_NEAR((u[0] * v[1] - u[1] * v[0]) * plane.axis[2] +
+                  (u[1] * v[2] - u[2] * v[1]) * plane.axis[0] +
+                  (u[2] * v[0] - u[0] * v[2]) * plane.axis[1],
+              1.0, 1e-12);
+}
+
+TEST(WheelPlane, IsFoundWhicheverSensorAxisPointsAlongTheAxle) {
+  const std::array<std::array<std::array<double, 3>, 3>, 3> turned{
+      {{{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}},    // axle along x
+       {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}},    // along y
+       {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}};  // along z
+  for (std::size_t along = 0; along < 3; ++along) {
+    Mount mount;
+    mount.axes = turned[along];
+    const WheelPlane plane = plane_of(record(turning, mount, 100.0, 1));
+    EXPECT_NEAR(plane.axis[along], 1.0, 1e-6);
+    EXPECT_NEAR(plane.u[(along + 1) % 3], 1.0, 1e-6);
+    EXPECT_FALSE(plane.assumed);
+    expect_right_handed(plane);
+  }
+}
+
+TEST(WheelPlane, IsFoundForASensorMountedAtAnyAngle) {
+  Mount mount;
+  mount.axes = test::tilted(0.4, -0.3, 0.25);
+  const WheelPlane plane = plane_of(record(turning, mount, 100.0, 1));
+  EXPECT_NEAR(dot(plane.axis, mount.axes[2]), 1.0, 2e-6);  // within 2 mrad
+  expect_right_handed(plane);
+}
+
+TEST(WheelPlane, OfAnAxleThatIsNotLevelTakesGravityAlongItAndNotTheAxis) {
+  constexpr double tilt = 0.2;
+  const WheelPlane plane = plane_of(record(turning, {}, 100.0, 1, {.axle_tilt_rad = tilt}));
+  EXPECT_NEAR(plane.axis[2], 1.0, 1e-6);
+  EXPECT_NEAR(plane.axial_mps2, standard_gravity_mps2 * std::sin(tilt), 0.01);
+}
+
+TEST(WheelPlane, GivenIsTakenAtAnyLengthAndEitherWay) {
+  const WheelPlane plane = plane_of(record(turning, {}, 100.0, 1), Axis{0.0, 0.0, -5.0});
+  EXPECT_EQ(plane.axis, (Axis{0.0, 0.0, -1.0}));
+  expect_right_handed(plane);
+  const WheelSensor sensor = record(turning, {}, 100.0, 1);
+  const auto none = find_plane(sensor, screen_rows(sensor), Axis{0.0, 0.0, 0.0});
+  ASSERT_FALSE(none.has_value());
+  EXPECT_EQ(none.error().code, Errc::invalid_argument);
+}
+
+TEST(WheelPlane, OfATwoAxisSensorIsThatOfItsAxes) {
+  Mount mount;
+  mount.two_axes = true;
+  const WheelPlane plane = plane_of(record(turning, mount, 100.0, 1));
+  EXPECT_EQ(plane.axis, (Axis{0.0, 0.0, 1.0}));
+  EXPECT_EQ(plane.u, (Axis{1.0, 0.0, 0.0}));
+  EXPECT_EQ(plane.v, (Axis{0.0, 1.0, 0.0}));
+}
+
+TEST(WheelPlane, OfAWheelAtRestIsAssumedAndSaysSo) {
+  const WheelPlane plane = plane_of(record({{0.3, 0.0}, {{5.0, 0.0}}}, {}, 100.0, 1));
+  EXPECT_TRUE(plane.assumed);
+  EXPECT_NEAR(plane.axis[2], 1.0, 1e-12);
+}
+
+TEST(WheelPlane, OneBadRowDoesNotTurnIt) {
+  WheelSensor sensor = record(turning, {}, 400.0, 1);
+  sensor.accel_mps2[2][700] = 5000.0;
+  EXPECT_NEAR(plane_of(sensor).axis[2], 1.0, 1e-4);
+}
+
+TEST(WheelPlane, NeedsTenUsableRows) {
+  WheelSensor sensor = record({{}, {{0.1, 0.0}}}, {}, 100.0, 1);
+  ASSERT_EQ(sensor.time_s.size(), 11U);
+  EXPECT_TRUE(find_plane(sensor, screen_rows(sensor), {}).has_value());
+  test::spoil(sensor, 3, 0.0);
+  test::spoil(sensor, 4, 0.0);
+  const auto found = find_plane(sensor, screen_rows(sensor), {});
+  ASSERT_FALSE(found.has_value());
+  EXPECT_EQ(found.error().code, Errc::too_few_samples);
+  EXPECT_EQ(found.error().message, "sensor: only 9 usable rows; a wheel needs at least 10");
+}
+
+TEST(WheelPlane, TurnedOverIsTheSamePlaneSeenFromTheOtherSide) {
+  const WheelPlane plane = plane_of(record(turning, {}, 100.0, 1, {.axle_tilt_rad = 0.1}));
+  const WheelPlane other = turned_over(plane);
+  expect_right_handed(other);
+  EXPECT_NEAR(dot(plane.axis, other.axis), -1.0, 1e-12);
+  EXPECT_EQ(other.u, plane.u);
+  EXPECT_EQ(other.axial_mps2, -plane.axial_mps2);
+}
+
+TEST(WheelPlane, ProjectsWhatIsUsableAndKeepsTheRestEmpty) {
+  WheelSensor sensor = record(turning, {.noise_mps2 = 0.0}, 100.0, 1);
+  test::spoil(sensor, 5, 3e34);
+  const Screened screened = screen_rows(sensor);
+  const PlanarReadings readings = project(sensor, screened, plane_of(sensor, Axis{0.0, 0.0, 1.0}));
+  ASSERT_EQ(readings.u_mps2.size(), sensor.time_s.size());
+  EXPECT_FALSE(readings.has(5));
+  EXPECT_TRUE(readings.has(6));
+  EXPECT_DOUBLE_EQ(readings.u_mps2[6], sensor.accel_mps2[0][6]);
+  EXPECT_DOUBLE_EQ(readings.v_mps2[6], sensor.accel_mps2[1][6]);
+}
+
+/// A recording whose gyroscope's third channel reads so.
+template <class Reading>
+PlanarReadings with_gyroscope(const Reading& reading) {
+  WheelSensor sensor = record(turning, {}, 100.0, 1);
+  const std::size_t size = sensor.time_s.size();
+  sensor.rate_radps = {std::vector<double>(size, 0.0), std::vector<double>(size, 0.0), {}};
+  for (const double t : sensor.time_s) sensor.rate_radps[2].push_back(reading(t));
+  return project(sensor, screen_rows(sensor), plane_of(sensor, Axis{0.0, 0.0, 1.0}));
+}
+
+TEST(WheelPlane, LeavesOutWhatAGyroscopeReadsAtTheEndOfItsRange) {
+  const auto speed = [](double t) { return 2.0 + std::sin(t); };
+  const PlanarReadings readings = with_gyroscope([&](double t) { return std::min(speed(t), 2.7); });
+  std::size_t saturated = 0;
+  for (std::size_t row = 0; row < readings.speed_radps.size(); ++row) {
+    const double t = 0.01 * static_cast<double>(row);
+    const bool at_end = speed(t) >= 2.7;
+    saturated += at_end;
+    EXPECT_EQ(std::isnan(readings.speed_radps[row]), at_end) << t;
+  }
+  EXPECT_GT(saturated, 100U);
+  EXPECT_EQ(readings.saturated_speeds, saturated);
+}
+
+TEST(WheelPlane, TakesNothingFromAGyroscopeThatNeverChanges) {
+  const PlanarReadings readings = with_gyroscope([](double) { return 0.5; });
+  EXPECT_EQ(readings.saturated_speeds, readings.speed_radps.size());
+  for (const double speed : readings.speed_radps) EXPECT_TRUE(std::isnan(speed));
+}
+
+struct Spoilt {
+  double value;
+  const char* reason;
+};
+
+class ScreenRows : public testing::TestWithParam<Spoilt> {};
+
+TEST_P(ScreenRows, CountsAndNamesWhatNoAccelerometerCanHaveMeant) {
+  WheelSensor sensor = record(turning, {}, 100.0, 1);
+  for (const std::size_t row : {10U, 11U, 12U, 400U}) test::spoil(sensor, row, GetParam().value);
+  const Screened screened = screen_rows(sensor);
+  EXPECT_EQ(screened.unusable, 4U);
+  ASSERT_EQ(screened.rejected.size(), 2U);
+  EXPECT_EQ(screened.rejected[0].reason, GetParam().reason);
+  EXPECT_EQ(screened.rejected[0].rows, 3U);
+  EXPECT_EQ(screened.rejected[0].start_s, sensor.time_s[10]);
+  EXPECT_EQ(screened.rejected[0].end_s, sensor.time_s[12]);
+  EXPECT_EQ(screened.rejected[1].rows, 1U);
+  for (std::size_t row = 0; row < sensor.time_s.size(); ++row)
+    EXPECT_EQ(screened.usable[row], !((row >= 10 && row <= 12) || row == 400)) << "row " << row;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All,
+    ScreenRows,
+    testing::Values(Spoilt{std::numeric_limits<double>::quiet_NaN(), "not a finite number"},
+                    Spoilt{-std::numeric_limits<double>::infinity(), "not a finite number"},
+                    Spoilt{3e34, "beyond 1000 g"},
+                    Spoilt{-9900.0, "beyond 1000 g"},
+                    Spoilt{1e-40, "denormal number"},
+                    Spoilt{0.0, "all axes exactly zero"}));
+
+TEST(ScreenRows, OneBadAxisSpoilsTheRow) {
+  WheelSensor sensor = record(turning, {}, 100.0, 1);
+  sensor.accel_mps2[2][7] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(screen_rows(sensor).unusable, 1U);
+}
+
+TEST(ScreenRows, AZeroOnOneAxisIsAReading) {
+  WheelSensor sensor = record(turning, {}, 100.0, 1);
+  sensor.accel_mps2[0][7] = sensor.accel_mps2[1][8] = 0.0;
+  EXPECT_EQ(screen_rows(sensor).unusable, 0U);
+}
+
+TEST(ScreenRows, ATimeThatDoesNotRiseIsLeftOutUntilItIsNewAgain) {
+  WheelSensor sensor = record(turning, {}, 100.0, 1);
+  sensor.time_s[20] = sensor.time_s[19];
+  sensor.time_s[21] = sensor.time_s[15];
+  sensor.time_s[50] = std::numeric_limits<double>::quiet_NaN();
+  const Screened screened = screen_rows(sensor);
+  EXPECT_EQ(screened.unusable, 3U);
+  ASSERT_EQ(screened.rejected.size(), 2U);
+  EXPECT_EQ(screened.rejected[0].reason, "time does not rise");
+  EXPECT_EQ(screened.rejected[0].rows, 2U);
+  EXPECT_FALSE(screened.usable[50]);
+  EXPECT_TRUE(screened.usable[22]);
+  EXPECT_TRUE(std::isfinite(screened.rejected[1].start_s));
+}
+
+// One stamp far ahead must not make the rest of the recording look late.
+TEST(ScreenRows, AStampFarAheadCostsItselfAndNotTheRest) {
+  WheelSensor sensor = record(turning, {}, 100.0, 1);
+  sensor.time_s[20] = 1e9;
+  EXPECT_LE(screen_rows(sensor).unusable, 2U);
+}
+
+TEST(GravityInPlane, OfALevelAxleIsAllOfItWhateverTheBiasAlongIt) {
+  constexpr double g = standard_gravity_mps2;
+  for (const double bias_mps2 : {-0.3, 0.0, 0.3}) {
+    WheelPlane plane;
+    plane.axial_mps2 = bias_mps2;
+    const Uncertain in_plane = gravity_in_plane(plane, true, g, 0.02);
+    EXPECT_NEAR(in_plane.value, g, 3.0 * in_plane.std) << bias_mps2;
+    EXPECT_LT(in_plane.std, 1e-3 * g);
+  }
+}
+
+TEST(GravityInPlane, OfATiltedAxleIsWhatTheTiltLeavesAsFarAsABiasLetsItBeSeen) {
+  constexpr double g = standard_gravity_mps2, tilt_rad = 0.4, bias_mps2 = 0.3;
+  WheelPlane plane;
+  plane.axial_mps2 = g * std::sin(tilt_rad) + bias_mps2;
+  const Uncertain in_plane = gravity_in_plane(plane, true, g, 0.02);
+  EXPECT_NEAR(in_plane.value, g * std::cos(tilt_rad), 2.0 * in_plane.std);
+  EXPECT_NEAR(in_plane.std, 0.5 * std::tan(tilt_rad), 0.03);  // ∂(g cos τ) of a bias of 0.5 m/s²
+}
+
+TEST(GravityInPlane, OfASensorOfTwoAxesIsALevelAxles) {
+  WheelPlane plane;
+  plane.axial_mps2 = 3.0;  // of a channel that is not there
+  const Uncertain in_plane = gravity_in_plane(plane, false, standard_gravity_mps2, 0.02);
+  EXPECT_NEAR(in_plane.value, standard_gravity_mps2, 3.0 * in_plane.std);
+}
+
+}  // namespace
+}  // namespace proofmass::estimate::wheel_plane_test

@@ -1,0 +1,172 @@
+#include "proofmass/estimate/wheel/settle.hpp"
+
+#include <numbers>
+#include <numeric>
+
+#include "proofmass/core/linalg.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+/// Prior standard deviation of each part of the ripple, about zero: a wheel driven by hand or by a
+/// motor.
+constexpr double ripple_share = 0.02;
+
+/// Prior of the constants, depending on how far the wheel turns.
+ConstantsPrior prior_for(const WheelPath& path) {
+  const auto angle = [](const Mat<wheel::moving>& at) { return at(wheel::angle); };
+  const auto [lowest, highest] = std::ranges::minmax_element(path.moving, {}, angle);
+  if (angle(*highest) - angle(*lowest) < rad_per_turn) return short_way_prior;
+  ConstantsPrior prior;
+  prior.ripple = ripple_share;
+  return prior;
+}
+
+/// The prior with its mean moved to a candidate lever arm, along the directions in which it is
+/// wide.
+PlacesPrior moved_where_open(const PlacesPrior& belief, const Places& to) {
+  PlacesPrior moved = belief;
+  const SymmetricEigen axes = symmetric_eigen(belief.cov);
+  for (Eigen::Index i = 0; i < axes.values.size(); ++i)
+    if (axes.values(i) > 0.25 * axes.values.maxCoeff())
+      moved.mean += axes.vectors.col(i).dot(to - belief.mean) * axes.vectors.col(i);
+  return moved;
+}
+
+/// Least squares of one order's (c, s) on the residuals of a path.
+struct RippleFit {
+  Mat<2, 2> information = Mat<2, 2>::Zero();
+  Mat<2> score = Mat<2>::Zero();
+
+  void add(const Mat<2>& h, double residual) {
+    information += h * h.transpose();
+    score += h * residual;
+  }
+  /// Reduction of the sum of squares.
+  [[nodiscard]] double explained() const {
+    const double cc = information(0, 0), cs = information(0, 1), ss = information(1, 1);
+    const double determinant = cc * ss - cs * cs;
+    if (!(determinant > 1e-12 * square(cc + ss))) return 0.0;
+    return (ss * square(score(0)) - 2.0 * cs * score(0) * score(1) + cc * square(score(1))) /
+           determinant;
+  }
+};
+
+/// One iteration: the measurements' variance, the motion noise and the sensors' lever arms, all
+/// about the current path.
+template <int S>
+Settled<S> settle(WheelReadings& readings,
+                  const WheelTrack& track,
+                  const PlacesPrior& belief,
+                  double tuning_factor) {
+  auto model = held_model<S>(readings, track.noise, track.path);
+  const Places places = track.path.standing.tail<2 * S>();
+  WheelPrior prior{track.beginning, prior_for(track.path), places};
+  settle_variance(model, prior, readings);
+  // Before the ripple is fitted it raises the residuals as vibration does, and with a vehicle's
+  // rolling radius in the model it could not be fitted.
+  const int ripple_at = wheel::ripple(S) - wheel::first_of(0);
+  if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
+    readings.shakes = false;
+  assume_rolling_radius(readings);
+  model.rolling_radius_m = readings.rolling_radius_m.value;
+  const Excerpt<S> excerpt = liveliest(model, prior);
+  model.noise = tune_noise(model, excerpt, tuning_factor).noise;
+  const FoundPlaces likeliest = likeliest_places(model, excerpt, prior, belief);
+  WheelPath about = track.path;
+  about.standing.tail<2 * S>() = likeliest.mean;
+  model.about = &about;
+  PlacesPrior moved = moved_where_open(belief, likeliest.mean);
+  const FoundPlaces found = places_by_levers(model, levers_of(track.path, readings), prior, moved);
+  prior.places = found.mean;
+  return {model.noise, prior, found.cov, {}, std::move(moved), likeliest.log_likelihood};
+}
+
+}  // namespace
+
+std::size_t instants_of_first_turn(const WheelPath& path) {
+  const double start_rad = path.moving.front()(wheel::angle);
+  const auto away = std::ranges::find_if(path.moving, [&](const Mat<wheel::moving>& at) {
+    return std::abs(at(wheel::angle) - start_rad) > rad_per_turn;
+  });
+  return static_cast<std::size_t>(away - path.moving.begin());
+}
+
+template <int S>
+RippleOrders orders_in(const WheelReadings& readings, const WheelPath& path) {
+  using Model = WheelModel<S>;
+  constexpr int at = wheel::ripple(S);
+  Model model = held_model<S>(readings, {}, path);
+  std::array<RippleFit, highest_order + 1> fits{};
+  auto x = Model::State::Zero().eval();
+  x.template tail<wheel::standing(S)>() = path.standing;
+  Readings<Model::states, Model::channels> out;
+  for (const RippleOrders& tried : {RippleOrders{3, 4, 5, 6}, {7, 8, 9, 10}, {9, 10, 11, 12}}) {
+    model.orders = tried;
+    for (const int n : tried) fits[static_cast<std::size_t>(n)] = {};
+    for (std::size_t k = 0; k < model.size(); ++k) {
+      x.template head<wheel::moving>() = path.moving[k];
+      model.measure(x, k, out);
+      const double turned = std::abs(path.moving[k](wheel::speed)) * readings.instants[k].dt_s;
+      for (int i = 0; i < out.count - out.constraints; ++i) {
+        const auto& row = out.rows[static_cast<std::size_t>(i)];
+        for (std::size_t o = 0; o < tried.size(); ++o)
+          // Beyond half a cycle between measurements an order is aliased.
+          if (tried[o] * turned < std::numbers::pi)
+            fits[static_cast<std::size_t>(tried[o])].add(
+                row.h.template segment<2>(at + 2 * static_cast<int>(o)), row.value - row.predicted);
+      }
+    }
+  }
+  std::array<int, highest_order - 2> others{};
+  std::iota(others.begin(), others.end(), 3);
+  const auto explained = [&](int n) { return fits[static_cast<std::size_t>(n)].explained(); };
+  std::ranges::stable_sort(others, std::ranges::greater{}, explained);
+  return {1, 2, others[0], others[1]};
+}
+
+template <int S>
+void improve(const WheelReadings& readings, const Settled<S>& settled, WheelTrack& track) {
+  const auto model = held_model<S>(readings, settled.noise, track.path);
+  WheelPath path = track.path;
+  const auto end = trace_path(model, prior_state<S>(settled.prior), path);
+  track.path = std::move(path);
+  track.noise = settled.noise;
+  track.beginning.angle_rad = end.mean(wheel::start);
+  track.beginning.speed_radps = track.path.moving.front()(wheel::speed);
+}
+
+template <int S>
+Settled<S> settle_rounds(WheelReadings& readings,
+                         WheelTrack& track,
+                         const PlacesPrior& belief,
+                         int most,
+                         const Progress& progress) {
+  double tuning_factor = 10.0;
+  Settled<S> settled = settle<S>(readings, track, belief, tuning_factor);
+  for (int round = 1; round < most; ++round) {
+    if (progress) progress("noise and constants", static_cast<double>(round) / most);
+    const double before = settled.log_likelihood;
+    improve(readings, settled, track);
+    tuning_factor = std::sqrt(10.0);
+    settled = settle<S>(readings, track, belief, tuning_factor);
+    if (round > 1 && std::abs(settled.log_likelihood - before) < 1.0) break;
+  }
+  settled.widened =
+      widening(held_model<S>(readings, settled.noise, track.path), levers_of(track.path, readings),
+               readings.time_s, settled.prior, settled.belief);
+  const auto by = settled.widened.template tail<2 * S>().asDiagonal();
+  settled.places_cov = by * settled.places_cov * by;
+  return settled;
+}
+
+template RippleOrders orders_in<1>(const WheelReadings&, const WheelPath&);
+template RippleOrders orders_in<2>(const WheelReadings&, const WheelPath&);
+template void improve(const WheelReadings&, const Settled<1>&, WheelTrack&);
+template void improve(const WheelReadings&, const Settled<2>&, WheelTrack&);
+template Settled<1> settle_rounds(
+    WheelReadings&, WheelTrack&, const PlacesPrior&, int, const Progress&);
+template Settled<2> settle_rounds(
+    WheelReadings&, WheelTrack&, const PlacesPrior&, int, const Progress&);
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,179 @@
+#include <limits>
+
+#include "proofmass/core/contract.hpp"
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel/passes.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+/// Constants have a tight prior while the phase is being found: a free bias would absorb it.
+constexpr ConstantsPrior seeking_prior{0.3, 0.03, 0.01, 0.5, 0.15};
+
+struct Seek {
+  double accel_std_mps2;  ///< of a measurement at 120 Hz
+  WheelNoise noise;
+};
+
+/// Noise parameters for tracking a wheel without prior knowledge, from a car's wheel on the road to
+/// a bench with little vibration. The first set that keeps the phase is used.
+constexpr std::array<Seek, wheel_seeks> seeks{
+    Seek{1.5, {20.0, 0.0, 1e-7}}, Seek{3.0, {100.0, 0.0, 1e-7}}, Seek{1.5, {500.0, 0.0, 1e-7}},
+    Seek{0.5, {200.0, 0.0, 1e-7}}};
+
+void set_variance(WheelReadings& readings, double accel_std_mps2) {
+  // The same density whatever the rate.
+  const double variance =
+      accel_std_mps2 * accel_std_mps2 * std::max(readings.rate_hz(), 1.0) / 120.0;
+  for (PlanarReadings& sensor : readings.sensors)
+    sensor.variance_m2ps4.assign(sensor.u_mps2.size(), variance);
+}
+
+/// Mean gravity phase of the first few measurements.
+double first_phase(const PlanarReadings& sensor) {
+  double u = 0.0, v = 0.0;
+  int seen = 0;
+  for (std::size_t k = 0; k < sensor.u_mps2.size() && seen < 5; ++k) {
+    if (std::isnan(sensor.u_mps2[k]) || std::isnan(sensor.v_mps2[k])) continue;
+    u += sensor.u_mps2[k];
+    v += sensor.v_mps2[k];
+    ++seen;
+  }
+  return std::atan2(u, v);
+}
+
+/// From rest outwards: 0, 1.5, −1.5, 3, −3 … rad/s, up to the limit set by the rate.
+std::vector<double> speeds_to_try(double rate_hz, double step_radps) {
+  std::vector<double> speeds{0.0};
+  const double top = std::min(fastest_radps(rate_hz), 120.0);
+  for (double speed = step_radps; speed <= top; speed += step_radps) {
+    speeds.push_back(speed);
+    speeds.push_back(-speed);
+  }
+  return speeds;
+}
+
+/// The start that predicts the first four seconds best.
+Beginning seek_beginning(const WheelReadings& readings, const WheelNoise& noise) {
+  constexpr double window_s = 4.0, speed_step_radps = 1.5;
+  const auto model = wheel_model<1>(readings, noise);
+  const auto last = static_cast<std::size_t>(
+      std::ranges::upper_bound(readings.time_s, readings.time_s.front() + window_s) -
+      readings.time_s.begin());
+  const double phase = first_phase(readings.sensors.front());
+  Beginning best;
+  double best_lost = std::numeric_limits<double>::infinity();
+  for (const double speed : speeds_to_try(readings.rate_hz(), speed_step_radps))
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const Beginning candidate{phase + quarter * std::numbers::pi / 2.0, 0.6, speed,
+                                0.7 * speed_step_radps};
+      const auto prior = prior_state<1>({candidate, seeking_prior, {}});
+      const double lost = score_run(model, prior, 0, last).lost;
+      // A later candidate must be clearly better: at rest, many explain little.
+      if (lost >= 0.95 * best_lost) continue;
+      best_lost = lost;
+      best = candidate;
+    }
+  return best;
+}
+
+}  // namespace
+
+double WheelReadings::rate_hz() const {
+  // The mean step, not the median: rows that arrive in packets have nearly equal stamps. Gaps are
+  // excluded.
+  constexpr double gap_share = 0.01, gap_factor = 5.0;
+  std::vector<double> steps;
+  steps.reserve(instants.size());
+  for (const WheelInstant& instant : instants)
+    if (instant.dt_s > 0.0) steps.push_back(instant.dt_s);
+  if (steps.empty()) return 0.0;
+  const double gap_s = gap_factor * *quantile(steps, 1.0 - gap_share);
+  double sum_s = 0.0, count = 0.0;
+  for (const double step : steps) {
+    if (step > gap_s) continue;
+    sum_s += step;
+    count += 1.0;
+  }
+  return count / sum_s;
+}
+
+WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
+  PM_EXPECTS(each >= 1);
+  WheelReadings out{readings.gravity_mps2,
+                    readings.gravity_std_mps2,
+                    readings.given_rolling_radius_m,
+                    readings.rolling_radius_m,
+                    readings.delay_s,
+                    readings.phase_rad,
+                    readings.orders,
+                    readings.shakes,
+                    {},
+                    {},
+                    {}};
+  out.sensors.resize(readings.sensors.size());
+  for (std::size_t first = 0; first < readings.instants.size(); first += each) {
+    const std::size_t last = std::min(first + each, readings.instants.size());
+    WheelInstant instant;
+    instant.stands = true;
+    double time_s = 0.0;
+    for (std::size_t k = first; k < last; ++k) {
+      time_s += readings.time_s[k] / static_cast<double>(last - first);
+      instant.stands = instant.stands && readings.instants[k].stands;
+    }
+    for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
+      const PlanarReadings& sensor = readings.sensors[s];
+      double u = 0.0, v = 0.0, variance = 0.0, count = 0.0, speed = 0.0, speeds = 0.0;
+      for (std::size_t k = first; k < last; ++k) {
+        const std::int64_t row = readings.instants[k].row[s];
+        const auto at = static_cast<std::size_t>(row);
+        if (row == WheelInstant::no_row || !sensor.has(at)) continue;
+        u += sensor.u_mps2[at];
+        v += sensor.v_mps2[at];
+        variance += sensor.variance_m2ps4[at];
+        count += 1.0;
+        if (sensor.speed_radps.empty() || std::isnan(sensor.speed_radps[at])) continue;
+        speed += sensor.speed_radps[at];
+        speeds += 1.0;
+      }
+      if (count == 0.0) continue;
+      instant.row[s] = static_cast<std::int64_t>(out.sensors[s].u_mps2.size());
+      out.sensors[s].u_mps2.push_back(u / count);
+      out.sensors[s].v_mps2.push_back(v / count);
+      out.sensors[s].variance_m2ps4.push_back(variance / (count * count));
+      if (sensor.speed_radps.empty()) continue;
+      out.sensors[s].speed_radps.push_back(speeds > 0.0 ? speed / speeds
+                                                        : std::numeric_limits<double>::quiet_NaN());
+      out.sensors[s].speed_variance = sensor.speed_variance / static_cast<double>(each);
+    }
+    instant.dt_s = out.time_s.empty() ? 0.0 : time_s - out.time_s.back();
+    out.time_s.push_back(time_s);
+    out.instants.push_back(instant);
+  }
+  return out;
+}
+
+WheelTrack find_track(WheelReadings& readings, std::size_t first) {
+  PM_EXPECTS(readings.sensors.size() == 1 && readings.instants.size() >= 2);
+  WheelTrack best;
+  double best_lost = std::numeric_limits<double>::infinity();
+  for (std::size_t i = first; i < seeks.size(); ++i) {
+    const Seek& seek = seeks[i];
+    set_variance(readings, seek.accel_std_mps2);
+    const auto model = wheel_model<1>(readings, seek.noise);
+    const Beginning beginning = seek_beginning(readings, seek.noise);
+    const auto prior = prior_state<1>({beginning, seeking_prior, {}});
+    const double lost = score_run(model, prior, 0, model.size()).lost;
+    // A filter that follows every vibration predicts slightly better without being better.
+    if (lost >= 0.6 * best_lost) continue;
+    best_lost = lost;
+    best = {beginning, seek.noise, {}, lost};
+    (void)trace_path(model, prior, best.path);
+    best.beginning = {best.path.moving.front()(wheel::angle), 0.2,
+                      best.path.moving.front()(wheel::speed), beginning.speed_std_radps};
+    if (lost < 0.3) break;
+  }
+  return best;
+}
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/result.hpp"
+#include "proofmass/io/hdf5/catalogue.hpp"
+#include "proofmass/io/matlab/mat_choice.hpp"
+#include "proofmass/io/read_recording.hpp"
+
+namespace proofmass::io {
+
+/// The datasets as arrays of a MAT file, the input of table selection. The fastest dimension comes
+/// first, as there: is_turned of a table then means that whole samples are contiguous. `catalogue`
+/// must outlive them.
+[[nodiscard]] std::vector<MatArray> arrays_of(const Hdf5Catalogue& catalogue);
+
+/// "imu/acc (5000 x 3 float64)", dimensions in the order of the file.
+[[nodiscard]] std::string description(const Hdf5Dataset& dataset);
+
+/// The datasets that form the recording.
+struct Hdf5Choice {
+  std::vector<MatTable> tables;  ///< of equal length, in the order of the file
+  std::vector<Note> notes;       ///< the selection, its reason, and the alternatives
+};
+
+/// Selects datasets of one length.
+///
+/// - By default the group with the most values in tables of one length, preferring "acc" in a name;
+///   with it the datasets of that length in the groups around and below it, except groups with
+///   their own time.
+/// - Otherwise the datasets and groups named by the user, with the time beside them.
+///
+/// `arrays` are arrays_of(catalogue) and must outlive the choice.
+/// Errors: too_few_samples (no table), invalid_argument (no dataset of a requested name; tables of
+/// different length).
+[[nodiscard]] Result<Hdf5Choice> choose_datasets(const Hdf5Catalogue& catalogue,
+                                                 const std::vector<MatArray>& arrays,
+                                                 const ReadOptions& options);
+
+}  // namespace proofmass::io

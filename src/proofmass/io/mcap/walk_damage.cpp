@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "proofmass/io/mcap/walk.hpp"
+
+// Damaged bytes: the loss, and where the walk continues.
+namespace proofmass::io {
+namespace {
+
+/// "1700000000.125 s"
+std::string seconds(std::uint64_t ns) {
+  return fmt::format("{}.{:03} s", ns / 1'000'000'000, ns / 1'000'000 % 1000);
+}
+
+}  // namespace
+
+/// Continues after damage, if possible; there is no record yet.
+Result<bool> McapWalk::broken_off(const std::string& why) {
+  const auto listed = std::ranges::upper_bound(hints_.chunk_starts, position_);
+  std::uint64_t next = listed == hints_.chunk_starts.end() ? window_.size() : *listed;
+  if (hints_.search) {
+    const auto found = next_chunk(search_from_);
+    if (!found) return found.error();
+    next = *found;
+    position_ = std::min(position_, next);
+  }
+  hints_.check_data = false;
+  if (next >= window_.size()) {
+    note(Severity::bad,
+         fmt::format("breaks off at byte {}, {}: what was read before is kept", position_, why));
+    counts_.passed_over += window_.size() - position_;
+    ended_ = true;
+    return false;
+  }
+  note(
+      Severity::bad,
+      fmt::format("is damaged at byte {}, {}: passed over up to byte {}, where {}", position_, why,
+                  next, hints_.search ? "a whole chunk begins" : "the summary has the next chunk"));
+  lost_bytes_ += next - position_;
+  counts_.passed_over += next - position_;
+  position_ = next;
+  return false;
+}
+
+/// True if a plausible record header begins a record: checked only if the walk can continue without
+/// it.
+Result<bool> McapWalk::is_believable(McapOp op, std::uint64_t length) {
+  if (!hints_.search || op == McapOp::chunk) return true;
+  const std::uint64_t end = position_ + mcap_record_head + length;
+  constexpr std::uint64_t longest_data_end = 64;
+  if (op == McapOp::data_end) return length <= longest_data_end;
+  if (op == McapOp::footer) return end + mcap_magic.size() == window_.size();
+  return op < McapOp::data_end ? Result(true) : is_record_at(end);
+}
+
+/// True if a record can begin there, or the file ends.
+Result<bool> McapWalk::is_record_at(std::uint64_t at) {
+  if (at == window_.size()) return true;
+  const auto next = window_.view(at, 1);
+  if (!next) return next.error();
+  const auto kind = static_cast<unsigned char>(next->empty() ? 0 : next->front());
+  constexpr unsigned char first_private = 0x80;
+  return (kind > 0 && kind <= static_cast<unsigned char>(McapOp::data_end)) ||
+         kind >= first_private;
+}
+
+/// The first intact chunk from byte `from`; the file's end if there is none.
+Result<std::uint64_t> McapWalk::next_chunk(std::uint64_t from) {
+  constexpr std::uint64_t piece = std::uint64_t{64} << 10;
+  // Each attempt costs the checksum of a chunk: malicious bytes would make the search endless.
+  const std::uint64_t most_searched = 8 * window_.size() + (std::uint64_t{64} << 20);
+  for (std::uint64_t at = from; at < window_.size() && searched_ < most_searched;) {
+    const auto bytes = window_.view(at, piece);
+    if (!bytes) return bytes.error();
+    const std::size_t found = bytes->find(static_cast<char>(McapOp::chunk));
+    if (found == std::string_view::npos) {
+      at += bytes->size();
+      continue;
+    }
+    at += found;
+    const auto whole = is_chunk(at);
+    if (!whole) return whole.error();
+    if (*whole) return at;
+    ++at;
+  }
+  return window_.size();
+}
+
+Result<bool> McapWalk::is_chunk(std::uint64_t at) {
+  constexpr std::uint64_t most_head_bytes = 128;
+  const auto start = window_.view(at, mcap_record_head + most_head_bytes);
+  if (!start) return start.error();
+  McapFields fields(*start);
+  fields.u8();
+  const std::uint64_t length = fields.u64();
+  const auto head = mcap_chunk_head(start->substr(std::min(start->size(), mcap_record_head)));
+  const bool is_sound = fields.is_whole() && head && head->packed_bytes <= mcap_most_unpacked &&
+                        head->head_bytes + head->packed_bytes == length &&
+                        length <= window_.size() - at - mcap_record_head && head->packed_bytes > 0;
+  if (!is_sound) return false;
+  const std::uint64_t before = mcap_record_head + head->head_bytes;
+  const auto whole = window_.view(at, before + head->packed_bytes);
+  if (!whole) return whole.error();
+  searched_ += head->packed_bytes;
+  return unpacker_.unpack(*head, whole->substr(before)).has_value();
+}
+
+/// Returns where to continue: after it, or at the next chunk if its length is invalid too.
+Result<std::uint64_t> McapWalk::lose_chunk(const McapChunkHead& head,
+                                           std::uint64_t end,
+                                           const std::string& why) {
+  ++counts_.damaged_chunks;
+  constexpr std::uint64_t usual_ratio = 64;
+  lost_bytes_ += std::min(head.unpacked_bytes, usual_ratio * head.packed_bytes);
+  note(Severity::bad,
+       fmt::format("the chunk at byte {} ({} … {} on the clock of the file) is passed over: {}",
+                   chunk_at_, seconds(head.start_ns), seconds(head.end_ns), why));
+  if (hints_.search) {
+    const auto follows = is_record_at(end);
+    if (!follows) return follows.error();
+    const auto next = *follows && head.packed_bytes > 0 ? Result(end) : next_chunk(search_from_);
+    if (!next) return next.error();
+    end = *next;
+  }
+  counts_.passed_over += end - chunk_at_;
+  return end;
+}
+
+}  // namespace proofmass::io

@@ -1,0 +1,187 @@
+#include "proofmass/io/time/coarse_stamps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/io/time/stamp_steps.hpp"
+#include "proofmass/signal/resample/stamp_band.hpp"
+
+namespace proofmass::io {
+namespace {
+
+// Rows that are examined, from the first: sufficient for each of these estimates.
+constexpr std::size_t most_rows = std::size_t{1} << 18;
+
+View<double> beginning(View<double> stamps) {
+  return stamps.first(std::min(stamps.size(), most_rows));
+}
+
+/// Sample numbers if single intervals show what is missing.
+std::vector<double> numbers_by_step(View<double> stamps, double step) {
+  std::vector<double> out{0.0};
+  for (std::size_t k = 1; k < stamps.size(); ++k)
+    out.push_back(out.back() + std::max(1.0, std::round((stamps[k] - stamps[k - 1]) / step)));
+  return out;
+}
+
+bool are_whole(const std::vector<double>& steps, double tick) {
+  const auto off = std::ranges::count_if(
+      steps, [&](double step) { return std::abs(std::remainder(step, tick)) > 1e-3 * tick; });
+  return static_cast<std::size_t>(off) * 100 <= steps.size();
+}
+
+/// Increments of the stamps over runs of `rows` rows.
+std::vector<double> rises_over(View<double> stamps, std::size_t rows) {
+  std::vector<double> out;
+  for (std::size_t from = 0; from + rows < stamps.size(); from += rows)
+    if (is_stamp(stamps[from]) && is_stamp(stamps[from + rows]))
+      out.push_back(stamps[from + rows] - stamps[from]);
+  return out;
+}
+
+/// True if the ticks beyond (or short of) one per row are spread more evenly than by chance.
+bool are_evenly_spread(View<double> stamps, double tick) {
+  const double rise = stamps.back() - stamps.front();
+  const double rows = static_cast<double>(stamps.size() - 1);
+  const double odd = std::abs(rise / tick - rows);
+  const double share = odd / rows;
+  if (!(odd >= 12.0) || share > 0.52) return false;
+  Moments ticks;
+  for (const double some : rises_over(stamps, static_cast<std::size_t>(std::ceil(2.0 / share))))
+    ticks.add(some / tick);
+  if (ticks.count < 5) return false;
+  constexpr double chance = 1e-4;
+  const double by_chance = 2.0 * (1.0 - share);
+  return 1.0 - chi_square_p(ticks.squares / by_chance, static_cast<double>(ticks.count - 1)) <
+         chance;
+}
+
+/// From runs without missing rows: the shortest of short ones, then of ever longer ones those that
+/// agree with them.
+double step_of_whole_stretches(View<double> stamps, double tick) {
+  std::size_t rows = 16;
+  const double shortest = quantile(rises_over(stamps, rows), 0.05).value_or(0.0);
+  double step = (shortest + 0.5 * tick) / static_cast<double>(rows);
+  for (; rows < stamps.size(); rows *= 2) {
+    const std::vector<double> rises = rises_over(stamps, rows);
+    Moments whole;
+    for (const double rise : rises)
+      if (std::abs(rise - static_cast<double>(rows) * step) <= 1.01 * tick) whole.add(rise);
+    if (whole.count < 4 || whole.count * 4 < rises.size()) break;
+    step = whole.mean / static_cast<double>(rows);
+  }
+  return step;
+}
+
+/// Of periods near `about`, in either direction up to `reach` of it, the one for which the stamps
+/// stay in a band of one tick best.
+double step_of_best_band(View<double> stamps, double tick, double about, double reach) {
+  constexpr int each_way = 24;
+  double best = about;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = -each_way; k <= each_way; ++k) {
+    const double step = about * (1.0 + reach * k / each_way);
+    const double strain = signal::strain_in_band(stamps, step, tick);
+    if (strain >= least) continue;
+    least = strain;
+    best = step;
+  }
+  return best;
+}
+
+/// A straight line through stamps against their sample numbers.
+struct StampLine {
+  double step = 0.0;
+  double scatter = 0.0;  ///< root mean square about the line
+  double width = 0.0;    ///< from the lowest to the highest residual
+};
+
+StampLine line_through(View<double> stamps, View<double> numbers) {
+  const double middle = numbers.back() / 2.0, origin = stamps[stamps.size() / 2];
+  const auto count = static_cast<double>(stamps.size());
+  double mean = 0.0, mean_number = 0.0;
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    mean_number += (numbers[k] - middle) / count;
+    mean += (stamps[k] - origin) / count;
+  }
+  double weight = 0.0, sum = 0.0;
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    const double number = numbers[k] - middle - mean_number;
+    weight += number * number;
+    sum += number * (stamps[k] - origin - mean);
+  }
+  StampLine out{.step = sum / weight};
+  Moments off;
+  for (std::size_t k = 0; k < stamps.size(); ++k)
+    off.add(stamps[k] - origin - mean - (numbers[k] - middle - mean_number) * out.step);
+  out.scatter = off.std();
+  out.width = off.max - off.min;
+  return out;
+}
+
+}  // namespace
+
+std::optional<CoarseStamps> find_coarse_stamps(View<double> stamps,
+                                               const std::vector<double>& steps,
+                                               double median_step) {
+  const View<double> some = beginning(stamps);
+  if (!are_whole(steps, median_step) || !are_evenly_spread(some, median_step)) return std::nullopt;
+  const double rough = step_of_whole_stretches(some, median_step);
+  if (!(rough > 0.45 * median_step && rough < 1.6 * median_step)) return std::nullopt;
+  // Rows written twice at regular intervals, as by a logger's buffer, look the same except for one
+  // thing: the rounding of stamps is at most one unit of the last digit.
+  const bool may_be_written_twice = rough < median_step && rough > 0.88 * median_step;
+  if (may_be_written_twice && median_step > 1.001) return std::nullopt;
+  const auto best = [&](std::size_t rows, double about, double reach) {
+    return step_of_best_band(some.first(std::min(rows, some.size())), median_step, about, reach);
+  };
+  const double better = best(4096, best(1024, rough, 0.012), 1e-3);
+  const double step = step_by_line(stamps, better, median_step);
+  // The clock's own jitter adds to the rounding.
+  const double strain = signal::strain_in_band(some, step, median_step);
+  constexpr double most_of_jitter = 4.0;
+  const double jitter = most_of_jitter * strain / static_cast<double>(some.size());
+  return CoarseStamps{median_step, step, median_step + jitter};
+}
+
+double band_of_bursts(View<double> stamps, double step) {
+  const View<double> some = beginning(stamps);
+  const std::size_t rows = std::clamp<std::size_t>(some.size() / 16, 16, 256);
+  std::vector<double> ranges;
+  for (std::size_t from = 0; from + rows <= some.size(); from += rows) {
+    Moments off;
+    for (std::size_t k = from; k < from + rows; ++k)
+      if (is_stamp(some[k])) off.add(some[k] - static_cast<double>(k) * step);
+    ranges.push_back(off.max - off.min);
+  }
+  constexpr double margin = 2.0;
+  return ranges.size() < 2 ? 0.0 : margin * quantile(ranges, 0.9).value_or(0.0);
+}
+
+std::optional<BurstLine> line_without_holes(View<double> stamps, double step, double band) {
+  const View<double> some = beginning(stamps);
+  if (some.size() < 32 || !std::ranges::all_of(some, is_stamp)) return std::nullopt;
+  const std::vector<double> holed = signal::numbers_in_band(some, step, band);
+  if (holed.back() == static_cast<double>(some.size() - 1)) return std::nullopt;
+  std::vector<double> whole(some.size());
+  std::iota(whole.begin(), whole.end(), 0.0);
+  const StampLine without = line_through(some, whole);
+  constexpr double as_little = 1.3, margin = 1.05;
+  if (without.scatter > as_little * line_through(some, holed).scatter) return std::nullopt;
+  return BurstLine{without.step, margin * without.width};
+}
+
+double step_by_line(View<double> stamps, double step, double band) {
+  const View<double> some = beginning(stamps);
+  if (some.size() < 3 || !std::ranges::all_of(some, is_stamp)) return step;
+  const std::vector<double> numbers =
+      band > 0.0 ? signal::numbers_in_band(some, step, band) : numbers_by_step(some, step);
+  const double fitted = line_through(some, numbers).step;
+  return std::abs(fitted / step - 1.0) < 0.02 ? fitted : step;
+}
+
+}  // namespace proofmass::io

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/view.hpp"
+#include "proofmass/signal/audit.hpp"
+#include "proofmass/signal/audit/chunk_figures.hpp"
+#include "proofmass/signal/audit/thinned_sample.hpp"
+#include "proofmass/signal/audit/value_excerpts.hpp"
+#include "proofmass/signal/audit/value_runs.hpp"
+#include "proofmass/signal/resample/sample_times.hpp"
+#include "proofmass/signal/value_tail.hpp"
+
+namespace proofmass::signal {
+
+/// Odd values of one kind.
+struct OddValues {
+  std::size_t count = 0;
+  Place first, last;
+
+  void add(Place place) {
+    if (count++ == 0) first = place;
+    last = place;
+  }
+};
+
+/// Audits one channel in chunks. The same chunks give the same digits.
+class RunningChannel {
+ public:
+  explicit RunningChannel(std::size_t sample_capacity);
+
+  /// Adds the values of samples times.first, times.first + 1, …
+  void add(View<double> values, const SampleTimes& times);
+
+  /// Call once. `channel` gives the name and the unit.
+  [[nodiscard]] ChannelAudit finish(const Channel& channel);
+
+  /// True if the last chunk may contain a zero.
+  [[nodiscard]] bool has_zero() const { return last_.min <= 0.0 && last_.max >= 0.0; }
+
+  [[nodiscard]] const OddValues& nan() const { return nan_; }
+  [[nodiscard]] const OddValues& infinite() const { return infinite_; }
+  [[nodiscard]] const OddValues& absurd() const { return absurd_; }
+  [[nodiscard]] const OddValues& denormal() const { return denormal_; }
+
+ private:
+  void add_plausible(View<double> values);
+  void add_odd(View<double> values, const SampleTimes& times);
+  void take_odd(double value, Place place);
+  void judge_range(ChannelAudit& audit) const;
+  void judge_rails(ChannelAudit& audit) const;
+
+  Moments moments_;
+  ChunkFigures last_;
+  ValueRuns runs_;
+  ThinnedSample sample_;
+  ValueTail lowest_, highest_;
+  ValueExcerpts excerpts_;
+  OddValues nan_, infinite_, absurd_, denormal_;
+  std::vector<double> plausible_;  ///< the plausible values of a chunk that contains others
+};
+
+}  // namespace proofmass::signal

@@ -1,0 +1,121 @@
+#include "proofmass/signal/audit/timing_audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/signal/audit/chunk_figures.hpp"
+
+namespace proofmass::signal {
+
+void RunningTiming::add(View<double> stamps_s) {
+  if (stamps_s.empty()) return;
+  if (rate_hz_ > 0.0) {
+    if (stamps_ > 0) add_step(last_s_, stamps_s[0] - last_s_);
+    const StepFigures steps = step_figures(stamps_s, 1.0 / rate_hz_);
+    const double noticed = square(1e-3 / rate_hz_) * static_cast<double>(stamps_s.size());
+    if (steps.regular) {
+      in_whole_steps_ = in_whole_steps_ && steps.squares <= noticed;
+      squares_ += steps.squares;
+      regular_ += stamps_s.size() - 1;
+    } else {
+      for (std::size_t k = 1; k < stamps_s.size(); ++k)
+        add_step(stamps_s[k - 1], stamps_s[k] - stamps_s[k - 1]);
+    }
+  }
+  stamps_ += stamps_s.size();
+  last_s_ = stamps_s.back();
+  if (rate_hz_ > 0.0) {
+    recent_.insert(recent_.end(), stamps_s.begin(), stamps_s.end());
+    holes_.add(stamps_s, fresh_);
+    take_holes();
+  }
+}
+
+// Converts the holes found by now to gaps; drops the stamps that cannot contain another.
+void RunningTiming::take_holes() {
+  const std::size_t first = stamps_ - recent_.size();
+  if (band_s_ > 0.0)
+    for (const Hole& hole : fresh_)
+      add_gap({recent_[hole.before - 1 - first], static_cast<double>(hole.missing + 1) / rate_hz_});
+  take_numbers();
+  fresh_.clear();
+  const std::size_t kept = std::min(recent_.size(), HoleFinder::most_undecided + 1);
+  recent_.erase(recent_.begin(), recent_.end() - static_cast<std::ptrdiff_t>(kept));
+}
+
+// Processes the samples for which the number missing before them is determined.
+void RunningTiming::take_numbers() {
+  const std::size_t first = stamps_ - recent_.size();
+  auto hole = fresh_.begin();
+  for (; numbered_ < holes_.decided(); ++numbered_) {
+    if (hole != fresh_.end() && hole->before == numbered_) {
+      next_number_ += static_cast<double>(hole++->missing);
+      unbroken_ = 0;
+    }
+    line_.add(next_number_, recent_[numbered_ - first]);
+    next_number_ += 1.0;
+    longest_unbroken_ = std::max(longest_unbroken_, ++unbroken_);
+  }
+}
+
+// Standard deviation of the fitted line's rate, and the deviation of the usual interval from it. If
+// all intervals are whole numbers of nominal periods and some rows are missing by them, the stamps
+// may be rounded to a period. Then up to one row in the longest segment without a hole may not be
+// missing, and the rate may be that much lower.
+std::optional<double> RunningTiming::rate_std_hz() const {
+  const auto line = line_.rate();
+  if (!line) return std::nullopt;
+  double variance = square(line->std_hz) + square(line->hz - rate_hz_);
+  if (band_s_ == 0.0 && in_whole_steps_ && holes_.hole_count() > 0)
+    variance += square(rate_hz_ / static_cast<double>(longest_unbroken_)) / 3.0;
+  const double std_hz = std::sqrt(variance);
+  // Below this it is floating-point rounding.
+  if (std_hz < 1e-12 * rate_hz_) return std::nullopt;
+  return std_hz;
+}
+
+void RunningTiming::add_gap(const Gap& gap) {
+  ++found_.gap_count;
+  if (found_.gaps.size() < most_listed) found_.gaps.push_back(gap);
+  if (gap.duration_s > found_.longest_gap.duration_s) found_.longest_gap = gap;
+}
+
+void RunningTiming::add_step(double before_s, double step_s) {
+  const double nominal_s = 1.0 / rate_hz_;
+  const double deviation_s = step_s - nominal_s;
+  if (std::abs(std::remainder(step_s, nominal_s)) > 1e-3 * nominal_s) in_whole_steps_ = false;
+  if (step_s < 0.0) ++found_.backwards;
+  if (step_s == 0.0) ++found_.repeated;
+  if (step_s > 1.5 * nominal_s && band_s_ == 0.0) add_gap({before_s, step_s});
+  if (!(std::abs(deviation_s) <= std::max(0.5 * nominal_s, band_s_))) return;
+  squares_ += deviation_s * deviation_s;
+  ++regular_;
+}
+
+TimingAudit RunningTiming::finish(const TimeBase& time) {
+  if (stamps_ > 1 && rate_hz_ > 0.0) {
+    holes_.finish(fresh_);
+    take_holes();
+    found_.long_run_hz = holes_.grid().rate_hz;
+    found_.rate_std_hz = rate_std_hz();
+  } else if (stamps_ == 0 && time.source == TimeSource::stamps && time.rate_hz > 0.0) {
+    found_.long_run_hz = time.rate_hz;  // each stamp is k / rate
+  }
+  TimingAudit out = found_;
+  out.source = time.source;
+  out.channel = time.channel;
+  out.rate_hz = time.rate_hz;
+  out.mended = time.mended;
+  out.backwards += time.mended_backwards;
+  if (stamps_ == 0 || !(rate_hz_ > 0.0)) {
+    if (time.source == TimeSource::stamps) out.jitter_s = 0.0;
+  } else if (regular_ > 0) {
+    const double jitter_s = std::sqrt(squares_ / static_cast<double>(regular_));
+    // Below this it is floating-point rounding, not jitter of a clock.
+    out.jitter_s = jitter_s * rate_hz_ < 1e-9 ? 0.0 : jitter_s;
+  }
+  return out;
+}
+
+}  // namespace proofmass::signal

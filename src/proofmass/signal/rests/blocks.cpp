@@ -1,0 +1,169 @@
+#include "proofmass/signal/rests/blocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "proofmass/core/contract.hpp"
+#include "proofmass/signal/audit/quantum_seeker.hpp"
+#include "proofmass/signal/channel_audit.hpp"
+
+namespace proofmass::signal {
+namespace {
+
+using Axes = View<View<double>>;
+
+/// The samples of block k except `left_out`.
+RestBlock block_of(Axes axes, const RestBlocks& blocks, std::size_t k, std::size_t left_out) {
+  RestBlock block;
+  PerAxis anchor{};  // preserves digits where the level is far from zero
+  PerAxis sum{};
+  PerAxis last{};
+  for (std::size_t s = blocks.first_sample(k); s < blocks.end_sample(k); ++s) {
+    if (s == left_out || !blocks.there[s]) continue;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      if (block.count == 0.0) anchor[a] = axes[a][s];
+      const double x = axes[a][s] - anchor[a];
+      sum[a] += x;
+      block.squares[a] += x * x;
+      block.steps[a] += (x - last[a]) * (x - last[a]);
+      last[a] = x;
+    }
+    block.count += 1.0;
+  }
+  if (block.count == 0.0) return block;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    block.mean[a] = anchor[a] + sum[a] / block.count;
+    block.squares[a] = std::max(0.0, block.squares[a] - sum[a] * sum[a] / block.count);
+  }
+  return block;
+}
+
+void look_at_resolution(Axes axes, std::size_t window, RestBlocks& blocks) {
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    QuantumSeeker seeker(window);
+    double largest = 0.0;
+    for (std::size_t k = 0; k < blocks.samples; ++k) {
+      if (!blocks.there[k]) continue;
+      seeker.add(k, axes[a][k]);
+      largest = std::max(largest, std::abs(axes[a][k]));
+    }
+    blocks.quantum[a] = seeker.quantum();
+    blocks.variance_floor[a] = variance_floor(seeker.quantum(), largest);
+  }
+}
+
+}  // namespace
+
+double variance_floor(double quantum, double largest) {
+  const double rounding = 1e-14 * largest;
+  return std::max(
+      {quantum * quantum / 12.0, rounding * rounding, std::numeric_limits<double>::min()});
+}
+
+RestBlocks no_blocks(std::size_t axes, std::size_t window) {
+  PM_EXPECTS(axes > 0 && axes <= most_axes);
+  constexpr std::size_t least_block = 4;
+  RestBlocks blocks;
+  blocks.axes = axes;
+  blocks.block = std::max(least_block, window / 8);
+  blocks.window = std::max<std::size_t>(2, window / blocks.block);
+  return blocks;
+}
+
+RestBlocks blocks_of(Axes axes, std::size_t window) {
+  RestBlocks blocks = no_blocks(axes.size(), window);
+  blocks.samples = axes[0].size();
+  blocks.there.assign(blocks.samples, 1);
+  for (const View<double> axis : axes) {
+    PM_EXPECTS(axis.size() == blocks.samples);
+    for (std::size_t k = 0; k < blocks.samples; ++k)
+      if (!is_plausible(axis[k])) blocks.there[k] = 0;
+  }
+  blocks.at.resize(blocks.samples / blocks.block);
+  for (std::size_t k = 0; k < blocks.at.size(); ++k)
+    blocks.at[k] = block_of(axes, blocks, k, blocks.samples);
+  look_at_resolution(axes, window, blocks);
+  return blocks;
+}
+
+RestBlock without_outlier(Axes axes,
+                          const RestBlocks& blocks,
+                          std::size_t k,
+                          const PerAxis& variance) {
+  const std::size_t first = blocks.first_sample(k);
+  const std::size_t end = blocks.end_sample(k);
+  PerAxis middle{};  // median: a mean would follow the outlier
+  std::vector<double> values;
+  values.reserve(end - first);
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    values.clear();
+    for (std::size_t s = first; s < end; ++s)
+      if (blocks.there[s]) values.push_back(axes[a][s]);
+    if (values.empty()) return {};
+    const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, half);
+    middle[a] = *half;
+  }
+  std::size_t farthest = first;
+  double largest = -1.0;
+  for (std::size_t s = first; s < end; ++s) {
+    if (!blocks.there[s]) continue;
+    double distance = 0.0;
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      distance += (axes[a][s] - middle[a]) * (axes[a][s] - middle[a]) / variance[a];
+    if (distance <= largest) continue;
+    largest = distance;
+    farthest = s;
+  }
+  RestBlock block = block_of(axes, blocks, k, farthest);
+  block.cleaned = true;
+  return block;
+}
+
+RestBlock joined(const RestBlocks& blocks, std::size_t k, std::size_t count) {
+  RestBlock all;
+  for (std::size_t b = k; b < k + count; ++b) {
+    const RestBlock& next = blocks.at[b];
+    if (next.count == 0.0) continue;
+    const double total = all.count + next.count;
+    for (std::size_t a = 0; a < blocks.axes; ++a) {
+      const double step = next.mean[a] - all.mean[a];
+      all.squares[a] += next.squares[a] + step * step * all.count * next.count / total;
+      all.mean[a] += step * next.count / total;
+    }
+    all.count = total;
+  }
+  return all;
+}
+
+BlockSums::BlockSums(const RestBlocks& blocks) : count(blocks.at.size()) {
+  for (std::size_t k = 0; k < count.size(); ++k)
+    count[k] = blocks.missing(k) ? 0.0 : blocks.at[k].count;
+  for (std::size_t a = 0; a < blocks.axes; ++a) {
+    sum[a].resize(count.size());
+    for (std::size_t k = 0; k < count.size(); ++k) sum[a][k] = count[k] * blocks.at[k].mean[a];
+  }
+}
+
+void BlockSums::widen() {
+  const auto fold = [this](std::vector<double>& values) {
+    if (values.empty()) return;
+    const std::size_t size = values.size() > width ? values.size() - width : 0;
+    for (std::size_t k = 0; k < size; ++k) values[k] += values[k + width];
+    values.resize(size);
+  };
+  fold(count);
+  for (std::vector<double>& values : sum) fold(values);
+  width *= 2;
+}
+
+double BlockSums::half_square(std::size_t axis, std::size_t k) const {
+  const double n0 = count[k];
+  const double n1 = count[k + width];
+  if (n0 == 0.0 || n1 == 0.0) return 0.0;
+  const double step = sum[axis][k + width] / n1 - sum[axis][k] / n0;
+  return 0.5 * step * step;
+}
+
+}  // namespace proofmass::signal
