@@ -1,4 +1,4 @@
-"""tools/check_units.py on trees of two sources, tools/build_times.py on a log of five lines."""
+"""tools/check_units.py and check_layers.py on small trees, tools/build_times.py on a log of five lines."""
 import contextlib
 import importlib.util
 import io
@@ -18,6 +18,45 @@ def load(name):
 
 def local(body):
     return f"namespace proofmass {{\nnamespace {{\n\n{body}\n\n}}  // namespace\n}}  // namespace proofmass\n"
+
+
+class CheckRooms(unittest.TestCase):
+    def offences(self, rooms, **sources):
+        """The offences reported for a module of the rooms `above` and `below`, with one source each."""
+        check_layers = load("check_layers")
+        with tempfile.TemporaryDirectory() as root:
+            check_layers.ROOT = Path(root)
+            check_layers.LIBRARY = Path(root, "src/proofmass")
+            module = Path(root, "src/proofmass/io")
+            listed = []
+            for room in ("above", "below"):
+                (module / room).mkdir(parents=True)
+                (module / room / "one.cpp").write_text(sources.get(room, ""))
+                (module / room / "one.hpp").write_text("")
+                listed.append(f"{room}/one.cpp")
+            (module / "CMakeLists.txt").write_text(f"proofmass_module(io\n  {rooms}\n  SOURCES {' '.join(listed)})\n")
+            said = io.StringIO()
+            with contextlib.redirect_stdout(said):
+                status = check_layers.main()
+        return said.getvalue().splitlines() if status else []
+
+    INCLUDES_BELOW = '#include "proofmass/io/below/one.hpp"\n'
+
+    def test_a_room_may_include_what_its_entry_names(self):
+        self.assertEqual(self.offences('ROOMS "above: below"', above=self.INCLUDES_BELOW), [])
+
+    def test_a_room_may_not_include_another(self):
+        (found,) = self.offences("", above=self.INCLUDES_BELOW)
+        self.assertIn("above/one.cpp:1: the room above may not include below", found)
+
+    def test_an_entry_that_no_source_needs_is_refused(self):
+        (found,) = self.offences('ROOMS "above: below"')
+        self.assertIn("ROOMS has above: below, but no source of above includes it", found)
+
+    def test_a_cycle_of_rooms_is_refused(self):
+        (found,) = self.offences('ROOMS "above: below" "below: above"', above=self.INCLUDES_BELOW,
+                                 below='#include "proofmass/io/above/one.hpp"\n')
+        self.assertIn("cycle in io:", found)
 
 
 class CheckUnits(unittest.TestCase):
