@@ -60,7 +60,7 @@ class Packages(unittest.TestCase):
             self.assertRegex(self.field(package, "Depends"), r"\blibc6 \(>= .*\blibzip4")
         self.assertIn(f"libproofmass0.1 (= {version})", self.field("libproofmass-dev", "Depends"))
         self.assertIn("libeigen3-dev", self.field("libproofmass-dev", "Depends"))
-        self.assertIn("libceres-dev", self.field("libproofmass-dev", "Recommends"))
+        self.assertIn("libfmt-dev", self.field("libproofmass-dev", "Recommends"))
 
     def test_the_library_is_told_to_the_loader_and_to_packages_that_need_it(self):
         def control(name: str) -> str:

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "proofmass/fit/ceres_descent.hpp"
+#include "proofmass/fit/descent.hpp"
 #include "proofmass/fit/linear_part.hpp"
 
 namespace proofmass::fit {

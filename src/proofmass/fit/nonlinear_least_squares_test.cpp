@@ -139,6 +139,35 @@ Published mgh17() {
   return set;
 }
 
+// A quotient that is nearly linear in each parameter, from a start a hundred times too high.
+Published mgh09() {
+  return {
+      .x = {4.0, 2.0, 1.0, 0.5, 0.25, 0.167, 0.125, 0.1, 0.0833, 0.0714, 0.0625},
+      .y = {0.1957, 0.1947, 0.1735, 0.16, 0.0844, 0.0627, 0.0456, 0.0342, 0.0323, 0.0235, 0.0246},
+      .model = [](double x,
+                  View<double> b) { return b[0] * (x * x + x * b[1]) / (x * x + x * b[2] + b[3]); },
+      .starts = {{25.0, 39.0, 41.5, 39.0}, {0.25, 0.39, 0.415, 0.39}},
+      .certified = {1.9280693458e-1, 1.9128232873e-1, 1.2305650693e-1, 1.3606233068e-1},
+      .certified_std = {1.1435312227e-2, 1.9633220911e-1, 8.0842031232e-2, 9.0025542308e-2},
+      .rss = 3.0750560385e-4};
+}
+
+Published rat43() {
+  Published set{.x = {},
+                .y = {16.08, 33.83, 65.80, 97.20, 191.55, 326.20, 386.87, 520.53, 590.03, 651.92,
+                      724.93, 699.56, 689.96, 637.56, 717.41},
+                .model =
+                    [](double x, View<double> b) {
+                      return b[0] / std::pow(1.0 + std::exp(b[1] - b[2] * x), 1.0 / b[3]);
+                    },
+                .starts = {{100.0, 10.0, 1.0, 1.0}, {700.0, 5.0, 0.75, 1.3}},
+                .certified = {6.9964151270e2, 5.2771253025, 7.5962938329e-1, 1.2792483859},
+                .certified_std = {1.6302297817e1, 2.0828735829, 1.9566123451e-1, 6.8761936385e-1},
+                .rss = 8.7864049080e3};
+  for (int k = 1; k <= 15; ++k) set.x.push_back(k);
+  return set;
+}
+
 class NistSet : public testing::TestWithParam<Published (*)()> {};
 
 TEST_P(NistSet, FromBothStartsHasItsCertifiedFit) {
@@ -154,7 +183,9 @@ TEST_P(NistSet, FromBothStartsHasItsCertifiedFit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Published, NistSet, testing::Values(misra1a, boxbod, mgh10, mgh17));
+INSTANTIATE_TEST_SUITE_P(Published,
+                         NistSet,
+                         testing::Values(misra1a, boxbod, mgh09, mgh10, mgh17, rat43));
 
 LeastSquaresProblem misra1a_problem() {
   const Published set = misra1a();

@@ -1,4 +1,4 @@
-// Uses the private dependencies of every exported library (Ceres, fmt, zlib, lzma, toml++,
+// Uses the private dependencies of every exported library (fmt, zlib, lzma, toml++,
 // nlohmann), so that a dependency missing from the package is a link error here.
 #include <cmath>
 #include <cstddef>
