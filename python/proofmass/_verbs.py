@@ -270,7 +270,8 @@ def calibrate(
     type_b : str or list of str, optional
         A contribution to the uncertainty: "ADC reference,scale,0.05 %,uniform"; may be repeated.
     monte_carlo : int, optional
-        Draws that check the uncertainties; 0: none (default 200).
+        Draws that check the uncertainties; 0: none (default 200; for the certificate of a report as many
+        as JCGM 101's adaptive procedure needs).
     supplies : list of float, optional
         Supply voltage of each file, to determine its effect.
     name : str, optional

@@ -20,7 +20,7 @@ struct CalibrateCommand {
   double orthogonality_std_deg = 0.57, placement_std_deg = 1.0;
   std::vector<double> supplies_v;
   std::vector<std::string> type_b, validate;
-  std::size_t monte_carlo = 200;  ///< draws; 0: no check
+  std::optional<std::size_t> monte_carlo;  ///< draws; 0: no check
   std::string name, serial, date;
   std::string update_sensor;
   InputFlags input;

@@ -32,40 +32,6 @@ Status check(View<Pose> poses, const MultiPositionOptions& options) {
   return Done{};
 }
 
-// The poses with variances as weights: if the noise of any is unknown, all have equal weight.
-struct Weighable {
-  std::vector<Pose> poses;
-  double noise_dof;
-};
-
-Weighable weighable(View<Pose> poses, double noise_dof) {
-  Weighable out{{poses.begin(), poses.end()}, noise_dof};
-  const bool known = noise_dof > 0.0 && std::ranges::all_of(poses, [](const Pose& pose) {
-                       return pose.mean_covariance.diagonal().minCoeff() > 0.0;
-                     });
-  if (known) return out;
-  out.noise_dof = 0.0;
-  const std::optional<ReadingScale> scale = reading_scale(poses, 1.0);
-  const double unit = scale ? 1e-3 * scale->half.maxCoeff() : 1.0;
-  for (Pose& pose : out.poses) pose.mean_covariance = unit * unit * Eigen::Matrix3d::Identity();
-  return out;
-}
-
-// Known drift with unknown noise would have no scale.
-NormData norm_data(const Weighable& weighed,
-                   const ReadingScale& scale,
-                   const MultiPositionOptions& options) {
-  NormData data{.poses = normalise(weighed.poses, scale)};
-  if (weighed.noise_dof == 0.0) return data;
-  const auto n = static_cast<Eigen::Index>(weighed.poses.size());
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double half = scale.half(static_cast<Eigen::Index>(axis));
-    if (options.between[axis].rows() == n)
-      data.between[axis] = options.between[axis] / (half * half);
-  }
-  return data;
-}
-
 Eigen::MatrixXd information_of(const PoseSelection& selection, NormParameters free) {
   const auto count = static_cast<Eigen::Index>(free);
   Eigen::MatrixXd N = Eigen::MatrixXd::Zero(count, count);

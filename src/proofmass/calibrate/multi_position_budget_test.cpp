@@ -186,6 +186,23 @@ TEST(CheckByMonteCarlo, OfExactReadingsHasNothingToCompare) {
   EXPECT_TRUE(check.agrees) << check.verdict;
 }
 
+TEST(CheckByMonteCarlo, DrawsUntilTwoDigitsAreStable) {
+  const Calibrated it = calibrated();
+  const auto check = check_by_monte_carlo(it.poses, it.options, it.fit,
+                                          {.lines = {}, .reading_unit = "V", .draws = std::nullopt})
+                         .value();
+  EXPECT_TRUE(check.agrees) << check.verdict;
+  EXPECT_GE(check.draws, 20000U);
+  EXPECT_LE(check.draws, 1000000U);
+  ASSERT_TRUE(check.stable.has_value());
+  EXPECT_EQ(*check.stable, check.draws < 1000000U);
+  EXPECT_NE(check.verdict.find("adaptive procedure"), std::string::npos) << check.verdict;
+  for (const ParameterCheck& one : check.parameters) {
+    EXPECT_NEAR(one.drawn_std / one.budget_std, 1.0, 0.02) << one.quantity;
+    EXPECT_NEAR(one.inside, 0.95, 0.01) << one.quantity;
+  }
+}
+
 TEST(CheckByMonteCarlo, NeedsAHundredDraws) {
   const Calibrated it = calibrated();
   const auto check = check_by_monte_carlo(it.poses, it.options, it.fit,

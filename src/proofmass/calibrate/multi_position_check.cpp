@@ -5,14 +5,18 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <optional>
+#include <span>
 
 #include "proofmass/calibrate/multi_position/norm_model.hpp"
 #include "proofmass/calibrate/multi_position_budget.hpp"
+#include "proofmass/calibrate/uncertainty/adaptive_draws.hpp"
 #include "proofmass/calibrate/uncertainty/draw.hpp"
-#include "proofmass/calibrate/uncertainty/redrawn_poses.hpp"
+#include "proofmass/calibrate/uncertainty/redrawn_fit.hpp"
 #include "proofmass/calibrate/uncertainty/type_b_effect.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/statistics.hpp"
 
 namespace proofmass::calibrate {
 namespace {
@@ -50,7 +54,8 @@ bool std_is_finite(const UncertaintyBudget& budget) {
 }
 
 // Limits of the ratio of standard deviations, and of the coverage, for this number of draws of a
-// correct budget: each test is made at 1 % over all parameters together.
+// correct budget: each test is made at 1 % over all parameters together. With many draws it would
+// find the budget's own approximations; what does not change its second digit is tolerated.
 struct Limits {
   double lowest_ratio, highest_ratio, least_inside;
 };
@@ -59,9 +64,9 @@ Limits limits_of(std::size_t draws, std::size_t parameters) {
   const auto n = static_cast<double>(draws);
   const double level = 0.01 / (2.0 * static_cast<double>(parameters));
   const double z = std::sqrt(chi_square_quantile(1.0 - 2.0 * level, 1.0));
-  return {std::sqrt(chi_square_quantile(0.5 * level, n - 1.0) / (n - 1.0)),
-          std::sqrt(chi_square_quantile(1.0 - 0.5 * level, n - 1.0) / (n - 1.0)),
-          0.95 - z * std::sqrt(0.95 * 0.05 / n)};
+  return {std::min(0.95, std::sqrt(chi_square_quantile(0.5 * level, n - 1.0) / (n - 1.0))),
+          std::max(1.05, std::sqrt(chi_square_quantile(1.0 - 0.5 * level, n - 1.0) / (n - 1.0))),
+          0.95 - std::max(0.01, z * std::sqrt(0.95 * 0.05 / n))};
 }
 
 // A standard deviation at rounding level counts as zero.
@@ -134,7 +139,11 @@ std::string verdict_of(const MonteCarloCheck& check) {
                                  ? std::string()
                                  : fmt::format(" {} of {} drawn sets could not be calibrated.",
                                                check.failed, check.failed + check.draws);
-  return fmt::format("{} calibrations of drawn readings {}: {}.{}{}", check.draws,
+  const std::string procedure =
+      !check.stable   ? ""
+      : *check.stable ? " (JCGM 101's adaptive procedure, two digits of each uncertainty stable)"
+                      : " (JCGM 101's adaptive procedure, ended before two digits were stable)";
+  return fmt::format("{} calibrations of drawn readings{} {}: {}.{}{}", check.draws, procedure,
                      small.empty()
                          ? std::string("confirm the budget")
                          : fmt::format("contradict the budget of {}, which is too small", small),
@@ -146,29 +155,56 @@ std::size_t place_of(const std::string& quantity) {
   return static_cast<std::size_t>(std::ranges::find(names, quantity) - names.begin());
 }
 
-// A column of draws for each parameter; NaN if a draw could not be calibrated.
-std::array<std::vector<double>, 9> calibrated_draws(View<Pose> poses,
-                                                    const MultiPositionOptions& options,
-                                                    const MultiPosition& fit,
-                                                    const std::vector<TypeBEffect>& effects,
-                                                    const MonteCarloOptions& how) {
-  const DrawnFrom from = drawn_from(poses, options, fit);
-  MultiPositionOptions again = options;
-  again.model = fit.model;
-  again.keep_suspects = true;
-  again.between = from.between;
-  Draw draw(how.seed);
-  std::array<std::vector<double>, 9> columns;
-  for (std::size_t k = 0; k < how.draws; ++k) {
-    again.gravity_mps2 = options.gravity_mps2 + options.gravity_std_mps2 * draw.normal();
-    const std::vector<Pose> drawn = redrawn(from, fit, draw);
-    const Parameters errors = type_b_errors(effects, draw);
-    const Result<MultiPosition> one = calibrate_positions(drawn, again);
-    for (std::size_t j = 0; j < 9; ++j)
-      columns[j].push_back(one ? one->estimate[j] + errors(static_cast<Index>(j))
-                               : std::numeric_limits<double>::quiet_NaN());
+// The calibration of a drawn set of poses, gravity and type B errors; NaN if it has none.
+class Redraw {
+ public:
+  Redraw(View<Pose> poses,
+         const MultiPositionOptions& options,
+         const MultiPosition& fit,
+         const std::vector<TypeBEffect>& effects)
+      : from_(drawn_from(poses, options, fit)),
+        options_(options),
+        fit_(fit),
+        effects_(effects),
+        calibrate_(from_, options, fit) {}
+
+  void fill(std::size_t draws, std::uint64_t seed, std::span<std::vector<double>> columns) const {
+    Draw draw(seed);
+    for (std::size_t k = 0; k < draws; ++k) {
+      const double gravity = options_.gravity_mps2 + options_.gravity_std_mps2 * draw.normal();
+      const std::vector<Pose> drawn = redrawn(from_, fit_, draw);
+      const Parameters errors = type_b_errors(effects_, draw);
+      const std::optional<Parameters> one = calibrate_(drawn, gravity);
+      for (std::size_t j = 0; j < columns.size(); ++j) {
+        const auto place = static_cast<Index>(j);
+        columns[j].push_back(one ? (*one)(place) + errors(place) : no_value);
+      }
+    }
   }
-  return columns;
+
+ private:
+  DrawnFrom from_;
+  const MultiPositionOptions& options_;
+  const MultiPosition& fit_;
+  const std::vector<TypeBEffect>& effects_;
+  RedrawnFit calibrate_;
+};
+
+// A column of draws for each parameter.
+AdaptiveDraws calibrated_draws(const Redraw& redraw, const MonteCarloOptions& how) {
+  if (how.draws) {
+    AdaptiveDraws out{std::vector<std::vector<double>>(9), false};
+    redraw.fill(*how.draws, how.seed, out.columns);
+    return out;
+  }
+  AdaptiveOptions options;
+  options.progress = how.progress;
+  return draw_until_stable(
+      9,
+      [&](std::size_t batch, std::span<std::vector<double>> columns) {
+        redraw.fill(options.batch, how.seed + batch, columns);
+      },
+      options);
 }
 
 }  // namespace
@@ -185,10 +221,11 @@ Result<MonteCarloCheck> check_by_monte_carlo(View<Pose> poses,
   const auto budgets = budget_of(fit, how.lines, how.reading_unit);
   if (!budgets) return budgets.error();
   const auto effects = effects_of(fit, how.lines, how.reading_unit);
-  const auto columns = calibrated_draws(poses, options, fit, *effects, how);
+  const auto [columns, stable] = calibrated_draws(Redraw(poses, options, fit, *effects), how);
   const Result<Propagation> first = summary_of(columns[0]);
   if (!first) return first.error().at("Monte Carlo check");
   MonteCarloCheck check;
+  if (!how.draws) check.stable = stable;
   check.draws = first->draws;
   check.failed = first->without;
   const Limits limits = limits_of(check.draws, budgets->size());

@@ -19,7 +19,7 @@ Eigen::Vector3d direction(int k) {
   return {flat * std::cos(angle), flat * std::sin(angle), z};
 }
 
-double scatter_of(const MultiPosition& fit) {
+double scatter_of_fit(const MultiPosition& fit) {
   double noise = 0.0, residuals = 0.0, used = 0.0;
   bool noise_known = true;
   for (const PoseResidual& pose : fit.poses) {
@@ -63,7 +63,7 @@ ParameterMatrix mean_square_gradient(const MultiPosition& fit) {
 std::optional<RestAccuracy> rest_accuracy(const MultiPosition& fit) {
   if (!(fit.dof > 0.0)) return std::nullopt;
   RestAccuracy out;
-  out.scatter_mps2 = scatter_of(fit);
+  out.scatter_mps2 = scatter_of_fit(fit);
   const double scatter = out.scatter_mps2 * out.scatter_mps2;
   const ParameterMatrix mean = mean_square_gradient(fit);
   const auto over_sphere = [&](const ParameterMatrix& covariance) {

@@ -97,24 +97,33 @@ NormFit judged(const NormData& data,
   return out;
 }
 
-// One Gauss–Newton step, with the variances at its start.
+// One Gauss–Newton step of `Free` parameters, with the variances at its start. `weights` may be
+// empty: all 1.
+template <int Free>
+Parameters newton_step_of(View<NormalisedPose> poses,
+                          View<double> weights,
+                          const Parameters& from) {
+  using Normal = Eigen::Matrix<double, Free, Free>;
+  Normal N = Normal::Zero();
+  Eigen::Matrix<double, Free, 1> right = Eigen::Matrix<double, Free, 1>::Zero();
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const NormTerm term = norm_term(from, poses[k]);
+    const Eigen::Matrix<double, Free, 1> j = term.gradient.head<Free>();
+    const double weight = (weights.empty() ? 1.0 : weights[k]) / term.variance;
+    N.noalias() += weight * j * j.transpose();
+    right -= weight * term.residual * j;
+  }
+  Parameters p = from;
+  p.head<Free>() += positive_inverse(N) * right;
+  return p;
+}
+
 Parameters newton_step(View<NormalisedPose> poses,
                        View<double> weights,
                        NormParameters free,
                        const Parameters& from) {
-  const auto count = static_cast<Eigen::Index>(free);
-  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(count, count);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    const NormTerm term = norm_term(from, poses[k]);
-    const Eigen::VectorXd j = term.gradient.head(count);
-    const double weight = weights[k] / term.variance;
-    N += weight * j * j.transpose();
-    right -= weight * term.residual * j;
-  }
-  Parameters p = from;
-  p.head(count) += positive_inverse(N) * right;
-  return p;
+  return free == NormParameters::nine ? newton_step_of<9>(poses, weights, from)
+                                      : newton_step_of<6>(poses, weights, from);
 }
 
 // Squared residuals over their variance.
@@ -174,6 +183,22 @@ Result<NormFit> fit_norm(const NormData& data,
     out.iterations = iterations;
     return out;
   }
+}
+
+std::optional<Parameters> refit_norm(View<NormalisedPose> poses,
+                                     NormParameters free,
+                                     const Parameters& start) {
+  constexpr int most_steps = 20;
+  constexpr double settled = 1e-10;  // of the range of the readings
+  Parameters p = start;
+  for (int step = 0; step < most_steps; ++step) {
+    const Parameters next = newton_step(poses, {}, free, p);
+    if (!next.allFinite()) return std::nullopt;
+    const double moved = (next - p).cwiseAbs().maxCoeff();
+    p = next;
+    if (moved < settled) return p;
+  }
+  return std::nullopt;
 }
 
 RobustStart robust_start(View<NormalisedPose> poses, NormParameters free, const Parameters& start) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "proofmass/calibrate/multi_position/norm_model.hpp"
@@ -35,6 +36,13 @@ struct NormFit {
                                        const std::vector<bool>& used,
                                        NormParameters free,
                                        const Parameters& start);
+
+/// The parameters of fit_norm() from a start close to them: Gauss-Newton steps with the weights of
+/// each step's start, for poses that are independent and all used. nullopt if the steps do not
+/// converge. Cost: O(poses) a step, some three or four steps.
+[[nodiscard]] std::optional<Parameters> refit_norm(View<NormalisedPose> poses,
+                                                   NormParameters free,
+                                                   const Parameters& start);
 
 /// The terms of every pose at other parameters.
 [[nodiscard]] std::vector<NormTerm> terms_of(View<NormalisedPose> poses, const Parameters& p);

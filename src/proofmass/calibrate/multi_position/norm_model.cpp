@@ -1,5 +1,7 @@
 #include "proofmass/calibrate/multi_position/norm_model.hpp"
 
+#include <algorithm>
+
 #include "proofmass/core/linalg.hpp"
 
 namespace proofmass::calibrate {
@@ -14,6 +16,16 @@ Parameters ReadingScale::to_reading(const Parameters& normalised) const {
   Parameters p = slope().cwiseProduct(normalised);
   p.head<3>() += center;
   return p;
+}
+
+Parameters ReadingScale::to_normalised(const Parameters& reading) const {
+  Parameters p = reading;
+  p.head<3>() -= center;
+  return p.cwiseQuotient(slope());
+}
+
+Eigen::Vector3d ReadingScale::normalised(const Eigen::Vector3d& reading) const {
+  return (reading - center).cwiseQuotient(half);
 }
 
 std::optional<ReadingScale> reading_scale(View<Pose> poses, double gravity_mps2) {
@@ -40,6 +52,33 @@ std::vector<NormalisedPose> normalise(View<Pose> poses, const ReadingScale& scal
                    inverse.asDiagonal() * pose.mean_covariance * inverse.asDiagonal()});
   }
   return out;
+}
+
+Weighable weighable(View<Pose> poses, double noise_dof) {
+  Weighable out{{poses.begin(), poses.end()}, noise_dof};
+  const bool known = noise_dof > 0.0 && std::ranges::all_of(poses, [](const Pose& pose) {
+                       return pose.mean_covariance.diagonal().minCoeff() > 0.0;
+                     });
+  if (known) return out;
+  out.noise_dof = 0.0;
+  const std::optional<ReadingScale> scale = reading_scale(poses, 1.0);
+  const double unit = scale ? 1e-3 * scale->half.maxCoeff() : 1.0;
+  for (Pose& pose : out.poses) pose.mean_covariance = unit * unit * Eigen::Matrix3d::Identity();
+  return out;
+}
+
+NormData norm_data(const Weighable& weighed,
+                   const ReadingScale& scale,
+                   const MultiPositionOptions& options) {
+  NormData data{.poses = normalise(weighed.poses, scale)};
+  if (weighed.noise_dof == 0.0) return data;
+  const auto n = static_cast<Eigen::Index>(weighed.poses.size());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double half = scale.half(static_cast<Eigen::Index>(axis));
+    if (options.between[axis].rows() == n)
+      data.between[axis] = options.between[axis] / (half * half);
+  }
+  return data;
 }
 
 Eigen::Matrix3d correction(const Parameters& p) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "proofmass/calibrate/multi_position.hpp"
 #include "proofmass/calibrate/pose.hpp"
 #include "proofmass/core/view.hpp"
 
@@ -24,6 +25,8 @@ struct ReadingScale {
   /// Diagonal of d(parameters)/d(normalised), from u and g to the output's unit and m/s^2.
   [[nodiscard]] Parameters slope() const;
   [[nodiscard]] Parameters to_reading(const Parameters& normalised) const;
+  [[nodiscard]] Parameters to_normalised(const Parameters& reading) const;
+  [[nodiscard]] Eigen::Vector3d normalised(const Eigen::Vector3d& reading) const;
 };
 
 /// A pose in the units of the fit.
@@ -46,6 +49,21 @@ struct NormData {
 [[nodiscard]] std::optional<ReadingScale> reading_scale(View<Pose> poses, double gravity_mps2);
 
 [[nodiscard]] std::vector<NormalisedPose> normalise(View<Pose> poses, const ReadingScale& scale);
+
+/// Poses whose variances are the weights of a fit: equal weights if the noise of any is unknown,
+/// and then noise_dof is 0.
+struct Weighable {
+  std::vector<Pose> poses;
+  double noise_dof;
+};
+
+[[nodiscard]] Weighable weighable(View<Pose> poses, double noise_dof);
+
+/// The input of the fit. The covariances `between` poses are those of the options if the noise is
+/// known: known drift with unknown noise would have no scale.
+[[nodiscard]] NormData norm_data(const Weighable& weighed,
+                                 const ReadingScale& scale,
+                                 const MultiPositionOptions& options);
 
 /// T diag(1/scale), T = [1 −α_yz α_zy; 0 1 −α_zx; 0 0 1].
 [[nodiscard]] Eigen::Matrix3d correction(const Parameters& p);

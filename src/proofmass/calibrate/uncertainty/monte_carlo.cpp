@@ -61,15 +61,6 @@ void draw_inputs(View<Input> inputs,
   if (root.size() > 0) unit = (root * unit).eval();
 }
 
-// Half of the last significant digit.
-double tolerance_of(double std, int digits) {
-  if (!(std > 0.0)) return 0.0;
-  int exponent = static_cast<int>(std::floor(std::log10(std)));
-  // 0.0996 has, to two digits, one decimal place less than its logarithm indicates.
-  if (std::round(std / std::pow(10.0, exponent - digits + 1)) >= std::pow(10.0, digits)) ++exponent;
-  return 0.5 * std::pow(10.0, exponent - digits + 1);
-}
-
 Agreement judged(double difference, double tolerance, double scatter) {
   if (difference + scatter <= tolerance) return Agreement::yes;
   return difference - scatter > tolerance ? Agreement::no : Agreement::cannot_tell;
@@ -135,11 +126,19 @@ Result<Propagation> propagate(const Measurement& f,
   return summary_of(std::move(y));
 }
 
+double numerical_tolerance(double std, int digits) {
+  if (!(std > 0.0)) return 0.0;
+  int exponent = static_cast<int>(std::floor(std::log10(std)));
+  // 0.0996 has, to two digits, one decimal place less than its logarithm indicates.
+  if (std::round(std / std::pow(10.0, exponent - digits + 1)) >= std::pow(10.0, digits)) ++exponent;
+  return 0.5 * std::pow(10.0, exponent - digits + 1);
+}
+
 GumValidation validate(const UncertaintyBudget& budget, const Propagation& drawn, int digits) {
   PM_EXPECTS(digits == 1 || digits == 2);
   const double y = budget.measurand.value;
   GumValidation found;
-  found.tolerance = tolerance_of(budget.combined_std, digits);
+  found.tolerance = numerical_tolerance(budget.combined_std, digits);
   found.lower_difference = std::abs(y - budget.expanded_95 - drawn.symmetric_95.lower);
   found.upper_difference = std::abs(y + budget.expanded_95 - drawn.symmetric_95.upper);
   const Agreement lower = judged(found.lower_difference, found.tolerance,

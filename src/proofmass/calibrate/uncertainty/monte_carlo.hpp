@@ -65,6 +65,10 @@ enum class Agreement {
   cannot_tell,  ///< too few draws for the tolerance
 };
 
+/// Half of the last of `digits` significant digits of a standard uncertainty; 0 if that is 0.
+/// Source: JCGM 101, clause 7.9.2.
+[[nodiscard]] double numerical_tolerance(double std, int digits);
+
 struct GumValidation {
   double tolerance = 0.0;  ///< δ: half of the last significant digit of u_c
   double lower_difference = 0.0, upper_difference = 0.0;  ///< |y ∓ U − the draws' end|

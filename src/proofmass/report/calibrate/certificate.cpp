@@ -50,7 +50,7 @@ std::string stated(const std::string& text) {
   return text.empty() ? "not stated" : text;
 }
 
-std::string file_names(const std::vector<std::string>& items) {
+std::string all_file_names(const std::vector<std::string>& items) {
   std::string text;
   for (const std::string& item : items) text += (text.empty() ? "" : ", ") + file_name(item);
   return text;
@@ -75,7 +75,7 @@ Table object_table(const CertificateData& data) {
            {"Serial number", stated(data.serial)},
            {"Date of measurement", stated(data.date)},
            {"Method", stated(data.method)},
-           {"Recordings", stated(file_names(data.files))}}};
+           {"Recordings", stated(all_file_names(data.files))}}};
 }
 
 Table conditions_table(const CertificateData& data) {

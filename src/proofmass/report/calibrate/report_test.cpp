@@ -205,7 +205,8 @@ TEST(CalibrateReport, HasTheCertificateOnItsPageAndEscapesNames) {
 
 TEST(CalibrateReport, SaysHowTheCheckAndNewPositionsCameOut) {
   CalibrateReport report = fake_calibrate_report();
-  report.check = calibrate::MonteCarloCheck{200, 0, {}, false, "200 calibrations contradict it."};
+  report.check = calibrate::MonteCarloCheck{
+      .draws = 200, .agrees = false, .verdict = "200 calibrations contradict it."};
   report.validation = calibrate::Validation{{0.01, -0.01}, 0.01, 0.001, 1e-6};
   report.validation_files = {"new.csv"};
   expect_words(text_of(report),
