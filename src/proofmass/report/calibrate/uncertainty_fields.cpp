@@ -123,17 +123,16 @@ Field stability_field(const CalibrateReport& report) {
 
 Field monte_carlo_field(const CalibrateReport& report) {
   std::optional<Fields> fields;
-  if (report.check && stds_known(report))
-    fields =
-        Fields{field::count("draws", report.check->draws),
-               field::count("failed", report.check->failed),
-               field::flag("stable", report.check->stable,
-                           {.meaning = "by the adaptive procedure of JCGM 101, two digits of each "
-                                       "uncertainty",
-                            .why_null = "the number of draws was given"}),
-               field::flag("agrees", report.check->agrees),
-               field::text("verdict", report.check->verdict),
-               field::records("parameters", report.check->parameters, check_fields)};
+  if (report.check && stds_known(report)) {
+    fields = Fields{
+        field::count("draws", report.check->draws), field::count("failed", report.check->failed),
+        field::flag("agrees", report.check->agrees), field::text("verdict", report.check->verdict),
+        field::records("parameters", report.check->parameters, check_fields)};
+    if (report.check->stable)
+      fields->push_back(field::flag(
+          "stable", *report.check->stable,
+          {.meaning = "two digits of each uncertainty, with JCGM 101's adaptive procedure"}));
+  }
   const std::string why = !report.why_no_check.empty() ? report.why_no_check
                           : report.check ? "the noise of the means is not known: no budget to check"
                                          : "not requested";
