@@ -97,33 +97,24 @@ NormFit judged(const NormData& data,
   return out;
 }
 
-// One Gauss–Newton step of `Free` parameters, with the variances at its start. `weights` may be
-// empty: all 1.
-template <int Free>
-Parameters newton_step_of(View<NormalisedPose> poses,
-                          View<double> weights,
-                          const Parameters& from) {
-  using Normal = Eigen::Matrix<double, Free, Free>;
-  Normal N = Normal::Zero();
-  Eigen::Matrix<double, Free, 1> right = Eigen::Matrix<double, Free, 1>::Zero();
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    const NormTerm term = norm_term(from, poses[k]);
-    const Eigen::Matrix<double, Free, 1> j = term.gradient.head<Free>();
-    const double weight = (weights.empty() ? 1.0 : weights[k]) / term.variance;
-    N.noalias() += weight * j * j.transpose();
-    right -= weight * term.residual * j;
-  }
-  Parameters p = from;
-  p.head<Free>() += positive_inverse(N) * right;
-  return p;
-}
-
+// One Gauss–Newton step, with the variances at its start.
 Parameters newton_step(View<NormalisedPose> poses,
                        View<double> weights,
                        NormParameters free,
                        const Parameters& from) {
-  return free == NormParameters::nine ? newton_step_of<9>(poses, weights, from)
-                                      : newton_step_of<6>(poses, weights, from);
+  const auto count = static_cast<Eigen::Index>(free);
+  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(count, count);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const NormTerm term = norm_term(from, poses[k]);
+    const Eigen::VectorXd j = term.gradient.head(count);
+    const double weight = weights[k] / term.variance;
+    N += weight * j * j.transpose();
+    right -= weight * term.residual * j;
+  }
+  Parameters p = from;
+  p.head(count) += positive_inverse(N) * right;
+  return p;
 }
 
 // Squared residuals over their variance.
@@ -186,17 +177,30 @@ Result<NormFit> fit_norm(const NormData& data,
 }
 
 std::optional<Parameters> refit_norm(View<NormalisedPose> poses,
+                                     const ResidualWeights& W,
                                      NormParameters free,
                                      const Parameters& start) {
   constexpr int most_steps = 20;
   constexpr double settled = 1e-10;  // of the range of the readings
+  const auto n = static_cast<Eigen::Index>(poses.size()), count = static_cast<Eigen::Index>(free);
+  Eigen::MatrixXd J(n, count), WJ(n, count);
+  Eigen::VectorXd r(n);
   Parameters p = start;
   for (int step = 0; step < most_steps; ++step) {
-    const Parameters next = newton_step(poses, {}, free, p);
-    if (!next.allFinite()) return std::nullopt;
-    const double moved = (next - p).cwiseAbs().maxCoeff();
-    p = next;
-    if (moved < settled) return p;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const NormTerm term = norm_term(p, poses[static_cast<std::size_t>(k)]);
+      J.row(k) = term.gradient.head(count);
+      r(k) = term.residual;
+    }
+    if (W.dense.size() > 0)
+      WJ.noalias() = W.dense * J;
+    else
+      WJ.noalias() = W.diagonal.asDiagonal() * J;
+    const Eigen::MatrixXd N = J.transpose() * WJ;
+    const Eigen::VectorXd moved = -(positive_inverse(N) * (WJ.transpose() * r));
+    if (!moved.allFinite()) return std::nullopt;
+    p.head(count) += moved;
+    if (moved.cwiseAbs().maxCoeff() < settled) return p;
   }
   return std::nullopt;
 }

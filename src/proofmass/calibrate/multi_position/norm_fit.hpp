@@ -37,10 +37,11 @@ struct NormFit {
                                        NormParameters free,
                                        const Parameters& start);
 
-/// The parameters of fit_norm() from a start close to them: Gauss-Newton steps with the weights of
-/// each step's start, for poses that are independent and all used. nullopt if the steps do not
-/// converge. Cost: O(poses) a step, some three or four steps.
+/// Gauss–Newton steps with fixed weights W of the residuals, from a start close to the minimum; all
+/// poses are used. nullopt if the steps do not converge. Cost: O(poses) a step, O(poses²) with a
+/// dense W; some three or four steps.
 [[nodiscard]] std::optional<Parameters> refit_norm(View<NormalisedPose> poses,
+                                                   const ResidualWeights& W,
                                                    NormParameters free,
                                                    const Parameters& start);
 

@@ -20,6 +20,8 @@ RedrawnFit::RedrawnFit(const DrawnFrom& from,
   scale_ = *scale;
   data_ = norm_data(weighed, scale_, options_);
   start_ = scale_.to_normalised(Eigen::Map<const Parameters>(fit.estimate.data()));
+  weights_ = residual_weights(data_, terms_of(data_.poses, start_),
+                              std::vector<bool>(data_.poses.size(), true));
 }
 
 std::optional<Parameters> RedrawnFit::operator()(View<Pose> drawn, double gravity_mps2) const {
@@ -30,16 +32,10 @@ std::optional<Parameters> RedrawnFit::operator()(View<Pose> drawn, double gravit
     if (!one) return std::nullopt;
     return Parameters(Eigen::Map<const Parameters>(one->estimate.data()));
   }
-  NormData data = data_;
-  for (std::size_t k = 0; k < drawn.size(); ++k) data.poses[k].u = scale_.normalised(drawn[k].mean);
-  std::optional<Parameters> p;
-  if (data.independent()) p = refit_norm(data.poses, free_, start_);
-  if (!p) {
-    const Result<NormFit> one =
-        fit_norm(data, std::vector<bool>(drawn.size(), true), free_, start_);
-    if (!one || !one->converged) return std::nullopt;
-    p = one->p;
-  }
+  std::vector<NormalisedPose> poses = data_.poses;
+  for (std::size_t k = 0; k < drawn.size(); ++k) poses[k].u = scale_.normalised(drawn[k].mean);
+  const std::optional<Parameters> p = refit_norm(poses, weights_, free_, start_);
+  if (!p) return std::nullopt;
   return ReadingScale{scale_.center, scale_.half, gravity_mps2}.to_reading(*p);
 }
 

@@ -25,8 +25,9 @@ class RedrawnFit {
   bool by_norm_;
   NormParameters free_ = NormParameters::nine;
   ReadingScale scale_;
-  NormData data_;     // the poses of the calibration
-  Parameters start_;  // the calibration, in the units of the fit
+  NormData data_;            // the poses of the calibration
+  ResidualWeights weights_;  // those of the calibration, for all replications
+  Parameters start_;         // the calibration, in the units of the fit
 };
 
 }  // namespace proofmass::calibrate

@@ -42,14 +42,17 @@ double scatter_factor(const std::vector<Pose>& used,
                       const MultiPosition& fit,
                       double noise_dof) {
   if (fit.model == PoseModel::six_position) return noise_dof > 0.0 ? 1.0 : 0.0;
+  // Where the noise is known, with the covariances between the poses.
+  if (fit.lack_of_fit && noise_dof > 0.0)
+    return scatter_of(fit.lack_of_fit->statistic * fit.lack_of_fit->dof, fit.lack_of_fit->dof,
+                      noise_dof)
+        .factor;
   const Matrix3d M = correction(estimate_of(fit));
   double rss = 0.0;
   for (std::size_t k = 0; k < used.size(); ++k)
     rss += residuals[k] * residuals[k] /
            length_variance(from.forces_mps2[k], M, used[k].mean_covariance);
-  const double dof = fit.lack_of_fit
-                         ? fit.lack_of_fit->dof
-                         : std::max(0.0, static_cast<double>(used.size()) - free_parameters(fit));
+  const double dof = std::max(0.0, static_cast<double>(used.size()) - free_parameters(fit));
   return scatter_of(rss, dof, noise_dof).factor;
 }
 
