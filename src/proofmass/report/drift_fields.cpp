@@ -87,7 +87,7 @@ Field tests(const DriftFit& fit) {
        field::probability("line_p", fit.line_p)});
 }
 
-// What only some shapes have, and only some fits can bound.
+// Entries that only some shapes have, and that only some fits bound.
 void add_optional(const DriftFit& fit, const Unit& unit, Fields& fields) {
   if (fit.slope_per_s)
     fields.push_back(interval_estimate("slope_per_s", fit.slope_per_s,

@@ -113,7 +113,7 @@ void add_outlook(const ChannelDrift& channel, Sentences& sentences) {
       bias_words(later.change, channel.unit)));
 }
 
-// The warm-up over the runs, times in runs.
+// Warm-up over the runs, with times in runs.
 void add_level_curve(const ChannelRuns& runs, Sentences& sentences) {
   const RunSet& set = *runs.set;
   if (!set.level_curve) return;

@@ -352,8 +352,8 @@ TEST(ProfileFigure, MarksTheIntervalOfTheTimeConstant) {
 TEST(DriftHtml, ShowsLessOfEachTheMoreChannelsThereAre) {
   DriftReport report = fake_drift_report();
   report.runs = {fake_runs("acc_x")};
-  // Two of the runs; drift, samples, profile, 3 scales twice and temperature of x; the same less
-  // one of y and its profile.
+  // Two of the runs. x: drift, samples, profile, residuals and autocorrelation at 3 scales,
+  // temperature. y: the same without one scale and the profile.
   EXPECT_EQ(count_of(to_html(describe(report)), "</svg>"), 2U + 10U + 8U);
   report.channels.assign(10, fake_steps("y"));
   EXPECT_EQ(count_of(to_html(describe(report)), "</svg>"), 2U + 10U);

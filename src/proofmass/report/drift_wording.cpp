@@ -15,7 +15,7 @@ using characterise::DriftReason;
 using characterise::DriftShape;
 using characterise::Interval95;
 
-// Decimals that show a width to two digits.
+// Decimals that give an interval's width two significant digits.
 int decimals_of(double width) {
   if (!(width > 0.0) || !std::isfinite(width)) return 3;
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(width))), 0, 9);
@@ -47,7 +47,7 @@ std::string steps_words(const characterise::DriftCurve& curve, const Unit& unit)
          (curve.steps.size() == 1 ? " of " : " of up to ") + size;
 }
 
-// "longer than 2 h", where the data bound it from one side.
+// "longer than 2 h", if the data bound it on one side only.
 std::string one_sided_words(const DriftFit& fit) {
   if (fit.time_constant_above_s) {
     return "longer than " + duration_words(*fit.time_constant_above_s) + " (95 %)";
@@ -139,7 +139,7 @@ std::string bias_words(double value, const Unit& unit) {
 }
 
 std::string slope_words(const Interval95& figure, const Unit& unit) {
-  // Drift is slow: shown per hour.
+  // Drift is slow: displayed per hour.
   constexpr double hour_s = 3600.0;
   return bias_words(Uncertain{figure.value * hour_s, figure.std * hour_s}, unit) + "/h";
 }

@@ -27,7 +27,7 @@ std::ptrdiff_t count(const std::string& text, const std::string& pattern) {
                        std::sregex_iterator());
 }
 
-// The path of the only curve, without that of its sample in the legend.
+// The path of the only curve, excluding its swatch in the legend.
 std::string curve_path(const std::string& text) {
   const std::size_t at = text.find("<path class=\"pm-line", text.find("clip-path=\"url"));
   return text.substr(at, text.find("/>", at) - at);

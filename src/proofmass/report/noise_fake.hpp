@@ -6,7 +6,7 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/report/noise_report.hpp"
 
-// A made-up analysis whose every figure is known, for the tests of this module.
+// A synthetic analysis with known figures, for the tests of this module.
 namespace proofmass::report {
 
 inline characterise::Coefficient identified(double value, double std) {
@@ -29,7 +29,7 @@ inline characterise::Coefficient bounded(double upper, std::optional<double> nee
           .record_needed_s = needed_s};
 }
 
-/// A curve that follows the model and a line at 0.562 Hz, at 100 Hz for 10 000 s.
+/// A curve that follows the model and a line at 0.562 Hz; 100 Hz for 10 000 s.
 inline void fake_curve(characterise::NoiseAnalysis& analysis) {
   const signal::SpectralLine& line = analysis.lines.lines.front();
   for (std::size_t m = 1; m < 250'000; m = m * 5 / 4 + 1) {

@@ -73,7 +73,7 @@ TEST(WheelJson, HasSpeedInRpmAndTheRestInSi) {
   EXPECT_DOUBLE_EQ(json["methods"]["smoother"]["turns"].get<double>(), -79.6141);
 }
 
-// Each null of the document has a sentence among the warnings that names it.
+// Each null of the document has a warning that names it.
 TEST(WheelJson, GivesAReasonForEachNull) {
   const Json json = Json::parse(to_json(describe(fake_report())));
   const std::string warnings = json["warnings"].dump();

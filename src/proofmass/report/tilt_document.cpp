@@ -22,8 +22,8 @@ std::string degree_text(double angle_rad) {
   return significant(angle_rad * deg_per_rad, 2) + "°";
 }
 
-// Roll is ill-conditioned where x is nearly vertical: its standard deviation is ten times the
-// tilt's.
+// Roll is ill-conditioned if x is nearly vertical: its standard deviation is ten times that of the
+// tilt.
 bool is_nearly_vertical(const TiltAngles& angles) {
   constexpr double near_rad = 10.0 * rad_per_deg;
   return angles.inclination && angles.inclination->axis == 0 &&
@@ -57,7 +57,7 @@ std::string conclusion(const TiltReport& report) {
   return fmt::format("{}, over the last of {} rests.", words, solution.rests.size());
 }
 
-// Labelled where they are the result, unlabelled for a single rest.
+// Labelled if it is the result, unlabelled for a single rest.
 Field roll(const TiltAngles& angles, const char* label = "") {
   return field::measured(
       "roll_rad", angles.roll_rad, "rad",

@@ -6,10 +6,10 @@
 
 #include "proofmass/report/tilt_report.hpp"
 
-// Made-up solutions whose every figure is known, for the tests of this module.
+// Synthetic solutions with known figures, for the tests of this module.
 namespace proofmass::report {
 
-/// One rest of a hundred samples with no roll, then as a moving base if asked for.
+/// One rest of a hundred samples with zero roll; `moving`: by the filter of a moving base.
 inline TiltReport fake_tilt(bool moving) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   TiltReport report;

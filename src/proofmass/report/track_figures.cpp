@@ -30,7 +30,7 @@ std::vector<double> shifted(const std::vector<double>& values,
   return out;
 }
 
-// What the plot has to hold.
+// Range of the values to be shown.
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
 
@@ -42,7 +42,7 @@ struct Range {
   void hold(const std::vector<double>& values) {
     for (const double value : values) hold(value);
   }
-  // All but the outermost 2 % at either end.
+  // Excludes the outermost 2 % at either end.
   void hold_most(const std::vector<double>& values) {
     hold(quantile(values, 0.02).value_or(none));
     hold(quantile(values, 0.98).value_or(none));
@@ -54,7 +54,7 @@ struct Range {
   }
 };
 
-// Over the whole height of a plot whose range is set.
+// Over the full height of a plot with fixed range.
 void shade_rests(const TrackSolution& solution, Figure& figure) {
   if (!figure.y.min || !figure.y.max || solution.rests.empty()) return;
   const std::vector<double>& time_s = solution.series.time_s;
@@ -72,7 +72,7 @@ void shade_rests(const TrackSolution& solution, Figure& figure) {
   figure.bands.insert(figure.bands.begin(), std::move(band));
 }
 
-// Each stroke's number at its turning point, where there is room for them.
+// Number of each stroke at its turning point, if there is room.
 void mark_strokes(const TrackSolution& solution, Figure& figure) {
   constexpr std::size_t most_numbers = 15;
   const TrackSeries& series = solution.series;

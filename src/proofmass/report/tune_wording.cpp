@@ -14,7 +14,7 @@ using estimate::TuneModel;
 using estimate::TuneRole;
 using estimate::TuneVerdict;
 
-// Powers of m and s of a unit of mechanics; nullopt of any other.
+// Exponents of m and s in a mechanical unit; nullopt for any other.
 struct Powers {
   int metre = 0;
   double second = 0.0;

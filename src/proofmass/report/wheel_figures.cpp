@@ -42,7 +42,7 @@ std::vector<double> difference_deg(const std::vector<double>& angle,
   return times(shifted(angle, to, -1.0), deg_per_rad);
 }
 
-// From zero, unless the recording begins well behind it.
+// From zero, unless the recording begins well after it.
 Axis time_axis(const WheelSeries& series) {
   Axis axis{.label = "Time (s)"};
   if (series.time_s.empty()) return axis;
@@ -54,7 +54,7 @@ Axis time_axis(const WheelSeries& series) {
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
 
-  // Widens to what all but the outermost 0.2 % of the values at either end take.
+  // Extends the range to all but the outermost 0.2 % of the values at either end.
   void hold(const std::vector<double>& values) {
     const auto bottom = quantile(values, 0.002), top = quantile(values, 0.998);
     if (!bottom || !top) return;
@@ -68,7 +68,7 @@ struct Range {
   }
 };
 
-// Turns by double integration, with a label that tells where it went.
+// Turns by double integration; if it leaves the range, the label states the final value.
 Curve double_integral(const WheelSeries& series, const Range& range) {
   Curve curve{.label = "double integration",
               .x = series.time_s,
@@ -86,7 +86,7 @@ bool has(const WheelSeries& series, const std::vector<double>& values) {
   return !values.empty() && values.size() == series.time_s.size();
 }
 
-// How many instants used so many channels.
+// Number of epochs by the number of channels used.
 std::array<std::size_t, 256> channels_histogram(const WheelSeries& series) {
   std::array<std::size_t, 256> instants{};
   for (const unsigned char channels : series.channels_used) ++instants[channels];
@@ -168,7 +168,7 @@ Figure filter_figure(const WheelSolution& solution) {
   smoother.label = "smoother, 95 %";
   Curve curve{"filter − smoother", series.time_s,
               difference_deg(series.filtered_angle_rad, series.angle_rad), Ink::green};
-  // Until it has found itself the filter's band may be many turns wide; the rest is worth seeing.
+  // Before convergence the filter's band may be many turns wide; the range is chosen for the rest.
   const double reach = 3.0 * std::max(quantile(filter.upper, 0.8).value_or(0.0),
                                       quantile(smoother.upper, 0.98).value_or(0.0));
   if (reach > 0.0) {
