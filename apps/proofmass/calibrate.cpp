@@ -25,7 +25,7 @@
 namespace proofmass::app {
 namespace {
 
-// Flags of `calibrate` that say where the poses are.
+// Flags of `calibrate` for the poses.
 void add_pose_flags(CLI::App& verb, CalibrateCommand& command) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type);
@@ -49,7 +49,7 @@ void add_pose_flags(CLI::App& verb, CalibrateCommand& command) {
       ->allow_extra_args(false);
 }
 
-// Flags of `calibrate` that say how well something is known.
+// Flags of `calibrate` for uncertainties.
 void add_uncertainty_flags(CLI::App& verb, CalibrateCommand& command) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type);
@@ -148,7 +148,7 @@ std::vector<TypeB> type_b_of(const CalibrateCommand& command) {
   return lines;
 }
 
-// A fit that the poses do not carry is the input's fault; its message names the files.
+// Poses that do not determine the model are a fault of the input; the message names the files.
 MultiPosition fitted(const PoseSet& set, MultiPositionOptions options) {
   options.noise_dof = set.noise_dof;
   options.between = set.between;
@@ -159,7 +159,7 @@ MultiPosition fitted(const PoseSet& set, MultiPositionOptions options) {
   throw Failure(status_of(fit.error(), Stage::computing), fit.error().at(files).message);
 }
 
-// The noise of the means over the session, where the recordings show it.
+// Noise of the means over the session, if the recordings determine it.
 void settle_noise(const MultiPositionOptions& model, PoseSet& set) {
   MultiPositionOptions options = model;
   options.noise_dof = set.noise_dof;
@@ -169,7 +169,7 @@ void settle_noise(const MultiPositionOptions& model, PoseSet& set) {
   set.between = set.wander->between;
 }
 
-// The wander that the sensor file to be updated has of all three axes.
+// Flicker and random walk of the sensor file to be updated, if it has them for all three axes.
 std::optional<calibrate::WanderStrengths> filed_wander(const CalibrateCommand& command,
                                                        const MultiPosition& fit,
                                                        const Unit& unit) {
@@ -190,8 +190,8 @@ std::optional<calibrate::WanderStrengths> filed_wander(const CalibrateCommand& c
   return out;
 }
 
-// How well the biases repeat from one session to another, as stated, by the sensor file or by what
-// this recording shows.
+// Repeatability of the biases between sessions: as stated, from the sensor file, or from the noise
+// of this recording.
 std::optional<calibrate::BiasStability> stability_of(const CalibrateCommand& command,
                                                      const PoseSet& set,
                                                      const MultiPosition& fit) {
@@ -221,7 +221,7 @@ std::optional<calibrate::BiasStability> stability_of(const CalibrateCommand& com
                                  "the flicker noise and random walk that it allows");
 }
 
-// Of several supplies the one whose figures stand at the top: the nearest to their mean.
+// With several supplies, the one for the main results: the closest to their mean.
 std::optional<double> main_supply_v(const CalibrateCommand& command) {
   const std::vector<double>& supplies = command.supplies_v;
   if (supplies.empty()) return std::nullopt;
@@ -232,7 +232,8 @@ std::optional<double> main_supply_v(const CalibrateCommand& command) {
   });
 }
 
-// Readings at different supplies are no calibration together: the files at that supply alone are.
+// Positions at different supplies do not belong to one calibration: only the files at the main
+// supply are combined.
 std::vector<std::string> main_files(const CalibrateCommand& command) {
   const std::optional<double> supply_v = main_supply_v(command);
   if (!supply_v) return command.files;
@@ -242,7 +243,7 @@ std::vector<std::string> main_files(const CalibrateCommand& command) {
   return files;
 }
 
-// One calibration for each file, at its own supply, and what they have to do with it.
+// One calibration per file, at its own supply, and the dependence on the supply.
 void calibrate_supplies(const CalibrateCommand& command,
                         const MultiPositionOptions& options,
                         report::CalibrateReport& report) {
@@ -251,13 +252,13 @@ void calibrate_supplies(const CalibrateCommand& command,
     std::vector<Note> notes;
     PoseSet set = read_poses({command.files[k]}, command, notes);
     settle_noise(options, set);
-    // Those of the files at the top have been told.
+    // Notes of the main supply's files have been reported already.
     if (command.supplies_v[k] != main_supply_v(command)) {
       for (const Note& note : notes)
         report.notes.push_back({note.severity, command.files[k] + ": " + note.text});
     }
     MultiPositionOptions own = options;
-    // Gravity is the same at all supplies and says nothing of their difference.
+    // Gravity is common to all supplies and does not affect their difference.
     own.gravity_std_mps2 = 0.0;
     report::SuppliedFit& one = report.supplies.emplace_back();
     one = {command.supplies_v[k], command.files[k], fitted(set, own)};
@@ -337,7 +338,7 @@ void fill_certificate(const CalibrateCommand& command,
   data.positions = report.fit.poses.size();
 }
 
-// The check costs a calibration a draw: it is made where someone is going to see it.
+// Each draw is a calibration: the check is made only if its result is shown.
 void check_by_draws(const CalibrateCommand& command,
                     const std::vector<TypeB>& lines,
                     MultiPositionOptions options,

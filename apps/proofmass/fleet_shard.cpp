@@ -12,13 +12,13 @@
 namespace proofmass::app {
 namespace {
 
-/// The variables of an engine: this task's number, how many there are, and what the first has.
+/// Environment variables of an engine: index of this task, number of tasks, and the first index.
 struct ArrayVariables {
   const char *index, *count, *first;
 };
 
 // Source: SLURM, sbatch(1), "Job arrays"; Kubernetes, "Indexed Job"; AWS Batch, "Array jobs"; Open
-// MPI, mpirun(1). Kubernetes says nowhere how many there are.
+// MPI, mpirun(1). Kubernetes does not state the number of tasks.
 constexpr std::array<ArrayVariables, 4> engines{{
     {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN"},
     {"JOB_COMPLETION_INDEX", nullptr, nullptr},

@@ -18,7 +18,7 @@ bool is_letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0;
 }
 
-// The word that names the kind of sensor, in the order in which they are looked for.
+// Words that name the kind of sensor, in the order of the search.
 constexpr std::array<std::string_view, 14> kinds{"accelerometer",
                                                  "acceleration",
                                                  "accel",
@@ -34,13 +34,13 @@ constexpr std::array<std::string_view, 14> kinds{"accelerometer",
                                                  "rate",
                                                  "linear "};
 
-// A name with its kind of sensor and its axis taken out: "imu_gyr_x" is "imu_?_?" of axis x.
+// A name with sensor kind and axis replaced: "imu_gyr_x" is "imu_?_?" with axis x.
 struct AxisOf {
   std::string sensor;
   std::size_t axis = 3;  // 3: none
 };
 
-// The last x, y or z that is no part of a longer word, after its kind is gone: "gx", "wx" too.
+// The last x, y or z that is not part of a longer word, once the kind is removed; also "gx", "wx".
 AxisOf axis_of(const std::string& name) {
   std::string text = lower(name);
   for (const std::string_view kind : kinds) {

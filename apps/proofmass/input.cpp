@@ -26,7 +26,7 @@ const sensor::SensorModel& model_of(const std::vector<sensor::SensorModel>& mode
   return models[models.size() > 1 ? k : 0];
 }
 
-// The flag that helps where the accelerometers of a recording cannot be used.
+// The flag that helps if the accelerometers of a recording are not usable.
 std::string flag_hint(const std::vector<sensor::SensorModel>& models, const Recording& recording) {
   const std::vector<Triad> triads = accelerometer_triads(recording);
   if (triads.empty()) return ": name its channels with --channel, their unit with --unit";
@@ -76,7 +76,7 @@ Result<sensor::SensorFile> sensor_file(const std::string& path, const InputFlags
   return sensor::read_sensor_file(path);
 }
 
-// Puts --supply in place of what the files say of their supply.
+// Replaces the supply stated in the files by --supply.
 void set_supply(double supply_v,
                 std::vector<sensor::SensorModel>& models,
                 std::vector<Note>& notes) {

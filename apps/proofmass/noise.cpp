@@ -163,7 +163,7 @@ std::vector<NoiseChannel> noise_channels(RestRecording recording, std::vector<No
   return channels;
 }
 
-// All files' channels: prepared, or of a file larger than --memory analysed.
+// All files' channels: prepared, or already analysed for a file larger than --memory.
 std::vector<NoiseChannel> noise_channels(const NoiseCommand& command,
                                          const NoiseOptions& options,
                                          std::vector<Note>& notes) {
@@ -192,7 +192,7 @@ void analyse(NoiseChannel& channel, NoiseOptions options) {
   options.rate_hz = channel.rest.rate_hz;
   options.lsb = channel.rest.lsb;
   Result<NoiseAnalysis> found = characterise::analyse_noise(channel.rest.series, options);
-  // What was asked for makes no sense, of this channel or of any.
+  // Invalid options, for this channel or for any.
   if (!found && found.error().code == Errc::invalid_argument) {
     throw Failure(usage, found.error().at(channel.shown.name).message);
   }

@@ -43,8 +43,8 @@ std::vector<std::size_t> named_channels(const Recording& recording, const Tumble
   return chosen;
 }
 
-// The channels in the plane of the wheel: the ones named, or those of the one accelerometer that
-// gravity turns through.
+// The channels in the plane of the wheel: the named ones, or those of the only accelerometer
+// through which gravity rotates.
 std::vector<std::size_t> plane_channels(const Recording& recording, const TumbleCommand& command) {
   if (!command.input.channels.empty()) return named_channels(recording, command);
   const std::vector<Accelerometer> found = accelerometers({recording});
@@ -74,7 +74,7 @@ void bring_to_si(Channel& channel) {
   channel.unit = *parse_unit(volts ? "V" : "m/s^2");
 }
 
-// Volts and accelerations in SI, counts as they are; all of one kind.
+// Volts and accelerations in SI, counts unchanged; all of one quantity.
 std::string bring_to_one_unit(std::vector<Recording>& recordings,
                               const std::vector<std::vector<std::size_t>>& chosen) {
   std::optional<std::string> unit;

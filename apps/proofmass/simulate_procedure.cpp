@@ -68,7 +68,7 @@ ProcedureOptions procedure_options(const SimulateCommand& command) {
   ProcedureOptions options = simulate::default_options(procedure);
   if (!command.rig.empty()) {
     const Result<ProcedureOptions> read = simulate::read_procedure_file(command.rig, procedure);
-    // Whatever is wrong in the file is wrong with the input.
+    // Any error in the file is a faulty input.
     if (!read) throw Failure(bad_input, read.error().message);
     options = *read;
   }

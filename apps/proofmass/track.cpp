@@ -21,18 +21,18 @@
 namespace proofmass::app {
 namespace {
 
-/// Displacement of one accelerometer, or of several that are fused.
+/// Displacement from one accelerometer, or from several that are fused.
 struct TrackCommand {
   std::string file;
   std::string model = "inertial";  ///< or pva, fused
   std::optional<double> jerk_psd_m2ps5;
   std::vector<std::string> gravity;  ///< a number in m/s^2, "removed" or "present", or both
-  std::string axis;                  ///< empty: found
+  std::string axis;                  ///< empty: determined from the data
   bool same_place = false;
   double same_place_std_m = 1e-3;
   std::string fixes, still, turns;  ///< files: positions, intervals, times of velocity 0
   std::string rests = "found";
-  double fix_std_m = 0.01;  ///< of fixes without their own
+  double fix_std_m = 0.01;  ///< for fixes without their own
   std::optional<double> shortest_rest_s, scale_std;
   double rest_speed_std_mps = 1e-4;
   bool take_as_acceleration = false, no_gyro = false;
@@ -41,7 +41,7 @@ struct TrackCommand {
   OutputFlags output;
 };
 
-// A number as of the other verbs, or a word.
+// A number as for the other verbs, or a word.
 CLI::Validator gravity_value() {
   const CLI::Validator number = positive();
   const auto check = [number](std::string& text) -> std::string {
@@ -136,7 +136,7 @@ using estimate::GravityContent;
 using estimate::TrackOptions;
 using estimate::TrackSensor;
 
-// A word says whether gravity is in the readings, a number how large it is.
+// A word states whether the measurements contain gravity, a number its magnitude.
 void read_gravity(TrackCommand& command, TrackOptions& options) {
   for (const std::string& text : command.gravity) {
     const bool removed = text == "removed", present = text == "present";
@@ -166,7 +166,7 @@ void expect_sense(const TrackCommand& command) {
       throw Failure(usage, "-: standard input is the recording: name a file for the list");
 }
 
-// A list that does not fit the recording is the list's fault.
+// A list that does not match the recording is reported as an error of the list.
 void need_inside(const Status& inside, const std::string& file) {
   if (!inside)
     throw Failure(status_of(inside.error(), Stage::reading), inside.error().at(file).message);
@@ -211,7 +211,7 @@ void take_from_sensor(const sensor::SensorModel& model,
   if (!options.scale_std) options.scale_std = scale_std_of(model.calibration);
 }
 
-// One; or for the model fused 2 to 4.
+// One; for the model `fused` two to four.
 std::vector<Accelerometer> chosen_accelerometers(const TrackCommand& command,
                                                  const std::vector<Recording>& recordings) {
   std::vector<Accelerometer> found = accelerometers(recordings);
@@ -320,7 +320,7 @@ void run_track(const TrackCommand& given) {
   report.options = options_of(command);
   const TrackSensor sensor = prepare(command, report.options, report.notes);
   report.solution = solve_track(command.file, sensor, report.options);
-  report.options.progress = {};  // which wipes the bar away
+  report.options.progress = {};  // which clears the progress bar
   finish(report::describe(report), [&] { return report::track_series(report); }, command.output);
 }
 

@@ -21,7 +21,7 @@
 namespace proofmass::app {
 namespace {
 
-// Flags of `tumble` that say how the positions stood.
+// Flags of `tumble` for the positions.
 void add_position_flags(CLI::App& verb, TumbleCommand& command) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type);
@@ -138,7 +138,7 @@ ChannelTumble analysed(const TumbleReadings& readings,
   return channel;
 }
 
-// The input axis: named, else the first that follows sin(angle), else the first that swings.
+// The input axis: as given, else the first that follows sin(angle), else the first with a fit.
 std::size_t main_channel(const report::TumbleReport& report, std::optional<std::size_t> input) {
   if (input) return *input;
   const auto follows_sine = [](const ChannelTumble& c) {
@@ -180,7 +180,7 @@ sensor::MeasuredCalibration measured(const report::TumbleReport& report,
   return out;
 }
 
-// Which flags state what the fits had to assume.
+// Notes the flags that would replace an assumption.
 void note_assumptions(report::TumbleReport& report) {
   const auto any = [&](const auto& assumed) {
     return std::any_of(report.channels.begin(), report.channels.end(),
