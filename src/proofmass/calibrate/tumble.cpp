@@ -64,13 +64,13 @@ TumbleErrors errors_of(View<TumblePosition> positions,
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto row = static_cast<std::size_t>(k);
     if (noise_known) errors.noise_std(k) = positions[row].output_std;
-    errors.lever(k) = std::cos(design.phi_rad[row]);  // times K1 g, which is not known yet
+    errors.lever(k) = std::cos(design.phi_rad[row]);  // times K1 g, inserted once it is estimated
   }
   return errors;
 }
 
-// Fits once for K1 and the drift, and again with quantities derived from them in units of the
-// output.
+// Fits twice: first for K1 and the drift, then with the errors of indexing and drift, which K1
+// converts to units of the output.
 TumbleRegression regress(const TumbleDesign& design,
                          const Eigen::VectorXd& outputs,
                          TumbleErrors errors,
@@ -78,7 +78,7 @@ TumbleRegression regress(const TumbleDesign& design,
   const double indexing = options.indexing_std_rad.value_or(assumed_indexing_std_rad);
   const double wander = options.drift_std_mps2.value_or(assumed_drift_std_mps2);
   TumbleRegression found = regress_tumble(design.A, outputs, errors);
-  // Without a scale for the scatter, or residuals, there is no standard deviation to widen.
+  // Without a known scatter, or with zero residuals, there is no standard deviation to increase.
   const double swing = std::abs(swing_of(design, found.beta));
   const bool exact = indexing <= 0.0 && wander <= 0.0;
   if (exact || !found.has_scale || !(found.sigma > 0.0) || !(swing > 0.0)) return found;
@@ -87,8 +87,9 @@ TumbleRegression regress(const TumbleDesign& design,
   errors.indexing_assumed = !options.indexing_std_rad;
   errors.drift_std = wander * swing / options.gravity_mps2;
   errors.drift_assumed = !options.drift_std_mps2;
-  // A drift with a straight part has a curved one: an exponential of a third of the test, 0.12 and
-  // 0.06 of its whole change (cosine and sine), a step in the middle 0.32.
+  // A drift with a linear part also has a nonlinear one: for an exponential with a time constant of
+  // a third of the test, amplitudes (cosine, sine) of 0.12 and 0.06 of its total change; for a step
+  // in the middle 0.32.
   constexpr double curved = 0.25;
   const auto drift = design.find(TumbleTerm::drift);
   double by_line = 0.0;
@@ -110,7 +111,7 @@ Status check_swing(const TumbleSolution& solution, double largest_output) {
   const double swing = swing_of(design, regression.beta);
   const auto k = static_cast<Eigen::Index>(*sine);
   const double std = std::sqrt(regression.noise_covariance(k, k));
-  double across = 0.0;  // of an axis nearer to the other one
+  double across = 0.0;  // amplitude of the cosine, large for the other axis in the plane
   for (std::size_t j = 0; j < design.columns.size(); ++j)
     if (design.columns[j].term == TumbleTerm::cosine)
       across = std::max(across, std::abs(regression.beta(static_cast<Eigen::Index>(j))));
@@ -125,7 +126,7 @@ Status check_swing(const TumbleSolution& solution, double largest_output) {
   return Done{};
 }
 
-// A larger value is not a bias but the output's nominal zero, such as half the supply.
+// A larger value is the output's nominal zero, such as half the supply, not a bias.
 constexpr double largest_bias_g = 2.0;
 
 void add_zero_note(const TumbleOptions& options, TumbleFit& fit) {

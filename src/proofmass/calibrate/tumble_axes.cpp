@@ -12,8 +12,9 @@ namespace proofmass::calibrate {
 namespace {
 
 constexpr double quarter = 0.5 * std::numbers::pi;
-constexpr double least_swing = 0.2;  // of the largest
-constexpr double least_seen = 0.05;  // rms of a sine or cosine at the positions: it is excited
+constexpr double least_swing = 0.2;  // relative to the largest
+constexpr double least_seen = 0.05;  // rms of a sine or cosine over the positions from which it
+                                     // counts as excited
 
 // output ≈ mean + S sin ψ + C cos ψ over the positions of one plane.
 struct FirstHarmonic {
@@ -116,7 +117,7 @@ TumbleAxis place_axis(const std::array<FirstHarmonic, 2>& found, double largest,
     const bool swings = h.amplitude() > least_swing * largest;
     if (is_input || swings) axis.phase_rad[p] = is_input ? 0.0 : nearest_quarter(h);
   }
-  // 0° and 180° alone do not move the input axis of a second plane.
+  // A second plane with only 0° and 180° does not excite the input axis.
   const FirstHarmonic& second = found[1];
   if (!axis.phase_rad[1] && along_sine(axis) && second.sees_cosine && !second.sees_sine)
     axis.phase_rad[1] = axis.phase_rad[0];

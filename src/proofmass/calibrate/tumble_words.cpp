@@ -68,7 +68,7 @@ std::string rms_words(double rms_rad) {
                         : fmt::format("{:.3g}°", rms_rad / rad_per_deg);
 }
 
-// Amplitude of the harmonic with this rms.
+// Amplitude of the harmonic with this rms, in 1e-6.
 double micro(double rms_rad, double factor) {
   return 1e6 * factor * std::numbers::sqrt2 * rms_rad;
 }
@@ -102,14 +102,14 @@ std::string found_words(const TumbleFit& fit, Q cosine, Q sine, const char* how_
   return text;
 }
 
-// Is the input axis upright in all positions?
+// True if the input axis is vertical in all positions.
 bool upright_only(const TumbleDesign& design) {
   constexpr double level = 0.05;
   return std::all_of(design.phi_rad.begin(), design.phi_rad.end(),
                      [](double phi) { return std::abs(std::cos(phi)) < level; });
 }
 
-// Does it point up in one and down in another?
+// True if the input axis points up in one position and down in another.
 bool both_ways(const TumbleDesign& design) {
   constexpr double upright = 0.95;
   const auto points = [&](double way) {
