@@ -53,11 +53,11 @@ bool says(const NoiseAnalysis& analysis, const char* words) {
 struct Published {
   Statistic statistic;
   std::vector<std::pair<double, double>> tau_and_deviation;
-  bool uncorrected = false;  ///< published without the correction of its bias
+  bool uncorrected = false;  ///< published without bias correction
   bool to_five_digits = false;
 };
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name that GoogleTest asks for
+// NOLINTNEXTLINE(readability-identifier-naming): name required by GoogleTest
 void PrintTo(const Published& published, std::ostream* out) {
   *out << name_of(published.statistic) << (published.uncorrected ? ", uncorrected" : "");
 }
@@ -97,7 +97,7 @@ TEST_P(ThousandPoints, AreAsNistPublishedThemAsPhaseAndAsRate) {
   expect_published(test::nbs14_phase(), GetParam());
 }
 
-// Corrected as for white rates throughout.
+// Corrected as for white frequency noise throughout.
 INSTANTIATE_TEST_SUITE_P(
     Nist,
     TenPoints,
@@ -141,8 +141,8 @@ INSTANTIATE_TEST_SUITE_P(
                    {128, 0.030862393},
                    {256, 0.012447414}}}));
 
-/// How far from Stable32's limits ours may be: where its degrees of freedom are others than those
-/// of SP 1065 (edf_test.cpp), and half a unit of the last digit printed.
+/// Accepted difference from Stable32's limits: where its degrees of freedom differ from those of SP
+/// 1065 (edf_test.cpp), plus half a unit of the last printed digit.
 double tolerance_of(Statistic statistic, const test::Stable32Row& row) {
   const bool modified_total = statistic == Statistic::mtotdev || statistic == Statistic::ttotdev;
   if (modified_total && row.m >= 10) return row.alpha == 0 ? 0.032 : 0.065;
@@ -170,7 +170,7 @@ void expect_stable32(Statistic statistic, const std::string& table, const NoiseO
     ASSERT_NE(point, found.deviation.points.end());
     if (point->alpha != row.alpha) continue;
     ++compared;
-    // Where a bias is corrected, some of its tables are not.
+    // Some of its tables are not corrected for bias.
     EXPECT_NEAR(std::min(std::abs(point->value / row.deviation - 1.0),
                          std::abs(point->uncorrected / row.deviation - 1.0)),
                 0.0, 5e-5);
@@ -178,7 +178,7 @@ void expect_stable32(Statistic statistic, const std::string& table, const NoiseO
     EXPECT_NEAR(point->lower / point->value / (row.lower / row.deviation), 1.0, tolerance);
     EXPECT_NEAR(point->upper / point->value / (row.upper / row.deviation), 1.0, tolerance);
   }
-  // Some of its last rows have other types than ours.
+  // In some of its last rows the noise types differ from ours.
   EXPECT_GE(compared + 2, rows.size()) << table;
 }
 
@@ -201,7 +201,7 @@ TEST(AnalyseNoise, GivesStable32sLimitsByLag1AndWithTheNoiseTypeFixed) {
 }
 
 // The mean of a rate over a sample has other degrees of freedom than Stable32's phase: 667 of 999
-// where it has 782, which moves the limits at m = 1 by half a percent at most.
+// instead of 782, which changes the limits at m = 1 by at most half a percent.
 TEST(AnalyseNoise, GivesStable32sLimitsByTheModelToo) {
   if (test::stable32_folder().empty())
     GTEST_SKIP() << "NO PUBLISHED RECORDINGS: set PROOFMASS_DATA to their folder";
@@ -385,7 +385,7 @@ TEST(AnalyseNoise, TakesNoiseOfOneStepAndWarns) {
   const double sigma = 0.01;
   const NoiseAnalysis found =
       analysed(rounded(test::scaled(test::normals(40'000, 13), sigma), 0.01), options);
-  // Sheppard: rounding adds a twelfth of the step's square.
+  // Sheppard's correction: rounding adds a twelfth of the squared step.
   const double expected = std::sqrt((sigma * sigma + 1e-4 / 12.0) / rate_hz);
   EXPECT_NEAR(found.model.white.value / expected, 1.0, 0.02);
   EXPECT_EQ(found.lsb, 0.01);

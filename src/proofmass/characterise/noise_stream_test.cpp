@@ -155,7 +155,7 @@ TEST(RecordOverview, TakesTheEndsOfALongQuantisedNoiseForNoRails) {
     overview.add(y);
   }
   EXPECT_TRUE(overview.check_rails(1.0));
-  // A sensor that goes no further than one and a half standard deviations.
+  // A sensor whose values stay within one and a half standard deviations.
   overview = {};
   for (int piece = 0; piece < 200; ++piece) {
     for (double& x : y) x = std::min(std::round(normal(rng)), 6.0);

@@ -112,7 +112,7 @@ TEST(IdentifyNoiseTypes, AgreesWithEveryLag1RowOfStable32AndAllButAFewByRatio) {
       if (const auto type = lag1_noise_type(phase, row.m, lowest)) {
         EXPECT_EQ(type->alpha, row.alpha);
         ++by_lag1;
-        // Beyond T/10 Stable32 stops asking in some tables and keeps its last answer.
+        // Beyond T/10 Stable32 does not determine the type in some tables and keeps the last one.
       } else if (row.m <= 100) {
         ratio_misses += ratio_noise_type(phase, row.m, lowest) != row.alpha ? 1 : 0;
         ++by_ratio;

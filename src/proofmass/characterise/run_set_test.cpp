@@ -110,7 +110,7 @@ TEST(RunSet, TellsATrendFromRunToRun) {
   EXPECT_TRUE(says(set, "rises from run to run"));
 }
 
-// 60 power-ups whose means follow −2.4 (1 − e^(−n/5.2)), beside a scatter of 0.14 from run to run.
+// 60 power-ups whose means follow −2.4 (1 − e^(−n/5.2)), with a scatter of 0.14 between runs.
 TEST(RunSet, FindsTheWarmUpThatGoesOnFromRunToRun) {
   int held = 0;
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {

@@ -26,7 +26,7 @@ VectorXd density_of(const DriftEvidence& evidence) {
   return NoiseChoice(evidence).base().P * Eigen::Vector2d(1.0, 0.01);
 }
 
-/// Twice what a step adds to the log-likelihood, by fitting without and with it.
+/// Twice the increase in log-likelihood due to a step, by fitting with and without it.
 double refitted(const DriftEvidence& evidence,
                 const MatrixXd& fitted,
                 const VectorXd& density,
