@@ -32,14 +32,14 @@ TEST(CrossAxis, IsNoNumberWhereItIsNotToldFromZero) {
   EXPECT_GT(found.upper_95, 1.1e-3);
 }
 
-// At zero the upper bound is Rayleigh's quantile, σ √(−2 ln 0.05).
+// At zero the upper bound is the quantile of a Rayleigh distribution, σ √(−2 ln 0.05).
 TEST(CrossAxis, HasTheBoundOfRayleighAtZero) {
   const CrossAxis found = cross_axis_sensitivity({0, 0}, diagonal(4e-6, 4e-6)).value();
   EXPECT_NEAR(found.upper_95, 2e-3 * std::sqrt(-2.0 * std::log(0.05)), 1e-8);
   EXPECT_EQ(found.p, 1.0);
 }
 
-// With one ratio exact it is the bound of a half normal.
+// If one ratio is exact, it is the bound of a half-normal distribution.
 TEST(CrossAxis, HasTheBoundOfTheHalfNormalWhereOneRatioIsExact) {
   const CrossAxis found = cross_axis_sensitivity({0, 0}, diagonal(1e-6, 0)).value();
   EXPECT_NEAR(found.upper_95, 1.959964e-3, 2e-8);
@@ -97,7 +97,7 @@ TEST(CrossAxis, StaysBelowItsBoundAtLeastNineteenTimesInTwenty) {
   }
 }
 
-// Derivatives of √(S_xy² + S_xz²)/S_x by hand.
+// Derivatives of √(S_xy² + S_xz²)/S_x, derived by hand.
 TEST(CrossAxis, OfAMatrixFollowsTheDeltaMethod) {
   Eigen::Matrix3d S;
   S << 2.0, 0.06, 0.08, 0.01, 1.0, 0.02, 0.03, 0.0, 0.5;

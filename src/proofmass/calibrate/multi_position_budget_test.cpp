@@ -64,7 +64,7 @@ TEST(BudgetOf, HasALineOfGravityEvenWhereItIsTakenForExact) {
   EXPECT_EQ(budgets[0].lines.size(), 1U);
 }
 
-// Where all of a mean's variance is that of rounding, no noise is left, and the sum is the same.
+// If rounding explains the whole variance of a mean, no noise remains, and the sum is unchanged.
 TEST(BudgetOf, TakesTheResolutionOutOfTheNoiseOfTheMeans) {
   Calibrated it = calibrated();
   const auto plain = budget_of(it.fit, {}, "V").value();
@@ -101,7 +101,8 @@ TEST(AddTypeB, IsTheSameAsTheBudgetWithItsLines) {
   EXPECT_NEAR(it.fit.bias[2]->std, budgets[2].combined_std, 1e-15);
   EXPECT_EQ(budgets[2].lines.size(), 3U);
   EXPECT_NEAR(budgets[2].lines[1].sensitivity, it.fit.estimate[5], 1e-15);
-  // One reference for all axes ties their scales together, one drift each their biases not.
+  // A common reference correlates the scales of all axes; independent drifts leave the biases
+  // uncorrelated.
   const double reference = 5e-4 / std::sqrt(3.0);
   EXPECT_NEAR(it.fit.covariance(3, 4) - before.covariance(3, 4),
               it.fit.estimate[3] * it.fit.estimate[4] * (reference * reference + 1e-6 / g / g),
@@ -193,7 +194,7 @@ TEST(CheckByMonteCarlo, NeedsAHundredDraws) {
   EXPECT_EQ(check.error().code, Errc::too_few_samples);
 }
 
-// Every model's budget against the draws of what it takes for exact.
+// Each model's budget compared with draws of the quantities that it assumes exact.
 TEST(CheckByMonteCarlo, ConfirmsTheBudgetsOfTheOtherModels) {
   Parameters square = analog_sensor();
   square.tail<3>().setZero();

@@ -190,7 +190,7 @@ TEST(MultiPosition, SaysWhatPosesCannotTell) {
   EXPECT_NE(said({{1, 0, 0}, {0, 1, 0}}).find("2 positions for 6 parameters"), std::string::npos);
   const std::vector<Eigen::Vector3d> same(12, Eigen::Vector3d(0.3, 0.2, 0.9));
   EXPECT_NE(said(same).find("all positions read the same"), std::string::npos);
-  // Turned about z only: z is always the same, and its scale may be anything.
+  // Rotations about z only: z is constant, and its scale undetermined.
   std::vector<Eigen::Vector3d> about_z;
   for (int k = 0; k < 12; ++k) about_z.emplace_back(std::cos(0.5 * k), std::sin(0.5 * k), 0.4);
   EXPECT_NE(said(about_z).find("do not determine scale z"), std::string::npos) << said(about_z);

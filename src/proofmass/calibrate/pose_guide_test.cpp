@@ -21,8 +21,7 @@ using signal::RestPhase;
 constexpr double g = standard_gravity_mps2;
 constexpr double rate_hz = 50.0;
 
-/// A sensor that a person, or a table, lays down in one position after the other, and the guide
-/// that looks on.
+/// A sensor that is placed in one position after the other, observed by the guide.
 class Bench {
  public:
   explicit Bench(const GuideOptions& options, double noise = 0.01)
@@ -88,7 +87,7 @@ GuideOptions options_of(GuideProcedure procedure) {
   return {.procedure = procedure, .channels = {0, 1, 2}, .rate_hz = rate_hz, .one_g = g};
 }
 
-// The axes that a prompt names, as a person reads it.
+// The direction that a prompt asks for, parsed from its text.
 Vector3d asked_for(const std::string& text) {
   Vector3d up = Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -204,7 +203,7 @@ TEST(PoseGuide, BeginsAnewWhereARestEndsTooEarly) {
   EXPECT_NE(bench.last(GuideKind::redo)->text.find("It moved after"), std::string::npos);
   ASSERT_EQ(bench.guide.poses().size(), 2U);
   EXPECT_GE(*bench.guide.poses()[1].end_s - *bench.guide.poses()[1].start_s, 2.0);
-  EXPECT_GE(*bench.guide.poses()[1].start_s, 9.5);  // behind the shock
+  EXPECT_GE(*bench.guide.poses()[1].start_s, 9.5);  // after the shock
 }
 
 TEST(PoseGuide, SaysTheSameHoweverTheSamplesAreCut) {
@@ -229,7 +228,7 @@ TEST(PoseGuide, SaysTheSameHoweverTheSamplesAreCut) {
 }
 
 TEST(PoseGuide, RestsLongerWhereThereIsMoreNoise) {
-  // White noise of σ a sample is averaged to half the target in 4 σ²/(target² rate).
+  // Averaging white noise of σ per sample to half the target takes 4 σ²/(target² rate).
   GuideOptions options = options_of(GuideProcedure::multi_position);
   Bench bench(options, 0.1);
   bench.rest({0.0, 0.0, 1.0}, 25.0);
@@ -320,7 +319,7 @@ TEST(PoseGuide, StartsTheClockAnewWhereAStillSensorIsMoved) {
 }
 
 TEST(PoseGuide, SitsStillUntilTheFloorOfTheNoiseShows) {
-  // A level that drifts by steps of its own every 2 s shows a floor; white noise alone does not.
+  // A level with random steps every 2 s has a noise floor; white noise does not.
   for (const bool wanders : {false, true}) {
     PoseGuide guide(options_of(GuideProcedure::still));
     Random random(3, "floor");

@@ -8,12 +8,12 @@
 namespace proofmass::calibrate::session_noise_test {
 namespace {
 
-// A walk with increments of variance 3 a unit of time, summed up step by step.
+// A random walk with increments of variance 3 per unit of time, summed step by step.
 TEST(WanderCovariance, OfARandomWalkIsThatOfItsSteps) {
   const std::vector<Span> spans{{0.0, 3.0}, {5.0, 7.0}, {11.0, 16.0}};
   constexpr int steps = 16 * 50;
   const auto weight = [](const Span& span, int step) {
-    // Share of the span that lies behind the step.
+    // Fraction of the interval after the step.
     const double at = (step + 0.5) / 50.0;
     return std::clamp((span.end - at) / span.length(), 0.0, 1.0);
   };
@@ -29,7 +29,7 @@ TEST(WanderCovariance, OfARandomWalkIsThatOfItsSteps) {
     }
 }
 
-// Half the mean square of the difference of neighbours is the Allan variance.
+// Half the mean square of the difference of adjacent means is the Allan variance.
 TEST(WanderCovariance, HasTheAllanVariancesOfItsUnits) {
   for (const double m : {1.0, 8.0, 300.0}) {
     const std::vector<Span> spans{{0.0, m}, {m, 2.0 * m}};
@@ -41,7 +41,8 @@ TEST(WanderCovariance, HasTheAllanVariancesOfItsUnits) {
   }
 }
 
-// Over N adjacent means the variance of flicker noise is N ln N / (2 (N − 1) ln 2) of Allan's.
+// The variance of N adjacent means of flicker noise is N ln N / (2 (N − 1) ln 2) times the Allan
+// variance.
 // Source: D. W. Allan, Proc. IEEE 54 (1966) 221, equation 19.
 TEST(WanderCovariance, OfFlickerNoiseGrowsAsAllanFound) {
   constexpr int count = 32;
@@ -63,7 +64,7 @@ void expect_covered(const test::Session& session, int runs) {
   }
 }
 
-// By what rests show of themselves alone 89 %.
+// 89 % if only the noise within rests is used.
 TEST(SessionNoise, HoldsABiasThatWalksFromPositionToPosition) {
   expect_covered({.walk_mps2_rts = 1e-3}, 25);
 }

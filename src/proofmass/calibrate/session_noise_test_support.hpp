@@ -11,13 +11,14 @@
 #include "proofmass/calibrate/session_noise.hpp"
 #include "proofmass/core/chi_square.hpp"
 
-// Recordings of a sensor placed by hand while its bias drifts, by an independent generator: flicker
-// noise as relaxation processes an octave and a half apart, a random walk as a sum of steps.
+// Recordings of a sensor placed by hand while its bias drifts, from an independent generator:
+// flicker noise as relaxation processes spaced by an octave and a half, a random walk as a sum of
+// steps.
 namespace proofmass::calibrate::test {
 
 struct Session {
   int positions = 18;
-  double white_mps2 = 0.01;    ///< of a sample, at 100 Hz
+  double white_mps2 = 0.01;    ///< per sample, at 100 Hz
   double flicker_mps2 = 0.0;   ///< B
   double walk_mps2_rts = 0.0;  ///< K
   double shortest_s = 3.0, longest_s = 5.0;
@@ -26,7 +27,7 @@ struct Session {
 struct Recorded {
   std::array<std::vector<double>, 3> axes;
   std::vector<Dwell> rests;
-  Parameters truth;  ///< bias: of the session's mean
+  Parameters truth;  ///< bias: mean of the session
 };
 
 class WanderingBias {
@@ -100,8 +101,8 @@ inline Recorded recorded(const Session& session, std::mt19937_64& random) {
 
 struct SessionCoverage {
   int fits = 0, suspects = 0;
-  std::array<int, 3> inside{};  ///< of biases, scales, angles, three a fit
-  double largest_z = 0.0;       ///< as of a normal distribution
+  std::array<int, 3> inside{};  ///< for biases, scales, angles; three per fit
+  double largest_z = 0.0;       ///< in standard deviations of a normal distribution
 
   [[nodiscard]] double share(std::size_t kind) const { return inside[kind] / (3.0 * fits); }
 };

@@ -46,7 +46,7 @@ TEST(FitSupply, OfAnExactlyRatiometricSensorIsPowerOneAndNoConstant) {
   EXPECT_TRUE(found.notes.empty());
 }
 
-// Weighted least squares in closed form: all weights alike in ln V.
+// Weighted least squares in closed form, with equal weights in ln V.
 TEST(FitSupply, StatesTheStandardDeviationOfTheLine) {
   std::vector<SupplyPoint> points = ratiometric_set(1e-3, 1e-3);
   for (SupplyPoint& point : points) point.supply_v.std = 0.0;

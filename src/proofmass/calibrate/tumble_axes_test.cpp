@@ -12,7 +12,7 @@ namespace {
 
 constexpr double quarter = 0.5 * std::numbers::pi;
 
-// Outputs of axes that stand at such phases, with misalignment and bias.
+// Outputs of axes at the given phases, with misalignment and bias.
 std::vector<double> follow(const std::vector<TumblePosition>& plan,
                            double phase,
                            double size = 1.0) {
@@ -51,7 +51,8 @@ TEST(TumbleAxes, TellsHowFarAnAxisStandsOff) {
 TEST(TumbleAxes, KnowsTheInputAxisInASecondPlaneOfTwoPositions) {
   std::vector<TumblePosition> plan = table_turn(4);
   append(plan, in_plane(table_turn(2), 2));
-  // x: sin in plane 1, 0 in plane 2; y: cos in plane 1, along the table in plane 2; z the reverse.
+  // x: sin in plane 1, 0 in plane 2; y: cos in plane 1, parallel to the table in plane 2; z the
+  // reverse.
   const std::vector<std::vector<double>> outputs{
       {0, 1, 0, -1, 0, 0}, {1, 0, -1, 0, 0, 0}, {0, 0, 0, 0, 1, -1}};
   const auto axes = tumble_axes(plan, outputs);

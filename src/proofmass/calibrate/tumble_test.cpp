@@ -35,8 +35,9 @@ std::string reason(const TumbleFit& fit, Q quantity) {
   return found == nullptr ? "" : found->reason;
 }
 
-// All that has a value, to a part of its natural size. An error of the table's angle also moves
-// things by its product with the misalignment, some 1e-9, which no linear model has.
+// Checks every value to a fraction of its natural size. An error of the table's angle also has
+// effects of second order, its product with the misalignment, some 1e-9, which a linear model does
+// not include.
 void expect_truth(const TumbleFit& fit, const TableTruth& truth, double tolerance) {
   for (const TumbleCoefficient& c : fit.coefficients) {
     if (!c.value || (c.quantity == Q::misalignment && c.mount_rad > 1e-6)) continue;
@@ -84,13 +85,13 @@ TEST(FourPointTumble, SaysThatItsScaleHoldsTheThirdOrderTerm) {
   EXPECT_NE(reason(fit, Q::K3).find("between the quarters"), std::string::npos);
 }
 
-// Thesis 5.1.2: E0 and E180 of x in g; the formula's figure is −197.9 mg, the printed one −19.78.
+// Thesis 5.1.2: E0 and E180 of x in g; the formula gives −197.9 mg, printed is −19.78.
 TEST(FourPointTumble, PutsTheThesisRight) {
   const CorrectionFactors x = correction_factors({-0.17517, 1.0, -0.22057, -1.0}, 1.0, 1.0);
   EXPECT_NEAR(x.offset, -0.19787, 1e-12);
   EXPECT_DOUBLE_EQ(x.scale, 1.0);
   EXPECT_DOUBLE_EQ(x.scale_factor_error, 0.0);
-  // Of y the same two places are up and down: 0.58541 and −1.0330.
+  // For y the same two positions are up and down: 0.58541 and −1.0330.
   const CorrectionFactors y = correction_factors({0.0, 0.58541, 0.0, -1.0330}, 1.0, 1.0);
   EXPECT_NEAR(y.scale_factor_error, -0.1908, 5e-5);  // printed: 0.0869 %
   const FourPointResult found = four_point({0.0, 0.58541, 0.0, -1.0330}, 1.0);
@@ -133,7 +134,7 @@ TEST(MultipointTumble, DoesNotMindTheOrderOfTheRowsWhereTheyHaveATime) {
 }
 
 TEST(MultipointTumble, GivesTheStandardDeviationsOfEqualSteps) {
-  // var of an amplitude 2 s²/n, of B0 s²/n; so K1: 2 s² (1 + 9)/n over g², and so on.
+  // Variance of an amplitude 2 s²/n, of B0 s²/n; of K1 therefore 2 s² (1 + 9)/n over g², and so on.
   std::vector<TumblePosition> positions = read_table(table_turn(24), {});
   constexpr double s = 1e-6;
   for (TumblePosition& p : positions) p.output_std = s;
@@ -172,7 +173,7 @@ TEST(SixPointTumble, TellsScaleBothMisalignmentsAndThreeBiases) {
 TEST(ForwardAndBackwardTumble, TellsHysteresisFromBacklash) {
   TableTruth truth;
   truth.hysteresis_mps2 = 2e-3;
-  truth.backlash_rad = 1e-6;  // small: it moves the other terms in second order
+  truth.backlash_rad = 1e-6;  // small, since it affects the other terms in second order
   truth.drift_mps2 = 1e-4;
   const TumbleFit fit = fitted(read_table(there_and_back(12), truth));
   expect_truth(fit, truth, 1e-8);
@@ -184,7 +185,7 @@ TEST(RemountedTumble, SeparatesErrorsOnceATurnFromTheBias) {
   truth.index_cos = 2e-6;
   truth.index_sin = -1e-6;
   const TumbleFit once = fitted(read_table(table_turn(12), truth));
-  // What looks like K2 and K0 without the second mounting.
+  // Appears as K2 and K0 without the second mounting.
   EXPECT_NEAR(value(once, Q::K2_minus_Kpp), truth.K2 - truth.Kpp - 2e-6 / g, 1e-9);
   EXPECT_NEAR(value(once, Q::K0), true_value(truth, Q::K0) + 2e-6 * g, 1e-7);
   EXPECT_NEAR(value(once, Q::K0_up_down), true_value(truth, Q::K0_up_down), 1e-7);
@@ -276,7 +277,7 @@ TEST(Tumble, LeavesOutWhatFewPositionsCannotTell) {
   EXPECT_EQ(two.find(Q::K0_up_down)->meaning,
             "K0 + K2 g²: half the sum of the readings at +1 g and −1 g");
 
-  // Level and down: what stands there is a bias, but not that of up and down.
+  // Horizontal and down: the result is a bias, but not that from up and down.
   const TumbleFit corner = fitted(at({180.0, 270.0}));
   EXPECT_EQ(corner.find(Q::K0_up_down)->meaning, "bias, K2 − Kpp and misalignment taken for 0");
   EXPECT_EQ(corner.find(Q::K1)->meaning, "scale factor K1, K3 and K2 − Kpp taken for 0");
@@ -288,7 +289,7 @@ TEST(Tumble, LeavesOutWhatFewPositionsCannotTell) {
 
   const TumbleFit six = fitted(at({0.0, 60.0, 120.0, 180.0, 240.0, 300.0}));
   EXPECT_TRUE(has(six, Q::Kip));
-  EXPECT_FALSE(has(six, Q::K3));  // sin 3φ is 0 at all of them
+  EXPECT_FALSE(has(six, Q::K3));  // sin 3φ is 0 in all positions
 }
 
 TEST(Tumble, RefusesWhatTellsNothing) {
@@ -319,7 +320,7 @@ TEST(Tumble, TakesAnAxisByItsPhase) {
   const TableTruth truth;
   const TumbleFit sine = fitted(read_table(table_turn(12), truth), options);
   options.phase_rad = {0.5 * std::numbers::pi, 0.0};
-  // The same readings a quarter turn earlier.
+  // The same outputs a quarter turn earlier.
   std::vector<TumblePosition> moved = read_table(table_turn(12), truth);
   for (TumblePosition& p : moved) p.angle_rad -= 0.5 * std::numbers::pi;
   const TumbleFit cosine = fitted(moved, options);
@@ -355,7 +356,7 @@ TEST(Tumble, NamesThePositionThatContradictsTheOthers) {
 TEST(Tumble, SeesACubicCrossAxisTermAsThirdCosine) {
   TableTruth truth;
   std::vector<TumblePosition> positions = read_table(table_turn(24), truth);
-  constexpr double Kppp = 1e-5;  // of a_p³
+  constexpr double Kppp = 1e-5;  // coefficient of a_p³
   for (TumblePosition& p : positions)
     p.output += truth.K1 * Kppp * std::pow(g * std::cos(p.angle_rad), 3);
   const TumbleFit fit = fitted(positions);
@@ -419,7 +420,7 @@ TEST(Tumble, CountsGravityAndIndexingAsSharesOfTheirOwn) {
   EXPECT_NEAR((sum - fit.covariance).norm(), 0.0, 1e-20);
 }
 
-// Nothing is stated of the table's angles and of the drift.
+// Nothing is stated on the table's angles and the drift.
 TumbleOptions nothing_stated() {
   return {.gravity_mps2 = g, .output_unit = "V"};
 }
@@ -464,8 +465,8 @@ TEST(TumbleAssumptions, GiveWayToWhatTheResidualsShow) {
   EXPECT_FALSE(fitted(noisy_turn(24, truth, 3), stated).indexing.assumed);
 }
 
-// The bias moves 10 mm/s² by an exponential, or swings by that once over the test: over one turn of
-// the table both are first harmonics of its angle.
+// The bias changes by 10 mm/s² exponentially, or oscillates with that amplitude once during the
+// test: with one turn of the table both are first harmonics of its angle.
 TEST(TumbleAssumptions, KeepACurvedDriftWithinTheMisalignmentsInterval) {
   TableTruth truth;
   truth.noise = 3e-5;
@@ -518,7 +519,7 @@ TEST(TumbleAssumptions, TakeTheTemperatureForWhatItIs) {
   EXPECT_NEAR(value(fit, Q::misalignment), truth.delta_o, half_width(fit, Q::misalignment));
 }
 
-// Seven rows once were seven parameters where noise is stated.
+// With a stated noise, seven rows used to be fitted by seven parameters.
 TEST(TumbleSpare, LeavesARowOverToJudgeByWhereNoiseIsStated) {
   TableTruth truth;
   truth.noise = 3e-6;
@@ -547,7 +548,7 @@ TEST(TumbleSpare, NamesAReadingOffByTenStandardDeviationsAmongTwelve) {
     for (std::size_t k = 0; k < fit.positions.size(); ++k)
       if (fit.positions[k].suspect) ++(k == wrong ? named : others);
   }
-  EXPECT_GT(named, tests / 2);  // 13 by the residuals of the fit with it
+  EXPECT_GT(named, tests / 2);  // 13 by the residuals of the fit that includes it
   EXPECT_LE(others, 3);
 }
 

@@ -9,8 +9,8 @@ namespace {
 
 using namespace attitude_test;
 
-// Biases and noise are drawn as the options say; the quantities are those of the last rest, and of
-// the middle of a move for what the smoother knows between rests.
+// Biases and noise are drawn according to the options; tested at the last rest, and for the
+// smoother also in the middle of a move.
 TEST(AttitudeMonteCarlo, NinetyFivePercentBandsHoldTheTruthInNinetyThreeToNinetySevenPercent) {
   constexpr int runs = 600;
   AttitudeOptions options;

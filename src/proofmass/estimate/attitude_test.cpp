@@ -16,7 +16,7 @@ using attitude_test::Scene;
 using attitude_test::scene;
 using attitude_test::SensorErrors;
 
-/// Sensors whose figures are known, and nothing else in doubt.
+/// Sensors with known figures and no other uncertainty.
 AttitudeOptions exact_options() {
   AttitudeOptions options;
   options.gravity_std_mps2 = 0.0;
@@ -163,7 +163,7 @@ TEST(Attitude, AGapBeginsANewStretch) {
 
 TEST(Attitude, GravityFreeAccelerationIsThatOfTheBody) {
   Body body;
-  body.start = {0.2, 0.0, 0.0};  // x level, so that the heading of both is 0
+  body.start = {0.2, 0.0, 0.0};  // x horizontal, so that the heading of both is 0
   const Scene moving = scene(body, {});
   const Attitude attitude = estimated(moving, exact_options());
   const auto accel = gravity_free_acceleration(moving.series, attitude);
@@ -205,7 +205,7 @@ TEST(Attitude, SaysWhyItCannot) {
   EXPECT_EQ(code(nothing, {}), Errc::too_few_samples);
 }
 
-/// Runs with biases and noise drawn as the options say.
+/// Runs with biases and noise drawn according to the options.
 TEST(Attitude, ErrorsAreAsLargeAsTheirCovariance) {
   constexpr int runs = 40;
   AttitudeOptions options = exact_options();

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A level that drifts under white noise, followed by a filter that believes other figures.
+/// A random-walk level in white noise, with a filter that may assume other noise parameters.
 struct LocalLevel {
   double walk_std = 0.1, noise_std = 1.0;  ///< true, per step
   double believed_walk_std = 0.1, believed_noise_std = 1.0;
@@ -23,7 +23,7 @@ struct LocalLevel {
   std::size_t steps = 20000;
   std::uint64_t seed = 1;
   double outlier_share = 0.0;
-  double drift = 0.0;  ///< per step, of the measurements
+  double drift = 0.0;  ///< ramp per step in the measurements
 };
 
 Consistency run(const LocalLevel& o) {
@@ -31,7 +31,7 @@ Consistency run(const LocalLevel& o) {
   Random random(o.seed, "local level");
   double level = 0.0, x = 0.0;
   const double Q = std::pow(o.believed_walk_std, 2), R = std::pow(o.believed_noise_std, 2);
-  double P = 0.5 * (Q + std::sqrt(Q * Q + 4.0 * Q * R)) - Q;  // as it settles
+  double P = 0.5 * (Q + std::sqrt(Q * Q + 4.0 * Q * R)) - Q;  // steady-state value
   for (std::size_t k = 0; k < o.steps; ++k) {
     level += o.walk_std * random.normal();
     const bool outlier = random.unit() < o.outlier_share;
@@ -128,9 +128,9 @@ TEST(Consistency, StretchesAddUpNeighbours) {
 }
 
 TEST(Consistency, UndoesWhatAGateHasCutOff) {
-  // Of N(0, 1) within ± 2 the variance is 0.7737.
+  // The variance of N(0, 1) truncated to ± 2 is 0.7737.
   EXPECT_NEAR(*ungated_std(0.773741, 2.0), 1.0, 1e-5);
-  EXPECT_FALSE(ungated_std(1.33, 2.0));  // even over the gate: 4/3
+  EXPECT_FALSE(ungated_std(1.33, 2.0));  // uniform over the gate: 4/3
   EXPECT_EQ(*ungated_std(0.0, 2.0), 0.0);
   const Consistency result = white(1.0, 100000, 5, 2.0);
   EXPECT_NEAR(result.nis, 0.7737, 0.01);
@@ -142,7 +142,7 @@ TEST(Consistency, UndoesWhatAGateHasCutOff) {
 TEST(Consistency, TellsWhichNoiseIsOff) {
   struct Case {
     const char* what;
-    double walk, noise;  ///< believed, truth 0.1 and 1
+    double walk, noise;  ///< assumed; the truth is 0.1 and 1
     Verdict verdict;
     Remedy remedy;
     double factor, tolerance;

@@ -17,7 +17,7 @@ const InertialNoise noise{.white_m2ps3 = 4e-4,
                           .rest_speed_std_mps = 1e-3};
 const InertialStart start{.speed_std_mps = 0.1, .bias_mps2 = 0.0, .bias_std_mps2 = 0.05};
 
-// A rest, a motion of uneven steps with a gap, a rest; a fix on the way.
+// A rest, a motion with irregular steps and a gap, and a rest; with a fix in between.
 std::vector<InertialEpoch> some_epochs() {
   std::vector<InertialEpoch> epochs(40);
   std::mt19937_64 engine(7);
@@ -70,7 +70,7 @@ TEST(InertialAxis, JoinedEpochsSayTheSame) {
   }
 }
 
-// The joint normal of all states, conditioned on all measurements at once.
+// Joint normal distribution of all states, conditioned on all measurements at once.
 TEST(InertialAxis, EqualsTheDenseBatchWithItsCovariancesAcrossTime) {
   const std::vector<InertialEpoch> epochs = some_epochs();
   const InertialAxis model{epochs, noise};

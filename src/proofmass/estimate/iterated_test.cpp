@@ -13,8 +13,8 @@ namespace {
 
 constexpr double gravity_mps2 = 9.80665;
 
-// A pendulum seen by the accelerometer along its arm: neither its motion nor its reading is linear.
-//   θ' = ω, ω' = −(g/l) sin θ by Euler's rule over h;  z = g sin θ, not read at every instant.
+// A pendulum with an accelerometer along its arm: nonlinear dynamics and measurements.
+//   θ' = ω, ω' = −(g/l) sin θ by Euler's rule with step h;  z = g sin θ, missing at some epochs.
 struct Pendulum {
   static constexpr int states = 2, moving = 2, channels = 1;
   std::vector<double> z;
@@ -62,8 +62,8 @@ Pendulum swing(std::size_t count) {
   return pendulum;
 }
 
-// All states at once: Gauss and Newton on the whole posterior with a dense matrix, written down
-// from the model term by term, with no recursion in it.
+// All states at once: Gauss–Newton on the joint posterior with a dense matrix, written down term by
+// term from the model, without recursion.
 struct Dense {
   Eigen::VectorXd x;
   Eigen::MatrixXd information;
@@ -171,7 +171,7 @@ TEST(IteratedSmoother, OfNothingIsNothing) {
   EXPECT_EQ(run.objective, 0.0);
 }
 
-// A level that moves, and an offset behind it that walks.
+// A dynamic level, and an offset with a random walk.
 struct Level {
   static constexpr int states = 2, moving = 1, channels = 2;
   [[nodiscard]] std::size_t size() const { return 12; }
@@ -204,8 +204,8 @@ TEST(Objective, IsLeastAtTheSmoothedPathOfALinearModel) {
     }
 }
 
-// The reading is the arctangent: from 3 on whole steps of Gauss and Newton's run away, by turns to
-// either side.
+// The measurement is the arctangent: from 3 on, full Gauss–Newton steps diverge with alternating
+// sign.
 struct Arc {
   static constexpr int states = 1, moving = 1, channels = 1;
   [[nodiscard]] std::size_t size() const { return 1; }
@@ -235,7 +235,8 @@ TEST(IteratedSmoother, HalvesStepsThatLeadAway) {
   EXPECT_NEAR(run.states[0].mean(0), 0.0, 1e-9);
 }
 
-// A walker in the plane who hears one or two beacons: the nearer, the more the range bends.
+// A walker in the plane with ranges to one or two beacons: the shorter the range, the stronger its
+// nonlinearity.
 struct Walker {
   static constexpr int states = 4, moving = 4, channels = 2;
   std::vector<Mat<2>> ranges;
@@ -269,7 +270,8 @@ struct Walker {
   void reopen(Gaussian<4>&, std::size_t) const {}
 };
 
-// Newton's method with a dense Hessian by differences of the exact gradient, from a grid's best.
+// Newton's method with a dense Hessian from differences of the exact gradient, started at the best
+// point of a grid.
 Mat<4> most_probable(const Walker& walker, const Gaussian<4>& prior, std::size_t k) {
   const auto gradient = [&](const Mat<4>& x) {
     Readings<4, 2> readings;

@@ -11,7 +11,7 @@ namespace {
 
 using Live = LiveFilter<3, 2, 1>;
 
-// Equal, NaN to NaN.
+// Equal, where NaN equals NaN.
 template <int N>
 bool same(const Mat<N>& a, const Mat<N>& b) {
   return ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();

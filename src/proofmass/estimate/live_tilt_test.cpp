@@ -35,7 +35,7 @@ Followed follow(const TiltRecord& record, const LiveTiltOptions& options, std::s
   return test::followed(live_tilt(options).value(), stream_of(record), piece);
 }
 
-/// Share of the rows from two seconds on whose band of 95 % holds the pitch.
+/// Coverage of the pitch by the 95 % band, for the rows from two seconds on.
 double coverage(const Followed& followed, const MovingBase& base, const std::string& what = "") {
   double held = 0.0, all = 0.0;
   for (std::size_t k = 200; k < followed.fed.rows.rows(); ++k) {
@@ -83,7 +83,7 @@ TEST(LiveTilt, BandsHoldHoweverStrongTheBaseTurnsWithoutGyroscope) {
   }
 }
 
-// From the first row on, and with no single error of many standard deviations.
+// From the first row on, and without errors of many standard deviations.
 TEST(LiveTilt, BandsHoldUnderALevelAccelerationWithoutGyroscope) {
   for (const double fastest_hz : {0.2, 3.0}) {
     int held = 0, all = 0;

@@ -20,7 +20,7 @@ struct Shares {
   Share end, stops, on_the_way, smoothed;
 };
 
-/// `lean` in m/s²/√Hz: the sensor rocks while it moves, which no rest shows.
+/// `lean` in m/s²/√Hz: rocking of the sensor in motion, which rests do not show.
 Shares cover(Carriage carriage, double lean, std::size_t runs) {
   Shares found;
   LiveTrackOptions options = live_options();

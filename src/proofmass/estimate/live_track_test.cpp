@@ -175,7 +175,7 @@ TEST(LiveTrack, ASensorThatTurnedIsSaidAndLessSureFromThereOn) {
 TEST(LiveTrack, ConstantSpeedIsNoStop) {
   CarriageRecord made = record({.strokes_m = {0.4}, .dwell_s = 4.0});
   TrackSensor& sensor = made.sensor;
-  // The stroke's push alone, then nothing for 4 s, then its braking: 0.75 s of each.
+  // The stroke's acceleration, then nothing for 4 s, then its deceleration: 0.75 s each.
   const std::size_t turn = sample_at(sensor, 4.75), count = sensor.time_s.size();
   for (std::size_t i = 0; i < 3; ++i) {
     std::vector<double>& axis = sensor.accel_mps2[i];
@@ -192,7 +192,7 @@ TEST(LiveTrack, ConstantSpeedIsNoStop) {
   EXPECT_LT(run.last(live_position_std), 0.2);
 }
 
-// Noise that grows with the motion is no reason to take the motion for noise.
+// Noise that grows with the motion must not make the motion look like noise.
 TEST(LiveTrack, ASwingThatRocksIsNoRest) {
   CarriageRecord made =
       record({.strokes_m = {0.5, -0.5, 0.5, -0.5, 0.5, -0.5}, .dwell_s = 4.0, .harmonic = true});
@@ -277,7 +277,7 @@ TEST(LiveTrack, OneAxisIsEnough) {
   EXPECT_LT(run.last(live_position_std), 0.02);
 }
 
-// Of closures that noise alone explains little scale is left, of large ones as much as they show.
+// Closures explained by noise leave little scale uncertainty; large ones as much as they imply.
 TEST(MotionScale, FollowsTheClosures) {
   MotionScale calm, rough;
   EXPECT_GT(calm.scale(), 10.0);

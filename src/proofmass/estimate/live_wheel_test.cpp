@@ -40,7 +40,7 @@ LiveWheelOptions options_for(std::size_t sensors, std::optional<double> radius_m
   for (std::size_t s = 0; s < sensors; ++s)
     options.sensors.push_back({"acc" + std::to_string(s + 1), 3 * s, 3 * s + 1, 3 * s + 2});
   options.wheel.radius_m = radius_m;
-  options.wheel.bandwidth_hz = 5000.0;  // what record() makes is not delayed
+  options.wheel.bandwidth_hz = 5000.0;  // the simulated measurements have no delay
   return options;
 }
 
@@ -48,7 +48,7 @@ Followed follow(const Stream& stream, const LiveWheelOptions& options, std::size
   return test::followed(live_wheel(options).value(), stream, piece);
 }
 
-/// Share of the rows from `from_s` on whose band of 95 % holds the truth, whole turns apart.
+/// Coverage of the truth (modulo turns) by the 95 % band, for the rows from `from_s` on.
 double coverage(const Followed& run,
                 const Drive& drive,
                 double from_s,
@@ -211,7 +211,7 @@ TEST(LiveWheel, SaysThatTheRadiusIsNotKnown) {
 }
 
 TEST(LiveWheel, AStepAllocatesNothingOnceTheWheelIsFound) {
-  // Two speeds at the start show the place, so that nothing is gathered any more.
+  // Two speeds at the start determine the lever arm, after which no data are collected any more.
   const Drive drive{{0.3, 5.0}, {{1.0, 5.0}, {2.0, 10.0}, {9.0, 10.0}}};
   const Stream stream = one_sensor(drive);
   auto live = live_wheel(options_for(1)).value();

@@ -19,7 +19,7 @@ const Mat<3, 3> small = 1e-6 * Mat<3, 3>::Identity();
 TEST(TiltAngles, AreThoseOfTheRotationThatTheyAreDefinedBy) {
   for (const double roll : {-3.0, -1.2, 0.0, 0.4, 2.9})
     for (const double pitch : {-1.4, -0.3, 0.0, 1.1}) {
-      // R_world_sensor = Ry(pitch) Rx(roll); the sensor reads Rᵀ (0, 0, g).
+      // R_world_sensor = Ry(pitch) Rx(roll); the sensor measures Rᵀ (0, 0, g).
       const Mat<3, 3> R = rotation_by({0.0, pitch, 0.0}) * rotation_by({roll, 0.0, 0.0});
       const TiltAngles angles = angles_of(R.transpose() * Mat<3>(0.0, 0.0, g), small);
       EXPECT_NEAR(angles.roll_rad->value, roll, 1e-12);

@@ -13,7 +13,7 @@ void expect_held(const rides::Held& held) {
   EXPECT_EQ(held.wrong, 0);
 }
 
-// At constant speed it is as quiet as at rest, and so it is where the speed rises evenly.
+// Constant speed is as quiet as rest, and so is constant acceleration.
 TEST(TrackRides, ALiftThatDoesNotShakeWentWhereItWent) {
   const auto held = rides::held_by([](Draw& draw) { return rides::lift(draw, 1, 0.0); }, 1, 12);
   expect_held(held);
@@ -30,7 +30,7 @@ TEST(TrackRides, ACartAtConstantSpeedDoesNotRest) {
   EXPECT_LT(held.rms_m(), 0.2);
 }
 
-// A frame at constant speed is exactly one at rest.
+// A frame moving at constant speed is equivalent to one at rest.
 TEST(TrackRides, WhereARecordingBeginsUnderWayThereIsNoFigureButAlternatives) {
   Draw draw(3);
   const rides::RideRecord made = rides::record(rides::begun_under_way(draw), draw);
@@ -53,7 +53,7 @@ TEST(TrackRides, StrongMotionAlongOneAxisIsNoRest) {
   const auto held = rides::held_by(rides::shaken, 1, 12);
   EXPECT_GE(held.given, 8);
   EXPECT_GE(held.held, held.given - 1);
-  EXPECT_LE(held.wrong, 1);  // by chance one of them holds its speed for a second and a half
+  EXPECT_LE(held.wrong, 1);  // one of them happens to have constant speed for a second and a half
 }
 
 TEST(TrackRides, StrokesShorterThanHalfASecondAreKept) {
@@ -68,7 +68,7 @@ TEST(TrackRides, SlowStrokesBetweenShortRestsAreNoRests) {
   EXPECT_LT(held.rms_m(), 0.03);
 }
 
-// What shakes in motion alone may be aliased, and then it is in what the measurements integrate to.
+// Vibration in motion may be aliased and then contributes to the integral of the measurements.
 TEST(TrackRides, WhatShakesInMotionAloneIsInTheBand) {
   const auto held = rides::held_by([](Draw& draw) { return rides::lift(draw, 1, 6.0); }, 1, 12);
   EXPECT_EQ(held.given, 12);

@@ -94,7 +94,7 @@ TEST(Track, CountsThereAndBackWithoutARestBetweenAsOneStroke) {
   }
 }
 
-// Where a harmonic motion turns, its acceleration is at rest for a moment.
+// At the turning points of a harmonic motion the acceleration is constant for a moment.
 TEST(Track, TakesNoTurningPointForARest) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Carriage carriage{.strokes_m = {0.5, -0.5, 0.5, -0.5},
@@ -204,7 +204,8 @@ TEST(Track, TheBandHoldsTheTruthAcrossMissingReadings) {
                 5.0 * found.series.position_std_m[k] + 1e-9);
 }
 
-// A lift: it pushes off, cruises shaking, brakes. `derivative` gives jerk for acceleration.
+// A lift: it accelerates, moves at constant speed with vibration, and brakes. `derivative`: jerk
+// instead of acceleration.
 CarriageRecord lift(bool derivative, std::uint64_t seed = 3) {
   CarriageRecord made;
   std::mt19937_64 engine(seed);
@@ -244,7 +245,7 @@ TEST(Track, NoticesAColumnThatIsJerkAndGivesNoFigure) {
   EXPECT_TRUE(track(lift(true), options).smoother);
 }
 
-// How far an error of the level carries the position between two rests is no sign of either.
+// The position drift due to a level error between two rests is not evidence for either.
 TEST(Track, TellsJerkFromAccelerationWhateverTheNoise) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     EXPECT_TRUE(track(lift(true, seed)).suspected_jerk) << seed;
@@ -262,8 +263,8 @@ TEST(Track, TakesNoCruiseForARest) {
 }
 
 TEST(Track, AGyroscopeTellsGravityFromMotion) {
-  // Tilts by 3° on the way and back: without a gyroscope gravity leans in by half a metre per
-  // second squared.
+  // Tilts by 3° during the motion and back: without a gyroscope gravity contributes half a metre
+  // per second squared.
   CarriageRecord made = record({.strokes_m = {0.6}, .stroke_s = 4.0, .at_rest_mps2 = {0, 0, g}});
   std::mt19937_64 engine(5);
   std::normal_distribution<double> noise(0.0, 1.0);

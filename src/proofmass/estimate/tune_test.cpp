@@ -68,7 +68,7 @@ TEST(Tune, EstimatesLieWithinTheirStandardDeviations) {
   EXPECT_NEAR(walk.value, 0.02, 3.0 * walk.std);
   EXPECT_LT(white.std, 0.01 * white.value);
   EXPECT_LT(walk.std, 0.1 * walk.value);
-  // White noise alone: std of a standard deviation is 1/√(2N).
+  // For white noise alone the relative std of a standard deviation is 1/√(2N).
   EXPECT_NEAR(white.std / white.value, 1.0 / std::sqrt(2.0 * 20'000), 2e-3);
 }
 
