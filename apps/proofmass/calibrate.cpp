@@ -117,11 +117,11 @@ using calibrate::TypeB;
 
 void expect_sense(const CalibrateCommand& command) {
   if (command.six_position && command.parameters)
-    throw Failure(usage, "--six-position has parameters of its own: leave out --parameters");
+    throw Failure(usage, "--six-position implies its parameters: omit --parameters");
   if (!command.update_sensor.empty() && !command.input.sensors.empty()) {
     throw Failure(usage,
-                  "--update-sensor takes the calibration of readings as they are recorded: leave "
-                  "out --sensor");
+                  "--update-sensor needs uncalibrated data: omit "
+                  "--sensor");
   }
   if (!command.supplies_v.empty() && command.supplies_v.size() != command.files.size()) {
     throw Failure(usage, fmt::format("--supplies: {} values for {} files: give one for each",

@@ -58,7 +58,7 @@ const CLI::Option* option_for(CLI::App& app,
                               const ConfigEntry& entry,
                               const std::string& place) {
   if (!entry.verb.empty() && find_verb(app, entry.verb) == nullptr) {
-    throw Failure(usage, place + "[" + entry.verb + "] is no verb");
+    throw Failure(usage, place + "[" + entry.verb + "] is not a verb");
   }
   if (!entry.verb.empty() && entry.verb != verb.get_name()) return nullptr;
   const bool about_itself = entry.flag == "config" || entry.flag == "help";

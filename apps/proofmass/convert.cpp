@@ -66,7 +66,7 @@ void tell_lost_labels(const std::string& output, bool in_pieces, Converted& conv
        fmt::format("the labels of column {} are not written: {}", head.label_channel,
                    in_pieces && io::keeps_labels(output, false)
                        ? "they are known only when all is read: give more --memory"
-                       : "this format has no place for them")});
+                       : "this format cannot store them")});
 }
 
 Converted convert(Recording recording,

@@ -120,7 +120,7 @@ void expect_future(double forecast_s, double start_s, const std::vector<DriftCha
         start_s + static_cast<double>(channel.rest->series.size()) / channel.rest->rate_hz;
     if (forecast_s >= end_s) continue;
     throw Failure(usage,
-                  fmt::format("--forecast: {} s since switching on lie within {}, which "
+                  fmt::format("--forecast: {} s after power-on are within {}, which "
                               "ends at {} s: expected a later time",
                               report::compact(forecast_s, 6), report::file_name(channel.rest->file),
                               report::compact(end_s, 6)));

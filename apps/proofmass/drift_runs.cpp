@@ -139,8 +139,8 @@ std::vector<report::ChannelRuns> compare_recordings(const std::vector<RestRecord
                                                     std::vector<Note>& notes) {
   if (recordings.size() == 2) {
     notes.push_back({Severity::warning,
-                     "two recordings are analysed each by itself: to compare power-ups of one "
-                     "sensor as a set takes three or more"});
+                     "two recordings are analysed separately: a comparison of power-ups of one "
+                     "sensor needs three or more"});
   }
   if (recordings.size() < fewest_runs) return {};
   std::vector<RunsOfChannel> all;

@@ -67,13 +67,14 @@ fleet::Shard parse_shard(const std::string& text) {
   const ArrayVariables* engine = engine_here();
   if (engine == nullptr) {
     if (!given) return {};
-    throw Failure(
-        usage, "--shard " + text + ": no variable says which of them this is: give I/N, from 0 on");
+    throw Failure(usage,
+                  "--shard " + text +
+                      ": no environment variable has this shard's number: give I/N, from 0 on");
   }
   const auto n = given ? given : variable(engine->count);
   if (!n)
     throw Failure(usage,
-                  fmt::format("--shard: {} is set, but nothing says how many there are: give "
+                  fmt::format("--shard: {} is set, but the number of shards is unknown: give "
                               "--shard N",
                               engine->index));
   return checked(*variable(engine->index) - variable(engine->first).value_or(0), *n);

@@ -113,10 +113,10 @@ std::array<std::vector<double>, 3> rates_radps(const Recording& recording,
     const bool known = channel.unit.quantity == Quantity::angular_rate;
     const Unit unit = known ? channel.unit : *parse_unit(unit_if_unknown);
     if (!known && axis == 0)
-      notes.push_back({Severity::warning,
-                       fmt::format("{} and its like: no unit: taken to be {}; --rate-unit says "
-                                   "otherwise",
-                                   channel.name, unit_if_unknown)});
+      notes.push_back(
+          {Severity::warning, fmt::format("{} etc. have no unit: {} is assumed; change it with "
+                                          "--rate-unit",
+                                          channel.name, unit_if_unknown)});
     rates[axis] = channel.values;
     for (double& value : rates[axis]) value = unit.si(value);
   }

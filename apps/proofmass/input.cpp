@@ -95,7 +95,7 @@ void set_supply(double supply_v,
   }
   if (!any) {
     throw Failure(usage,
-                  "--supply: no sensor file says at which supply its figures hold: give "
+                  "--supply: no sensor file states the supply of its figures: give "
                   "electrical.reference_supply, which makes it ratiometric");
   }
 }
@@ -220,8 +220,8 @@ void remove_warm_up(const InputFlags& flags,
   if (!on_s) {
     if (!any) return;
     notes.push_back({Severity::warning,
-                     "the warm-up in the sensor file stays in the readings: --since-switch-on S, "
-                     "how long the sensor had been on at the file's first sample, takes it out"});
+                     "the warm-up in the sensor file is not corrected: give --since-switch-on S, "
+                     "the time from power-on to the file's first sample"});
     return;
   }
   if (!any) {
@@ -259,7 +259,7 @@ Uncertain uncertain_gravity_mps2(const InputFlags& flags,
   if (flags.gravity_mps2) return {gravity, 0.0};
   if (flags.latitude_deg) return {gravity, sensor::gravity_anomaly_std_mps2};
   notes.push_back({Severity::warning,
-                   "gravity: taken for 9.80665 m/s^2, which no place has exactly: it makes every "
+                   "gravity: 9.80665 m/s^2 assumed; local gravity differs, which makes every "
                    "scale uncertain by 0.15 %; give --gravity, or --latitude and --height"});
   return {gravity, sensor::gravity_std_on_earth_mps2};
 }

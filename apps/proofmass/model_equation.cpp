@@ -196,7 +196,7 @@ void run_model_equation(const TumbleCommand& command) {
   }
   if (!command.update_sensor.empty()) {
     throw Failure(usage,
-                  "--update-sensor does not go with --coefficients: a sensor file has no place for "
+                  "--update-sensor does not go with --coefficients: a sensor file cannot store "
                   "them");
   }
   InputFlags as_table = command.input;  // all columns, in the units of their headers

@@ -51,7 +51,7 @@ void add_noise_flags(CLI::App& verb, NoiseCommand& command) {
       "noise type used for the confidence limits: auto (default), lag1, or the power of f from -4 "
       "to 2");
   verb.add_flag("--exclude-events", command.exclude_events,
-                "exclude shocks, and intervals that span a step");
+                "exclude outliers, and intervals that span a step");
   CLI::Option* as_one = verb.add_flag("--as-one", command.as_one,
                                       "analyse the files as one recording with gaps between them");
   add("--starts", command.starts_s, "S,S...",

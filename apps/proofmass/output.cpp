@@ -22,9 +22,10 @@ namespace proofmass::app {
 namespace {
 
 [[noreturn]] void cannot_print(int error) {
-  throw Failure(failed, fmt::format("standard output: cannot be written: {}: choose a place that "
-                                    "exists and has room",
-                                    std::strerror(error)));
+  throw Failure(failed,
+                fmt::format("standard output: cannot be written: {}: choose a location that "
+                            "exists and has room",
+                            std::strerror(error)));
 }
 
 // Removes control sequences line by line: names of files and channels may contain them.
@@ -53,7 +54,8 @@ void write_text(const std::string& path, const std::string& text, const OutputFl
   without_interruption([&] {
     const Status written = write_file(path, text);
     if (!written) {
-      throw Failure(failed, written.error().message + ": choose a place that exists and has room");
+      throw Failure(failed,
+                    written.error().message + ": choose a location that exists and has room");
     }
   });
 }

@@ -61,7 +61,7 @@ void add_estimate_flags(CLI::App& verb, RecordCommand& command) {
     return verb.add_option(name, into, help)->type_name(type)->group("Estimate");
   };
   CLI::Option* estimate = add("--estimate", command.estimate, "WHAT",
-                              "estimate online and record beside the samples: wheel (angle and "
+                              "estimate online and record with the samples: wheel (angle and "
                               "speed), tilt (roll and pitch) or track (displacement)");
   estimate->check(CLI::IsMember({"wheel", "tilt", "track"}));
   add("--lag", command.lag_s, "S", "lag of the fixed-lag smoother (default 0.25; 3 for track)")
@@ -107,7 +107,8 @@ void add_live_input_flags(CLI::App& verb, InputFlags& flags) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->group("Input");
   };
-  add("--rate", flags.rate_hz, "HZ", "ask the source for this sample rate (as rate= in SOURCE)")
+  add("--rate", flags.rate_hz, "HZ",
+      "request this sample rate from the source (as rate= in SOURCE)")
       ->check(positive());
   add("--unit", flags.unit, "UNIT",
       "unit of channels if the source does not state it: g, mg, m/s2, V, mV or counts")

@@ -198,8 +198,8 @@ void find_share_at_rest(double start_s, std::vector<RestChannel>& channels) {
 
 void expect_axis(const RestChannel& channel) {
   if (channel.axis && channel.unit.symbol == "m/s^2") return;
-  throw Failure(usage, fmt::format("--update-sensor: {} is no x, y or z axis of one "
-                                   "accelerometer, in m/s^2: choose with --channel, say --unit",
+  throw Failure(usage, fmt::format("--update-sensor: {} is not an x, y or z axis of one "
+                                   "accelerometer, in m/s^2: choose with --channel, give --unit",
                                    channel.title));
 }
 

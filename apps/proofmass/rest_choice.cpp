@@ -110,7 +110,7 @@ std::string clipping(const signal::ChannelAudit& audit, std::size_t samples) {
   };
   const char* between = audit.limit_low && audit.limit_high ? " or " : "";
   return fmt::format(
-      "{} of {} stand at the limits of the range ({}{}{} {}): what is cut off there is not in the "
+      "{} of {} are at the limits of the range ({}{}{} {}): clipped noise is not included in the "
       "figures",
       report::grouped(audit.clipped), report::count_words(samples, "sample"),
       limit(audit.limit_low), between, limit(audit.limit_high), audit.unit.symbol);

@@ -36,7 +36,7 @@ std::vector<std::size_t> named_channels(const Recording& recording, const Tumble
     chosen.push_back(static_cast<std::size_t>(found - recording.channels.begin()));
   }
   if (chosen.size() > 2) {
-    throw Failure(usage, fmt::format("--channel: {} channels, expected the one or two that lie in "
+    throw Failure(usage, fmt::format("--channel: {} channels, expected the one or two in "
                                      "the plane of the wheel",
                                      chosen.size()));
   }
@@ -138,13 +138,13 @@ void keep_notes(const std::vector<Recording>& recordings, std::vector<Note>& not
 void run_rotation(const TumbleCommand& command) {
   if (!command.update_sensor.empty()) {
     throw Failure(usage,
-                  "--update-sensor does not go with --rotating: the axes that do not lie in "
-                  "the plane of the wheel are not known");
+                  "--update-sensor does not go with --rotating: the axes outside "
+                  "the plane of the wheel are unknown");
   }
   if (command.bandwidth_hz && command.angle_channel.empty()) {
     throw Failure(usage,
-                  "--bandwidth: without --angle there is no angle that the readings could "
-                  "be late to");
+                  "--bandwidth: without --angle there is no reference for the "
+                  "delay");
   }
   report::RotationReport report;
   report.inputs = command.files;

@@ -84,7 +84,7 @@ std::string exported(const SensorCommand& command, const sensor::SensorModel& mo
 std::vector<Note> notes_of(const SensorCommand& command, const sensor::SensorFile& file) {
   std::vector<Note> notes = file.notes;
   if (command.format == "c-header" && (command.rate_hz || !command.rostopic.empty()))
-    notes.push_back({Severity::warning, "a C header has no place for --rate and --rostopic"});
+    notes.push_back({Severity::warning, "a C header does not use --rate and --rostopic"});
   return notes;
 }
 

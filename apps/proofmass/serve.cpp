@@ -87,11 +87,12 @@ void open_browser(const std::string& link, const std::string& folder) {
 
 void warn_of_others(const ServeCommand& command) {
   if (serve::is_loopback(command.listen)) return;
-  show_notes({{Severity::warning,
-               fmt::format("--listen {}: whoever reaches this machine and has the link can read "
-                           "this folder and add to it; nothing is encrypted",
-                           command.listen)}},
-             "", command.output);
+  show_notes(
+      {{Severity::warning,
+        fmt::format("--listen {}: anybody who can reach this machine and has the link can read "
+                    "this folder and add to it; nothing is encrypted",
+                    command.listen)}},
+      "", command.output);
 }
 
 std::string temporary_place() {

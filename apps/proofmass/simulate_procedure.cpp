@@ -34,7 +34,7 @@ void set_positions(int positions, ProcedureOptions& options) {
   } else if (options.procedure == Procedure::slide) {
     throw Failure(usage, "--positions: a slide has strokes: give --strokes");
   } else {
-    throw Failure(usage, fmt::format("--positions: {} has as many as its name says",
+    throw Failure(usage, fmt::format("--positions: {} has a fixed number",
                                      simulate::name_of(options.procedure)));
   }
 }

@@ -162,7 +162,7 @@ sensor::MeasuredCalibration measured(const report::TumbleReport& report,
     const calibrate::TumbleCoefficient* scale =
         channel.fit ? channel.fit->find(TumbleQuantity::K1) : nullptr;
     if (!axis || scale == nullptr || !scale->std || !channel.fit->bias_output_std) {
-      const char* why = !axis              ? "it is no x, y or z axis of one accelerometer"
+      const char* why = !axis              ? "it is not an x, y or z axis of one accelerometer"
                         : scale == nullptr ? "it was refused"
                                            : "its figures have no standard deviation";
       notes.push_back({Severity::warning,
@@ -188,11 +188,11 @@ void note_assumptions(report::TumbleReport& report) {
   };
   if (any([](const calibrate::TumbleFit& fit) { return fit.indexing.assumed; }))
     report.notes.push_back(
-        {Severity::info, "--indexing-std states how good the table's angles are; 0 is exact"});
+        {Severity::info, "--indexing-std states the accuracy of the table's angles; 0 is exact"});
   if (any([](const calibrate::TumbleFit& fit) { return fit.drift.wander_assumed; }))
     report.notes.push_back({Severity::info,
-                            "--drift-std states how the bias wanders; a second turn, a turn "
-                            "backwards or a column with the temperature shows it"});
+                            "--drift-std states the bias drift; a second turn, a turn "
+                            "backwards or a temperature column would determine it"});
 }
 
 void update_sensor(const TumbleCommand& command,
@@ -209,13 +209,13 @@ void check(const TumbleCommand& command) {
   if (!command.angles_deg.empty() && !command.angle_channel.empty())
     throw Failure(usage, "--angles and --angle: give one of them");
   if (command.bandwidth_hz)
-    throw Failure(usage, "--bandwidth: a table at rest shows no delay; it goes with --rotating");
+    throw Failure(usage, "--bandwidth: a table at rest shows no delay; use it with --rotating");
   if (!command.rests.empty() && command.files.size() > 1)
     throw Failure(usage, "--rests: one list goes with one file");
   if (!command.update_sensor.empty() && !command.input.sensors.empty())
     throw Failure(usage,
-                  "--update-sensor with --sensor: the readings are calibrated already; leave "
-                  "--sensor away to calibrate anew");
+                  "--update-sensor with --sensor: the data are already calibrated; omit "
+                  "--sensor to recalibrate");
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ std::vector<Dwell> rests_of(const Recording& recording,
   const signal::RestSearch found = search_rests(recording, columns, command);
   if (found.rests.empty())
     throw Failure(bad_input, fmt::format("{}: no rest found: {}", recording.source,
-                                         found.why_none.empty() ? "the sensor never lay still"
+                                         found.why_none.empty() ? "the sensor was never at rest"
                                                                 : found.why_none));
   std::vector<Dwell> dwells;
   dwells.reserve(found.rests.size());

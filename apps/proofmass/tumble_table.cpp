@@ -148,10 +148,10 @@ TumblePart read_table(const Recording& recording,
                       std::vector<Note>& notes) {
   const std::vector<std::size_t> rows = whole_rows(recording, columns);
   if (rows.size() < recording.samples())
-    notes.push_back({Severity::warning,
-                     fmt::format("{}: {} without angle or reading: left out",
-                                 report::file_name(recording.source),
-                                 report::count_words(recording.samples() - rows.size(), "row"))});
+    notes.push_back(
+        {Severity::warning,
+         fmt::format("{}: {} without angle or output: omitted", report::file_name(recording.source),
+                     report::count_words(recording.samples() - rows.size(), "row"))});
   TumblePart part;
   part.readings.positions = table_positions(recording, columns, rows);
   const bool calibrated = !flags.sensors.empty();

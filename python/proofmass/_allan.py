@@ -107,7 +107,7 @@ def allan(
     stop_ratio : float, optional
         Length of the record over the longest averaging time.
     exclude_events : bool
-        Exclude shocks, and intervals that span a step.
+        Exclude outliers, and intervals that span a step.
     progress : bool or callable, optional
 
     Raises

@@ -108,7 +108,7 @@ def noise(
     noise_type : str or int, optional
         Noise type used for the limits: auto (default), lag1, or the power of f from -4 to 2.
     exclude_events : bool
-        Exclude shocks, and intervals that span a step.
+        Exclude outliers, and intervals that span a step.
     as_one : bool
         Analyse the recordings as one with gaps between them.
     starts : list of float, optional

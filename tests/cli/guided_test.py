@@ -29,7 +29,7 @@ class Guided(CommandTest):
         self.assertIn(count, range(12, 15))
         self.assertEqual(said.count(" taken: "), count)
         self.assertIn("→ Position 1: lay it with +z straight up", said)
-        self.assertIn(f"{count} positions: readings of 1 g are good to", said)
+        self.assertIn(f"{count} positions: the accuracy at 1 g is", said)
         self.assertIn("To do this again: proofmass calibrate run.mcap --rests run.rests.csv", said)
         self.assertEqual(len(document["positions"]), count)
         self.assertIn("calibration", tomllib.loads((self.folder / "s.toml").read_text()))

@@ -72,7 +72,7 @@ TEST(BudgetOf, TakesTheResolutionOutOfTheNoiseOfTheMeans) {
     for (Pose& pose : it.poses) pose.rounding_variance = part * pose.mean_covariance.diagonal();
     const MultiPosition fit = calibrate_positions(it.poses, it.options).value();
     const auto budgets = budget_of(fit, {}, "V").value();
-    EXPECT_EQ(fit.shares[1].source, "resolution of the readings");
+    EXPECT_EQ(fit.shares[1].source, "resolution of the output");
     EXPECT_FALSE(fit.shares[1].type_a);
     for (std::size_t k = 0; k < 9; ++k) {
       const auto i = static_cast<Eigen::Index>(k);

@@ -134,7 +134,7 @@ std::string verdict_of(const MonteCarloCheck& check) {
                                  ? std::string()
                                  : fmt::format(" {} of {} drawn sets could not be calibrated.",
                                                check.failed, check.failed + check.draws);
-  return fmt::format("{} calibrations of drawn readings {}: {}.{}{}", check.draws,
+  return fmt::format("{} calibrations of simulated data {}: {}.{}{}", check.draws,
                      small.empty()
                          ? std::string("confirm the budget")
                          : fmt::format("contradict the budget of {}, which is too small", small),
@@ -179,9 +179,10 @@ Result<MonteCarloCheck> check_by_monte_carlo(View<Pose> poses,
                                              const MonteCarloOptions& how) {
   PM_EXPECTS(fit.poses.size() == poses.size());
   if (!fit.doubtful.empty())
-    return Error{Errc::not_observable,
-                 "one of several positions is bad, which cannot be decided: there is no one fit to "
-                 "draw from"};
+    return Error{
+        Errc::not_observable,
+        "one of several positions is bad, and which one is undetermined: there is no unique fit to "
+        "draw from"};
   const auto budgets = budget_of(fit, how.lines, how.reading_unit);
   if (!budgets) return budgets.error();
   const auto effects = effects_of(fit, how.lines, how.reading_unit);

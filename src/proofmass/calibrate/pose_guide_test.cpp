@@ -157,7 +157,7 @@ TEST(PoseGuide, GoesOnUntilNoPositionIsOver) {
   obey(bench);
   ASSERT_TRUE(bench.guide.done());
   EXPECT_GE(bench.guide.poses().size(), 20U);
-  EXPECT_NE(bench.last(GuideKind::prompt)->text.find("0.01 mg is asked for"), std::string::npos)
+  EXPECT_NE(bench.last(GuideKind::prompt)->text.find("the target is 0.01 mg"), std::string::npos)
       << bench.last(GuideKind::prompt)->text;
 }
 

@@ -40,7 +40,7 @@ Status check(View<TumblePosition> positions, const TumbleOptions& options) {
     if (!std::isfinite(p.angle_rad) || !std::isfinite(p.output) || !std::isfinite(p.mount_rad) ||
         !std::isfinite(p.output_std) || (p.time_s && !std::isfinite(*p.time_s)))
       return Error{Errc::not_finite,
-                   named(positions, k) + ": angle, output, std or time is no number"};
+                   named(positions, k) + ": angle, output, std or time is not a number"};
     if (p.output_std < 0.0)
       return Error{Errc::invalid_argument, named(positions, k) + ": its std is below 0"};
     if (p.plane != 1 && p.plane != 2)
@@ -145,27 +145,27 @@ void add_unnamed_note(TumbleFit& fit) {
                                  [](const TumbleResidual& r) { return r.suspect; });
   if (named || !fit.lack_of_fit || fit.lack_of_fit->p >= beyond_chance) return;
   fit.notes.push_back(fmt::format(
-      "the residuals are beyond chance (p = {:.2g}): a wrong reading, the angles of the table or a "
-      "drift; with {} to judge by no single position can be named",
+      "the residuals are significant (p = {:.2g}): an outlier, the angles of the table or a "
+      "drift; {} cannot identify a single position",
       fit.lack_of_fit->p, fit.dof == 1 ? "one residual" : fmt::format("{} residuals", fit.dof)));
 }
 
 void add_notes(View<TumblePosition> positions, bool some_noise, TumbleFit& fit) {
   const auto add = [&](std::string note) { fit.notes.push_back(std::move(note)); };
   if (some_noise)
-    add("the noise is stated of some positions only: it was left aside, the residuals judge");
+    add("the noise is stated for some positions only: it is ignored, the residuals are used");
   if (fit.scatter > 1.0)
     add(
         fmt::format("the residuals are {:.3g} times what the stated errors explain: the standard "
-                    "deviations were widened by that",
+                    "deviations were increased by that",
                     fit.scatter));
   add_unnamed_note(fit);
   for (std::size_t k = 0; k < fit.positions.size(); ++k) {
     const TumbleResidual& r = fit.positions[k];
     if (r.suspect)
       add(
-          fmt::format("{} at {}° contradicts the others by {:.3g} standard deviations: look at "
-                      "its angle and reading; it stays in the fit",
+          fmt::format("{} at {}° contradicts the others by {:.3g} standard deviations: check "
+                      "its angle and output; it remains in the fit",
                       named(positions, k), compact(positions[k].angle_rad / rad_per_deg, 4),
                       std::abs(*r.studentised)));
   }

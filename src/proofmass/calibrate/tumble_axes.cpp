@@ -99,9 +99,9 @@ std::string phase_words(const TumbleAxis& axis, const std::array<FirstHarmonic, 
     const double off = std::remainder(std::atan2(found[p].C, found[p].S) - phase, 4.0 * quarter);
     constexpr double much = 10.0 / 90.0 * quarter;
     if (found[p].sees_sine && found[p].sees_cosine && std::abs(off) > much)
-      text += fmt::format(", from which it stands {}° off", fixed(off / quarter * 90.0, 0));
+      text += fmt::format(", with a deviation of {}°", fixed(off / quarter * 90.0, 0));
   }
-  return text.empty() ? "does not follow the angle: its axis lies along the table's" : text;
+  return text.empty() ? "does not follow the angle: its axis is parallel to the table's" : text;
 }
 
 bool along_sine(const TumbleAxis& axis) {

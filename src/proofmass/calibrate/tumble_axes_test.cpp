@@ -32,7 +32,7 @@ TEST(TumbleAxes, FindsThePhaseOfEveryAxis) {
   EXPECT_FALSE(axes[2].swings());
   EXPECT_EQ(axes[3].phase_rad[0], 3.0 * quarter);
   EXPECT_NE(axes[1].words.find("follows cos(angle): 90° were added"), std::string::npos);
-  EXPECT_NE(axes[2].words.find("lies along the table's"), std::string::npos);
+  EXPECT_NE(axes[2].words.find("is parallel to the table's"), std::string::npos);
 }
 
 TEST(TumbleAxes, LetsTheUserOverrule) {

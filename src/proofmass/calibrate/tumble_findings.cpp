@@ -247,27 +247,27 @@ TumbleDrift find_drift(const TumbleSolution& solution,
   out.removed = found != nullptr && found->value.has_value();
   if (!out.known) {
     out.words =
-        "drift during the test is unknown: no position was visited again late enough, and a change "
-        "of the bias would be taken for the other coefficients";
+        "drift during the test is unknown: no position was revisited late enough, and a change "
+        "of the bias would affect the other coefficients";
     return out;
   }
   if (!out.removed) {
     out.rate_mps2 = closure_rate(solution, positions);
     out.words = fmt::format(
-        "the repeated position shows a drift of {} m/s² {}, which was left in: {} positions "
-        "leave none over to judge by if it is taken out",
+        "the repeated position shows a drift of {} m/s² {}, which was not removed: {} positions "
+        "leave no redundancy if it is removed",
         compact(out.rate_mps2.value_or(0.0), 3), rate_unit(out.in_time), positions.size());
     return out;
   }
   out.rate_mps2 = found->value;
-  out.words = fmt::format("drift of {} m/s² {} was taken out", compact(*found->value, 3),
+  out.words = fmt::format("drift of {} m/s² {} was removed", compact(*found->value, 3),
                           rate_unit(out.in_time));
   if (found->std && *found->std > 0.0) {
     out.p = residual_p(*found->value / *found->std, found->dof);
     out.words += *out.p < 0.05 ? fmt::format(": it is more than chance (p = {:.2g})", *out.p)
                                : fmt::format(": it may be chance (p = {:.2g})", *out.p);
   }
-  if (!out.in_time) out.words += "; the rows' order was taken for that of the visits";
+  if (!out.in_time) out.words += "; the rows' order was taken as that of the visits";
   return out;
 }
 

@@ -279,8 +279,8 @@ TEST(Tumble, LeavesOutWhatFewPositionsCannotTell) {
 
   // Horizontal and down: the result is a bias, but not that from up and down.
   const TumbleFit corner = fitted(at({180.0, 270.0}));
-  EXPECT_EQ(corner.find(Q::K0_up_down)->meaning, "bias, K2 − Kpp and misalignment taken for 0");
-  EXPECT_EQ(corner.find(Q::K1)->meaning, "scale factor K1, K3 and K2 − Kpp taken for 0");
+  EXPECT_EQ(corner.find(Q::K0_up_down)->meaning, "bias, K2 − Kpp and misalignment taken as 0");
+  EXPECT_EQ(corner.find(Q::K1)->meaning, "scale factor K1, K3 and K2 − Kpp taken as 0");
 
   const TumbleFit five = fitted(at({0.0, 72.0, 144.0, 216.0, 288.0}));
   EXPECT_EQ(five.parameters, 4U);
@@ -531,7 +531,7 @@ TEST(TumbleSpare, LeavesARowOverToJudgeByWhereNoiseIsStated) {
   EXPECT_LT(fit.lack_of_fit->p, 1e-6);
   EXPECT_NEAR(value(fit, Q::K1), truth.K1, half_width(fit, Q::K1));
   EXPECT_TRUE(std::ranges::any_of(fit.notes, [](const std::string& note) {
-    return note.find("no single position can be named") != std::string::npos;
+    return note.find("cannot identify a single position") != std::string::npos;
   }));
 }
 

@@ -210,21 +210,20 @@ void note_whitened(DriftAnalysis& analysis, signal::WhitenessTest test) {
 void add_notes(DriftAnalysis& analysis) {
   if (!analysis.knocks.empty())
     analysis.notes.push_back(
-        {Severity::info, fmt::format("{} knock{} left out", analysis.knocks.size(),
+        {Severity::info, fmt::format("{} outlier{} excluded", analysis.knocks.size(),
                                      analysis.knocks.size() == 1 ? "" : "s")});
   const auto blank = static_cast<std::size_t>(
       std::ranges::count_if(analysis.block_mean, [](double mean) { return std::isnan(mean); }));
   if (blank > 0)
     analysis.notes.push_back(
         {100 * blank > analysis.block_mean.size() ? Severity::warning : Severity::info,
-         fmt::format("{} of {} blocks of {:.3g} s are missing: the fit goes "
-                     "across them",
+         fmt::format("{} of {} blocks of {:.3g} s are missing: the fit ignores "
+                     "them",
                      blank, analysis.block_mean.size(), analysis.block_s)});
   if (!analysis.noise_explained)
-    analysis.notes.push_back(
-        {Severity::warning,
-         "the noise model does not explain all of the residuals: there is "
-         "more than noise and this curve, and the intervals may be too narrow"});
+    analysis.notes.push_back({Severity::warning,
+                              "the noise model does not explain the residuals completely: the "
+                              "intervals may be too narrow"});
 }
 
 }  // namespace
@@ -239,7 +238,7 @@ Result<DriftAnalysis> analyse_drift(View<double> series, const DriftOptions& opt
   report_progress(options, 0.0);
   std::vector<double> kept = without_knocks(series, analysis);
   if (analysis.missing == kept.size())
-    return Error{Errc::not_finite, "nothing but knocks and missing samples"};
+    return Error{Errc::not_finite, "nothing but outliers and missing samples"};
   const std::size_t block = block_length(kept);
   analysis.block_mean = means_of(kept, block);
   const Sampling sampling{options.rate_hz, block};

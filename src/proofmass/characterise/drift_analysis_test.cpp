@@ -166,7 +166,7 @@ TEST(DriftAnalysis, LeavesKnocksOut) {
   EXPECT_GE(analysis.knocks[0].last, 301U);
   EXPECT_GE(analysis.missing, 2U);
   EXPECT_TRUE(std::isnan(analysis.block_mean[300]));
-  EXPECT_TRUE(has_note(analysis, Severity::info, "1 knock left out"));
+  EXPECT_TRUE(has_note(analysis, Severity::info, "1 outlier excluded"));
   ASSERT_TRUE(analysis.fit.identified && without.fit.identified);
   EXPECT_NEAR(analysis.fit.a1->value, without.fit.a1->value, 0.2 * without.fit.a1->std);
   EXPECT_LT(*std::ranges::max_element(analysis.data.upper), 20.0);

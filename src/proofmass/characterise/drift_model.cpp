@@ -150,8 +150,8 @@ double DriftCurve::std(double t_s) const {
 Result<DriftForecast> forecast(const DriftFit& fit, double t_s) {
   if (!std::isfinite(t_s) || t_s < fit.end.t_s)
     return Error{Errc::invalid_argument,
-                 fmt::format("the forecast for {:g} s lies before the end of the recording at {:g} "
-                             "s after switching on: ask for a later time",
+                 fmt::format("the forecast for {:g} s is before the end of the recording at {:g} "
+                             "s after power-on: give a later time",
                              t_s, fit.end.t_s)};
   if (fit.identified) return forecast_of({fit.curve, fit.noise, fit.end, 1.0}, {t_s, fit.block_s});
   if (fit.possibilities.empty()) return Error{Errc::not_observable, fit.reason};

@@ -336,7 +336,7 @@ TEST(AnalyseNoise, OfAWholeRecordStatisticUsesTheLongestPieceAndSaysSo) {
   NoiseOptions options = at_rest();
   options.statistic = Statistic::totdev;
   const NoiseAnalysis found = analysed(gapped, options);
-  EXPECT_TRUE(says(found, "1100 of 5000 samples are left out"));
+  EXPECT_TRUE(says(found, "1100 of 5000 samples are excluded"));
   const NoiseAnalysis alone = analysed(View<double>(gapped).subspan(1100), options);
   ASSERT_EQ(found.deviation.points.size(), alone.deviation.points.size());
   for (std::size_t k = 0; k < alone.deviation.points.size(); ++k)
@@ -389,7 +389,7 @@ TEST(AnalyseNoise, TakesNoiseOfOneStepAndWarns) {
   const double expected = std::sqrt((sigma * sigma + 1e-4 / 12.0) / rate_hz);
   EXPECT_NEAR(found.model.white.value / expected, 1.0, 0.02);
   EXPECT_EQ(found.lsb, 0.01);
-  EXPECT_TRUE(says(found, "the converter's step"));
+  EXPECT_TRUE(says(found, "the quantisation step"));
   EXPECT_TRUE(std::any_of(found.notes.begin(), found.notes.end(),
                           [](const Note& note) { return note.severity == Severity::warning; }));
 }
@@ -423,7 +423,7 @@ TEST(AnalyseNoise, TellsOfKnocksAndStepsAndLeavesThemInUnlessAsked) {
   EXPECT_EQ(kept.missing, 0U);
   EXPECT_GT(dropped.missing, 0U);
   EXPECT_TRUE(says(kept, "are in the figures"));
-  EXPECT_TRUE(says(dropped, "left out of everything"));
+  EXPECT_TRUE(says(dropped, "steps excluded"));
   const DeviationPoint &of_kept = kept.deviation.points.back(),
                        &of_dropped = dropped.deviation.points.back(),
                        &of_clean = clean.deviation.points.back();

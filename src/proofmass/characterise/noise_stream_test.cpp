@@ -31,7 +31,7 @@ Result<NoiseAnalysis> in_pieces(View<double> series,
 std::vector<std::string> texts_of(const NoiseAnalysis& analysis) {
   std::vector<std::string> texts;
   for (const Note& note : analysis.notes)
-    if (!note.text.starts_with("knocks and steps")) texts.push_back(note.text);
+    if (!note.text.starts_with("outliers and steps")) texts.push_back(note.text);
   return texts;
 }
 
@@ -103,7 +103,7 @@ TEST(NoiseStream, SaysWhatNeedsTheWholeRecordAndWhatToDo) {
         Statistic::htotdev, Statistic::theo1, Statistic::pdev})
     expect_refused({.rate_hz = 100.0, .statistic = statistic},
                    "or choose oadev, mdev, tdev or ohdev");
-  expect_refused({.rate_hz = 100.0, .taus = {.kind = TauGrid::Kind::all}}, "ask for octave");
+  expect_refused({.rate_hz = 100.0, .taus = {.kind = TauGrid::Kind::all}}, "choose octave");
   expect_refused({.rate_hz = 100.0, .noise_type = NoiseTypeSource::lag1}, "lag 1");
   expect_refused({.rate_hz = 100.0, .exclude_events = true}, "--from and --to");
   expect_refused({.rate_hz = 100.0, .kind = SeriesKind::phase}, "phase");

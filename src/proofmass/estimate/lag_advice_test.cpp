@@ -111,8 +111,8 @@ TEST(LagAdvice, HasNoneForWhatTheReadingsDoNotShow) {
     const auto& none = advice[static_cast<std::size_t>(unseen)];
     EXPECT_FALSE(none.lag);
     EXPECT_EQ(lag_words(none, "position", 0.005),
-              "position: no lag pays: the readings do not show it: its variance grows without "
-              "limit, lag or no lag");
+              "position: no lag pays: not observable: its variance grows without limit at any "
+              "lag");
   }
   ASSERT_TRUE(advice[3].lag);
   EXPECT_GT(advice[3].lag->lag_95, 100U);
@@ -151,8 +151,7 @@ TEST(LagAdvice, HasNoneWhereLaterReadingsSayNothing) {
   forgetful.R << 1.0;
   const auto advice = advise_lag(forgetful, steady_state(forgetful).value());
   EXPECT_FALSE(advice[0].lag);
-  EXPECT_EQ(advice[0].why_not,
-            "later readings say nothing of it that the filter does not know already");
+  EXPECT_EQ(advice[0].why_not, "later measurements contain no further information on it");
 }
 
 }  // namespace

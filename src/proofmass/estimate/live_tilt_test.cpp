@@ -136,8 +136,8 @@ TEST(LiveTilt, MissingReadingsWidenTheBandAndAreTold) {
   const Followed followed = follow(base.record, options_for(base.record));
   EXPECT_GT(followed["pitch_std"][549], followed["pitch_std"][499]);
   EXPECT_TRUE(std::isnan(followed["nis"][520]));
-  EXPECT_TRUE(followed.fed.says("50 readings left out") ||
-              followed.fed.says("10 readings left out"));
+  EXPECT_TRUE(followed.fed.says("50 measurements excluded") ||
+              followed.fed.says("10 measurements excluded"));
   EXPECT_GT(coverage(followed, base), 0.92);
 }
 

@@ -153,7 +153,7 @@ TEST(LiveTrack, AGapInTheMotionIsSaidAndWidensTheBand) {
   cut(made.sensor.time_s);
   for (std::vector<double>& axis : made.sensor.accel_mps2) cut(axis);
   const LiveTrackRun run = run_live(made.sensor, along_x());
-  EXPECT_TRUE(run.says("without a reading"));
+  EXPECT_TRUE(run.says("without a measurement"));
   EXPECT_GT(run.last(live_position_std), 2.0 * whole.last(live_position_std));
   EXPECT_LT(std::abs(run.last(live_position)), 2.0 * run.last(live_position_std));
   EXPECT_LT(run.last(live_velocity_std), 0.01);
@@ -216,8 +216,8 @@ TEST(LiveTrack, WithoutReadingsOrWithAClockSetBackItGoesOn) {
   const std::size_t back = sample_at(made.sensor, 11.0);
   for (std::size_t k = back; k < made.sensor.time_s.size(); ++k) made.sensor.time_s[k] -= 10.0;
   const LiveTrackRun run = run_live(made.sensor, along_x());
-  EXPECT_TRUE(run.says("readings left out"));
-  EXPECT_TRUE(run.says("the clock went back"));
+  EXPECT_TRUE(run.says("measurements excluded"));
+  EXPECT_TRUE(run.says("the clock stepped back"));
   EXPECT_EQ(run.last(live_resting), 0.0);
   EXPECT_LT(run.last(live_velocity_std), 0.05);
   for (const double value : run.rows.channels[live_position]) EXPECT_TRUE(std::isfinite(value));

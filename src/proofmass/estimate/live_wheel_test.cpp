@@ -191,7 +191,7 @@ TEST(LiveWheel, StartsAnewWhereTheClockIsSetBack) {
   Stream stream = one_sensor();
   for (std::size_t k = 1000; k < stream.stamps_s.size(); ++k) stream.stamps_s[k] -= 9.0;
   const Followed one = follow(stream, options_for(1));
-  EXPECT_TRUE(one.fed.says("the clock went back"));
+  EXPECT_TRUE(one.fed.says("the clock stepped back"));
   EXPECT_NEAR(one.fed.rows.stamps_s.back(), stream.stamps_s.back(), 1e-9);
 }
 

@@ -150,7 +150,7 @@ TEST(Tilt, TakesAnUnknownSensorToBeAsFarOffAsItsNormShows) {
   ASSERT_TRUE(solution) << solution.error().message;
   EXPECT_NEAR(solution->final.pitch_rad->std, 0.02, 1e-3);
   ASSERT_FALSE(solution->notes.empty());
-  EXPECT_NE(solution->notes.front().text.find("departs from gravity"), std::string::npos);
+  EXPECT_NE(solution->notes.front().text.find("differs from gravity"), std::string::npos);
 }
 
 // Two constant axes and one that alternates between two codes.
@@ -357,7 +357,7 @@ TEST(Tilt, SaysWhyItCannot) {
   timeless.time_s.clear();
   TiltOptions moving;
   moving.base = TiltBase::moving;
-  EXPECT_NE(message(timeless, moving).find("takes time"), std::string::npos);
+  EXPECT_NE(message(timeless, moving).find("needs time"), std::string::npos);
   TiltRecord flat = still_record(force_at(0.0, 0.0), 0.01, 300, 16);
   flat.accel_mps2[1].clear();
   EXPECT_NE(message(flat, moving).find("three axes"), std::string::npos);

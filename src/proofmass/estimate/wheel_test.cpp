@@ -287,11 +287,11 @@ TEST(EstimateWheel, SaysHowManyReadingsOfASaturatedGyroscopeItLeavesOut) {
     return texts;
   };
   EXPECT_EQ(noted(100.0), "");
-  EXPECT_THAT(noted(6.0), testing::MatchesRegex(
-                              "sensor: [1-9][0-9]+ readings of the gyroscope are at the end of its "
-                              "range, and are not used"));
-  EXPECT_EQ(noted(-1.0),
-            "unused sensor: the gyroscope reads the same value throughout, and is not used");
+  EXPECT_THAT(
+      noted(6.0),
+      testing::MatchesRegex("sensor: [1-9][0-9]+ measurements of the gyroscope are at the limit of "
+                            "its range, and are not used"));
+  EXPECT_EQ(noted(-1.0), "unused sensor: the gyroscope's output is constant, and is not used");
 }
 
 // Two seconds without accelerometer data, in which a turn could be missed without the gyroscope.
@@ -392,7 +392,7 @@ TEST(EstimateWheel, OfAnUprightAxleIsNotObservable) {
                      with(&WheelOptions::spin_axis, std::array{0.0, 0.0, 1.0}));
   ASSERT_FALSE(upright.has_value());
   EXPECT_EQ(upright.error().code, Errc::not_observable);
-  EXPECT_NE(upright.error().message.find("axle upright"), std::string::npos);
+  EXPECT_NE(upright.error().message.find("axle vertical"), std::string::npos);
 }
 
 TEST(EstimateWheel, OfAnUprightAxleIsNotObservableEvenWhereTheAxisIsLookedFor) {

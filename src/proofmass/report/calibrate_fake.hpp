@@ -59,7 +59,7 @@ inline void add_fake_figures(CalibrateReport& report) {
   fit.lack_of_fit = calibrate::LackOfFit{1.1, 0.36, 15.0};
   fit.condition = 4.2;
   fit.next_pose =
-      calibrate::NextPose{Eigen::Vector3d(0.0, 0.0, -1.0), "lay it with −z straight up", 0.54};
+      calibrate::NextPose{Eigen::Vector3d(0.0, 0.0, -1.0), "place it with −z straight up", 0.54};
   fit.iterations = 5;
   fit.converged = true;
 }

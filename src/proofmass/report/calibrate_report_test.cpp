@@ -85,7 +85,7 @@ TEST(CalibrateReport, NamesTheSourceWhereNoiseIsNotWhatLimitsIt) {
 
 TEST(CalibrateReport, SaysWhatIsToBeGainedByAnotherPosition) {
   CalibrateReport report = fake_calibrate_report();
-  expect_words(next_pose_sentence(report), {"Next position: lay it with −z straight up", "54 %"});
+  expect_words(next_pose_sentence(report), {"Next position: place it with −z straight up", "54 %"});
   report.fit.next_pose->gain = 0.03;
   expect_words(next_pose_sentence(report), {"would change little", "3 %"});
   report.fit.poses.resize(10);

@@ -93,10 +93,10 @@ TEST(Certificate, NamesEverySourceWithItsShare) {
 
 TEST(Certificate, SaysWhatIsNotStatedAndWhatItDoesNotCover) {
   CertificateData bare;
-  bare.not_determined = {"misalignment: null: six parameters were asked for"};
+  bare.not_determined = {"misalignment: null: six parameters were requested"};
   const std::string page = page_of(bare);
   EXPECT_NE(page.find("not stated"), std::string::npos);
-  EXPECT_NE(page.find("six parameters were asked for"), std::string::npos);
+  EXPECT_NE(page.find("six parameters were requested"), std::string::npos);
   EXPECT_EQ(page.find("Uncertainty budgets"), std::string::npos);
   EXPECT_EQ(page.find("Monte Carlo"), std::string::npos);
   EXPECT_NE(page.find("The angle between the sensor"), std::string::npos);

@@ -184,7 +184,7 @@ std::vector<std::string> drift_findings(const ChannelDrift& channel) {
   add_temperature(channel, sentences);
   add_outlook(channel, sentences);
   const std::size_t knocks = channel.analysis->knocks.size();
-  if (knocks > 0) sentences.push_back(count_words(knocks, "knock") + " excluded.");
+  if (knocks > 0) sentences.push_back(count_words(knocks, "outlier") + " excluded.");
   return sentences;
 }
 

@@ -17,7 +17,7 @@ using characterise::NoiseModelFit;
 using characterise::NoisePart;
 
 Fields reading_fields(const DeviationPoint& point) {
-  const About limit{.why_null = "so few degrees of freedom set no limit at this confidence"};
+  const About limit{.why_null = "too few degrees of freedom for a limit at this confidence"};
   return {field::magnitude("tau_s", point.tau_s), field::magnitude("value", point.value),
           field::magnitude("lower", point.lower, limit),
           field::magnitude("upper", point.upper, limit)};

@@ -65,7 +65,7 @@ TEST(NoiseFindings, GiveLimitsAndTheRecordNeededForWhatIsNotIdentified) {
   EXPECT_TRUE(says(sentences,
                    "No random walk detected: below 1.20 µg/√s with 95 % confidence; identifying as "
                    "much needs 3 h of recording."));
-  EXPECT_TRUE(says(sentences, "1 knock and 1 step of level"));
+  EXPECT_TRUE(says(sentences, "1 outlier and 1 step of level"));
 }
 
 TEST(NoiseFindings, WarnOfALineThatReadsAsWhiteNoise) {

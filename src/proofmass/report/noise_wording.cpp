@@ -206,7 +206,7 @@ void add_judgement(const NoiseAnalysis& analysis, std::vector<std::string>& sent
                     [](const auto& event) { return event.kind == signal::EventKind::knock; }));
   const std::size_t steps = analysis.events.size() - knocks;
   if (knocks > 0 || steps > 0) {
-    std::string what = knocks > 0 ? count_words(knocks, "knock") : "";
+    std::string what = knocks > 0 ? count_words(knocks, "outlier") : "";
     if (steps > 0) what += (what.empty() ? "" : " and ") + count_words(steps, "step") + " of level";
     sentences.push_back(what + " in the recording: see the events.");
   }

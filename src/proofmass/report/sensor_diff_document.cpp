@@ -84,7 +84,7 @@ Figure changes_figure(const SensorComparison& comparison) {
                 .description =
                     "One dot for each figure that both files have with its standard "
                     "deviation, by its number in the table. 95 % of unchanged figures "
-                    "lie in the band.",
+                    "are in the band.",
                 .x = {.label = "Figure (number in the table)"},
                 .y = {.label = "New − old (standard deviations)"},
                 .height = 280.0};

@@ -101,7 +101,7 @@ inline TrackReport fake_jerk() {
   solution.suspected_jerk = true;
   solution.smoother = solution.kalman = solution.double_integration = std::nullopt;
   solution.strokes.clear();
-  solution.notes = {{Severity::bad, "the readings behave like jerk"}};
+  solution.notes = {{Severity::bad, "the data behave like jerk"}};
   return report;
 }
 

@@ -156,7 +156,7 @@ Figure filter_figure(const WheelSolution& solution) {
   const WheelSeries& series = solution.series;
   Figure figure{.title = "Filter against smoother, with their bands",
                 .description =
-                    "The filter knows only what came before, the smoother all of the "
+                    "The filter uses past measurements only, the smoother the whole "
                     "recording. The filter's error should stay inside its band 95 % of "
                     "the time.",
                 .x = time_axis(series),
@@ -184,7 +184,7 @@ Figure angle_std_figure(const WheelSolution& solution) {
   const WheelSeries& series = solution.series;
   return {
       .title = "Standard deviation of the angle",
-      .description = "How sure each is of the angle, instant by instant.",
+      .description = "Uncertainty of the angle against time, for filter and smoother.",
       .x = time_axis(series),
       .y = {.label = "Standard deviation (°)", .scale = AxisScale::log},
       .curves = {
@@ -197,7 +197,7 @@ Figure speed_figure(const WheelSolution& solution) {
   constexpr double rpm = 1.0 / radps_per_rpm;
   return {
       .title = "Speed",
-      .description = "Speed of the wheel as the smoother has it, with its 95 % band.",
+      .description = "Smoothed speed of the wheel with its 95 % band.",
       .x = time_axis(series),
       .y = {.label = "Speed (rpm)"},
       .bands = {{"95 % band", series.time_s,
@@ -210,9 +210,9 @@ Figure innovations_figure(const WheelSolution& solution) {
   const WheelSeries& series = solution.series;
   Figure figure{.title = "Innovations",
                 .description =
-                    "How surprising each reading was: the filter's innovations squared "
-                    "over their variance. Of a filter whose noise figures are true, one "
-                    "in twenty lies above the 95 % level.",
+                    "Squared innovations of the filter divided by their variance. If the "
+                    "noise parameters are correct, one in twenty is above the 95 % "
+                    "level.",
                 .x = time_axis(series),
                 .y = {.label = "NIS", .scale = AxisScale::log}};
   std::vector<double> nis(series.nis.begin(), series.nis.end());
@@ -220,7 +220,7 @@ Figure innovations_figure(const WheelSolution& solution) {
     if (series.channels_used[k] == 0) nis[k] = none;
   }
   Envelope largest = thinned_band(series.time_s, nis, nis);
-  figure.curves.push_back({nis.size() > largest.x.size() ? "NIS, largest of each stretch" : "NIS",
+  figure.curves.push_back({nis.size() > largest.x.size() ? "NIS, largest of each interval" : "NIS",
                            std::move(largest.x), std::move(largest.upper), Ink::blue});
   const std::array<std::size_t, 256> instants = channels_histogram(series);
   for (int channels = 1; channels < 256; ++channels) {
@@ -231,7 +231,7 @@ Figure innovations_figure(const WheelSolution& solution) {
                      count_words(static_cast<std::size_t>(channels), "channel"), fixed(level, 2)),
          level});
   }
-  Curve gated{"readings rejected", {}, {}, Ink::red, Mark::ticks};
+  Curve gated{"measurements rejected", {}, {}, Ink::red, Mark::ticks};
   for (std::size_t k = 0; k < series.channels_gated.size(); ++k) {
     if (series.channels_gated[k] != 0) gated.x.push_back(series.time_s[k]);
   }

@@ -23,7 +23,7 @@ Unit unit_of(const nlohmann::json& json) {
 Result<ViewHead> read_head(const std::string& path) {
   std::ifstream in(path);
   const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
-  if (!json.is_object()) return Error{Errc::corrupt, path + ": is no head of a view"};
+  if (!json.is_object()) return Error{Errc::corrupt, path + ": is not a head of a view"};
   try {
     ViewHead head;
     head.samples = json.at("samples").get<std::uint64_t>();

@@ -39,7 +39,7 @@ std::vector<double> merged(std::vector<double> times_s) {
 
 Status find_marks(const std::string& folder, ViewHead& head) {
   if (head.samples > most_samples) {
-    head.why_no_rests = "rests and knocks are marked in recordings of up to 5 000 000 samples";
+    head.why_no_rests = "rests and outliers are marked in recordings of up to 5 000 000 samples";
     return Done{};
   }
   std::vector<MappedValues> files;

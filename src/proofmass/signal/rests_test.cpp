@@ -302,7 +302,7 @@ TEST(Rests, AreNoneOnATurningWheel) {
     const RestSearch search = made.search();
     EXPECT_TRUE(search.rests.empty()) << turn_hz;
     EXPECT_TRUE(search.noise_std.empty());
-    EXPECT_NE(search.why_none.find("never lay still"), std::string::npos) << search.why_none;
+    EXPECT_NE(search.why_none.find("was never at rest"), std::string::npos) << search.why_none;
   }
 }
 
