@@ -163,21 +163,21 @@ MultiPosition fitted(const PoseSet& set, MultiPositionOptions options) {
 void settle_noise(const MultiPositionOptions& model, PoseSet& set) {
   MultiPositionOptions options = model;
   options.noise_dof = set.noise_dof;
-  set.wander = calibrate::session_noise(set.poses, set.sessions, options);
-  if (!set.wander) return;
-  set.poses = set.wander->poses;
-  set.between = set.wander->between;
+  set.slow_noise = calibrate::session_noise(set.poses, set.sessions, options);
+  if (!set.slow_noise) return;
+  set.poses = set.slow_noise->poses;
+  set.between = set.slow_noise->between;
 }
 
 // Flicker and random walk of the sensor file to be updated, if it has them for all three axes.
-std::optional<calibrate::WanderStrengths> filed_wander(const CalibrateCommand& command,
-                                                       const MultiPosition& fit,
-                                                       const Unit& unit) {
+std::optional<calibrate::SlowNoiseStrengths> filed_slow_noise(const CalibrateCommand& command,
+                                                              const MultiPosition& fit,
+                                                              const Unit& unit) {
   if (command.update_sensor.empty() || !std::filesystem::exists(command.update_sensor)) return {};
   const sensor::SensorFile file =
       need(sensor::read_sensor_file(command.update_sensor), Stage::reading);
   const sensor::NoiseModel& noise = file.model.noise;
-  calibrate::WanderStrengths out;
+  calibrate::SlowNoiseStrengths out;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!noise.flicker[axis]) return {};
     const double scale = unit.quantity == Quantity::acceleration ? 1.0 : fit.estimate[3 + axis];
@@ -208,14 +208,14 @@ std::optional<calibrate::BiasStability> stability_of(const CalibrateCommand& com
     session_s = std::max(session_s, file.duration_s);
     samples = std::max(samples, static_cast<double>(file.samples));
   }
-  if (const auto filed = filed_wander(command, fit, set.unit))
+  if (const auto filed = filed_slow_noise(command, fit, set.unit))
     return calibrate::stability_of(*filed, session_s,
                                    "the noise in " + report::file_name(command.update_sensor));
-  if (!set.wander || !(session_s > 0.0)) return std::nullopt;
-  calibrate::WanderStrengths own;
+  if (!set.slow_noise || !(session_s > 0.0)) return std::nullopt;
+  calibrate::SlowNoiseStrengths own;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    own.flicker[axis] = set.wander->flicker[axis] / (2.0 * std::numbers::ln2);
-    own.random_walk[axis] = 3.0 * set.wander->random_walk[axis] * samples / session_s;
+    own.flicker[axis] = set.slow_noise->flicker[axis] / (2.0 * std::numbers::ln2);
+    own.random_walk[axis] = 3.0 * set.slow_noise->random_walk[axis] * samples / session_s;
   }
   return calibrate::stability_of(own, session_s,
                                  "the flicker noise and random walk that it allows");

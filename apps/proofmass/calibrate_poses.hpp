@@ -21,10 +21,10 @@ struct PoseSet {
   Unit unit;                           ///< SI: m/s^2, V or counts
   /// Reference supply to which measurements in volts were scaled by a recorded supply.
   std::optional<double> reference_supply_v;
-  double noise_dof = 0.0;                         ///< of the poses' covariances; 0 if unknown
-  std::vector<calibrate::RestSession> sessions;   ///< one for each recording; none for tables
-  std::array<Eigen::MatrixXd, 3> between;         ///< MultiPositionOptions::between
-  std::optional<calibrate::SessionNoise> wander;  ///< present if the recordings determine it
+  double noise_dof = 0.0;                             ///< of the poses' covariances; 0 if unknown
+  std::vector<calibrate::RestSession> sessions;       ///< one for each recording; none for tables
+  std::array<Eigen::MatrixXd, 3> between;             ///< MultiPositionOptions::between
+  std::optional<calibrate::SessionNoise> slow_noise;  ///< present if the recordings determine it
   std::array<double, 3> sample_std{};
 };
 

@@ -122,7 +122,7 @@ ChannelTumble analysed(const TumbleReadings& readings,
                         .positions = {},
                         .fit = {},
                         .refused = {}};
-  if (!axis.swings()) {
+  if (!axis.follows_angle()) {
     channel.refused = "the output " + axis.words + ", and a tumble about it does not excite it";
     return channel;
   }
@@ -189,7 +189,7 @@ void note_assumptions(report::TumbleReport& report) {
   if (any([](const calibrate::TumbleFit& fit) { return fit.indexing.assumed; }))
     report.notes.push_back(
         {Severity::info, "--indexing-std states the accuracy of the table's angles; 0 is exact"});
-  if (any([](const calibrate::TumbleFit& fit) { return fit.drift.wander_assumed; }))
+  if (any([](const calibrate::TumbleFit& fit) { return fit.drift.nonlinear_assumed; }))
     report.notes.push_back({Severity::info,
                             "--drift-std states the bias drift; a second turn, a turn "
                             "backwards or a temperature column would determine it"});

@@ -46,7 +46,7 @@ class Bench {
     }
     up_ = up.normalized();
   }
-  void knock() {
+  void shock() {
     for (int k = 0; k < 15; ++k) add(up_ + 0.2 * std::sin(1.3 * k) * Vector3d(1.0, 1.0, -1.0));
   }
   [[nodiscard]] std::size_t count(GuideKind kind) const {
@@ -179,10 +179,10 @@ TEST(PoseGuide, TellsAPositionThatComesAgain) {
   }
 }
 
-TEST(PoseGuide, SaysNothingWhereItIsKnockedAndStaysAsItWas) {
+TEST(PoseGuide, SaysNothingWhereItIsDisturbedAndStaysAsItWas) {
   Bench bench(options_of(GuideProcedure::multi_position));
   bench.rest({0.0, 0.0, 1.0}, 6.0);
-  bench.knock();
+  bench.shock();
   bench.rest({0.0, 0.0, 1.0}, 4.0);
   EXPECT_EQ(bench.guide.poses().size(), 1U);
   EXPECT_EQ(bench.count(GuideKind::redo), 0U);
@@ -197,7 +197,7 @@ TEST(PoseGuide, BeginsAnewWhereARestEndsTooEarly) {
   EXPECT_EQ(bench.guide.live().phase, RestPhase::resting);
   ASSERT_TRUE(bench.guide.live().seconds_left);
   EXPECT_GT(*bench.guide.live().seconds_left, 0.0);
-  bench.knock();
+  bench.shock();
   bench.rest({0.0, 0.0, -1.0}, 4.0);
   ASSERT_EQ(bench.count(GuideKind::redo), 1U);
   EXPECT_NE(bench.last(GuideKind::redo)->text.find("It moved after"), std::string::npos);
@@ -296,7 +296,7 @@ TEST(PoseGuide, CountsTheRestsOfOneAxisOnATable) {
   options.positions = 4;
   Bench bench(options);
   turn(bench, 0.0, 6.0);
-  bench.knock();
+  bench.shock();
   bench.rest(on_table(0.0), 4.0);
   EXPECT_EQ(bench.guide.poses().size(), 1U);
   for (int k = 1; k <= 4; ++k) turn(bench, 90.0 * k);
@@ -309,7 +309,7 @@ TEST(PoseGuide, StartsTheClockAnewWhereAStillSensorIsMoved) {
   options.still_s = 30.0;
   Bench bench(options);
   bench.rest({0.0, 0.0, 1.0}, 20.0);
-  bench.knock();
+  bench.shock();
   bench.rest({0.0, 0.0, 1.0}, 29.0);
   EXPECT_FALSE(bench.guide.done());
   EXPECT_EQ(bench.count(GuideKind::redo), 1U);
@@ -320,18 +320,18 @@ TEST(PoseGuide, StartsTheClockAnewWhereAStillSensorIsMoved) {
 
 TEST(PoseGuide, SitsStillUntilTheFloorOfTheNoiseShows) {
   // A level with random steps every 2 s has a noise floor; white noise does not.
-  for (const bool wanders : {false, true}) {
+  for (const bool drifts : {false, true}) {
     PoseGuide guide(options_of(GuideProcedure::still));
     Random random(3, "floor");
     double level = 0.0;
     std::size_t k = 0;
     for (; k < static_cast<std::size_t>(1000.0 * rate_hz) && !guide.done(); ++k) {
-      level = wanders ? level + 0.005 * (0.01 * random.normal() - 0.01 * level) : 0.0;
+      level = drifts ? level + 0.005 * (0.01 * random.normal() - 0.01 * level) : 0.0;
       const double x = 0.01 * random.normal() + 50.0 * level;
       const View<double> one(&x, 1);
       (void)guide.add({k, {one, one, one}});
     }
-    EXPECT_EQ(guide.done(), wanders);
+    EXPECT_EQ(guide.done(), drifts);
     EXPECT_GE(static_cast<double>(k) / rate_hz, 300.0);
   }
 }

@@ -43,7 +43,7 @@ TEST(PoseMeans, OfWhiteNoiseAreKnownToSigmaOverRootN) {
   EXPECT_GT(means.noise_dof, 5.0);
 }
 
-TEST(PoseMeans, OfWanderingNoiseAreKnownToItsAllanDeviationAtTheDwell) {
+TEST(PoseMeans, OfSlowNoiseAreKnownToItsAllanDeviationAtTheDwell) {
   // For a random walk with steps of variance q, the Allan variance over m steps is q (2 m² + 1) / 6
   // m.
   std::mt19937_64 random(4);

@@ -29,8 +29,8 @@ struct Scenario {
   Range radius_m{0.02, 0.2};
   std::size_t axes = 2, speeds = 1;
   bool encoder = false;
-  double wander = 0.0;   ///< relative amplitude of a slow sine in the speed
-  double pole_hz = 0.0;  ///< bandwidth of the sensor's filter; 0: none
+  double speed_drift = 0.0;  ///< relative amplitude of a slow sine in the speed
+  double pole_hz = 0.0;      ///< bandwidth of the sensor's filter; 0: none
 };
 
 /// Truth of one test.
@@ -67,11 +67,11 @@ RotationRecording recording(const Scenario& scenario,
     size[n] = scenario.ripple[n].draw(random);
     phase[n] = Range{0.0, rad_per_turn}.draw(random);
   }
-  const double swing_phase = Range{0.0, rad_per_turn}.draw(random);
-  const double swing = rad_per_turn / Range{40.0, 150.0}.draw(random);
+  const double slow_phase = Range{0.0, rad_per_turn}.draw(random);
+  const double slow_radps = rad_per_turn / Range{40.0, 150.0}.draw(random);
   wheel.angle = [=](double t) {
     double theta = speed * t + 0.7;
-    theta += scenario.wander * speed / swing * std::sin(swing * t + swing_phase);
+    theta += scenario.speed_drift * speed / slow_radps * std::sin(slow_radps * t + slow_phase);
     for (int n = 1; n <= 3; ++n) {
       const auto k = static_cast<std::size_t>(n - 1);
       theta += size[k] / n * std::sin(n * speed * t + phase[k]);
@@ -190,7 +190,7 @@ INSTANTIATE_TEST_SUITE_P(
             .name = "two speeds, 0.1 to 0.3 %", .ripple = {little, little, little}, .speeds = 2},
         Scenario{.name = "two speeds, 0.6 to 2 %", .ripple = {much, much, much}, .speeds = 2},
         Scenario{.name = "two speeds, 2 % once", .ripple = {two, none, none}, .speeds = 2},
-        Scenario{.name = "two speeds that wander by 0.2 %", .speeds = 2, .wander = 0.002},
+        Scenario{.name = "two speeds that wander by 0.2 %", .speeds = 2, .speed_drift = 0.002},
         Scenario{.name = "two speeds, encoder",
                  .ripple = {much, much, much},
                  .speeds = 2,

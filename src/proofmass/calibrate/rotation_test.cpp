@@ -132,7 +132,7 @@ TEST(Rotation, SeesWhichWayTwoAxesTurnAndHowFarTheyAreFromSquare) {
   }
 }
 
-TEST(Rotation, FollowsASpeedThatWandersSlowly) {
+TEST(Rotation, FollowsASlowlyDriftingSpeed) {
   PlainWheel wheel = nonlinear_wheel();
   wheel.duration_s = 600.0;
   wheel.angle = [](double t) {

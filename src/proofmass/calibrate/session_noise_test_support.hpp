@@ -30,9 +30,9 @@ struct Recorded {
   Parameters truth;  ///< bias: mean of the session
 };
 
-class WanderingBias {
+class DriftingBias {
  public:
-  WanderingBias(const Session& session, std::mt19937_64& random) : random_(random) {
+  DriftingBias(const Session& session, std::mt19937_64& random) : random_(random) {
     constexpr double apart = 3.0, rate_hz = 100.0;
     // One-sided spectrum h/f with B² = π h; each process holds h ln(apart).
     const double part =
@@ -78,7 +78,7 @@ inline Recorded recorded(const Session& session, std::mt19937_64& random) {
     out.truth(3 + k) = 1.0 + 0.01 * normal(random);
     out.truth(6 + k) = 0.01 * normal(random);
   }
-  WanderingBias bias(session, random);
+  DriftingBias bias(session, random);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   std::size_t samples = 0;
   for (int position = 0; position < session.positions; ++position) {
@@ -87,9 +87,9 @@ inline Recorded recorded(const Session& session, std::mt19937_64& random) {
     out.rests.push_back({samples, samples + dwell - 1});
     // Between two rests the hand moves it for 0.8 s, which contains no information.
     for (std::size_t k = 0; k < dwell + 80; ++k, ++samples) {
-      const Eigen::Vector3d wander = bias.next();
-      sum += wander;
-      const Eigen::Vector3d mean = reading(out.truth, force) + wander;
+      const Eigen::Vector3d slow_noise = bias.next();
+      sum += slow_noise;
+      const Eigen::Vector3d mean = reading(out.truth, force) + slow_noise;
       for (std::size_t axis = 0; axis < 3; ++axis)
         out.axes[axis].push_back(mean(static_cast<Eigen::Index>(axis)) +
                                  session.white_mps2 * normal(random));

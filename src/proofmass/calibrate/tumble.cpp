@@ -76,16 +76,16 @@ TumbleRegression regress(const TumbleDesign& design,
                          TumbleErrors errors,
                          const TumbleOptions& options) {
   const double indexing = options.indexing_std_rad.value_or(assumed_indexing_std_rad);
-  const double wander = options.drift_std_mps2.value_or(assumed_drift_std_mps2);
+  const double nonlinear = options.drift_std_mps2.value_or(assumed_drift_std_mps2);
   TumbleRegression found = regress_tumble(design.A, outputs, errors);
   // Without a known scatter, or with zero residuals, there is no standard deviation to increase.
-  const double swing = std::abs(swing_of(design, found.beta));
-  const bool exact = indexing <= 0.0 && wander <= 0.0;
-  if (exact || !found.has_scale || !(found.sigma > 0.0) || !(swing > 0.0)) return found;
-  errors.lever *= swing;
+  const double amplitude = std::abs(amplitude_of(design, found.beta));
+  const bool exact = indexing <= 0.0 && nonlinear <= 0.0;
+  if (exact || !found.has_scale || !(found.sigma > 0.0) || !(amplitude > 0.0)) return found;
+  errors.lever *= amplitude;
   errors.indexing_std_rad = indexing;
   errors.indexing_assumed = !options.indexing_std_rad;
-  errors.drift_std = wander * swing / options.gravity_mps2;
+  errors.drift_std = nonlinear * amplitude / options.gravity_mps2;
   errors.drift_assumed = !options.drift_std_mps2;
   // A drift with a linear part also has a nonlinear one: for an exponential with a time constant of
   // a third of the test, amplitudes (cosine, sine) of 0.12 and 0.06 of its total change; for a step
@@ -100,7 +100,7 @@ TumbleRegression regress(const TumbleDesign& design,
   return regress_tumble(design.A, outputs, errors);
 }
 
-Status check_swing(const TumbleSolution& solution, double largest_output) {
+Status check_amplitude(const TumbleSolution& solution, double largest_output) {
   const TumbleDesign& design = solution.design;
   const auto sine = design.find(TumbleTerm::sine);
   if (!sine || !design.find(TumbleTerm::up_down))
@@ -108,7 +108,7 @@ Status check_swing(const TumbleSolution& solution, double largest_output) {
                  "scale factor and bias are not separable: the input axis has to point up in "
                  "one position and down in another"};
   const TumbleRegression& regression = solution.regression;
-  const double swing = swing_of(design, regression.beta);
+  const double amplitude = amplitude_of(design, regression.beta);
   const auto k = static_cast<Eigen::Index>(*sine);
   const double std = std::sqrt(regression.noise_covariance(k, k));
   double across = 0.0;  // amplitude of the cosine, large for the other axis in the plane
@@ -116,13 +116,13 @@ Status check_swing(const TumbleSolution& solution, double largest_output) {
     if (design.columns[j].term == TumbleTerm::cosine)
       across = std::max(across, std::abs(regression.beta(static_cast<Eigen::Index>(j))));
   constexpr double least_stds = 5.0, rounding = 1e-12;
-  if (std::abs(swing) <= std::max({rounding * largest_output, least_stds * std, across}))
+  if (std::abs(amplitude) <= std::max({rounding * largest_output, least_stds * std, across}))
     return Error{
         Errc::not_observable,
         fmt::format("the output does not follow sin(angle): its part with the sine is {} ± {}, "
                     "with the cosine {}; is this the input axis, and are the angles those of the "
                     "positions?",
-                    compact(swing, 3), compact(std, 2), compact(across, 3))};
+                    compact(amplitude, 3), compact(std, 2), compact(across, 3))};
   return Done{};
 }
 
@@ -215,7 +215,7 @@ Result<TumbleFit> fit_tumble(View<TumblePosition> positions, const TumbleOptions
   const TumbleRegression regression =
       regress(design, outputs, errors_of(positions, options, design, fit.noise_known), options);
   const TumbleSolution solution{design, regression, options, offset, outputs};
-  if (const Status seen = check_swing(solution, largest); !seen) return seen.error();
+  if (const Status seen = check_amplitude(solution, largest); !seen) return seen.error();
   fit.parameters = design.columns.size();
   fit.dof = positions.size() - fit.parameters;
   fit.residual_rms = std::sqrt(regression.rss / static_cast<double>(n));

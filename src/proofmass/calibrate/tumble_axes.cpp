@@ -12,9 +12,9 @@ namespace proofmass::calibrate {
 namespace {
 
 constexpr double quarter = 0.5 * std::numbers::pi;
-constexpr double least_swing = 0.2;  // relative to the largest
-constexpr double least_seen = 0.05;  // rms of a sine or cosine over the positions from which it
-                                     // counts as excited
+constexpr double least_amplitude = 0.2;  // relative to the largest
+constexpr double least_seen = 0.05;      // rms of a sine or cosine over the positions from which it
+                                         // counts as excited
 
 // output ≈ mean + S sin ψ + C cos ψ over the positions of one plane.
 struct FirstHarmonic {
@@ -112,10 +112,10 @@ TumbleAxis place_axis(const std::array<FirstHarmonic, 2>& found, double largest,
   TumbleAxis axis;
   for (std::size_t p = 0; p < 2; ++p) {
     const FirstHarmonic& h = found[p];
-    axis.swing = std::max(axis.swing, h.amplitude());
+    axis.amplitude = std::max(axis.amplitude, h.amplitude());
     if (!h.sees_sine && !h.sees_cosine) continue;
-    const bool swings = h.amplitude() > least_swing * largest;
-    if (is_input || swings) axis.phase_rad[p] = is_input ? 0.0 : nearest_quarter(h);
+    const bool oscillates = h.amplitude() > least_amplitude * largest;
+    if (is_input || oscillates) axis.phase_rad[p] = is_input ? 0.0 : nearest_quarter(h);
   }
   // A second plane with only 0° and 180° does not excite the input axis.
   const FirstHarmonic& second = found[1];

@@ -29,7 +29,7 @@ TEST(TumbleAxes, FindsThePhaseOfEveryAxis) {
   const auto axes = tumble_axes(plan, outputs);
   EXPECT_EQ(axes[0].phase_rad[0], 0.0);
   EXPECT_EQ(axes[1].phase_rad[0], quarter);
-  EXPECT_FALSE(axes[2].swings());
+  EXPECT_FALSE(axes[2].follows_angle());
   EXPECT_EQ(axes[3].phase_rad[0], 3.0 * quarter);
   EXPECT_NE(axes[1].words.find("follows cos(angle): 90° were added"), std::string::npos);
   EXPECT_NE(axes[2].words.find("is parallel to the table's"), std::string::npos);

@@ -96,7 +96,7 @@ std::vector<Form> forms_of(const TumbleDesign& design) {
   return forms;
 }
 
-Eigen::VectorXd swing_form(const TumbleDesign& design) {
+Eigen::VectorXd amplitude_form(const TumbleDesign& design) {
   Eigen::VectorXd s = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(design.columns.size()));
   if (const auto sine = design.find(TumbleTerm::sine)) s(static_cast<Eigen::Index>(*sine)) = 1.0;
   if (const auto cube = design.find(TumbleTerm::cube)) s(static_cast<Eigen::Index>(*cube)) = 3.0;
@@ -112,8 +112,8 @@ Eigen::VectorXd vector_of(const Form& form, Eigen::Index size) {
 // Jacobian of all coefficients: one row each, with the columns β and finally g.
 Eigen::MatrixXd differentiate(const TumbleSolution& solution, std::vector<Form>& forms) {
   const Eigen::VectorXd& beta = solution.regression.beta;
-  const Eigen::VectorXd s = swing_form(solution.design);
-  const double swing = s.dot(beta), g = solution.options.gravity_mps2;
+  const Eigen::VectorXd s = amplitude_form(solution.design);
+  const double amplitude = s.dot(beta), g = solution.options.gravity_mps2;
   Eigen::VectorXd whole = beta;  // including the offset subtracted from the outputs
   if (const auto U = solution.design.find(TumbleTerm::up_down))
     whole(static_cast<Eigen::Index>(*U)) += solution.output_offset;
@@ -124,17 +124,17 @@ Eigen::MatrixXd differentiate(const TumbleSolution& solution, std::vector<Form>&
     if (!form.whole) continue;
     const auto row = static_cast<Eigen::Index>(k);
     if (form.coefficient.quantity == TumbleQuantity::K1) {
-      form.coefficient.value = swing / g;
+      form.coefficient.value = amplitude / g;
       J.row(row).head(beta.size()) = s.transpose() / g;
-      J(row, beta.size()) = -swing / (g * g);
+      J(row, beta.size()) = -amplitude / (g * g);
       continue;
     }
     const int power = acceleration_power(form.coefficient.quantity);
     const double unit = form.factor * std::pow(g, power);
     const Eigen::VectorXd L = vector_of(form, beta.size());
-    const double ratio = L.dot(whole) / swing;
+    const double ratio = L.dot(whole) / amplitude;
     form.coefficient.value = unit * ratio;
-    J.row(row).head(beta.size()) = unit / swing * (L - ratio * s).transpose();
+    J.row(row).head(beta.size()) = unit / amplitude * (L - ratio * s).transpose();
     J(row, beta.size()) = power * *form.coefficient.value / g;
   }
   return J;
@@ -170,8 +170,8 @@ void judge(TumbleCoefficient& coefficient, double variance, double noise, double
 
 }  // namespace
 
-double swing_of(const TumbleDesign& design, const Eigen::VectorXd& beta) {
-  return swing_form(design).dot(beta);
+double amplitude_of(const TumbleDesign& design, const Eigen::VectorXd& beta) {
+  return amplitude_form(design).dot(beta);
 }
 
 void find_coefficients(const TumbleSolution& solution, TumbleFit& fit) {

@@ -157,7 +157,7 @@ class Selection {
       for (const Eigen::VectorXd& q : basis_) own -= q.dot(own) * q;
     const double rms = own.norm() / std::sqrt(static_cast<double>(n));
     if (rms < least_of_its_own) {
-      design_.missing.push_back({column, LeftOut::not_told_apart});
+      design_.missing.push_back({column, LeftOut::not_separable});
     } else if (columns_.size() + 1 + spare > rows_.size()) {
       design_.missing.push_back({column, LeftOut::none_to_spare});
     } else {

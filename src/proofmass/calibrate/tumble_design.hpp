@@ -46,14 +46,14 @@ struct TumbleMounting {
 
 /// Why a column is not in the fit.
 enum class LeftOut {
-  not_asked_for,   ///< the positions were not designed for it
-  not_told_apart,  ///< the angles do not determine it from what is fitted
-  none_to_spare,   ///< no redundancy would remain
+  not_asked_for,  ///< the positions were not designed for it
+  not_separable,  ///< the angles do not determine it from what is fitted
+  none_to_spare,  ///< no redundancy would remain
 };
 
 struct TumbleMissing {
   TumbleColumn column;
-  LeftOut why = LeftOut::not_told_apart;
+  LeftOut why = LeftOut::not_separable;
 };
 
 struct TumbleDesign {

@@ -150,7 +150,8 @@ std::string rate_unit(bool in_time) {
 // From the two visits of one position that are furthest apart in time.
 std::optional<double> closure_rate(const TumbleSolution& solution, View<TumblePosition> positions) {
   const TumbleDesign& design = solution.design;
-  const double scale = swing_of(design, solution.regression.beta) / solution.options.gravity_mps2;
+  const double scale =
+      amplitude_of(design, solution.regression.beta) / solution.options.gravity_mps2;
   double farthest = 0.0;
   std::optional<double> rate;
   for (std::size_t j = 0; j < positions.size(); ++j) {

@@ -470,19 +470,19 @@ TEST(TumbleAssumptions, GiveWayToWhatTheResidualsShow) {
 TEST(TumbleAssumptions, KeepACurvedDriftWithinTheMisalignmentsInterval) {
   TableTruth truth;
   truth.noise = 3e-5;
-  for (const bool swings : {false, true}) {
+  for (const bool oscillates : {false, true}) {
     for (const int count : {12, 24}) {
       std::vector<TumblePosition> positions = noisy_turn(count, truth, 5);
       for (std::size_t k = 0; k < positions.size(); ++k) {
         const double x = static_cast<double>(k) / count;
         positions[k].output +=
             0.01 * truth.K1 *
-            (swings ? std::cos(2.0 * std::numbers::pi * x) : (1.0 - std::exp(-3.0 * x)) / 0.95);
+            (oscillates ? std::cos(2.0 * std::numbers::pi * x) : (1.0 - std::exp(-3.0 * x)) / 0.95);
       }
       const TumbleFit fit = fitted(positions, nothing_stated());
       const double error = std::abs(value(fit, Q::misalignment) - truth.delta_o);
-      EXPECT_LT(error, half_width(fit, Q::misalignment)) << swings << count;
-      EXPECT_GT(error, 5e-5) << swings << count;
+      EXPECT_LT(error, half_width(fit, Q::misalignment)) << oscillates << count;
+      EXPECT_GT(error, 5e-5) << oscillates << count;
     }
   }
 }

@@ -35,7 +35,7 @@ std::string not_asked_words(TumbleTerm term) {
   }
 }
 
-std::string not_told_words(TumbleTerm term) {
+std::string not_separable_words(TumbleTerm term) {
   switch (term) {
     case TumbleTerm::sine:
       return "no position has gravity along the input axis";
@@ -142,16 +142,16 @@ std::string plane_words(const char* words, int plane, const TumbleDesign& design
 }  // namespace
 
 std::string why_missing(const TumbleDesign& design, TumbleTerm term, int plane) {
-  switch (design.why_not(term, plane).value_or(LeftOut::not_told_apart)) {
+  switch (design.why_not(term, plane).value_or(LeftOut::not_separable)) {
     case LeftOut::not_asked_for:
       return not_asked_words(term);
     case LeftOut::none_to_spare:
       return fmt::format("{} positions are too few: no redundancy would remain",
                          design.phi_rad.size());
-    case LeftOut::not_told_apart:
+    case LeftOut::not_separable:
       break;
   }
-  return not_told_words(term);
+  return not_separable_words(term);
 }
 
 std::string no_std_words(const TumbleDesign& design) {
@@ -261,9 +261,9 @@ void add_assumptions(const TumbleSolution& solution, TumbleFit& fit) {
   const TumbleRegression& regression = solution.regression;
   if (!regression.has_scale) return;
   const double K1 =
-      std::abs(swing_of(solution.design, regression.beta)) / solution.options.gravity_mps2;
-  fit.drift.wander_std_mps2 = regression.drift_std / K1;
-  fit.drift.wander_assumed = !solution.options.drift_std_mps2;
+      std::abs(amplitude_of(solution.design, regression.beta)) / solution.options.gravity_mps2;
+  fit.drift.nonlinear_std_mps2 = regression.drift_std / K1;
+  fit.drift.nonlinear_assumed = !solution.options.drift_std_mps2;
   const auto by = [](double used, double assumed) {
     if (used > 1.001 * assumed) return "as the residuals require";
     return used < 0.999 * assumed ? "the most that the residuals allow" : "an assumption";
@@ -272,12 +272,12 @@ void add_assumptions(const TumbleSolution& solution, TumbleFit& fit) {
     fit.notes.push_back(fmt::format(
         "the error of the table's angles is not stated: a standard deviation of {} was used, {}",
         rms_words(fit.indexing.std_rad), by(fit.indexing.std_rad, assumed_indexing_std_rad)));
-  if (fit.drift.wander_assumed)
+  if (fit.drift.nonlinear_assumed)
     fit.notes.push_back(fmt::format(
         "the bias drift about a straight line is not stated: amplitudes of {} mg (standard "
         "deviation) over the test were used, {}",
-        compact(1e3 * fit.drift.wander_std_mps2 / standard_gravity_mps2, 2),
-        by(fit.drift.wander_std_mps2, assumed_drift_std_mps2)));
+        compact(1e3 * fit.drift.nonlinear_std_mps2 / standard_gravity_mps2, 2),
+        by(fit.drift.nonlinear_std_mps2, assumed_drift_std_mps2)));
 }
 
 }  // namespace proofmass::calibrate

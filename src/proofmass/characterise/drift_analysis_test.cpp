@@ -58,7 +58,7 @@ TEST(DriftAnalysis, FindsTheWarmUpOfARecording) {
   EXPECT_EQ(analysis.missing, 0U);
   EXPECT_EQ(analysis.block_s, 1.0);
   EXPECT_EQ(analysis.duration_s, 600.0);
-  EXPECT_TRUE(analysis.knocks.empty());
+  EXPECT_TRUE(analysis.outliers.empty());
   EXPECT_TRUE(analysis.notes.empty());
   EXPECT_TRUE(analysis.noise_explained);
   ASSERT_TRUE(analysis.whitened);
@@ -156,14 +156,14 @@ TEST(DriftAnalysis, RefusesOptionsThatMakeNoSense) {
               Errc::invalid_argument);
 }
 
-TEST(DriftAnalysis, LeavesKnocksOut) {
+TEST(DriftAnalysis, ExcludesOutliers) {
   const Series quiet = record(6);
   Series series = quiet;
   for (std::size_t k = 300; k < 302; ++k) series[k] += 40.0;
   const DriftAnalysis analysis = analysed(series), without = analysed(quiet);
-  ASSERT_EQ(analysis.knocks.size(), 1U);
-  EXPECT_LE(analysis.knocks[0].first, 300U);
-  EXPECT_GE(analysis.knocks[0].last, 301U);
+  ASSERT_EQ(analysis.outliers.size(), 1U);
+  EXPECT_LE(analysis.outliers[0].first, 300U);
+  EXPECT_GE(analysis.outliers[0].last, 301U);
   EXPECT_GE(analysis.missing, 2U);
   EXPECT_TRUE(std::isnan(analysis.block_mean[300]));
   EXPECT_TRUE(has_note(analysis, Severity::info, "1 outlier excluded"));
@@ -197,7 +197,7 @@ TEST(DriftAnalysis, FindsAWarmUpToTheLastDigitThatItsNoiseLeaves) {
   EXPECT_NEAR(analysis.fit.a2.value, -0.21, 1e-5);
 }
 
-TEST(DriftAnalysis, SaysThatASlowSwingIsNeitherNoiseNorAnExponential) {
+TEST(DriftAnalysis, SaysThatASlowOscillationIsNeitherNoiseNorAnExponential) {
   const std::size_t many = 7200;
   Series series = test::white(1e-3, 1.0, many, 22);
   for (std::size_t k = 0; k < many; ++k)
@@ -243,7 +243,7 @@ TEST(DriftAnalysis, HasAnEnvelopeThatKeepsTheExtremes) {
   const Series series =
       test::sum_of({test::white(0.5, 10.0, many, 10), test::ramp(1e-3, 10.0, many)});
   const DriftAnalysis analysis = analysed(series, {.rate_hz = 10.0});
-  ASSERT_TRUE(analysis.knocks.empty());
+  ASSERT_TRUE(analysis.outliers.empty());
   const Envelope& data = analysis.data;
   // Six samples per interval.
   ASSERT_EQ(data.t_s.size(), 834U);
@@ -309,7 +309,7 @@ TEST(DriftAnalysis, RefusesFiguresThatNoDoubleCanSquareTwice) {
   EXPECT_FALSE(analyse_drift(extreme, {.rate_hz = 1.0}));
 }
 
-TEST(DriftAnalysis, TakesASampleThatCannotBeForAKnock) {
+TEST(DriftAnalysis, TakesASampleThatCannotBeForAnOutlier) {
   Series series = record(13);
   series[340] = 1e300;
   series[341] = -1e300;

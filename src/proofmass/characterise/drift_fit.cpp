@@ -112,7 +112,7 @@ std::string reason_for(const DriftFit& fit,
           "a warm-up; its shape cannot be determined from this recording: a curve of another shape "
           "than the exponential fits as well or better ({})",
           rivals_of(fit));
-    case DriftReason::swing:
+    case DriftReason::oscillation:
       return fmt::format(
           "no warm-up but a slow oscillation: a sine with a period of {:.3g} s, possibly due to "
           "temperature, explains the drift better than any warm-up",
@@ -150,7 +150,8 @@ class DriftVerdict {
     fit.why = why(T);
     if (fit.why == DriftReason::shorter_than_resolved) fit.time_constant_below_s = T.upper_95;
     const std::vector<const DriftTrial*> as_good = trials_.as_good();
-    const bool open = fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::swing;
+    const bool open =
+        fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::oscillation;
     if ((fit.why == DriftReason::identified && !explained(exponential_)) ||
         (open && !explained(*as_good.front())))
       fit.why = DriftReason::unexplained;
@@ -226,7 +227,7 @@ class DriftVerdict {
     // A sine alone is not a warm-up.
     const std::vector<const DriftTrial*> as_good = trials_.as_good();
     return as_good.size() == 1 && as_good.front()->at.shape == DriftShape::sine
-               ? DriftReason::swing
+               ? DriftReason::oscillation
                : DriftReason::shape_undetermined;
   }
 

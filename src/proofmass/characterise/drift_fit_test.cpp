@@ -291,7 +291,7 @@ TEST(DriftFit, DoesNotCallAnExponentialWhatIsAnotherShape) {
   }
 }
 
-TEST(DriftFit, DoesNotCallASwingOfTheTemperatureAWarmUp) {
+TEST(DriftFit, DoesNotCallAnOscillationOfTheTemperatureAWarmUp) {
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     const DriftFit whole = fitted(with_white(
         sampled([](double t) { return 3.0 * std::sin(6.2831853 * t / record_s); }), seed, 1.0));

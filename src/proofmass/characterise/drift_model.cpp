@@ -63,10 +63,10 @@ DriftForecast forecast_of(const DriftPossibility& one, const Horizon& horizon) {
   const Eigen::VectorXd now = one.curve.gradient(one.end.t_s);
   const Eigen::VectorXd then = one.curve.gradient(horizon.t_s);
   const auto interval = [&](double value, const Eigen::VectorXd& of_curve,
-                            const Eigen::Vector3d& of_wander) {
+                            const Eigen::Vector3d& of_slow_noise) {
     Eigen::VectorXd g(of_curve.size() + 3);
-    g << of_curve, of_wander;
-    return normal_interval(value + of_wander.dot(one.end.wander),
+    g << of_curve, of_slow_noise;
+    return normal_interval(value + of_slow_noise.dot(one.end.slow_noise),
                            g.dot(one.end.covariance * g) + growth);
   };
   const double level = one.curve.value(horizon.t_s);

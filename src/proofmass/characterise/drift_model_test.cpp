@@ -107,13 +107,13 @@ TEST(DriftNoise, OfAMarkovTermHasItsStandardDeviation) {
 }
 
 /// A warm-up with known parameters; only the drift is uncertain.
-DriftFit known(const DriftNoise& noise, const Eigen::Vector3d& wander) {
+DriftFit known(const DriftNoise& noise, const Eigen::Vector3d& slow_noise) {
   DriftFit fit;
   fit.curve = curve_of(DriftShape::exponential);
   fit.curve.covariance = MatrixXd::Zero(3, 3);
   fit.noise = noise;
   fit.identified = true;
-  fit.end = {3600.0, wander, MatrixXd::Zero(6, 6)};
+  fit.end = {3600.0, slow_noise, MatrixXd::Zero(6, 6)};
   fit.block_s = 4.0;
   return fit;
 }
@@ -172,7 +172,7 @@ TEST(DriftForecast, LetsMarkovNoiseRelaxToItsMean) {
   EXPECT_NEAR(late.change.value, 5.0 * std::exp(-4.0) - 3.0, 1e-12);
 }
 
-TEST(DriftForecast, KnowsThatTheErrorsOfCurveAndWanderCancel) {
+TEST(DriftForecast, KnowsThatTheErrorsOfCurveAndSlowNoiseCancel) {
   DriftFit fit = known({}, {0.3, 0.0, 0.0});
   fit.end.covariance(0, 0) = fit.end.covariance(3, 3) = 1.0;
   fit.end.covariance(0, 3) = fit.end.covariance(3, 0) = -0.99;

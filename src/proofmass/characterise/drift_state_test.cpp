@@ -121,13 +121,13 @@ Held held(const Series& samples, const ShapeAt& at, double start_s) {
   found.value.resize(found.wanted.value.size());
   found.value.head(2) << placed.curve.a2, placed.curve.a1;
   if (at.shape == DriftShape::exponential_and_line) found.value(2) = placed.curve.slope_per_s;
-  found.value.tail(1) << placed.end.wander(0);
+  found.value.tail(1) << placed.end.slow_noise(0);
   const Index entries = found.wanted.covariance.rows();
   found.covariance = placed.end.covariance.topLeftCorner(entries, entries);
   // The noise has neither flicker nor a Markov term.
   EXPECT_EQ(placed.end.covariance.rows(), entries + 2);
   EXPECT_EQ(placed.end.covariance.rightCols(2).norm(), 0.0);
-  EXPECT_EQ(placed.end.wander.tail(2).norm(), 0.0);
+  EXPECT_EQ(placed.end.slow_noise.tail(2).norm(), 0.0);
   EXPECT_TRUE(
       placed.curve.covariance.isApprox(found.covariance.topLeftCorner(entries - 1, entries - 1)));
   return found;
@@ -275,7 +275,7 @@ TEST(DriftState, OfMarkovNoiseErrsOnTheWideSideAndNotByMuch) {
     };
     near(placed.curve.a2, 0, 0);
     near(placed.curve.a1, 1, 1);
-    near(placed.end.wander(2), 2, 3);
+    near(placed.end.slow_noise(2), 2, 3);
   }
 }
 

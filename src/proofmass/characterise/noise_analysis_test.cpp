@@ -401,7 +401,7 @@ TEST(AnalyseNoise, AFineStepIsNoWarning) {
   for (const Note& note : found.notes) EXPECT_EQ(note.severity, Severity::info) << note.text;
 }
 
-Series knocked(const Series& noise) {
+Series disturbed(const Series& noise) {
   Series series = noise;
   for (std::size_t k = 0; k < 40; ++k)
     series[20'000 + k] +=
@@ -410,14 +410,14 @@ Series knocked(const Series& noise) {
   return series;
 }
 
-TEST(AnalyseNoise, TellsOfKnocksAndStepsAndLeavesThemInUnlessAsked) {
+TEST(AnalyseNoise, TellsOfOutliersAndStepsAndLeavesThemInUnlessAsked) {
   const Series noise = test::white(1e-3, rate_hz, 60'000, 15);
   const NoiseAnalysis clean = analysed(noise, at_rest());
   EXPECT_TRUE(clean.events.empty());
   NoiseOptions options = at_rest();
-  const NoiseAnalysis kept = analysed(knocked(noise), options);
+  const NoiseAnalysis kept = analysed(disturbed(noise), options);
   options.exclude_events = true;
-  const NoiseAnalysis dropped = analysed(knocked(noise), options);
+  const NoiseAnalysis dropped = analysed(disturbed(noise), options);
   EXPECT_GE(kept.events.size(), 2U);
   EXPECT_EQ(dropped.events.size(), kept.events.size());
   EXPECT_EQ(kept.missing, 0U);

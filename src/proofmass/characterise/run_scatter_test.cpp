@@ -141,7 +141,7 @@ TEST(RunNoise, OfARandomWalkHasTheOrdinatesOfItsCovariance) {
   for (Index k = 0; k < n - 1; ++k) EXPECT_NEAR(found(k) / direct(k), 1.0, 0.01) << k;
 }
 
-TEST(RunNoise, FindsTheWanderOfManyRuns) {
+TEST(RunNoise, FindsTheRandomWalkOfManyRuns) {
   Eigen::MatrixXd y(64, 200);
   for (Index i = 0; i < y.cols(); ++i) {
     const auto seed = static_cast<unsigned>(i);

@@ -139,7 +139,7 @@ TEST(TemperatureModel, ChoosesTheDegreeInNineOfTenNoisyRecordings) {
   }
 }
 
-TEST(TemperatureModel, ItsIntervalsHoldForResidualsThatWander) {
+TEST(TemperatureModel, ItsIntervalsHoldForResidualsWithSlowNoise) {
   const Series T = joined({sweep(290.0, 310.0, 512), sweep(310.0, 290.0, 512)});
   const Series line = of(T, [](double at) { return 0.8 * (at - 300.0); });
   for (const double walk : {0.02, 0.05}) {

@@ -22,7 +22,7 @@ TEST(AttitudeMonteCarlo, NinetyFivePercentBandsHoldTheTruthInNinetyThreeToNinety
   options.accel_bias_std_mps2 = 0.05;
   options.rate_bias_walk_radps_rts = options.accel_bias_walk_mps2_rts = 0.0;
   options.rest_speed_std_mps = 1e-3;
-  options.rest_wander_radps_rthz = 0.0;
+  options.rest_creep_radps_rthz = 0.0;
   Body body;
   body.rate_hz = 25.0;
   int inside = 0, count = 0;

@@ -25,7 +25,7 @@ AttitudeOptions exact_options() {
   options.rate_scale_std = options.accel_scale_std = 0.0;
   options.rate_bias_walk_radps_rts = options.accel_bias_walk_mps2_rts = 0.0;
   options.rest_speed_std_mps = 1e-4;
-  options.rest_wander_radps_rthz = 0.0;
+  options.rest_creep_radps_rthz = 0.0;
   options.accel_bias_std_mps2 = 0.0;
   return options;
 }

@@ -135,14 +135,14 @@ TEST(Turns, AreFoundPerMotionAndWigglesAreNone) {
   EXPECT_EQ(turns[1], (std::vector<std::size_t>{9, 11}));
 }
 
-TEST(Turns, AnOddSwingOutIsTheOneThatFitsNoOther) {
+TEST(Turns, AnOddLegOutIsTheOneThatFitsNoOther) {
   const std::vector<double> first_alone{0.9, -0.5, 0.5, -0.4, 0.4};
-  auto pairs = pair_swings(first_alone);
+  auto pairs = pair_legs(first_alone);
   ASSERT_EQ(pairs.size(), 3U);
   EXPECT_FALSE(pairs[0].back);
   EXPECT_EQ(pairs[1].out, 1U);
   const std::vector<double> last_alone{0.5, -0.5, 0.4, -0.4, 0.9};
-  pairs = pair_swings(last_alone);
+  pairs = pair_legs(last_alone);
   ASSERT_EQ(pairs.size(), 3U);
   EXPECT_TRUE(pairs[0].back);
   EXPECT_FALSE(pairs[2].back);

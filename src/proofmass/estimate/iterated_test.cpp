@@ -45,7 +45,7 @@ FilterState<2> pendulum_start() {
   return start;
 }
 
-Pendulum swing(std::size_t count) {
+Pendulum oscillating(std::size_t count) {
   Pendulum pendulum;
   pendulum.z.assign(count, 0.0);
   Random random(4, "pendulum");
@@ -103,7 +103,7 @@ std::vector<Mat<2>> path_of(const Eigen::VectorXd& x) {
 }
 
 TEST(IteratedSmoother, IsTheMostProbablePathFoundWithoutRecursion) {
-  const Pendulum pendulum = swing(60);
+  const Pendulum pendulum = oscillating(60);
   const auto run = smooth_iterated(pendulum, pendulum_start());
   ASSERT_TRUE(run.how.converged) << run.how.iterations << " " << run.how.change;
   Eigen::VectorXd x(120);
@@ -125,7 +125,7 @@ TEST(IteratedSmoother, IsTheMostProbablePathFoundWithoutRecursion) {
 }
 
 TEST(IteratedSmoother, FindsALessImprobablePathThanThePlainOne) {
-  const Pendulum pendulum = swing(60);
+  const Pendulum pendulum = oscillating(60);
   const auto plain = smooth_iterated(pendulum, pendulum_start(), {}, {.iterations = 1});
   const auto run = smooth_iterated(pendulum, pendulum_start());
   EXPECT_FALSE(plain.how.converged);
@@ -133,7 +133,7 @@ TEST(IteratedSmoother, FindsALessImprobablePathThanThePlainOne) {
 }
 
 TEST(IteratedSmoother, OfOneIterationIsThePlainExtendedOne) {
-  const Pendulum pendulum = swing(200);
+  const Pendulum pendulum = oscillating(200);
   const auto run = smooth_iterated(pendulum, pendulum_start(), {}, {.iterations = 1});
   EXPECT_EQ(run.how.iterations, 1);
   smooth(
@@ -159,7 +159,7 @@ TEST(IteratedSmoother, OfALinearModelIsTheLinearSmootherInTwo) {
 }
 
 TEST(IteratedSmoother, SaysThatItHasNotConverged) {
-  const auto run = smooth_iterated(swing(60), pendulum_start(), {}, {.iterations = 2});
+  const auto run = smooth_iterated(oscillating(60), pendulum_start(), {}, {.iterations = 2});
   EXPECT_FALSE(run.how.converged);
   EXPECT_EQ(run.how.iterations, 2);
   EXPECT_GT(run.how.change, 1e-10);
@@ -328,7 +328,7 @@ TEST(IteratedFilter, IsTheMostProbableStateFoundWithoutTheFilter) {
 }
 
 TEST(IteratedFilter, OfOneIterationIsThePlainExtendedOne) {
-  const Pendulum pendulum = swing(100);
+  const Pendulum pendulum = oscillating(100);
   FilterState<2> once = pendulum_start(), plain = once;
   StepOf<Pendulum> step;
   for (std::size_t k = 0; k < pendulum.size(); ++k) {
@@ -365,7 +365,7 @@ TEST(IteratedFilter, ThatDoesNotConvergeIsThePlainExtendedOneAndSaysSo) {
 }
 
 TEST(IteratedFilter, AStepAllocatesNothing) {
-  const Pendulum pendulum = swing(50);
+  const Pendulum pendulum = oscillating(50);
   FilterState<2> state = pendulum_start();
   const std::size_t before = test::allocations();
   (void)filter_iterated(pendulum, {}, state, [](std::size_t, const auto&) {});

@@ -52,16 +52,16 @@ TEST(Tilt, AtRestCountsCorrelatedNoise) {
 }
 
 // Forty batches of values that are correlated over a fifth of the interval.
-TEST(Tilt, AtRestCountsWhatWandersFromBatchToBatch) {
+TEST(Tilt, AtRestCountsSlowNoiseBetweenBatches) {
   Random random(31, "wander");
   double squares = 0.0, variances = 0.0;
   for (int run = 0; run < 200; ++run) {
     std::vector<double> values;
-    double wander = 10.0 * random.normal();
+    double slow = 10.0 * random.normal();
     const double phi = std::exp(-1.0 / 100.0);
     for (int k = 0; k < 2000; ++k) {
-      wander = phi * wander + 10.0 * std::sqrt(1.0 - phi * phi) * random.normal();
-      values.push_back(wander + random.normal());
+      slow = phi * slow + 10.0 * std::sqrt(1.0 - phi * phi) * random.normal();
+      values.push_back(slow + random.normal());
     }
     const StretchMean mean = stretch_mean(values, 0.0);
     squares += square(mean.mean) / 200.0;
@@ -111,7 +111,7 @@ TEST(Tilt, AStretchThatIsQuietAgainstTheVibrationIsNoRestWhereItsLevelMoves) {
   EXPECT_GT(within, 0.9 * static_cast<double>(base.pitch_rad.size()));
 }
 
-TEST(Tilt, ARestKeepsWhatAWarmSensorWanders) {
+TEST(Tilt, ARestKeepsTheDriftOfAWarmSensor) {
   TiltRecord record = still_record(force_at(0.1, 0.2), 0.02, 6000, 33);
   for (std::size_t k = 0; k < 6000; ++k)
     record.accel_mps2[0][k] += 0.01 * static_cast<double>(k) / 6000.0;

@@ -365,11 +365,11 @@ TEST(EstimateWheel, NothingOfACorruptRowReachesAnAnswer) {
 
 // Outliers that the screening cannot recognise: beyond the gate, so that the filter rejects and
 // counts them.
-TEST(EstimateWheel, KnocksAreGatedAndCounted) {
+TEST(EstimateWheel, OutliersAreGatedAndCounted) {
   const WheelSensor clean = record(lively, {}, 60.0, 10);
-  WheelSensor knocked = clean;
-  for (std::size_t i = 0; i < 5; ++i) knocked.accel_mps2[0][40 + 90 * i] += 60.0;
-  const auto solution = solve({knocked});
+  WheelSensor spoilt = clean;
+  for (std::size_t i = 0; i < 5; ++i) spoilt.accel_mps2[0][40 + 90 * i] += 60.0;
+  const auto solution = solve({spoilt});
   expect_turns(solution, lively.turns(0.0, 9.0), 0.005);
   EXPECT_GE(solution.rejected_samples, solve({clean}).rejected_samples + 5);
 }

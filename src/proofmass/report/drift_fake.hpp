@@ -80,7 +80,7 @@ inline void fake_series(characterise::DriftAnalysis& analysis, double memory) {
   analysis.residuals = {fake_envelope(nullptr, 7200.0, 1.0, 1.5 * fake_mg),
                         fake_envelope(nullptr, 7200.0, 10.0, 0.5 * fake_mg),
                         fake_envelope(nullptr, 7200.0, 100.0, 0.2 * fake_mg)};
-  analysis.knocks = {{signal::EventKind::knock, 1200, 1203, 0.05, 20.0}};
+  analysis.outliers = {{signal::EventKind::outlier, 1200, 1203, 0.05, 20.0}};
   analysis.notes = {{Severity::warning, "an outlier at 1200 s"}};
 }
 

@@ -186,11 +186,11 @@ Figure drift_figure(const ChannelDrift& channel, const std::string& label) {
     bias.x.push_back(analysis.block_time_s(k));
     bias.y.push_back(analysis.block_mean[k] * shown.per_si);
   }
-  Curve wander{
+  Curve slow_noise{
       .label = "with slow noise, white noise removed", .x = bias.x, .y = {}, .ink = Ink::blue};
-  for (const double value : analysis.block_bias) wander.y.push_back(value * shown.per_si);
+  for (const double value : analysis.block_bias) slow_noise.y.push_back(value * shown.per_si);
   figure.curves.push_back(std::move(bias));
-  figure.curves.push_back(std::move(wander));
+  figure.curves.push_back(std::move(slow_noise));
   add_fit(analysis, shown.per_si, figure);
   add_forecast(channel, shown.per_si, figure);
   return figure;

@@ -183,8 +183,8 @@ std::vector<std::string> drift_findings(const ChannelDrift& channel) {
   add_noise(channel, sentences);
   add_temperature(channel, sentences);
   add_outlook(channel, sentences);
-  const std::size_t knocks = channel.analysis->knocks.size();
-  if (knocks > 0) sentences.push_back(count_words(knocks, "outlier") + " excluded.");
+  const std::size_t outliers = channel.analysis->outliers.size();
+  if (outliers > 0) sentences.push_back(count_words(outliers, "outlier") + " excluded.");
   return sentences;
 }
 

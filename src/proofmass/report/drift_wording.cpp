@@ -78,7 +78,7 @@ std::string why_not(const DriftFit& fit, const Unit& unit) {
     case DriftReason::unexplained:
       return "the bias changes in a way that neither noise nor an exponential explains";
     case DriftReason::shape_undetermined:
-    case DriftReason::swing:
+    case DriftReason::oscillation:
     case DriftReason::no_warm_up:
     case DriftReason::identified:
       break;
@@ -174,7 +174,7 @@ std::string reason_code(DriftReason reason) {
       return "begun_later";
     case DriftReason::shape_undetermined:
       return "shape_undetermined";
-    case DriftReason::swing:
+    case DriftReason::oscillation:
       return "swing";
     case DriftReason::unexplained:
       return "unexplained";
@@ -187,7 +187,7 @@ std::string reason_code(DriftReason reason) {
 std::string drift_verdict(const ChannelDrift& channel) {
   if (!channel.analysis) return why_not_analysed(channel);
   const DriftFit& fit = channel.analysis->fit;
-  if (fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::swing)
+  if (fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::oscillation)
     return fit.reason;
   if (!fit.identified || !fit.a1 || !fit.time_constant_s) {
     return "no warm-up identified: " + why_not(fit, channel.unit);

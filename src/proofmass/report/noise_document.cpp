@@ -167,7 +167,7 @@ Table events_table(const ChannelNoise& channel, bool excluded) {
               {}};
   table.long_list = true;
   for (const signal::Event& event : channel.analysis->events)
-    table.rows.push_back({event.kind == signal::EventKind::knock ? "Knock" : "Step",
+    table.rows.push_back({event.kind == signal::EventKind::outlier ? "Outlier" : "Step",
                           event_time_words(event, channel.analysis->rate_hz),
                           noise_words(event.size, channel.unit, NoiseScale::level),
                           significant(event.significance, 2)});

@@ -102,7 +102,7 @@ inline ChannelNoise fake_channel(const std::string& name) {
                            .amplitude_std = 1.5 * ug,
                            .excess_db = 9.4}};
   analysis.lines.floor = {106.4 * ug, 0.5 * ug, 20.0, 40.0};
-  analysis.events = {{signal::EventKind::knock, 120'000, 120'030, 0.02, 31.0},
+  analysis.events = {{signal::EventKind::outlier, 120'000, 120'030, 0.02, 31.0},
                      {signal::EventKind::step, 700'000, 700'000, -0.001, 12.0}};
   analysis.notes = {{Severity::warning, "an outlier at 1200 s"}};
   fake_curve(analysis);

@@ -80,7 +80,7 @@ TEST(NoiseFindings, OfARefusedChannelAreTheReason) {
 }
 
 TEST(EventTime, HasTheResolutionOfASample) {
-  EXPECT_EQ(event_time_words({signal::EventKind::knock, 1240, 1263, 1.0, 9.0}, 100.0),
+  EXPECT_EQ(event_time_words({signal::EventKind::outlier, 1240, 1263, 1.0, 9.0}, 100.0),
             "12.40 … 12.63 s");
   EXPECT_EQ(event_time_words({signal::EventKind::step, 5, 5, 1.0, 9.0}, 1.0), "5 s");
 }

@@ -105,7 +105,7 @@ Field lines(const ChannelNoise& channel) {
 Field events(const ChannelNoise& channel) {
   const auto fields_of = [&](const signal::Event& event) -> Fields {
     const double rate_hz = channel.analysis->rate_hz;
-    return {field::choice("kind", event.kind == signal::EventKind::knock ? "knock" : "step",
+    return {field::choice("kind", event.kind == signal::EventKind::outlier ? "knock" : "step",
                           {"knock", "step"}),
             field::number("start_s", static_cast<double>(event.first) / rate_hz),
             field::number("end_s", static_cast<double>(event.last) / rate_hz),

@@ -201,12 +201,12 @@ void add_judgement(const NoiseAnalysis& analysis, std::vector<std::string>& sent
         "include this.",
         significant(100.0 * model.misfit, 2)));
   }
-  const auto knocks = static_cast<std::size_t>(
+  const auto outliers = static_cast<std::size_t>(
       std::count_if(analysis.events.begin(), analysis.events.end(),
-                    [](const auto& event) { return event.kind == signal::EventKind::knock; }));
-  const std::size_t steps = analysis.events.size() - knocks;
-  if (knocks > 0 || steps > 0) {
-    std::string what = knocks > 0 ? count_words(knocks, "outlier") : "";
+                    [](const auto& event) { return event.kind == signal::EventKind::outlier; }));
+  const std::size_t steps = analysis.events.size() - outliers;
+  if (outliers > 0 || steps > 0) {
+    std::string what = outliers > 0 ? count_words(outliers, "outlier") : "";
     if (steps > 0) what += (what.empty() ? "" : " and ") + count_words(steps, "step") + " of level";
     sentences.push_back(what + " in the recording: see the events.");
   }

@@ -130,10 +130,10 @@ Field drift(const TumbleFit& fit) {
        field::probability(
            "p", found.p,
            {.meaning = "probability of this drift or more by chance", .why_null = found.words}),
-       field::magnitude("wander_std_mps2", found.wander_std_mps2,
+       field::magnitude("wander_std_mps2", found.nonlinear_std_mps2,
                         {.meaning = "standard deviation of the bias drift about a straight line, "
                                     "as used"}),
-       field::flag("wander_assumed", found.wander_assumed, {.meaning = "not stated"}),
+       field::flag("wander_assumed", found.nonlinear_assumed, {.meaning = "not stated"}),
        field::text("words", found.words)});
 }
 

@@ -150,7 +150,7 @@ TEST(Rests, AreTwoWhereTheLevelStepsByTwiceTheNoise) {
   EXPECT_NEAR(static_cast<double>(rests[1].first), 1000.0, 60.0);
 }
 
-TEST(Rests, AreOneWhereAKnockLeavesTheLevelAsItWas) {
+TEST(Rests, AreOneWhereAnOutlierLeavesTheLevelAsItWas) {
   Noise noise(11);
   Session made;
   made.rest(8.0);
