@@ -24,7 +24,7 @@ TEST(CrossAxis, IsTheLengthOfTheTwoRatios) {
   EXPECT_EQ(found.upper_95, 0.005);
 }
 
-TEST(CrossAxis, IsNoNumberWhereItIsNotToldFromZero) {
+TEST(CrossAxis, IsAbsentIfNotDistinguishableFromZero) {
   const CrossAxis found = cross_axis_sensitivity({1e-3, 0.5e-3}, diagonal(1e-6, 1e-6)).value();
   EXPECT_FALSE(found.value);
   EXPECT_GT(found.p, 0.01);
@@ -81,7 +81,7 @@ Coverage repeat(const Eigen::Vector2d& truth, const Eigen::Vector2d& std, int ru
   return {static_cast<double>(below) / runs, static_cast<double>(inside) / runs, error.mean};
 }
 
-TEST(CrossAxis, IsUnbiasedAndCoversWhereItStandsClearOfTheNoise) {
+TEST(CrossAxis, IsUnbiasedAndCoversWellAboveTheNoise) {
   for (const Eigen::Vector2d& std : {Eigen::Vector2d(1, 1), Eigen::Vector2d(1, 0.3)}) {
     const Coverage found = repeat({5.0, 4.0}, std, 2000);
     EXPECT_GT(found.interval, 0.93);

@@ -38,7 +38,7 @@ TEST(GivenDirections, FindTheMountingBesideNineParameters) {
   EXPECT_LT(*fit.placement_std_rad, 1e-9);
 }
 
-TEST(GivenDirections, TellHowWellThePositionsWereSet) {
+TEST(GivenDirections, DetermineTheAccuracyOfThePlacement) {
   std::mt19937_64 random(2);
   const Parameters truth = drawn_sensor(random);
   const auto poses = drawn_poses(truth, {.count = 200, .tilt_rad = 0.02}, random);

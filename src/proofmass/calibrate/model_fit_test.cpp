@@ -111,7 +111,7 @@ TEST(ModelFit, FindsAllSixteenCoefficientsWhereTheMotionIsRichEnough) {
 }
 
 // The order of the request affects only the order of the results.
-TEST(ModelFit, TellsTheSameInWhateverOrderItIsAsked) {
+TEST(ModelFit, DoesNotDependOnTheOrderOfTheRequest) {
   const auto rows = noisy(rows_of(plausible, tumble(24)), 1e-4, 1);
   const ModelFit one = fitted(rows, {K1, K0, delta_o, K2});
   const ModelFit other = fitted(rows, {K2, delta_o, K1, K0});
@@ -175,7 +175,7 @@ TEST(ModelFit, SaysThatTheSquaresGoOnlyByTheirDifferencesAtOneG) {
 }
 
 // The rows determine K0 + g² Koo, K2 − Koo and Kpp − Koo.
-TEST(ModelFit, OffersTheCombinationsThatTheRowsDoTell) {
+TEST(ModelFit, OffersTheIdentifiableCombinations) {
   ModelEquation quadratic = plausible;
   quadratic.K0_asym = quadratic.K1_asym = quadratic.Koq = quadratic.K3 = quadratic.Kio =
       quadratic.Kpo = quadratic.Kip = 0.0;
@@ -192,7 +192,7 @@ TEST(ModelFit, OffersTheCombinationsThatTheRowsDoTell) {
   EXPECT_LT(fit.residual_rms, 1e-14);
 }
 
-TEST(ModelFit, TellsK2MinusKppInAPlaneAndNoMore) {
+TEST(ModelFit, DeterminesOnlyK2MinusKppInAPlane) {
   const ModelFit fit = fitted(rows_of(plausible, tumble(24)), {K1, K0, K2, Kpp, delta_o});
   ASSERT_EQ(fit.confounded.size(), 1U);
   EXPECT_EQ(fit.confounded[0].combinations[1].name, "K2 − Kpp");
@@ -316,7 +316,7 @@ TEST(ModelFit, PassesAResidualTestThatIsMet) {
 }
 
 // Ratios to an uncertain K1: the delta method compared with repetition.
-TEST(ModelFit, KnowsTheScatterOfItsRatiosAndCoversTheTruthAtNinetyFivePercent) {
+TEST(ModelFit, StatesTheScatterOfItsRatiosAndCoversNinetyFivePercent) {
   const ModelEquation truth{.K1 = 0.03, .K0 = 2.0, .K2 = 2e-3, .delta_o = 0.05};
   const auto rows = rows_of(truth, tumble(12));
   const std::vector<Coefficient> asked{K1, K0, delta_o, K2};

@@ -109,7 +109,7 @@ TEST(Propagate, GivesTheComparisonLossOfTheSupplement) {
 
 // JCGM 101, 9.4.3: the same with correlation 0.9 at x1 = 0.050: E = x1² + 2u², var = 4 x1² u² + 4
 // u⁴ (1 + r²).
-TEST(Propagate, HeedsCorrelation) {
+TEST(Propagate, IncludesCorrelation) {
   const Measurement loss = [](View<double> x) { return 1e6 * (x[0] * x[0] + x[1] * x[1]); };
   Eigen::MatrixXd r = Eigen::MatrixXd::Identity(2, 2);
   r(0, 1) = r(1, 0) = 0.9;
@@ -151,7 +151,7 @@ TEST(Propagate, OfWhatDoesNotVaryIsThatValue) {
   EXPECT_EQ(validate(budget_of_inputs(2.0, inputs, {1.0}), found).agreement, Agreement::yes);
 }
 
-TEST(Validate, OfTooFewDrawsCannotTell) {
+TEST(Validate, IsUndecidedWithTooFewDraws) {
   const std::vector<Input> inputs(4, Input{0.0, 1.0, D::normal});
   const auto found = propagate(sum, inputs, {.draws = 200}).value();
   const auto judged = validate(budget_of_inputs(0.0, inputs, {1, 1, 1, 1}), found);

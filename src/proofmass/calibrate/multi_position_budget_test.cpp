@@ -110,7 +110,7 @@ TEST(AddTypeB, IsTheSameAsTheBudgetWithItsLines) {
   EXPECT_EQ(it.fit.covariance(0, 1), before.covariance(0, 1));
 }
 
-TEST(AddTypeB, SaysWhyItCannotAndTouchesNothing) {
+TEST(AddTypeB, GivesTheReasonOfAFailureAndChangesNothing) {
   Calibrated it = calibrated();
   const MultiPosition before = it.fit;
   const auto message = [&](const char* text) {
@@ -144,7 +144,7 @@ TEST(CheckByMonteCarlo, ConfirmsTheBudgetOfAGoodCalibration) {
   EXPECT_EQ(check.verdict.find("200 calibrations of drawn readings confirm the budget"), 0U);
 }
 
-TEST(CheckByMonteCarlo, TakesNoiseThatNobodyStatedFromTheResiduals) {
+TEST(CheckByMonteCarlo, TakesUnstatedNoiseFromTheResiduals) {
   Calibrated it{poses_of(analog_sensor(), noise_v, false, 5), with_gravity(0.0, 0.0), {}};
   it.fit = calibrate_positions(it.poses, it.options).value();
   const auto check = check_by_monte_carlo(it.poses, it.options, it.fit,
@@ -178,7 +178,7 @@ TEST(CheckByMonteCarlo, SaysThatABudgetIsLargerThanNeeded) {
   EXPECT_NE(check.verdict.find("larger than needed for bias x"), std::string::npos);
 }
 
-TEST(CheckByMonteCarlo, OfExactReadingsHasNothingToCompare) {
+TEST(CheckByMonteCarlo, HasNothingToCompareForExactReadings) {
   Calibrated it{poses_of(analog_sensor(), 0.0, false, 1), with_gravity(0.0, 0.0), {}};
   it.fit = calibrate_positions(it.poses, it.options).value();
   const auto check = check_by_monte_carlo(it.poses, it.options, it.fit,

@@ -104,7 +104,7 @@ TEST(MultiPosition, NamesThePoseThatWasPushed) {
   EXPECT_LT(kept.lack_of_fit->p, 1e-6);
 }
 
-TEST(MultiPosition, SaysThatOneIsBadWhereItCannotTellWhich) {
+TEST(MultiPosition, ReportsAnUnidentifiedBadPosition) {
   std::mt19937_64 random(5);
   const Parameters truth = drawn_sensor(random);
   auto poses = drawn_poses(truth, {.count = 11}, random);
@@ -180,7 +180,7 @@ TEST(MultiPosition, HoldsTheAnglesItLeavesOutInItsUncertainty) {
   EXPECT_GT(inside, 0.9 * all);
 }
 
-TEST(MultiPosition, SaysWhatPosesCannotTell) {
+TEST(MultiPosition, ReportsWhatThePosesDoNotDetermine) {
   std::mt19937_64 random(10);
   const Parameters truth = drawn_sensor(random);
   const auto said = [&](const std::vector<Eigen::Vector3d>& up) {
@@ -196,7 +196,7 @@ TEST(MultiPosition, SaysWhatPosesCannotTell) {
   EXPECT_NE(said(about_z).find("do not determine scale z"), std::string::npos) << said(about_z);
 }
 
-TEST(MultiPosition, RefusesWhatIsNoNumber) {
+TEST(MultiPosition, RefusesNonFiniteValues) {
   std::mt19937_64 random(11);
   auto poses = drawn_poses(drawn_sensor(random), {}, random);
   poses[2].mean.y() = NAN;

@@ -161,7 +161,7 @@ TEST(PoseGuide, GoesOnUntilNoPositionIsOver) {
       << bench.last(GuideKind::prompt)->text;
 }
 
-TEST(PoseGuide, TellsAPositionThatComesAgain) {
+TEST(PoseGuide, RecognisesARepeatedPosition) {
   for (const bool volts : {false, true}) {
     GuideOptions options = options_of(GuideProcedure::multi_position);
     if (volts) options.one_g.reset();
@@ -179,7 +179,7 @@ TEST(PoseGuide, TellsAPositionThatComesAgain) {
   }
 }
 
-TEST(PoseGuide, SaysNothingWhereItIsDisturbedAndStaysAsItWas) {
+TEST(PoseGuide, IgnoresADisturbanceThatLeavesThePositionUnchanged) {
   Bench bench(options_of(GuideProcedure::multi_position));
   bench.rest({0.0, 0.0, 1.0}, 6.0);
   bench.shock();
@@ -189,7 +189,7 @@ TEST(PoseGuide, SaysNothingWhereItIsDisturbedAndStaysAsItWas) {
   EXPECT_NE(bench.guide.live().words.find("from the next position"), std::string::npos);
 }
 
-TEST(PoseGuide, BeginsAnewWhereARestEndsTooEarly) {
+TEST(PoseGuide, RestartsARestThatEndsTooEarly) {
   Bench bench(options_of(GuideProcedure::multi_position));
   bench.rest({0.0, 0.0, 1.0}, 6.0);
   bench.move_to({0.0, 0.0, -1.0});
@@ -304,7 +304,7 @@ TEST(PoseGuide, CountsTheRestsOfOneAxisOnATable) {
   EXPECT_EQ(bench.guide.poses().size(), 5U);
 }
 
-TEST(PoseGuide, StartsTheClockAnewWhereAStillSensorIsMoved) {
+TEST(PoseGuide, RestartsTheTimeIfAStaticSensorIsMoved) {
   GuideOptions options = options_of(GuideProcedure::still);
   options.still_s = 30.0;
   Bench bench(options);
@@ -345,7 +345,7 @@ TEST(PoseGuide, WaitsWhereNothingIsMeasured) {
   EXPECT_EQ(guide.live().phase, RestPhase::listening);
 }
 
-TEST(TurnedAxes, TellTheAngleOfAnySensorOnceAQuarterOfATurnIsKnown) {
+TEST(TurnedAxes, DetermineTheAngleOfAnySensorAfterAQuarterTurn) {
   const Vector3d c(1.62, 1.68, 1.65), a(0.33, 0.01, 0.02), b(-0.01, 0.32, 0.01);
   const auto reading = [&](double angle) {
     return Vector3d(c + std::sin(angle) * a + std::cos(angle) * b);

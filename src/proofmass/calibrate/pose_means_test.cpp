@@ -57,7 +57,7 @@ TEST(PoseMeans, OfSlowNoiseAreKnownToItsAllanDeviationAtTheDwell) {
   EXPECT_NEAR(means.poses[0].mean_covariance(0, 0) / expected, 1.0, 0.35);
 }
 
-TEST(PoseMeans, PassOverSpikesAndWhatIsNoNumber) {
+TEST(PoseMeans, IgnoreSpikesAndNonFiniteValues) {
   auto x = white(2 * dwell, 1.0, 5), y = x, z = x;
   const double clean = pose_means({x, y, z}, rests(2)).value().poses[0].mean.x();
   x[10] = NAN;
@@ -128,7 +128,7 @@ TEST(DwellNoise, OfFlickerDoesNotAverageOut) {
 
 // The variance of ln v over recordings of one sensor is 2/dof or less, since the choice between
 // terms makes dof cautious.
-TEST(DwellNoise, KnowsHowWellItIsKnown) {
+TEST(DwellNoise, StatesItsOwnDegreesOfFreedom) {
   constexpr int recordings = 200;
   double sum = 0.0, squares = 0.0, claimed = 0.0;
   for (unsigned seed = 100; seed < 100 + recordings; ++seed) {

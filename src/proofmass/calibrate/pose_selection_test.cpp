@@ -146,7 +146,7 @@ TEST(PoseSelection, KeepsWhatIsSuspectInTheFitThatJudgesTheOthers) {
   EXPECT_NEAR(kept.leave_one_out[k].value(), term.residual / (1.0 - leverage), 1e-9);
 }
 
-TEST(PoseSelection, TakesBackWhatTheNoiseExplains) {
+TEST(PoseSelection, KeepsAPositionThatTheNoiseExplains) {
   // The other positions are noise-free, so that twice the noise is visible, but not significant.
   const Drawn drawn(7, {.noise_mps2 = 0.0}, 0.2 * mg);
   const PoseSelection found = selected(normalised(drawn.poses), 1000.0);
@@ -194,7 +194,7 @@ Count count_of(std::size_t poses, double push_mps2, unsigned runs) {
   return out;
 }
 
-TEST(PoseSelection, SuspectsOneOfAHundredFitsForNothing) {
+TEST(PoseSelection, HasAFalseAlarmInOneOfAHundredFits) {
   EXPECT_LE(count_of(24, 0.0, 150).wrongly, 2);
 }
 
@@ -211,7 +211,7 @@ TEST(PoseSelection, NamesOneOfTwelveAndNoOther) {
   EXPECT_EQ(count.wrongly, 0);
 }
 
-TEST(PoseSelection, SaysAmongWhichOneIsBadWhereElevenCannotTell) {
+TEST(PoseSelection, ListsTheDoubtfulPositionsIfElevenAreNotConclusive) {
   const Count count = count_of(11, 5.0 * mg, 50);
   EXPECT_GE(count.named, 25);
   EXPECT_EQ(count.wrongly, 0);
@@ -245,7 +245,7 @@ Blame blame_of(std::size_t count, std::size_t bad, double push_mps2, unsigned ru
   return out;
 }
 
-TEST(PoseSelection, BlamesNoGoodPositionForABadOne) {
+TEST(PoseSelection, DoesNotSuspectGoodPositionsBesideABadOne) {
   for (const std::size_t count : {std::size_t{12}, std::size_t{13}, std::size_t{14}}) {
     const Blame blame = blame_of(count, 1, 2.0 * mg, 60);
     EXPECT_EQ(blame.wrongly, 0) << count;

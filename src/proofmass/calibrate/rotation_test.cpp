@@ -42,7 +42,7 @@ TEST(Rotation, FindsTheCoefficientsOfOneAxisWithoutAnEncoder) {
             "without an encoder the misalignment is part of the phase");
 }
 
-TEST(Rotation, TellsTheMisalignmentWhereAnEncoderGivesTheAngle) {
+TEST(Rotation, DeterminesTheMisalignmentWithAnEncoder) {
   PlainWheel wheel = nonlinear_wheel();
   wheel.equations[0].delta_o = 0.012;
   wheel.give_angle = true;
@@ -64,7 +64,7 @@ TEST(Rotation, TakesAnEncodersAngleWrappedOrRunningBackwards) {
   EXPECT_NEAR(value_of(back.axes[0], Q::Kip), -6e-5, 1e-9);
 }
 
-TEST(Rotation, DoesNotTellRadiusFromBiasAtOneSpeed) {
+TEST(Rotation, DoesNotSeparateRadiusAndBiasAtOneSpeed) {
   PlainWheel wheel = nonlinear_wheel();
   wheel.radius_m = 0.1;
   const RotationFit fit = fit_of({turned(wheel)});
@@ -76,7 +76,7 @@ TEST(Rotation, DoesNotTellRadiusFromBiasAtOneSpeed) {
   EXPECT_NEAR(value_of(fit.axes[0], Q::K0_radial), 0.2 + 2e-5 * g * g - 0.1 * 1.152 * 1.152, 1e-5);
 }
 
-TEST(Rotation, TellsRadiusAndBiasFromTwoRecordingsAtTwoSpeeds) {
+TEST(Rotation, SeparatesRadiusAndBiasInTwoRecordingsAtTwoSpeeds) {
   PlainWheel slow, fast;
   slow.radius_m = fast.radius_m = 0.1;
   slow.equations[0].K0 = fast.equations[0].K0 = 0.2;
@@ -88,7 +88,7 @@ TEST(Rotation, TellsRadiusAndBiasFromTwoRecordingsAtTwoSpeeds) {
 }
 
 // 11 rpm, a ramp of 20 s, 21 rpm: the ramp is excluded.
-TEST(Rotation, TellsThemFromOneRecordingWhoseSpeedChanges) {
+TEST(Rotation, SeparatesThemInOneRecordingWithTwoSpeeds) {
   PlainWheel wheel;
   wheel.radius_m = 0.1;
   wheel.duration_s = 320.0;
@@ -152,7 +152,7 @@ std::function<double(double)> rippled(int per_turn, double size) {
 
 // With a single axis, ripples of 1 %, ε = 0.01 cos φ and ε = 0.005 sin 2φ, are attributed to the
 // sensor. The first affects both harmonics of K0 = B0 + C2, the second both of K1 = S1 + 3 S3.
-TEST(Rotation, KnowsTheEffectOfARippleOfOnePerCentOnOneAxis) {
+TEST(Rotation, StatesTheEffectOfARippleOfOnePerCentOnOneAxis) {
   PlainWheel wheel;
   wheel.angle = [](double t) { return 1.152 * t + 0.01 * std::cos(1.152 * t); };
   const RotationFit once = fit_of({turned(wheel)});
@@ -170,7 +170,7 @@ TEST(Rotation, KnowsTheEffectOfARippleOfOnePerCentOnOneAxis) {
 }
 
 // The interval includes the possible effect of a ripple.
-TEST(Rotation, IsNoSurerOfOneAxisThanARippleAllows) {
+TEST(Rotation, IncludesAPossibleRippleInTheIntervalOfOneAxis) {
   for (const int per_turn : {1, 2, 3}) {
     PlainWheel wheel;
     wheel.angle = rippled(per_turn, 0.01);
@@ -258,7 +258,7 @@ TEST(Rotation, FindsTheRadiusOfAWheelThatRipplesBesideAnEncoder) {
 }
 
 // The noise of each speed's ripple enters its bias, and thus the radius from the two speeds.
-TEST(Rotation, StatesARadiusNoSurerThanTheRipplesOfBothSpeedsAre) {
+TEST(Rotation, IncludesTheRipplesOfBothSpeedsInTheRadius) {
   constexpr unsigned wheels = 30;
   double squares = 0.0;
   for (unsigned k = 0; k < wheels; ++k) {
@@ -356,7 +356,7 @@ TEST(Rotation, AllowsForTheRadiusOfARippleAtOneSpeed) {
             fit.axes[1][Q::misalignment].half_width_95);
 }
 
-TEST(Rotation, LeavesOutGapsAndSamplesThatAreNoNumbers) {
+TEST(Rotation, ExcludesGapsAndNonFiniteSamples) {
   PlainWheel wheel = nonlinear_wheel();
   wheel.duration_s = 300.0;
   RotationRecording recording = turned(wheel);
@@ -404,7 +404,7 @@ TEST(Rotation, DoubtsAScaleFactorThatCannotBe) {
   EXPECT_EQ(fit.value().doubts.size(), 1U);
 }
 
-TEST(Rotation, RefusesWhatIsNoTest) {
+TEST(Rotation, RefusesUnsuitableRecordings) {
   const auto code = [](const std::vector<RotationRecording>& recordings) {
     return fit_rotation(recordings, {.gravity_mps2 = g}).error().code;
   };

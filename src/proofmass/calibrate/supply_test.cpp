@@ -117,7 +117,7 @@ TEST(FitSupply, RejectsTheTruthInFivePercentAndItsIntervalsHoldIt) {
   EXPECT_NEAR(value_inside / sets, 0.95, 0.02);
 }
 
-TEST(FitSupply, OfTwoSuppliesSaysThatThereIsNoRedundancy) {
+TEST(FitSupply, ReportsThatTwoSuppliesHaveNoRedundancy) {
   const std::vector<SupplyPoint> points{ratiometric(3.0, 0.0, 1e-3, 1e-3),
                                         ratiometric(3.3, 0.0, 1e-3, 1e-3)};
   const auto found = fit_supply(points).value();
@@ -145,7 +145,7 @@ TEST(FitSupply, WithoutUncertaintiesTakesThemFromTheResiduals) {
   EXPECT_GT(found.axes[0]->constant.std, 1e-4);
 }
 
-TEST(FitSupply, SaysThatTheDependenceIsNoLine) {
+TEST(FitSupply, ReportsANonlinearDependence) {
   std::vector<SupplyPoint> points = ratiometric_set();
   points[2].bias[0]->value += 0.05;
   const auto found = fit_supply(points).value();

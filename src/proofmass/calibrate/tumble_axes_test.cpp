@@ -42,13 +42,13 @@ TEST(TumbleAxes, LetsTheUserOverrule) {
   EXPECT_EQ(tumble_axes(plan, outputs, 0)[0].phase_rad[0], 0.0);
 }
 
-TEST(TumbleAxes, TellsHowFarAnAxisStandsOff) {
+TEST(TumbleAxes, ReportsTheDeviationOfAnAxis) {
   const auto plan = table_turn(8);
   const std::vector<std::vector<double>> outputs{follow(plan, 0.4)};
   EXPECT_NE(tumble_axes(plan, outputs)[0].words.find("24° off"), std::string::npos);
 }
 
-TEST(TumbleAxes, KnowsTheInputAxisInASecondPlaneOfTwoPositions) {
+TEST(TumbleAxes, FindsTheInputAxisInASecondPlaneOfTwoPositions) {
   std::vector<TumblePosition> plan = table_turn(4);
   append(plan, in_plane(table_turn(2), 2));
   // x: sin in plane 1, 0 in plane 2; y: cos in plane 1, parallel to the table in plane 2; z the

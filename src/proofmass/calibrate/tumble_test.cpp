@@ -158,7 +158,7 @@ TEST(TwoPlaneTumble, RecoversTheTermsOfBothPlanes) {
     EXPECT_TRUE(has(fit, quantity)) << name_of(quantity);
 }
 
-TEST(SixPointTumble, TellsScaleBothMisalignmentsAndThreeBiases) {
+TEST(SixPointTumble, DeterminesScaleBothMisalignmentsAndThreeBiases) {
   std::vector<TumblePosition> plan = table_turn(4);
   append(plan, in_plane(table_turn(2), 2));
   TableTruth truth;
@@ -170,7 +170,7 @@ TEST(SixPointTumble, TellsScaleBothMisalignmentsAndThreeBiases) {
   EXPECT_FALSE(has(fit, Q::Kip) || has(fit, Q::Kio) || has(fit, Q::K3));
 }
 
-TEST(ForwardAndBackwardTumble, TellsHysteresisFromBacklash) {
+TEST(ForwardAndBackwardTumble, SeparatesHysteresisAndBacklash) {
   TableTruth truth;
   truth.hysteresis_mps2 = 2e-3;
   truth.backlash_rad = 1e-6;  // small, since it affects the other terms in second order
@@ -241,7 +241,7 @@ TEST(TumbleDrift, IsNotTakenOutOfFourPositionsThatHaveNoneToSpare) {
   EXPECT_TRUE(fitted(positions).drift.removed);
 }
 
-TEST(TumbleDrift, IsToldWithATrueMinusSign) {
+TEST(TumbleDrift, IsPrintedWithATrueMinusSign) {
   TableTruth truth;
   truth.drift_mps2 = -1e-3;
   std::mt19937_64 random(4);
@@ -260,7 +260,7 @@ TEST(TumbleDrift, SaysHowProbableItIsByChance) {
   EXPECT_LT(*fitted(read_table(table_turn(24, true), truth, random)).drift.p, 1e-6);
 }
 
-TEST(Tumble, LeavesOutWhatFewPositionsCannotTell) {
+TEST(Tumble, OmitsTermsThatFewPositionsDoNotDetermine) {
   const TableTruth truth;
   const auto at = [&](std::initializer_list<double> degrees) {
     std::vector<TumblePosition> plan;
@@ -292,7 +292,7 @@ TEST(Tumble, LeavesOutWhatFewPositionsCannotTell) {
   EXPECT_FALSE(has(six, Q::K3));  // sin 3φ is 0 in all positions
 }
 
-TEST(Tumble, RefusesWhatTellsNothing) {
+TEST(Tumble, RefusesPositionsWithoutInformation) {
   const TableTruth truth;
   const auto error = [&](std::vector<TumblePosition> plan) {
     return fit_tumble(read_table(std::move(plan), truth), table_options()).error();

@@ -63,7 +63,7 @@ TEST(VarianceBias, OfTheo1IsWhatTheExactExpectationsGive) {
   EXPECT_NEAR(1.0 / variance_bias(Statistic::theo1, 2, 100, 201), 3.0 / 5625.0 / 2.405e-3, 1e-4);
 }
 
-TEST(VarianceBias, IsNoneWhereNoneIsPublishedAndThenNothingIsSaid) {
+TEST(VarianceBias, IsAbsentIfNoneIsPublished) {
   for (const Statistic statistic :
        {Statistic::adev, Statistic::oadev, Statistic::mdev, Statistic::tdev, Statistic::hdev,
         Statistic::ohdev, Statistic::pdev}) {

@@ -131,7 +131,7 @@ TEST(DifferenceVariances, StartATermAtEachDecimatedPlace) {
   EXPECT_EQ(found[3].terms, (10'000U - 2048U) / 32 + 1);
 }
 
-TEST(DifferenceVariances, LoseNextToNothingByDecimation) {
+TEST(DifferenceVariances, LoseAlmostNoPrecisionByDecimation) {
   const std::vector<std::size_t> factors{64, 512, 4096};
   for (const auto& y : {white(200'000), random_walk(200'000)}) {
     for (const Statistic statistic : {Statistic::oadev, Statistic::mdev, Statistic::ohdev}) {

@@ -93,7 +93,7 @@ TEST(DriftAnalysis, TakesATableOfTwelveValuesOrMore) {
   EXPECT_EQ(refused(table).code, Errc::too_few_samples);
 }
 
-TEST(DriftAnalysis, LeavesOutWhatIsNoNumber) {
+TEST(DriftAnalysis, ExcludesNonFiniteValues) {
   Series series = record(3);
   for (std::size_t k = 7; k < n; k += 60) series[k] = missing;
   series[100] = std::numeric_limits<double>::infinity();
@@ -142,7 +142,7 @@ TEST(DriftAnalysis, RefusesWhatDoesNotVary) {
   EXPECT_EQ(refused(series).code, Errc::not_observable);
 }
 
-TEST(DriftAnalysis, RefusesNothingButMissingSamples) {
+TEST(DriftAnalysis, RefusesASeriesOfMissingSamples) {
   EXPECT_EQ(refused(Series(n, missing)).code, Errc::not_finite);
   EXPECT_EQ(refused(Series(n, std::numeric_limits<double>::infinity())).code, Errc::not_finite);
 }
@@ -271,7 +271,7 @@ TEST(DriftAnalysis, SaysWhereTheNoiseIsNotWhatItWasTakenFor) {
   EXPECT_FALSE(analysis.noise_explained);
 }
 
-TEST(DriftAnalysis, TellsItsProgressToTheEnd) {
+TEST(DriftAnalysis, ReportsProgressUntilTheEnd) {
   std::vector<double> told;
   ASSERT_TRUE(analyse_drift(
       record(12), {.rate_hz = 1.0, .progress = [&](std::string_view stage, double fraction) {

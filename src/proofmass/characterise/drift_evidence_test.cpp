@@ -129,7 +129,7 @@ TEST(DriftEvidence, HasTheValueAtABlocksMiddle) {
   }
 }
 
-TEST(DriftEvidence, KnowsItsTimes) {
+TEST(DriftEvidence, HasTheRightTimes) {
   const DriftEvidence evidence = made(test::normals(n, 3), 20.0);
   EXPECT_EQ(evidence.blocks(), 96);
   EXPECT_DOUBLE_EQ(evidence.block_s(), 1.5);

@@ -143,7 +143,7 @@ TEST(DriftFit, TakesNoRandomWalkForAWarmUp) {
   EXPECT_GE(hidden, 1);
 }
 
-TEST(DriftFit, CannotTellATimeConstantOfTwiceTheRecord) {
+TEST(DriftFit, DoesNotIdentifyATimeConstantOfTwiceTheRecord) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const Series curve = test::warm_up(10.0, 2.0 * record_s, 0.25, n);
     // With large noise it is taken as a straight line, with small noise as curved; in either case
@@ -153,7 +153,7 @@ TEST(DriftFit, CannotTellATimeConstantOfTwiceTheRecord) {
   }
 }
 
-TEST(DriftFit, CannotTellATimeConstantOfAFewBlocks) {
+TEST(DriftFit, DoesNotIdentifyATimeConstantOfAFewBlocks) {
   for (const unsigned seed : {1U, 2U, 3U})
     expect_not_identified(fitted(with_white(test::warm_up(20.0, 3.0 * h, 0.25, n), seed)),
                           DriftReason::shorter_than_resolved);
@@ -336,7 +336,7 @@ TEST(DriftFit, WhitensByTheNoiseItFitted) {
 }
 
 // Under white noise the random walk is dropped, and the bound is that of least squares over blocks.
-TEST(DriftFit, KnowsWhichWarmUpItWouldHaveMissed) {
+TEST(DriftFit, StatesTheSmallestDetectableWarmUp) {
   const Series means = with_white(test::level(0.0, n), 7);
   const DriftFit fit = fitted(means);
   ASSERT_EQ(fit.noise.random_walk, 0.0);

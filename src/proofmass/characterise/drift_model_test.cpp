@@ -128,7 +128,7 @@ TEST(DriftForecast, RefusesAWarmUpThatIsNotIdentified) {
   EXPECT_EQ(found.error().message, fit.reason);
 }
 
-TEST(DriftForecast, RefusesThePastAndWhatIsNoTime) {
+TEST(DriftForecast, RefusesPastAndNonFiniteTimes) {
   const DriftFit fit = known({}, Eigen::Vector3d::Zero());
   for (const double t_s : {3599.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity()}) {
@@ -172,7 +172,7 @@ TEST(DriftForecast, LetsMarkovNoiseRelaxToItsMean) {
   EXPECT_NEAR(late.change.value, 5.0 * std::exp(-4.0) - 3.0, 1e-12);
 }
 
-TEST(DriftForecast, KnowsThatTheErrorsOfCurveAndSlowNoiseCancel) {
+TEST(DriftForecast, IncludesTheCorrelationOfCurveAndSlowNoise) {
   DriftFit fit = known({}, {0.3, 0.0, 0.0});
   fit.end.covariance(0, 0) = fit.end.covariance(3, 3) = 1.0;
   fit.end.covariance(0, 3) = fit.end.covariance(3, 0) = -0.99;

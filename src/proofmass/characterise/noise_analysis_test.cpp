@@ -209,7 +209,7 @@ TEST(AnalyseNoise, GivesStable32sLimitsByTheModelToo) {
     expect_stable32(statistic, std::string(name_of(statistic)) + "_octave", {});
 }
 
-TEST(AnalyseNoise, TakesTheNoiseTypeFromWhereItIsTold) {
+TEST(AnalyseNoise, TakesTheNoiseTypeFromTheGivenSource) {
   const Series phase = test::nbs14_phase();
   NoiseOptions options = options_for(Statistic::oadev, SeriesKind::phase);
   const NoiseAnalysis by_model = analysed(phase, options);
@@ -262,7 +262,7 @@ TEST(AnalyseNoise, OfAFewSamplesGivesACurveButNoModel) {
   EXPECT_GT(analysed(test::normals(400, 3), options_for(Statistic::oadev)).model.ordinates, 0U);
 }
 
-TEST(AnalyseNoise, TheLevelIsTheMeanAndMovesNothingElse) {
+TEST(AnalyseNoise, TheLevelIsTheMeanAndAffectsNothingElse) {
   const Series noise = test::white(1e-3, rate_hz, 20'000, 4);
   const NoiseAnalysis plain = analysed(noise, at_rest());
   const NoiseAnalysis raised = analysed(sum_of({noise, Series(noise.size(), 9.81)}), at_rest());
@@ -394,7 +394,7 @@ TEST(AnalyseNoise, TakesNoiseOfOneStepAndWarns) {
                           [](const Note& note) { return note.severity == Severity::warning; }));
 }
 
-TEST(AnalyseNoise, AFineStepIsNoWarning) {
+TEST(AnalyseNoise, AFineStepGivesNoWarning) {
   NoiseOptions options = at_rest();
   options.lsb = 0.01;
   const NoiseAnalysis found = analysed(rounded(test::normals(20'000, 14), 0.01), options);
@@ -410,7 +410,7 @@ Series disturbed(const Series& noise) {
   return series;
 }
 
-TEST(AnalyseNoise, TellsOfOutliersAndStepsAndLeavesThemInUnlessAsked) {
+TEST(AnalyseNoise, ReportsOutliersAndStepsAndExcludesThemOnRequest) {
   const Series noise = test::white(1e-3, rate_hz, 60'000, 15);
   const NoiseAnalysis clean = analysed(noise, at_rest());
   EXPECT_TRUE(clean.events.empty());
@@ -469,7 +469,7 @@ TEST(AnalyseNoise, RefusesEveryTauOfALongRecord) {
   EXPECT_EQ(result.error().code, Errc::invalid_argument);
 }
 
-TEST(AnalyseNoise, TellsHowFarItHasCome) {
+TEST(AnalyseNoise, ReportsProgress) {
   std::vector<double> fractions;
   NoiseOptions options = at_rest();
   options.progress = [&](std::string_view, double fraction) { fractions.push_back(fraction); };

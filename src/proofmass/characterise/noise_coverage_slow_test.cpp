@@ -248,7 +248,7 @@ TEST(NoiseCoverage, OfMixedNoiseIsWhatIntervalsSay) {
     expect_intervals_cover(analyse({truth, samples, seed++}, records), truth);
 }
 
-TEST(NoiseCoverage, OfWhiteNoiseWithOthersTooWeakToTellIsWhatTheirBoundsSay) {
+TEST(NoiseCoverage, OfTermsBelowWhiteNoiseIsThatOfTheirBounds) {
   // Each is identified in fewer than half of the records.
   const Truth rounded{.quantisation = 0.02, .white = 1.0};
   const Truth drifting{.white = 1.0, .ramp = 0.025};
@@ -260,7 +260,7 @@ TEST(NoiseCoverage, OfWhiteNoiseWithOthersTooWeakToTellIsWhatTheirBoundsSay) {
   }
 }
 
-TEST(NoiseCoverage, OfWhiteNoiseAloneNothingElseIsSeen) {
+TEST(NoiseCoverage, OfWhiteNoiseAloneFindsNoOtherTerm) {
   const Outcome outcome = analyse({{.white = 1.0}, 2000, 61}, 1500);
   EXPECT_EQ(outcome.coefficients[white].absent, 0);
   for (const Place place : {quantisation, flicker, random_walk, ramp}) {

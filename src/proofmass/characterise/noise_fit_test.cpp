@@ -57,7 +57,7 @@ void expect_nothing_but_white(const NoiseModelFit& model) {
   EXPECT_FALSE(model.bandwidth_hz.has_value());
 }
 
-TEST(FitNoiseModel, FindsWhiteNoiseAndNothingElse) {
+TEST(FitNoiseModel, FindsWhiteNoiseOnly) {
   const NoiseModelFit model = model_of(test::white(1e-3, rate_hz, quarter_of_an_hour, 1));
   expect_found(model.white, 1e-3, "white");
   // Half the interval, whose lower side allows for unobservable quantisation noise.
@@ -178,7 +178,7 @@ TEST(FitNoiseModel, FindsARampWithItsSign) {
   }
 }
 
-TEST(FitNoiseModel, ARampIsKnownNoBetterThanByLeastSquaresAndNotMuchWorse) {
+TEST(FitNoiseModel, ARampIsAboutAsPreciseAsByLeastSquares) {
   const NoiseModelFit model = model_of(sum_of({test::white(1e-3, rate_hz, quarter_of_an_hour, 12),
                                                test::ramp(1e-5, rate_hz, quarter_of_an_hour)}));
   const double least_squares = 1e-3 * std::sqrt(12.0 / std::pow(900.0, 3));
@@ -196,7 +196,7 @@ TEST(FitNoiseModel, ARampDoesNotChangeTheRest) {
   EXPECT_NEAR(steep.slope_per_s - 1e-4, level.slope_per_s, 0.1 * level.ramp.std);
 }
 
-TEST(FitNoiseModel, ASteepRampIsNothingButARamp) {
+TEST(FitNoiseModel, ASteepRampIsIdentifiedAsARampOnly) {
   const Series noise = test::white(1e-4, rate_hz, 100'000, 4);
   for (const double slope : {1e-4, 1e-3}) {
     const NoiseModelFit model = model_of(sum_of({noise, test::ramp(slope, rate_hz, 100'000)}));
@@ -355,7 +355,7 @@ TEST(FitNoiseModel, WhatIsNotSeenNeedsALongerRecordThanThis) {
 }
 
 // Temperature: neither part of a sine nor a parabola is a random walk.
-TEST(FitNoiseModel, ASlowDeterministicChangeIsNoRandomWalkWithoutDoubt) {
+TEST(FitNoiseModel, ASlowDeterministicChangeIsNotACertainRandomWalk) {
   constexpr std::size_t n = 30'000;
   int surely_walks = 0, taken_out = 0;
   for (const double periods : {0.5, 0.8, 1.3, 2.4, 4.6}) {

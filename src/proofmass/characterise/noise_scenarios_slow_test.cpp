@@ -194,7 +194,7 @@ TEST(NoiseScenarios, IntervalsAndPrintedDeviationsHoldTheTruth) {
   for (const auto& [name, draw] : scenarios) expect_honest(name, analysed(records, draw));
 }
 
-TEST(NoiseScenarios, ASlowSineOrABendIsNoRandomWalkWithoutDoubt) {
+TEST(NoiseScenarios, ASlowSineOrABendIsNotACertainRandomWalk) {
   const auto sine = [](Dice& d, unsigned s) {
     Drawn drawn = mixture({0, 1, 0, 0, 0}, d.samples(), s);
     const double periods = 1.0 / d.between(0.2, 2.0), phase = d.between(1.0, 6.28);

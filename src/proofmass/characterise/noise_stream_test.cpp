@@ -71,7 +71,7 @@ TEST(NoiseStream, SaysThatTheNoiseChanges) {
   EXPECT_EQ(found.notes.front().text.find("not stationary"), 0U);
 }
 
-TEST(NoiseStream, TakesTheRateThatIsKnownAtTheEnd) {
+TEST(NoiseStream, UsesTheRateKnownAtTheEnd) {
   const std::vector<double> y = white_and_random_walk(50'000);
   const NoiseAnalysis found = in_pieces(y, {.rate_hz = 100.0}, {.rate_hz = 99.0}).value();
   const NoiseAnalysis whole = analyse_noise(y, {.rate_hz = 99.0}).value();

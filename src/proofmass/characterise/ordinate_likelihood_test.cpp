@@ -108,7 +108,7 @@ TEST(OrdinateLikelihood, OfWhiteNoiseIsTheMeanSquareOfTheResidual) {
   EXPECT_NEAR(fit_ordinates(both.z, P, {X, X}).strength(0), restricted, 1e-5 * restricted);
 }
 
-TEST(OrdinateLikelihood, OfNothingFittedIsThatOfTheOrdinates) {
+TEST(OrdinateLikelihood, WithoutAFitIsThatOfTheOrdinates) {
   const Both both(record(2));
   const OrdinateFit fit = evaluate_ordinates(both.z, both.noise.P, {}, strengths(1.0, 0.3));
   double wanted = 0.0;
@@ -157,7 +157,7 @@ TEST(OrdinateLikelihood, ComesToTheSamePlaceFromAnywhere) {
                   best, 1e-4);
 }
 
-TEST(OrdinateLikelihood, LeavesATermAtNothingThatIsNotThere) {
+TEST(OrdinateLikelihood, LeavesAnAbsentTermAtZero) {
   // Alternating signs have less power at low frequencies than white noise.
   Series samples = test::normals(n, 13);
   for (std::size_t k = n; --k > 0;) samples[k] -= samples[k - 1];
@@ -187,7 +187,7 @@ TEST(PromisedGain, IsTheScoreTestOfOneMoreColumn) {
   EXPECT_NEAR(promised, score * score / own, 1e-3 * promised);
 }
 
-TEST(PromisedGain, IsNothingWhereTheScorePointsBelowZero) {
+TEST(PromisedGain, IsZeroForANegativeScore) {
   Series samples = test::normals(n, 13);
   for (std::size_t k = n; --k > 0;) samples[k] -= samples[k - 1];
   const Both both(samples);

@@ -175,7 +175,7 @@ TEST(RunBlocks, OfRunsAtRatesApartByAHundredthShareOneTime) {
   EXPECT_LT(left.cwiseAbs().maxCoeff(), 0.002);  // 0.1 if interpreted by index
 }
 
-TEST(RunBlocks, TakesMissingSamplesForNothing) {
+TEST(RunBlocks, IgnoresMissingSamples) {
   test::MadeRuns made = test::made_of({.runs = 4, .samples = 1024});
   for (test::Series& y : made.series)
     for (std::size_t k = 0; k < y.size(); ++k) y[k] = std::exp(-static_cast<double>(k) / 200.0);

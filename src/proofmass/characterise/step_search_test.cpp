@@ -61,7 +61,7 @@ TEST(StepSearch, GainsWhatARefitGainsAtTheBestOfAllPlaces) {
     EXPECT_GE(found.gain, refitted(evidence, fitted, density, block) - 1e-6) << block;
 }
 
-TEST(StepSearch, GainsNothingByAStepThatIsFittedAlready) {
+TEST(StepSearch, HasNoGainForAFittedStep) {
   const DriftEvidence evidence =
       test::evidence_of(test::sum_of({noise(5), test::step_at(60, 15.0, n)}), sampling);
   const VectorXd density = density_of(evidence);

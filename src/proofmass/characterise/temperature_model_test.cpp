@@ -185,7 +185,7 @@ TEST(TemperatureModel, FindsHysteresisWhereThereIsNoneInFewRecordings) {
   EXPECT_LE(found, 14) << "7 % of 200";
 }
 
-TEST(TemperatureModel, SaysWhatOneSweepCannotTell) {
+TEST(TemperatureModel, ReportsWhatOneSweepDoesNotDetermine) {
   const Series T = sweep(290.0, 310.0, 4096);
   const TemperatureModel rose = fitted(of(T, cubic), T);
   EXPECT_FALSE(rose.hysteresis);
@@ -250,7 +250,7 @@ TEST(TemperatureModel, PassesOverMissingSamples) {
   EXPECT_NEAR(model.at(304.0).value().value, cubic(304.0), 1e-9);
 }
 
-TEST(TemperatureModel, SaysWhereNothingWasRecorded) {
+TEST(TemperatureModel, ReportsTemperaturesWithoutData) {
   Series T = cycles(3.0, 6000);
   for (double& at : T) at = at > 296.0 && at < 304.0 ? missing : at;
   const TemperatureModel model = fitted(of(T, cubic), T);

@@ -60,7 +60,7 @@ TEST(Attitude, FindsTheBiasesOfBothSensors) {
   EXPECT_LT(attitude.accel_bias_std_mps2.back().maxCoeff(), 0.01);
 }
 
-TEST(Attitude, AtOneRestTheBiasAcrossGravityCannotBeToldFromTilt) {
+TEST(Attitude, AtOneRestTheBiasAcrossGravityIsNotSeparableFromTilt) {
   Body body;
   body.moves = 0;
   body.start.setZero();

@@ -85,7 +85,7 @@ TEST(Consistency, CountsOnlyAcceptedChannelsThatWereThere) {
   EXPECT_EQ(result.verdict, Verdict::undetermined);
 }
 
-TEST(Consistency, OfNothingIsUndetermined) {
+TEST(Consistency, WithoutInnovationsIsUndetermined) {
   const Consistency result = ConsistencyCheck({.channels = {"x"}}).judge();
   EXPECT_EQ(result.innovations, 0U);
   EXPECT_EQ(result.verdict, Verdict::undetermined);
@@ -139,7 +139,7 @@ TEST(Consistency, UndoesWhatAGateHasCutOff) {
   EXPECT_NEAR(*white(1.5, 100000, 5, 3.0).all.std_factor, 1.5, 0.03);
 }
 
-TEST(Consistency, TellsWhichNoiseIsOff) {
+TEST(Consistency, IdentifiesTheWrongNoise) {
   struct Case {
     const char* what;
     double walk, noise;  ///< assumed; the truth is 0.1 and 1
@@ -164,13 +164,13 @@ TEST(Consistency, TellsWhichNoiseIsOff) {
   }
 }
 
-TEST(Consistency, WhatIsTooSmallToMatterIsNoVerdictHoweverSignificant) {
+TEST(Consistency, ASignificantButNegligibleDeviationIsConsistent) {
   const Consistency result = white(1.02, 1000000);
   EXPECT_GT(result.nis, result.nis_upper);
   EXPECT_EQ(result.verdict, Verdict::consistent);
 }
 
-TEST(Consistency, WhatMattersButMayBeChanceIsNoVerdict) {
+TEST(Consistency, ALargeButInsignificantDeviationIsConsistent) {
   EXPECT_EQ(white(1.15, 40, 8).verdict, Verdict::consistent);
 }
 
@@ -212,7 +212,7 @@ TEST(Consistency, NamesTheChannelThatIsOff) {
   EXPECT_NEAR(result.remedy_factor, 2.0, 0.1);
 }
 
-TEST(Consistency, AnErrorCommonToAllChannelsIsNoSingleOnes) {
+TEST(Consistency, AnErrorCommonToAllChannelsIsNotAttributedToOne) {
   ConsistencyCheck check({.channels = {"x", "y"}});
   Random random(6, "channels");
   for (int k = 0; k < 5000; ++k)

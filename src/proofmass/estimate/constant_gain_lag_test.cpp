@@ -152,7 +152,7 @@ TEST(ConstantGainLag, ErrsAsTheModelSaysAndLessThanTheWrongRecursion) {
   EXPECT_NEAR(std::sqrt(steady.smoothed(0, 0)), expected, 0.001);
 }
 
-TEST(ConstantGainLag, RefusesAReadingThatIsMissingAndStandsAsItStood) {
+TEST(ConstantGainLag, RefusesAMissingMeasurementAndIsUnchanged) {
   const auto model = test::constant_velocity(1.0, 0.1, 1.0);
   ConstantGainLag<2, 1> smoother(model, steady_state(model).value(), 2, Mat<2>::Zero());
   ASSERT_TRUE(smoother.step(Mat<1>(3.0)));

@@ -138,7 +138,7 @@ TEST(DiffuseStart, OfATrendEqualsLeastSquaresWithNoPrior) {
                        Start<2>::diffuse(), 1);
 }
 
-TEST(DiffuseStart, ReadingsMissingFromTheFirstOnAndAmongTheNextAreNoTrouble) {
+TEST(DiffuseStart, ToleratesMissingMeasurementsAtTheStart) {
   const auto epochs = trend({none, none, 2.4, none, none, 6.1, none, 11.0, none});
   expect_least_squares(epochs, LinearSeries<2, 1, 1>::make(epochs, trend_model).value(),
                        Start<2>::diffuse(), 5);
@@ -233,7 +233,7 @@ TEST(DiffuseStart, WhatNoReadingDeterminesIsInfiniteBeforeAndAfterSmoothing) {
   EXPECT_NEAR(run.lag_one[0](0, 1), 0.35, 1e-14);
 }
 
-TEST(DiffuseStart, WithoutAnyReadingSaysThatNothingIsKnown) {
+TEST(DiffuseStart, IsUndeterminedWithoutMeasurements) {
   const auto epochs = trend({none, none});
   const auto run =
       smooth_linear(LinearSeries<2, 1, 1>::make(epochs, trend_model).value(), Start<2>::diffuse());
@@ -278,7 +278,7 @@ TEST(DiffuseStart, AReadingOfLittleWeightIsAReadingOfLargerVariance) {
 }
 
 // Position from accelerations only: its initial value is never observable.
-TEST(DiffuseStart, AStateThatNothingReadsStaysUndeterminedAndHarmsNoOther) {
+TEST(DiffuseStart, AnUnobservableStateStaysUndeterminedAndDoesNotAffectOthers) {
   LinearModel<2, 1> m;
   m.F << 1.0, 0.1, 0.0, 0.99;
   m.Q << 1e-3, 0.0, 0.0, 0.1;
@@ -300,7 +300,7 @@ TEST(DiffuseStart, AStateThatNothingReadsStaysUndeterminedAndHarmsNoOther) {
   EXPECT_NEAR(both.log_likelihood, speed_only.log_likelihood, 1e-10);
 }
 
-TEST(DiffuseStart, AGaussianIsAStartWithNothingDiffuse) {
+TEST(DiffuseStart, AGaussianIsAStartWithoutDiffuseStates) {
   const auto epochs = trend({1.2, none, 2.4});
   Gaussian<2> known;
   known.cov << 0.4, 0.1, 0.1, 0.9;

@@ -168,7 +168,7 @@ TEST(Discretisation, TwoStepsEqualOneOfTwiceTheLength) {
     }
 }
 
-TEST(Discretisation, AStepOfNoTimeChangesNothing) {
+TEST(Discretisation, AStepOfZeroDurationChangesNothing) {
   for (const Case& model : cases()) {
     const Discrete none = model.model(0.0);
     EXPECT_TRUE(none.F.isIdentity(0.0)) << model.name;

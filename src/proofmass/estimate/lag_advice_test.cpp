@@ -143,7 +143,7 @@ TEST(LagAdvice, OfALocalLevelIsTheClosedForm) {
 }
 
 // A white state that is measured at every epoch: later measurements contain no information on it.
-TEST(LagAdvice, HasNoneWhereLaterReadingsSayNothing) {
+TEST(LagAdvice, HasNoneIfLaterMeasurementsAreUninformative) {
   LinearModel<1, 1> forgetful;
   forgetful.F << 0.0;
   forgetful.H << 1.0;

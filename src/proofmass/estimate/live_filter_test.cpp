@@ -76,7 +76,7 @@ TEST(LiveFilter, AStepAllocatesNothing) {
   EXPECT_EQ(refused, 0U);
 }
 
-TEST(LiveFilter, StandsAsItStoodAfterWhatItCannotUse) {
+TEST(LiveFilter, IsUnchangedAfterUnusableInput) {
   const auto model = test::driven_oscillator(0.1);
   Live live(test::oscillator_prior(), {.lag = 3});
   const auto epochs = test::uneven_epochs(5);

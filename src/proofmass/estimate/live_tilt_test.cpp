@@ -121,7 +121,7 @@ TEST(LiveTilt, TheGyroscopeHelpsWhereTheBaseIsShaken) {
   EXPECT_LT(std_of(true), 0.7 * std_of(false));
 }
 
-TEST(LiveTilt, AtRestItStandsWhereGravityIs) {
+TEST(LiveTilt, AtRestItConvergesToGravity) {
   const TiltRecord record = still_record(force_at(0.3, -0.2), 0.02, 2000, 4);
   const Followed followed = follow(record, options_for(record));
   EXPECT_NEAR(followed["roll"].back(), 0.3, 3.0 * followed["roll_std"].back());
@@ -130,7 +130,7 @@ TEST(LiveTilt, AtRestItStandsWhereGravityIs) {
   EXPECT_LT(followed["smoothed_pitch_std"].back(), followed["pitch_std"].back());
 }
 
-TEST(LiveTilt, MissingReadingsWidenTheBandAndAreTold) {
+TEST(LiveTilt, MissingMeasurementsWidenTheBandAndAreReported) {
   MovingBase base = moving_base({.samples = 1000}, 5);
   for (std::size_t k = 500; k < 550; ++k) base.record.accel_mps2[1][k] = std::nan("");
   const Followed followed = follow(base.record, options_for(base.record));

@@ -61,7 +61,7 @@ void expect_cautious(const Shares& found) {
 
 const std::vector<double> eight_strokes{0.4, -0.4, 0.4, -0.4, 0.4, -0.4, 0.4, -0.4};
 
-TEST(LiveTrackCoverage, BandsHoldTheTruthWhereNothingButNoiseErrs) {
+TEST(LiveTrackCoverage, BandsCoverTheTruthUnderNoiseOnly) {
   const Shares found = cover({.strokes_m = eight_strokes, .dwell_s = 3.5}, 0.0, 200);
   EXPECT_EQ(found.end.of, 200.0);
   EXPECT_EQ(found.stops.of, 1600.0);

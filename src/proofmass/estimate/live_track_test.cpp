@@ -43,7 +43,7 @@ TEST(LiveTrack, PiecesOfAnySizeGiveTheSameRows) {
   }
 }
 
-TEST(LiveTrack, FollowsStrokesAndKnowsTheirStops) {
+TEST(LiveTrack, FollowsStrokesAndDetectsTheirStops) {
   const CarriageRecord made = record(carriage());
   const LiveTrackRun run = run_live(made.sensor, along_x());
   ASSERT_GT(run.rows.rows(), 1000u);
@@ -172,7 +172,7 @@ TEST(LiveTrack, ASensorThatTurnedIsSaidAndLessSureFromThereOn) {
   EXPECT_LT(std::abs(run.last(live_position)), 2.0 * run.last(live_position_std));
 }
 
-TEST(LiveTrack, ConstantSpeedIsNoStop) {
+TEST(LiveTrack, ConstantSpeedIsNotAStop) {
   CarriageRecord made = record({.strokes_m = {0.4}, .dwell_s = 4.0});
   TrackSensor& sensor = made.sensor;
   // The stroke's acceleration, then nothing for 4 s, then its deceleration: 0.75 s each.
@@ -193,7 +193,7 @@ TEST(LiveTrack, ConstantSpeedIsNoStop) {
 }
 
 // Noise that grows with the motion must not make the motion look like noise.
-TEST(LiveTrack, ASwingThatRocksIsNoRest) {
+TEST(LiveTrack, AnOscillationWithRockingIsNotARest) {
   CarriageRecord made =
       record({.strokes_m = {0.5, -0.5, 0.5, -0.5, 0.5, -0.5}, .dwell_s = 4.0, .harmonic = true});
   std::mt19937_64 engine(201);

@@ -150,7 +150,7 @@ TEST(LiveWheel, TwoOppositeSensorsAreTakenTogether) {
   EXPECT_LT(both["angle_std"].back(), one["angle_std"].back());
 }
 
-TEST(LiveWheel, FollowsAWheelThatStandsAndThenTurns) {
+TEST(LiveWheel, FollowsAWheelThatStartsFromRest) {
   const Drive drive{{0.4, 0.0}, {{6.0, 0.0}, {2.0, 2.0}, {12.0, 2.0}}};
   const Followed one = follow(one_sensor(drive), options_for(1));
   EXPECT_TRUE(one.fed.says("hardly turns yet"));
@@ -177,7 +177,7 @@ TEST(LiveWheel, LeavesOutWhatNoAccelerometerCanHaveMeantAndSaysSo) {
   EXPECT_TRUE(one.fed.says("their time does not rise"));
 }
 
-TEST(LiveWheel, AfterALongHoleLooksForTheWheelAnew) {
+TEST(LiveWheel, SearchesTheWheelAgainAfterALongGap) {
   Stream stream = one_sensor();
   for (std::size_t k = 1000; k < stream.stamps_s.size(); ++k) stream.stamps_s[k] += 60.0;
   const Followed one = follow(stream, options_for(1));
@@ -187,7 +187,7 @@ TEST(LiveWheel, AfterALongHoleLooksForTheWheelAnew) {
   EXPECT_GT(coverage(one, later, 75.0), 0.93);
 }
 
-TEST(LiveWheel, StartsAnewWhereTheClockIsSetBack) {
+TEST(LiveWheel, RestartsIfTheClockIsSetBack) {
   Stream stream = one_sensor();
   for (std::size_t k = 1000; k < stream.stamps_s.size(); ++k) stream.stamps_s[k] -= 9.0;
   const Followed one = follow(stream, options_for(1));
@@ -195,7 +195,7 @@ TEST(LiveWheel, StartsAnewWhereTheClockIsSetBack) {
   EXPECT_NEAR(one.fed.rows.stamps_s.back(), stream.stamps_s.back(), 1e-9);
 }
 
-TEST(LiveWheel, SaysThatThereIsNoWheel) {
+TEST(LiveWheel, ReportsThatThereIsNoWheel) {
   Stream stream = one_sensor();
   test::Normal noise(3);
   for (auto& channel : stream.channels)
@@ -205,7 +205,7 @@ TEST(LiveWheel, SaysThatThereIsNoWheel) {
   EXPECT_TRUE(one.fed.says("no wheel found"));
 }
 
-TEST(LiveWheel, SaysThatTheRadiusIsNotKnown) {
+TEST(LiveWheel, ReportsThatTheRadiusIsUnknown) {
   const Drive slow{{0.3, 11 * rpm}, {{12.0, 11 * rpm}}};
   EXPECT_TRUE(follow(one_sensor(slow), options_for(1, std::nullopt)).fed.says("give --radius"));
 }

@@ -27,7 +27,7 @@ TEST(Pva, TwoStepsEqualOneOfTwiceTheLength) {
   EXPECT_TRUE(two.Q.isApprox(one.F * one.Q * one.F.transpose() + one.Q, 1e-14));
 }
 
-TEST(Pva, AStepOfNoTimeChangesNothing) {
+TEST(Pva, AStepOfZeroDurationChangesNothing) {
   const LinearModel none = pva_model(of_length(0.0));
   EXPECT_EQ(none.F, (Mat<3, 3>::Identity()));
   EXPECT_EQ(none.Q, (Mat<3, 3>::Zero()));

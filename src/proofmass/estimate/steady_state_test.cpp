@@ -63,7 +63,7 @@ TEST(SteadyState, OfALocalLevelIsTheRootOfItsQuadratic) {
 }
 
 // Error of a test for small changes of P: 5.4 % in the variance of this bias.
-TEST(SteadyState, OfABiasThatNothingReadsIsItsOwnVariance) {
+TEST(SteadyState, OfAnUnobservableBiasIsItsStationaryVariance) {
   for (const double time_constant_s : {1.0, 100.0, 1e4}) {
     const auto s = steady_state(position_read(with_bias_model(time_constant_s))).value();
     EXPECT_TRUE(s.all_have_limits);
@@ -117,7 +117,7 @@ TEST(SteadyState, SmootherIsTheOneFarFromBothEnds) {
 }
 
 // Only the sum of two random walks is measured: each variance grows, that of the sum does not.
-TEST(SteadyState, KnowsADirectionWithoutALimitFromAState) {
+TEST(SteadyState, DistinguishesAnUnboundedDirectionFromAState) {
   LinearModel<3, 1> m;
   m.F.setIdentity();
   m.F(2, 2) = 0.9;
@@ -159,7 +159,7 @@ TEST(SteadyState, DoesNotDependOnTheUnitsOfTheStates) {
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(t.gain(i) / (units(i) * s.gain(i)), 1.0, 1e-9);
 }
 
-TEST(SteadyState, OfNothingReadIsTheModelItself) {
+TEST(SteadyState, WithoutMeasurementsIsTheModelItself) {
   auto m = with_bias_model(1.0);
   m.H.setZero();
   const auto s = steady_state(m).value();
@@ -189,7 +189,7 @@ TEST(SteadyState, SaysWhereEvenTheGainsHaveNoLimit) {
   EXPECT_FALSE(steady_state(exploding).has_value());
 }
 
-TEST(SteadyState, RefusesWhatIsNoModel) {
+TEST(SteadyState, RefusesInvalidModels) {
   auto m = with_bias_model();
   m.R(0) = -1.0;
   EXPECT_EQ(steady_state(m).error().code, Errc::not_positive_definite);

@@ -81,7 +81,7 @@ TEST(TiltCoverage, AtRestWithACoarseConverterIsAtLeastNinetyThreePercent) {
 
 // A sensor whose biases changed since its calibration, in a single attitude. The norm determines
 // one of three components; if gravity is as uncertain, a large change may be undetectable.
-TEST(TiltCoverage, WithASensorFileOfAnotherSessionIsAtLeastNinetyThreePercentWhereGravityIsKnown) {
+TEST(TiltCoverage, WithASensorFileOfAnotherSessionIsAtLeastNinetyThreePercentForKnownGravity) {
   constexpr double mg = 1e-3 * standard_gravity_mps2;
   Random random(8, "moved");
   const auto held_by = [&](double gravity_std_mps2, const auto& draw_change) {

@@ -89,7 +89,7 @@ TEST(Tilt, AHumDithersTheRoundingAwayOnlyInPart) {
   EXPECT_LT(variances, 1.0 / 12.0);
 }
 
-TEST(Tilt, AStretchThatIsQuietAgainstTheVibrationIsNoRestWhereItsLevelMoves) {
+TEST(Tilt, AQuietStretchWithAChangingLevelIsNotARest) {
   // Vibration of 0.3 m/s², and a slow acceleration of 2 m/s² with a period of ten seconds.
   const MovingBase base = moving_base({.samples = 6000,
                                        .accel_std_mps2 = 0.0,

@@ -70,7 +70,7 @@ TEST(TrackPva, FindsTheJerkThatDroveTheMotion) {
   EXPECT_LT(found.std_m2ps5, 0.1 * psd);
 }
 
-TEST(TrackPva, SaysNothingOfTheJerkWhereNothingMoved) {
+TEST(TrackPva, DoesNotEstimateTheJerkWithoutMotion) {
   std::vector<double> time_s, accel;
   for (int k = 0; k < 100; ++k) time_s.push_back(0.01 * k), accel.push_back(0.0);
   const std::vector<PvaSample> samples(100, {.resting = true});
@@ -123,7 +123,7 @@ TEST(TrackPva, ForgetsTheBiasInTheTimeOfTheWarmUp) {
       1e-6);
 }
 
-TEST(TrackFused, TwoSensorsHalveTheVarianceAndSayWhatEachTellsAlone) {
+TEST(TrackFused, TwoSensorsHalveTheVarianceAndListTheResultOfEach) {
   CarriageRecord made = record({.noise_std_mps2 = 0.05});
   made.sensor.beside = {beside(made, 0.05, 9)};
   const TrackSolution fused = solved(
@@ -154,7 +154,7 @@ TEST(TrackFused, ADeadSecondSensorCostsOnlyItself) {
   EXPECT_NEAR(fused.smoother->displacement_m.value, alone.smoother->displacement_m.value, 1e-3);
 }
 
-TEST(TrackFused, RefusesWhatIsNoParallelSensor) {
+TEST(TrackFused, RefusesASensorThatIsNotParallel) {
   CarriageRecord made = record({});
   const TrackOptions options{.model = TrackModel::fused, .axis = {{1.0, 0.0, 0.0}}};
   EXPECT_EQ(estimate_track(made.sensor, options).error().code, Errc::invalid_argument);

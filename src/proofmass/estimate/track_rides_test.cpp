@@ -14,7 +14,7 @@ void expect_held(const rides::Held& held) {
 }
 
 // Constant speed is as quiet as rest, and so is constant acceleration.
-TEST(TrackRides, ALiftThatDoesNotShakeWentWhereItWent) {
+TEST(TrackRides, CoverALiftWithoutVibration) {
   const auto held = rides::held_by([](Draw& draw) { return rides::lift(draw, 1, 0.0); }, 1, 12);
   expect_held(held);
   EXPECT_LT(held.rms_m(), 1.0);
@@ -31,7 +31,7 @@ TEST(TrackRides, ACartAtConstantSpeedDoesNotRest) {
 }
 
 // A frame moving at constant speed is equivalent to one at rest.
-TEST(TrackRides, WhereARecordingBeginsUnderWayThereIsNoFigureButAlternatives) {
+TEST(TrackRides, ARecordingThatBeginsInMotionGivesAlternatives) {
   Draw draw(3);
   const rides::RideRecord made = rides::record(rides::begun_under_way(draw), draw);
   const TrackSolution found = estimate_track(made.sensor, {}).value();
@@ -49,7 +49,7 @@ TEST(TrackRides, WhereARecordingBeginsUnderWayThereIsNoFigureButAlternatives) {
   EXPECT_TRUE(holds_truth);
 }
 
-TEST(TrackRides, StrongMotionAlongOneAxisIsNoRest) {
+TEST(TrackRides, StrongMotionAlongOneAxisIsNotARest) {
   const auto held = rides::held_by(rides::shaken, 1, 12);
   EXPECT_GE(held.given, 8);
   EXPECT_GE(held.held, held.given - 1);
@@ -62,14 +62,14 @@ TEST(TrackRides, StrokesShorterThanHalfASecondAreKept) {
   EXPECT_LT(held.rms_m(), 0.01);
 }
 
-TEST(TrackRides, SlowStrokesBetweenShortRestsAreNoRests) {
+TEST(TrackRides, SlowStrokesBetweenShortRestsAreNotRests) {
   const auto held = rides::held_by(rides::slow_strokes, 1, 12);
   expect_held(held);
   EXPECT_LT(held.rms_m(), 0.03);
 }
 
 // Vibration in motion may be aliased and then contributes to the integral of the measurements.
-TEST(TrackRides, WhatShakesInMotionAloneIsInTheBand) {
+TEST(TrackRides, VibrationInMotionIsInTheBand) {
   const auto held = rides::held_by([](Draw& draw) { return rides::lift(draw, 1, 6.0); }, 1, 12);
   EXPECT_EQ(held.given, 12);
   EXPECT_GE(held.held, 10);

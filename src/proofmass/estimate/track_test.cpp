@@ -50,7 +50,7 @@ TEST(Track, WithoutNoiseIsExactToATenthOfAMillimetre) {
   EXPECT_NEAR(found.smoother->displacement_m.value, 0.0, 1e-4);
 }
 
-TEST(Track, ReadingsThatDoNotChangeAtRestAreNoBetterThanTheirStep) {
+TEST(Track, ConstantReadingsAtRestAreAsUncertainAsTheirStep) {
   Carriage carriage{.noise_std_mps2 = 0.0};
   CarriageRecord made = record(carriage);
   for (auto& axis : made.sensor.accel_mps2)
@@ -95,7 +95,7 @@ TEST(Track, CountsThereAndBackWithoutARestBetweenAsOneStroke) {
 }
 
 // At the turning points of a harmonic motion the acceleration is constant for a moment.
-TEST(Track, TakesNoTurningPointForARest) {
+TEST(Track, DoesNotTakeATurningPointAsARest) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Carriage carriage{.strokes_m = {0.5, -0.5, 0.5, -0.5},
                       .stroke_s = 2.5,
@@ -135,7 +135,7 @@ TEST(Track, FusesFixesOfThePosition) {
   EXPECT_LT(fixed.smoother->displacement_m.std, 0.5 * alone.smoother->displacement_m.std);
 }
 
-TEST(Track, ATurnThatTheUserKnowsIsAVelocityOfZero) {
+TEST(Track, AGivenTurnIsAVelocityOfZero) {
   const CarriageRecord made = record({.strokes_m = {0.5, -0.5}, .stroke_s = 5.0, .harmonic = true});
   TrackOptions options = exact_scale();
   options.still = {{0.0, 1.98}, {12.01, 13.98}};
@@ -173,7 +173,7 @@ TEST(Track, RefusesARecordWithoutARestAndSaysWhatToRecord) {
   EXPECT_NE(found.error().message.find("still for 2 s"), std::string::npos);
 }
 
-TEST(Track, SaysThatSlowMotionCannotBeToldFromDrift) {
+TEST(Track, ReportsThatSlowMotionIsNotSeparableFromDrift) {
   const CarriageRecord made = record({.strokes_m = {2.0}, .stroke_s = 20.0});
   const auto found = estimate_track(made.sensor, {});
   ASSERT_FALSE(found);
@@ -246,7 +246,7 @@ TEST(Track, NoticesAColumnThatIsJerkAndGivesNoFigure) {
 }
 
 // The position drift due to a level error between two rests is not evidence for either.
-TEST(Track, TellsJerkFromAccelerationWhateverTheNoise) {
+TEST(Track, DistinguishesJerkFromAccelerationAtAnyNoise) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     EXPECT_TRUE(track(lift(true, seed)).suspected_jerk) << seed;
     EXPECT_FALSE(track(lift(false, seed)).suspected_jerk) << seed;
@@ -262,7 +262,7 @@ TEST(Track, TakesNoCruiseForARest) {
   EXPECT_LT(found.smoother->peak_m.std, 3.0);
 }
 
-TEST(Track, AGyroscopeTellsGravityFromMotion) {
+TEST(Track, AGyroscopeSeparatesGravityAndMotion) {
   // Tilts by 3° during the motion and back: without a gyroscope gravity contributes half a metre
   // per second squared.
   CarriageRecord made = record({.strokes_m = {0.6}, .stroke_s = 4.0, .at_rest_mps2 = {0, 0, g}});

@@ -81,7 +81,7 @@ TEST_P(EveryModel, TwoShortStepsAreALongOne) {
   EXPECT_LT((twice.Q - Q).norm(), 1e-14);
 }
 
-TEST_P(EveryModel, SaysNothingByAMissingReading) {
+TEST_P(EveryModel, IsUnaffectedByAMissingMeasurement) {
   const std::vector<double> series = walk(50);
   std::vector<double> longer{missing, missing, missing};
   longer.insert(longer.end(), series.begin(), series.end());

@@ -151,7 +151,7 @@ TEST(Tune, AFixedParameterStaysAndTheOthersFollow) {
   EXPECT_NEAR(find(found, "reading_variance").value->value, squares / 99.0, 1e-3);
 }
 
-TEST(Tune, ASharedParameterIsKnownBetterThanEachAlone) {
+TEST(Tune, ASharedParameterIsMorePreciseThanEachAlone) {
   const auto x = simulated({.samples = 3000, .step_std = 0.1, .seed = 1});
   const auto y = simulated({.samples = 3000, .reading_std = 2.0, .step_std = 0.1, .seed = 2});
   const std::vector<TuneSeries> both{{"x", 1.0, {x}}, {"y", 1.0, {y}}};

@@ -270,7 +270,7 @@ TEST(UniformSmoother, KeepsFewCovariancesOnceTheyStay) {
   EXPECT_LT(run.summary.covariances.kept(), 2'500U);
 }
 
-TEST(UniformSmoother, TellsInnovationsAndTheirVariances) {
+TEST(UniformSmoother, ReportsInnovationsAndTheirVariances) {
   const auto z = readings(10'000, Missing::a_second);
   for (const auto& model : {three, position_read(three)})
     for (const bool smooth : {true, false}) {

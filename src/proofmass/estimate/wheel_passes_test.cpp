@@ -31,7 +31,7 @@ TEST(BlockVariance, IsOneOfWhiteScoresAndTheLongRunVarianceOfColouredOnes) {
   EXPECT_NEAR(block_ratio(0.8), 9.0, 2.3);
 }
 
-TEST(BlockVariance, OfWhatCancelsIsNoGain) {
+TEST(BlockVariance, OfCancellingScoresIsNotBelowOne) {
   EXPECT_EQ(block_ratio(-0.8), 1.0);
   EXPECT_EQ(BlockVariance{}.ratio(), 1.0);
 }
@@ -186,7 +186,7 @@ TEST(MarkStanding, IsAWheelWhoseReadingsKeepTheirValues) {
 }
 
 // At 0.1 rad/s, a turn in a minute, a wheel moves.
-TEST(MarkStanding, IsNoSlowWheel) {
+TEST(MarkStanding, IgnoresASlowWheel) {
   SlowWheel slow;
   PlanarReadings& sensor = slow.readings.sensors[0];
   test::Normal normal(4);

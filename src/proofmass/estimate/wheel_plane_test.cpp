@@ -155,7 +155,7 @@ TEST(WheelPlane, LeavesOutWhatAGyroscopeReadsAtTheEndOfItsRange) {
   EXPECT_EQ(readings.saturated_speeds, saturated);
 }
 
-TEST(WheelPlane, TakesNothingFromAGyroscopeThatNeverChanges) {
+TEST(WheelPlane, IgnoresAConstantGyroscope) {
   const PlanarReadings readings = with_gyroscope([](double) { return 0.5; });
   EXPECT_EQ(readings.saturated_speeds, readings.speed_radps.size());
   for (const double speed : readings.speed_radps) EXPECT_TRUE(std::isnan(speed));

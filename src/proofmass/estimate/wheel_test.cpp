@@ -342,7 +342,7 @@ TEST(EstimateWheel, AGapInWhichATurnMayHideHasNoTurns) {
   }));
 }
 
-TEST(EstimateWheel, NothingOfACorruptRowReachesAnAnswer) {
+TEST(EstimateWheel, ACorruptRowDoesNotAffectTheResult) {
   const WheelSensor clean = record(lively, {}, 60.0, 10);
   WheelSensor dirty = clean;
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -374,7 +374,7 @@ TEST(EstimateWheel, OutliersAreGatedAndCounted) {
   EXPECT_GE(solution.rejected_samples, solve({clean}).rejected_samples + 5);
 }
 
-TEST(EstimateWheel, AtRestTurnsNothingAndSaysThatTheAxleIsAssumed) {
+TEST(EstimateWheel, AtRestHasZeroTurnsAndNotesTheAssumedAxle) {
   const Drive rest{{0.3, 0.0}, {{6.0, 0.0}}};
   const auto solution = solve({record(rest, {}, 60.0, 11)});
   ASSERT_TRUE(solution.turns.has_value());

@@ -63,7 +63,7 @@ TEST(CalibrateReport, NamesThePositionThatContradictsTheOthersAndWhatToDo) {
   expect_words(calibrate_conclusion(report), {"kept in the fit, as requested"});
 }
 
-TEST(CalibrateReport, SaysThatOneOfSomeIsBadWhereItCannotTellWhich) {
+TEST(CalibrateReport, ReportsAnUnidentifiedBadPosition) {
   CalibrateReport report = fake_calibrate_report();
   report.fit.doubtful = {2, 7};
   expect_words(
@@ -147,7 +147,7 @@ TEST(CalibrateReport, GivesTheReasonOfEveryNull) {
                 "cross_axis[2]: null: the z axis defines the frame\n"});
 }
 
-TEST(CalibrateReport, HasNoStandardDeviationWhereNobodyKnowsTheNoise) {
+TEST(CalibrateReport, HasNoStandardDeviationWithoutNoise) {
   const CalibrateReport report = fake_bare_report();
   const json document = document_of(report);
   EXPECT_TRUE(document["bias"][0]["std"].is_null());

@@ -61,7 +61,7 @@ TEST(DriftVerdict, OfAnExponentialGivesItsSizeAndTimeConstant) {
             "warm-up of 5.00 ± 0.10 mg with time constant 900 ± 20 s");
 }
 
-TEST(DriftVerdict, OfStepsSaysThatTheyAreNoExponential) {
+TEST(DriftVerdict, OfStepsStatesThatTheyAreNotAnExponential) {
   EXPECT_EQ(drift_verdict(fake_steps("x")),
             "no warm-up identified: steps rather than an exponential: 3 steps of up to 4.10 mg");
 }
@@ -236,7 +236,7 @@ TEST(DriftJson, GivesPositionCostsAsHalfBiasTimesTimeSquared) {
               1e-9);
 }
 
-TEST(DriftJson, CountsNoCostOfGravityNorOfWhatIsNoAcceleration) {
+TEST(DriftJson, HasPositionErrorsOnlyForBiasesInAcceleration) {
   ChannelDrift channel = fake_warm_up("z");
   channel.outlook = fake_outlook();
   channel.outlook->forecast->bias = fake_interval(9.81, 0.001);

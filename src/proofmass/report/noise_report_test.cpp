@@ -107,7 +107,7 @@ TEST(LineEffect, IsWhereASineRaisesTheAllanVarianceMost) {
   EXPECT_NEAR(effect.raise, std::sqrt((noise + added(effect.tau_s)) / noise) - 1.0, 1e-12);
 }
 
-TEST(FlickerTau, LiesInTheMinimumOrBetweenTheWhiteNoiseAndTheEnd) {
+TEST(FlickerTau, IsTheMinimumOrBetweenTheWhiteNoiseAndTheEnd) {
   ChannelNoise channel = fake_channel("acc_x");
   characterise::NoiseAnalysis& analysis = *channel.analysis;
   const double meeting_s = std::pow(75.2 / 21.0, 2) / (2.0 * std::numbers::ln2 / std::numbers::pi);

@@ -111,7 +111,7 @@ TEST(SensorDiff, SaysWhatChangedAndWhatItWouldDo) {
       says(findings, "No test of the calibration as a whole: no covariance in OLD and NEW"));
 }
 
-TEST(SensorDiff, SaysThatNothingChanged) {
+TEST(SensorDiff, StatesThatNothingChanged) {
   const auto findings = sensor_diff_findings(diff_of(calibrated(0.1), again(0.103)));
   EXPECT_EQ(findings[0], "The calibration is the same within its uncertainty.");
   EXPECT_FALSE(says(findings, "Changed"));

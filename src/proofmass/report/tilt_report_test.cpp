@@ -7,7 +7,7 @@
 namespace proofmass::report::tilt_report_test {
 namespace {
 
-TEST(TiltReport, GivesANullAndItsReasonWhereThereIsNoRoll) {
+TEST(TiltReport, GivesANullAndItsReasonWithoutARoll) {
   const std::string json = to_json(describe(fake_tilt(false)));
   EXPECT_NE(json.find("\"roll_rad\": null"), std::string::npos);
   EXPECT_NE(json.find("roll_rad: null: the x axis is vertical"), std::string::npos);

@@ -168,7 +168,7 @@ TEST(TumbleItems, AUsersUnitChangesNoFigure) {
   }
 }
 
-TEST(TumbleItems, AChannelThatDoesNotSwingIsRefusedByName) {
+TEST(TumbleItems, AConstantChannelIsRefusedByName) {
   TumbleRecord record = drawn(1, 1e-3);
   record.channels[1].name = "z";
   std::ranges::fill(record.channels[1].output, 0.2);

@@ -74,7 +74,7 @@ TEST(ErrataChapter4, TheOtherFormsOfCovarianceAndGainAreRight) {
 }
 
 // (4.11): K = 0, x̂[k] = x̂[k−1]; P⁻ goes to zero if measurements are not trusted.
-TEST(ErrataChapter4, WithoutTrustInTheReadingThePredictionStaysAndNotTheFormerEstimate) {
+TEST(ErrataChapter4, WithInfiniteRThePredictionRemainsNotThePreviousEstimate) {
   const OneReading one(1e15);
   EXPECT_LT(one.gain().norm(), 1e-13);
   EXPECT_LT((one.filtered.mean - one.predicted.mean).norm(), 1e-12);
@@ -83,7 +83,7 @@ TEST(ErrataChapter4, WithoutTrustInTheReadingThePredictionStaysAndNotTheFormerEs
 }
 
 // (4.12): K = H⁻¹, x̂ = H⁻¹ y as R goes to zero. H has one row and three columns.
-TEST(ErrataChapter4, AnExactReadingTellsWhatItReadsAndNoMore) {
+TEST(ErrataChapter4, AnExactMeasurementDeterminesOnlyTheMeasuredQuantity) {
   const OneReading one(1e-12);
   EXPECT_NEAR(one.filtered.mean(2), one.reading_mps2, 1e-10);
   EXPECT_NEAR(one.model.H.row(0).dot(one.gain()), 1.0, 1e-11);  // all that remains of (4.12) is H
@@ -110,7 +110,7 @@ TEST(ErrataChapter4, TheGainIsInProportionNeitherToQNorToOneOverR) {
 }
 
 // 4.1.4: "The initial guess of P is large which reflect less confidence on the measurement".
-TEST(ErrataChapter4, AWideStartBelievesTheFirstReading) {
+TEST(ErrataChapter4, AWidePriorGivesTheFirstMeasurementFullWeight) {
   EXPECT_GT(study(1.0, 1.0, 100.0).instants.front().gain[2], 0.98);
   EXPECT_LT(study(1.0, 1.0, 0.01).instants.front().gain[2], 0.25);
 }

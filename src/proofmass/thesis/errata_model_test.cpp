@@ -34,7 +34,7 @@ double position_after_ten_seconds(const estimate::LinearModel<3, 1>& model) {
 }
 
 // (4.45): y = [1 0 0] x + v.
-TEST(ErrataChapter4, AReadingOfTheAccelerationIsNoReadingOfThePosition) {
+TEST(ErrataChapter4, AMeasurementOfTheAccelerationIsNotOneOfThePosition) {
   estimate::LinearModel<3, 1> model = pva(0.1);
   EXPECT_EQ(model.H, (Mat<1, 3>(0.0, 0.0, 1.0)));
   EXPECT_NEAR(position_after_ten_seconds(model), 50.0, 1e-3);
@@ -43,7 +43,7 @@ TEST(ErrataChapter4, AReadingOfTheAccelerationIsNoReadingOfThePosition) {
 }
 
 // (4.44): "in discrete form", x[k] = [0 1 0; 0 0 1; 0 0 0] x[k−1] + …
-TEST(ErrataChapter4, TheMatrixOfADifferentialEquationIsNoTransition) {
+TEST(ErrataChapter4, TheMatrixOfADifferentialEquationIsNotATransition) {
   Mat<3, 3> A;
   A << 0, 1, 0, 0, 0, 1, 0, 0, 0;
   const Mat<3, 3> cube = A * A * A;

@@ -58,7 +58,7 @@ TEST(ErrataChapter2, HalfBiasTimesTimeSquaredHoldsForMinutesAndNotForAnHour) {
 }
 
 // 2.4.3: "for performance goal of 1 %, initial alignment error must not exceed by 8°". Correct.
-TEST(ErrataChapter2, EightDegreesCostOnePercentOfTheScaleAndNothingOfTheBias) {
+TEST(ErrataChapter2, EightDegreesChangeTheScaleByOnePercentAndNotTheBias) {
   const double off = 8.0 * rad_per_deg;
   const auto found = calibrate::four_point({.E0 = g * std::sin(off),
                                             .E90 = g * std::cos(off),
@@ -92,7 +92,7 @@ TEST(ErrataChapter2, TheDatasheetsCrossAxisSensitivityIsHalfTheBiasOfTable51) {
 }
 
 // (2.4): E = K1 + K1 A + K0 + ε.
-TEST(ErrataChapter2, AScaleFactorThatStandsAloneIsReadWhereNothingActs) {
+TEST(ErrataChapter2, AnAdditiveScaleFactorIsMeasuredWithoutInput) {
   const sensor::ModelEquation volts{.K1 = 0.330 / g, .K0 = 0.2};
   const auto printed = [&](double accel) { return volts.K1 + volts.K1 * accel + volts.K0; };
   for (const double accel : {-g, 0.0, 3.0}) {

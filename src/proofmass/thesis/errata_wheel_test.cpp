@@ -155,7 +155,7 @@ TEST(ErrataAppendixA, TheTorqueOfAMotorFallsAlongALine) {
 }
 
 // Table A.1: "DC controller Current settings(A)", 2 to 7.
-TEST(ErrataAppendixA, TheSettingsOfTheControllerAreNoAmperes) {
+TEST(ErrataAppendixA, TheSettingsOfTheControllerAreNotAmperes) {
   constexpr double hp_w = 745.7, full_load_a = 1.27, supply_v = 90.0;  // A.2.1
   EXPECT_GT(2.0, 1.5 * full_load_a);
   EXPECT_GT(7.0 * supply_v, 5.0 * full_load_a * supply_v);

@@ -78,7 +78,7 @@ TEST(StaticTest, FindsTheWarmUpThatWasSimulated) {
   }
 }
 
-TEST(StaticTest, PlainLeastSquaresAreOffByMoreThanTheyBelieve) {
+TEST(StaticTest, PlainLeastSquaresUnderestimateTheirError) {
   double squares = 0.0;
   for (const AxisTest& axis : half_an_hour().axes) {
     const double error =

@@ -112,7 +112,7 @@ TEST(ThesisPaths, GainSettlesAtTheClosedFormOfItsModel) {
   EXPECT_GT(paths.gain.front(), 0.999);
 }
 
-TEST(ThesisPaths, SmootherKnowsNoMoreThanTheFilterAtTheEnd) {
+TEST(ThesisPaths, SmootherEqualsTheFilterAtTheEnd) {
   const ThesisPaths paths = thesis_paths(noisy_reading(400, 9)).value();
   EXPECT_DOUBLE_EQ(paths.smoothed_m.back(), paths.filtered_m.back());
   EXPECT_DOUBLE_EQ(paths.smoothed_std_m.back(), paths.filtered_std_m.back());
