@@ -28,7 +28,7 @@ class Guided(CommandTest):
         count = len(self.rests())
         self.assertIn(count, range(12, 15))
         self.assertEqual(said.count(" taken: "), count)
-        self.assertIn("→ Position 1: lay it with +z straight up", said)
+        self.assertIn("→ Position 1: place it with +z straight up", said)
         self.assertIn(f"{count} positions: the accuracy at 1 g is", said)
         self.assertIn("To do this again: proofmass calibrate run.mcap --rests run.rests.csv", said)
         self.assertEqual(len(document["positions"]), count)

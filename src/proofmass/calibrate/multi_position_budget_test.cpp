@@ -141,7 +141,7 @@ TEST(CheckByMonteCarlo, ConfirmsTheBudgetOfAGoodCalibration) {
     EXPECT_NEAR(one.drawn_std / one.budget_std, 1.0, 0.2);
     EXPECT_NEAR(one.inside, 0.95, 0.06);
   }
-  EXPECT_EQ(check.verdict.find("200 calibrations of drawn readings confirm the budget"), 0U);
+  EXPECT_EQ(check.verdict.find("200 calibrations of simulated data confirm the budget"), 0U);
 }
 
 TEST(CheckByMonteCarlo, TakesUnstatedNoiseFromTheResiduals) {

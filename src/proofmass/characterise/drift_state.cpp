@@ -177,7 +177,7 @@ PlacedCurve place(const DriftEvidence& evidence, const DriftTrial& trial) {
                                       (trial.fit.density.cwiseInverse().asDiagonal() * rows))
                    : MatrixXd(0, 0);
   const Functionals found = functionals(evidence, trial, J, residual);
-  // [a2; slow_noise since 0]: level less the walk since 0, and the walk's end less its start.
+  // [a2; slow noise since 0]: level less the walk since 0, and the walk's end less its start.
   MatrixXd turn = MatrixXd::Zero(1 + terms, found.value.size());
   turn(0, 0) = turn(0, 1) = 1.0;
   turn(1, 1) = -1.0;
@@ -187,7 +187,7 @@ PlacedCurve place(const DriftEvidence& evidence, const DriftTrial& trial) {
   MatrixXd of_values =
       turn * found.covariance * turn.transpose() + sensitivity * of_curve * sensitivity.transpose();
   add_unseen(evidence, trial, of_values);
-  const MatrixXd cross = (of_curve * sensitivity.transpose());  // curve by [a2; slow_noise]
+  const MatrixXd cross = (of_curve * sensitivity.transpose());  // curve by [a2; slow noise]
 
   PlacedCurve placed;
   MatrixXd all(1 + own + terms, 1 + own + terms);

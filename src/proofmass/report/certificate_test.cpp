@@ -42,7 +42,7 @@ CertificateData fake_certificate() {
                        .positions = 24,
                        .budgets = {},
                        .not_determined = {},
-                       .monte_carlo = "200 calibrations of drawn readings confirm the budget.",
+                       .monte_carlo = "200 calibrations of simulated data confirm the budget.",
                        .limits = {"The cross-axis sensitivity of the case."}};
   for (std::size_t axis = 0; axis < 3; ++axis)
     data.budgets.push_back(bias(axis, 1.5 + 0.01 * static_cast<double>(axis)));
