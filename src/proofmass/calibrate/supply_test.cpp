@@ -150,7 +150,7 @@ TEST(FitSupply, ReportsANonlinearDependence) {
   points[2].bias[0]->value += 0.05;
   const auto found = fit_supply(points).value();
   ASSERT_EQ(found.notes.size(), 1U);
-  EXPECT_NE(found.notes[0].find("x: its zero lies off the line"), std::string::npos);
+  EXPECT_NE(found.notes[0].find("x: its zero deviates from the line"), std::string::npos);
   EXPECT_GT(found.axes[0]->fraction.std, 0.01);
 }
 

@@ -422,8 +422,8 @@ TEST(AnalyseNoise, ReportsOutliersAndStepsAndExcludesThemOnRequest) {
   EXPECT_EQ(dropped.events.size(), kept.events.size());
   EXPECT_EQ(kept.missing, 0U);
   EXPECT_GT(dropped.missing, 0U);
-  EXPECT_TRUE(says(kept, "are in the figures"));
-  EXPECT_TRUE(says(dropped, "steps excluded"));
+  EXPECT_TRUE(says(kept, "included in the figures"));
+  EXPECT_TRUE(says(dropped, " excluded"));
   const DeviationPoint &of_kept = kept.deviation.points.back(),
                        &of_dropped = dropped.deviation.points.back(),
                        &of_clean = clean.deviation.points.back();
