@@ -139,7 +139,7 @@ int main(int argc, char** argv) {
   const double memory =
       peak_mib() / (static_cast<double>(n * axes * sizeof(double)) / (1024.0 * 1024.0));
   volatile double sink = 0.0;
-  const double knocks = timed([&] {
+  const double outliers = timed([&] {
     for (const Channel& channel : recording.channels)
       sink = static_cast<double>(signal::find_events(channel.values, {.rate_hz = rate_hz}).size());
   });
@@ -160,7 +160,7 @@ int main(int argc, char** argv) {
   }
   line("reading, and a plain C++ loop of the same fit", read + loop, scipy.all());
   line("reading", read, 0.0);
-  line("of the analysis: knocks and steps", knocks, 0.0);
+  line("of the analysis: knocks and steps", outliers, 0.0);
   line("reading and analysis", read + drift, scipy.all());
   std::printf("  %.2f x the plain loop; memory: %.1f x the data, the data included\n",
               (read + loop) / (read + drift), memory);

@@ -8,7 +8,7 @@
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/signal/audit.hpp"
 
-/// Reads and audits bytes of any kind, and holds what comes back to what every reader promises.
+/// Reads and audits arbitrary bytes, and checks the guarantees common to all readers.
 inline void check_reading(std::span<const std::byte> bytes) {
   const auto require = [](bool kept) {
     if (!kept) std::abort();
@@ -27,7 +27,7 @@ inline void check_reading(std::span<const std::byte> bytes) {
   require(time.is_uniform() || time.stamps_s.size() == read->samples());
   require(std::isfinite(time.rate_hz) && time.rate_hz >= 0.0);
   for (const double stamp_s : time.stamps_s) require(std::isfinite(stamp_s));
-  std::size_t unlabelled = 0;  // the first sample that may begin a label
+  std::size_t unlabelled = 0;  // first sample at which a label may begin
   for (const proofmass::Label& label : read->labels) {
     require(label.first >= unlabelled && label.last >= label.first);
     require(label.last < read->samples() && !label.text.empty());

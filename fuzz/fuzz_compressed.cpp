@@ -3,7 +3,7 @@
 
 #include "check_reading.hpp"
 
-// The magics are put before the bytes in turn.
+// Each magic number in turn is prepended to the input.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using Bytes = std::vector<std::uint8_t>;
   for (Bytes file :

@@ -16,7 +16,7 @@ void require(bool kept) {
   if (!kept) std::abort();
 }
 
-/// The first byte chooses among these.
+/// The first byte of the input selects the options.
 FramingOptions options_for(unsigned choice) {
   constexpr std::array<std::string_view, 10> settings{
       "time=none",
@@ -40,7 +40,7 @@ FramingOptions options_for(unsigned choice) {
   return framing_options(uri, Carrier::datagrams).value();
 }
 
-/// Holds an arrival to what every source promises.
+/// Checks the guarantees common to all sources.
 void drain(Decoder& decoder, std::uint64_t& rows) {
   Arrival arrival;
   for (bool more = true; more;) {
@@ -53,7 +53,7 @@ void drain(Decoder& decoder, std::uint64_t& rows) {
   }
 }
 
-/// All that comes of the bytes in pieces; the number of rows.
+/// Decodes the input in pieces; returns the number of rows.
 std::uint64_t decode(std::string_view bytes, const FramingOptions& options, std::size_t piece) {
   const auto made = Decoder::make(options);
   require(made.has_value());
@@ -94,7 +94,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const FramingOptions options = options_for(data[0]);
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const std::uint64_t rows = decode(bytes, options, std::max<std::size_t>(bytes.size(), 1));
-  // Where a datagram is cut matters, and when text came tells the unit of its clock.
+  // Not compared for datagrams, whose boundaries matter, or for clocks whose unit depends on the
+  // arrival time.
   const std::uint64_t in_pieces = decode(bytes, options, 7);
   if (options.framing != Framing::lines && options.carrier != Carrier::datagrams)
     require(in_pieces == rows);

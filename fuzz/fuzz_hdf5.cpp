@@ -19,7 +19,7 @@ void require(bool kept) {
   if (!kept) std::abort();
 }
 
-/// Bytes as a pipe gives them.
+/// Feeds bytes as from a pipe.
 io::ByteFeed feed_of(std::string_view& bytes) {
   return [&bytes](std::span<char> into) -> Result<std::size_t> {
     const std::size_t count = std::min(into.size(), bytes.size());
@@ -29,7 +29,7 @@ io::ByteFeed feed_of(std::string_view& bytes) {
   };
 }
 
-// What is made of a list of contents before a figure is read.
+// Selects datasets from a list of contents, before any values are read.
 void choose_from(std::string_view bytes) {
   const auto catalogue = io::decode(bytes);
   if (!catalogue) return;
@@ -51,7 +51,7 @@ void choose_from(std::string_view bytes) {
   io::tell_texts(*catalogue, choice->tables, notes);
 }
 
-// What a child that a file has taken over might say for a list.
+// Input as the list of contents from a compromised child process.
 void listen_to(std::string_view bytes) {
   std::string said;
   const io::ByteTaker take = [&](std::span<const char> piece) -> Status {
@@ -61,7 +61,7 @@ void listen_to(std::string_view bytes) {
   if (io::take_message(feed_of(bytes), take)) choose_from(said);
 }
 
-// What it might say for figures.
+// Input as the values from a compromised child process.
 void take_figures(std::string_view bytes) {
   using enum io::Hdf5Figures;
   std::vector<io::Hdf5Request> requests{{.name = "a", .rows = 20, .width = 3},
@@ -82,11 +82,10 @@ void take_figures(std::string_view bytes) {
 
 }  // namespace
 
-// The library that unpacks the file is not ours to mend, and it runs in a process of its own: a
-// process for every input would make a few a second. So the bytes are taken for what such a process
-// says, of the contents and of the figures, and for the list of contents in it; that files of any
-// bytes are read or refused, however the library takes them, is the business of
-// io/hdf5/hdf5_test.cpp.
+// The library that decodes the file is not under test, and it runs in a process of its own, which
+// would limit the fuzzer to a few inputs per second. The input is therefore used as that process's
+// messages (contents, values) and as a list of contents. io/hdf5/hdf5_test.cpp checks that arbitrary
+// files are read or refused whatever the library does.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   listen_to(bytes);

@@ -4,7 +4,7 @@
 
 #include "proofmass/io/positions/interval_list.hpp"
 
-/// Reads bytes of any kind as a list of intervals, and holds what comes back to what it promises.
+/// Reads arbitrary bytes as a list of intervals, and checks the guarantees of the result.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto require = [](bool kept) {
     if (!kept) std::abort();

@@ -1,5 +1,5 @@
-// The files of an export, stored in a zip made here, so that what is fuzzed is what they say of one
-// another and not the archive: the input is divided at bytes of zero.
+// The files of an export, stored in a zip archive made here, so that the fuzzer acts on their
+// contents and not on the archive. The input is split at zero bytes.
 #include <algorithm>
 #include <array>
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 #include "check_reading.hpp"
 
-// The first words are put before the bytes, so that none of them is spent on finding them.
+// Prepends the file's first words, which the fuzzer would rarely find.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string file =
       "LabVIEW Measurement" + std::string(reinterpret_cast<const char*>(data), size);

@@ -25,8 +25,8 @@ std::string packed(const std::string& variable) {
 
 }  // namespace
 
-// The bytes are taken for a file of version 4, and for variables of version 5 in either order of
-// bytes, compressed too: chance does not find a checksum.
+// The input is used as a file of version 4, and as variables of version 5 in either byte order,
+// also compressed, with a valid checksum, which the fuzzer would not find.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   std::string text = "MATLAB 5.0 MAT-file";

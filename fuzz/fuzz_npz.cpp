@@ -5,8 +5,8 @@
 #include "check_reading.hpp"
 #include "proofmass/io/numpy/npz_specimens.hpp"
 
-// The bytes are taken for arrays less their magic, parted by the word NEXT, and put into an archive
-// with the checksums that chance does not find.
+// The input is used as arrays without their magic numbers, separated by the word NEXT, in an
+// archive with valid checksums, which the fuzzer would not find.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string rest(reinterpret_cast<const char*>(data), size);
   std::vector<proofmass::io::specimen::ZipMember> members;

@@ -4,8 +4,8 @@
 
 #include "proofmass/io/parquet/child.hpp"
 
-// DuckDB unpacks the file in a process of its own, which is not ours to mend: the bytes are taken
-// for what such a process says of the contents.
+// DuckDB decodes the file in a process of its own and is not under test: the input is used as that
+// process's list of contents.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   (void)proofmass::io::parquet_head_bytes(bytes);

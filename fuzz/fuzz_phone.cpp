@@ -11,7 +11,7 @@
 #include "proofmass/acquire/phone/sensor_merge.hpp"
 #include "proofmass/acquire/phone/sensor_server_messages.hpp"
 
-// What phones say, in place of which anybody may say anything.
+// Messages of phones, which come from an untrusted peer.
 namespace {
 
 using namespace proofmass::acquire;
@@ -30,7 +30,7 @@ void check_config(std::string_view text) {
     require(!group.buffers.empty() && group.buffers.size() == group.units.size());
 }
 
-/// Two answers one after the other, as while it is recorded.
+/// Two successive responses, as during a recording.
 void check_replies(std::string_view first, std::string_view second) {
   PhyphoxCursor cursor;
   PhyphoxReply reply;
@@ -47,7 +47,7 @@ void check_replies(std::string_view first, std::string_view second) {
   }
 }
 
-/// Messages, one a line, of two sensors in turn.
+/// Messages of two sensors in alternation, one per line.
 void check_messages(std::string_view lines) {
   SensorMerge merge({1, 2});
   SensorMessage message;
@@ -71,7 +71,7 @@ void check_messages(std::string_view lines) {
 
 }  // namespace
 
-/// The first byte chooses what is said.
+/// The first byte of the input selects the kind of message.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);

@@ -20,8 +20,8 @@ constexpr std::array<std::string_view, 13> names{
     "00_start_s.npy", "00_min.npy", "00_max.npy",      "00_nonfinite.npy", "01_start_s.npy",
     "01_min.npy",     "01_max.npy", "01_nonfinite.npy"};
 
-/// Entries behind one another: a byte for the name, two for the length, the bytes. A zip around
-/// them would only be in the way: its checksums tell every change.
+/// Concatenated entries: one byte for the name, two for the length, then the data. Replaces the zip
+/// archive, whose checksums would reject nearly all mutations.
 class PlainArchive final : public proofmass::io::Archive {
  public:
   explicit PlainArchive(std::string_view rest) {

@@ -25,7 +25,8 @@ Saved salvaged(std::span<const std::byte> file) {
 
 }  // namespace
 
-// What is saved of any bytes is a file that is whole, of which everything is saved.
+// A file recovered from arbitrary bytes must be intact, and recovering it again must keep
+// everything.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto require = [](bool kept) {
     if (!kept) std::abort();

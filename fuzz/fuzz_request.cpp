@@ -9,8 +9,8 @@
 #include "proofmass/serve/gate.hpp"
 #include "proofmass/serve/request_head.hpp"
 
-// A request as a peer sends it: the parser, the gate, the target, and the folder that a name in it
-// must not lead out of.
+// A request as sent by a peer: parser, access check and target, and the folder that a name in the
+// request must not leave.
 
 using namespace proofmass::serve;
 

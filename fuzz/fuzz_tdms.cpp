@@ -9,7 +9,7 @@
 
 namespace {
 
-/// Every table of the file, a few rows at a time.
+/// Reads every table of the file in blocks of a few rows.
 void read_all_tables(std::span<const std::byte> bytes) {
   using namespace proofmass::io;
   auto source = std::make_unique<PeekSource>(open_memory(bytes));
@@ -36,7 +36,7 @@ void read_all_tables(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-// The magic is put before the bytes, so that none of them is spent on finding it.
+// Prepends the magic number, which the fuzzer would rarely find.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::vector<std::uint8_t> file{'T', 'D', 'S', 'm'};
   file.insert(file.end(), data, data + size);

@@ -1,5 +1,5 @@
-// Recordings of 2 to 200 samples, of any scale, through every verb that reads one, from its flags
-// to its document: what comes of it is a document of numbers, or one line that says why not.
+// Recordings of 2 to 200 samples of any scale through every verb that reads one, from flags to
+// document. The result must be a valid document, or a one-line error.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -25,7 +25,8 @@ namespace {
 
 using namespace proofmass;
 
-// Each with its flags; the recording's name goes behind the verb, the folder before what it writes.
+// Flags of each verb; the recording's name is inserted after the verb, the folder before each
+// output.
 constexpr std::array command_lines = std::to_array<std::string_view>({
     "inspect",
     "convert -o out.csv",
@@ -56,7 +57,7 @@ constexpr std::array command_lines = std::to_array<std::string_view>({
     "tune --model rest",
 });
 
-/// Where the recording and what is made of it lie.
+/// Folder of the recording and the results.
 std::string& folder() {
   static std::string path;
   return path;
@@ -66,7 +67,7 @@ void require(bool kept) {
   if (!kept) std::abort();
 }
 
-/// Bytes as choices; zeros once they are used up.
+/// Choices from the bytes of the input; zeros at its end.
 class Choices {
  public:
   Choices(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -86,7 +87,7 @@ void append(std::string& text, double value, char end) {
   text += end;
 }
 
-/// A figure of the recording: what the bytes say, or a wheel's that turns, with a little noise.
+/// A sample of the recording: from the input, or that of a rotating wheel with a little noise.
 double figure_of(Choices& choices, std::size_t row, unsigned axis, double scale) {
   const double turn = 0.2 * static_cast<double>(row);
   const std::array wheel{9.8 * std::sin(turn), 9.8 * std::cos(turn), 0.05};
@@ -114,7 +115,7 @@ std::string recording_of(Choices& choices) {
     append(text, time_s, ',');
     for (unsigned axis = 0; axis < 3; ++axis)
       append(text, figure_of(choices, row, axis, scale), axis < 2 ? ',' : '\n');
-    // Somewhere the stamps repeat, jump, or go back.
+    // At one row the stamps repeat, jump, or run backwards.
     const double steps = row == odd_step ? static_cast<double>(odd_step % 5) * 40.0 - 40.0 : 1.0;
     time_s += steps / rate_hz;
   }
@@ -131,7 +132,7 @@ std::vector<std::string> words_of(std::string_view line) {
   return words;
 }
 
-/// Nothing of a library's, of a contract's or of the language's.
+/// A refusal must not come from a library, a violated contract or the language's runtime.
 void check_refusal(std::string_view message) {
   require(!message.empty() && message.find('\n') == std::string_view::npos);
   for (const std::string_view foreign : {"boost", "Error in function", "contract", "std::"})
@@ -151,7 +152,7 @@ void run_command(std::vector<std::string> words) {
   }
   std::ifstream file(folder() + "/document.json", std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(file), {});
-  require(nlohmann::json::accept(text));  // NaN is none
+  require(nlohmann::json::accept(text));  // rejects NaN
 }
 
 }  // namespace

@@ -3,8 +3,7 @@
 
 #include "check_reading.hpp"
 
-// The bytes are taken for the chunks of a file, in either order of bytes and with lengths of 64
-// bits.
+// The input is used as the chunks of a file, in either byte order and with 64-bit lengths.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   for (const char* form : {"RIFF", "RIFX", "RF64"}) {
     const std::string file =

@@ -1,5 +1,5 @@
-// Packets' checksums are set right, so that what stands in them is reached: the input is packets'
-// kinds and data, sent as the device does, and behind a byte of ones whatever it is.
+// Packets with corrected checksums, so that their content is decoded: the input is kind and data of
+// each packet, sent in the device's format; after a byte of ones, the rest is sent unchanged.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -11,7 +11,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string bytes = proofmass::io::specimen::ximu_date_time(1) +
                       proofmass::io::specimen::ximu_inertial({0, 0, 0, 0, 0, 2048, 0, 0, 0});
-  constexpr std::uint8_t raw = 0xFF;  // what follows is sent as it is
+  constexpr std::uint8_t raw = 0xFF;  // the rest is sent unchanged
   std::size_t at = 0;
   while (at < size && data[at] != raw) {
     const std::uint8_t kind = data[at++] % 20;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the specimens in fuzz/corpus/hdf5, from which the fuzzer starts and which io/hdf5/hdf5_test.cpp
-reads. By hand, with h5py 3.7 and NumPy: the files are kept, as other versions write other bytes.
+"""Writes the seed files in fuzz/corpus/hdf5, which io/hdf5/hdf5_test.cpp reads, too. Run by hand with h5py 3.7
+and NumPy; the files are in the repository, since other versions write different bytes.
 The list of contents beside them, groups.contents, is encode(list_hdf5()) of groups.h5."""
 from pathlib import Path
 
@@ -13,12 +13,12 @@ K = np.arange(N)
 
 
 def vectors(first, width=3):
-    """Row k, column c: first + c + k / 4, which every type here holds exactly."""
+    """Row k, column c: first + c + k / 4, exactly representable in all types used here."""
     return first + np.arange(width)[None, :] + K[:, None] / 4
 
 
 def tiny():
-    """As short as a file with numbers can be: they lie in the dataset's header."""
+    """The shortest possible file with numbers, which are in the dataset's header."""
     with h5py.File(FOLDER / "tiny.h5", "w", libver="latest") as f:
         layout = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
         layout.set_layout(h5py.h5d.COMPACT)
@@ -116,7 +116,7 @@ def frame(kind, data=b""):
 
 
 def messages():
-    """What a child process says: of the contents, and of 20 samples of five columns."""
+    """Messages of a child process: the contents, and 20 samples of five columns."""
     contents = (FOLDER / "groups.contents").read_bytes()
     (FOLDER / "contents.message").write_bytes(frame(b"data", contents) + frame(b"end "))
     figures = [vectors(1)[:20].T, 5_000_000 * K[:20] - 7, K[:20].astype("<u8")]

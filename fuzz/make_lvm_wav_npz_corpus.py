@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the specimens in fuzz/corpus/lvm, wav and npz, less the first bytes that the fuzzers put before
-them. By hand: the files are kept."""
+"""Writes the seed files in fuzz/corpus/lvm, wav and npz, without the first bytes, which the fuzzers prepend.
+Run by hand; the files are in the repository."""
 import struct
 from pathlib import Path
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes the specimens that fuzz_mcap and fuzz_recover start from: corpus/mcap and, of files that are
-broken, corpus/recover, less the magic that they put before them. Chunks have no checksum (0), so that
-changing their bytes is not in vain; one has.
+"""Writes the seed files of fuzz_mcap (corpus/mcap) and, damaged, of fuzz_recover (corpus/recover), without
+the magic number, which the fuzzers prepend. All chunks but one have no checksum (0), so that mutations are
+not rejected.
 
     fuzz/make_mcap_corpus.py
 """
@@ -45,13 +45,13 @@ def message(number, log_ns, data):
 
 
 def stored_zstd(data):
-    """A frame of one block that is not compressed."""
+    """A frame of one uncompressed block."""
     return (b"\x28\xB5\x2F\xFD\xA0" + struct.pack("<I", len(data))
             + struct.pack("<I", 1 | len(data) << 3)[:3] + data)
 
 
 def repeated_zstd(byte, count):
-    """A frame of one block that is one byte again and again."""
+    """A frame of one run-length block."""
     return (b"\x28\xB5\x2F\xFD\xA0" + struct.pack("<I", count)
             + struct.pack("<I", 1 | 1 << 1 | count << 3)[:3] + byte)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes the specimens of fuzz_pyramid: the arrays of small pyramids, as numpy writes them."""
+"""Writes the seed files of fuzz_pyramid: the arrays of small pyramids in numpy's format."""
 import io
 import pathlib
 import struct

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes fuzz/corpus/tdms: small TDMS files of every feature that the reader knows, each without
-its first four bytes, which the fuzzer puts before them.
+"""Writes fuzz/corpus/tdms: small TDMS files with every feature that the reader supports, each without
+its first four bytes, which the fuzzer prepends.
 
     fuzz/make_tdms_corpus.py
 """
@@ -12,7 +12,7 @@ I16, I32, F64, TEXT, BOOL, INSTANT, EXTENDED = 2, 3, 10, 0x20, 0x21, 0x44, 0x0B
 
 
 class Writer:
-    """Figures and objects in one byte order."""
+    """Writes numbers and objects in one byte order."""
 
     def __init__(self, order="<"):
         self.order = order

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Makes corpus/verbs: for each command line of fuzz_verbs.cpp a wheel that turns, a rest, steps between
-positions and noise, at one scale or another."""
+"""Makes corpus/verbs: for each command line of fuzz_verbs.cpp a rotating wheel, a rest, steps between
+positions, and noise, at various scales."""
 import random
 from pathlib import Path
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the specimens that fuzz_zip, fuzz_layout and fuzz_ximu start from: fuzz/corpus/zip,
-fuzz/corpus/layout, fuzz/corpus/ximu. Run again, it writes the same bytes."""
+"""Writes the seed files of fuzz_zip, fuzz_layout and fuzz_ximu: fuzz/corpus/zip, fuzz/corpus/layout,
+fuzz/corpus/ximu. The output is reproducible."""
 import gzip
 import io
 import pathlib

@@ -24,15 +24,15 @@ struct VerbText {
 struct Verb {
   VerbText text;
   std::function<void(CLI::App& verb)> add_flags;
-  std::function<Files()> files;  ///< that the command names
+  std::function<Files()> files;  ///< named on the command line
   std::function<void()> run;     ///< throws Failure
   OutputFlags* output = nullptr;
   InputFlags* input = nullptr;  ///< null: reads no recordings
-  std::any command{};           ///< std::shared_ptr to it, for its flags alone
+  std::any command{};           ///< std::shared_ptr to the command that the flags fill in
 };
 
-/// `add_flags` binds the flags to a command, `run` carries it out. The command has a member
-/// `output`, and `input` if it reads recordings.
+/// `add_flags` binds the flags to a command, `run` executes it. The command has a member `output`,
+/// and `input` if it reads recordings.
 template <class Command>
 [[nodiscard]] Verb make_verb(VerbText text,
                              void (*add_flags)(CLI::App&, Command&),

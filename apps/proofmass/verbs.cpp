@@ -2,7 +2,7 @@
 
 namespace proofmass::app {
 
-// Each is defined beside its flags, in a source of its name.
+// Each is defined next to its flags, in a source of its name.
 Verb budget_verb();
 Verb calibrate_verb();
 Verb convert_verb();

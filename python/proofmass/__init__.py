@@ -1,4 +1,4 @@
-"""Accelerometer readings to angle and position with honest error bars.
+"""Angle and position from accelerometers, with honest error bars.
 
 >>> import numpy as np, proofmass as pm
 >>> x = np.random.default_rng(1).normal(scale=0.1, size=20000)

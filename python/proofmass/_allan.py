@@ -1,4 +1,4 @@
-"""The Allan family of an array."""
+"""Deviations of the Allan family for arrays."""
 from __future__ import annotations
 
 import warnings
@@ -20,23 +20,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Deviation:
-    """A deviation curve; arrays of one length, ascending in `tau_s`.
+    """A deviation curve; arrays of equal length, ascending in `tau_s`.
 
     Attributes
     ----------
     statistic : str
     confidence : float
-        Of the limits.
+        Confidence level of the limits.
     tau_s, deviation, lower, upper : ndarray
         Averaging time, the deviation in the unit of the samples, and its limits.
     uncorrected : ndarray
-        Before the correction for the statistic's bias.
+        Deviation before the correction for the statistic's bias.
     edf : ndarray
         Equivalent degrees of freedom of the variance.
     alpha : ndarray of int
         Noise type, a spectrum ∝ f^alpha: 2 … -4.
     m, terms : ndarray of int
-        Averaging factor, and how many squared differences are behind a point.
+        Averaging factor, and number of squared differences in a point.
     """
 
     statistic: str
@@ -53,7 +53,7 @@ class Deviation:
     terms: NDArray[np.int64]
 
     def to_pandas(self) -> "pandas.DataFrame":
-        """The points, one a row."""
+        """The points, one per row."""
         import pandas
 
         columns = ("deviation", "lower", "upper", "edf", "alpha", "m", "terms")
@@ -61,7 +61,7 @@ class Deviation:
         return pandas.DataFrame({name: getattr(self, name) for name in columns}, index=index)
 
     def plot(self, ax: Any = None) -> Any:
-        """On logarithmic axes, with its limits; gives the axes."""
+        """Plot on logarithmic axes, with limits; returns the axes."""
         import matplotlib.pyplot as plt  # type: ignore[import]
 
         if ax is None:
@@ -86,36 +86,36 @@ def allan(
     exclude_events: bool = False,
     progress: Progress = None,
 ) -> Deviation:
-    """Deviation of the Allan family, with limits, of evenly sampled values.
+    """Deviation of the Allan family, with limits, for evenly sampled values.
 
     Parameters
     ----------
     x : array_like, shape (n,)
-        Samples, NaN where one is missing. Contiguous doubles are not copied.
+        Samples, NaN if missing. Contiguous doubles are not copied.
     rate_hz : float
-        Samples a second.
+        Samples per second.
     statistic : str
         oadev, adev, mdev, tdev, hdev, ohdev, totdev, mtotdev, ttotdev, htotdev, theo1 or pdev.
     taus : str or sequence of float, optional
-        "octave", "decade", "all", "16-per-decade" (where nothing is given), or times in seconds.
+        "octave", "decade", "all", "16-per-decade" (default), or times in seconds.
     data : str
         "rate", the quantity itself, or "phase", its integral over time.
     confidence : float
-        Of the limits.
+        Confidence level of the limits.
     noise_type : str or int
-        On which the limits hang: "auto", "lag1", or the power of f from -4 to 2.
+        Noise type used for the limits: "auto", "lag1", or the power of f from -4 to 2.
     stop_ratio : float, optional
         Length of the record over the longest averaging time.
     exclude_events : bool
-        Leave out knocks, and whatever reaches across a step.
+        Exclude outliers, and intervals that span a step.
     progress : bool or callable, optional
 
     Raises
     ------
     ArgumentError
-        An option that makes no sense, or what is no array of numbers; a ValueError too.
+        An invalid option, or no array of numbers; also a ValueError.
     DataError
-        Too few samples, or none that vary; a ValueError too.
+        Too few samples, or constant ones; also a ValueError.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What callers hand over, as arrays that the library reads."""
+"""Arguments of callers as arrays for the library."""
 from __future__ import annotations
 
 from typing import Any
@@ -12,9 +12,9 @@ Doubles = NDArray[np.float64]
 
 
 def as_doubles(values: Any, what: str, ndim: tuple[int, ...] = (1,)) -> Doubles:
-    """Values as contiguous doubles, without a copy where they are.
+    """Values as contiguous doubles, copied only if necessary.
 
-    Masked values become NaN. Raises ArgumentError for what holds no numbers, and for other dimensions.
+    Masked values become NaN. Raises ArgumentError if the values are not numbers or the dimension is wrong.
     """
     array = _filled(values, what)
     if array.dtype.kind not in "fiu":
@@ -44,7 +44,7 @@ def _filled(values: Any, what: str) -> NDArray[Any]:
 
 
 def _without_objects(array: NDArray[Any], what: str) -> NDArray[Any]:
-    """An array of objects that are all real numbers, as doubles."""
+    """Convert an array of objects that are all real numbers to doubles."""
     if array.dtype.kind != "O" or array.ndim == 0:
         return array
     for value in array.flat:

@@ -1,4 +1,4 @@
-"""Documentation of the options that all verbs for recordings have, and of what they return and raise."""
+"""Documentation of the options, results and exceptions that all verbs for recordings have in common."""
 from __future__ import annotations
 
 import textwrap
@@ -6,29 +6,29 @@ from typing import Any, Callable, TypeVar
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
-#: What stands for "{name}" on a line of its own in a docstring.
+#: Replacements for a line "{name}" in a docstring.
 _PARTS = {
     "rate_hz, unit": """rate_hz : float, optional
-    Sample rate in Hz, where the file has no time column.
+    Sample rate in Hz, if the file has no time column.
 unit : str, optional
-    Of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.""",
+    Unit of the accelerometer channels: g, mg, m/s2, V, mV or counts; of gyroscopes: deg/s or rad/s.""",
     "channel to supply": """channel : str or list of str, optional
     Use this channel; may be repeated (default: all).
 variable : str or list of str, optional
-    Of a file or folder of several tables, read this dataset, variable, group, topic or file; may be
+    Dataset, variable, group, topic or file to read from a file or folder with several; may be
     repeated (default: chosen by size and name).
 time : str, optional
     The time column (default: found by name and content).
 from_s : float, optional
-    Leave out samples before this time in s.
+    Start of the interval to use, in s.
 to_s : float, optional
-    Leave out samples from this time in s on.
+    End of the interval to use, in s.
 resample : float, optional
     Resample to a uniform grid of this rate in Hz (default: the samples as recorded).
 resample_method : str, optional
     Interpolation of resample: sinc (band-limited), cubic, linear, nearest or mean (default sinc).
 skew : float, optional
-    Delay in s from each channel to the next of a multiplexed converter; it is removed.
+    Correct a multiplexer skew of this many seconds between successive channels.
 sensor : Sensor, path or list of them, optional
     Apply this sensor file's calibration first; once for all sensors or once for each.
 supply : float, optional
@@ -50,11 +50,11 @@ Result
 Raises
 ------
 ArgumentError
-    An option that makes no sense; a ValueError too.
+    An invalid option; also a ValueError.
 FileError
-    A file that cannot be read; an OSError too.
+    A file that cannot be read; also an OSError.
 DataError
-    Data that cannot be analysed; a ValueError too.""",
+    Data that cannot be analysed; also a ValueError.""",
 }
 
 

@@ -1,7 +1,7 @@
-"""Has the jobs of ``proofmass fleet --dask ADDRESS`` done by the workers of a Dask cluster.
+"""Runs the jobs of ``proofmass fleet --dask ADDRESS`` on the workers of a Dask cluster.
 
-The command runs it as ``python3 -m proofmass._dask ADDRESS``. It reads a job a line on standard input and writes a
-result a line on standard output (``src/proofmass/fleet/driver.hpp`` has both), as the jobs end.
+The command runs it as ``python3 -m proofmass._dask ADDRESS``. It reads one job per line from standard input and writes
+one result per line to standard output as the jobs end; ``src/proofmass/fleet/driver.hpp`` describes both formats.
 """
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from typing import Any
 
 
 def perform(job: dict[str, Any]) -> dict[str, Any]:
-    """On a worker: the verb with its files and flags, in a process of its own."""
+    """Run the verb with its files and flags in a separate process on a worker."""
     began = time.monotonic()
     result = {"job": job["job"], "status": 1, "signal": 0, "timed_out": False, "words": "", "document": ""}
     program = job["program"] or shutil.which("proofmass")
@@ -52,7 +52,7 @@ def perform(job: dict[str, Any]) -> dict[str, Any]:
 
 
 def _local(arguments: list[str], scratch: str) -> tuple[list[str], dict[str, str]]:
-    """The arguments with a copy of each recording that a URL names, and the URL of each copy."""
+    """Replace each URL among the arguments by a local copy; returns also the URL of each copy."""
     words: list[str] = []
     fetched: dict[str, str] = {}
     for word in arguments:
@@ -76,7 +76,7 @@ def _result_of(future: Any, job: int) -> dict[str, Any]:
 
 
 def main(address: str) -> None:
-    # Not by an import statement, through which a checker of types would read all of it.
+    # An import statement would make type checkers analyse the whole package.
     distributed = importlib.import_module("distributed")
     ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
     with distributed.Client(address, timeout=10, name="proofmass fleet") as client:

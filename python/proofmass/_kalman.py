@@ -1,4 +1,4 @@
-"""Linear Kalman filter and smoothers of models of any size up to 32 states."""
+"""Linear Kalman filter and smoothers for models of up to 32 states."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -22,20 +22,21 @@ _NONE = np.zeros(0, dtype=np.int64)
 
 @dataclass(frozen=True)
 class Estimate:
-    """States of a run over n instants.
+    """State estimates at n epochs.
 
     Attributes
     ----------
     mean : ndarray, shape (n, states)
     cov : ndarray, shape (n, states, states)
     innovation : ndarray, shape (n, channels)
-        Readings less what all before predict; NaN without a reading.
+        Measurement minus its prediction from all previous ones; NaN without a measurement.
     innovation_cov : ndarray, shape (n, channels, channels)
     log_likelihood : float
-        Of all readings under the model.
+        Log-likelihood of all measurements under the model.
     nis : float
-        Normalised innovation squared, summed: χ² of `readings` degrees of freedom.
+        Sum of the normalised innovations squared: χ² with `readings` degrees of freedom.
     readings : int
+        Number of measurements.
     """
 
     mean: Doubles
@@ -52,7 +53,7 @@ class Estimate:
         return np.sqrt(np.diagonal(self.cov, axis1=1, axis2=2))
 
     def to_pandas(self) -> "pandas.DataFrame":
-        """Means and standard deviations, one instant a row: x0, x0_std, x1 …"""
+        """Means and standard deviations, one epoch per row: x0, x0_std, x1 …"""
         import pandas
 
         std = self.std
@@ -68,35 +69,35 @@ class KalmanModel:
     Parameters
     ----------
     F : array_like, shape (N, N) or (n, N, N), or callable
-        State transition: one that stays, one for each instant (that of instant k leads there; the
-        first is not used), or a function of the step in seconds. N is 32 at most.
+        State transition: constant, one per epoch (the k-th leads to epoch k; the first is not used),
+        or a function of the step in seconds. N is 32 at most.
     H : array_like, shape (N,), (M, N) or (n, M, N)
-        What is read of the state.
+        Measurement matrix.
     Q : array_like, shape (N, N) or (n, N, N), or callable
         Covariance of w; may be singular.
     R : array_like, scalar, shape (M, M) or (n, M, M)
         Covariance of v.
     B : array_like, shape (N,), (N, U) or (n, N, U), or callable, optional
-        What a known input does.
+        Effect of a known input.
     x0 : array_like, shape (N,)
-        Mean of the state at the first instant, before its reading; 0 where it is not given.
+        Prior mean of the state at the first epoch; default 0.
     P0 : array_like, scalar or shape (N, N)
-        Its covariance.
+        Prior covariance of the state at the first epoch.
 
     Raises
     ------
     ArgumentError
-        Shapes that do not fit together; a ValueError too.
+        Incompatible shapes; also a ValueError.
 
     Notes
     -----
-    Other packages begin one step earlier, at x[-1]: theirs is ours with ``x0 = F x`` and
-    ``P0 = F P F.T + Q``. The smoother inverts no state covariance and is exact for matrices that change.
-    One channel, up to four states and matrices that stay take the library's fast passes.
+    Other packages begin one step earlier, at x[-1], which is equivalent to ``x0 = F x`` and
+    ``P0 = F P F.T + Q``. The smoother inverts no state covariance and is exact for time-varying matrices.
+    Models with one channel, up to four states and constant matrices use optimised code.
 
     Examples
     --------
-    A level that walks, read twice; between the readings one is missing:
+    A random-walk level measured twice, with a missing measurement in between:
 
     >>> import numpy as np, proofmass as pm
     >>> model = pm.KalmanModel(F=1.0, H=1.0, Q=1.0, R=2.0, P0=2.0)
@@ -139,20 +140,20 @@ class KalmanModel:
     def filter(
         self, z: ArrayLike, *, u: Optional[ArrayLike] = None, dt_s: Optional[ArrayLike] = None, progress: Progress = None
     ) -> Estimate:
-        """Each state given the readings up to its instant.
+        """Estimate of each state from the measurements up to its epoch.
 
         Parameters
         ----------
         z : array_like, shape (n,) or (n, M)
             Measurements; NaN marks a missing one.
         u : array_like, shape (n,) or (n, U), optional
-            Known input of the step that ends at each instant.
+            Known input of the step that ends at each epoch.
         dt_s : float or array_like, shape (n,), optional
-            Length of the step that ends at each instant, for matrices that are functions of it.
+            Length of the step that ends at each epoch, for matrices that are functions of it.
 
         Examples
         --------
-        A position read at uneven instants:
+        A position measured at irregular times:
 
         >>> import numpy as np, proofmass as pm
         >>> model = pm.KalmanModel(F=lambda dt: [[1, dt], [0, 1]], H=[1, 0],
@@ -166,7 +167,7 @@ class KalmanModel:
     def smooth(
         self, z: ArrayLike, *, u: Optional[ArrayLike] = None, dt_s: Optional[ArrayLike] = None, progress: Progress = None
     ) -> Estimate:
-        """Each state given all readings; arguments as of `filter`.
+        """Estimate of each state from all measurements; arguments as for `filter`.
 
         Examples
         --------
@@ -185,7 +186,7 @@ class KalmanModel:
         dt_s: Optional[ArrayLike] = None,
         progress: Progress = None,
     ) -> Estimate:
-        """Each state given the readings up to `lag` instants later; arguments as of `filter`.
+        """Estimate of each state from the measurements up to `lag` epochs later; arguments as for `filter`.
 
         Examples
         --------
@@ -201,11 +202,11 @@ class KalmanModel:
     def loglikelihood(
         self, z: ArrayLike, *, u: Optional[ArrayLike] = None, dt_s: Optional[ArrayLike] = None, progress: Progress = None
     ) -> float:
-        """ln p of the readings; arguments as of `filter`.
+        """Log-likelihood of the measurements; arguments as for `filter`.
 
         Examples
         --------
-        One reading of variance 1 + 1:
+        One measurement of variance 1 + 1:
 
         >>> import math, proofmass as pm
         >>> model = pm.KalmanModel(F=1.0, H=1.0, Q=0.0, R=1.0, P0=1.0)
@@ -240,7 +241,7 @@ class KalmanModel:
     def _sequence(
         self, matrix: Any, name: str, size: int, steps: Optional[tuple[Doubles, NDArray[np.int64]]]
     ) -> tuple[Doubles, NDArray[np.int64]]:
-        """Matrices and which of them each instant has."""
+        """Distinct matrices, and the index of the one used at each epoch."""
         if callable(matrix):
             if steps is None:
                 raise ArgumentError(f"{name} is a function of the step: give dt_s")
@@ -267,7 +268,7 @@ def _square(values: ArrayLike, name: str) -> Doubles:
 
 
 def _matrix(values: ArrayLike, name: str, rows: Optional[int], columns: int) -> Doubles:
-    """Of shape (rows, columns), or (n, rows, columns)."""
+    """Array of shape (rows, columns) or (n, rows, columns)."""
     matrix = as_doubles(values, name, (0, 1, 2, 3))
     if matrix.ndim == 0:
         matrix = matrix.reshape(1, 1)
@@ -298,7 +299,7 @@ def _rows(values: ArrayLike, name: str, width: int) -> Doubles:
 
 
 def _steps(dt_s: Optional[ArrayLike], size: int) -> Optional[tuple[Doubles, NDArray[np.int64]]]:
-    """Steps that differ, and which of them each instant has."""
+    """Distinct steps, and the index of the one used at each epoch."""
     if dt_s is None:
         return None
     steps = np.broadcast_to(as_doubles(dt_s, "dt_s", (0, 1)), (size,)) if np.ndim(dt_s) == 0 else as_doubles(dt_s, "dt_s")

@@ -1,4 +1,4 @@
-"""Options of functions as flags of the command, which checks them."""
+"""Conversion of function options to flags of the command, which checks them."""
 from __future__ import annotations
 
 import os
@@ -9,7 +9,7 @@ import numpy as np
 
 from ._core import Error
 
-#: Where a flag's name is no name in Python, or says less than it could.
+#: Options whose flag is not a Python name, or lacks the unit.
 NAMES = {"rate_hz": "rate", "from_s": "from", "to_s": "to"}
 _FLAGS = {flag: name for name, flag in NAMES.items()}
 
@@ -35,17 +35,17 @@ def words(options: dict[str, Any]) -> list[str]:
 
 
 def file_word(path: str) -> str:
-    """A path that cannot be taken for a flag."""
+    """A path in a form that cannot be mistaken for a flag."""
     return "./" + path if path.startswith("-") else path
 
 
 def in_python(error: Error) -> Error:
-    """The same error with the options' names in place of the flags'."""
+    """The same error, with names of options instead of flags."""
     return type(error)(with_option_names(str(error)))
 
 
 def with_option_names(text: str) -> str:
-    """A message of the command, with options in place of flags."""
+    """A message of the command, with names of options instead of flags."""
     text = re.sub(r"proofmass ([a-z]+) --help", r"help(proofmass.\1)", text)
     return re.sub(r"--([a-z][a-z0-9-]*)", lambda flag: _name_of(flag[1]) + "=", text)
 

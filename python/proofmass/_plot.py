@@ -1,4 +1,4 @@
-"""Series as plots of matplotlib."""
+"""Plots of series with matplotlib."""
 from __future__ import annotations
 
 from typing import Any
@@ -9,7 +9,7 @@ from ._recording import Recording
 
 
 def plot_series(recording: Recording, ax: Any) -> Any:
-    """Columns of the first one's unit against time, or deviations against averaging time."""
+    """Plot the columns with the first one's unit against time, or deviations against averaging time."""
     import matplotlib.pyplot as plt  # type: ignore[import]
 
     if ax is None:

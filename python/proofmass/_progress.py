@@ -1,4 +1,4 @@
-"""What `progress=` may be."""
+"""Progress display for the argument `progress`."""
 from __future__ import annotations
 
 import sys
@@ -8,7 +8,7 @@ Progress = Union[None, bool, Callable[[str, float], Any]]
 
 
 class _Bar:
-    """A bar of tqdm, or a line on standard error where that is not installed."""
+    """A tqdm bar, or a line on standard error if tqdm is not installed."""
 
     def __init__(self) -> None:
         self._stage = ""
@@ -36,7 +36,7 @@ class _Bar:
 
 
 class Shown:
-    """The callable for the library, within `with`."""
+    """Context manager that provides the library's progress callable."""
 
     def __init__(self, progress: Progress) -> None:
         if progress not in (None, True, False) and not callable(progress):

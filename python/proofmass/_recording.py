@@ -34,33 +34,34 @@ def read(
     skew: Optional[float] = None,
     progress: Progress = None,
 ) -> "Recording":
-    """Read a recording of any format that Proofmass knows.
+    """Read a recording in any supported format.
 
     Parameters
     ----------
     path : path
-        CSV, npy, npz, MAT, HDF5, TDMS, LVM, MCAP, WAV, Parquet …, plain or compressed; the bytes decide.
+        CSV, npy, npz, MAT, HDF5, TDMS, LVM, MCAP, WAV, Parquet …, plain or compressed; recognised by
+        content.
     rate_hz : float, optional
-        Sample rate, where the file has no time column.
+        Sample rate, if the file has no time column.
     unit : str, optional
-        Of the accelerometer channels: "g", "mg", "m/s2", "V", "mV" or "counts".
+        Unit of the accelerometer channels: "g", "mg", "m/s2", "V", "mV" or "counts".
     channel : str or list of str, optional
         Use these channels only.
     variable : str or list of str, optional
-        Of a file of several tables, read this one.
+        Table to read from a file with several.
     time : str, optional
-        Name of the time column; found by name and content where it is not given.
+        Name of the time column; by default found by name and content.
     from_s, to_s : float, optional
-        Leave out what comes before, and what comes from there on, in seconds.
+        Start and end of the interval to use, in seconds.
     resample, resample_method, skew
-        As the flags of the command.
+        As for the flags of the command.
 
     Raises
     ------
     FileError
-        No such file, or none that can be read; an OSError too.
+        A file that does not exist or cannot be read; also an OSError.
     ArgumentError
-        A channel that is not there; a ValueError too.
+        A channel that does not exist; also a ValueError.
 
     Examples
     --------
@@ -80,25 +81,25 @@ def read(
 
 
 class Recording:
-    """Channels of equal length on one time base, as `read` and the constructors below make them.
+    """Channels of equal length on one time base, from `read` or the constructors below.
 
-    Arrays out of it are read-only views of its memory, which they keep alive.
+    Arrays taken from it are read-only views of its memory, which they keep alive.
 
     Attributes
     ----------
     source, format : str
-        What it was made of.
+        Origin of the data.
     samples : int
     rate_hz : float
-        Nominal sample rate; 0 where nothing says.
+        Nominal sample rate; 0 if unknown.
     duration_s : float
     channels : list of str
     units : dict of str to str
-        Of each channel as recorded; "" where none is known.
+        Unit of each channel as recorded; "" if unknown.
     time_s : ndarray, shape (samples,)
         Seconds since the first sample.
     notes : list of (str, str)
-        What was found while reading, each with "info", "warning" or "bad".
+        Findings of the reader, each with "info", "warning" or "bad".
 
     Examples
     --------
@@ -126,31 +127,31 @@ class Recording:
         source: str = "array",
         start_ns: Optional[int] = None,
     ) -> "Recording":
-        """A recording of arrays, which are copied.
+        """Make a recording from arrays, which are copied.
 
         Parameters
         ----------
         arrays : array_like of shape (n,) or (n, channels), or dict of name to array of shape (n,)
-            One channel is called x, up to three x, y and z.
+            Default names are x for one channel, and x, y and z for up to three.
         rate_hz : float, optional
-            Sample rate; or
+            Sample rate, or alternatively
         time_s : array_like of shape (n,), optional
-            the time of each sample.
+            time of each sample.
         unit : str, optional
-            Of the accelerometer channels; without one it is judged by the size of gravity.
+            Unit of the accelerometer channels; by default inferred from the magnitude of gravity.
         units : dict of str to str, optional
-            Of single channels, before `unit`: {"gyro_z": "deg/s"}.
+            Units of single channels, which override `unit`: {"gyro_z": "deg/s"}.
         names : sequence of str, optional
-            Of the columns.
+            Names of the columns.
         source : str
-            What errors and documents call it.
+            Name used in errors and documents.
         start_ns : int, optional
-            Time of the first sample on its clock.
+            Absolute time of the first sample.
 
         Raises
         ------
         ArgumentError
-            Arrays that hold no numbers or are of unequal length; times that do not rise.
+            Arrays that are not numeric or differ in length; times that do not increase.
 
         Examples
         --------
@@ -186,11 +187,11 @@ class Recording:
         unit: Optional[str] = None,
         source: str = "DataFrame",
     ) -> "Recording":
-        """A recording of a DataFrame's columns of numbers, which are copied.
+        """Make a recording from the numeric columns of a DataFrame, which are copied.
 
-        The time is the column `time`, or one called time, time_s or t, or an index of dates, of
-        durations or called so; else `rate_hz` says it. A unit may stand behind a column's name,
-        "acc_x (m/s^2)", or in ``frame.attrs["units"]``.
+        The time is the column `time`, or one named time, time_s or t, or an index of dates or durations
+        or with such a name; otherwise `rate_hz` is required. A unit may follow a column's name,
+        "acc_x (m/s^2)", or be given in ``frame.attrs["units"]``.
 
         Examples
         --------
@@ -259,7 +260,7 @@ class Recording:
 
     @property
     def labels(self) -> list[tuple[str, int, int]]:
-        """Runs of one word with their first and last sample."""
+        """Labels, each with its first and last sample."""
         return self._handle.labels
 
     def __len__(self) -> int:
@@ -269,7 +270,7 @@ class Recording:
         return isinstance(name, str) and self._handle.channel(name) is not None
 
     def __getitem__(self, key: Any) -> Any:
-        """A channel by its name; several as an array (n, k); or a part by time, ``rec[10.0:20.0]``."""
+        """A channel by name; several as an array (n, k); or an interval of time, ``rec[10.0:20.0]``."""
         if isinstance(key, str):
             return self._channel(key)
         if isinstance(key, (list, tuple)):
@@ -291,7 +292,7 @@ class Recording:
         return found
 
     def to_pandas(self) -> "pandas.DataFrame":
-        """The channels by seconds; units stand in ``frame.attrs["units"]``.
+        """The channels indexed by seconds, with the units in ``frame.attrs["units"]``.
 
         Examples
         --------
@@ -308,13 +309,13 @@ class Recording:
         return frame
 
     def inspect(self, **options: Any) -> Any:
-        """What is in it and how good it is: ``proofmass.inspect``."""
+        """Content and quality of the recording: ``proofmass.inspect``."""
         from ._verbs import inspect
 
         return inspect(self, **options)
 
     def plot(self, ax: Any = None) -> Any:
-        """The channels against time, with matplotlib; gives the axes."""
+        """Plot the channels against time with matplotlib; returns the axes."""
         import matplotlib.pyplot as plt  # type: ignore[import]
 
         if ax is None:
@@ -351,7 +352,7 @@ def _columns(arrays: Any, names: Optional[Sequence[str]]) -> dict[str, Doubles]:
 
 
 def _split(label: str) -> tuple[str, str]:
-    """A column's name and the unit in brackets behind it, where it is one."""
+    """Split a column's label into its name and a unit in brackets, if any."""
     match = re.fullmatch(r"\s*(.*?)\s*[(\[]([^()\[\]]+)[)\]]\s*", label)
     if match and match[1] and _core.is_unit(match[2]):
         return match[1], match[2]
@@ -363,7 +364,7 @@ def _holds_words(column: Any) -> bool:
 
 
 def _times_of(frame: Any, time: Optional[str]) -> tuple[Optional[Doubles], Optional[int], list[Any]]:
-    """Seconds since the first row, the clock's time of that, and the columns left."""
+    """Seconds since the first row, its absolute time, and the remaining columns."""
     labels = list(frame.columns)
     if time is not None and time not in labels and time != frame.index.name:
         raise ArgumentError(f"time: no column {time}; there are {', '.join(map(str, labels))}")

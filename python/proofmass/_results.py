@@ -14,12 +14,12 @@ from ._recording import Recording
 if TYPE_CHECKING:
     import pandas
 
-#: Before it, a reason says what is null: "sensors[0] (a.csv): radius, bias[0]", "positions[]: start_s".
+#: Follows the keys that are null in a reason: "sensors[0] (a.csv): radius, bias[0]", "positions[]: start_s".
 _NULL = re.compile(r": null(?: \(\d+ times\))?(?: for ([^:]*))?: ")
 
 
 class Missing:
-    """What could not be determined: false, equal to None, and `why` says the reason.
+    """A value that could not be determined: false, equal to None, with the reason in `why`.
 
     Examples
     --------
@@ -50,7 +50,7 @@ class Missing:
 
 
 class Node:
-    """An object of a document: its members are attributes, and items by the same names."""
+    """An object of a document; its members are available as attributes and as items."""
 
     def __init__(self, members: dict[str, Any], path: tuple[str, ...], reasons: list[str]) -> None:
         self._members = members
@@ -68,7 +68,7 @@ class Node:
     def __getitem__(self, name: str) -> Any:
         if name in self._members:
             return self._wrapped(name, self._members[name])
-        # Figures that are found are members too: channel.white is channel.parameters.white.
+        # Fitted parameters are also members: channel.white is channel.parameters.white.
         parameters = self._members.get("parameters")
         if isinstance(parameters, dict) and name in parameters:
             return self["parameters"][name]
@@ -97,7 +97,7 @@ class Node:
         return (type(self), (self._members, self._path, self._reasons))
 
     def to_dict(self) -> dict[str, Any]:
-        """Its part of the document, a copy."""
+        """A copy of its part of the document."""
         return copy.deepcopy(self._members)
 
     def _wrapped(self, name: str, value: Any) -> Any:
@@ -112,7 +112,7 @@ class Quantity(Node):
     value, std : float, or Missing
     unit : str
     interval : (float, float), or Missing
-        The 95 % interval where the document states one, else `value` ± 1.96 `std`.
+        The 95 % interval of the document if there is one, else `value` ± 1.96 `std`.
     """
 
     @property
@@ -142,18 +142,18 @@ class Quantity(Node):
 
 
 class Result(Node):
-    """What an analysis has found: the members of the command's JSON document as attributes.
+    """Result of an analysis: the members of the command's JSON document as attributes.
 
     Attributes
     ----------
     warnings : list of str
-        The document's: what a person should know, and the reason of each figure that is missing.
+        Warnings of the document, including the reason for each missing figure.
     notes : list of (str, str)
-        What the command would show, each with "info", "warning" or "bad".
+        Messages that the command would show, each with "info", "warning" or "bad".
     text : str
-        What the command prints.
+        Text that the command would print.
     series : dict of str to Recording
-        What the command would write with ``--output``.
+        Series that the command would write with ``--output``.
     """
 
     def __init__(self, given: dict[str, Any]) -> None:
@@ -162,7 +162,7 @@ class Result(Node):
         self._given = given
 
     def to_dict(self) -> dict[str, Any]:
-        """The command's JSON document, less its provenance."""
+        """The command's JSON document without its provenance."""
         return copy.deepcopy(self._members)
 
     @property
@@ -197,7 +197,7 @@ class Result(Node):
             file.write(self._given["html"])
 
     def plot(self, ax: Any = None) -> Any:
-        """The series with matplotlib, bands of one standard deviation around what has one; the axes."""
+        """Plot the series with matplotlib, with bands of one standard deviation; returns the axes."""
         from ._plot import plot_series
 
         return plot_series(self._first_series(), ax)
@@ -240,7 +240,7 @@ def _wrapped(value: Any, path: tuple[str, ...], reasons: list[str]) -> Any:
 
 
 def _why(path: tuple[str, ...], reasons: list[str]) -> str:
-    """The reason of a null: the sentence that names it, most of what it is part of, and least else."""
+    """The reason of a null: the sentence that names it and matches its path best."""
     best, most = "", (0, 0)
     for sentence in reasons:
         null = _NULL.search(sentence)
@@ -255,7 +255,7 @@ def _why(path: tuple[str, ...], reasons: list[str]) -> str:
 
 
 def _names(about: str, name: str) -> int:
-    """How closely the text names the member: 2; 1 as an item of a list that it names; 0 not at all."""
+    """Match of a text with a member: 2 if it names it, 1 if it names its list, 0 if neither."""
     if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", about):
         return 2
     key, bracket, _ = name.partition("[")

@@ -1,4 +1,4 @@
-"""From what callers hand over to a verb of the library, and back."""
+"""Calls of the library's verbs with arguments from Python."""
 from __future__ import annotations
 
 import os
@@ -16,7 +16,7 @@ from ._sensor import Sensor
 
 
 class ProofmassWarning(UserWarning):
-    """What a person should know of the data or of a result."""
+    """A warning about the data or a result."""
 
 
 def run(verb: str, data: Any, options: dict[str, Any], progress: Progress, output: Optional[str]) -> Result:
@@ -50,12 +50,12 @@ def run(verb: str, data: Any, options: dict[str, Any], progress: Progress, outpu
 
 
 def options_of(given: dict[str, Any]) -> dict[str, Any]:
-    """The arguments of a function that are flags."""
+    """The arguments of a function that correspond to flags."""
     return {name: value for name, value in given.items() if name not in ("x", "rig", "progress")}
 
 
 def _inputs(data: Any) -> list[Any]:
-    """Each a path, a Recording, or what a recording is made of."""
+    """Inputs, each a path, a Recording, or data for a recording."""
     if data is None:
         return []
     several = isinstance(data, (list, tuple)) and len(data) > 0 and all(_is_whole(item) for item in data)
@@ -63,7 +63,7 @@ def _inputs(data: Any) -> list[Any]:
 
 
 def _is_whole(item: Any) -> bool:
-    """Whether an item of a list is a recording by itself, and no sample or column of one."""
+    """True if an item of a list is a whole recording, not a sample or column of one."""
     return isinstance(item, (str, os.PathLike, Recording)) or hasattr(item, "columns") or isinstance(item, np.ndarray)
 
 
@@ -90,7 +90,7 @@ def _free_name(name: str, taken: dict[str, Any]) -> str:
 
 
 def _without_sensors(value: Any, texts: dict[str, str]) -> Any:
-    """Sensors as names of files, with their text in `texts`."""
+    """Replace sensors by file names; their text goes into `texts`."""
     if isinstance(value, Sensor):
         texts[value.name] = value.text
         return value.name

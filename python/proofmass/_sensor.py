@@ -1,4 +1,4 @@
-"""The sensor file: what is known of a sensor."""
+"""The sensor file: calibration, noise and drift of a sensor."""
 from __future__ import annotations
 
 import os
@@ -13,21 +13,21 @@ class Sensor:
     Parameters
     ----------
     path : path, optional
-        File to read; or
+        File to read, or alternatively
     text : str, optional
-        the text of one, TOML.
+        its text, TOML.
 
     Attributes
     ----------
     name : str
-        What errors call it.
+        Name used in errors.
     text : str
-        The file's text as Proofmass writes it.
+        Text of the file as Proofmass writes it.
 
     Raises
     ------
     FileError
-        No such file, or none of a sensor; an OSError too.
+        A file that does not exist or is not a sensor file; also an OSError.
 
     Examples
     --------
@@ -48,7 +48,7 @@ class Sensor:
             self.text = _core.sensor_text(str(text), self.name)
 
     def write(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Write the file, all of it or nothing. Raises FileError."""
+        """Write the file atomically. Raises FileError."""
         _core.write_sensor(self.text, os.fspath(path))
 
     def __repr__(self) -> str:

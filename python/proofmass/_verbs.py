@@ -33,7 +33,7 @@ def inspect(
     height: Optional[float] = None,
     progress: Progress = None,
 ) -> Result:
-    """What is in a recording and how good it is.
+    """Content and quality of a recording.
 
     Parameters
     ----------
@@ -102,19 +102,19 @@ def noise(
     stop_ratio : float, optional
         Length of the recording over the longest averaging time (default: the statistic's).
     data : str, optional
-        rate (default), or phase: the integral of it over time.
+        rate (default), or phase, its integral over time.
     confidence : float, optional
-        Of the deviation's limits (default 0.683).
+        Confidence level of the deviation's limits (default 0.683).
     noise_type : str or int, optional
-        Exponent on which the limits depend: auto (default), lag1, or the power of f from -4 to 2.
+        Noise type used for the limits: auto (default), lag1, or the power of f from -4 to 2.
     exclude_events : bool
-        Leave out knocks, and whatever reaches across a step.
+        Exclude outliers, and intervals that span a step.
     as_one : bool
         Analyse the recordings as one with gaps between them.
     starts : list of float, optional
-        Start of each recording in seconds, with as_one (default: by their own clocks).
+        Start of each recording in seconds, with as_one (default: from the recordings' clocks).
     temperature : str, optional
-        Take out what follows this channel, by least squares.
+        Remove the linear dependence on this channel, by least squares.
     update_sensor : path, optional
         Write the figures into this sensor file.
     {channel to supply}
@@ -164,20 +164,19 @@ def drift(
     Parameters
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
-        Recordings at rest from switching on; three or more are compared.
+        Recordings at rest from power-on; three or more are compared.
     {rate_hz, unit}
     forecast : float, optional
-        Foretell the bias so long after switching on.
+        Predict the bias this many seconds after power-on.
     temperature : str, optional
-        Fit the bias against this channel (default: the only one in a unit of temperature); none: do
-        not.
+        Fit the bias against this channel (default: the only one in a unit of temperature), or none.
     order : str, optional
-        Of three files or more: time (default: by their absolute time stamps, else by the numbers in
-        their names) or given (as on the command line).
+        Order of three or more files: time (default; by their absolute time stamps, else by the numbers
+        in their names) or given (as in the call).
     update_sensor : path, optional
-        Write what is identified into this sensor file.
+        Write the identified coefficients into this sensor file.
     since_switch_on : float, optional
-        How long the sensor had been on at the first sample (default 0).
+        Time between power-on and the first sample (default 0).
     {channel to supply}
     {gravity, latitude, height}
     {progress}
@@ -240,48 +239,47 @@ def calibrate(
     Parameters
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
-        Recordings of a sensor laid down in 9 or more directions, or tables of means.
+        Recordings of a sensor at rest in 9 or more orientations, or tables of means.
     {rate_hz, unit}
     rests : path, optional
-        Start and end of each rest, perhaps with label and direction (default: found).
+        Start and end of each rest, optionally with label and direction (default: detected).
     rest : float, optional
-        The shortest rest to look for (default: 0.5).
+        Minimum duration of a rest (default: 0.5).
     means : bool
-        The files are tables of means, one row a position.
+        The files are tables of means, one row per position.
     parameters : int, optional
-        6: bias and scale; 9: and misalignment; 12: and mounting, by given directions (default: 9, or 6
-        where the positions carry no more).
+        6: bias and scale; 9: also misalignment; 12: also mounting, from given directions (default: 9,
+        or 6 if the positions determine no more).
     six_position : bool
-        Take six given positions for exact (what others do; better: turn it freely).
+        Assume six exact orientations (the classical method; free orientations are more accurate).
     keep_suspects : bool
-        Positions that contradict the others stay in the fit.
+        Keep positions that contradict the others in the fit.
     validate : str or list of str, optional
-        New positions to try the calibration on.
+        Independent positions to validate the calibration with.
     gravity_std : float, optional
-        Standard deviation of gravity (default: 0 of gravity, 4e-4 of latitude, else 0.015).
+        Standard deviation of gravity (default: 0 with gravity, 4e-4 with latitude, else 0.015).
     orthogonality_std : float, optional
-        Of the angles between the axes where they are not fitted (default 0.57).
+        Standard deviation of the angles between the axes if they are not fitted (default 0.57).
     placement_std : float, optional
-        Of the positions that six_position takes for exact (default 1).
+        Standard deviation of the orientations that six_position assumes exact (default 1).
     bias_stability : float, optional
-        Standard deviation of the biases from one session to another, as drift finds it of several
-        power-ups (default: by the flicker noise and random walk of the file to update, else of the
-        recording).
+        Standard deviation of the biases between sessions, as drift estimates it from several power-ups
+        (default: from the flicker noise and random walk of the file to update, else of the recording).
     type_b : str or list of str, optional
         A contribution to the uncertainty: "ADC reference,scale,0.05 %,uniform"; may be repeated.
     monte_carlo : int, optional
-        Draws that check the uncertainties; 0: none (default 200; for the certificate of a report as many
+        Monte Carlo draws that check the uncertainties; 0: none (default 200; for the certificate of a report as many
         as JCGM 101's adaptive procedure needs).
     supplies : list of float, optional
-        Supply voltage of each file, to determine its effect.
+        Supply voltage of each file, to estimate its effect.
     name : str, optional
-        Of the sensor, for certificate and sensor file.
+        Name of the sensor, for certificate and sensor file.
     serial : str, optional
         Its serial number.
     date : str, optional
-        Of the measurement, ISO 8601.
+        Date of the measurement, ISO 8601.
     temperature : float, optional
-        At which it was made.
+        Temperature of the measurement.
     update_sensor : path, optional
         Write the calibration into this sensor file.
     {channel to supply}
@@ -335,39 +333,39 @@ def tumble(
     height: Optional[float] = None,
     progress: Progress = None,
 ) -> Result:
-    """Scale factor, bias and the model's other coefficients from a turntable, IEEE 1293.
+    """Scale factor, bias and the other coefficients of the model on a turntable, IEEE 1293.
 
     Parameters
     ----------
     x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
-        Positions (angle and output), or a recording that rests in them.
+        Positions (angle and output), or a recording with a rest in each.
     {rate_hz, unit}
     angles : list of float, optional
-        Of a recording's rests, one for each in its order: "0,90,180,270,0".
+        Angle of each rest of a recording, in order: "0,90,180,270,0".
     rests : path, optional
-        Start and end of each rest, perhaps with the table's angle (default: found).
+        Start and end of each rest, optionally with the table's angle (default: detected).
     angle : str, optional
-        The column with the angle (default: found by name and unit).
+        Column with the angle (default: found by name and unit).
     rest : float, optional
-        The shortest rest to look for (default: found).
+        Minimum duration of a rest (default: from the recording).
     plane : int or list of int, optional
-        In which the file was tumbled; once for all files or once for each.
+        Plane in which the file was tumbled; once for all files or once for each.
     mount : int or list of int, optional
-        How the sensor sat on the table; once for all files or once for each.
+        Mounting of the sensor on the table; once for all files or once for each.
     input_axis : str, optional
-        The channel whose axis sees g·sin(angle) (default: found from the readings).
+        The channel whose axis measures g·sin(angle) (default: found from the data).
     indexing_std : float, optional
-        Standard deviation of the table's angles (default: 0.5, less where the residuals show it).
+        Standard deviation of the table's angles (default: 0.5, less if the residuals show it).
     drift_std : float, optional
-        Standard deviation of the amplitudes by which the bias wanders about a straight line (default:
-        0.0057, 1 mg/√3, and a quarter of the linear drift; less where repeats show it).
+        Standard deviation of the bias drift about a straight line (default: 0.0057, 1 mg/√3, and a
+        quarter of the linear drift; less if repeats show it).
     bandwidth : float, optional
-        Of the sensor's filter, one pole, with rotating angle: its delay is taken out of the
-        misalignment.
+        Bandwidth of the sensor's one-pole filter, with rotating and angle: its delay is removed from
+        the misalignment.
     gravity_std : float, optional
-        Standard deviation of gravity (default: 0 of gravity, 4e-4 of latitude, else 0.015).
+        Standard deviation of gravity (default: 0 with gravity, 4e-4 with latitude, else 0.015).
     rotating : bool
-        The sensor sat on a wheel that turned: scale factor and bias from its turns.
+        The sensor rotated continuously: scale factor and bias from the turns.
     coefficients : str or list of str, optional
         Fit these coefficients of the whole model equation.
     update_sensor : path, optional
@@ -428,28 +426,27 @@ def wheel(
         One recording, or one for each of two sensors.
     {rate_hz, unit}
     spin_axis : str or list of float, optional
-        x, y, z, -x, -y, -z or "X,Y,Z" in the sensor's axes (default: found).
+        x, y, z, -x, -y, -z or "X,Y,Z" in the sensor's axes (default: from the data).
     radius : float, optional
-        Of the sensor from the axle, where known.
+        Distance of the sensor from the axle, if known.
     radius_std : float, optional
         Standard deviation of radius (default: 2 %, at least 0.0002) (needs radius).
     bandwidth : float, optional
-        -3 dB of the sensor's filter, which delays the angle (default: of the sensor file, or anywhere
-        from 6 Hz to 2.5 times the rate).
+        -3 dB bandwidth of the sensor's filter, which delays the angle (default: from the sensor file,
+        else assumed between 6 Hz and 2.5 times the rate).
     axle_tilt_std : float, optional
-        Standard deviation of the axle from level (default 5).
+        Standard deviation of the axle's inclination (default 5).
     no_gyro : bool
-        Leave the gyroscope's channels alone.
+        Do not use the gyroscope's channels.
     rate_unit : str, optional
-        Of the gyroscope, where its heading has none: rad/s (default) or deg/s.
+        Unit of the gyroscope if its heading has none: rad/s (default) or deg/s.
     rolling_radius : float, optional
-        On which the wheel rolls under a vehicle (0: on a bench): takes its speeding up out of the
-        angle.
+        Rolling radius of a vehicle's wheel (0: a bench); corrects the angle for the vehicle's
+        acceleration.
     rim_radius : float, optional
-        Of the rim, whose path is the distance.
+        Radius of the rim, whose path length is the distance.
     since_switch_on : float, optional
-        The sensors had been on so long at the file's first sample: takes the warm-up that their sensor
-        files know of out.
+        Time between power-on and the file's first sample: corrects the warm-up of the sensor files.
     {channel to supply}
     {gravity, latitude, height}
     {progress}
@@ -512,52 +509,52 @@ def track(
         A recording.
     {rate_hz, unit}
     model : str, optional
-        Inertial (default): the acceleration is integrated between stops, which holds for a motion of
-        any kind; pva: it is estimated, as one that white jerk drives, and NIS judges each sample;
+        inertial (default): the acceleration is integrated between stops, for any kind of motion; pva:
+        position, velocity and acceleration are states driven by white jerk, with NIS for each sample;
         fused: the same from 2 to 4 accelerometers with parallel axes.
     jerk_psd : float, optional
         Density of that jerk (default: by maximum likelihood).
     axis : str or list of float, optional
         Direction of the displacement: x, y, z, with a sign, or X,Y,Z in the sensor's axes, with a
-        gyroscope the world's (default: along which it moved farthest).
+        gyroscope the world's (default: direction of the largest motion).
     same_place : bool
-        It ended where it began.
+        The motion ended at its starting point.
     same_place_std : float, optional
-        How well (default 0.001) (needs same_place).
+        Standard deviation of that (default 0.001) (needs same_place).
     fixes : path, optional
-        Positions measured on the way: time, position and, if known, std.
+        Known positions: time, position and, if known, std.
     fix_std : float, optional
-        Of those without their own (default 0.01) (needs fixes).
+        Standard deviation of fixes without their own (default 0.01) (needs fixes).
     still : path, optional
-        List of intervals in which it stood still, instead of those found (not with rests).
+        List of static intervals, instead of detection (not with rests).
     rests : str, optional
-        Which quiet stretches are rests: found (default: as they fit the motion), or ends: the first and
-        the last alone (not with still).
+        Quiet intervals used as rests: found (default: those consistent with the motion), or ends: the
+        first and the last only (not with still).
     turns : path, optional
-        List of times at which it turned round: velocity 0.
+        List of times of reversal: velocity 0.
     shortest_rest : float, optional
-        A rest lasts at least so long (default 0.5).
+        Minimum duration of a rest (default 0.5).
     rest_speed_std : float, optional
-        Speed that a sensor at rest may have (default 0.0001).
+        Standard deviation of the speed at rest (default 0.0001).
     scale_std : float, optional
-        Relative standard deviation of the readings' scale (default: of the sensor file, or by gravity
-        at rest).
+        Relative standard deviation of the scale (default: from the sensor file, or from gravity at
+        rest).
     take_as_acceleration : bool
-        Give a displacement though the readings look like jerk.
+        Integrate even if the data look like jerk.
     no_gyro : bool
-        Leave the gyroscope's channels alone.
+        Do not use the gyroscope's channels.
     rate_unit : str, optional
-        Of the gyroscope, where its heading has none: rad/s (default) or deg/s.
+        Unit of the gyroscope if its heading has none: rad/s (default) or deg/s.
     since_switch_on : float, optional
-        How long the sensor had been on at the first sample: takes the warm-up of the sensor file out.
+        Time between power-on and the first sample: corrects the warm-up of the sensor file.
     {channel to supply}
     latitude : float, optional
-        Gravity from the latitude.
+        Latitude from which gravity is computed.
     height : float, optional
-        And from the height above the ellipsoid (needs latitude).
+        Height above the ellipsoid, for gravity (needs latitude).
     gravity : float or str, optional
-        removed or present, where the readings do not show it; or local gravity (default 9.80665); may
-        be repeated.
+        removed or present, if the data do not show it; or local gravity (default 9.80665); may be
+        repeated.
     {progress}
 
     Examples
@@ -611,29 +608,28 @@ def tilt(
         A recording.
     {rate_hz, unit}
     base : str, optional
-        Auto (default): still if it rests nearly throughout; still, or moving.
+        auto (default; still if it rests nearly throughout), still or moving.
     reads : str, optional
-        What an axis that points up reads at rest: +g (default), or -g as on an iPhone.
+        Output at rest of an axis that points up: +g (default), or -g as on an iPhone.
     gyro : str or list of str, optional
         The gyroscope's channels for x, y and z: three of them (default: found by name and unit).
     no_gyro : bool
-        Leave the gyroscope's channels alone.
+        Do not use the gyroscope's channels.
     rate_unit : str, optional
-        Of the gyroscope, where its heading has none: rad/s (default) or deg/s.
+        Unit of the gyroscope if its heading has none: rad/s (default) or deg/s.
     shortest_rest : float, optional
-        A rest lasts at least so long (default 0.5).
+        Minimum duration of a rest (default 0.5).
     bias_std : float, optional
-        Standard deviation of each axis' bias; with a sensor file, of what it has changed by since the
-        calibration (default: judged by the force at rest).
+        Standard deviation of the bias of each axis; with a sensor file, of its change since the
+        calibration (default: from the norm of the force at rest).
     gravity_std : float, optional
-        Standard deviation of gravity (default: 0 of gravity, 4e-4 of latitude, else 0.015).
+        Standard deviation of gravity (default: 0 with gravity, 4e-4 with latitude, else 0.015).
     angle : str or int, optional
-        The recording holds an angle instead of accelerations, in this column (name or number, 1 being
-        the first).
+        Column with an angle instead of accelerations (name, or number from 1).
     rate_channel : str or int, optional
-        And the gyroscope's rate about the same axis in this one (needs angle).
+        Column with the gyroscope's rate about the same axis (needs angle).
     angle_unit : str, optional
-        Of that column, where its heading has none: rad (default) or deg (needs angle).
+        Unit of that column if its heading has none: rad (default) or deg (needs angle).
     {channel to supply}
     {gravity, latitude, height}
     {progress}
@@ -677,7 +673,7 @@ def tune(
     height: Optional[float] = None,
     progress: Progress = None,
 ) -> Result:
-    """Q, R and the bias's time constant of a filter from the recording that it is to run on.
+    """Q, R and the time constant of the bias for a filter, from a recording of its input.
 
     Parameters
     ----------
@@ -685,16 +681,16 @@ def tune(
         A recording.
     {rate_hz, unit}
     model : str, optional
-        Auto (default): rest if it rests nearly throughout, else pva; rest, rest-markov, pva, pva-bias,
-        local-level, local-trend, position.
+        auto (default; rest if it rests nearly throughout, else pva), rest, rest-markov, pva, pva-bias,
+        local-level, local-trend or position.
     fix : str or list of str, optional
-        Hold a parameter, in SI; may be repeated.
+        Fix a parameter, NAME=VALUE in SI; may be repeated.
     share : str or list of str, optional
-        One value of this parameter for all channels; may be repeated.
+        Estimate one common value of this parameter for all channels; may be repeated.
     start_at_sensor : bool
-        Start at the noise of the sensor file instead of the Allan deviation.
+        Start from the noise of the sensor file instead of the Allan deviation.
     study_step : float, optional
-        Step of the study of gain and covariance (default: the recording's).
+        Time step of the study of gain and covariance (default: the recording's).
     update_sensor : path, optional
         Write white noise and random walk into this sensor file (model rest).
     {channel to supply}
@@ -714,14 +710,14 @@ def tune(
 
 
 class Simulated(Result):
-    """What the digital twin has made.
+    """A recording of the digital twin with its true values.
 
     Attributes
     ----------
     recording, truth : Recording
-        What the sensors would have given, and what was so.
+        Simulated measurements, and the true trajectory.
     sensor : Sensor or None
-        The true figures of a calibration's sensor.
+        For a calibration, the true figures of the sensor.
     """
 
     @property
@@ -769,46 +765,46 @@ def simulate(
     Parameters
     ----------
     rig : path, optional
-        Description, TOML; the thesis's rig where it is not given.
+        Description, TOML; the thesis's rig if omitted.
     seed : int, optional
         Same seed, same numbers.
     rpm : float, optional
-        Turn at this speed throughout.
+        Constant speed of rotation.
     rate_hz : float, optional
-        Samples a second.
+        Samples per second.
     duration : float, optional
         Length of the recording.
     gravity : float, optional
         Local gravity (default 9.80665).
     datasheet_errors : bool
-        misalignment, cross-axis, scale and nonlinearity as the datasheet allows.
+        Misalignment, cross-axis sensitivity, scale error and nonlinearity within the datasheet's limits.
     adc_bits : int, optional
-        Of the converter.
+        Resolution of the converter.
     procedure : str, optional
-        Instead of the rig a calibration: tumble, four-position, six-position or multi-position; or a
+        Instead of the rig, a calibration (tumble, four-position, six-position or multi-position) or a
         slide along a line.
     session : int, optional
-        Same sensor and table, other noise and hand (needs procedure).
+        Same sensor and table, other noise and placement (needs procedure).
     positions : int, optional
-        Of tumble (default 24) or multi-position (24) (needs procedure).
+        Positions of tumble (default 24) or multi-position (24) (needs procedure).
     dwell : float, optional
-        In each position (needs procedure).
+        Time in each position (needs procedure).
     supply : float, optional
-        Of the ratiometric sensor (default 3.3) (needs procedure).
+        Supply of the ratiometric sensor (default 3.3) (needs procedure).
     strokes : int, optional
-        Of a slide, each followed by a rest (default 6) (needs procedure).
+        Strokes of a slide, each followed by a rest (default 6) (needs procedure).
     repetitions : int, optional
-        Of a slide: each stroke there and back so often (needs procedure).
+        Number of times that each stroke of a slide goes there and back (needs procedure).
     length : float, optional
-        Of a slide's stroke (default 0.4) (needs procedure).
+        Length of a slide's stroke (default 0.4) (needs procedure).
     stroke_time : float, optional
-        Of a slide's stroke (default 1) (needs procedure).
+        Duration of a slide's stroke (default 1) (needs procedure).
     elevation : float, optional
-        Of a slide's line above the horizontal (needs procedure).
+        Elevation of a slide's line above the horizontal (needs procedure).
     gravity_removed : bool
-        Of a slide, as phones do (needs procedure).
+        Remove gravity from the slide's data, as phones do (needs procedure).
     gyro : bool
-        Of a slide: channels of angular rate (needs procedure).
+        Add channels of angular rate to a slide (needs procedure).
     signal : str, optional
         acceleration (default), voltage or counts (needs procedure).
     progress : bool or callable of (stage, fraction), optional
@@ -822,7 +818,7 @@ def simulate(
     Raises
     ------
     ArgumentError
-        An option that makes no sense; a ValueError too.
+        An invalid option; also a ValueError.
 
     Examples
     --------

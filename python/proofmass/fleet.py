@@ -1,7 +1,7 @@
-"""A verb for many recordings, and what they show together: the command ``proofmass fleet`` from Python.
+"""Analysis of many recordings with a summary: the command ``proofmass fleet`` from Python.
 
-The recordings are analysed in processes of their own, or with ``dask`` by the workers of a Dask cluster. What is done
-is kept in the folder of results, so that the same call goes on where it was interrupted.
+Each recording is analysed in its own process, or with ``dask`` on the workers of a Dask cluster. Completed results are
+kept in the folder of results, so that the same call continues after an interruption.
 """
 from __future__ import annotations
 
@@ -47,25 +47,25 @@ def run(
     into : path
         The folder of the results.
     jobs : int, optional
-        Processes at once (default: the processors).
+        Number of processes (default: the number of processors).
     memory : float, optional
-        In MB, of all processes together; with dask, of each job.
+        Memory in MB for all processes together; with dask, for each job.
     timeout : float, optional
-        In seconds; a recording that takes longer is ended.
+        Time limit for each recording, in seconds.
     force : bool
-        Do again what is there already.
+        Repeat completed recordings.
     reports : bool
-        Write a page for each recording, too.
+        Also write a page for each recording.
     by : str, optional
-        Column whose value makes several recordings one, of noise: "sensor".
+        For noise, column by which recordings are combined into one: "sensor".
     shard : str, optional
         "I/N": every N-th recording, from the I-th on.
     dask : str, optional
         Address of a Dask scheduler.
     program : path, optional
-        The command proofmass on the workers.
+        Path of proofmass on the workers.
     **options
-        Those of the verb, for every recording.
+        Options of the verb, for every recording.
 
     Returns
     -------
@@ -78,16 +78,16 @@ def run(
 
 
 def summary(results: Path, *, limit: Optional[Sequence[str]] = None, false_share: Optional[float] = None) -> Result:
-    """What the results show together: distributions, sensors out of family, scatter, trends, yield.
+    """Summary of the results: distributions, sensors out of family, scatter, trends, yield.
 
     Parameters
     ----------
     results : path
         The folder of the results.
     limit : list of str, optional
-        "white<2e-3": the yield.
+        Limits for the yield: "white<2e-3".
     false_share : float, optional
-        Of the sensors called out of family, expected to be so by chance (default 0.05).
+        Expected fraction of false alarms among the sensors reported as out of family (default 0.05).
     """
     words = _options.words({"limit": None if limit is None else list(limit), "false_share": false_share})
     return _run(["fleet", "summary", os.fspath(results), *words])

@@ -1,4 +1,4 @@
-"""Estimates of samples as they come: angle of a wheel, displacement, inclination.
+"""Online estimates from live samples: angle of a wheel, displacement, inclination.
 
 Examples
 --------
@@ -25,7 +25,7 @@ from ._run import ProofmassWarning
 
 
 def _own(given: dict[str, Any]) -> dict[str, Any]:
-    """The arguments that are flags."""
+    """The arguments that correspond to flags."""
     return {k: v for k, v in given.items() if k not in ("self", "channels", "rate_hz", "__class__")}
 
 
@@ -45,11 +45,11 @@ class _Live:
 
     @property
     def columns(self) -> dict[str, str]:
-        """Names and units of what `add` gives beside ``time_s``."""
+        """Names and units of the columns that `add` returns beside ``time_s``."""
         return dict(self._live.columns)
 
     def add(self, time_s: Any, samples: Any) -> dict[str, Doubles]:
-        """Take samples of shape (n, channels) at times of shape (n,); the rows settled by now."""
+        """Process samples of shape (n, channels) at times of shape (n,); returns the rows completed so far."""
         times = as_doubles(time_s, "time_s")
         table = as_doubles(samples, "samples", (2,))
         if table.shape != (times.size, len(self._names)):
@@ -59,14 +59,14 @@ class _Live:
         return self._named(rows)
 
     def push(self, time_s: float, sample: Sequence[float]) -> Optional[SimpleNamespace]:
-        """Take one sample; the newest row as an object, or None while none is settled."""
+        """Process one sample; returns the newest row as an object, or None if no row is complete."""
         rows = self.add(np.array([time_s], dtype=float), np.asarray(sample, dtype=float).reshape(1, -1))
         if rows["time_s"].size == 0:
             return None
         return SimpleNamespace(**{name: float(values[-1]) for name, values in rows.items()})
 
     def finish(self) -> dict[str, Doubles]:
-        """No sample follows: the rows that were still waiting."""
+        """End the run; returns the remaining rows."""
         rows = self._live.finish()
         self._warn()
         return self._named(rows)
@@ -90,11 +90,11 @@ class Wheel(_Live):
     rate_hz : float, optional
         Sample rate in Hz (default: from the times of the samples).
     lag : float, optional
-        Seconds that the smoothed estimates look ahead.
+        Lag of the fixed-lag smoother in seconds.
     axis : str, optional
-        Of the axle, "z" or "0,0,1".
+        Direction of the axle, "z" or "0,0,1".
     radius, bandwidth, sensor, gravity, latitude, height
-        As the flags of ``proofmass record``.
+        As for the flags of ``proofmass record``.
     """
 
     _estimate = "wheel"
@@ -117,7 +117,7 @@ class Wheel(_Live):
 
 
 class Track(_Live):
-    """Displacement along the axis of motion, sample by sample; parameters as of `Wheel`."""
+    """Displacement along the axis of motion, sample by sample; parameters as for `Wheel`."""
 
     _estimate = "track"
 
@@ -134,7 +134,7 @@ class Track(_Live):
 
 
 class Tilt(_Live):
-    """Roll and pitch, sample by sample; parameters as of `Wheel`."""
+    """Roll and pitch, sample by sample; parameters as for `Wheel`."""
 
     _estimate = "tilt"
 

@@ -15,13 +15,13 @@ namespace py = pybind11;
 namespace proofmass::python {
 namespace {
 
-/// What the work throws when it is to end.
+/// Thrown within the computation to cancel it.
 struct Cancelled {};
 
-// What the two threads have in common.
+// State shared by the two threads.
 class Shared {
  public:
-  /// Called by the working thread and those that it starts.
+  /// Called by the computing thread and its own worker threads.
   void report(std::string_view stage, double fraction) {
     if (cancelled_) throw Cancelled{};
     const std::lock_guard lock(mutex_);
@@ -32,7 +32,7 @@ class Shared {
     finished_ = true;
     changed_.notify_one();
   }
-  /// Whether it has finished, after a while at most.
+  /// Waits for a limited time; true if the computation has finished.
   bool wait() {
     constexpr std::chrono::milliseconds look_again(50);
     std::unique_lock lock(mutex_);
@@ -52,7 +52,7 @@ class Shared {
   std::atomic<bool> cancelled_ = false;
 };
 
-// Throws what a signal's handler or the callable raises.
+// Throws any exception raised by a signal handler or by the callable.
 void look_up(Shared& shared, const py::object& progress) {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   if (progress.is_none()) return;

@@ -7,10 +7,10 @@
 
 namespace proofmass::python {
 
-/// Does the work on a thread of its own, without the interpreter's lock, while this thread looks
-/// for signals and hands progress to `progress`, a callable of (stage, fraction) or None. Ctrl-C,
-/// or an exception of the callable, ends the work where it next reports progress, and is raised
-/// here; so is what the work throws.
+/// Runs the computation on a separate thread without the interpreter's lock, while this thread
+/// checks for signals and passes progress to `progress`, a callable of (stage, fraction) or None.
+/// Ctrl-C or an exception of the callable cancels the computation at its next progress report and
+/// is raised here, as are exceptions of the computation.
 void compute(const pybind11::object& progress, const std::function<void(const Progress&)>& work);
 
 }  // namespace proofmass::python

@@ -7,7 +7,7 @@ namespace py = pybind11;
 namespace proofmass::python {
 namespace {
 
-// The module's exceptions, made once and kept as long as the interpreter.
+// Exceptions of the module, created once and kept for the lifetime of the interpreter.
 struct Exceptions {
   PyObject *error = nullptr, *argument = nullptr, *file = nullptr, *data = nullptr;
 };

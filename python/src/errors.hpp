@@ -7,19 +7,19 @@
 
 #include "proofmass/core/result.hpp"
 
-// Failures of the library as exceptions of the module.
+// Errors of the library as exceptions of the module.
 namespace proofmass::python {
 
-/// Makes pm.Error and its subclasses, and translates what the library and the verbs throw.
+/// Creates pm.Error and its subclasses, and translates exceptions of the library and the verbs.
 void add_errors(pybind11::module_& module);
 
-/// The value, or the exception that the error's code stands for.
+/// The value; throws the exception for the error's code otherwise.
 template <class T>
 [[nodiscard]] T need(Result<T> result) {
-  return std::move(result).value();  // throws ResultError, which add_errors() translates
+  return std::move(result).value();  // throws ResultError, translated by add_errors()
 }
 
-/// As an exception of pm.ArgumentError.
+/// Throws pm.ArgumentError.
 [[noreturn]] void refuse(const std::string& message);
 
 }  // namespace proofmass::python

@@ -32,7 +32,7 @@ std::span<double> span_of(Doubles& array) {
   return {array.mutable_data(), static_cast<std::size_t>(array.size())};
 }
 
-/// Matrices and which of them each instant has, the latter or both None.
+/// Distinct matrices and the index of each epoch's; the index, or both, may be None.
 struct Sequence {
   Doubles values;
   Places which;

@@ -22,7 +22,7 @@ namespace {
 
 using Doubles = py::array_t<double, py::array::c_style>;
 
-/// An estimate that samples are handed to as they come.
+/// An online estimator fed with samples.
 class Live {
  public:
   Live(const std::vector<std::string>& words,
@@ -51,7 +51,8 @@ class Live {
     return out;
   }
 
-  /// Samples × channels, with their times; gives rows × (1 + columns), the time first.
+  /// Takes samples × channels with their times; returns rows × (1 + columns), the first column
+  /// being time.
   [[nodiscard]] Doubles add(const Doubles& times_s, const Doubles& channels) {
     const auto count = static_cast<std::size_t>(times_s.size());
     std::vector<std::span<const double>> views;

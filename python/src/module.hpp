@@ -2,7 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
-// The module's parts, one source each.
+// Parts of the module, each in its own source.
 namespace proofmass::python {
 
 void add_allan(pybind11::module_& module);

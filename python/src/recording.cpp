@@ -27,7 +27,7 @@ std::vector<double> values_of(const Doubles& array) {
   return {values.begin(), values.end()};
 }
 
-// What the command `inspect` would read: its flags are those of every verb.
+// Reads as the command `inspect` does; its input flags are those of every verb.
 Handle read(const std::vector<std::string>& words, const py::object& progress) {
   const app::Verb verb = parsed_verb(words);
   const std::string file = verb.files().read.front();

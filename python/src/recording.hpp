@@ -11,10 +11,10 @@
 
 namespace proofmass::python {
 
-/// A recording that Python's objects share: arrays out of it are views of its memory.
+/// A recording shared by Python objects; arrays taken from it are views of its memory.
 using SharedRecording = std::shared_ptr<const Recording>;
 
-/// A class of Python cannot hold a pointer to const.
+/// Wrapper, since a Python class cannot hold a pointer to const.
 struct Handle {
   SharedRecording recording;
 };
@@ -23,14 +23,14 @@ void add_recording(pybind11::module_& module);
 
 [[nodiscard]] SharedRecording shared(Recording recording);
 
-/// A copy; or, of one that nobody else holds and the caller says is temporary, itself.
+/// A copy; the recording itself if it is temporary and not shared.
 [[nodiscard]] Recording taken(const Handle& handle, bool is_temporary);
 
-/// Each with "info", "warning" or "bad".
+/// The notes, each with "info", "warning" or "bad".
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> words_of(
     const std::vector<Note>& notes);
 
-/// A read-only array of memory that `owner` keeps alive.
+/// A read-only array view of memory owned by `owner`.
 template <class Owner>
 [[nodiscard]] pybind11::array_t<double> view_of(const double* values,
                                                 std::vector<pybind11::ssize_t> shape,

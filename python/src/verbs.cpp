@@ -18,11 +18,11 @@ namespace py = pybind11;
 namespace proofmass::python {
 namespace {
 
-/// What stands in for files.
+/// Inputs of the call that replace files.
 struct Given {
   std::map<std::string, const Handle*> recordings;
   std::map<std::string, std::string> sensor_files;
-  bool temporary = false;   ///< nobody else needs the recordings
+  bool temporary = false;   ///< the recordings are not used elsewhere
   bool read_again = false;  ///< the verb may read one more than once
 };
 

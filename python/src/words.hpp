@@ -9,10 +9,10 @@
 #include "cli/command_line.hpp"
 #include "errors.hpp"
 
-// Options of Python's functions are the command's flags, and are checked where these are.
+// Options of Python functions correspond to flags of the command, whose parser checks them.
 namespace proofmass::python {
 
-/// The verb, with its flags, of a command line of these words: "noise", "array", "--rate=100".
+/// The verb with its flags, parsed from words of a command line: "noise", "array", "--rate=100".
 /// Throws Failure.
 [[nodiscard]] inline app::Verb parsed_verb(std::vector<std::string> words) {
   words.insert(words.begin(), "proofmass");
@@ -23,7 +23,7 @@ namespace proofmass::python {
   return std::move(*verb);
 }
 
-/// The command alone, of a verb that is known.
+/// The command struct of a verb of known type.
 template <class C>
 [[nodiscard]] C parsed(std::vector<std::string> words) {
   return *std::any_cast<std::shared_ptr<C>>(parsed_verb(std::move(words)).command);

@@ -1,4 +1,4 @@
-"""What the tests share: the command beside the module, and recordings that may not be there."""
+"""Fixtures: the command beside the module, and recordings that may be unavailable."""
 import json
 import os
 import subprocess
@@ -12,7 +12,7 @@ COMMAND = os.environ.get("PROOFMASS", str(ROOT / "build" / "release" / "proofmas
 
 @pytest.fixture
 def document():
-    """The JSON document of a command line, less its provenance."""
+    """The JSON document of a command line, without its provenance."""
 
     def run(*words: str) -> dict:
         done = subprocess.run([COMMAND, *words, "--json", "-", "--quiet"], capture_output=True, text=True)
@@ -26,7 +26,7 @@ def document():
 
 @pytest.fixture
 def recordings() -> Path:
-    """The folder of recordings that are not distributed."""
+    """Folder of the recordings that are not distributed."""
     for folder in (os.environ.get("PROOFMASS_DATA"), ROOT.parent / "shared" / "data"):
         if folder and Path(folder).is_dir():
             return Path(folder)

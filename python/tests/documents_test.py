@@ -1,4 +1,4 @@
-"""Results are the command's documents to the last bit, from files and from what is in memory."""
+"""Results are identical to the command's documents, for files and for data in memory."""
 import subprocess
 from pathlib import Path
 

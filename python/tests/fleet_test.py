@@ -1,4 +1,4 @@
-"""The command for many recordings, from Python."""
+"""Fleets of recordings, from Python."""
 import numpy as np
 import pytest
 
@@ -8,7 +8,7 @@ from conftest import COMMAND
 
 @pytest.fixture
 def tray(tmp_path, monkeypatch):
-    """A folder with seven recordings of white noise, one of a sensor with twice as much of it, and a broken one."""
+    """A folder with seven recordings of white noise, one with twice the density, and a damaged one."""
     monkeypatch.setenv("PROOFMASS", COMMAND)
     monkeypatch.chdir(tmp_path)
     draw = np.random.default_rng(1)

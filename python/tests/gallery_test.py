@@ -1,4 +1,4 @@
-"""docs/python.md prints what it says, and the package's types are right."""
+"""The examples of docs/python.md print what the page shows, and the package passes type checking."""
 import doctest
 import importlib.util
 import os

@@ -268,7 +268,7 @@ def test_ctrl_c_ends_a_long_computation():
 
 def test_deviations_of_contiguous_doubles_take_no_copy_at_the_border():
     assert np.shares_memory(as_doubles(PLAIN, "x"), PLAIN)
-    with pytest.raises(TypeError):  # the library takes nothing that it would have to convert
+    with pytest.raises(TypeError):  # the library does not convert its arguments
         _core.allan(["noise", "array", "--rate=1"], PLAIN.astype(np.float32), None)
 
 

@@ -8,7 +8,7 @@ import proofmass as pm
 
 
 def batch(F, H, Q, R, x0, P0, z):
-    """All states given all readings, by least squares of the whole record at once."""
+    """All states from all measurements, by batch least squares."""
     n, N = len(z), len(x0)
     information, right = np.zeros((n * N, n * N)), np.zeros(n * N)
 
@@ -144,7 +144,7 @@ def test_readings_that_do_not_fit_are_refused_in_a_sentence():
 
 
 def test_local_level_of_kfas_to_its_digits(recordings):
-    """Results of the R package KFAS that statsmodels' tests are held to; its diffuse first instant taken as the prior."""
+    """Results of the R package KFAS used in statsmodels' tests; the state after its diffuse first epoch is the prior."""
     path = recordings / "kalman-reference" / "results_exact_initial_local_level_R.csv"
     if not path.exists():
         pytest.skip("needs the published results of the local level")
@@ -154,11 +154,11 @@ def test_local_level_of_kfas_to_its_digits(recordings):
             for name, text in row.items():
                 table.setdefault(name, []).append(np.nan if text == "NA" else float(text))
     r = {name: np.array(values) for name, values in table.items()}
-    # a and P stand one row beyond the innovations.
+    # a and P are one row ahead of the innovations.
     rows = np.flatnonzero(~np.isnan(r["v_1"]) & ~np.isnan(r["F_1"]))
     z = (r["a_1"] + r["v_1"])[rows]
     assert z[0] == pytest.approx(10.2394)
-    Q = r["sumP"][1] - 1.993  # what the level adds to the variance of the first, diffuse reading
+    Q = r["sumP"][1] - 1.993  # contribution of the level to the variance after the first, diffuse measurement
     model = pm.KalmanModel(1.0, 1.0, Q, 1.993, x0=[r["a_1"][1]], P0=r["sumP"][1])
     filtered, smoothed = model.filter(z[1:]), model.smooth(z[1:])
     assert filtered.innovation[:, 0] == pytest.approx(r["v_1"][rows][1:], abs=1e-10)

@@ -1,4 +1,4 @@
-"""Each function has the options of its verb, and each example in a docstring prints what it says."""
+"""Each function has the options of its verb, and each example in a docstring prints what it shows."""
 import doctest
 import importlib
 import inspect
@@ -12,7 +12,7 @@ import proofmass as pm
 from conftest import COMMAND
 from proofmass._options import NAMES
 
-#: Flags about files, the terminal and the command itself.
+#: Flags for files, the terminal and the command itself.
 OF_THE_COMMAND = {
     "help", "help-input", "json", "report", "page", "output", "quiet", "verbose", "strict", "config", "memory", "pyramid",
     "print-config", "dataset",

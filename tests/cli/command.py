@@ -20,7 +20,7 @@ DONE, FAILED, USAGE, BAD_INPUT, BAD_DATA, INTERRUPTED = 0, 1, 2, 3, 5, 130
 
 
 def refuse_constant(name: str):
-    raise AssertionError(f"{name} is no JSON")
+    raise AssertionError(f"{name} is not JSON")
 
 
 def parse_json(text: str) -> dict:

@@ -80,7 +80,7 @@ class Streams(CommandTest):
             self.assertAlmostEqual(white["value"], same["value"], delta=0.01 * white["value"])
             for at, again in zip(one["deviation"]["points"], other["deviation"]["points"]):
                 self.assertAlmostEqual(at["value"], again["value"], delta=1e-3 * at["value"])
-        self.assertTrue(any("Knocks" in text or "knocks" in text for text in pieces["warnings"]),
+        self.assertTrue(any("Outliers" in text or "outliers" in text for text in pieces["warnings"]),
                         pieces["warnings"])
 
     def test_say_what_needs_the_whole_recording(self):

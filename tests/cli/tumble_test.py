@@ -167,7 +167,7 @@ class Tumble(CommandTest):
         y = found["channels"][1]
         self.assertAlmostEqual(y["axis"]["planes"][0]["phase_rad"], math.pi / 2)
         self.expect_near(y["K1"], K1 * (1 + K3 * G * G))
-        self.assertIn("lies along the table's", found["channels"][2]["refused"])
+        self.assertIn("is parallel to the table's", found["channels"][2]["refused"])
         only = self.document("tumble", "r.csv", "--angles", "0,90,180,270,0", "--channel", "acc_x")
         self.assertEqual(len(only["channels"]), 1)
 

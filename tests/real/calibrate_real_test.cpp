@@ -84,12 +84,12 @@ MultiPosition fitted(const PoseMeans& means, MultiPositionOptions options) {
 }
 
 // With the random walk of the biases between positions, as the program allows for it.
-MultiPosition fitted_with_wander(const PoseMeans& means, MultiPositionOptions options) {
+MultiPosition fitted_with_session_noise(const PoseMeans& means, MultiPositionOptions options) {
   options.noise_dof = means.noise_dof;
-  const auto wander = calibrate::session_noise(means.poses, {&means.session, 1}, options);
-  if (!wander) return calibrate_positions(means.poses, options).value();
-  options.between = wander->between;
-  return calibrate_positions(wander->poses, options).value();
+  const auto noise = calibrate::session_noise(means.poses, {&means.session, 1}, options);
+  if (!noise) return calibrate_positions(means.poses, options).value();
+  options.between = noise->between;
+  return calibrate_positions(noise->poses, options).value();
 }
 
 // --- imu_tk: an Xsens turned by hand, raw counts
@@ -293,7 +293,7 @@ TEST(CalibrationOfAPhone, WithoutTimeHasTheNormOfGravityAfterwards) {
   const PoseMeans means = at_rest(read(file, {.unit = parse_unit("m/s2").value()}));
   EXPECT_GE(means.poses.size(), 28U);
   EXPECT_LE(means.poses.size(), 36U);
-  const MultiPosition fit = fitted_with_wander(means, {.gravity_mps2 = 9.81});
+  const MultiPosition fit = fitted_with_session_noise(means, {.gravity_mps2 = 9.81});
   EXPECT_EQ(fit.model, PoseModel::norm_9);
   double raw = 0.0, upright = 0.0, norm = 0.0;
   for (std::size_t k = 0; k < means.poses.size(); ++k) {

@@ -143,7 +143,7 @@ TEST_P(RestingAdis16405, ItsConverterIsCoarseAndItSaysSo) {
   const NoiseAnalysis found = analysed();
   EXPECT_TRUE(std::any_of(found.notes.begin(), found.notes.end(), [](const Note& note) {
     return note.severity == Severity::warning &&
-           note.text.find("converter's step") != std::string::npos;
+           note.text.find("quantisation step") != std::string::npos;
   }));
 }
 

@@ -157,7 +157,7 @@ TEST(RestsOfAWalk, AreNone) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
   const RestSearch search = read(file, 198.6).search();
   EXPECT_TRUE(search.rests.empty());
-  EXPECT_NE(search.why_none.find("never lay still"), std::string::npos) << search.why_none;
+  EXPECT_NE(search.why_none.find("was never at rest"), std::string::npos) << search.why_none;
 }
 
 }  // namespace

@@ -218,7 +218,7 @@ export function recordingView(main: HTMLElement, file: string): View {
     replace(
       counts,
       h("span", {}, h("b", {}, String(head.rests?.length ?? 0)), ` rests${head.rests?.length || !head.why_no_rests ? "" : `: ${head.why_no_rests}`}`),
-      h("span", {}, h("b", {}, String(head.knocks_s?.length ?? 0)), " knocks within them"),
+      h("span", {}, h("b", {}, String(head.knocks_s?.length ?? 0)), " outliers within them"),
       h("span", {}, h("b", { class: clipped.length > 0 ? "red" : "" }, count(clipped.reduce((sum, channel) => sum + channel.clipped, 0))), ` readings clipped${clipped.length > 0 ? `: ${clipped.map((channel) => `${channel.name} ${channel.clipped}`).join(", ")}` : ""}`),
       h("span", {}, h("b", {}, count(gaps.length)), ` gaps${gaps[0] ? `, the first ${significant(gaps[0].duration_s, 3)} s at ${significant(gaps[0].start_s, 6)} s` : ""}`),
       h("span", {}, "previous ", h("kbd", { class: "keys" }, "["), " next ", h("kbd", { class: "keys" }, "]")),

@@ -43,11 +43,11 @@ double si_or_zero(const std::optional<sensor::Figure>& figure) {
   return figure ? figure->si() : 0.0;
 }
 
-// A calibrated axis: its bias is taken away, what is left is as large as its standard deviation.
+// A calibrated axis: the bias is corrected, and the residual bias is its standard deviation.
 estimate::BudgetSensor axis_of(const sensor::SensorModel& model, std::size_t axis) {
   const sensor::Figure& bias = *model.calibration.bias[axis];
   const auto& scale = model.calibration.scale[axis];
-  // Of a bias in volts or counts the scale makes an acceleration.
+  // A bias in volts or counts is converted to an acceleration by the scale.
   const bool electric = bias.unit.si_symbol != "m/s^2";
   const double per_mps2 = electric && scale ? scale->si() : 1.0;
   const sensor::NoiseModel& noise = model.noise;
@@ -59,15 +59,15 @@ estimate::BudgetSensor axis_of(const sensor::SensorModel& model, std::size_t axi
            .ramp_mps3 = si_or_zero(noise.ramp[axis])}};
 }
 
-// Which of the noises that grow fastest the file does not know, so that the error has no share of
-// them: one that is not there, or that its recording only bounds.
+// Noise terms with the fastest growth of the error that are missing from the file or only bounded
+// by it, and therefore not included in the error.
 std::string unknown_noise(const sensor::SensorModel& model, std::size_t axis) {
   const sensor::NoiseModel& noise = model.noise;
   std::vector<std::string> names;
   const auto look = [&](const char* name, const std::optional<sensor::Figure>& figure) {
     if (!figure) names.emplace_back(name);
     if (!figure || figure->value != 0.0 || !figure->std) return;
-    constexpr double one_sided_95 = 1.645;  // as noise --update-sensor writes a bound
+    constexpr double one_sided_95 = 1.645;  // as `noise --update-sensor` writes an upper bound
     names.push_back(fmt::format("{} (below {:.2g} {})", name, one_sided_95 * *figure->std,
                                 figure->unit.symbol));
   };

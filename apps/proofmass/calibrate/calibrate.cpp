@@ -25,7 +25,7 @@
 namespace proofmass::app {
 namespace {
 
-// Flags of `calibrate` that say where the poses are.
+// Flags of `calibrate` for the poses.
 void add_pose_flags(CLI::App& verb, CalibrateCommand& command) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type);
@@ -49,7 +49,7 @@ void add_pose_flags(CLI::App& verb, CalibrateCommand& command) {
       ->allow_extra_args(false);
 }
 
-// Flags of `calibrate` that say how well something is known.
+// Flags of `calibrate` for uncertainties.
 void add_uncertainty_flags(CLI::App& verb, CalibrateCommand& command) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type);
@@ -118,11 +118,11 @@ using calibrate::TypeB;
 
 void expect_sense(const CalibrateCommand& command) {
   if (command.six_position && command.parameters)
-    throw Failure(usage, "--six-position has parameters of its own: leave out --parameters");
+    throw Failure(usage, "--six-position implies its parameters: omit --parameters");
   if (!command.update_sensor.empty() && !command.input.sensors.empty()) {
     throw Failure(usage,
-                  "--update-sensor takes the calibration of readings as they are recorded: leave "
-                  "out --sensor");
+                  "--update-sensor needs uncalibrated data: omit "
+                  "--sensor");
   }
   if (!command.supplies_v.empty() && command.supplies_v.size() != command.files.size()) {
     throw Failure(usage, fmt::format("--supplies: {} values for {} files: give one for each",
@@ -149,7 +149,7 @@ std::vector<TypeB> type_b_of(const CalibrateCommand& command) {
   return lines;
 }
 
-// A fit that the poses do not carry is the input's fault; its message names the files.
+// Poses that do not determine the model are a fault of the input; the message names the files.
 MultiPosition fitted(const PoseSet& set, MultiPositionOptions options) {
   options.noise_dof = set.noise_dof;
   options.between = set.between;
@@ -160,25 +160,25 @@ MultiPosition fitted(const PoseSet& set, MultiPositionOptions options) {
   throw Failure(status_of(fit.error(), Stage::computing), fit.error().at(files).message);
 }
 
-// The noise of the means over the session, where the recordings show it.
+// Noise of the means over the session, if the recordings determine it.
 void settle_noise(const MultiPositionOptions& model, PoseSet& set) {
   MultiPositionOptions options = model;
   options.noise_dof = set.noise_dof;
-  set.wander = calibrate::session_noise(set.poses, set.sessions, options);
-  if (!set.wander) return;
-  set.poses = set.wander->poses;
-  set.between = set.wander->between;
+  set.slow_noise = calibrate::session_noise(set.poses, set.sessions, options);
+  if (!set.slow_noise) return;
+  set.poses = set.slow_noise->poses;
+  set.between = set.slow_noise->between;
 }
 
-// The wander that the sensor file to be updated has of all three axes.
-std::optional<calibrate::WanderStrengths> filed_wander(const CalibrateCommand& command,
-                                                       const MultiPosition& fit,
-                                                       const Unit& unit) {
+// Flicker and random walk of the sensor file to be updated, if it has them for all three axes.
+std::optional<calibrate::SlowNoiseStrengths> filed_slow_noise(const CalibrateCommand& command,
+                                                              const MultiPosition& fit,
+                                                              const Unit& unit) {
   if (command.update_sensor.empty() || !std::filesystem::exists(command.update_sensor)) return {};
   const sensor::SensorFile file =
       need(sensor::read_sensor_file(command.update_sensor), Stage::reading);
   const sensor::NoiseModel& noise = file.model.noise;
-  calibrate::WanderStrengths out;
+  calibrate::SlowNoiseStrengths out;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!noise.flicker[axis]) return {};
     const double scale = unit.quantity == Quantity::acceleration ? 1.0 : fit.estimate[3 + axis];
@@ -191,8 +191,8 @@ std::optional<calibrate::WanderStrengths> filed_wander(const CalibrateCommand& c
   return out;
 }
 
-// How well the biases repeat from one session to another, as stated, by the sensor file or by what
-// this recording shows.
+// Repeatability of the biases between sessions: as stated, from the sensor file, or from the noise
+// of this recording.
 std::optional<calibrate::BiasStability> stability_of(const CalibrateCommand& command,
                                                      const PoseSet& set,
                                                      const MultiPosition& fit) {
@@ -209,20 +209,20 @@ std::optional<calibrate::BiasStability> stability_of(const CalibrateCommand& com
     session_s = std::max(session_s, file.duration_s);
     samples = std::max(samples, static_cast<double>(file.samples));
   }
-  if (const auto filed = filed_wander(command, fit, set.unit))
+  if (const auto filed = filed_slow_noise(command, fit, set.unit))
     return calibrate::stability_of(*filed, session_s,
                                    "the noise in " + report::file_name(command.update_sensor));
-  if (!set.wander || !(session_s > 0.0)) return std::nullopt;
-  calibrate::WanderStrengths own;
+  if (!set.slow_noise || !(session_s > 0.0)) return std::nullopt;
+  calibrate::SlowNoiseStrengths own;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    own.flicker[axis] = set.wander->flicker[axis] / (2.0 * std::numbers::ln2);
-    own.random_walk[axis] = 3.0 * set.wander->random_walk[axis] * samples / session_s;
+    own.flicker[axis] = set.slow_noise->flicker[axis] / (2.0 * std::numbers::ln2);
+    own.random_walk[axis] = 3.0 * set.slow_noise->random_walk[axis] * samples / session_s;
   }
   return calibrate::stability_of(own, session_s,
                                  "the flicker noise and random walk that it allows");
 }
 
-// Of several supplies the one whose figures stand at the top: the nearest to their mean.
+// With several supplies, the one for the main results: the closest to their mean.
 std::optional<double> main_supply_v(const CalibrateCommand& command) {
   const std::vector<double>& supplies = command.supplies_v;
   if (supplies.empty()) return std::nullopt;
@@ -233,7 +233,8 @@ std::optional<double> main_supply_v(const CalibrateCommand& command) {
   });
 }
 
-// Readings at different supplies are no calibration together: the files at that supply alone are.
+// Positions at different supplies do not belong to one calibration: only the files at the main
+// supply are combined.
 std::vector<std::string> main_files(const CalibrateCommand& command) {
   const std::optional<double> supply_v = main_supply_v(command);
   if (!supply_v) return command.files;
@@ -243,7 +244,7 @@ std::vector<std::string> main_files(const CalibrateCommand& command) {
   return files;
 }
 
-// One calibration for each file, at its own supply, and what they have to do with it.
+// One calibration per file, at its own supply, and the dependence on the supply.
 void calibrate_supplies(const CalibrateCommand& command,
                         const MultiPositionOptions& options,
                         report::CalibrateReport& report) {
@@ -252,13 +253,13 @@ void calibrate_supplies(const CalibrateCommand& command,
     std::vector<Note> notes;
     PoseSet set = read_poses({command.files[k]}, command, notes);
     settle_noise(options, set);
-    // Those of the files at the top have been told.
+    // Notes of the main supply's files have been reported already.
     if (command.supplies_v[k] != main_supply_v(command)) {
       for (const Note& note : notes)
         report.notes.push_back({note.severity, command.files[k] + ": " + note.text});
     }
     MultiPositionOptions own = options;
-    // Gravity is the same at all supplies and says nothing of their difference.
+    // Gravity is common to all supplies and does not affect their difference.
     own.gravity_std_mps2 = 0.0;
     report::SuppliedFit& one = report.supplies.emplace_back();
     one = {command.supplies_v[k], command.files[k], fitted(set, own)};

@@ -9,7 +9,7 @@
 
 namespace proofmass::app {
 
-/// Positions of a turntable at rest; or, by a flag, a wheel that turns or the model equation alone.
+/// Static positions on a turntable; by a flag, a rotating wheel or the model equation alone.
 struct CalibrateCommand {
   std::vector<std::string> files;
   std::string rests;  ///< --rests: list of intervals

@@ -20,9 +20,9 @@ using calibrate::ModelRow;
 using sensor::Coefficient;
 
 struct MotionColumn {
-  std::string_view name;  ///< bare
+  std::string_view name;  ///< without axis or unit
   double sensor::Motion::* member;
-  Quantity quantity;  ///< unknown: no Quantity stands for rad/s²
+  Quantity quantity;  ///< unknown for rad/s², which has no Quantity
 };
 constexpr std::array motion_columns = std::to_array<MotionColumn>({
     {"ai", &sensor::Motion::ai_mps2, Quantity::acceleration},
@@ -58,9 +58,9 @@ const Channel* column(const Recording& table, std::string_view name) {
   return found == table.channels.end() ? nullptr : &*found;
 }
 
-// The unit that a motion column is in: its header's, or --unit for accelerations.
+// Unit of a motion column: from its header, or --unit for accelerations.
 Unit column_unit(const Channel& channel, const MotionColumn& column, const InputFlags& flags) {
-  if (column.quantity == Quantity::unknown) return {};  // rad/s², which units do not have
+  if (column.quantity == Quantity::unknown) return {};  // rad/s², which Unit cannot represent
   if (channel.unit.quantity == column.quantity) return channel.unit;
   if (column.quantity == Quantity::acceleration && !flags.unit.empty()) {
     const auto unit = parse_unit(flags.unit);
@@ -73,8 +73,8 @@ Unit column_unit(const Channel& channel, const MotionColumn& column, const Input
                          rate ? "" : ", or give --unit"));
 }
 
-// Accelerations of the positions at rest that an angle column tells: g sin along the input axis,
-// g cos along the pendulous axis (plane 1) or the output axis (plane 2).
+// Accelerations at rest that follow from a column of angles: g sin φ along the input axis, g cos φ
+// along the pendulous axis (plane 1) or the output axis (plane 2).
 void add_gravity(const Recording& table,
                  const Channel& angle,
                  const TumbleCommand& command,
@@ -135,13 +135,13 @@ bool is_output(const Channel& channel, const TumbleCommand& command) {
          std::ranges::find(others, name) == others.end();
 }
 
-// The column NAME_std, or std, which states the readings' standard deviations; or none.
+// The column NAME_std or std with the standard deviations of the measurements, if any.
 const Channel* std_column(const Recording& table, const Channel& output) {
   const Channel* own = column(table, io::bare_name(output.name) + "std");
   return own != nullptr ? own : column(table, "std");
 }
 
-// √(δ_o² + δ_p²), where both were fitted.
+// √(δ_o² + δ_p²), if both were fitted.
 std::optional<calibrate::CrossAxis> cross_axis_of(const calibrate::ModelFit& fit) {
   const auto *o = fit.find(Coefficient::delta_o), *p = fit.find(Coefficient::delta_p);
   if (o == nullptr || p == nullptr || !o->value || !p->value) return std::nullopt;
@@ -196,7 +196,7 @@ void run_model_equation(const TumbleCommand& command) {
   }
   if (!command.update_sensor.empty()) {
     throw Failure(usage,
-                  "--update-sensor does not go with --coefficients: a sensor file has no place for "
+                  "--update-sensor does not go with --coefficients: a sensor file cannot store "
                   "them");
   }
   InputFlags as_table = command.input;  // all columns, in the units of their headers

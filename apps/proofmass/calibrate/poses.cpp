@@ -23,7 +23,7 @@ using calibrate::Pose;
 using report::PoseFile;
 using report::PoseOrigin;
 
-// What one file gives.
+// Poses of one file.
 struct FilePoses {
   PoseFile file;
   std::vector<Pose> poses;
@@ -40,7 +40,7 @@ std::optional<Eigen::Vector3d> vector_of(const std::optional<std::array<double, 
   return Eigen::Vector3d(up->data());
 }
 
-// With the flags that help.
+// With a hint to the flag that helps.
 Failure failure_of(const Error& error, const std::string& file) {
   const std::string message = error.at(file).message;
   if (error.code == Errc::invalid_argument)
@@ -88,7 +88,7 @@ FilePoses table_poses(const Recording& recording,
     known &= row.std_of_mean.has_value();
     if (pose.samples > 1) out.noise_dof += static_cast<double>(pose.samples - 1);
   }
-  // A standard deviation that the user states without its basis is taken for exact.
+  // A standard deviation stated by the user without degrees of freedom is taken as exact.
   if (known && out.noise_dof == 0.0) out.noise_dof = 1e6;
   if (!known) out.noise_dof = 0.0;
   return out;
@@ -103,7 +103,7 @@ std::vector<Dwell> listed(const Recording& recording, const std::string& list) {
   return rests;
 }
 
-// Where labels name positions, those that do are rests, and the others are told.
+// If labels name positions, the intervals so labelled are rests; other labels are listed in a note.
 std::vector<Dwell> labelled(const Recording& recording, std::vector<Note>& notes) {
   std::vector<Dwell> rests;
   std::string others;
@@ -125,7 +125,7 @@ std::vector<Dwell> labelled(const Recording& recording, std::vector<Note>& notes
 }
 
 struct Rests {
-  std::vector<Dwell> dwells;  // empty: to be found
+  std::vector<Dwell> dwells;  // empty: to be detected
   PoseOrigin origin = PoseOrigin::found;
 };
 
@@ -138,8 +138,8 @@ Rests rests_of(const Recording& recording,
   return {};
 }
 
-// Where the sensor file to be written says that a channel holds the supply, the voltages are those
-// that the reference supply would have given.
+// If the sensor file to be written names a channel for the supply, the voltages are scaled to the
+// reference supply.
 std::optional<double> bring_to_reference_supply(const std::string& sensor_file,
                                                 Recording& recording) {
   if (sensor_file.empty() || !std::filesystem::exists(sensor_file)) return std::nullopt;

@@ -9,7 +9,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/report/calibrate/report.hpp"
 
-// From files to poses at rest.
+// Poses at rest from files.
 namespace proofmass::app {
 
 /// The poses of one or more files.
@@ -17,20 +17,20 @@ struct PoseSet {
   std::vector<report::PoseFile> files;
   std::vector<calibrate::Pose> poses;
   std::vector<std::size_t> pose_file;  ///< index into files
-  std::string sensor;                  ///< what the three channels' names share
+  std::string sensor;                  ///< common part of the three channels' names
   Unit unit;                           ///< SI: m/s^2, V or counts
-  /// Supply at which the readings in volts would have been these, brought there by a recorded one.
+  /// Reference supply to which measurements in volts were scaled by a recorded supply.
   std::optional<double> reference_supply_v;
-  double noise_dof = 0.0;                         ///< of the poses' covariances; 0: not known
-  std::vector<calibrate::RestSession> sessions;   ///< one for each recording; none of tables
-  std::array<Eigen::MatrixXd, 3> between;         ///< MultiPositionOptions::between
-  std::optional<calibrate::SessionNoise> wander;  ///< where the recordings show it
+  double noise_dof = 0.0;                             ///< of the poses' covariances; 0 if unknown
+  std::vector<calibrate::RestSession> sessions;       ///< one for each recording; none for tables
+  std::array<Eigen::MatrixXd, 3> between;             ///< MultiPositionOptions::between
+  std::optional<calibrate::SessionNoise> slow_noise;  ///< present if the recordings determine it
   std::array<double, 3> sample_std{};
 };
 
-/// Reads tables of means as they are, and of recordings the rests: listed by --rests, by the file's
-/// labels where these are names of positions, else found. Notes are added. Throws Failure, also
-/// where the files do not agree in the unit of the reading.
+/// Reads tables of means, and from recordings the rests: those listed by --rests, those that the
+/// file's labels name as positions, or else detected ones. Notes are added. Throws Failure, also if
+/// the files differ in the unit of the measurement.
 [[nodiscard]] PoseSet read_poses(const std::vector<std::string>& files,
                                  const CalibrateCommand& command,
                                  std::vector<Note>& notes);

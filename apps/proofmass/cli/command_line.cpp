@@ -21,7 +21,7 @@
 namespace proofmass::app {
 namespace {
 
-// The value of --config, if it is given.
+// The value of --config, if given.
 std::string config_path(const std::vector<std::string>& arguments) {
   constexpr std::string_view flag = "--config";
   for (std::size_t k = 0; k < arguments.size(); ++k) {
@@ -52,13 +52,13 @@ bool known_to_any(CLI::App& app, const std::string& flag) {
   });
 }
 
-// The option that an entry is for; nullptr if it is none of this verb's business.
+// The option to which an entry applies; nullptr if it does not apply to this verb.
 const CLI::Option* option_for(CLI::App& app,
                               CLI::App& verb,
                               const ConfigEntry& entry,
                               const std::string& place) {
   if (!entry.verb.empty() && find_verb(app, entry.verb) == nullptr) {
-    throw Failure(usage, place + "[" + entry.verb + "] is no verb");
+    throw Failure(usage, place + "[" + entry.verb + "] is not a verb");
   }
   if (!entry.verb.empty() && entry.verb != verb.get_name()) return nullptr;
   const bool about_itself = entry.flag == "config" || entry.flag == "help";
@@ -71,7 +71,7 @@ const CLI::Option* option_for(CLI::App& app,
   return option;
 }
 
-// The entry as it would stand on the command line.
+// The entry as words of a command line.
 std::vector<std::string> as_arguments(const CLI::Option& option,
                                       const ConfigEntry& entry,
                                       const std::string& place) {
@@ -87,7 +87,7 @@ std::vector<std::string> as_arguments(const CLI::Option& option,
   return arguments;
 }
 
-// The flags that the configuration file adds to those given, which go before it.
+// Flags from the configuration file, inserted before the given ones, which take precedence.
 std::vector<std::string> configured(CLI::App& app,
                                     CLI::App& verb,
                                     const std::vector<std::string>& arguments) {
@@ -121,7 +121,7 @@ const Verb& verb_named(const std::vector<Verb>& verbs, const std::string& name) 
   return *std::ranges::find(verbs, name, [](const Verb& one) { return one.text.name; });
 }
 
-// The first word that is no flag, and has to be a verb.
+// The first word that is not a flag, which must be a verb.
 std::string first_word(const std::vector<std::string>& arguments) {
   const auto word = std::ranges::find_if(
       arguments, [](const std::string& argument) { return !argument.starts_with('-'); });
@@ -149,7 +149,7 @@ void add_verbs(CLI::App& app, const std::vector<Verb>& verbs) {
   }
 }
 
-// What a file is read for, or changed by; anything else of this type is written.
+// Files that are read or updated; any other option of this type names a file to be written.
 bool names_input(const CLI::Option& option) {
   if (option.get_positional())
     return option.get_type_name() != "WORD" && !option.get_type_name().starts_with("WORD:");
@@ -158,14 +158,14 @@ bool names_input(const CLI::Option& option) {
   return option.get_type_name().starts_with("FILE");
 }
 
-// Passwords do not leave the program.
+// Removes passwords.
 std::vector<std::string> shown(std::vector<std::string> words) {
   for (std::string& word : words)
     if (word.find("password=") != std::string::npos) word = acquire::shown_uri(word);
   return words;
 }
 
-// How the verb was called, as parsed.
+// The call of the verb, as parsed.
 std::shared_ptr<Invocation> invocation(const CLI::App& verb,
                                        const std::vector<std::string>& arguments) {
   std::vector<std::pair<std::string, std::string>> options;
@@ -182,7 +182,7 @@ std::shared_ptr<Invocation> invocation(const CLI::App& verb,
                                       std::move(files));
 }
 
-// One empty line at a time, and none at the end.
+// Reduces empty lines to one at a time, and none at the end.
 std::string without_empty_lines(const std::string& text) {
   std::string out;
   for (const char c : text)
@@ -191,7 +191,7 @@ std::string without_empty_lines(const std::string& text) {
   return out;
 }
 
-// Whether help was asked for and printed.
+// True if help was requested and printed.
 bool print_help(CLI::App& app, const std::vector<std::string>& arguments) {
   const CLI::App* verb = find_verb(app, first_word(arguments));
   const auto asks_for = [&](const std::string& flag) {
@@ -232,7 +232,7 @@ std::optional<Verb> parse_command_line(int argc, char** argv) {
   const std::vector<std::string> typed = arguments;
   if (word == fleet_name) take_verb_flags(app, verb_named(verbs, word), arguments);
   arguments = with_config(app, std::move(arguments));
-  std::ranges::reverse(arguments);  // as CLI11 takes them
+  std::ranges::reverse(arguments);  // CLI11 expects the reverse order
   try {
     app.parse(std::move(arguments));
   } catch (const CLI::CallForVersion& version_asked) {

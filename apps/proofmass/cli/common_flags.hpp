@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-// Flags that verbs have in common.
+// Flags common to several verbs.
 namespace proofmass::app {
 
 struct Host;
@@ -21,11 +21,11 @@ struct InputFlags {
   std::optional<double> supply_v;
   std::optional<double> resample_hz, skew_s;
   std::string resample_method = "sinc";
-  double memory_mb = 1024.0;  ///< of verbs that read larger tables a piece at a time
+  double memory_mb = 1024.0;  ///< for verbs that read larger tables in pieces
   std::optional<double> gravity_mps2, latitude_deg, height_m;
-  /// How long the sensors had been on at the file's first sample; of verbs that know warm-up only.
+  /// Time between power-on and the file's first sample; for verbs with a warm-up model.
   std::optional<double> since_switch_on_s;
-  std::shared_ptr<Host> host{};  ///< empty: recordings are files
+  std::shared_ptr<Host> host{};  ///< null: recordings are files
 };
 
 class Invocation;
@@ -34,8 +34,8 @@ class Invocation;
 struct OutputFlags {
   std::string json, report, page, output;
   bool quiet = false, verbose = false, strict = false;
-  std::shared_ptr<Invocation> invocation{};  ///< where a document or a page was asked for
-  std::shared_ptr<Host> host{};              ///< empty: results go to files and the terminal
+  std::shared_ptr<Invocation> invocation{};  ///< present if a document or a page was requested
+  std::shared_ptr<Host> host{};              ///< null: results go to files and the terminal
 };
 
 }  // namespace proofmass::app

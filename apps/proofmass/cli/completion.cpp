@@ -12,15 +12,15 @@ namespace {
 
 using Options = std::vector<const CLI::Option*>;
 
-// What stands before the word in question.
+// Command line before the word to be completed.
 struct Typed {
   const CLI::App* verb = nullptr;
-  const CLI::Option* open = nullptr;  ///< its value comes next
+  const CLI::Option* open = nullptr;  ///< option that expects a value next
   std::size_t positionals = 0;
   Options given{};
 };
 
-// The lines of the answer, of which only those that go on from `word` are taken.
+// Lines of the answer; only those that begin with `word` are kept.
 class Answer {
  public:
   explicit Answer(std::string word) : word_(std::move(word)) {}
@@ -71,7 +71,7 @@ void offer_files(const std::string& type, const std::string& prefix, Answer& ans
   if (!prefix.empty()) answer.add(":prefix " + prefix);
 }
 
-// "sim:wheel|static?rate=200": which of them.
+// The choices in "sim:wheel|static?rate=200".
 std::vector<std::string> choices(const acquire::SourceKind& kind) {
   const std::size_t start = kind.scheme.size() + 1, end = kind.grammar.find('?');
   const std::string rest = kind.grammar.substr(start, end == std::string::npos ? end : end - start);
@@ -79,7 +79,7 @@ std::vector<std::string> choices(const acquire::SourceKind& kind) {
   return CLI::detail::split(rest, '|');
 }
 
-// What can be opened now.
+// Sources that can be opened now.
 void offer_found(const acquire::SourceKind& kind, Answer& answer) {
   if (!kind.find) return;
   const auto found = kind.find(open_options());
@@ -87,7 +87,7 @@ void offer_found(const acquire::SourceKind& kind, Answer& answer) {
   for (const acquire::FoundSource& source : *found) answer.offer(source.uri, source.what);
 }
 
-// Kinds first; behind the colon what there is of one.
+// Kinds first; after the colon, the sources of that kind.
 void offer_sources(Answer& answer) {
   const std::string& word = answer.word();
   const std::size_t colon = word.find(':');
@@ -105,12 +105,12 @@ void offer_sources(Answer& answer) {
   if (word.starts_with(replay)) offer_files("", replay, answer);
 }
 
-// `prefix` stands before the value in the same word: "--unit=".
+// `prefix` precedes the value in the same word: "--unit=".
 void offer_values(const CLI::Option& option, const std::string& prefix, Answer& answer) {
   const std::vector<std::string> values = listed_values(option);
   const std::string type = option.get_type_name();
   for (const std::string& value : values) answer.offer(prefix + value, "");
-  // An output's name decides its format, so it may end as it likes.
+  // The file name of an output may have any extension, since it decides the format.
   if (type.starts_with("FILE"))
     offer_files(option.check_lname("output") ? "" : type, prefix, answer);
   else if (values.empty())
@@ -149,7 +149,7 @@ void offer_verbs(const CLI::App& app, Answer& answer) {
     answer.offer(verb->get_name(), verb->get_description());
 }
 
-// The positional that comes next, the last one of them as often as it likes; nullptr: none.
+// The next positional; the last one may repeat; nullptr: none.
 const CLI::Option* next_positional(const Typed& typed) {
   const Options all =
       typed.verb->get_options([](const CLI::Option* option) { return option->get_positional(); });

@@ -14,7 +14,7 @@
 namespace proofmass::app {
 namespace {
 
-// A plain value as it would stand on a command line.
+// A scalar value as a command-line argument.
 std::optional<std::string> argument(const toml::node& node) {
   if (const auto text = node.value_exact<std::string>()) return *text;
   if (const auto yes = node.value_exact<bool>()) return *yes ? "true" : "false";

@@ -19,20 +19,20 @@
 namespace proofmass::app {
 namespace {
 
-// What a signal handler may look at and set.
-volatile std::sig_atomic_t held_back = 0;    // how deep in work that is not to be broken off
-volatile std::sig_atomic_t signal_seen = 0;  // the one that came meanwhile
+// State that a signal handler may access.
+volatile std::sig_atomic_t held_back = 0;    // nesting depth of work that must not be interrupted
+volatile std::sig_atomic_t signal_seen = 0;  // signal received during that work
 volatile std::sig_atomic_t signal_count = 0;
 volatile std::sig_atomic_t was_awaited = 0;
 volatile std::sig_atomic_t bar_shown = 0;
 
 constexpr std::string_view wipe = "\r\033[K";
 
-// Calls nothing but what POSIX allows in a signal handler.
+// Calls only async-signal-safe functions (POSIX).
 [[noreturn]] void end_interrupted() {
   constexpr int status = 130;
   constexpr std::string_view text = "proofmass: interrupted\n";
-  // Whether that is heard makes no difference to how the process ends.
+  // A failed write does not change the exit.
   [[maybe_unused]] ssize_t written = 0;
   if (bar_shown != 0) written = write(STDERR_FILENO, wipe.data(), wipe.size());
   if (was_awaited == 0) written = write(STDERR_FILENO, text.data(), text.size());
@@ -40,7 +40,7 @@ constexpr std::string_view wipe = "\r\033[K";
 }
 
 extern "C" void on_signal(int signal_number) {
-  // Ctrl-C is easily pressed twice, and closing a file takes a moment.
+  // Tolerates a double Ctrl-C, since closing a file takes time.
   constexpr int most_held_back = 2;
   signal_count = signal_count + 1;
   if (held_back == 0 || signal_count > most_held_back) end_interrupted();
@@ -62,7 +62,7 @@ bool on_terminal() {
          (terminal == nullptr || std::string_view(terminal) != "dumb");
 }
 
-// Source: https://no-color.org: set and not empty means none.
+// Source: https://no-color.org: any non-empty value disables colour.
 bool in_colour() {
   const char* no_colour = std::getenv("NO_COLOR");
   return on_terminal() && (no_colour == nullptr || *no_colour == '\0');
@@ -85,7 +85,7 @@ std::size_t terminal_width() {
   return size.ws_col;
 }
 
-// The line's first letters, so many columns wide at most; code points count as one.
+// The beginning of the line, at most `width` columns; each code point counts as one column.
 std::string cut(const std::string& line, std::size_t width) {
   std::size_t letters = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -95,12 +95,12 @@ std::string cut(const std::string& line, std::size_t width) {
   return line;
 }
 
-// To the beginning of the line so many lines above.
+// Moves the cursor to the beginning of the line `lines` above.
 std::string above(std::size_t lines) {
   return lines == 0 ? "\r" : fmt::format("\r\033[{}A", lines);
 }
 
-// Draws itself anew in place, and wipes itself away when it goes.
+// Redraws itself in place, and clears its line when destroyed.
 class Bar {
  public:
   Bar() = default;
@@ -128,14 +128,14 @@ class Bar {
  private:
   using Clock = std::chrono::steady_clock;
 
-  // What is done in several passes fills the bar once for each.
+  // Work in several passes fills the bar once per pass.
   void begin(std::string_view stage) {
     stage_ = stage;
     begun_ = Clock::now();
     ++passes_;
   }
   [[nodiscard]] std::string left_words(int step, int steps) const {
-    constexpr double soonest_s = 2.0;  // before that it is a guess
+    constexpr double soonest_s = 2.0;  // earlier estimates are unreliable
     const double gone_s = std::chrono::duration<double>(Clock::now() - begun_).count();
     if (step == 0 || step == steps || gone_s < soonest_s) return {};
     const double left_s = gone_s * (steps - step) / step;
@@ -148,13 +148,13 @@ class Bar {
   Clock::time_point begun_;
 };
 
-// For a program that runs this one: PROOFMASS_PROGRESS=lines.
+// Requested by a parent program: PROOFMASS_PROGRESS=lines.
 bool wants_progress_lines() {
   const char* wish = std::getenv("PROOFMASS_PROGRESS");
   return wish != nullptr && std::string_view(wish) == "lines";
 }
 
-// "progress 42 reading", once for each hundredth of a stage.
+// "progress 42 reading", once per hundredth of a stage.
 Progress progress_lines() {
   struct Said {
     std::string stage;

@@ -9,40 +9,40 @@
 #include "proofmass/core/progress.hpp"
 #include "proofmass/core/recording.hpp"
 
-// Standard error: notes, a progress bar where someone watches, and the one line of an error.
+// Standard error: notes, a progress bar on a terminal, and the error line.
 namespace proofmass::app {
 
-/// From here on SIGINT, SIGTERM and SIGHUP end the process with 130 and a line that says so, unless
-/// whoever started it has them ignored (nohup). A file that grows beyond the limit of `ulimit -f`
-/// is a failure to write, not the end of the process.
+/// Installs handlers by which SIGINT, SIGTERM and SIGHUP end the process with status 130 and a
+/// message, unless the parent process ignores them (nohup). Exceeding `ulimit -f` becomes a write
+/// error instead of ending the process.
 void watch_for_interrupts();
 
-/// Does what must not be broken off half way, such as writing a file. A signal that comes meanwhile
-/// ends the process afterwards, after the outermost where they are nested; a second one changes
-/// nothing, and a third ends it at once.
+/// Runs work that must not be interrupted, such as writing a file. A signal received during the
+/// work ends the process after the outermost nested call; a second signal has no effect, a third
+/// ends the process at once.
 void without_interruption(const std::function<void()>& work);
 
-/// The signal that without_interruption() holds back was the end that the user was asked for: no
-/// line calls it an interruption.
+/// Marks the signal deferred by without_interruption() as the intended end: it is not reported as
+/// an interruption.
 void interruption_was_awaited();
 
-/// A peer that goes away ends a connection, not the process.
+/// A disconnected peer ends its connection instead of the process (SIGPIPE).
 void ignore_broken_pipes();
 
-/// Whether a signal has come that without_interruption() holds back: the work is asked to end.
+/// True if without_interruption() defers a signal: the work should end.
 [[nodiscard]] bool interruption_waits();
 
-/// Prints warnings and faults; with --verbose all notes; with --quiet none. `where` goes before
-/// each, and may be empty.
+/// Prints warnings and bad notes; with --verbose all notes, with --quiet none. `where` is a prefix,
+/// which may be empty.
 void show_notes(const std::vector<Note>& notes, const std::string& where, const OutputFlags& flags);
 
-/// A bar on a terminal, nothing elsewhere or with --quiet. It is wiped away with the last copy.
-/// Where PROOFMASS_PROGRESS is "lines": lines such as "progress 42 reading", for a program that
-/// runs this one.
+/// A progress bar on a terminal; none elsewhere or with --quiet. Cleared when the last copy is
+/// destroyed. If PROOFMASS_PROGRESS is "lines": lines such as "progress 42 reading", for a parent
+/// program.
 [[nodiscard]] Progress progress_bar(const OutputFlags& flags);
 
-/// Some lines on a terminal that are drawn anew in place; nothing elsewhere or with --quiet. Wiped
-/// away when it goes.
+/// Several lines on a terminal that are redrawn in place; nothing elsewhere or with --quiet.
+/// Cleared by the destructor.
 class Panel {
  public:
   explicit Panel(const OutputFlags& flags);
@@ -51,16 +51,16 @@ class Panel {
   ~Panel();
 
   [[nodiscard]] bool is_shown() const { return shown_; }
-  /// Cut to the width of the terminal.
+  /// Lines are cut to the width of the terminal.
   void show(const std::vector<std::string>& lines);
   void wipe();
 
  private:
   bool shown_;
-  std::size_t lines_ = 0;  ///< that stand there now
+  std::size_t lines_ = 0;  ///< number of lines currently shown
 };
 
-/// A line by itself; nothing with --quiet.
+/// A single line; nothing with --quiet.
 void show_line(const std::string& line, const OutputFlags& flags);
 
 /// "proofmass: MESSAGE".

@@ -9,10 +9,10 @@ struct WrittenFile {
   std::string flag, path;
 };
 
-/// Files that a command names.
+/// Files named on a command line.
 struct Files {
   std::vector<std::string> read;
-  std::vector<std::string> sensors;  ///< read, too
+  std::vector<std::string> sensors;  ///< also read
   std::vector<WrittenFile> written;
 
   void add_read(const std::string& path) {
@@ -26,7 +26,7 @@ struct Files {
   }
 };
 
-/// What a command reads and writes: each has some of these members.
+/// Files that a command reads and writes: each command has some of these members.
 template <class C>
 [[nodiscard]] Files files_of(const C& command) {
   Files files;
@@ -51,10 +51,9 @@ template <class C>
   return files;
 }
 
-/// Throws Failure (usage) where a file that a command would write is one that it reads (a
-/// recording, or one in a folder of them, a list, a sensor file), or another that it writes. Files
-/// are compared by what they are: links and detours do not matter. --update-sensor may name the
-/// file of --sensor.
+/// Throws Failure (usage) if an output is also an input (a recording, one in a folder of
+/// recordings, a list, a sensor file) or another output. Files are compared by identity, regardless
+/// of links and relative paths. --update-sensor may name the file of --sensor.
 void hold_apart(const Files& files);
 
 }  // namespace proofmass::app

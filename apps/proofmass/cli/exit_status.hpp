@@ -9,24 +9,24 @@
 
 namespace proofmass::app {
 
-/// What the command ends with: docs and scripts rely on these numbers. An interrupt ends it with
-/// 130 (cli/console.hpp).
+/// Exit status of the command, on which documentation and scripts rely. An interrupt ends the
+/// process with 130 (cli/console.hpp).
 enum ExitStatus : int {
   done = 0,
   failed = 1,
   usage = 2,
   bad_input = 3,
   bad_device = 4,
-  bad_data = 5,  ///< done, but the data are bad: only with --strict
+  bad_data = 5,  ///< completed, but the data are bad: only with --strict
 };
 
-/// What ends a verb early: main() prints the one line and returns the status.
+/// Ends a verb early: main() prints the message and returns the status.
 class Failure : public std::exception {
  public:
   Failure(ExitStatus status, std::string message, std::optional<Errc> code = {})
       : status_(status), message_(std::move(message)), code_(code) {}
   [[nodiscard]] ExitStatus status() const { return status_; }
-  /// The code of the library's error that caused it; empty if none did.
+  /// Code of the library error that caused it, if any.
   [[nodiscard]] std::optional<Errc> code() const { return code_; }
   [[nodiscard]] const char* what() const noexcept override { return message_.c_str(); }
 
@@ -36,7 +36,7 @@ class Failure : public std::exception {
   std::optional<Errc> code_;
 };
 
-/// At what an error arose, which decides what it means for the exit status.
+/// Stage at which an error occurred, which determines the exit status.
 enum class Stage { reading, computing, writing };
 
 [[nodiscard]] ExitStatus status_of(const Error& error, Stage stage);

@@ -21,13 +21,13 @@ constexpr std::array<std::string_view, 14> of_the_command{
     "help",    "help-input", "json",   "report",        "page",   "output",       "quiet",
     "verbose", "strict",     "config", "update-sensor", "memory", "print-config", "pyramid"};
 
-// "FILE.toml" of "FILE.toml:…", which a check has added to.
+// "FILE.toml" from "FILE.toml:…", to which a check appended its text.
 std::string plain_type(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type.substr(0, type.find(':'));
 }
 
-// What the help calls so: "oadev (default), adev", "(default 16)", "(default: all)".
+// Default value stated in the help: "oadev (default), adev", "(default 16)", "(default: all)".
 std::string default_in(const CLI::Option& option) {
   if (!option.get_default_str().empty()) return option.get_default_str();
   const std::string help = option.get_description();

@@ -4,12 +4,12 @@
 
 namespace proofmass::app {
 
-/// The verbs that read recordings and describe their result as a page, with their flags, as JSON
-/// for a program that makes forms of them:
+/// The verbs that read recordings and return a page, with their flags, as JSON for programs that
+/// generate forms:
 /// {"verbs": [{"name", "group", "help", "many_files", "series", "sensor_file",
 ///   "options": [{"name", "group", "help", "type", "choices", "default", "switch", "many", "file",
 ///   "required"}]}]}
-/// Flags about the terminal and where results are written are left out.
+/// Flags for the terminal and for output files are omitted.
 [[nodiscard]] std::string flag_table();
 
 }  // namespace proofmass::app

@@ -136,7 +136,7 @@ void add_output_flags(CLI::App& verb, OutputFlags& flags) {
   verb.add_flag("-v,--verbose", flags.verbose, "show details found while reading")->group("Output");
   verb.add_flag("--strict", flags.strict, "exit with status 5 if the data are bad")
       ->group("Output");
-  // Read before all others, by config_path(); here it stands for --help.
+  // Parsed earlier, by config_path(); added here for --help.
   verb.add_option("--config", "read flags from this file")->type_name("FILE.toml")->group("Output");
 }
 

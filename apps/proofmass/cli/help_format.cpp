@@ -25,7 +25,7 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
   return lines;
 }
 
-// "FILE.csv" of "FILE.csv:{a,b}" and "N" of "N:INT in [4 - 360]": without what a check adds.
+// "FILE.csv" from "FILE.csv:{a,b}" and "N" from "N:INT in [4 - 360]": without the text of a check.
 std::string kind_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type.substr(0, type.find(':'));
@@ -97,7 +97,7 @@ std::string HelpFormat::make_option(const CLI::Option* option, bool is_positiona
   return entry(name, description_of(*option));
 }
 
-// Names the positionals the way people do: "FILE...", "[RIG]".
+// Usual notation of positionals: "FILE...", "[RIG]".
 std::string HelpFormat::make_option_usage(const CLI::Option* option) const {
   const std::string name = option->get_name(true) + (option->get_expected_max() > 1 ? "..." : "");
   return option->get_required() ? name : "[" + name + "]";
@@ -126,7 +126,7 @@ std::size_t help_width() {
   return std::clamp<std::size_t>(size.ws_col, narrowest, widest);
 }
 
-// "NAME:{tumble,static}": what a check of membership says of itself.
+// "NAME:{tumble,static}": CLI11's description of a membership check.
 std::vector<std::string> listed_values(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t from = type.find('{'), to = type.rfind('}');

@@ -9,8 +9,8 @@ namespace proofmass::app {
 inline constexpr const char* input_group = "Input";
 inline constexpr const char* input_help_flag = "help-input";
 
-/// Lays out --help: two columns, wrapped to `width`. The flags for reading recordings, which are
-/// the same for every verb, are referred to; with `shows_input` they are all that is listed.
+/// Formats --help in two columns wrapped to `width`. The input flags, which are the same for every
+/// verb, are replaced by a reference; with `shows_input` only they are listed.
 class HelpFormat : public CLI::Formatter {
  public:
   HelpFormat(std::size_t width, bool shows_input) : width_(width), shows_input_(shows_input) {}
@@ -36,7 +36,7 @@ class HelpFormat : public CLI::Formatter {
 /// Width of the terminal on standard output, limited to 50 … 100 columns; 80 without a terminal.
 [[nodiscard]] std::size_t help_width();
 
-/// The values that an option takes, where they are listed.
+/// The allowed values of an option, if they are listed.
 [[nodiscard]] std::vector<std::string> listed_values(const CLI::Option& option);
 
 }  // namespace proofmass::app

@@ -22,12 +22,13 @@ namespace proofmass::app {
 namespace {
 
 [[noreturn]] void cannot_print(int error) {
-  throw Failure(failed, fmt::format("standard output: cannot be written: {}: choose a place that "
-                                    "exists and has room",
-                                    std::strerror(error)));
+  throw Failure(failed,
+                fmt::format("standard output: cannot be written: {}: choose a location that "
+                            "exists and has room",
+                            std::strerror(error)));
 }
 
-// What goes to a terminal, line by line: names of files and channels may hold what it obeys.
+// Removes control sequences line by line: names of files and channels may contain them.
 std::string clean_lines(const std::string& text) {
   std::string out;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -53,7 +54,8 @@ void write_text(const std::string& path, const std::string& text, const OutputFl
   without_interruption([&] {
     const Status written = write_file(path, text);
     if (!written) {
-      throw Failure(failed, written.error().message + ": choose a place that exists and has room");
+      throw Failure(failed,
+                    written.error().message + ": choose a location that exists and has room");
     }
   });
 }
@@ -80,7 +82,7 @@ void publish(const Results& results, const OutputFlags& flags) {
                report::page_with_provenance(results.html(), flags.invocation->provenance()), flags);
   if (!flags.page.empty()) write_text(flags.page, results.page(), flags);
   if (!flags.json.empty() && flags.json != "-") write_text(flags.json, json(), flags);
-  // One thing only goes to standard output: the series, the document or the text.
+  // Standard output receives only one of series, document and text.
   if (flags.output == "-") return;
   print_out(flags.json == "-" ? json() : shown_text(clean_lines(results.text())));
 }
@@ -112,7 +114,7 @@ void write_series(Recording recording, const OutputFlags& flags, const io::Write
     if (status) return;
     throw Failure(status_of(status.error(), Stage::writing), status.error().message);
   };
-  // Standard output may be a pipe that nobody empties; there is no file to leave half done.
+  // Standard output may be a pipe that blocks, and cannot be left half written like a file.
   if (path == "-") return write();
   without_interruption(write);
 }

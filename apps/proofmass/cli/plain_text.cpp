@@ -35,7 +35,7 @@ std::ptrdiff_t columns(std::string_view text) {
   return std::ranges::count_if(text, begins_letter);
 }
 
-// The replacement for the letter that `text` begins with; a null one where it stays.
+// Replacement for the code point at the beginning of `text`; null if it is unchanged.
 template <std::size_t N>
 const Replacement* find(const std::array<Replacement, N>& all, std::string_view text) {
   const auto* const found = std::ranges::find_if(
@@ -62,7 +62,7 @@ std::string plain_cell(std::string_view cell, bool ascii) {
   return out;
 }
 
-// Cells that have grown take from the blanks after them, and shrunk ones give to these.
+// The blanks after a cell absorb its change in length, so that columns remain aligned.
 std::string plain_line(std::string_view line, bool ascii) {
   std::string out;
   std::ptrdiff_t shift = 0;
@@ -82,7 +82,7 @@ std::string plain_line(std::string_view line, bool ascii) {
   return out;
 }
 
-// Where lines that continue a long one begin: below its last column, or a little further in.
+// Indent of continuation lines: the last column's, or the line's plus two.
 std::size_t hanging_indent(std::string_view line, std::size_t width) {
   const std::size_t lead = std::min(line.find_first_not_of(' '), line.size());
   const std::size_t gap = line.rfind("  ");
@@ -98,7 +98,7 @@ void add_wrapped(std::string_view line, std::size_t width, std::string& out) {
   std::size_t column = 0;
   bool is_first = true;
   while (!line.empty()) {
-    // A word with the blanks before it, which stay within a line.
+    // A word with the blanks before it, which are kept within a line.
     const std::size_t blanks = std::min(line.find_first_not_of(' '), line.size());
     const std::size_t end = std::min(line.find(' ', blanks), line.size());
     const auto length = static_cast<std::size_t>(columns(line.substr(blanks, end - blanks)));

@@ -65,10 +65,10 @@ ProvenanceInput summed(const std::string& path, const std::stop_token& stop) {
   return {.path = path, .bytes = bytes, .sha256 = hexadecimal(sum.data(), length)};
 }
 
-// What is read from standard input, on its way: this stands between it and whoever reads it.
+// Checksum of standard input: a proxy between it and its reader.
 class SummedStandardInput {
  public:
-  /// Standard input is a socket from here on, which pass_on() feeds.
+  /// Replaces standard input by a socket that pass_on() feeds.
   SummedStandardInput() {
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return;
@@ -88,7 +88,7 @@ class SummedStandardInput {
   SummedStandardInput(const SummedStandardInput&) = delete;
   SummedStandardInput& operator=(const SummedStandardInput&) = delete;
 
-  /// Until its end, or nobody reads it any more.
+  /// Copies until the end of the input, or until it is no longer read.
   ProvenanceInput pass_on(const std::stop_token& stop) {
     const std::unique_ptr<EVP_MD_CTX, FreeDigest> digest(EVP_MD_CTX_new());
     if (to_ < 0 || !digest || EVP_DigestInit_ex(digest.get(), EVP_sha256(), nullptr) != 1)
@@ -137,7 +137,7 @@ class SummedStandardInput {
   int from_ = -1, to_ = -1;
 };
 
-// The file, or those of a folder in the order of their names.
+// The file, or the files of a folder sorted by name.
 void add_sums(const std::string& path,
               const std::stop_token& stop,
               std::vector<ProvenanceInput>& all) {
@@ -197,7 +197,7 @@ Invocation::Invocation(std::string command,
   if (std::ranges::count(files, "-") == 1) sums_->standard_input.emplace();
   sums_->thread =
       std::jthread([sums = sums_.get(), files = std::move(files)](std::stop_token stop) {
-        // First of all, as it has to flow while it is read.
+        // First, since it must be copied while it is read.
         const auto piped = sums->standard_input ? std::optional(sums->standard_input->pass_on(stop))
                                                 : std::nullopt;
         for (const std::string& file : files) {
@@ -213,7 +213,7 @@ Invocation::~Invocation() = default;
 
 const report::Provenance& Invocation::provenance() {
   if (sums_->thread.joinable()) {
-    // What nobody has read of it by now nobody will.
+    // Any rest will not be read any more.
     if (sums_->standard_input) ::shutdown(STDIN_FILENO, SHUT_RD);
     sums_->thread.join();
     provenance_.inputs = std::move(sums_->found);

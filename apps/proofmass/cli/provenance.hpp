@@ -9,8 +9,8 @@
 
 namespace proofmass::app {
 
-/// How the program was called, and the sums of the files that were named, which are taken on a
-/// thread of their own while the files are read: each comes from the disk once.
+/// The call of the program and the checksums of the named files, which are computed in a separate
+/// thread while the files are read, so that each comes from disk once.
 class Invocation {
  public:
   Invocation(std::string command,
@@ -20,7 +20,7 @@ class Invocation {
   Invocation& operator=(const Invocation&) = delete;
   ~Invocation();
 
-  /// Waits for the sums.
+  /// Waits for the checksums.
   [[nodiscard]] const report::Provenance& provenance();
 
  private:
@@ -32,10 +32,10 @@ class Invocation {
 /// Commit of the source that the program was built from; empty if unknown.
 [[nodiscard]] std::string program_commit();
 
-/// SHA-256 of a regular file in hexadecimal; empty where it cannot be read, and of anything else.
+/// SHA-256 of a regular file in hexadecimal; empty if it is not readable or not a regular file.
 [[nodiscard]] std::string sha256_of(const std::string& path);
 
-/// Words as a shell takes them.
+/// Words quoted for a shell.
 [[nodiscard]] std::string quoted(const std::vector<std::string>& words);
 
 }  // namespace proofmass::app

@@ -11,9 +11,9 @@
 namespace proofmass::app {
 namespace {
 
-// Insertions, deletions, substitutions and swaps of neighbours. Source: Damerau, "A technique for
-// computer detection and correction of spelling errors", Comm. ACM 7(3), 1964, in the form that
-// edits no part twice.
+// Number of insertions, deletions, substitutions and transpositions of adjacent letters. Source:
+// Damerau, "A technique for computer detection and correction of spelling errors", Comm. ACM 7(3),
+// 1964, in the variant that edits no substring twice (optimal string alignment).
 std::size_t edits_between(const std::string& a, const std::string& b) {
   std::vector<std::size_t> before, last(b.size() + 1), now(b.size() + 1);
   std::iota(last.begin(), last.end(), std::size_t{0});
@@ -40,7 +40,7 @@ std::string flag_of(const std::string& argument) {
   return argument.substr(0, argument.find('='));
 }
 
-// What was not understood. CLI11 keeps it in some cases, and only names it in others.
+// Unrecognised arguments. CLI11 stores them in some cases, and only names them in others.
 std::vector<std::string> extras_of(const CLI::App& verb, const CLI::ParseError& error) {
   std::vector<std::string> extras = verb.remaining();
   const std::string text = error.what(), lead = "not expected: ";
@@ -103,7 +103,7 @@ std::string objection(const CLI::App& verb, const CLI::ParseError& error) {
   };
   const std::vector<std::string> extras = extras_of(verb, error);
   if (is(CLI::ExitCodes::ExtrasError) && !extras.empty()) return unexpected(verb, extras);
-  // What is required is looked for before what is too much, which may be the reason.
+  // Missing arguments before superfluous ones, which may be the reason.
   if (is(CLI::ExitCodes::RequiredError)) {
     const auto is_flag = [](const std::string& one) { return one.starts_with("--"); };
     const auto flag = std::ranges::find_if(extras, is_flag);
@@ -128,7 +128,7 @@ std::optional<std::string> nearest(const std::string& word,
   std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t edits = edits_between(lower(word), lower(candidate));
-    // Not all of a short word is a slip.
+    // A short word must not be replaced entirely.
     if (edits >= fewest || 2 * edits >= candidate.size() + 1) continue;
     fewest = edits;
     best = candidate;

@@ -61,7 +61,7 @@ void add_drift_flags(CLI::App& verb, DriftCommand& command) {
 using characterise::DriftAnalysis;
 using characterise::DriftOptions;
 
-// One channel of one recording with what lies beside it.
+// One channel of one recording, with its temperature and result.
 struct DriftChannel {
   const RestChannel* rest = nullptr;
   const RestTemperature* temperature = nullptr;
@@ -79,7 +79,7 @@ RestOptions rest_options(const DriftCommand& command) {
           .may_drift = true};
 }
 
-// How long the sensor had been on at the first sample that is analysed.
+// Time between power-on and the first analysed sample.
 double since_switch_on_s(InputFlags flags) {
   flags.since_switch_on_s = flags.since_switch_on_s.value_or(0.0);
   return *on_at_start_s(flags);
@@ -101,7 +101,7 @@ std::vector<DriftChannel> drift_channels(const std::vector<RestRecording>& recor
   return channels;
 }
 
-// Throws before the analysis what would be in vain.
+// Rejects before the analysis what would fail after it.
 void expect_kelvin(const std::vector<RestRecording>& recordings) {
   for (const RestRecording& recording : recordings) {
     const auto& temperature = recording.temperature;
@@ -120,7 +120,7 @@ void expect_future(double forecast_s, double start_s, const std::vector<DriftCha
         start_s + static_cast<double>(channel.rest->series.size()) / channel.rest->rate_hz;
     if (forecast_s >= end_s) continue;
     throw Failure(usage,
-                  fmt::format("--forecast: {} s since switching on lie within {}, which "
+                  fmt::format("--forecast: {} s after power-on are within {}, which "
                               "ends at {} s: expected a later time",
                               report::compact(forecast_s, 6), report::file_name(channel.rest->file),
                               report::compact(end_s, 6)));
@@ -165,8 +165,8 @@ void analyse(DriftChannel& channel, DriftOptions options, std::optional<double> 
     channel.shown.temperature = against_temperature(rest, *channel.temperature);
 }
 
-// Whether the sensor moved beside its drift: the beginning of a strong warm-up would pass for
-// motion by itself. Takes the curve out of the series, which nothing else needs any more.
+// Rest is determined after subtraction of the fitted drift, since the beginning of a strong warm-up
+// would be taken for motion. Subtracts the curve from the series, which are not needed any more.
 void find_motion(double start_s,
                  std::vector<RestRecording>& recordings,
                  std::vector<DriftChannel>& channels) {
@@ -200,7 +200,7 @@ sensor::MeasuredDrift measured(const DriftChannel& channel) {
               report::duration_words(analysis.duration_s), report::compact(analysis.rate_hz, 6))};
 }
 
-// Writes the axes whose warm-up is identified, and notes what the file does not get.
+// Writes the axes whose warm-up is identified; notes list the others.
 void update_drift(const std::string& path,
                   const std::vector<DriftChannel>& channels,
                   std::vector<Note>& notes) {

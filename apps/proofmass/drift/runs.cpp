@@ -15,7 +15,7 @@ using characterise::Run;
 
 constexpr std::size_t fewest_runs = 3;
 
-// One channel's runs on their way to a set.
+// The runs of one channel.
 struct RunsOfChannel {
   report::ChannelRuns shown;
   std::vector<Run> runs;
@@ -26,7 +26,7 @@ const RestChannel* find(const RestRecording& recording, const std::string& name)
   return found == recording.channels.end() ? nullptr : &*found;
 }
 
-// The channel in every recording; empty where one of them does not have it.
+// The channel in each recording; empty if one of them does not have it.
 std::vector<const RestChannel*> everywhere(const std::vector<RestRecording>& recordings,
                                            const std::string& name,
                                            std::vector<Note>& notes) {
@@ -71,7 +71,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// The digits from `at` on, less leading zeros; `at` goes behind them.
+// The digits from `at` on, without leading zeros; advances `at` past them.
 std::string_view number_at(std::string_view text, std::size_t& at) {
   const std::size_t from = at;
   while (at < text.size() && is_digit(text[at])) ++at;
@@ -97,7 +97,7 @@ bool natural_less(std::string_view a, std::string_view b) {
   return a.size() - i < b.size() - j;
 }
 
-// Since 1970, and not since a power-up or nothing at all.
+// True if the stamps count from 1970, not from power-up.
 bool is_epoch(const RestRecording& recording) {
   constexpr std::int64_t least_ns = 100'000'000'000'000'000;  // 1973
   return recording.start_ns.value_or(0) > least_ns;
@@ -139,8 +139,8 @@ std::vector<report::ChannelRuns> compare_recordings(const std::vector<RestRecord
                                                     std::vector<Note>& notes) {
   if (recordings.size() == 2) {
     notes.push_back({Severity::warning,
-                     "two recordings are analysed each by itself: to compare power-ups of one "
-                     "sensor as a set takes three or more"});
+                     "two recordings are analysed separately: a comparison of power-ups of one "
+                     "sensor needs three or more"});
   }
   if (recordings.size() < fewest_runs) return {};
   std::vector<RunsOfChannel> all;

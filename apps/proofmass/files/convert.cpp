@@ -37,14 +37,14 @@ void add_convert_flags(CLI::App& verb, ConvertCommand& command) {
   verb.footer("Example:\n  proofmass convert log.csv.xz --unit mg -o log.npy");
 }
 
-// What was written: its channels without values.
+// Result of a conversion: its channels, without values.
 struct Converted {
   Recording head;
   std::size_t samples = 0;
   std::vector<Note> notes;
 };
 
-// What a format with room for it says of where the samples come from.
+// Metadata on the origin of the samples, for formats that can store it.
 io::WriteOptions write_options(const ConvertCommand& command) {
   io::WriteOptions options;
   options.metadata = {{"software", fmt::format("proofmass {}", version())},
@@ -57,7 +57,7 @@ io::WriteOptions write_options(const ConvertCommand& command) {
   return options;
 }
 
-// Labels that the new file has no room for.
+// Labels that the new format cannot store.
 void tell_lost_labels(const std::string& output, bool in_pieces, Converted& converted) {
   const Recording& head = converted.head;
   if (head.labels.empty() || io::keeps_labels(output, in_pieces)) return;
@@ -66,7 +66,7 @@ void tell_lost_labels(const std::string& output, bool in_pieces, Converted& conv
        fmt::format("the labels of column {} are not written: {}", head.label_channel,
                    in_pieces && io::keeps_labels(output, false)
                        ? "they are known only when all is read: give more --memory"
-                       : "this format has no place for them")});
+                       : "this format cannot store them")});
 }
 
 Converted convert(Recording recording,

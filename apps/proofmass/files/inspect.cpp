@@ -39,7 +39,7 @@ void add_inspect_flags(CLI::App& verb, InspectCommand& command) {
   verb.footer("Example:\n  proofmass inspect wheel.csv --report wheel.html");
 }
 
-// A file judged; the recording is an overview where it was too large to be kept.
+// An audited file; the recording is an overview if it is too large for memory.
 struct Inspected {
   Recording recording;
   signal::RecordingAudit audit;
@@ -48,7 +48,8 @@ struct Inspected {
 
 using Models = std::vector<sensor::SensorModel>;
 
-// Of the file as it is: for a part of it, or calibrated, another would be needed beside it.
+// A pyramid describes the whole unmodified file; a part of it or calibrated values would need
+// another.
 void check_pyramid(const InspectCommand& command) {
   const InputFlags& input = command.input;
   const bool as_it_is = !input.from_s && !input.to_s && input.sensors.empty() &&
@@ -65,7 +66,7 @@ void store(io::PyramidBuilder& builder, const std::string& file) {
   if (!stored) throw Failure(status_of(stored.error(), Stage::writing), stored.error().message);
 }
 
-// What is in the file as it is; in m/s^2 only where a sensor file says how.
+// Audit of the file in its own units; in m/s^2 only with a sensor file.
 Inspected inspect(Recording recording, const InspectCommand& command, const Models& models) {
   std::vector<Recording> recordings{std::move(recording)};
   if (!models.empty()) calibrate(models, accelerometers(recordings), recordings);
@@ -93,7 +94,8 @@ Inspected inspect(io::RecordingStream stream, const InspectCommand& command, con
   return {overview.finish(source.head()), audit.finish(source.head()), overview.span()};
 }
 
-// Those of a file's accelerometers, where there is one for each of all files'; `used` counts them.
+// The sensor files of one file's accelerometers, if there is one for each; `used` counts those used
+// so far.
 Models models_of(const Models& models, const Recording& recording, std::size_t& used) {
   if (models.size() < 2) return models;
   Recording head;

@@ -51,7 +51,7 @@ void add_sensor_flags(CLI::App& verb, SensorCommand& command) {
       "  proofmass sensor export rim.toml --format imu-yaml --rate 100 -o imu.yaml");
 }
 
-// Flags and files that the action has no use for, or lacks.
+// Rejects unused and missing flags and files of the action.
 void check(const SensorCommand& command) {
   const bool exports = command.action == "export";
   const std::size_t wanted = command.action == "diff" ? 2 : 1;
@@ -70,7 +70,7 @@ void check(const SensorCommand& command) {
     refuse("--output is for export; --json and --report write the results");
 }
 
-// A sensor file that lacks what the export needs is an input to put right.
+// A sensor file that lacks data for the export is a faulty input.
 std::string exported(const SensorCommand& command, const sensor::SensorModel& model) {
   sensor::ImuYamlOptions options{.rate_hz = command.rate_hz};
   if (!command.rostopic.empty()) options.rostopic = command.rostopic;
@@ -80,11 +80,11 @@ std::string exported(const SensorCommand& command, const sensor::SensorModel& mo
   return *text;
 }
 
-// Notes of the file, and on flags that the format has no place for.
+// Notes of the file, and on flags that the format cannot represent.
 std::vector<Note> notes_of(const SensorCommand& command, const sensor::SensorFile& file) {
   std::vector<Note> notes = file.notes;
   if (command.format == "c-header" && (command.rate_hz || !command.rostopic.empty()))
-    notes.push_back({Severity::warning, "a C header has no place for --rate and --rostopic"});
+    notes.push_back({Severity::warning, "a C header does not use --rate and --rostopic"});
   return notes;
 }
 
@@ -92,7 +92,7 @@ void run_export(const SensorCommand& command) {
   const sensor::SensorFile file =
       need(sensor::read_sensor_file(command.files.front()), Stage::reading);
   OutputFlags flags = command.output;
-  // Without --output the text goes to standard output, unless the document does.
+  // Without --output the text goes to standard output, unless the document goes there.
   if (flags.output.empty() && flags.json != "-") flags.output = "-";
   report::SensorExport result{.file = command.files.front(),
                               .format = command.format,

@@ -8,8 +8,8 @@
 
 namespace proofmass::app {
 
-/// Takes the flags that only the verb behind "fleet" has, with their values, out of the arguments
-/// and into the command of `fleet`. A flag that both have is the fleet's.
+/// Moves the flags known only to the verb after "fleet", with their values, from the arguments into
+/// the command of `fleet`. A flag that both have belongs to `fleet`.
 void take_verb_flags(const CLI::App& app, const Verb& fleet, std::vector<std::string>& arguments);
 
 }  // namespace proofmass::app

@@ -78,7 +78,7 @@ fleet::SummaryOptions summary_options(const FleetCommand& command) {
   return options;
 }
 
-// From the page's folder to that of the results, "" or with a slash at its end.
+// Relative link from the page's folder to the results: "" or a path with a final slash.
 std::string links_to(const std::string& folder, const std::string& page) {
   std::error_code problem;
   const fs::path from = fs::absolute(page, problem).parent_path();
@@ -86,7 +86,7 @@ std::string links_to(const std::string& folder, const std::string& page) {
   return way.empty() || way == "." ? "" : way.string() + "/";
 }
 
-// The tables, too: they hold what all shards have done by now.
+// Also writes the tables, with the results of all shards so far.
 void run_summary(const FleetCommand& command) {
   const fleet::Summary summary =
       need(fleet::summarise(command.manifest, summary_options(command)), Stage::reading);

@@ -58,7 +58,7 @@ std::string text_in(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// An object in storage; a change of its bytes is not detected.
+// An object in remote storage; changes of its content are not detected.
 bool is_url(const std::string& path) {
   return path.find("://") != std::string::npos;
 }
@@ -67,7 +67,7 @@ std::vector<std::string> files_of_job(const Job& job) {
   return job.parts.empty() ? std::vector{job.path} : job.parts;
 }
 
-/// One fleet on its way.
+/// One run of a fleet.
 class Run {
  public:
   Run(const FleetCommand& command,
@@ -79,7 +79,7 @@ class Run {
 
  private:
   [[nodiscard]] std::vector<std::string> flags_of(const Job& job) const;
-  /// Relative to the folder; and where it is while it is written.
+  /// Path relative to the folder of results.
   [[nodiscard]] static std::string document_of(const Job& job) {
     return "documents/" + fleet::document_stem(job) + ".json";
   }
@@ -142,7 +142,7 @@ Run::Run(const FleetCommand& command,
   }
 }
 
-// Among the processes here; a worker's is its own business unless --memory bounds it.
+// Divides the memory among local processes; that of remote workers is limited only by --memory.
 void Run::share_memory() {
   constexpr double least_mb = 64.0, share_of_free = 0.75;
   const bool here = command_.dask.empty();
@@ -176,7 +176,7 @@ std::vector<std::string> Run::arguments_of(const Job& job) const {
     arguments.emplace_back("--report");
     arguments.push_back((folder / "reports" / (stem + ".html")).string());
   }
-  // A table kept whole is copied by the analysis; a larger one is read in pieces.
+  // The analysis copies a table that is kept whole; a larger one is read in pieces.
   if (memory_mb_ > 0.0 && (command_.verb == "inspect" || command_.verb == "noise")) {
     constexpr double copies = 4.0;
     arguments.emplace_back("--memory");
@@ -185,7 +185,7 @@ std::vector<std::string> Run::arguments_of(const Job& job) const {
   return arguments;
 }
 
-// The same bytes, of sensor files too, the same flags, by this program.
+// True if inputs (including sensor files), flags and program are unchanged since the last run.
 bool Run::is_done_already(const Job& job) {
   auto entry = results_.find(job.id());
   if (command_.force || !entry || entry->verb != command_.verb || entry->flags != flags_of(job) ||
@@ -209,7 +209,7 @@ bool Run::is_done_already(const Job& job) {
   return true;
 }
 
-// What is to be done, largest first.
+// The jobs to be run, largest first.
 std::vector<std::size_t> Run::plan() {
   std::vector<std::size_t> order;
   for (std::size_t k = 0; k < jobs_.size() && !interruption_waits(); ++k) {
@@ -231,7 +231,7 @@ int Run::run_child(const Job& job) const {
   return run_command(static_cast<int>(arguments.size()), words.data());
 }
 
-// The last line of the verb's standard error, without the program's name at its beginning.
+// The last line of the verb's standard error, without the program's name.
 std::string last_words(const std::string& words) {
   constexpr std::string_view name = "proofmass: ";
   const std::size_t at = words.rfind(name);
@@ -240,7 +240,7 @@ std::string last_words(const std::string& words) {
   return words.substr(from, words.find('\n', from) - from);
 }
 
-// The reason without the recording's name at its beginning, which is reported beside it.
+// The reason without the recording's name, which is reported beside it.
 std::string why_it_failed(const Job& job,
                           const fleet::Ended& ended,
                           const std::optional<double>& timeout_s) {
@@ -311,7 +311,8 @@ bool Run::ended(const fleet::Ended& ended) {
   const Job& job = jobs_[ended.job];
   report_.busy_s += ended.seconds;
   const Entry entry = entry_of(job, ended);
-  // What dies, hangs or runs out of memory may do better beside others; what is refused will not.
+  // Crashes, timeouts and lack of memory may be due to other jobs and are retried once; a refusal
+  // is final.
   if (!entry.failure.empty() && !entry.is_lasting && retried_.insert(ended.job).second) return true;
   keep(entry);
   ++ended_;
@@ -353,8 +354,8 @@ void Run::write_tables() {
 }
 
 Status Run::run_here(const std::vector<std::size_t>& order) {
-  // A child inherits the locks that other threads hold, and nobody who would release them: the
-  // thread that sums up the inputs has to end before the first fork.
+  // A child inherits locks held by other threads, which are never released there: the thread that
+  // computes the checksums has to end before the first fork.
   if (command_.output.invocation) std::ignore = command_.output.invocation->provenance();
   return fleet::run_pool(
       order,
@@ -405,7 +406,7 @@ FleetReport Run::finish() {
   return report_;
 }
 
-// One recording's command line, read to its end: what makes no sense ends the fleet before it
+// Parses one recording's command line completely, so that a usage error ends the fleet before it
 // begins.
 void check_flags(const FleetCommand& command, const std::vector<std::string>& flags) {
   for (const std::string& flag : flags)

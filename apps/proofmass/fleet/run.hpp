@@ -5,8 +5,8 @@
 
 namespace proofmass::app {
 
-/// The verb for every recording of the manifest, in processes of their own. Ends the process with
-/// 130 where it is interrupted, with the tables made of what is done. Throws Failure.
+/// Runs the verb on each recording of the manifest, each in its own process. If interrupted, writes
+/// the tables of the completed jobs and ends the process with 130. Throws Failure.
 [[nodiscard]] fleet::FleetReport run_fleet(const FleetCommand& command);
 
 }  // namespace proofmass::app

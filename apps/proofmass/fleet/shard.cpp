@@ -12,13 +12,13 @@
 namespace proofmass::app {
 namespace {
 
-/// The variables of an engine: this task's number, how many there are, and what the first has.
+/// Environment variables of an engine: index of this task, number of tasks, and the first index.
 struct ArrayVariables {
   const char *index, *count, *first;
 };
 
 // Source: SLURM, sbatch(1), "Job arrays"; Kubernetes, "Indexed Job"; AWS Batch, "Array jobs"; Open
-// MPI, mpirun(1). Kubernetes says nowhere how many there are.
+// MPI, mpirun(1). Kubernetes does not state the number of tasks.
 constexpr std::array<ArrayVariables, 4> engines{{
     {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN"},
     {"JOB_COMPLETION_INDEX", nullptr, nullptr},
@@ -67,13 +67,14 @@ fleet::Shard parse_shard(const std::string& text) {
   const ArrayVariables* engine = engine_here();
   if (engine == nullptr) {
     if (!given) return {};
-    throw Failure(
-        usage, "--shard " + text + ": no variable says which of them this is: give I/N, from 0 on");
+    throw Failure(usage,
+                  "--shard " + text +
+                      ": no environment variable has this shard's number: give I/N, from 0 on");
   }
   const auto n = given ? given : variable(engine->count);
   if (!n)
     throw Failure(usage,
-                  fmt::format("--shard: {} is set, but nothing says how many there are: give "
+                  fmt::format("--shard: {} is set, but the number of shards is unknown: give "
                               "--shard N",
                               engine->index));
   return checked(*variable(engine->index) - variable(engine->first).value_or(0), *n);

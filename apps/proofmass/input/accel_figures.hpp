@@ -5,14 +5,14 @@
 #include "proofmass/estimate/track.hpp"
 #include "proofmass/sensor/sensor_model.hpp"
 
-// What a sensor file says to an estimate of displacement.
+// Figures of a sensor file for an estimate of displacement.
 namespace proofmass::app {
 
-/// Relative standard deviation of the scale; the largest of the three axes, since along which the
-/// motion goes is not known yet.
+/// Relative standard deviation of the scale: the largest of the three axes, since the direction of
+/// the motion is not known yet.
 [[nodiscard]] std::optional<double> scale_std_of(const sensor::Calibration& calibration);
 
-/// White noise and walk; the time of the warm-up only where its course has been taken out.
+/// White noise and random walk; the time constant of the warm-up only if its curve was subtracted.
 [[nodiscard]] estimate::AccelFigures figures_of(const sensor::SensorModel& model,
                                                 bool warm_up_removed);
 

@@ -18,7 +18,7 @@ bool is_letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0;
 }
 
-// The word that names the kind of sensor, in the order in which they are looked for.
+// Words that name the kind of sensor, in the order of the search.
 constexpr std::array<std::string_view, 14> kinds{"accelerometer",
                                                  "acceleration",
                                                  "accel",
@@ -34,13 +34,13 @@ constexpr std::array<std::string_view, 14> kinds{"accelerometer",
                                                  "rate",
                                                  "linear "};
 
-// A name with its kind of sensor and its axis taken out: "imu_gyr_x" is "imu_?_?" of axis x.
+// A name with sensor kind and axis replaced: "imu_gyr_x" is "imu_?_?" with axis x.
 struct AxisOf {
   std::string sensor;
   std::size_t axis = 3;  // 3: none
 };
 
-// The last x, y or z that is no part of a longer word, after its kind is gone: "gx", "wx" too.
+// The last x, y or z that is not part of a longer word, once the kind is removed; also "gx", "wx".
 AxisOf axis_of(const std::string& name) {
   std::string text = lower(name);
   for (const std::string_view kind : kinds) {
@@ -113,10 +113,10 @@ std::array<std::vector<double>, 3> rates_radps(const Recording& recording,
     const bool known = channel.unit.quantity == Quantity::angular_rate;
     const Unit unit = known ? channel.unit : *parse_unit(unit_if_unknown);
     if (!known && axis == 0)
-      notes.push_back({Severity::warning,
-                       fmt::format("{} and its like: no unit: taken to be {}; --rate-unit says "
-                                   "otherwise",
-                                   channel.name, unit_if_unknown)});
+      notes.push_back(
+          {Severity::warning, fmt::format("{} etc. have no unit: {} is assumed; change it with "
+                                          "--rate-unit",
+                                          channel.name, unit_if_unknown)});
     rates[axis] = channel.values;
     for (double& value : rates[axis]) value = unit.si(value);
   }

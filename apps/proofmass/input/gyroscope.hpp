@@ -7,21 +7,21 @@
 
 #include "proofmass/core/recording.hpp"
 
-// The gyroscope beside an accelerometer.
+// The gyroscope that belongs to an accelerometer.
 namespace proofmass::app {
 
 /// Channels x, y and z of a recording.
 using GyroscopeChannels = std::array<std::size_t, 3>;
 
-/// The three channels of angular rate that belong to the accelerometer: those of its name
-/// ("imu_acc_x" and "imu_gyr_x", "acc1_x" and "gyro1_x"), else the recording's only ones. They are
-/// in a unit of angular rate, or of unknown unit and called a gyroscope's. nullopt if there are
+/// The three channels of angular rate that belong to the accelerometer: those with the matching
+/// name ("imu_acc_x" and "imu_gyr_x", "acc1_x" and "gyro1_x"), else the only ones in the recording.
+/// Their unit is one of angular rate, or unknown with a gyroscope's name. nullopt if there are
 /// none.
 [[nodiscard]] std::optional<GyroscopeChannels> find_gyroscope(const Recording& recording,
                                                               const Triad& accelerometer);
 
-/// What they read, in rad/s. Where their headings have no unit, `unit_if_unknown` ("rad/s",
-/// "deg/s") is taken, which a note says.
+/// The measured rates in rad/s. If the headings have no unit, `unit_if_unknown` ("rad/s", "deg/s")
+/// is assumed, with a note.
 [[nodiscard]] std::array<std::vector<double>, 3> rates_radps(const Recording& recording,
                                                              const GyroscopeChannels& channels,
                                                              const std::string& unit_if_unknown,

@@ -26,7 +26,7 @@ const sensor::SensorModel& model_of(const std::vector<sensor::SensorModel>& mode
   return models[models.size() > 1 ? k : 0];
 }
 
-// The flag that helps where the accelerometers of a recording cannot be used.
+// The flag that helps if the accelerometers of a recording are not usable.
 std::string flag_hint(const std::vector<sensor::SensorModel>& models, const Recording& recording) {
   const std::vector<Triad> triads = accelerometer_triads(recording);
   if (triads.empty()) return ": name its channels with --channel, their unit with --unit";
@@ -76,7 +76,7 @@ Result<sensor::SensorFile> sensor_file(const std::string& path, const InputFlags
   return sensor::read_sensor_file(path);
 }
 
-// Puts --supply in place of what the files say of their supply.
+// Replaces the supply stated in the files by --supply.
 void set_supply(double supply_v,
                 std::vector<sensor::SensorModel>& models,
                 std::vector<Note>& notes) {
@@ -95,7 +95,7 @@ void set_supply(double supply_v,
   }
   if (!any) {
     throw Failure(usage,
-                  "--supply: no sensor file says at which supply its figures hold: give "
+                  "--supply: no sensor file states the supply of its figures: give "
                   "electrical.reference_supply, which makes it ratiometric");
   }
 }
@@ -220,8 +220,8 @@ void remove_warm_up(const InputFlags& flags,
   if (!on_s) {
     if (!any) return;
     notes.push_back({Severity::warning,
-                     "the warm-up in the sensor file stays in the readings: --since-switch-on S, "
-                     "how long the sensor had been on at the file's first sample, takes it out"});
+                     "the warm-up in the sensor file is not corrected: give --since-switch-on S, "
+                     "the time from power-on to the file's first sample"});
     return;
   }
   if (!any) {
@@ -259,7 +259,7 @@ Uncertain uncertain_gravity_mps2(const InputFlags& flags,
   if (flags.gravity_mps2) return {gravity, 0.0};
   if (flags.latitude_deg) return {gravity, sensor::gravity_anomaly_std_mps2};
   notes.push_back({Severity::warning,
-                   "gravity: taken for 9.80665 m/s^2, which no place has exactly: it makes every "
+                   "gravity: 9.80665 m/s^2 assumed; local gravity differs, which makes every "
                    "scale uncertain by 0.15 %; give --gravity, or --latitude and --height"});
   return {gravity, sensor::gravity_std_on_earth_mps2};
 }

@@ -33,7 +33,7 @@ void set_samples(const Recording& recording,
   const std::size_t end = sample_at(recording, interval.end);
   if (end <= rest.first) {
     throw Failure(bad_input,
-                  fmt::format("{}: line {}: no sample of {} lies between {} and {} s", list,
+                  fmt::format("{}: line {}: {} has no sample between {} and {} s", list,
                               interval.line, recording.source, interval.start, interval.end));
   }
   rest.last = end - 1;

@@ -9,13 +9,13 @@
 
 namespace proofmass::app {
 
-/// A rest of a recording that a list names.
+/// A rest named in a list.
 struct ListedRest {
   calibrate::Dwell dwell;
-  std::optional<double> angle_rad;  ///< of the table
+  std::optional<double> angle_rad;  ///< angle of the table
 };
 
-/// --rests FILE. Throws Failure, also where one is not in the recording.
+/// The rests of --rests FILE. Throws Failure, also if one is outside the recording.
 [[nodiscard]] std::vector<ListedRest> listed_rests(const Recording& recording,
                                                    const std::string& list);
 

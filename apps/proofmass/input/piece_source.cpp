@@ -64,7 +64,7 @@ Block PieceSource::next_in_window() {
     for (const Channel& channel : piece_.channels) kept.channels.emplace_back(channel.values);
     kept.stamps_s = piece_.time.stamps_s;
     given_ += kept.rows();
-    // The notes of what lies behind the window are wanted too, so that it is read to its end.
+    // Continues after the end of the window, since the rest of the file may have notes.
     if (kept.rows() > 0) return kept;
   }
 }

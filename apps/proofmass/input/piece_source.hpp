@@ -12,10 +12,10 @@
 #include "proofmass/io/recording_stream.hpp"
 #include "proofmass/sensor/sensor_file.hpp"
 
-// Recordings larger than memory, for the verbs that need them only once, from front to back.
+// Sequential reading of recordings larger than memory.
 namespace proofmass::app {
 
-/// A recording that comes a piece at a time, cut to --from and --to and calibrated.
+/// A recording in pieces, cut to --from and --to and calibrated.
 class PieceSource {
  public:
   /// `flags` and `models` must outlive this. Throws Failure.
@@ -23,14 +23,14 @@ class PieceSource {
               const InputFlags& flags,
               const std::vector<sensor::SensorModel>& models);
 
-  /// Channels without values in the units that the blocks have, time without stamps; the notes are
-  /// complete behind the last block.
+  /// Channels without values, in the units of the blocks, and time without stamps; the notes are
+  /// complete after the last block.
   [[nodiscard]] const Recording& head() const { return head_; }
   [[nodiscard]] bool has_stamps() const { return stream_.has_stamps(); }
   [[nodiscard]] std::optional<std::uint64_t> expected_samples() const {
     return stream_.expected_samples();
   }
-  /// The next samples, none at the end. Throws Failure.
+  /// The next samples; empty at the end. Throws Failure.
   [[nodiscard]] Block next();
 
  private:
@@ -42,15 +42,15 @@ class PieceSource {
   const InputFlags& flags_;
   const std::vector<sensor::SensorModel>& models_;
   Recording head_;
-  Recording piece_;  ///< holds what is cut or calibrated
+  Recording piece_;  ///< the piece being cut or calibrated
   Block first_;
   bool has_first_ = false;
-  bool is_past_ = false;         ///< --to lies behind
+  bool is_past_ = false;         ///< the end of the window has been passed
   std::size_t given_ = 0;        ///< samples in the window so far
   double window_start_s_ = 0.0;  ///< time of its first sample
 };
 
-/// A file of the input: whole, or a piece at a time where its table is larger than --memory.
+/// A file of the input: whole, or in pieces if its table is larger than --memory.
 [[nodiscard]] std::variant<Recording, io::RecordingStream> open_input(const std::string& file,
                                                                       const InputFlags& flags,
                                                                       const Progress& progress);

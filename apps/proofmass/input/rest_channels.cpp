@@ -19,13 +19,13 @@
 namespace proofmass::app {
 namespace {
 
-// One file on its way.
+// State of one file.
 struct Source {
   Recording recording;
   std::vector<std::size_t> chosen;               // channels to analyse
-  std::vector<std::optional<std::size_t>> axes;  // of each of them, where known
+  std::vector<std::optional<std::size_t>> axes;  // of each channel, if known
   std::optional<std::size_t> temperature;
-  std::vector<signal::ChannelAudit> audits;  // of the chosen, as recorded
+  std::vector<signal::ChannelAudit> audits;  // of the chosen channels, as recorded
   signal::EvenGrid grid;
 };
 
@@ -47,7 +47,7 @@ bool has_samples(const Channel& channel) {
   return std::ranges::any_of(channel.values, [](double x) { return std::isfinite(x); });
 }
 
-// The only channel that holds temperatures, unless it is all there is.
+// The only temperature channel, unless it is the only channel.
 std::optional<std::size_t> only_temperature(const Recording& recording, std::vector<Note>& notes) {
   const std::vector<Channel>& channels = recording.channels;
   std::vector<std::size_t> found;
@@ -72,7 +72,7 @@ std::optional<std::size_t> temperature_in(const Recording& recording,
   return options.find_temperature ? only_temperature(recording, notes) : std::nullopt;
 }
 
-// What is wrong with the chosen channels and their stamps, before any of it is scaled.
+// Notes on the chosen channels and their stamps, before scaling.
 void audit(Source& source, const std::string& prefix, std::vector<Note>& notes) {
   Recording part{source.recording.source, source.recording.format, {}, {}, {}, 0};
   std::swap(part.time, source.recording.time);
@@ -121,7 +121,7 @@ RestChannel prepared(Source& source, std::size_t k, bool is_phase) {
   out.unit = series_unit(channel.unit, is_phase);
   if (!out.refused.empty()) return out;
   if (audit.lsb && !is_phase) {
-    // A sensor file may have scaled it: the step grew as the spread did.
+    // A sensor file may have scaled the channel; the quantisation step scales with the spread.
     const double before = audit.moments.std(), after = moments(channel.values).std();
     const double scale = !calibrated ? audit.unit.to_si : before > 0.0 ? after / before : 0.0;
     if (scale > 0.0) out.lsb = *audit.lsb * scale;
@@ -175,7 +175,7 @@ report::RestShare share_of(const signal::RestSearch& search,
 
 void find_share_at_rest(double start_s, std::vector<RestChannel>& channels) {
   constexpr std::size_t most_axes = 3;
-  // Fewer than the search can learn the noise of a sensor at rest from.
+  // fewer samples do not determine the noise at rest
   constexpr std::size_t fewest_samples = 500;
   for (std::size_t k = 0; k < channels.size();) {
     std::vector<View<double>> axes;
@@ -198,8 +198,8 @@ void find_share_at_rest(double start_s, std::vector<RestChannel>& channels) {
 
 void expect_axis(const RestChannel& channel) {
   if (channel.axis && channel.unit.symbol == "m/s^2") return;
-  throw Failure(usage, fmt::format("--update-sensor: {} is no x, y or z axis of one "
-                                   "accelerometer, in m/s^2: choose with --channel, say --unit",
+  throw Failure(usage, fmt::format("--update-sensor: {} is not an x, y or z axis of one "
+                                   "accelerometer, in m/s^2: choose with --channel, give --unit",
                                    channel.title));
 }
 

@@ -13,74 +13,75 @@
 #include "proofmass/io/recording_stream.hpp"
 #include "proofmass/report/noise/report.hpp"
 
-// From recordings at rest to the evenly sampled series that the analyses of them take.
+// Evenly sampled series from recordings at rest, for the analyses of noise and drift.
 namespace proofmass::app {
 
 struct RestOptions {
   std::vector<std::string> files;
   InputFlags input;
   OutputFlags output;
-  std::string temperature;        ///< name of the channel that holds it; empty: none is named
-  bool find_temperature = false;  ///< where none is named, the only channel with a temperature
-  bool for_sensor_file = false;   ///< refuse what a sensor file cannot take (--update-sensor)
-  bool is_phase = false;          ///< the channels hold the integral of the quantity over time
-  bool may_drift = false;  ///< rest is looked for beside the drift, once that is known: not here
+  std::string temperature;        ///< name of the temperature channel; empty: not given
+  bool find_temperature = false;  ///< if not given, use the only temperature channel
+  bool for_sensor_file = false;   ///< refuse what cannot be stored in a sensor file
+                                  ///< (--update-sensor)
+  bool is_phase = false;          ///< the channels are integrals of the quantity over time
+  bool may_drift = false;         ///< rest is determined after the drift is known, by the caller
 };
 
-/// One channel, in SI where its unit is known, or why it cannot be analysed.
+/// One channel, in SI if its unit is known, or the reason for refusal.
 struct RestChannel {
   std::string name;   ///< as in the file
-  std::string title;  ///< the same, behind the file's name where there are several files
+  std::string title;  ///< preceded by the file's name if there are several
   std::string file;
   Unit unit;
   std::string refused;
-  std::vector<double> series;  ///< NaN where a sample is missing; empty if refused
+  std::vector<double> series;  ///< NaN for missing samples; empty if refused
   double rate_hz = 0.0;
-  std::optional<double> lsb;        ///< step of the converter, in the series' unit
+  std::optional<double> lsb;        ///< quantisation step, in the series' unit
   std::optional<std::size_t> axis;  ///< 0, 1, 2 for x, y, z of the only accelerometer
-  /// How much of the recording is at rest; absent where its quantity says nothing of motion.
+  /// Fraction of the recording at rest; absent if the quantity does not respond to motion.
   std::optional<report::RestShare> rest;
 };
 
-/// The temperature beside the channels, on their grid.
+/// Temperature on the time grid of the channels.
 struct RestTemperature {
   std::string name;
-  Unit unit;  ///< K, or none where it is not known
+  Unit unit;  ///< K, or none if unknown
   std::vector<double> series;
 };
 
-/// What is to be analysed of one file.
+/// The channels of one file to be analysed.
 struct RestRecording {
   std::vector<RestChannel> channels;
   std::optional<RestTemperature> temperature;
-  std::optional<std::int64_t> start_ns;  ///< of the first sample on the file's own clock
+  std::optional<std::int64_t> start_ns;  ///< time of the first sample on the file's clock
 };
 
-/// How much of each channel is at rest. Channels of one quantity are looked at together, three at a
-/// time: a sensor that moves along one axis is not at rest along the others. start_s is the first
-/// sample's on the recording's clock.
+/// Determines the fraction of each channel at rest. Channels of one quantity are tested together,
+/// three at a time: a sensor that moves along one axis is not at rest along the others. start_s:
+/// time of the first sample on the recording's clock.
 void find_share_at_rest(double start_s, std::vector<RestChannel>& channels);
 
-/// Opens one of the files, whole or as a stream where it is larger than --memory. Throws Failure,
-/// also where there is no time base.
+/// Opens one of the files, whole or as a stream if it is larger than --memory. Throws Failure, also
+/// if there is no time base.
 [[nodiscard]] std::variant<Recording, io::RecordingStream> open_rest(const std::string& file,
                                                                      const RestOptions& options);
 
-/// What is to be analysed of a recording, as rest_recordings() says.
+/// The channels of a recording to be analysed, as in rest_recordings().
 [[nodiscard]] RestRecording rest_recording(Recording recording,
                                            const RestOptions& options,
                                            std::vector<Note>& notes);
 
-/// "run1.csv: " where there are several files, else nothing.
+/// "run1.csv: " if there are several files, else empty.
 [[nodiscard]] std::string file_prefix(const std::string& file, const RestOptions& options);
 
-/// Throws Failure unless a sensor file can take the channel's figures.
+/// Throws Failure if the channel's figures cannot be stored in a sensor file.
 void expect_axis(const RestChannel& channel);
 
-/// All files, each with its channels to analyse: without --channel all accelerations, else the
-/// voltages or counts that look like axes, else all but a counter. Notes of reading and preparing
-/// are added to `notes`. Throws Failure; for a sensor file also unless all is of one recording, of
-/// x, y or z of one accelerometer and in m/s^2.
+/// All files, each with its channels to be analysed: without --channel all accelerations, else the
+/// voltages or counts that look like axes, else all but a counter. Notes of reading and preparation
+/// are added to `notes`. Throws Failure; for a sensor file also unless all channels are x, y or z
+/// of one accelerometer in one recording, in m/s^2.
 [[nodiscard]] std::vector<RestRecording> rest_recordings(const RestOptions& options,
                                                          std::vector<Note>& notes);
 

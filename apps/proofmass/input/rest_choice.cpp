@@ -40,7 +40,7 @@ std::vector<std::size_t> choose(const Recording& recording,
   if (std::vector<std::size_t> axes = axes_in(recording); !axes.empty()) return axes;
   const auto counter = signal::find_counter(recording);
   std::erase_if(all, [&](std::size_t k) {
-    // A recording without its values shows a counter by its name only.
+    // Without values a counter can be recognised by its name only.
     const bool is_named_so = recording.samples() == 0 && signal::is_counter_name(channels[k].name);
     return k == counter || is_named_so;
   });
@@ -61,7 +61,7 @@ std::vector<std::optional<std::size_t>> axes_of(const Recording& recording,
   return axes;
 }
 
-// Of the rate that a series in this unit is the integral of.
+// Unit of the rate whose integral has this unit.
 Unit rate_unit(const Unit& unit) {
   if (unit.symbol == "m/s") return *parse_unit("m/s^2");
   if (unit.symbol == "rad") return *parse_unit("rad/s");
@@ -110,7 +110,7 @@ std::string clipping(const signal::ChannelAudit& audit, std::size_t samples) {
   };
   const char* between = audit.limit_low && audit.limit_high ? " or " : "";
   return fmt::format(
-      "{} of {} stand at the limits of the range ({}{}{} {}): what is cut off there is not in the "
+      "{} of {} are at the limits of the range ({}{}{} {}): clipped noise is not included in the "
       "figures",
       report::grouped(audit.clipped), report::count_words(samples, "sample"),
       limit(audit.limit_low), between, limit(audit.limit_high), audit.unit.symbol);

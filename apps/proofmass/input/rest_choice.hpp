@@ -10,32 +10,33 @@
 #include "proofmass/signal/audit.hpp"
 #include "proofmass/signal/even_grid.hpp"
 
-// Which channels of a recording at rest are analysed, and in what unit: of recordings in memory
-// and of those that come a piece at a time.
+// Choice of the channels and units for the analysis of a recording at rest, whole or in pieces.
 namespace proofmass::app {
 
 struct RestChoice {
-  std::vector<std::size_t> channels;             ///< as places in the recording's
-  std::vector<std::optional<std::size_t>> axes;  ///< of each: 0, 1, 2 of the only accelerometer
+  std::vector<std::size_t> channels;             ///< indices in the recording
+  std::vector<std::optional<std::size_t>> axes;  ///< of each channel: 0, 1, 2 of the only
+                                                 ///< accelerometer
 };
 
-/// All accelerations; else the voltages or counts that look like axes; else all that is no counter.
-/// Of channels that were named, all. `temperature` is none of them.
+/// All accelerations; else the voltages or counts that look like axes; else everything but
+/// counters. All of the channels that were named, if any. Never `temperature`.
 [[nodiscard]] RestChoice choose_rest(const Recording& recording,
                                      const std::optional<std::size_t>& temperature,
                                      bool named);
 
-/// The unit that values in `unit` are brought to: SI, or as it is where they are left as recorded.
+/// Unit after conversion: SI, or unchanged if there is no conversion.
 [[nodiscard]] Unit si_unit(const Unit& unit);
 
-/// The unit of an analysed series whose values are in `unit`; of the rate, where the values are its
+/// Unit of the analysed series for values in `unit`; that of the rate if the values are its
 /// integral.
 [[nodiscard]] Unit series_unit(const Unit& unit, bool is_phase);
 
-/// Why a channel with so many samples at the rails is refused: their noise is cut off. Else empty.
+/// Reason to refuse a channel with this number of clipped samples, whose noise is truncated; empty
+/// if acceptable.
 [[nodiscard]] std::string clipping(const signal::ChannelAudit& audit, std::size_t samples);
 
-/// Tells what is missing on the grid, in how many places, and how uneven the stamps are.
+/// Notes missing grid points, their number of gaps, and irregular stamps.
 void tell_grid(const signal::EvenGrid& grid,
                std::size_t places,
                const std::string& prefix,

@@ -22,7 +22,7 @@ std::optional<std::int64_t> end_ns(const Recording& recording) {
   return *recording.time.start_ns + static_cast<std::int64_t>(recording.duration_s() / s_per_ns);
 }
 
-// Two recordings are of one clock if their clock's readings overlap.
+// Two recordings share a clock if their time intervals overlap.
 bool share_a_clock(const Recording& a, const Recording& b) {
   const auto &a_start = a.time.start_ns, &b_start = b.time.start_ns;
   return a_start && b_start && *a_start <= *end_ns(b) && *b_start <= *end_ns(a);
@@ -45,7 +45,7 @@ estimate::WheelSensor wheel_sensor(const Recording& recording,
                              ": one axis only: an accelerometer needs two in the plane of the "
                              "wheel");
   }
-  // Of two axes the pair is turned on until the missing one is z, which keeps it right-handed.
+  // With two axes, a cyclic permutation makes z the missing one and preserves handedness.
   std::array order{triad.x, triad.y, triad.z};
   while (order[2] && triad.axes() == 2) std::rotate(order.begin(), order.begin() + 1, order.end());
   for (std::size_t axis = 0; axis < 3; ++axis) {

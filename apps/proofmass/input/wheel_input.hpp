@@ -8,25 +8,25 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/estimate/wheel.hpp"
 
-// From one or two recordings of a turning wheel to its accelerometers.
+// Accelerometers from one or two recordings of a rotating wheel.
 namespace proofmass::app {
 
 struct WheelInput {
   std::vector<estimate::WheelSensor> sensors;
   bool clocks_shared = true;
   double alignment_std_rad = 0.0;
-  std::optional<double> bandwidth_hz{};  ///< of the sensor file
+  std::optional<double> bandwidth_hz{};  ///< from the sensor file
   std::vector<Note> notes;
 };
 
-/// What is done with the channels of a gyroscope.
+/// Use of a gyroscope's channels.
 struct GyroscopeUse {
   bool wanted = true;
   std::string unit_if_unknown = "rad/s";
 };
 
-/// One or two accelerometers of one run, calibrated and in m/s^2, with the gyroscopes beside them.
-/// Throws Failure.
+/// One or two accelerometers of one run, calibrated and in m/s^2, with their gyroscopes. Throws
+/// Failure.
 [[nodiscard]] WheelInput wheel_input(const std::vector<std::string>& files,
                                      const InputFlags& flags,
                                      const GyroscopeUse& gyroscope,

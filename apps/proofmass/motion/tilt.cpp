@@ -20,11 +20,11 @@
 namespace proofmass::app {
 namespace {
 
-/// Accelerations; or, with `angle`, the angle that they gave and a gyroscope's rate.
+/// Accelerations; or, with `angle`, the angle computed from them and a gyroscope's rate.
 struct TiltCommand {
   std::string file;
   std::string base = "auto", reads = "+g";
-  std::vector<std::string> gyro;  ///< channels x, y, z; empty: found
+  std::vector<std::string> gyro;  ///< channels x, y, z; empty: detected
   bool no_gyro = false;
   std::string angle, rate_channel;  ///< columns, by name or number
   std::string angle_unit = "rad", rate_unit = "rad/s";
@@ -102,7 +102,7 @@ std::string names_of(const Recording& recording) {
   return names;
 }
 
-// By its name, or by its place in a file that has no names.
+// By name, or by position in a file without names.
 const Channel& column(const Recording& recording, const std::string& name, const char* flag) {
   const Channel* found = recording.find(name);
   if (found == nullptr && is_number(name)) found = recording.find("column " + name);
@@ -112,7 +112,7 @@ const Channel& column(const Recording& recording, const std::string& name, const
   return *found;
 }
 
-// In SI, by the heading's unit or, where it has none, by the flag's.
+// Converted to SI by the heading's unit or, if it has none, by the flag's.
 std::vector<double> in_si(const Channel& channel,
                           Quantity quantity,
                           const std::string& otherwise,
@@ -177,10 +177,10 @@ std::optional<GyroscopeChannels> gyroscope_of(const TiltCommand& command,
   return channels;
 }
 
-// The step of a converter shows before calibration mixes the axes: the largest and the smallest
-// reading say what it is afterwards.
+// Quantisation is visible only before calibration mixes the axes; the extreme measurements give the
+// factor to convert it.
 struct RawSteps {
-  double lsb = 0.0;  ///< 0: continuous, or one value throughout
+  double lsb = 0.0;  ///< 0: continuous, or a single value
   std::size_t lowest = 0, highest = 0;
   double range = 0.0;
 };
@@ -252,7 +252,7 @@ estimate::TiltSolution solve(const TiltCommand& command, report::TiltReport& rep
   if (!solution)
     throw Failure(status_of(solution.error(), Stage::computing),
                   solution.error().at(command.file).message);
-  // Three axes give the direction whatever gravity is.
+  // With three axes the direction does not depend on the magnitude of gravity.
   if (solution->axes < 3)
     report.notes.insert(report.notes.end(), of_gravity.begin(), of_gravity.end());
   return std::move(solution).value();

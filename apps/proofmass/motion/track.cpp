@@ -21,18 +21,18 @@
 namespace proofmass::app {
 namespace {
 
-/// Displacement of one accelerometer, or of several that are fused.
+/// Displacement from one accelerometer, or from several that are fused.
 struct TrackCommand {
   std::string file;
   std::string model = "inertial";  ///< or pva, fused
   std::optional<double> jerk_psd_m2ps5;
   std::vector<std::string> gravity;  ///< a number in m/s^2, "removed" or "present", or both
-  std::string axis;                  ///< empty: found
+  std::string axis;                  ///< empty: determined from the data
   bool same_place = false;
   double same_place_std_m = 1e-3;
   std::string fixes, still, turns;  ///< files: positions, intervals, times of velocity 0
   std::string rests = "found";
-  double fix_std_m = 0.01;  ///< of fixes without their own
+  double fix_std_m = 0.01;  ///< for fixes without their own
   std::optional<double> shortest_rest_s, scale_std;
   double rest_speed_std_mps = 1e-4;
   bool take_as_acceleration = false, no_gyro = false;
@@ -41,7 +41,7 @@ struct TrackCommand {
   OutputFlags output;
 };
 
-// A number as of the other verbs, or a word.
+// A number as for the other verbs, or a word.
 CLI::Validator gravity_value() {
   const CLI::Validator number = positive();
   const auto check = [number](std::string& text) -> std::string {
@@ -65,36 +65,39 @@ void add_motion_flags(CLI::App& verb, TrackCommand& command) {
       ->check(positive());
   add("--axis", command.axis, "AXIS",
       "direction of the displacement: x, y, z, with a sign, or X,Y,Z in the sensor's axes, with a "
-      "gyroscope the world's (default: along which it moved farthest)");
-  CLI::Option* same = verb.add_flag("--same-place", command.same_place, "it ended where it began");
-  add("--same-place-std", command.same_place_std_m, "M", "how well (default 0.001)")
+      "gyroscope the world's (default: direction of the largest motion)");
+  CLI::Option* same =
+      verb.add_flag("--same-place", command.same_place, "the motion ended at its starting point");
+  add("--same-place-std", command.same_place_std_m, "M",
+      "standard deviation of that (default 0.001)")
       ->check(positive())
       ->needs(same);
   CLI::Option* fixes = add("--fixes", command.fixes, "FILE.csv",
-                           "positions measured on the way: time, position and, if known, std");
-  add("--fix-std", command.fix_std_m, "M", "of those without their own (default 0.01)")
+                           "known positions: time, position and, if known, std");
+  add("--fix-std", command.fix_std_m, "M",
+      "standard deviation of fixes without their own (default 0.01)")
       ->check(positive())
       ->needs(fixes);
-  CLI::Option* still = add("--still", command.still, "FILE",
-                           "list of intervals in which it stood still, instead of those found");
+  CLI::Option* still =
+      add("--still", command.still, "FILE", "list of static intervals, instead of detection");
   add("--rests", command.rests, "WHICH",
-      "which quiet stretches are rests: found (default: as they fit the motion), or ends: the "
-      "first "
+      "quiet intervals used as rests: found (default: those consistent with the motion), or ends: "
+      "the first "
       "and the last alone")
       ->check(CLI::IsMember({"found", "ends"}))
       ->excludes(still);
-  add("--turns", command.turns, "FILE", "list of times at which it turned round: velocity 0");
+  add("--turns", command.turns, "FILE", "list of times of reversal: velocity 0");
   add("--shortest-rest", command.shortest_rest_s, "S", "minimum duration of a rest (default 0.5)")
       ->check(positive());
   add("--rest-speed-std", command.rest_speed_std_mps, "M_PER_S",
-      "speed that a sensor at rest may have (default 0.0001)")
+      "standard deviation of the speed at rest (default 0.0001)")
       ->check(positive());
   add("--scale-std", command.scale_std, "SHARE",
-      "relative standard deviation of the readings' scale (default: of the --sensor file, or by "
+      "relative standard deviation of the scale (default: from the --sensor file, or from "
       "gravity at rest)")
       ->check(not_negative());
   verb.add_flag("--take-as-acceleration", command.take_as_acceleration,
-                "give a displacement though the readings look like jerk");
+                "integrate even if the data look like jerk");
   verb.add_flag("--no-gyro", command.no_gyro, "do not use the gyroscope's channels");
   add("--rate-unit", command.rate_unit, "UNIT",
       "unit of the gyroscope if its heading has none: rad/s (default) or deg/s")
@@ -108,10 +111,9 @@ void add_track_flags(CLI::App& verb, TrackCommand& command) {
   add_motion_flags(verb, command);
   add_input_flags(verb, command.input);
   verb.remove_option(verb.get_option("--gravity"));
-  verb.add_option(
-          "--gravity", command.gravity,
-          "removed or present, where the readings do not show it; or local gravity (default "
-          "9.80665); may be repeated")
+  verb.add_option("--gravity", command.gravity,
+                  "removed or present, if the data do not show it; or local gravity (default "
+                  "9.80665); may be repeated")
       ->type_name("WORD|M_PER_S2")
       ->allow_extra_args(false)
       ->check(gravity_value())
@@ -136,7 +138,7 @@ using estimate::GravityContent;
 using estimate::TrackOptions;
 using estimate::TrackSensor;
 
-// A word says whether gravity is in the readings, a number how large it is.
+// A word states whether the measurements contain gravity, a number its magnitude.
 void read_gravity(TrackCommand& command, TrackOptions& options) {
   for (const std::string& text : command.gravity) {
     const bool removed = text == "removed", present = text == "present";
@@ -166,7 +168,7 @@ void expect_sense(const TrackCommand& command) {
       throw Failure(usage, "-: standard input is the recording: name a file for the list");
 }
 
-// A list that does not fit the recording is the list's fault.
+// A list that does not match the recording is reported as an error of the list.
 void need_inside(const Status& inside, const std::string& file) {
   if (!inside)
     throw Failure(status_of(inside.error(), Stage::reading), inside.error().at(file).message);
@@ -211,7 +213,7 @@ void take_from_sensor(const sensor::SensorModel& model,
   if (!options.scale_std) options.scale_std = scale_std_of(model.calibration);
 }
 
-// One; or for the model fused 2 to 4.
+// One; for the model `fused` two to four.
 std::vector<Accelerometer> chosen_accelerometers(const TrackCommand& command,
                                                  const std::vector<Recording>& recordings) {
   std::vector<Accelerometer> found = accelerometers(recordings);
@@ -320,7 +322,7 @@ void run_track(const TrackCommand& given) {
   report.options = options_of(command);
   const TrackSensor sensor = prepare(command, report.options, report.notes);
   report.solution = solve_track(command.file, sensor, report.options);
-  report.options.progress = {};  // which wipes the bar away
+  report.options.progress = {};  // which clears the progress bar
   finish(report::describe(report), [&] { return report::track_series(report); }, command.output);
 }
 

@@ -27,8 +27,8 @@ struct TuneCommand {
   std::string file;
   std::string model = "auto";
   std::vector<std::string> fix, share;  ///< --fix NAME=VALUE, --share NAME
-  bool from_sensor = false;             ///< start at the noise of the sensor file
-  double study_step_s = 0.0;            ///< 0: the recording's own
+  bool from_sensor = false;             ///< initial values from the noise of the sensor file
+  double study_step_s = 0.0;            ///< 0: the recording's own interval
   std::string update_sensor;
   InputFlags input;
   OutputFlags output;
@@ -114,7 +114,7 @@ TuneChoice choose(const TuneCommand& command, const RestRecording& recording) {
   return estimate::choose_tune_model(axes, options);
 }
 
-// Where a sensor file knows the noise of the axis.
+// Initial values from the sensor file, if it has the noise of the axis.
 void start_at_sensor(const RestChannel& channel,
                      const sensor::SensorModel& model,
                      TuneOptions& options) {
@@ -137,7 +137,7 @@ struct Tuned {
   std::string refused;
 };
 
-// All channels together where they share a parameter, else each by itself.
+// All channels jointly if they share a parameter, else each separately.
 std::vector<Tuned> tune_all(const std::vector<TuneSeries>& series,
                             const std::vector<TuneOptions>& options,
                             const OutputFlags& output) {
@@ -188,7 +188,7 @@ void update_sensor(const TuneCommand& command,
   if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error().message);
 }
 
-// The sensor file's noise of each channel where --start-at-sensor asks for it.
+// The sensor file's noise of each channel, for --start-at-sensor.
 std::vector<TuneOptions> options_of(const TuneCommand& command,
                                     TuneModel model,
                                     const std::vector<const RestChannel*>& channels) {
@@ -211,7 +211,7 @@ void refuse(const std::string& name, const std::string& why, std::vector<Note>& 
   notes.push_back({Severity::bad, name + ": not tuned: " + why});
 }
 
-// The channels that may be tuned by; why others may not is noted.
+// The channels usable for tuning; notes give the reasons for the others.
 std::vector<const RestChannel*> usable(const RestRecording& recording, std::vector<Note>& notes) {
   std::vector<const RestChannel*> channels;
   for (const RestChannel& channel : recording.channels) {
@@ -224,7 +224,7 @@ std::vector<const RestChannel*> usable(const RestRecording& recording, std::vect
   return channels;
 }
 
-// Tunes by them and leaves those in `channels` that it worked for.
+// Tunes on the channels and keeps those for which it succeeded.
 void fill(const TuneCommand& command,
           const TuneChoice& choice,
           std::vector<const RestChannel*>& channels,

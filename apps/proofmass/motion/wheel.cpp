@@ -93,7 +93,7 @@ void run_wheel(const WheelCommand& command) {
   report.options.alignment_std_rad = input.alignment_std_rad;
   report.options.progress = progress_bar(command.output);
   report.solution = need(estimate::estimate_wheel(input.sensors, report.options), Stage::computing);
-  report.options.progress = {};  // which wipes the bar away
+  report.options.progress = {};  // which clears the progress bar
   finish(report::describe(report), [&] { return report::wheel_series(report); }, command.output);
 }
 

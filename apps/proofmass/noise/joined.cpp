@@ -23,7 +23,7 @@ using characterise::NoiseStream;
   throw Failure(usage, file + ": --as-one: " + why);
 }
 
-/// A recording of the sequence: what is to be analysed of it, and when it starts.
+/// One recording of the sequence: its channels, and its start.
 struct Part {
   RestRecording rest;
   double start_s = 0.0;
@@ -34,7 +34,7 @@ std::optional<double> clock_s(const RestRecording& rest) {
   return static_cast<double>(*rest.start_ns) * 1e-9;
 }
 
-/// The files, in their order.
+/// The files, in order.
 class Parts {
  public:
   Parts(const NoiseCommand& command, std::vector<Note>& notes) : command_(command), notes_(notes) {
@@ -47,7 +47,7 @@ class Parts {
     options_.input.memory_mb = std::numeric_limits<double>::infinity();
   }
 
-  /// The first has to be read before the others.
+  /// The first file must be read before the others.
   [[nodiscard]] Part read(std::size_t k) {
     const std::string& file = command_.files[k];
     Part part{rest_recording(std::get<Recording>(open_rest(file, options_)), options_, notes_)};
@@ -60,7 +60,7 @@ class Parts {
   }
 
  private:
-  // Starts may be given to the second; a clock that agrees with them is finer.
+  // Given starts may be rounded to seconds; a clock that agrees with them is more precise.
   [[nodiscard]] double start_near(double given_s, const std::optional<double>& own_s) const {
     constexpr double coarse_s = 1.0;
     if (!own_s || !first_clock_s_) return given_s;
@@ -103,7 +103,7 @@ std::vector<Joined> begin(const Part& first, NoiseOptions options, std::size_t e
   return all;
 }
 
-// A channel of the part, which has to fit those before.
+// The channel in this part, which must match the previous parts.
 const RestChannel& same_channel(const Part& part, const RestChannel& first) {
   constexpr double most_apart = 1e-3;
   const auto found = std::ranges::find(part.rest.channels, first.name, &RestChannel::name);
@@ -152,7 +152,7 @@ void finish_joined(Joined& joined, double rate_hz) {
     channel.shown.refused = found.error().message;
 }
 
-// Samples over the time that they take, of all parts together.
+// Number of samples divided by the total duration of all parts.
 class MeanRate {
  public:
   void add(double samples, double rate_hz) {
@@ -180,7 +180,8 @@ std::vector<NoiseChannel> analyse_joined(const NoiseCommand& command,
   std::optional<Part> last;
   if (count > 1) last = parts.read(count - 1);
   const Part& end = last ? *last : part;
-  // No term of a deviation reaches across a gap as long as all recordings together.
+  // Longer gaps are shortened: no term of a deviation extends over a gap as long as all recordings
+  // together.
   const std::size_t longest = std::max(samples_of(part.rest), samples_of(end.rest));
   const std::size_t longest_gap = count * longest;
   const double expected = std::min(std::max(0.0, end.start_s - part.start_s) * rate_hz +

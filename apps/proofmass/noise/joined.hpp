@@ -5,12 +5,12 @@
 #include "noise/command.hpp"
 #include "noise/pieces.hpp"
 
-// The noise of recordings that are parts of one.
+// Noise of a recording that is split into several files.
 namespace proofmass::app {
 
-/// Analyses each channel over all files as one recording with gaps: --as-one. The files follow each
-/// other in time, by --starts or by their own clocks; one after the other is in memory. Throws
-/// Failure, also where they overlap, or differ in rate or channels.
+/// Analyses each channel over all files as one recording with gaps: --as-one. The files are ordered
+/// by --starts or by their own clocks, and only one is in memory at a time. Throws Failure, also if
+/// they overlap or differ in rate or channels.
 [[nodiscard]] std::vector<NoiseChannel> analyse_joined(const NoiseCommand& command,
                                                        const characterise::NoiseOptions& noise,
                                                        std::vector<Note>& notes);

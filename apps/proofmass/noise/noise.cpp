@@ -51,7 +51,7 @@ void add_noise_flags(CLI::App& verb, NoiseCommand& command) {
       "noise type used for the confidence limits: auto (default), lag1, or the power of f from -4 "
       "to 2");
   verb.add_flag("--exclude-events", command.exclude_events,
-                "exclude shocks, and intervals that span a step");
+                "exclude outliers, and intervals that span a step");
   CLI::Option* as_one = verb.add_flag("--as-one", command.as_one,
                                       "analyse the files as one recording with gaps between them");
   add("--starts", command.starts_s, "S,S...",
@@ -163,7 +163,7 @@ std::vector<NoiseChannel> noise_channels(RestRecording recording, std::vector<No
   return channels;
 }
 
-// All files' channels: prepared, or of a file larger than --memory analysed.
+// All files' channels: prepared, or already analysed for a file larger than --memory.
 std::vector<NoiseChannel> noise_channels(const NoiseCommand& command,
                                          const NoiseOptions& options,
                                          std::vector<Note>& notes) {
@@ -192,7 +192,7 @@ void analyse(NoiseChannel& channel, NoiseOptions options) {
   options.rate_hz = channel.rest.rate_hz;
   options.lsb = channel.rest.lsb;
   Result<NoiseAnalysis> found = characterise::analyse_noise(channel.rest.series, options);
-  // What was asked for makes no sense, of this channel or of any.
+  // Invalid options, for this channel or for any.
   if (!found && found.error().code == Errc::invalid_argument) {
     throw Failure(usage, found.error().at(channel.shown.name).message);
   }

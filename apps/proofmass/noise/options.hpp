@@ -5,7 +5,8 @@
 
 namespace proofmass::app {
 
-/// What the flags say to the analysis; the rate is the series'. Throws Failure.
+/// Options of the analysis from the flags, except for the rate, which is the series'. Throws
+/// Failure.
 [[nodiscard]] characterise::NoiseOptions noise_options(const NoiseCommand& command);
 
 }  // namespace proofmass::app

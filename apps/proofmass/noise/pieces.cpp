@@ -20,12 +20,12 @@ using characterise::NoiseAnalysis;
 using characterise::NoiseOptions;
 using characterise::NoiseStream;
 
-// A channel on its way.
+// State of one channel.
 struct Stream {
-  std::size_t place;  // in the recording
-  Unit from, to;      // its values' unit, and that of the series
+  std::size_t place;  // index in the recording
+  Unit from, to;      // units of the values and of the series
   NoiseStream noise;
-  std::vector<double> series;  // the piece at hand
+  std::vector<double> series;  // the current piece
 };
 
 std::vector<Stream> start(const PieceSource& source,

@@ -8,16 +8,16 @@
 
 namespace proofmass::app {
 
-/// Of `record`: a procedure that a person is led through, and what is made of it.
+/// Flags of a guided procedure and of its evaluation.
 struct GuideFlags {
   std::string procedure;                 ///< tumble, multi-position or static; empty: none
   std::optional<std::size_t> positions;  ///< --positions
   std::optional<double> target_std_mg;   ///< --target-std
-  std::optional<double> minutes;         ///< --minutes, of static
-  std::string update_sensor;             ///< of the verb that follows
+  std::optional<double> minutes;         ///< --minutes, for static
+  std::string update_sensor;             ///< for the verb that evaluates the recording
 };
 
-/// Live samples to disk; or, with `list`, what is there to record from.
+/// Records live samples; with `list`, shows the available sources.
 struct RecordCommand {
   std::string source;
   bool list = false;
@@ -29,7 +29,7 @@ struct RecordCommand {
   std::string estimate;  ///< wheel, track or tilt; empty: none
   GuideFlags guide;
   std::optional<double> lag_s, radius_m, bandwidth_hz;
-  std::string axis;  ///< of the wheel's axle, or of the motion
+  std::string axis;  ///< axle of the wheel, or direction of the motion
   InputFlags input;  ///< rate, unit, channels, sensors, supply and gravity
   OutputFlags output;
 };

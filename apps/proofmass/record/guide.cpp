@@ -27,7 +27,7 @@ GuideProcedure procedure_of(const GuideFlags& flags) {
   return flags.procedure == "static" ? GuideProcedure::still : GuideProcedure::multi_position;
 }
 
-// The channels that --channel names; else those of the only accelerometer.
+// The channels named by --channel; else those of the only accelerometer.
 std::vector<std::size_t> axes_of(const Recording& head, const std::vector<std::string>& named) {
   std::vector<std::size_t> out;
   for (const std::string& name : named) {
@@ -111,7 +111,7 @@ void RecordGuide::opened(const Recording& head) {
   try {
     guide_.emplace(guide_options(command_, head));
   } catch (const Failure& failure) {
-    // Told once the recorder is out of the way.
+    // Reported after the end of the recording.
     why_not_ = failure.what();
   }
 }
@@ -124,7 +124,7 @@ std::vector<std::string> RecordGuide::samples(const Block& block) {
   return lines;
 }
 
-// Enter: leave this position out; q: that will do.
+// Enter: skip this position; q: end the procedure.
 std::vector<std::string> RecordGuide::keys() {
   std::vector<std::string> lines;
   pollfd input{STDIN_FILENO, POLLIN, 0};
@@ -173,7 +173,7 @@ void RecordGuide::run_verb(const std::string& file) const {
   input.channels = command_.input.channels;
   OutputFlags output = command_.output;
   output.output.clear();
-  // What it was computed from is the recording, not the source.
+  // The input of the evaluation is the recording, not the source.
   if (output.invocation) {
     const report::Provenance& asked = output.invocation->provenance();
     output.invocation = std::make_shared<Invocation>(

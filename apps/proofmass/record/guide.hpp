@@ -11,23 +11,23 @@
 
 namespace proofmass::app {
 
-/// Leads through the procedure of `record --procedure`, then has its verb work on the recording.
+/// Guides the user through `record --procedure`, then evaluates the recording by its verb.
 class RecordGuide {
  public:
-  /// Throws Failure where the command's flags do not go together.
+  /// Throws Failure for incompatible flags.
   explicit RecordGuide(const RecordCommand& command);
 
-  /// The channels, once they are known; a source that comes back changes nothing.
+  /// Called once the channels are known; calls after a reconnection have no effect.
   void opened(const Recording& head);
-  /// Lines for whoever lays the sensor down.
+  /// Instructions for the person who places the sensor.
   [[nodiscard]] std::vector<std::string> samples(const Block& block);
-  /// How it stands now, for a line that is drawn anew.
+  /// Current state, for a line that is redrawn.
   [[nodiscard]] std::string live() const;
-  /// Whether the recording can end.
+  /// True if the recording can end.
   [[nodiscard]] bool done() const;
-  /// Writes the list of rests beside the recording, "run.rests.csv" beside "run.mcap", and runs the
-  /// verb on it, unless it was broken off. Returns how to run it again. Throws Failure, also where
-  /// the channels were none to be guided by.
+  /// Writes the list of rests beside the recording, "run.rests.csv" beside "run.mcap". Returns the
+  /// command that evaluates it. Throws Failure, also if the channels are not suitable for the
+  /// procedure.
   [[nodiscard]] std::string write_rests(const std::string& file) const;
   void run_verb(const std::string& file) const;
 
@@ -38,7 +38,7 @@ class RecordGuide {
   RecordCommand command_;
   std::optional<calibrate::PoseGuide> guide_;
   std::string why_not_;
-  bool ended_ = false;  ///< by the person
+  bool ended_ = false;  ///< by the user
 };
 
 }  // namespace proofmass::app

@@ -17,7 +17,7 @@ namespace {
 using sensor::CalibratedBlocks;
 using Made = Result<std::unique_ptr<LiveAnalysis>>;
 
-// An analysis of samples that are calibrated on their way to it.
+// An analysis that calibrates its samples first.
 class Calibrated final : public LiveAnalysis {
  public:
   Calibrated(CalibratedBlocks samples, std::unique_ptr<LiveAnalysis> analysis)
@@ -57,7 +57,7 @@ Made make_wheel(const RecordCommand& command, const CalibratedBlocks& samples) {
   return estimate::live_wheel(options);
 }
 
-// The one accelerometer that an estimate other than the wheel's is of.
+// The single accelerometer that all estimates except the wheel's need.
 const Triad& only_accelerometer(const CalibratedBlocks& samples) {
   const auto& found = samples.accelerometers();
   if (found.size() == 1) return found.front().triad;

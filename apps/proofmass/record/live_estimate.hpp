@@ -8,8 +8,8 @@
 
 namespace proofmass::app {
 
-/// What --estimate asks for, on samples as they come, calibrated; the view is told its columns.
-/// Empty if it asks for nothing. Throws Failure.
+/// The analysis requested by --estimate, on calibrated live samples; announces its columns to the
+/// view. Empty if none was requested. Throws Failure.
 [[nodiscard]] acquire::MakeAnalysis make_estimate(const RecordCommand& command,
                                                   LiveView& view,
                                                   std::vector<Note>& notes);

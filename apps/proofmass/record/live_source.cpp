@@ -9,7 +9,7 @@
 namespace proofmass::app {
 namespace {
 
-// A source whose unknown units the user knows.
+// A source whose unknown units are given by the user.
 class NamedUnits final : public acquire::Source {
  public:
   NamedUnits(std::unique_ptr<acquire::Source> source, const Unit& unit)

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t most_channels = 16;
 constexpr double normal_95 = 1.96;
 
-// A figure in the unit in which people picture it.
+// Display unit.
 struct Shown {
   double factor;
   std::string unit;
@@ -32,7 +32,7 @@ std::string reading_line(const Channel& channel, double value) {
                      unit.empty() ? "" : " " + report::print_unit(unit));
 }
 
-// The column's std beside it, if it has one.
+// The standard deviation of a column, if there is a column for it.
 const double* std_of(const std::vector<Channel>& columns,
                      const std::vector<double>& values,
                      const std::string& name) {
@@ -93,7 +93,8 @@ void LiveView::event(const RecordEvent& event) {
     lost_ += event.rows;
     ++gaps_;
   }
-  constexpr std::uint64_t gaps_told = 20;  // who loses at each block knows by then
+  constexpr std::uint64_t gaps_told = 20;  // later gaps are only counted: a steady loss would
+                                           // fill the terminal
   if (is_gap && gaps_ > gaps_told) return;
   panel_.wipe();
   show_notes({{event.severity, report::event_words(event)}}, "", flags_);

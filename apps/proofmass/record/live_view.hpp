@@ -14,8 +14,8 @@
 
 namespace proofmass::app {
 
-/// What a recording looks like while it is made: on a terminal a few lines that are drawn anew in
-/// place, at most ten times a second; elsewhere only what is worth a line of its own.
+/// Live view of a recording: on a terminal several lines redrawn in place, at most ten times a
+/// second; elsewhere only events, one line each.
 class LiveView {
  public:
   LiveView(std::string source, std::string file, const OutputFlags& flags);
@@ -26,11 +26,11 @@ class LiveView {
   void samples(const Block& block);
   void estimates(const Block& rows);
   void event(const RecordEvent& event);
-  /// A line that stays.
+  /// Prints a permanent line.
   void say(const std::string& line);
-  /// The line that stands last, drawn anew with the others.
+  /// Sets the last line of the redrawn ones.
   void guide(std::string line) { guide_ = std::move(line); }
-  /// Draws what has changed, if it is time.
+  /// Redraws if enough time has passed.
   void refresh();
 
  private:
@@ -46,7 +46,7 @@ class LiveView {
   std::uint64_t rows_ = 0, lost_ = 0, gaps_ = 0;
   double time_s_ = 0.0;
   Clock::time_point drawn_{};
-  std::deque<std::pair<Clock::time_point, std::uint64_t>> pace_;  ///< of the last seconds
+  std::deque<std::pair<Clock::time_point, std::uint64_t>> pace_;  ///< over the last seconds
 };
 
 }  // namespace proofmass::app

@@ -61,7 +61,7 @@ void add_estimate_flags(CLI::App& verb, RecordCommand& command) {
     return verb.add_option(name, into, help)->type_name(type)->group("Estimate");
   };
   CLI::Option* estimate = add("--estimate", command.estimate, "WHAT",
-                              "estimate online and record beside the samples: wheel (angle and "
+                              "estimate online and record with the samples: wheel (angle and "
                               "speed), tilt (roll and pitch) or track (displacement)");
   estimate->check(CLI::IsMember({"wheel", "tilt", "track"}));
   add("--lag", command.lag_s, "S", "lag of the fixed-lag smoother (default 0.25; 3 for track)")
@@ -102,12 +102,13 @@ void add_guide_flags(CLI::App& verb, GuideFlags& flags) {
       "write the results into this sensor file");
 }
 
-// Those of the input flags that make sense where samples are still to come.
+// Input flags that apply to live samples.
 void add_live_input_flags(CLI::App& verb, InputFlags& flags) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->group("Input");
   };
-  add("--rate", flags.rate_hz, "HZ", "ask the source for this sample rate (as rate= in SOURCE)")
+  add("--rate", flags.rate_hz, "HZ",
+      "request this sample rate from the source (as rate= in SOURCE)")
       ->check(positive());
   add("--unit", flags.unit, "UNIT",
       "unit of channels if the source does not state it: g, mg, m/s2, V, mV or counts")
@@ -243,9 +244,9 @@ acquire::RecordWatch watch_by(LiveView& view, RecordGuide* guide, report::Record
   return watch;
 }
 
-// Before the source was open it is the source's fault, afterwards the file's.
+// An error before the source was opened concerns the source, a later one the file.
 ExitStatus status_of(const Error& error, bool was_open) {
-  // A card or a board whose driver is not there.
+  // The driver of a card or board is missing.
   if (!was_open && error.code == Errc::unsupported) return bad_device;
   return app::status_of(error, was_open ? Stage::writing : Stage::reading);
 }
@@ -268,7 +269,7 @@ report::RecordReport record(const RecordCommand& command, RecordGuide* guide) {
   return report;
 }
 
-// The rests that were taken are listed beside the recording, and the procedure's verb is run on it.
+// Lists the completed rests beside the recording, and runs the procedure's verb on it.
 void finish(const RecordGuide& guide, const std::string& file, const OutputFlags& flags) {
   const std::string again = guide.write_rests(file);
   show_line("  To do this again: " + again, flags);
@@ -292,7 +293,7 @@ void run_record(const RecordCommand& given) {
     const report::RecordReport report = record(command, guide ? &*guide : nullptr);
     const report::Document document = report::describe(report);
     show_notes(report.notes, "", command.output);
-    // What the procedure leads to is the document, where there is one.
+    // With a procedure, the document is that of its verb.
     OutputFlags own = command.output;
     if (guide) own.json.clear();
     if (!guide || command.output.json != "-") publish(document, own);

@@ -51,7 +51,7 @@ std::string own_path() {
   return path.string();
 }
 
-// This process's, less what would colour or steer the program that is run.
+// Environment of this process, without the variables that affect colour or behaviour of the child.
 std::vector<std::string> child_environment() {
   std::vector<std::string> out{"PROOFMASS_PROGRESS=lines", "NO_COLOR=1"};
   for (char** one = environ; *one != nullptr; ++one) {
@@ -66,8 +66,8 @@ bool has_screen() {
   return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
 }
 
-// The link goes through a file that only this user can read: everybody sees the arguments of a
-// process.
+// The link is passed through a file readable only by this user, since arguments of a process are
+// visible to all.
 void open_browser(const std::string& link, const std::string& folder) {
   const std::string file = folder + "/open.html";
   const std::string text = fmt::format(
@@ -80,18 +80,19 @@ void open_browser(const std::string& link, const std::string& folder) {
        "/",
        child_environment()});
   if (!child) return;
-  // Whether a browser came up is seen by who sits there; the link is printed as well.
+  // The result is not checked, since the link is printed as well.
   serve::ChildProcess opener = std::move(child).value();
   (void)opener.follow([](std::string_view) {}, [] { return interruption_waits(); });
 }
 
 void warn_of_others(const ServeCommand& command) {
   if (serve::is_loopback(command.listen)) return;
-  show_notes({{Severity::warning,
-               fmt::format("--listen {}: whoever reaches this machine and has the link can read "
-                           "this folder and add to it; nothing is encrypted",
-                           command.listen)}},
-             "", command.output);
+  show_notes(
+      {{Severity::warning,
+        fmt::format("--listen {}: anybody who can reach this machine and has the link can read "
+                    "this folder and add to it; nothing is encrypted",
+                    command.listen)}},
+      "", command.output);
 }
 
 std::string temporary_place() {
@@ -100,7 +101,7 @@ std::string temporary_place() {
   return failed ? "/tmp" : place.string();
 }
 
-// Until a signal asks for the end.
+// Runs until a signal ends it.
 void serve_folder(const ServeCommand& command) {
   const auto folder = need(serve::Folder::open(command.folder), Stage::reading);
   const auto work = need(serve::TemporaryFolder::make(temporary_place()), Stage::writing);

@@ -9,12 +9,12 @@
 namespace proofmass::app {
 
 struct SimulateCommand {
-  std::string rig;  ///< the description: of the rig, or with --procedure of the procedure
+  std::string rig;  ///< description of the rig, or with --procedure of the procedure
   std::optional<std::uint64_t> seed;
   std::optional<double> rpm, rate_hz, duration_s, gravity_mps2;
   bool datasheet_errors = false, print_config = false;
   std::optional<int> adc_bits;
-  std::string procedure, signal;  ///< empty: the rig; as the description says
+  std::string procedure, signal;  ///< empty: the rig, or as in the description
   std::optional<std::uint64_t> session;
   std::optional<int> positions;
   std::optional<double> dwell_s, supply_v;

@@ -35,7 +35,7 @@ void set_positions(int positions, ProcedureOptions& options) {
   } else if (options.procedure == Procedure::slide) {
     throw Failure(usage, "--positions: a slide has strokes: give --strokes");
   } else {
-    throw Failure(usage, fmt::format("--positions: {} has as many as its name says",
+    throw Failure(usage, fmt::format("--positions: {} has a fixed number",
                                      simulate::name_of(options.procedure)));
   }
 }
@@ -69,7 +69,7 @@ ProcedureOptions procedure_options(const SimulateCommand& command) {
   ProcedureOptions options = simulate::default_options(procedure);
   if (!command.rig.empty()) {
     const Result<ProcedureOptions> read = simulate::read_procedure_file(command.rig, procedure);
-    // Whatever is wrong in the file is wrong with the input.
+    // Any error in the file is a faulty input.
     if (!read) throw Failure(bad_input, read.error().message);
     options = *read;
   }

@@ -101,7 +101,7 @@ simulate::RigOptions rig_options(const SimulateCommand& command) {
   simulate::RigOptions options;
   if (!command.rig.empty()) {
     const Result<simulate::RigOptions> read = simulate::read_rig_file(command.rig);
-    // Whatever is wrong in the file is wrong with the input.
+    // Any error in the file is a faulty input.
     if (!read) throw Failure(bad_input, read.error().message);
     options = *read;
   }

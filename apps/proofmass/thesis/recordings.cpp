@@ -14,7 +14,7 @@
 namespace proofmass::app {
 namespace {
 
-// Several recordings share the list: each note says whose it is.
+// Several recordings share the list, so each note is prefixed with its file.
 void keep_notes(const std::string& file, std::vector<Note> more, std::vector<Note>& notes) {
   const std::string name = report::file_name(file);
   for (Note& note : more) {
@@ -73,10 +73,10 @@ thesis::TumbleRecord tumble_record(const ThesisCommand& command, std::vector<Not
   return record;
 }
 
-// --since-switch-on means something to the wheel only where a sensor file has a warm-up.
+// --since-switch-on applies to the wheel only if a sensor file has a warm-up.
 InputFlags wheel_flags(const ThesisCommand& command) {
   InputFlags flags = command.input;
-  std::vector<Note> of_the_sensor_files;  // wheel_input() tells them
+  std::vector<Note> of_the_sensor_files;  // reported by wheel_input()
   const auto models = load_sensors(flags, of_the_sensor_files);
   const auto knows = [](const sensor::SensorModel& model) {
     return sensor::has_warm_up(model.drift);

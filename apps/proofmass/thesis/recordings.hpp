@@ -8,8 +8,8 @@
 
 namespace proofmass::app {
 
-/// The recordings that the flags name, each read as the verb for its kind reads it: drift, tumble,
-/// wheel. Notes of reading are added to `notes`, behind the file's name. Throws Failure.
+/// The recordings named by the flags, each read as by the verb of its kind: drift, tumble, wheel.
+/// Notes of reading are added to `notes`, with the file's name. Throws Failure.
 [[nodiscard]] thesis::OwnRecordings own_recordings(const ThesisCommand& command,
                                                    std::vector<Note>& notes);
 

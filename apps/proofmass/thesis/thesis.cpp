@@ -92,11 +92,11 @@ void run_thesis(const ThesisCommand& command) {
 }  // namespace
 
 Verb thesis_verb() {
-  return make_verb<ThesisCommand>(
-      {.name = "thesis",
-       .group = "Study",
-       .help = "every table and figure of the thesis beside ours, simulated or from your own rig"},
-      add_thesis_flags, run_thesis);
+  return make_verb<ThesisCommand>({.name = "thesis",
+                                   .group = "Study",
+                                   .help = "every table and figure of the thesis compared with "
+                                           "ours, simulated or from your own rig"},
+                                  add_thesis_flags, run_thesis);
 }
 
 }  // namespace proofmass::app

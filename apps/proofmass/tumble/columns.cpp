@@ -48,7 +48,7 @@ std::optional<std::size_t> by_name(const Recording& recording,
   return std::nullopt;
 }
 
-// By name, else the only column in a unit of angle.
+// By name, else the only column with a unit of angle.
 std::optional<std::size_t> find_angle(const Recording& recording) {
   std::optional<std::size_t> found, only;
   std::size_t count = 0;
@@ -87,8 +87,8 @@ bool is_std_of(const std::string& name, const std::string& output) {
          name == "sigma" + output;
 }
 
-// All that is neither something else nor a counter; accelerations before voltages and counts, those
-// before what has no unit.
+// All other columns except counters; accelerations in preference to voltages and counts, those in
+// preference to columns without a unit.
 std::vector<std::size_t> find_outputs(const Recording& recording, const TumbleColumns& taken) {
   const auto counter = signal::find_counter(recording);
   const bool table = taken.angle.has_value() && recording.samples() < 50;

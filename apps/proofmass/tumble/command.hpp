@@ -11,12 +11,13 @@ namespace proofmass::app {
 struct TumbleCommand {
   std::vector<std::string> files;
   std::string rests;               ///< --rests: list of intervals
-  std::vector<double> angles_deg;  ///< --angles: of each rest of a recording, in its order
+  std::vector<double> angles_deg;  ///< --angles: one per rest of a recording, in order
   std::optional<double> shortest_rest_s;
   std::string angle_channel;        ///< --angle: the column with the angle; empty: by its name
-  std::string input_axis;           ///< --input-axis: channel whose axis is at gravity × sin
-  std::vector<int> planes, mounts;  ///< --plane, --mount: of each file; empty: columns or 1 and 0
-  /// --indexing-std, --drift-std, --bandwidth; absent: assumed, or found from the residuals
+  std::string input_axis;           ///< --input-axis: channel of the axis at g sin(angle)
+  std::vector<int> planes, mounts;  ///< --plane, --mount: one per file; empty: from columns, or 1
+                                    ///< and 0
+  /// --indexing-std, --drift-std, --bandwidth; absent: assumed, or estimated from the residuals
   std::optional<double> indexing_std_deg, drift_std_mps2, bandwidth_hz;
   std::optional<double> gravity_std_mps2;
   bool rotating = false;                  ///< --rotating: run_rotation()

@@ -2,13 +2,13 @@
 
 #include "tumble/command.hpp"
 
-// What `tumble` does other than positions at rest. Throw Failure.
+// Variants of `tumble` other than static positions. Both throw Failure.
 namespace proofmass::app {
 
-/// --rotating: bias and scale factor of a sensor on a wheel that turns.
+/// --rotating: bias and scale factor of a sensor on a rotating wheel.
 void run_rotation(const TumbleCommand& command);
 
-/// --coefficients K0,K1,…: chosen coefficients of the whole model equation.
+/// --coefficients K0,K1,…: selected coefficients of the full model equation.
 void run_model_equation(const TumbleCommand& command);
 
 }  // namespace proofmass::app

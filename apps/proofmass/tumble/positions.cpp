@@ -21,7 +21,7 @@ namespace {
 using calibrate::Dwell;
 using calibrate::TumblePosition;
 
-// A column of the table without --channel, which would leave the angle out.
+// Reads the whole table: --channel would omit the angle.
 Recording load_all(const std::string& file, const TumbleCommand& command) {
   InputFlags flags = command.input;
   flags.channels.clear();
@@ -64,7 +64,7 @@ std::vector<Dwell> rests_of(const Recording& recording,
   const signal::RestSearch found = search_rests(recording, columns, command);
   if (found.rests.empty())
     throw Failure(bad_input, fmt::format("{}: no rest found: {}", recording.source,
-                                         found.why_none.empty() ? "the sensor never lay still"
+                                         found.why_none.empty() ? "the sensor was never at rest"
                                                                 : found.why_none));
   std::vector<Dwell> dwells;
   dwells.reserve(found.rests.size());
@@ -73,7 +73,7 @@ std::vector<Dwell> rests_of(const Recording& recording,
   return dwells;
 }
 
-// Where the recorded angle stands still and the sensor does too.
+// Intervals in which both the recorded angle and the sensor are constant.
 std::vector<Dwell> steady_rests(const Recording& recording,
                                 const TumbleColumns& columns,
                                 const TumbleCommand& command,
@@ -84,7 +84,7 @@ std::vector<Dwell> steady_rests(const Recording& recording,
   return found.rests.empty() ? steady : calibrate::at_rest(steady, found.rests);
 }
 
-// --angles: one for each rest, in their order over all files.
+// --angles: one per rest, in order over all files.
 std::vector<double> given_angles(const Recording& recording,
                                  const std::vector<Dwell>& dwells,
                                  const TumbleCommand& command,
@@ -115,7 +115,7 @@ double mean_temperature(const Recording& recording,
   return channel.unit.quantity == Quantity::temperature ? channel.unit.si(mean) : mean;
 }
 
-// Where the sensor lay still, and at which angles of the table.
+// Static intervals, and the angles of the table.
 struct Settings {
   std::vector<Dwell> dwells;
   std::vector<double> angles_rad;
@@ -211,7 +211,7 @@ void place(TumblePart& part, const TumbleCommand& command, std::size_t file) {
     if (mount) p.mount_rad = *mount * rad_per_deg;
     if (command.files.size() > 1) {
       p.label = report::file_name(command.files[file]) + ", " + p.label;
-      p.time_s.reset();  // clocks of different files have nothing in common
+      p.time_s.reset();  // the clocks of different files are unrelated
     }
   }
 }
@@ -242,7 +242,7 @@ TumblePart read_part(const TumbleCommand& command,
   return read_table(recording, columns, command.input, notes);
 }
 
-// Adds a further file's positions to those of the first.
+// Appends the positions of a further file.
 void append(TumbleReadings more, const std::string& file, TumbleReadings& all) {
   all.positions.insert(all.positions.end(), more.positions.begin(), more.positions.end());
   for (TumbleOutput& out : all.outputs) {

@@ -8,15 +8,16 @@
 #include "proofmass/core/recording.hpp"
 #include "tumble/command.hpp"
 
-// From tables of positions, or recordings that rest in them, to the readings of a tumble.
+// Outputs of a tumble test from tables of positions, or from recordings with a rest in each
+// position.
 namespace proofmass::app {
 
-/// One output over all positions, in SI where its unit is known.
+/// One output over all positions, in SI if its unit is known.
 struct TumbleOutput {
   std::string name;
   Unit unit;
-  std::vector<double> values, std;  ///< std 0 where nobody knows it
-  double noise_dof = 0.0;           ///< of std; 0: infinitely many
+  std::vector<double> values, std;  ///< std is 0 if unknown
+  double noise_dof = 0.0;           ///< of std; 0: infinite
   std::optional<std::size_t> axis;  ///< 0, 1, 2 for x, y, z of the only accelerometer
 };
 
@@ -26,7 +27,7 @@ struct TumbleReadings {
   std::string source;  ///< "a table of 12 positions"
 };
 
-/// All files as one test. Notes of reading are added to `notes`. Throws Failure.
+/// All files combined into one test. Notes of reading are added to `notes`. Throws Failure.
 [[nodiscard]] TumbleReadings tumble_readings(const TumbleCommand& command,
                                              std::vector<Note>& notes);
 

@@ -36,15 +36,15 @@ std::vector<std::size_t> named_channels(const Recording& recording, const Tumble
     chosen.push_back(static_cast<std::size_t>(found - recording.channels.begin()));
   }
   if (chosen.size() > 2) {
-    throw Failure(usage, fmt::format("--channel: {} channels, expected the one or two that lie in "
+    throw Failure(usage, fmt::format("--channel: {} channels, expected the one or two in "
                                      "the plane of the wheel",
                                      chosen.size()));
   }
   return chosen;
 }
 
-// The channels in the plane of the wheel: the ones named, or those of the one accelerometer that
-// gravity turns through.
+// The channels in the plane of the wheel: the named ones, or those of the only accelerometer
+// through which gravity rotates.
 std::vector<std::size_t> plane_channels(const Recording& recording, const TumbleCommand& command) {
   if (!command.input.channels.empty()) return named_channels(recording, command);
   const std::vector<Accelerometer> found = accelerometers({recording});
@@ -74,7 +74,7 @@ void bring_to_si(Channel& channel) {
   channel.unit = *parse_unit(volts ? "V" : "m/s^2");
 }
 
-// Volts and accelerations in SI, counts as they are; all of one kind.
+// Volts and accelerations in SI, counts unchanged; all of one quantity.
 std::string bring_to_one_unit(std::vector<Recording>& recordings,
                               const std::vector<std::vector<std::size_t>>& chosen) {
   std::optional<std::string> unit;
@@ -138,13 +138,13 @@ void keep_notes(const std::vector<Recording>& recordings, std::vector<Note>& not
 void run_rotation(const TumbleCommand& command) {
   if (!command.update_sensor.empty()) {
     throw Failure(usage,
-                  "--update-sensor does not go with --rotating: the axes that do not lie in "
-                  "the plane of the wheel are not known");
+                  "--update-sensor does not go with --rotating: the axes outside "
+                  "the plane of the wheel are unknown");
   }
   if (command.bandwidth_hz && command.angle_channel.empty()) {
     throw Failure(usage,
-                  "--bandwidth: without --angle there is no angle that the readings could "
-                  "be late to");
+                  "--bandwidth: without --angle there is no reference for the "
+                  "delay");
   }
   report::RotationReport report;
   report.inputs = command.files;

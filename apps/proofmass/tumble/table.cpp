@@ -22,7 +22,7 @@ std::optional<std::size_t> axis_of(const Recording& recording, std::size_t chann
   return std::nullopt;
 }
 
-// What a column's unit is, the user's word before the file's silence.
+// Unit of a column; --unit replaces an unknown one.
 Unit unit_of(const Channel& channel, const InputFlags& flags) {
   if (channel.unit.quantity != Quantity::unknown || flags.unit.empty()) return channel.unit;
   return *parse_unit(flags.unit);
@@ -34,7 +34,7 @@ Unit si_unit(const Unit& unit) {
   return unit;
 }
 
-// A word in a column of words, or a figure: +1 forwards, −1 backwards.
+// Direction from a word or a number: +1 forwards, −1 backwards.
 int direction_in_words(const std::string& word) {
   if (word.empty()) return 0;
   const char c = static_cast<char>(word[0] | 0x20);
@@ -97,7 +97,7 @@ std::vector<TumblePosition> table_positions(const Recording& recording,
   return out;
 }
 
-// Rows with an angle and all readings.
+// Rows with an angle and all outputs.
 std::vector<std::size_t> whole_rows(const Recording& recording, const TumbleColumns& columns) {
   std::vector<std::size_t> needed = columns.outputs, rows;
   needed.push_back(*columns.angle);
@@ -110,7 +110,7 @@ std::vector<std::size_t> whole_rows(const Recording& recording, const TumbleColu
   return rows;
 }
 
-// The stated noise of an output at those rows; 0 where there is none.
+// The stated standard deviation of an output at those rows; 0 if there is none.
 std::vector<double> stated_std(const Recording& recording,
                                const Channel& output,
                                std::optional<std::size_t> column,
@@ -148,10 +148,10 @@ TumblePart read_table(const Recording& recording,
                       std::vector<Note>& notes) {
   const std::vector<std::size_t> rows = whole_rows(recording, columns);
   if (rows.size() < recording.samples())
-    notes.push_back({Severity::warning,
-                     fmt::format("{}: {} without angle or reading: left out",
-                                 report::file_name(recording.source),
-                                 report::count_words(recording.samples() - rows.size(), "row"))});
+    notes.push_back(
+        {Severity::warning,
+         fmt::format("{}: {} without angle or output: omitted", report::file_name(recording.source),
+                     report::count_words(recording.samples() - rows.size(), "row"))});
   TumblePart part;
   part.readings.positions = table_positions(recording, columns, rows);
   const bool calibrated = !flags.sensors.empty();

@@ -9,21 +9,21 @@
 // A table with one row for each position.
 namespace proofmass::app {
 
-/// One file's part of the test.
+/// The part of the test in one file.
 struct TumblePart {
   TumbleReadings readings;
-  std::size_t rests = 0;  ///< that were found, where it is a recording
+  std::size_t rests = 0;  ///< number of rests detected in a recording
 };
 
-/// The output in a column, without its values: SI where its unit, or --unit, is known.
+/// The output in a column, without its values: SI if its unit, or --unit, is known.
 [[nodiscard]] TumbleOutput make_output(const Recording& recording,
                                        std::size_t column,
                                        const InputFlags& flags);
 
-/// What brings the column's values to the unit of make_output().
+/// Factor that converts the column's values to the unit of make_output().
 [[nodiscard]] double to_si(const Channel& channel, const InputFlags& flags);
 
-/// Rows without angle or reading are left out, with a note. Throws Failure.
+/// Rows without angle or output are omitted, with a note. Throws Failure.
 [[nodiscard]] TumblePart read_table(const Recording& recording,
                                     const TumbleColumns& columns,
                                     const InputFlags& flags,

@@ -21,7 +21,7 @@
 namespace proofmass::app {
 namespace {
 
-// Flags of `tumble` that say how the positions stood.
+// Flags of `tumble` for the positions.
 void add_position_flags(CLI::App& verb, TumbleCommand& command) {
   const auto add = [&verb](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type);
@@ -122,7 +122,7 @@ ChannelTumble analysed(const TumbleReadings& readings,
                         .positions = {},
                         .fit = {},
                         .refused = {}};
-  if (!axis.swings()) {
+  if (!axis.follows_angle()) {
     channel.refused = "the output " + axis.words + ", and a tumble about it does not excite it";
     return channel;
   }
@@ -138,7 +138,7 @@ ChannelTumble analysed(const TumbleReadings& readings,
   return channel;
 }
 
-// The input axis: named, else the first that follows sin(angle), else the first that swings.
+// The input axis: as given, else the first that follows sin(angle), else the first with a fit.
 std::size_t main_channel(const report::TumbleReport& report, std::optional<std::size_t> input) {
   if (input) return *input;
   const auto follows_sine = [](const ChannelTumble& c) {
@@ -162,7 +162,7 @@ sensor::MeasuredCalibration measured(const report::TumbleReport& report,
     const calibrate::TumbleCoefficient* scale =
         channel.fit ? channel.fit->find(TumbleQuantity::K1) : nullptr;
     if (!axis || scale == nullptr || !scale->std || !channel.fit->bias_output_std) {
-      const char* why = !axis              ? "it is no x, y or z axis of one accelerometer"
+      const char* why = !axis              ? "it is not an x, y or z axis of one accelerometer"
                         : scale == nullptr ? "it was refused"
                                            : "its figures have no standard deviation";
       notes.push_back({Severity::warning,
@@ -180,7 +180,7 @@ sensor::MeasuredCalibration measured(const report::TumbleReport& report,
   return out;
 }
 
-// Which flags state what the fits had to assume.
+// Notes the flags that would replace an assumption.
 void note_assumptions(report::TumbleReport& report) {
   const auto any = [&](const auto& assumed) {
     return std::any_of(report.channels.begin(), report.channels.end(),
@@ -188,11 +188,11 @@ void note_assumptions(report::TumbleReport& report) {
   };
   if (any([](const calibrate::TumbleFit& fit) { return fit.indexing.assumed; }))
     report.notes.push_back(
-        {Severity::info, "--indexing-std states how good the table's angles are; 0 is exact"});
-  if (any([](const calibrate::TumbleFit& fit) { return fit.drift.wander_assumed; }))
+        {Severity::info, "--indexing-std states the accuracy of the table's angles; 0 is exact"});
+  if (any([](const calibrate::TumbleFit& fit) { return fit.drift.nonlinear_assumed; }))
     report.notes.push_back({Severity::info,
-                            "--drift-std states how the bias wanders; a second turn, a turn "
-                            "backwards or a column with the temperature shows it"});
+                            "--drift-std states the bias drift; a second turn, a turn "
+                            "backwards or a temperature column would determine it"});
 }
 
 void update_sensor(const TumbleCommand& command,
@@ -209,13 +209,13 @@ void check(const TumbleCommand& command) {
   if (!command.angles_deg.empty() && !command.angle_channel.empty())
     throw Failure(usage, "--angles and --angle: give one of them");
   if (command.bandwidth_hz)
-    throw Failure(usage, "--bandwidth: a table at rest shows no delay; it goes with --rotating");
+    throw Failure(usage, "--bandwidth: a table at rest shows no delay; use it with --rotating");
   if (!command.rests.empty() && command.files.size() > 1)
     throw Failure(usage, "--rests: one list goes with one file");
   if (!command.update_sensor.empty() && !command.input.sensors.empty())
     throw Failure(usage,
-                  "--update-sensor with --sensor: the readings are calibrated already; leave "
-                  "--sensor away to calibrate anew");
+                  "--update-sensor with --sensor: the data are already calibrated; omit "
+                  "--sensor to recalibrate");
 }
 
 }  // namespace

@@ -6,13 +6,15 @@
 
 namespace proofmass::calibrate {
 
-BiasStability stability_of(const WanderStrengths& wander, double session_s, std::string source) {
+BiasStability stability_of(const SlowNoiseStrengths& slow_noise,
+                           double session_s,
+                           std::string source) {
   constexpr double longest_s = 30.0 * 86400.0;
   BiasStability out{.std = {}, .source = std::move(source)};
   const double periods = std::log(longest_s / std::clamp(session_s, 1.0, 0.5 * longest_s));
   for (std::size_t axis = 0; axis < 3; ++axis)
-    out.std[axis] =
-        std::sqrt(wander.flicker[axis] * periods + wander.random_walk[axis] * session_s / 3.0);
+    out.std[axis] = std::sqrt(slow_noise.flicker[axis] * periods +
+                              slow_noise.random_walk[axis] * session_s / 3.0);
   return out;
 }
 

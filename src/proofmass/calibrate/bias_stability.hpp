@@ -10,7 +10,7 @@
 namespace proofmass::calibrate {
 
 /// Noise coefficients of each axis's bias, in the output's unit.
-struct WanderStrengths {
+struct SlowNoiseStrengths {
   std::array<double, 3> flicker{};      ///< h of the one-sided spectrum h/f: B²/π
   std::array<double, 3> random_walk{};  ///< K², per second
 };
@@ -27,7 +27,7 @@ struct BiasStability {
 ///
 /// Drift and ageing dominate beyond that time and are not described by noise; a random walk that
 /// continues between the sessions would be unbounded.
-[[nodiscard]] BiasStability stability_of(const WanderStrengths& wander,
+[[nodiscard]] BiasStability stability_of(const SlowNoiseStrengths& slow_noise,
                                          double session_s,
                                          std::string source);
 

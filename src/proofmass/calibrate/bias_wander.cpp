@@ -7,14 +7,14 @@ namespace proofmass::calibrate {
 namespace {
 
 // The kernel integrated twice.
-double twice_integrated(double x, Wander noise) {
+double twice_integrated(double x, SlowNoise noise) {
   const double size = std::abs(x);
   if (size == 0.0) return 0.0;
-  if (noise == Wander::random_walk) return -size * size * size / 4.0;
+  if (noise == SlowNoise::random_walk) return -size * size * size / 4.0;
   return -size * size * (0.5 * std::log(size) - 0.75) / (2.0 * std::numbers::ln2);
 }
 
-double mean_kernel(const Span& a, const Span& b, Wander noise) {
+double mean_kernel(const Span& a, const Span& b, SlowNoise noise) {
   const double sum =
       twice_integrated(b.end - a.start, noise) - twice_integrated(b.end - a.end, noise) -
       twice_integrated(b.start - a.start, noise) + twice_integrated(b.start - a.end, noise);
@@ -23,7 +23,7 @@ double mean_kernel(const Span& a, const Span& b, Wander noise) {
 
 }  // namespace
 
-Eigen::MatrixXd wander_covariance(View<Span> spans, const Span& whole, Wander noise) {
+Eigen::MatrixXd slow_noise_covariance(View<Span> spans, const Span& whole, SlowNoise noise) {
   const auto n = static_cast<Eigen::Index>(spans.size());
   const auto span = [&](Eigen::Index k) { return spans[static_cast<std::size_t>(k)]; };
   const double all = mean_kernel(whole, whole, noise);

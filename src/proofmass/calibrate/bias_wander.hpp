@@ -14,7 +14,7 @@ struct Span {
 };
 
 /// Type of noise, each with unit coefficient.
-enum class Wander {
+enum class SlowNoise {
   flicker,      ///< Allan variance 1 at all times
   random_walk,  ///< Allan variance m over a time m
 };
@@ -29,6 +29,8 @@ enum class Wander {
 /// 3|x|. What is common to all means cancels in C. Source: G. Matheron, Advances in Applied
 /// Probability 5 (1973) 439 (generalised covariances); J. A. Barnes et al., IEEE Trans. Instrum.
 /// Meas. 20 (1971) 105, for the Allan variances. Units of time as of `spans`. Cost: O(spans²).
-[[nodiscard]] Eigen::MatrixXd wander_covariance(View<Span> spans, const Span& whole, Wander noise);
+[[nodiscard]] Eigen::MatrixXd slow_noise_covariance(View<Span> spans,
+                                                    const Span& whole,
+                                                    SlowNoise noise);
 
 }  // namespace proofmass::calibrate

@@ -24,7 +24,7 @@ TEST(CrossAxis, IsTheLengthOfTheTwoRatios) {
   EXPECT_EQ(found.upper_95, 0.005);
 }
 
-TEST(CrossAxis, IsNoNumberWhereItIsNotToldFromZero) {
+TEST(CrossAxis, IsAbsentIfNotDistinguishableFromZero) {
   const CrossAxis found = cross_axis_sensitivity({1e-3, 0.5e-3}, diagonal(1e-6, 1e-6)).value();
   EXPECT_FALSE(found.value);
   EXPECT_GT(found.p, 0.01);
@@ -32,14 +32,14 @@ TEST(CrossAxis, IsNoNumberWhereItIsNotToldFromZero) {
   EXPECT_GT(found.upper_95, 1.1e-3);
 }
 
-// At zero the upper bound is Rayleigh's quantile, σ √(−2 ln 0.05).
+// At zero the upper bound is the quantile of a Rayleigh distribution, σ √(−2 ln 0.05).
 TEST(CrossAxis, HasTheBoundOfRayleighAtZero) {
   const CrossAxis found = cross_axis_sensitivity({0, 0}, diagonal(4e-6, 4e-6)).value();
   EXPECT_NEAR(found.upper_95, 2e-3 * std::sqrt(-2.0 * std::log(0.05)), 1e-8);
   EXPECT_EQ(found.p, 1.0);
 }
 
-// With one ratio exact it is the bound of a half normal.
+// If one ratio is exact, it is the bound of a half-normal distribution.
 TEST(CrossAxis, HasTheBoundOfTheHalfNormalWhereOneRatioIsExact) {
   const CrossAxis found = cross_axis_sensitivity({0, 0}, diagonal(1e-6, 0)).value();
   EXPECT_NEAR(found.upper_95, 1.959964e-3, 2e-8);
@@ -81,7 +81,7 @@ Coverage repeat(const Eigen::Vector2d& truth, const Eigen::Vector2d& std, int ru
   return {static_cast<double>(below) / runs, static_cast<double>(inside) / runs, error.mean};
 }
 
-TEST(CrossAxis, IsUnbiasedAndCoversWhereItStandsClearOfTheNoise) {
+TEST(CrossAxis, IsUnbiasedAndCoversWellAboveTheNoise) {
   for (const Eigen::Vector2d& std : {Eigen::Vector2d(1, 1), Eigen::Vector2d(1, 0.3)}) {
     const Coverage found = repeat({5.0, 4.0}, std, 2000);
     EXPECT_GT(found.interval, 0.93);
@@ -97,7 +97,7 @@ TEST(CrossAxis, StaysBelowItsBoundAtLeastNineteenTimesInTwenty) {
   }
 }
 
-// Derivatives of √(S_xy² + S_xz²)/S_x by hand.
+// Derivatives of √(S_xy² + S_xz²)/S_x, derived by hand.
 TEST(CrossAxis, OfAMatrixFollowsTheDeltaMethod) {
   Eigen::Matrix3d S;
   S << 2.0, 0.06, 0.08, 0.01, 1.0, 0.02, 0.03, 0.0, 0.5;

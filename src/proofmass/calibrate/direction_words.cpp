@@ -39,10 +39,10 @@ std::string laying_words(const Eigen::Vector3i& side) {
   std::vector<std::string> up;
   for (Eigen::Index k = 0; k < 3; ++k)
     if (side(k) != 0) up.push_back(axis_words(k, side(k) < 0));
-  if (up.size() == 1) return fmt::format("lay it with {} straight up", up[0]);
+  if (up.size() == 1) return fmt::format("place it with {} straight up", up[0]);
   if (up.size() == 2)
     return fmt::format("tilt it until {} and {} both point 45° above the horizontal", up[0], up[1]);
-  return fmt::format("stand it on a corner, with {}, {} and {} all 35° above the horizontal", up[0],
+  return fmt::format("place it on a corner, with {}, {} and {} all 35° above the horizontal", up[0],
                      up[1], up[2]);
 }
 

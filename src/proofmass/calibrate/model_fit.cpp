@@ -35,7 +35,7 @@ Status check(View<ModelRow> rows, const ModelFitOptions& options) {
   for (auto one = options.fitted.begin(); one != options.fitted.end(); ++one) {
     if (std::find(options.fitted.begin(), one, *one) != one) {
       return Error{Errc::invalid_argument,
-                   fmt::format("{} is asked for twice", sensor::info(*one).name)};
+                   fmt::format("{} is requested twice", sensor::info(*one).name)};
     }
   }
   std::size_t stated = 0;
@@ -177,8 +177,8 @@ void judge_residuals(const Linear& problem, const Solution& solution, ModelFit& 
   fit.scatter = std::sqrt(chi_square / dof);
   fit.notes.push_back(
       fmt::format("the residuals are {:.3g} times what the stated standard deviations explain "
-                  "(p = {:.2g}): a term is missing, the motion is wrong, or the readings are "
-                  "noisier than stated; standard deviations were widened by that factor",
+                  "(p = {:.2g}): a term is missing, the motion is wrong, or the outputs are "
+                  "noisier than stated; standard deviations were increased by that factor",
                   fit.scatter, fit.test->p));
 }
 
@@ -203,8 +203,8 @@ void name_wrong_rows(const Solution& solution, ModelFit& fit) {
     if (deletion_p(solution, row, fit) >= least) continue;
     fit.suspects.push_back(size_of(row));
     fit.notes.push_back(
-        fmt::format("row {} contradicts the others (residual {:.3g}): look at its reading and its "
-                    "motion; it stays in the fit",
+        fmt::format("row {} contradicts the others (residual {:.3g}): check its output and its "
+                    "motion; it remains in the fit",
                     row + 1, fit.residuals[size_of(row)]));
   }
 }
@@ -309,8 +309,8 @@ Status enough_rows(const Linear& problem, std::size_t told, bool std_stated) {
   }
   if (rows > told || std_stated) return Done{};
   return Error{Errc::too_few_samples,
-               fmt::format("{} rows for {} coefficients leave none over to judge by: state the "
-                           "readings' standard deviation, add rows or leave a coefficient out",
+               fmt::format("{} rows for {} coefficients leave no redundancy: state the "
+                           "standard deviation of the outputs, add rows or omit a coefficient",
                            rows, told)};
 }
 

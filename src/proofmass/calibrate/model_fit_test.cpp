@@ -42,7 +42,7 @@ std::vector<Coefficient> all_coefficients() {
   return all;
 }
 
-// Everything at once, as a centrifuge on a rate table would have it.
+// Excites all terms, like a centrifuge with a rate table.
 std::vector<Motion> rich_motion() {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -64,7 +64,7 @@ std::vector<Motion> tumble(int n) {
   return motions;
 }
 
-// 1 g from all sides.
+// 1 g in n directions over the sphere.
 std::vector<Motion> sphere(int n) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -110,8 +110,8 @@ TEST(ModelFit, FindsAllSixteenCoefficientsWhereTheMotionIsRichEnough) {
   EXPECT_EQ(fit.dof, 104U);
 }
 
-// The order of asking decides the order of telling, and nothing else.
-TEST(ModelFit, TellsTheSameInWhateverOrderItIsAsked) {
+// The order of the request affects only the order of the results.
+TEST(ModelFit, DoesNotDependOnTheOrderOfTheRequest) {
   const auto rows = noisy(rows_of(plausible, tumble(24)), 1e-4, 1);
   const ModelFit one = fitted(rows, {K1, K0, delta_o, K2});
   const ModelFit other = fitted(rows, {K2, delta_o, K1, K0});
@@ -174,8 +174,8 @@ TEST(ModelFit, SaysThatTheSquaresGoOnlyByTheirDifferencesAtOneG) {
   EXPECT_NEAR(value_of(fit, K1), plausible.K1, 1e-3 * plausible.K1);
 }
 
-// K0 + g² Koo, K2 − Koo and Kpp − Koo are what the rows tell.
-TEST(ModelFit, OffersTheCombinationsThatTheRowsDoTell) {
+// The rows determine K0 + g² Koo, K2 − Koo and Kpp − Koo.
+TEST(ModelFit, OffersTheIdentifiableCombinations) {
   ModelEquation quadratic = plausible;
   quadratic.K0_asym = quadratic.K1_asym = quadratic.Koq = quadratic.K3 = quadratic.Kio =
       quadratic.Kpo = quadratic.Kip = 0.0;
@@ -192,7 +192,7 @@ TEST(ModelFit, OffersTheCombinationsThatTheRowsDoTell) {
   EXPECT_LT(fit.residual_rms, 1e-14);
 }
 
-TEST(ModelFit, TellsK2MinusKppInAPlaneAndNoMore) {
+TEST(ModelFit, DeterminesOnlyK2MinusKppInAPlane) {
   const ModelFit fit = fitted(rows_of(plausible, tumble(24)), {K1, K0, K2, Kpp, delta_o});
   ASSERT_EQ(fit.confounded.size(), 1U);
   EXPECT_EQ(fit.confounded[0].combinations[1].name, "K2 − Kpp");
@@ -236,7 +236,7 @@ TEST(ModelFit, GivesTheReasonWhereNoRowExcitesATerm) {
   EXPECT_TRUE(fit.find(K0)->value);
 }
 
-// cos 90° is not zero in a computer, but it is no excitation either.
+// cos 90° is not exactly zero in floating point, but is no excitation.
 TEST(ModelFit, DoesNotTakeRoundingForExcitation) {
   std::vector<Motion> motions = tumble(12);
   for (std::size_t k = 0; k < motions.size(); ++k) {
@@ -246,7 +246,7 @@ TEST(ModelFit, DoesNotTakeRoundingForExcitation) {
   EXPECT_FALSE(fit.find(delta_p)->value);
 }
 
-// Angles typed to three digits of g do not determine K2 from Kpp.
+// Accelerations rounded to three digits of g do not separate K2 from Kpp.
 TEST(ModelFit, DoesNotTakeRoundedAccelerationsForEvidence) {
   std::vector<Motion> motions = tumble(24);
   for (Motion& motion : motions) {
@@ -315,8 +315,8 @@ TEST(ModelFit, PassesAResidualTestThatIsMet) {
   EXPECT_TRUE(fit.notes.empty());
 }
 
-// Ratios to a K1 that is itself uncertain: the delta method against repetition.
-TEST(ModelFit, KnowsTheScatterOfItsRatiosAndCoversTheTruthAtNinetyFivePercent) {
+// Ratios to an uncertain K1: the delta method compared with repetition.
+TEST(ModelFit, StatesTheScatterOfItsRatiosAndCoversNinetyFivePercent) {
   const ModelEquation truth{.K1 = 0.03, .K0 = 2.0, .K2 = 2e-3, .delta_o = 0.05};
   const auto rows = rows_of(truth, tumble(12));
   const std::vector<Coefficient> asked{K1, K0, delta_o, K2};

@@ -27,7 +27,7 @@ Status check(View<Pose> poses, const MultiPositionOptions& options) {
   if (poses.empty()) return Error{Errc::too_few_samples, "no position at rest"};
   for (std::size_t k = 0; k < poses.size(); ++k) {
     if (poses[k].mean.allFinite() && poses[k].mean_covariance.allFinite()) continue;
-    return Error{Errc::not_finite, fmt::format("position {}: its mean is no finite number", k + 1)};
+    return Error{Errc::not_finite, fmt::format("position {}: its mean is not finite", k + 1)};
   }
   return Done{};
 }
@@ -89,7 +89,7 @@ Result<NormCalibration> choose(const NormData& data,
       return Error{
           Errc::not_observable,
           "no bias and scale bring the positions to one length: " + selection.error().message +
-              "; check the unit of the readings, and add positions in other directions"};
+              "; check the unit of the data, and add positions in other directions"};
     }
     if (carried(*selection, options)) return NormCalibration{free, *selection};
     if (free == NormParameters::nine && !asked) continue;
@@ -152,8 +152,7 @@ std::vector<UncertaintyShare> shares_of(const NormCalibration& norm,
   if (!resolved) noise -= steps;
   if (selection.scatter.dof > 0.0)
     shares.push_back({"noise of the means", true, slope * noise * slope, selection.scatter.dof});
-  if (!resolved)
-    shares.push_back({"resolution of the readings", false, slope * steps * slope, 0.0});
+  if (!resolved) shares.push_back({"resolution of the output", false, slope * steps * slope, 0.0});
   if (selection.by_choice.size() > 0) {
     ParameterMatrix choice = ParameterMatrix::Zero();
     choice.topLeftCorner(count, count) = selection.by_choice;
@@ -213,10 +212,10 @@ void add_notes(const NormCalibration& norm,
   add_unchecked(out);
   if (norm.free == NormParameters::six) {
     out.notes.push_back(fmt::format(
-        "misalignment_rad: null: {}; the axes are taken for orthogonal within {:.3g} rad, "
+        "misalignment_rad: null: {}; the axes are taken as orthogonal within {:.3g} rad, "
         "which the uncertainties hold",
-        options.model ? "six parameters were asked for"
-                      : "the positions do not carry nine parameters",
+        options.model ? "six parameters were requested"
+                      : "the positions do not determine nine parameters",
         options.orthogonality_std_rad));
   }
 }
@@ -256,14 +255,14 @@ Status check_acceleration_unit(View<Pose> poses, double gravity_mps2) {
   constexpr double near = 0.25;
   const auto wrong = [&](const char* meaning, const char* unit) {
     return Error{Errc::invalid_argument,
-                 fmt::format("at rest the readings are {:.3g} m/s^2 long, which is gravity in {}: "
+                 fmt::format("at rest the norm is {:.3g} m/s^2, which is gravity in {}: "
                              "give --unit {}",
                              length, meaning, unit)};
   };
   if (std::abs(length - 1.0) < near) return wrong("g", "g");
   if (std::abs(length / 1000.0 - 1.0) < near) return wrong("mg", "mg");
   if (std::abs(length / (gravity_mps2 * gravity_mps2) - 1.0) < near)
-    return wrong("m/s^2 taken for g", "m/s2");
+    return wrong("m/s^2 interpreted as g", "m/s2");
   return Done{};
 }
 

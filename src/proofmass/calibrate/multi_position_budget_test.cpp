@@ -64,7 +64,7 @@ TEST(BudgetOf, HasALineOfGravityEvenWhereItIsTakenForExact) {
   EXPECT_EQ(budgets[0].lines.size(), 1U);
 }
 
-// Where all of a mean's variance is that of rounding, no noise is left, and the sum is the same.
+// If rounding explains the whole variance of a mean, no noise remains, and the sum is unchanged.
 TEST(BudgetOf, TakesTheResolutionOutOfTheNoiseOfTheMeans) {
   Calibrated it = calibrated();
   const auto plain = budget_of(it.fit, {}, "V").value();
@@ -72,7 +72,7 @@ TEST(BudgetOf, TakesTheResolutionOutOfTheNoiseOfTheMeans) {
     for (Pose& pose : it.poses) pose.rounding_variance = part * pose.mean_covariance.diagonal();
     const MultiPosition fit = calibrate_positions(it.poses, it.options).value();
     const auto budgets = budget_of(fit, {}, "V").value();
-    EXPECT_EQ(fit.shares[1].source, "resolution of the readings");
+    EXPECT_EQ(fit.shares[1].source, "resolution of the output");
     EXPECT_FALSE(fit.shares[1].type_a);
     for (std::size_t k = 0; k < 9; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
@@ -101,7 +101,8 @@ TEST(AddTypeB, IsTheSameAsTheBudgetWithItsLines) {
   EXPECT_NEAR(it.fit.bias[2]->std, budgets[2].combined_std, 1e-15);
   EXPECT_EQ(budgets[2].lines.size(), 3U);
   EXPECT_NEAR(budgets[2].lines[1].sensitivity, it.fit.estimate[5], 1e-15);
-  // One reference for all axes ties their scales together, one drift each their biases not.
+  // A common reference correlates the scales of all axes; independent drifts leave the biases
+  // uncorrelated.
   const double reference = 5e-4 / std::sqrt(3.0);
   EXPECT_NEAR(it.fit.covariance(3, 4) - before.covariance(3, 4),
               it.fit.estimate[3] * it.fit.estimate[4] * (reference * reference + 1e-6 / g / g),
@@ -109,7 +110,7 @@ TEST(AddTypeB, IsTheSameAsTheBudgetWithItsLines) {
   EXPECT_EQ(it.fit.covariance(0, 1), before.covariance(0, 1));
 }
 
-TEST(AddTypeB, SaysWhyItCannotAndTouchesNothing) {
+TEST(AddTypeB, GivesTheReasonOfAFailureAndChangesNothing) {
   Calibrated it = calibrated();
   const MultiPosition before = it.fit;
   const auto message = [&](const char* text) {
@@ -140,10 +141,10 @@ TEST(CheckByMonteCarlo, ConfirmsTheBudgetOfAGoodCalibration) {
     EXPECT_NEAR(one.drawn_std / one.budget_std, 1.0, 0.2);
     EXPECT_NEAR(one.inside, 0.95, 0.06);
   }
-  EXPECT_EQ(check.verdict.find("200 calibrations of drawn readings confirm the budget"), 0U);
+  EXPECT_EQ(check.verdict.find("200 calibrations of simulated data confirm the budget"), 0U);
 }
 
-TEST(CheckByMonteCarlo, TakesNoiseThatNobodyStatedFromTheResiduals) {
+TEST(CheckByMonteCarlo, TakesUnstatedNoiseFromTheResiduals) {
   Calibrated it{poses_of(analog_sensor(), noise_v, false, 5), with_gravity(0.0, 0.0), {}};
   it.fit = calibrate_positions(it.poses, it.options).value();
   const auto check = check_by_monte_carlo(it.poses, it.options, it.fit,
@@ -177,7 +178,7 @@ TEST(CheckByMonteCarlo, SaysThatABudgetIsLargerThanNeeded) {
   EXPECT_NE(check.verdict.find("larger than needed for bias x"), std::string::npos);
 }
 
-TEST(CheckByMonteCarlo, OfExactReadingsHasNothingToCompare) {
+TEST(CheckByMonteCarlo, HasNothingToCompareForExactReadings) {
   Calibrated it{poses_of(analog_sensor(), 0.0, false, 1), with_gravity(0.0, 0.0), {}};
   it.fit = calibrate_positions(it.poses, it.options).value();
   const auto check = check_by_monte_carlo(it.poses, it.options, it.fit,
@@ -210,7 +211,7 @@ TEST(CheckByMonteCarlo, NeedsAHundredDraws) {
   EXPECT_EQ(check.error().code, Errc::too_few_samples);
 }
 
-// Every model's budget against the draws of what it takes for exact.
+// Each model's budget compared with draws of the quantities that it assumes exact.
 TEST(CheckByMonteCarlo, ConfirmsTheBudgetsOfTheOtherModels) {
   Parameters square = analog_sensor();
   square.tail<3>().setZero();

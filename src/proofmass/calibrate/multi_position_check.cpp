@@ -143,7 +143,7 @@ std::string verdict_of(const MonteCarloCheck& check) {
       !check.stable   ? ""
       : *check.stable ? " (JCGM 101's adaptive procedure, two digits of each uncertainty stable)"
                       : " (JCGM 101's adaptive procedure, ended before two digits were stable)";
-  return fmt::format("{} calibrations of drawn readings{} {}: {}.{}{}", check.draws, procedure,
+  return fmt::format("{} calibrations of simulated data{} {}: {}.{}{}", check.draws, procedure,
                      small.empty()
                          ? std::string("confirm the budget")
                          : fmt::format("contradict the budget of {}, which is too small", small),
@@ -215,9 +215,10 @@ Result<MonteCarloCheck> check_by_monte_carlo(View<Pose> poses,
                                              const MonteCarloOptions& how) {
   PM_EXPECTS(fit.poses.size() == poses.size());
   if (!fit.doubtful.empty())
-    return Error{Errc::not_observable,
-                 "one of several positions is bad, which cannot be decided: there is no one fit to "
-                 "draw from"};
+    return Error{
+        Errc::not_observable,
+        "one of several positions is bad, and which one is undetermined: there is no unique fit to "
+        "draw from"};
   const auto budgets = budget_of(fit, how.lines, how.reading_unit);
   if (!budgets) return budgets.error();
   const auto effects = effects_of(fit, how.lines, how.reading_unit);

@@ -6,7 +6,7 @@
 #include "proofmass/calibrate/multi_position_test_support.hpp"
 #include "proofmass/core/chi_square.hpp"
 
-// How often the intervals hold the truth, over a thousand sensors.
+// Coverage of the intervals over a thousand sensors.
 namespace proofmass::calibrate::multi_position_slow_test {
 namespace {
 
@@ -19,7 +19,7 @@ struct Study {
   test::PoseDraw draw = {};
   double noise_dof = 1000.0;
   std::optional<PoseModel> model = {};
-  double push_mps2 = 0.0;  ///< of one position
+  double push_mps2 = 0.0;  ///< disturbance of one position
   int runs = 1000;
 };
 

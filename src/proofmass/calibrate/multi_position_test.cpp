@@ -104,7 +104,7 @@ TEST(MultiPosition, NamesThePoseThatWasPushed) {
   EXPECT_LT(kept.lack_of_fit->p, 1e-6);
 }
 
-TEST(MultiPosition, SaysThatOneIsBadWhereItCannotTellWhich) {
+TEST(MultiPosition, ReportsAnUnidentifiedBadPosition) {
   std::mt19937_64 random(5);
   const Parameters truth = drawn_sensor(random);
   auto poses = drawn_poses(truth, {.count = 11}, random);
@@ -180,7 +180,7 @@ TEST(MultiPosition, HoldsTheAnglesItLeavesOutInItsUncertainty) {
   EXPECT_GT(inside, 0.9 * all);
 }
 
-TEST(MultiPosition, SaysWhatPosesCannotTell) {
+TEST(MultiPosition, ReportsWhatThePosesDoNotDetermine) {
   std::mt19937_64 random(10);
   const Parameters truth = drawn_sensor(random);
   const auto said = [&](const std::vector<Eigen::Vector3d>& up) {
@@ -190,13 +190,13 @@ TEST(MultiPosition, SaysWhatPosesCannotTell) {
   EXPECT_NE(said({{1, 0, 0}, {0, 1, 0}}).find("2 positions for 6 parameters"), std::string::npos);
   const std::vector<Eigen::Vector3d> same(12, Eigen::Vector3d(0.3, 0.2, 0.9));
   EXPECT_NE(said(same).find("all positions read the same"), std::string::npos);
-  // Turned about z only: z is always the same, and its scale may be anything.
+  // Rotations about z only: z is constant, and its scale undetermined.
   std::vector<Eigen::Vector3d> about_z;
   for (int k = 0; k < 12; ++k) about_z.emplace_back(std::cos(0.5 * k), std::sin(0.5 * k), 0.4);
   EXPECT_NE(said(about_z).find("do not determine scale z"), std::string::npos) << said(about_z);
 }
 
-TEST(MultiPosition, RefusesWhatIsNoNumber) {
+TEST(MultiPosition, RefusesNonFiniteValues) {
   std::mt19937_64 random(11);
   auto poses = drawn_poses(drawn_sensor(random), {}, random);
   poses[2].mean.y() = NAN;

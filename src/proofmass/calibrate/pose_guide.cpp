@@ -184,7 +184,7 @@ GuideLive PoseGuide::live() const {
       live.words = "settling" + behind(off, ", ");
       break;
     case RestPhase::stuck:
-      live.words = "the reading does not change: is the sensor connected?";
+      live.words = "the output does not change: is the sensor connected?";
       break;
     case RestPhase::resting:
       live.words = off.empty() ? "at rest, go on" : off;

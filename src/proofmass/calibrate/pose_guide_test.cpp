@@ -21,8 +21,7 @@ using signal::RestPhase;
 constexpr double g = standard_gravity_mps2;
 constexpr double rate_hz = 50.0;
 
-/// A sensor that a person, or a table, lays down in one position after the other, and the guide
-/// that looks on.
+/// A sensor that is placed in one position after the other, observed by the guide.
 class Bench {
  public:
   explicit Bench(const GuideOptions& options, double noise = 0.01)
@@ -47,7 +46,7 @@ class Bench {
     }
     up_ = up.normalized();
   }
-  void knock() {
+  void shock() {
     for (int k = 0; k < 15; ++k) add(up_ + 0.2 * std::sin(1.3 * k) * Vector3d(1.0, 1.0, -1.0));
   }
   [[nodiscard]] std::size_t count(GuideKind kind) const {
@@ -88,7 +87,7 @@ GuideOptions options_of(GuideProcedure procedure) {
   return {.procedure = procedure, .channels = {0, 1, 2}, .rate_hz = rate_hz, .one_g = g};
 }
 
-// The axes that a prompt names, as a person reads it.
+// The direction that a prompt asks for, parsed from its text.
 Vector3d asked_for(const std::string& text) {
   Vector3d up = Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -158,11 +157,11 @@ TEST(PoseGuide, GoesOnUntilNoPositionIsOver) {
   obey(bench);
   ASSERT_TRUE(bench.guide.done());
   EXPECT_GE(bench.guide.poses().size(), 20U);
-  EXPECT_NE(bench.last(GuideKind::prompt)->text.find("0.01 mg is asked for"), std::string::npos)
+  EXPECT_NE(bench.last(GuideKind::prompt)->text.find("the target is 0.01 mg"), std::string::npos)
       << bench.last(GuideKind::prompt)->text;
 }
 
-TEST(PoseGuide, TellsAPositionThatComesAgain) {
+TEST(PoseGuide, RecognisesARepeatedPosition) {
   for (const bool volts : {false, true}) {
     GuideOptions options = options_of(GuideProcedure::multi_position);
     if (volts) options.one_g.reset();
@@ -180,17 +179,17 @@ TEST(PoseGuide, TellsAPositionThatComesAgain) {
   }
 }
 
-TEST(PoseGuide, SaysNothingWhereItIsKnockedAndStaysAsItWas) {
+TEST(PoseGuide, IgnoresADisturbanceThatLeavesThePositionUnchanged) {
   Bench bench(options_of(GuideProcedure::multi_position));
   bench.rest({0.0, 0.0, 1.0}, 6.0);
-  bench.knock();
+  bench.shock();
   bench.rest({0.0, 0.0, 1.0}, 4.0);
   EXPECT_EQ(bench.guide.poses().size(), 1U);
   EXPECT_EQ(bench.count(GuideKind::redo), 0U);
   EXPECT_NE(bench.guide.live().words.find("from the next position"), std::string::npos);
 }
 
-TEST(PoseGuide, BeginsAnewWhereARestEndsTooEarly) {
+TEST(PoseGuide, RestartsARestThatEndsTooEarly) {
   Bench bench(options_of(GuideProcedure::multi_position));
   bench.rest({0.0, 0.0, 1.0}, 6.0);
   bench.move_to({0.0, 0.0, -1.0});
@@ -198,13 +197,13 @@ TEST(PoseGuide, BeginsAnewWhereARestEndsTooEarly) {
   EXPECT_EQ(bench.guide.live().phase, RestPhase::resting);
   ASSERT_TRUE(bench.guide.live().seconds_left);
   EXPECT_GT(*bench.guide.live().seconds_left, 0.0);
-  bench.knock();
+  bench.shock();
   bench.rest({0.0, 0.0, -1.0}, 4.0);
   ASSERT_EQ(bench.count(GuideKind::redo), 1U);
   EXPECT_NE(bench.last(GuideKind::redo)->text.find("It moved after"), std::string::npos);
   ASSERT_EQ(bench.guide.poses().size(), 2U);
   EXPECT_GE(*bench.guide.poses()[1].end_s - *bench.guide.poses()[1].start_s, 2.0);
-  EXPECT_GE(*bench.guide.poses()[1].start_s, 9.5);  // behind the shock
+  EXPECT_GE(*bench.guide.poses()[1].start_s, 9.5);  // after the shock
 }
 
 TEST(PoseGuide, SaysTheSameHoweverTheSamplesAreCut) {
@@ -229,7 +228,7 @@ TEST(PoseGuide, SaysTheSameHoweverTheSamplesAreCut) {
 }
 
 TEST(PoseGuide, RestsLongerWhereThereIsMoreNoise) {
-  // White noise of σ a sample is averaged to half the target in 4 σ²/(target² rate).
+  // Averaging white noise of σ per sample to half the target takes 4 σ²/(target² rate).
   GuideOptions options = options_of(GuideProcedure::multi_position);
   Bench bench(options, 0.1);
   bench.rest({0.0, 0.0, 1.0}, 25.0);
@@ -297,7 +296,7 @@ TEST(PoseGuide, CountsTheRestsOfOneAxisOnATable) {
   options.positions = 4;
   Bench bench(options);
   turn(bench, 0.0, 6.0);
-  bench.knock();
+  bench.shock();
   bench.rest(on_table(0.0), 4.0);
   EXPECT_EQ(bench.guide.poses().size(), 1U);
   for (int k = 1; k <= 4; ++k) turn(bench, 90.0 * k);
@@ -305,12 +304,12 @@ TEST(PoseGuide, CountsTheRestsOfOneAxisOnATable) {
   EXPECT_EQ(bench.guide.poses().size(), 5U);
 }
 
-TEST(PoseGuide, StartsTheClockAnewWhereAStillSensorIsMoved) {
+TEST(PoseGuide, RestartsTheTimeIfAStaticSensorIsMoved) {
   GuideOptions options = options_of(GuideProcedure::still);
   options.still_s = 30.0;
   Bench bench(options);
   bench.rest({0.0, 0.0, 1.0}, 20.0);
-  bench.knock();
+  bench.shock();
   bench.rest({0.0, 0.0, 1.0}, 29.0);
   EXPECT_FALSE(bench.guide.done());
   EXPECT_EQ(bench.count(GuideKind::redo), 1U);
@@ -320,19 +319,19 @@ TEST(PoseGuide, StartsTheClockAnewWhereAStillSensorIsMoved) {
 }
 
 TEST(PoseGuide, SitsStillUntilTheFloorOfTheNoiseShows) {
-  // A level that drifts by steps of its own every 2 s shows a floor; white noise alone does not.
-  for (const bool wanders : {false, true}) {
+  // A level with random steps every 2 s has a noise floor; white noise does not.
+  for (const bool drifts : {false, true}) {
     PoseGuide guide(options_of(GuideProcedure::still));
     Random random(3, "floor");
     double level = 0.0;
     std::size_t k = 0;
     for (; k < static_cast<std::size_t>(1000.0 * rate_hz) && !guide.done(); ++k) {
-      level = wanders ? level + 0.005 * (0.01 * random.normal() - 0.01 * level) : 0.0;
+      level = drifts ? level + 0.005 * (0.01 * random.normal() - 0.01 * level) : 0.0;
       const double x = 0.01 * random.normal() + 50.0 * level;
       const View<double> one(&x, 1);
       (void)guide.add({k, {one, one, one}});
     }
-    EXPECT_EQ(guide.done(), wanders);
+    EXPECT_EQ(guide.done(), drifts);
     EXPECT_GE(static_cast<double>(k) / rate_hz, 300.0);
   }
 }
@@ -346,7 +345,7 @@ TEST(PoseGuide, WaitsWhereNothingIsMeasured) {
   EXPECT_EQ(guide.live().phase, RestPhase::listening);
 }
 
-TEST(TurnedAxes, TellTheAngleOfAnySensorOnceAQuarterOfATurnIsKnown) {
+TEST(TurnedAxes, DetermineTheAngleOfAnySensorAfterAQuarterTurn) {
   const Vector3d c(1.62, 1.68, 1.65), a(0.33, 0.01, 0.02), b(-0.01, 0.32, 0.01);
   const auto reading = [&](double angle) {
     return Vector3d(c + std::sin(angle) * a + std::cos(angle) * b);

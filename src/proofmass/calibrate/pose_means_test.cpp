@@ -43,8 +43,9 @@ TEST(PoseMeans, OfWhiteNoiseAreKnownToSigmaOverRootN) {
   EXPECT_GT(means.noise_dof, 5.0);
 }
 
-TEST(PoseMeans, OfWanderingNoiseAreKnownToItsAllanDeviationAtTheDwell) {
-  // A random walk: over m steps of variance q the Allan variance is q (2 m² + 1) / 6 m.
+TEST(PoseMeans, OfSlowNoiseAreKnownToItsAllanDeviationAtTheDwell) {
+  // For a random walk with steps of variance q, the Allan variance over m steps is q (2 m² + 1) / 6
+  // m.
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   constexpr std::size_t count = 60;
@@ -56,7 +57,7 @@ TEST(PoseMeans, OfWanderingNoiseAreKnownToItsAllanDeviationAtTheDwell) {
   EXPECT_NEAR(means.poses[0].mean_covariance(0, 0) / expected, 1.0, 0.35);
 }
 
-TEST(PoseMeans, PassOverSpikesAndWhatIsNoNumber) {
+TEST(PoseMeans, IgnoreSpikesAndNonFiniteValues) {
   auto x = white(2 * dwell, 1.0, 5), y = x, z = x;
   const double clean = pose_means({x, y, z}, rests(2)).value().poses[0].mean.x();
   x[10] = NAN;
@@ -74,7 +75,7 @@ TEST(PoseMeans, KnowNoNoiseWhereThereIsNone) {
   const PoseMeans means = pose_means({still, still, still}, rests(2)).value();
   EXPECT_EQ(means.noise_dof, 0.0);
   EXPECT_EQ(means.poses[0].mean_covariance(0, 0), 0.0);
-  // With a converter's steps the mean may be anywhere within one.
+  // With a quantiser the mean may be anywhere within one step.
   const PoseMeans stepped = pose_means({still, still, still}, rests(2), {0.6, 0.6, 0.6}).value();
   EXPECT_NEAR(stepped.poses[0].mean_covariance(0, 0), 0.03, 1e-12);
   EXPECT_GT(stepped.noise_dof, 0.0);
@@ -103,7 +104,7 @@ DwellNoise noise_of(const std::vector<double>& samples, std::size_t each, double
   return fit_dwell_noise(rests, lsb);
 }
 
-// Markov processes an octave apart, equally strong: a flat Allan deviation.
+// Markov processes of equal strength, spaced by an octave: a flat Allan deviation.
 TEST(DwellNoise, OfFlickerDoesNotAverageOut) {
   std::mt19937_64 random(8);
   std::normal_distribution<double> normal;
@@ -119,15 +120,15 @@ TEST(DwellNoise, OfFlickerDoesNotAverageOut) {
     }
   }
   const DwellNoise noise = noise_of(samples, dwell);
-  // Octaves of unit variance make the two-sided density 1/(2 ln 2 f), of Allan variance 2.
+  // Octaves of unit variance give the two-sided density 1/(2 ln 2 f), whose Allan variance is 2.
   EXPECT_NEAR(noise.flicker, 2.0, 0.7);
   EXPECT_NEAR(noise.variance_of_mean(dwell), 2.0, 0.7);
   EXPECT_LT(noise.random_walk * dwell, 1.0);
 }
 
-// ln v scatters by 2/dof, over recordings of the same sensor, or by less: the choice between terms
-// makes dof cautious.
-TEST(DwellNoise, KnowsHowWellItIsKnown) {
+// The variance of ln v over recordings of one sensor is 2/dof or less, since the choice between
+// terms makes dof cautious.
+TEST(DwellNoise, StatesItsOwnDegreesOfFreedom) {
   constexpr int recordings = 200;
   double sum = 0.0, squares = 0.0, claimed = 0.0;
   for (unsigned seed = 100; seed < 100 + recordings; ++seed) {
@@ -142,7 +143,8 @@ TEST(DwellNoise, KnowsHowWellItIsKnown) {
   EXPECT_LT(claimed / spread, 3.5);
 }
 
-// Rests anywhere between two steps: what their means err by, beside the noise that averages out.
+// Rests at arbitrary levels between two quantisation steps: error of their means in addition to the
+// noise that averages out.
 TEST(DwellNoise, CountsWhatTheNoiseDoesNotAverageOutOfSteps) {
   constexpr std::size_t rests = 1000, each = 400;
   std::mt19937_64 random(9);

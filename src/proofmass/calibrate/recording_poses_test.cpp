@@ -11,7 +11,7 @@ namespace {
 constexpr double rate_hz = 100.0;
 constexpr std::size_t rest = 500, move = 200;
 
-/// Rests at 1650, 1950 and 1350 mV with a swing between them.
+/// Rests at 1650, 1950 and 1350 mV with an oscillation between them.
 std::vector<double> stepped(std::uint64_t seed) {
   Random random(seed, "poses");
   std::vector<double> values;

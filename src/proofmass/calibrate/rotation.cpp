@@ -151,11 +151,13 @@ Status follows_gravity(const RotationState& state) {
   for (std::size_t axis = 0; axis < state.axes; ++axis) {
     const double left = relative_residual(state, axis);
     if (left < most) continue;
-    return Error{Errc::not_observable,
-                 fmt::format("{} % of the readings' swing does not follow gravity's turn: the axle "
-                             "moves (a travelling wheel is no bench), the turning is not even, or "
-                             "the axis does not lie in the plane of the wheel",
-                             std::round(100.0 * std::min(left, 9.99)))};
+    return Error{
+        Errc::not_observable,
+        fmt::format(
+            "{} % of the output's variation does not follow the rotation of gravity: the axle "
+            "moves (as on a vehicle), the rotation is not uniform, or "
+            "the axis is not in the plane of the wheel",
+            std::round(100.0 * std::min(left, 9.99)))};
   }
   return Done{};
 }
@@ -210,9 +212,9 @@ Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
   for (const SteadyTurns& one : found.sections) steady += one.turn_s.size() - 1;
   if (steady < least_steady_turns) {
     return Error{Errc::too_few_samples,
-                 fmt::format("{} steady turns of {} that were found: at least {} are needed, in "
-                             "runs of 8 or more of which each lasts as long as its neighbours to "
-                             "8 % and has 16 samples (a travelling wheel is no bench)",
+                 fmt::format("{} steady turns among the {} found: at least {} are needed, in "
+                             "runs of 8 or more whose durations agree with their neighbours to "
+                             "8 %, with 16 samples each (the axle must not move)",
                              steady, found.turns, least_steady_turns)};
   }
   RotationFit fit;

@@ -42,7 +42,7 @@ TEST(Rotation, FindsTheCoefficientsOfOneAxisWithoutAnEncoder) {
             "without an encoder the misalignment is part of the phase");
 }
 
-TEST(Rotation, TellsTheMisalignmentWhereAnEncoderGivesTheAngle) {
+TEST(Rotation, DeterminesTheMisalignmentWithAnEncoder) {
   PlainWheel wheel = nonlinear_wheel();
   wheel.equations[0].delta_o = 0.012;
   wheel.give_angle = true;
@@ -64,7 +64,7 @@ TEST(Rotation, TakesAnEncodersAngleWrappedOrRunningBackwards) {
   EXPECT_NEAR(value_of(back.axes[0], Q::Kip), -6e-5, 1e-9);
 }
 
-TEST(Rotation, DoesNotTellRadiusFromBiasAtOneSpeed) {
+TEST(Rotation, DoesNotSeparateRadiusAndBiasAtOneSpeed) {
   PlainWheel wheel = nonlinear_wheel();
   wheel.radius_m = 0.1;
   const RotationFit fit = fit_of({turned(wheel)});
@@ -76,7 +76,7 @@ TEST(Rotation, DoesNotTellRadiusFromBiasAtOneSpeed) {
   EXPECT_NEAR(value_of(fit.axes[0], Q::K0_radial), 0.2 + 2e-5 * g * g - 0.1 * 1.152 * 1.152, 1e-5);
 }
 
-TEST(Rotation, TellsRadiusAndBiasFromTwoRecordingsAtTwoSpeeds) {
+TEST(Rotation, SeparatesRadiusAndBiasInTwoRecordingsAtTwoSpeeds) {
   PlainWheel slow, fast;
   slow.radius_m = fast.radius_m = 0.1;
   slow.equations[0].K0 = fast.equations[0].K0 = 0.2;
@@ -87,8 +87,8 @@ TEST(Rotation, TellsRadiusAndBiasFromTwoRecordingsAtTwoSpeeds) {
   EXPECT_EQ(fit.sections.size(), 2U);
 }
 
-// 11 rpm, a ramp of 20 s, 21 rpm: the ramp itself is left out.
-TEST(Rotation, TellsThemFromOneRecordingWhoseSpeedChanges) {
+// 11 rpm, a ramp of 20 s, 21 rpm: the ramp is excluded.
+TEST(Rotation, SeparatesThemInOneRecordingWithTwoSpeeds) {
   PlainWheel wheel;
   wheel.radius_m = 0.1;
   wheel.duration_s = 320.0;
@@ -103,7 +103,7 @@ TEST(Rotation, TellsThemFromOneRecordingWhoseSpeedChanges) {
   EXPECT_NEAR(value_of(fit.axes[0], Q::K0), 0.2, 5e-3);
 }
 
-// However the pair sits on its spoke, both together know their distance from the axle.
+// Both axes together determine their radius for any mounting angle.
 TEST(Rotation, FindsTheRadiusOfTwoAxesMountedAtAnyAngle) {
   for (const double mounting : {0.0, 0.9, 2.5, -1.9}) {
     PlainWheel slow, fast;
@@ -132,7 +132,7 @@ TEST(Rotation, SeesWhichWayTwoAxesTurnAndHowFarTheyAreFromSquare) {
   }
 }
 
-TEST(Rotation, FollowsASpeedThatWandersSlowly) {
+TEST(Rotation, FollowsASlowlyDriftingSpeed) {
   PlainWheel wheel = nonlinear_wheel();
   wheel.duration_s = 600.0;
   wheel.angle = [](double t) {
@@ -142,7 +142,7 @@ TEST(Rotation, FollowsASpeedThatWandersSlowly) {
   expect_coefficients(fit.axes[0], wheel.equations[0], 2e-4);
 }
 
-// ω (1 + 0.01 cos θ): what the note says it would do to one axis.
+// ω (1 + 0.01 cos θ), for comparison with the effect on one axis stated in the note.
 std::function<double(double)> rippled(int per_turn, double size) {
   return [=](double t) {
     const double theta = 1.152 * t;
@@ -150,9 +150,9 @@ std::function<double(double)> rippled(int per_turn, double size) {
   };
 }
 
-// One axis: ε = 0.01 cos φ and ε = 0.005 sin 2φ, ripples of 1 %, are put down to the sensor. K0 =
-// B0 + C2 takes both of the harmonics that the first moves, K1 = S1 + 3 S3 both of the second's.
-TEST(Rotation, KnowsTheEffectOfARippleOfOnePerCentOnOneAxis) {
+// With a single axis, ripples of 1 %, ε = 0.01 cos φ and ε = 0.005 sin 2φ, are attributed to the
+// sensor. The first affects both harmonics of K0 = B0 + C2, the second both of K1 = S1 + 3 S3.
+TEST(Rotation, StatesTheEffectOfARippleOfOnePerCentOnOneAxis) {
   PlainWheel wheel;
   wheel.angle = [](double t) { return 1.152 * t + 0.01 * std::cos(1.152 * t); };
   const RotationFit once = fit_of({turned(wheel)});
@@ -169,8 +169,8 @@ TEST(Rotation, KnowsTheEffectOfARippleOfOnePerCentOnOneAxis) {
               0.05 * twice.per_percent.third_order_s4pm2);
 }
 
-// What may be the ripple's is in the interval.
-TEST(Rotation, IsNoSurerOfOneAxisThanARippleAllows) {
+// The interval includes the possible effect of a ripple.
+TEST(Rotation, IncludesAPossibleRippleInTheIntervalOfOneAxis) {
   for (const int per_turn : {1, 2, 3}) {
     PlainWheel wheel;
     wheel.angle = rippled(per_turn, 0.01);
@@ -201,7 +201,7 @@ TEST(Rotation, TakesARippleOutWhereTwoAxesShareIt) {
   }
 }
 
-// The ripple also swings r ω² once a turn, by as much as 0.2 % of K1 here.
+// The ripple also modulates r ω² once per turn, by as much as 0.2 % of K1 here.
 TEST(Rotation, TakesOutWhatARippleMakesOfTheCentripetalAcceleration) {
   for (const double mounting : {0.0, 1.1}) {
     PlainWheel slow, fast;
@@ -219,7 +219,7 @@ TEST(Rotation, TakesOutWhatARippleMakesOfTheCentripetalAcceleration) {
   }
 }
 
-// Two speeds, each with ripples of its own once to three times a turn.
+// Two speeds, each with its own ripples at one to three times per turn.
 std::vector<RotationRecording> rippling_pair(double radius_m,
                                              bool encoder,
                                              double white,
@@ -244,21 +244,21 @@ std::vector<RotationRecording> rippling_pair(double radius_m,
   return pair;
 }
 
-// r ω̇ of the n-th ripple goes with n² r ω²/g, which is above 1 from the third on here.
+// r ω̇ of the n-th ripple is proportional to n² r ω²/g, which is above 1 from the third on here.
 TEST(Rotation, FindsALargeRadiusFromTwoSpeedsThatRipple) {
   const RotationFit fit = fit_of(rippling_pair(0.19, false, 0.0, 1));
   EXPECT_TRUE(fit.converged);
   EXPECT_NEAR(fit.radius.value.value().value, 0.19, 5e-5);
 }
 
-// The mean of ω² holds the square of the ripple.
+// The mean of ω² includes the square of the ripple.
 TEST(Rotation, FindsTheRadiusOfAWheelThatRipplesBesideAnEncoder) {
   const RotationFit fit = fit_of(rippling_pair(0.1, true, 0.0, 1));
   EXPECT_NEAR(fit.radius.value.value().value, 0.1, 5e-6);
 }
 
-// Of each speed's ripple the noise is in its bias, and so in what the two speeds say of the radius.
-TEST(Rotation, StatesARadiusNoSurerThanTheRipplesOfBothSpeedsAre) {
+// The noise of each speed's ripple enters its bias, and thus the radius from the two speeds.
+TEST(Rotation, IncludesTheRipplesOfBothSpeedsInTheRadius) {
   constexpr unsigned wheels = 30;
   double squares = 0.0;
   for (unsigned k = 0; k < wheels; ++k) {
@@ -277,11 +277,11 @@ TEST(Rotation, DoesNotTakeASensorsNonlinearityForARipple) {
   const RotationFit fit = fit_of({turned(wheel)});
   EXPECT_FALSE(fit.ripples.at(0).accepted);
   EXPECT_NEAR(value_of(fit.axes[0], Q::K2_minus_Kpp), 1e-3, 1e-4);
-  // Half of it could be a ripple's.
+  // Half of it could be due to a ripple.
   EXPECT_GT(fit.axes[0][Q::K2_minus_Kpp].half_width_95, 5e-4);
 }
 
-// A bearing, a belt and a motor at once.
+// Simultaneous ripples of a bearing, a belt and a motor.
 TEST(Rotation, TakesOutRipplesOnceTwiceAndThreeTimesATurnTogether) {
   PlainWheel wheel;
   wheel.equations = {{.K1 = 1.0, .K0 = 0.1}, {.K1 = 1.0, .K0 = -0.1, .delta_o = 0.01}};
@@ -306,7 +306,8 @@ TEST(Rotation, TakesOutRipplesOnceTwiceAndThreeTimesATurnTogether) {
   EXPECT_NEAR(value_of(fit.axes[1], Q::misalignment), 0.01, 5e-4);
 }
 
-// A filter of one pole at 10 Hz: τ = 16 ms. At one speed ω τ is a misalignment; at two it is not.
+// A one-pole filter at 10 Hz: τ = 16 ms. At one speed ω τ is confounded with a misalignment; at two
+// it is not.
 TEST(Rotation, DistinguishesADelayFromAMisalignmentAtTwoSpeedsOnly) {
   const double tau = 1.0 / (rad_per_turn * 10.0);
   const auto delayed = [&](double speed) {
@@ -337,7 +338,8 @@ TEST(Rotation, DistinguishesADelayFromAMisalignmentAtTwoSpeedsOnly) {
   EXPECT_LT(stated[Q::misalignment].half_width_95, 1e-5);
 }
 
-// Its r ω² and r ω̇ once a turn are in the interval where one speed does not determine the radius.
+// The effects of r ω² and r ω̇ once per turn are in the interval if one speed does not determine
+// the radius.
 TEST(Rotation, AllowsForTheRadiusOfARippleAtOneSpeed) {
   PlainWheel wheel;
   wheel.equations = {{.K1 = 1.0}, {.K1 = 1.0, .delta_o = 0.01}};
@@ -354,7 +356,7 @@ TEST(Rotation, AllowsForTheRadiusOfARippleAtOneSpeed) {
             fit.axes[1][Q::misalignment].half_width_95);
 }
 
-TEST(Rotation, LeavesOutGapsAndSamplesThatAreNoNumbers) {
+TEST(Rotation, ExcludesGapsAndNonFiniteSamples) {
   PlainWheel wheel = nonlinear_wheel();
   wheel.duration_s = 300.0;
   RotationRecording recording = turned(wheel);
@@ -402,7 +404,7 @@ TEST(Rotation, DoubtsAScaleFactorThatCannotBe) {
   EXPECT_EQ(fit.value().doubts.size(), 1U);
 }
 
-TEST(Rotation, RefusesWhatIsNoTest) {
+TEST(Rotation, RefusesUnsuitableRecordings) {
   const auto code = [](const std::vector<RotationRecording>& recordings) {
     return fit_rotation(recordings, {.gravity_mps2 = g}).error().code;
   };

@@ -18,15 +18,15 @@ struct PlainWheel {
   std::function<double(double)> angle = [](double t) { return 1.152 * t + 0.7; };
   double duration_s = 200.0, rate_hz = 50.0;
   double radius_m = 0.0;
-  double mounting_rad = 0.0;              ///< of the first axis, from the spoke
-  double white = 0.0;                     ///< of each sample, unit of the output
+  double mounting_rad = 0.0;              ///< of the first axis, relative to the spoke
+  double white = 0.0;                     ///< per sample, in the unit of the output
   double coloured = 0.0, memory_s = 1.0;  ///< additional first-order Markov noise
   unsigned seed = 1;
   bool give_angle = false;
   int hand = 1;  ///< −1: the second axis lags
 };
 
-/// f = gravity minus acceleration in the wheel's frame, axis by axis.
+/// f = gravity minus acceleration in the wheel's frame, for each axis.
 inline RotationRecording turned(const PlainWheel& wheel) {
   constexpr double g = standard_gravity_mps2, h = 1e-3;
   std::mt19937 random(wheel.seed);

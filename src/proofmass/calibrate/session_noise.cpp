@@ -44,9 +44,9 @@ Units units_of(View<RestSession> sessions) {
       out.samples(first + k) = span.length();
     }
     out.flicker.block(first, first, count, count) =
-        wander_covariance(session.spans, whole, Wander::flicker);
+        slow_noise_covariance(session.spans, whole, SlowNoise::flicker);
     out.walk.block(first, first, count, count) =
-        wander_covariance(session.spans, whole, Wander::random_walk);
+        slow_noise_covariance(session.spans, whole, SlowNoise::random_walk);
     first += count;
   }
   out.dwell = 1.0 / out.samples.cwiseInverse().mean();

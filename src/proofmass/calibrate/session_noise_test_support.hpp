@@ -11,13 +11,14 @@
 #include "proofmass/calibrate/session_noise.hpp"
 #include "proofmass/core/chi_square.hpp"
 
-// Recordings of a sensor placed by hand while its bias drifts, by an independent generator: flicker
-// noise as relaxation processes an octave and a half apart, a random walk as a sum of steps.
+// Recordings of a sensor placed by hand while its bias drifts, from an independent generator:
+// flicker noise as relaxation processes spaced by an octave and a half, a random walk as a sum of
+// steps.
 namespace proofmass::calibrate::test {
 
 struct Session {
   int positions = 18;
-  double white_mps2 = 0.01;    ///< of a sample, at 100 Hz
+  double white_mps2 = 0.01;    ///< per sample, at 100 Hz
   double flicker_mps2 = 0.0;   ///< B
   double walk_mps2_rts = 0.0;  ///< K
   double shortest_s = 3.0, longest_s = 5.0;
@@ -26,12 +27,12 @@ struct Session {
 struct Recorded {
   std::array<std::vector<double>, 3> axes;
   std::vector<Dwell> rests;
-  Parameters truth;  ///< bias: of the session's mean
+  Parameters truth;  ///< bias: mean of the session
 };
 
-class WanderingBias {
+class DriftingBias {
  public:
-  WanderingBias(const Session& session, std::mt19937_64& random) : random_(random) {
+  DriftingBias(const Session& session, std::mt19937_64& random) : random_(random) {
     constexpr double apart = 3.0, rate_hz = 100.0;
     // One-sided spectrum h/f with B² = π h; each process holds h ln(apart).
     const double part =
@@ -77,7 +78,7 @@ inline Recorded recorded(const Session& session, std::mt19937_64& random) {
     out.truth(3 + k) = 1.0 + 0.01 * normal(random);
     out.truth(6 + k) = 0.01 * normal(random);
   }
-  WanderingBias bias(session, random);
+  DriftingBias bias(session, random);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   std::size_t samples = 0;
   for (int position = 0; position < session.positions; ++position) {
@@ -86,9 +87,9 @@ inline Recorded recorded(const Session& session, std::mt19937_64& random) {
     out.rests.push_back({samples, samples + dwell - 1});
     // Between two rests the hand moves it for 0.8 s, which contains no information.
     for (std::size_t k = 0; k < dwell + 80; ++k, ++samples) {
-      const Eigen::Vector3d wander = bias.next();
-      sum += wander;
-      const Eigen::Vector3d mean = reading(out.truth, force) + wander;
+      const Eigen::Vector3d slow_noise = bias.next();
+      sum += slow_noise;
+      const Eigen::Vector3d mean = reading(out.truth, force) + slow_noise;
       for (std::size_t axis = 0; axis < 3; ++axis)
         out.axes[axis].push_back(mean(static_cast<Eigen::Index>(axis)) +
                                  session.white_mps2 * normal(random));
@@ -100,8 +101,8 @@ inline Recorded recorded(const Session& session, std::mt19937_64& random) {
 
 struct SessionCoverage {
   int fits = 0, suspects = 0;
-  std::array<int, 3> inside{};  ///< of biases, scales, angles, three a fit
-  double largest_z = 0.0;       ///< as of a normal distribution
+  std::array<int, 3> inside{};  ///< for biases, scales, angles; three per fit
+  double largest_z = 0.0;       ///< in standard deviations of a normal distribution
 
   [[nodiscard]] double share(std::size_t kind) const { return inside[kind] / (3.0 * fits); }
 };

@@ -190,8 +190,8 @@ Result<std::optional<SupplyAxis>> find_axis(View<SupplyPoint> points,
   const auto [low, high] = std::ranges::minmax_element(zeros, by_x);
   if (high->x - low->x <= 3.0 * std::hypot(low->x_std, high->x_std))
     return Error{Errc::not_observable,
-                 fmt::format("{}: its supplies lie {:.3g} V apart, which is no more than they are "
-                             "uncertain: take supplies further apart",
+                 fmt::format("{}: its supplies differ by {:.3g} V, which is within their "
+                             "uncertainty: use supplies further apart",
                              "xyz"[axis], high -> x - low -> x)};
   return std::optional(axis_of(scales, zeros, sign, reference_v));
 }
@@ -205,15 +205,16 @@ void add_notes(View<SupplyPoint> points, SupplyDependence& found) {
     }
     for (const SupplyLine* line : {&found.axes[axis]->log_scale, &found.axes[axis]->zero})
       if (line->misfit_p && *line->misfit_p < 0.05)
-        found.notes.push_back(fmt::format(
-            "{}: its {} lies off the line by more than its uncertainty explains (p = {:.2g}): the "
-            "uncertainties are those of the residuals",
-            name, line == &found.axes[axis]->zero ? "zero" : "scale", *line->misfit_p));
+        found.notes.push_back(
+            fmt::format("{}: its {} deviates from the line by more than its uncertainty explains "
+                        "(p = {:.2g}): the "
+                        "uncertainties are derived from the residuals",
+                        name, line == &found.axes[axis]->zero ? "zero" : "scale", *line->misfit_p));
   }
   if (points.size() == 2)
     found.notes.push_back(
-        "two supplies leave no redundancy: a line goes through any two points, and nothing shows "
-        "whether the dependence is a line; a third supply in between does");
+        "two supplies leave no redundancy: a line passes through any two points, so linearity is "
+        "not tested; add a third supply in between");
 }
 
 }  // namespace
@@ -249,7 +250,7 @@ AtSupply at_supply(const SupplyDependence& found, std::size_t axis, double suppl
   const double slack = rounding * found.highest_v;
   if (!(supply_v >= found.lowest_v - slack && supply_v <= found.highest_v + slack)) {
     out.reason =
-        fmt::format("{} V lies outside the supplies of the calibrations, {:.4g} V to {:.4g} V",
+        fmt::format("{} V is outside the supplies of the calibrations, {:.4g} V to {:.4g} V",
                     compact(supply_v, 4), found.lowest_v, found.highest_v);
     return out;
   }

@@ -46,7 +46,7 @@ TEST(FitSupply, OfAnExactlyRatiometricSensorIsPowerOneAndNoConstant) {
   EXPECT_TRUE(found.notes.empty());
 }
 
-// Weighted least squares in closed form: all weights alike in ln V.
+// Weighted least squares in closed form, with equal weights in ln V.
 TEST(FitSupply, StatesTheStandardDeviationOfTheLine) {
   std::vector<SupplyPoint> points = ratiometric_set(1e-3, 1e-3);
   for (SupplyPoint& point : points) point.supply_v.std = 0.0;
@@ -117,7 +117,7 @@ TEST(FitSupply, RejectsTheTruthInFivePercentAndItsIntervalsHoldIt) {
   EXPECT_NEAR(value_inside / sets, 0.95, 0.02);
 }
 
-TEST(FitSupply, OfTwoSuppliesSaysThatThereIsNoRedundancy) {
+TEST(FitSupply, ReportsThatTwoSuppliesHaveNoRedundancy) {
   const std::vector<SupplyPoint> points{ratiometric(3.0, 0.0, 1e-3, 1e-3),
                                         ratiometric(3.3, 0.0, 1e-3, 1e-3)};
   const auto found = fit_supply(points).value();
@@ -145,12 +145,12 @@ TEST(FitSupply, WithoutUncertaintiesTakesThemFromTheResiduals) {
   EXPECT_GT(found.axes[0]->constant.std, 1e-4);
 }
 
-TEST(FitSupply, SaysThatTheDependenceIsNoLine) {
+TEST(FitSupply, ReportsANonlinearDependence) {
   std::vector<SupplyPoint> points = ratiometric_set();
   points[2].bias[0]->value += 0.05;
   const auto found = fit_supply(points).value();
   ASSERT_EQ(found.notes.size(), 1U);
-  EXPECT_NE(found.notes[0].find("x: its zero lies off the line"), std::string::npos);
+  EXPECT_NE(found.notes[0].find("x: its zero deviates from the line"), std::string::npos);
   EXPECT_GT(found.axes[0]->fraction.std, 0.01);
 }
 

@@ -40,7 +40,7 @@ Status check(View<TumblePosition> positions, const TumbleOptions& options) {
     if (!std::isfinite(p.angle_rad) || !std::isfinite(p.output) || !std::isfinite(p.mount_rad) ||
         !std::isfinite(p.output_std) || (p.time_s && !std::isfinite(*p.time_s)))
       return Error{Errc::not_finite,
-                   named(positions, k) + ": angle, output, std or time is no number"};
+                   named(positions, k) + ": angle, output, std or time is not a number"};
     if (p.output_std < 0.0)
       return Error{Errc::invalid_argument, named(positions, k) + ": its std is below 0"};
     if (p.plane != 1 && p.plane != 2)
@@ -64,31 +64,32 @@ TumbleErrors errors_of(View<TumblePosition> positions,
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto row = static_cast<std::size_t>(k);
     if (noise_known) errors.noise_std(k) = positions[row].output_std;
-    errors.lever(k) = std::cos(design.phi_rad[row]);  // times K1 g, which is not known yet
+    errors.lever(k) = std::cos(design.phi_rad[row]);  // times K1 g, inserted once it is estimated
   }
   return errors;
 }
 
-// Fits once for K1 and the drift, and again with quantities derived from them in units of the
-// output.
+// Fits twice: first for K1 and the drift, then with the errors of indexing and drift, which K1
+// converts to units of the output.
 TumbleRegression regress(const TumbleDesign& design,
                          const Eigen::VectorXd& outputs,
                          TumbleErrors errors,
                          const TumbleOptions& options) {
   const double indexing = options.indexing_std_rad.value_or(assumed_indexing_std_rad);
-  const double wander = options.drift_std_mps2.value_or(assumed_drift_std_mps2);
+  const double nonlinear = options.drift_std_mps2.value_or(assumed_drift_std_mps2);
   TumbleRegression found = regress_tumble(design.A, outputs, errors);
-  // Without a scale for the scatter, or residuals, there is no standard deviation to widen.
-  const double swing = std::abs(swing_of(design, found.beta));
-  const bool exact = indexing <= 0.0 && wander <= 0.0;
-  if (exact || !found.has_scale || !(found.sigma > 0.0) || !(swing > 0.0)) return found;
-  errors.lever *= swing;
+  // Without a known scatter, or with zero residuals, there is no standard deviation to increase.
+  const double amplitude = std::abs(amplitude_of(design, found.beta));
+  const bool exact = indexing <= 0.0 && nonlinear <= 0.0;
+  if (exact || !found.has_scale || !(found.sigma > 0.0) || !(amplitude > 0.0)) return found;
+  errors.lever *= amplitude;
   errors.indexing_std_rad = indexing;
   errors.indexing_assumed = !options.indexing_std_rad;
-  errors.drift_std = wander * swing / options.gravity_mps2;
+  errors.drift_std = nonlinear * amplitude / options.gravity_mps2;
   errors.drift_assumed = !options.drift_std_mps2;
-  // A drift with a straight part has a curved one: an exponential of a third of the test, 0.12 and
-  // 0.06 of its whole change (cosine and sine), a step in the middle 0.32.
+  // A drift with a linear part also has a nonlinear one: for an exponential with a time constant of
+  // a third of the test, amplitudes (cosine, sine) of 0.12 and 0.06 of its total change; for a step
+  // in the middle 0.32.
   constexpr double curved = 0.25;
   const auto drift = design.find(TumbleTerm::drift);
   double by_line = 0.0;
@@ -99,7 +100,7 @@ TumbleRegression regress(const TumbleDesign& design,
   return regress_tumble(design.A, outputs, errors);
 }
 
-Status check_swing(const TumbleSolution& solution, double largest_output) {
+Status check_amplitude(const TumbleSolution& solution, double largest_output) {
   const TumbleDesign& design = solution.design;
   const auto sine = design.find(TumbleTerm::sine);
   if (!sine || !design.find(TumbleTerm::up_down))
@@ -107,25 +108,25 @@ Status check_swing(const TumbleSolution& solution, double largest_output) {
                  "scale factor and bias are not separable: the input axis has to point up in "
                  "one position and down in another"};
   const TumbleRegression& regression = solution.regression;
-  const double swing = swing_of(design, regression.beta);
+  const double amplitude = amplitude_of(design, regression.beta);
   const auto k = static_cast<Eigen::Index>(*sine);
   const double std = std::sqrt(regression.noise_covariance(k, k));
-  double across = 0.0;  // of an axis nearer to the other one
+  double across = 0.0;  // amplitude of the cosine, large for the other axis in the plane
   for (std::size_t j = 0; j < design.columns.size(); ++j)
     if (design.columns[j].term == TumbleTerm::cosine)
       across = std::max(across, std::abs(regression.beta(static_cast<Eigen::Index>(j))));
   constexpr double least_stds = 5.0, rounding = 1e-12;
-  if (std::abs(swing) <= std::max({rounding * largest_output, least_stds * std, across}))
+  if (std::abs(amplitude) <= std::max({rounding * largest_output, least_stds * std, across}))
     return Error{
         Errc::not_observable,
         fmt::format("the output does not follow sin(angle): its part with the sine is {} ± {}, "
                     "with the cosine {}; is this the input axis, and are the angles those of the "
                     "positions?",
-                    compact(swing, 3), compact(std, 2), compact(across, 3))};
+                    compact(amplitude, 3), compact(std, 2), compact(across, 3))};
   return Done{};
 }
 
-// A larger value is not a bias but the output's nominal zero, such as half the supply.
+// A larger value is the output's nominal zero, such as half the supply, not a bias.
 constexpr double largest_bias_g = 2.0;
 
 void add_zero_note(const TumbleOptions& options, TumbleFit& fit) {
@@ -144,27 +145,27 @@ void add_unnamed_note(TumbleFit& fit) {
                                  [](const TumbleResidual& r) { return r.suspect; });
   if (named || !fit.lack_of_fit || fit.lack_of_fit->p >= beyond_chance) return;
   fit.notes.push_back(fmt::format(
-      "the residuals are beyond chance (p = {:.2g}): a wrong reading, the angles of the table or a "
-      "drift; with {} to judge by no single position can be named",
+      "the residuals are significant (p = {:.2g}): an outlier, the angles of the table or a "
+      "drift; {} cannot identify a single position",
       fit.lack_of_fit->p, fit.dof == 1 ? "one residual" : fmt::format("{} residuals", fit.dof)));
 }
 
 void add_notes(View<TumblePosition> positions, bool some_noise, TumbleFit& fit) {
   const auto add = [&](std::string note) { fit.notes.push_back(std::move(note)); };
   if (some_noise)
-    add("the noise is stated of some positions only: it was left aside, the residuals judge");
+    add("the noise is stated for some positions only: it is ignored, the residuals are used");
   if (fit.scatter > 1.0)
     add(
         fmt::format("the residuals are {:.3g} times what the stated errors explain: the standard "
-                    "deviations were widened by that",
+                    "deviations were increased by that",
                     fit.scatter));
   add_unnamed_note(fit);
   for (std::size_t k = 0; k < fit.positions.size(); ++k) {
     const TumbleResidual& r = fit.positions[k];
     if (r.suspect)
       add(
-          fmt::format("{} at {}° contradicts the others by {:.3g} standard deviations: look at "
-                      "its angle and reading; it stays in the fit",
+          fmt::format("{} at {}° contradicts the others by {:.3g} standard deviations: check "
+                      "its angle and output; it remains in the fit",
                       named(positions, k), compact(positions[k].angle_rad / rad_per_deg, 4),
                       std::abs(*r.studentised)));
   }
@@ -214,7 +215,7 @@ Result<TumbleFit> fit_tumble(View<TumblePosition> positions, const TumbleOptions
   const TumbleRegression regression =
       regress(design, outputs, errors_of(positions, options, design, fit.noise_known), options);
   const TumbleSolution solution{design, regression, options, offset, outputs};
-  if (const Status seen = check_swing(solution, largest); !seen) return seen.error();
+  if (const Status seen = check_amplitude(solution, largest); !seen) return seen.error();
   fit.parameters = design.columns.size();
   fit.dof = positions.size() - fit.parameters;
   fit.residual_rms = std::sqrt(regression.rss / static_cast<double>(n));

@@ -87,8 +87,8 @@ struct TumbleDrift {
   bool removed = false;  ///< fitted with the coefficients; else it is part of the residuals
   std::optional<double> rate_mps2;  ///< per second or per position; see also TumbleQuantity::drift
   std::optional<double> p;          ///< p-value of the drift
-  double wander_std_mps2 = 0.0;     ///< assumed departure from the straight line
-  bool wander_assumed = false;      ///< a default was used
+  double nonlinear_std_mps2 = 0.0;  ///< assumed departure from the straight line
+  bool nonlinear_assumed = false;   ///< a default was used
   std::string words;
 };
 

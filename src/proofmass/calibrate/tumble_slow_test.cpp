@@ -3,7 +3,7 @@
 
 #include "proofmass/calibrate/tumble_test_support.hpp"
 
-// How often the 95 % intervals hold the truth, on a simulated table.
+// Coverage of the 95 % intervals on a simulated table.
 namespace proofmass::calibrate::tumble_slow_test {
 namespace {
 
@@ -90,7 +90,7 @@ TEST(Tumble, HoldsTheTruthInside95PercentOfItsIntervals) {
       }
       for (const TumbleResidual& r : fit.positions) suspects += r.suspect ? 1 : 0;
     }
-    // A stated error of the angles grows or shrinks with the residuals, which is cautious.
+    // A stated error of the angles is adjusted to the residuals, which is cautious.
     const double most = mode.options.indexing_std_rad == 2e-5 ? 0.99 : 0.97;
     for (const auto& [quantity, count] : counts) {
       const double part = static_cast<double>(count.inside) / count.all;

@@ -35,8 +35,9 @@ std::string reason(const TumbleFit& fit, Q quantity) {
   return found == nullptr ? "" : found->reason;
 }
 
-// All that has a value, to a part of its natural size. An error of the table's angle also moves
-// things by its product with the misalignment, some 1e-9, which no linear model has.
+// Checks every value to a fraction of its natural size. An error of the table's angle also has
+// effects of second order, its product with the misalignment, some 1e-9, which a linear model does
+// not include.
 void expect_truth(const TumbleFit& fit, const TableTruth& truth, double tolerance) {
   for (const TumbleCoefficient& c : fit.coefficients) {
     if (!c.value || (c.quantity == Q::misalignment && c.mount_rad > 1e-6)) continue;
@@ -84,13 +85,13 @@ TEST(FourPointTumble, SaysThatItsScaleHoldsTheThirdOrderTerm) {
   EXPECT_NE(reason(fit, Q::K3).find("between the quarters"), std::string::npos);
 }
 
-// Thesis 5.1.2: E0 and E180 of x in g; the formula's figure is −197.9 mg, the printed one −19.78.
+// Thesis 5.1.2: E0 and E180 of x in g; the formula gives −197.9 mg, printed is −19.78.
 TEST(FourPointTumble, PutsTheThesisRight) {
   const CorrectionFactors x = correction_factors({-0.17517, 1.0, -0.22057, -1.0}, 1.0, 1.0);
   EXPECT_NEAR(x.offset, -0.19787, 1e-12);
   EXPECT_DOUBLE_EQ(x.scale, 1.0);
   EXPECT_DOUBLE_EQ(x.scale_factor_error, 0.0);
-  // Of y the same two places are up and down: 0.58541 and −1.0330.
+  // For y the same two positions are up and down: 0.58541 and −1.0330.
   const CorrectionFactors y = correction_factors({0.0, 0.58541, 0.0, -1.0330}, 1.0, 1.0);
   EXPECT_NEAR(y.scale_factor_error, -0.1908, 5e-5);  // printed: 0.0869 %
   const FourPointResult found = four_point({0.0, 0.58541, 0.0, -1.0330}, 1.0);
@@ -133,7 +134,7 @@ TEST(MultipointTumble, DoesNotMindTheOrderOfTheRowsWhereTheyHaveATime) {
 }
 
 TEST(MultipointTumble, GivesTheStandardDeviationsOfEqualSteps) {
-  // var of an amplitude 2 s²/n, of B0 s²/n; so K1: 2 s² (1 + 9)/n over g², and so on.
+  // Variance of an amplitude 2 s²/n, of B0 s²/n; of K1 therefore 2 s² (1 + 9)/n over g², and so on.
   std::vector<TumblePosition> positions = read_table(table_turn(24), {});
   constexpr double s = 1e-6;
   for (TumblePosition& p : positions) p.output_std = s;
@@ -157,7 +158,7 @@ TEST(TwoPlaneTumble, RecoversTheTermsOfBothPlanes) {
     EXPECT_TRUE(has(fit, quantity)) << name_of(quantity);
 }
 
-TEST(SixPointTumble, TellsScaleBothMisalignmentsAndThreeBiases) {
+TEST(SixPointTumble, DeterminesScaleBothMisalignmentsAndThreeBiases) {
   std::vector<TumblePosition> plan = table_turn(4);
   append(plan, in_plane(table_turn(2), 2));
   TableTruth truth;
@@ -169,10 +170,10 @@ TEST(SixPointTumble, TellsScaleBothMisalignmentsAndThreeBiases) {
   EXPECT_FALSE(has(fit, Q::Kip) || has(fit, Q::Kio) || has(fit, Q::K3));
 }
 
-TEST(ForwardAndBackwardTumble, TellsHysteresisFromBacklash) {
+TEST(ForwardAndBackwardTumble, SeparatesHysteresisAndBacklash) {
   TableTruth truth;
   truth.hysteresis_mps2 = 2e-3;
-  truth.backlash_rad = 1e-6;  // small: it moves the other terms in second order
+  truth.backlash_rad = 1e-6;  // small, since it affects the other terms in second order
   truth.drift_mps2 = 1e-4;
   const TumbleFit fit = fitted(read_table(there_and_back(12), truth));
   expect_truth(fit, truth, 1e-8);
@@ -184,7 +185,7 @@ TEST(RemountedTumble, SeparatesErrorsOnceATurnFromTheBias) {
   truth.index_cos = 2e-6;
   truth.index_sin = -1e-6;
   const TumbleFit once = fitted(read_table(table_turn(12), truth));
-  // What looks like K2 and K0 without the second mounting.
+  // Appears as K2 and K0 without the second mounting.
   EXPECT_NEAR(value(once, Q::K2_minus_Kpp), truth.K2 - truth.Kpp - 2e-6 / g, 1e-9);
   EXPECT_NEAR(value(once, Q::K0), true_value(truth, Q::K0) + 2e-6 * g, 1e-7);
   EXPECT_NEAR(value(once, Q::K0_up_down), true_value(truth, Q::K0_up_down), 1e-7);
@@ -240,7 +241,7 @@ TEST(TumbleDrift, IsNotTakenOutOfFourPositionsThatHaveNoneToSpare) {
   EXPECT_TRUE(fitted(positions).drift.removed);
 }
 
-TEST(TumbleDrift, IsToldWithATrueMinusSign) {
+TEST(TumbleDrift, IsPrintedWithATrueMinusSign) {
   TableTruth truth;
   truth.drift_mps2 = -1e-3;
   std::mt19937_64 random(4);
@@ -259,7 +260,7 @@ TEST(TumbleDrift, SaysHowProbableItIsByChance) {
   EXPECT_LT(*fitted(read_table(table_turn(24, true), truth, random)).drift.p, 1e-6);
 }
 
-TEST(Tumble, LeavesOutWhatFewPositionsCannotTell) {
+TEST(Tumble, OmitsTermsThatFewPositionsDoNotDetermine) {
   const TableTruth truth;
   const auto at = [&](std::initializer_list<double> degrees) {
     std::vector<TumblePosition> plan;
@@ -276,10 +277,10 @@ TEST(Tumble, LeavesOutWhatFewPositionsCannotTell) {
   EXPECT_EQ(two.find(Q::K0_up_down)->meaning,
             "K0 + K2 g²: half the sum of the readings at +1 g and −1 g");
 
-  // Level and down: what stands there is a bias, but not that of up and down.
+  // Horizontal and down: the result is a bias, but not that from up and down.
   const TumbleFit corner = fitted(at({180.0, 270.0}));
-  EXPECT_EQ(corner.find(Q::K0_up_down)->meaning, "bias, K2 − Kpp and misalignment taken for 0");
-  EXPECT_EQ(corner.find(Q::K1)->meaning, "scale factor K1, K3 and K2 − Kpp taken for 0");
+  EXPECT_EQ(corner.find(Q::K0_up_down)->meaning, "bias, K2 − Kpp and misalignment taken as 0");
+  EXPECT_EQ(corner.find(Q::K1)->meaning, "scale factor K1, K3 and K2 − Kpp taken as 0");
 
   const TumbleFit five = fitted(at({0.0, 72.0, 144.0, 216.0, 288.0}));
   EXPECT_EQ(five.parameters, 4U);
@@ -288,10 +289,10 @@ TEST(Tumble, LeavesOutWhatFewPositionsCannotTell) {
 
   const TumbleFit six = fitted(at({0.0, 60.0, 120.0, 180.0, 240.0, 300.0}));
   EXPECT_TRUE(has(six, Q::Kip));
-  EXPECT_FALSE(has(six, Q::K3));  // sin 3φ is 0 at all of them
+  EXPECT_FALSE(has(six, Q::K3));  // sin 3φ is 0 in all positions
 }
 
-TEST(Tumble, RefusesWhatTellsNothing) {
+TEST(Tumble, RefusesPositionsWithoutInformation) {
   const TableTruth truth;
   const auto error = [&](std::vector<TumblePosition> plan) {
     return fit_tumble(read_table(std::move(plan), truth), table_options()).error();
@@ -319,7 +320,7 @@ TEST(Tumble, TakesAnAxisByItsPhase) {
   const TableTruth truth;
   const TumbleFit sine = fitted(read_table(table_turn(12), truth), options);
   options.phase_rad = {0.5 * std::numbers::pi, 0.0};
-  // The same readings a quarter turn earlier.
+  // The same outputs a quarter turn earlier.
   std::vector<TumblePosition> moved = read_table(table_turn(12), truth);
   for (TumblePosition& p : moved) p.angle_rad -= 0.5 * std::numbers::pi;
   const TumbleFit cosine = fitted(moved, options);
@@ -355,7 +356,7 @@ TEST(Tumble, NamesThePositionThatContradictsTheOthers) {
 TEST(Tumble, SeesACubicCrossAxisTermAsThirdCosine) {
   TableTruth truth;
   std::vector<TumblePosition> positions = read_table(table_turn(24), truth);
-  constexpr double Kppp = 1e-5;  // of a_p³
+  constexpr double Kppp = 1e-5;  // coefficient of a_p³
   for (TumblePosition& p : positions)
     p.output += truth.K1 * Kppp * std::pow(g * std::cos(p.angle_rad), 3);
   const TumbleFit fit = fitted(positions);
@@ -419,7 +420,7 @@ TEST(Tumble, CountsGravityAndIndexingAsSharesOfTheirOwn) {
   EXPECT_NEAR((sum - fit.covariance).norm(), 0.0, 1e-20);
 }
 
-// Nothing is stated of the table's angles and of the drift.
+// Nothing is stated on the table's angles and the drift.
 TumbleOptions nothing_stated() {
   return {.gravity_mps2 = g, .output_unit = "V"};
 }
@@ -464,24 +465,24 @@ TEST(TumbleAssumptions, GiveWayToWhatTheResidualsShow) {
   EXPECT_FALSE(fitted(noisy_turn(24, truth, 3), stated).indexing.assumed);
 }
 
-// The bias moves 10 mm/s² by an exponential, or swings by that once over the test: over one turn of
-// the table both are first harmonics of its angle.
+// The bias changes by 10 mm/s² exponentially, or oscillates with that amplitude once during the
+// test: with one turn of the table both are first harmonics of its angle.
 TEST(TumbleAssumptions, KeepACurvedDriftWithinTheMisalignmentsInterval) {
   TableTruth truth;
   truth.noise = 3e-5;
-  for (const bool swings : {false, true}) {
+  for (const bool oscillates : {false, true}) {
     for (const int count : {12, 24}) {
       std::vector<TumblePosition> positions = noisy_turn(count, truth, 5);
       for (std::size_t k = 0; k < positions.size(); ++k) {
         const double x = static_cast<double>(k) / count;
         positions[k].output +=
             0.01 * truth.K1 *
-            (swings ? std::cos(2.0 * std::numbers::pi * x) : (1.0 - std::exp(-3.0 * x)) / 0.95);
+            (oscillates ? std::cos(2.0 * std::numbers::pi * x) : (1.0 - std::exp(-3.0 * x)) / 0.95);
       }
       const TumbleFit fit = fitted(positions, nothing_stated());
       const double error = std::abs(value(fit, Q::misalignment) - truth.delta_o);
-      EXPECT_LT(error, half_width(fit, Q::misalignment)) << swings << count;
-      EXPECT_GT(error, 5e-5) << swings << count;
+      EXPECT_LT(error, half_width(fit, Q::misalignment)) << oscillates << count;
+      EXPECT_GT(error, 5e-5) << oscillates << count;
     }
   }
 }
@@ -518,7 +519,7 @@ TEST(TumbleAssumptions, TakeTheTemperatureForWhatItIs) {
   EXPECT_NEAR(value(fit, Q::misalignment), truth.delta_o, half_width(fit, Q::misalignment));
 }
 
-// Seven rows once were seven parameters where noise is stated.
+// With a stated noise, seven rows used to be fitted by seven parameters.
 TEST(TumbleSpare, LeavesARowOverToJudgeByWhereNoiseIsStated) {
   TableTruth truth;
   truth.noise = 3e-6;
@@ -530,7 +531,7 @@ TEST(TumbleSpare, LeavesARowOverToJudgeByWhereNoiseIsStated) {
   EXPECT_LT(fit.lack_of_fit->p, 1e-6);
   EXPECT_NEAR(value(fit, Q::K1), truth.K1, half_width(fit, Q::K1));
   EXPECT_TRUE(std::ranges::any_of(fit.notes, [](const std::string& note) {
-    return note.find("no single position can be named") != std::string::npos;
+    return note.find("cannot identify a single position") != std::string::npos;
   }));
 }
 
@@ -547,7 +548,7 @@ TEST(TumbleSpare, NamesAReadingOffByTenStandardDeviationsAmongTwelve) {
     for (std::size_t k = 0; k < fit.positions.size(); ++k)
       if (fit.positions[k].suspect) ++(k == wrong ? named : others);
   }
-  EXPECT_GT(named, tests / 2);  // 13 by the residuals of the fit with it
+  EXPECT_GT(named, tests / 2);  // 13 by the residuals of the fit that includes it
   EXPECT_LE(others, 3);
 }
 

@@ -13,16 +13,16 @@ namespace proofmass::calibrate {
 
 inline constexpr double table_gravity_mps2 = 9.80665;
 
-/// SI; a good servo accelerometer, with errors ten times larger.
+/// SI units; a servo accelerometer of good quality, with errors ten times larger.
 struct TableTruth {
   double K1 = 0.0337, K0 = 0.05, K2 = 3e-6, K3 = 2e-6, Kpp = 8e-6, Koo = -5e-6;
   double delta_o = 2e-3, delta_p = -1e-3, Kip = 4e-6, Kio = -6e-6;
-  double drift_mps2 = 0.0;       ///< of the bias, from one position to the next
+  double drift_mps2 = 0.0;       ///< change of the bias between successive positions
   double hysteresis_mps2 = 0.0;  ///< output forwards minus backwards
   double backlash_rad = 0.0;     ///< angle forwards minus backwards
   double index_cos = 0.0, index_sin = 0.0, index_cos2 = 0.0, index_sin2 = 0.0;  ///< rad
   double noise = 0.0;        ///< std of an output
-  double setting_rad = 0.0;  ///< std of the table's angle, the same at each visit
+  double setting_rad = 0.0;  ///< std of the table's angle, equal at each visit
 };
 
 /// The model equation.
@@ -40,7 +40,7 @@ inline double table_output(const TableTruth& t, const TumblePosition& p, double 
                  t.Koo * ao * ao + t.drift_mps2 * order + way * t.hysteresis_mps2);
 }
 
-/// `count` positions equally spaced over a turn, optionally the first again.
+/// `count` positions equally spaced over a turn, with a repetition of the first if `closed`.
 inline std::vector<TumblePosition> table_turn(int count, bool closed = false, double from = 0.0) {
   std::vector<TumblePosition> plan;
   for (int k = 0; k < count + (closed ? 1 : 0); ++k)
@@ -52,7 +52,7 @@ inline void append(std::vector<TumblePosition>& plan, std::vector<TumblePosition
   plan.insert(plan.end(), more.begin(), more.end());
 }
 
-/// A turn forwards and the same backwards.
+/// A turn forwards, then backwards.
 inline std::vector<TumblePosition> there_and_back(int count) {
   std::vector<TumblePosition> plan = table_turn(count, true), back = plan;
   for (TumblePosition& p : plan) p.direction = 1;
@@ -74,7 +74,7 @@ inline std::vector<TumblePosition> mounted_at(std::vector<TumblePosition> plan, 
   return plan;
 }
 
-/// Outputs for every position of the plan, without noise.
+/// Noise-free outputs for every position of the plan.
 inline std::vector<TumblePosition> read_table(std::vector<TumblePosition> plan,
                                               const TableTruth& truth) {
   for (std::size_t k = 0; k < plan.size(); ++k)
@@ -82,7 +82,7 @@ inline std::vector<TumblePosition> read_table(std::vector<TumblePosition> plan,
   return plan;
 }
 
-/// Outputs with noise, and with an error of each setting that repeats at each visit.
+/// Outputs with noise, and with an error of each setting that is equal at each visit.
 inline std::vector<TumblePosition> read_table(const std::vector<TumblePosition>& plan,
                                               const TableTruth& truth,
                                               std::mt19937_64& random) {
@@ -101,7 +101,7 @@ inline std::vector<TumblePosition> read_table(const std::vector<TumblePosition>&
   return read;
 }
 
-/// Exact angles and a linear drift, if any.
+/// Exact angles, and no drift except a linear one.
 inline TumbleOptions table_options() {
   return {.gravity_mps2 = table_gravity_mps2,
           .indexing_std_rad = 0.0,
@@ -109,7 +109,8 @@ inline TumbleOptions table_options() {
           .output_unit = "V"};
 }
 
-/// True value of a coefficient for this number of positions, biases at the middle of the test.
+/// True value of a coefficient for this number of positions; biases refer to the middle of the
+/// test.
 inline double true_value(TableTruth t, TumbleQuantity quantity, std::size_t positions = 1) {
   t.K0 += t.drift_mps2 * 0.5 * static_cast<double>(positions - 1);
   constexpr double g = table_gravity_mps2;

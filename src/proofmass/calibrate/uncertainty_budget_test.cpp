@@ -31,7 +31,7 @@ TEST(Combine, GivesTheEndGaugeOfTheGuide) {
   EXPECT_EQ(std::floor(budget.effective_dof), 16.0);
   const double k99 = coverage_factor(0.99, budget.effective_dof);
   EXPECT_NEAR(k99, 2.92, 0.005);
-  // The guide multiplies the rounded 32 nm: 93 nm; unrounded it is 92.5 nm.
+  // The guide rounds to 32 nm first: 93 nm; without rounding 92.5 nm.
   EXPECT_NEAR(k99 * budget.combined_std, 93.0, 1.0);
   EXPECT_NEAR(budget.expanded_95, coverage_factor(0.95, 16.0) * budget.combined_std, 1e-12);
 }
@@ -55,7 +55,7 @@ TEST(Combine, GivesTheCorrelatedResistanceOfTheGuide) {
   const auto budget = combine({"R", "ohm", R}, lines, r).value();
   EXPECT_NEAR(R, 127.732, 0.0005);
   EXPECT_NEAR(budget.combined_std, 0.071, 0.0005);
-  // Observed together, five times: the dof of the mean of five.
+  // Five simultaneous observations: the dof of a mean of five.
   EXPECT_NEAR(budget.effective_dof, 4.0, 1e-9);
   EXPECT_NEAR(std::accumulate(budget.shares.begin(), budget.shares.end(), 0.0), 1.0, 1e-12);
 }

@@ -17,7 +17,8 @@ Validation validate(const MultiPosition& fit, View<Pose> poses) {
   for (const Pose& pose : poses) {
     const NormTerm term = norm_term(p, {pose.mean, pose.mean_covariance});
     const double residual = term.force.norm() - fit.gravity_mps2;
-    // The gradient of |f| − 1 is that of |f|: gravity enters by the scales' covariance alone.
+    // |f| − 1 and |f| have the same gradient; the uncertainty of gravity is in the scales'
+    // covariance.
     const double variance =
         term.variance + (term.gradient * fit.covariance * term.gradient.transpose()).value();
     noise_known &= term.variance > 0.0;

@@ -167,12 +167,12 @@ double take_curve_out(std::vector<double>& series,
 }
 
 // Shocks are marked missing; steps stay, as they are drift.
-std::vector<double> without_knocks(View<double> series, DriftAnalysis& analysis) {
+std::vector<double> without_outliers(View<double> series, DriftAnalysis& analysis) {
   std::vector<double> kept(series.begin(), series.end());
-  analysis.knocks = signal::find_events(series, {analysis.rate_hz});
-  std::erase_if(analysis.knocks,
+  analysis.outliers = signal::find_events(series, {analysis.rate_hz});
+  std::erase_if(analysis.outliers,
                 [](const signal::Event& event) { return event.kind == signal::EventKind::step; });
-  signal::drop_events(kept, analysis.knocks, analysis.rate_hz);
+  signal::drop_events(kept, analysis.outliers, analysis.rate_hz);
   analysis.missing = static_cast<std::size_t>(
       std::ranges::count_if(kept, [](double sample) { return !std::isfinite(sample); }));
   return kept;
@@ -208,23 +208,22 @@ void note_whitened(DriftAnalysis& analysis, signal::WhitenessTest test) {
 }
 
 void add_notes(DriftAnalysis& analysis) {
-  if (!analysis.knocks.empty())
+  if (!analysis.outliers.empty())
     analysis.notes.push_back(
-        {Severity::info, fmt::format("{} knock{} left out", analysis.knocks.size(),
-                                     analysis.knocks.size() == 1 ? "" : "s")});
+        {Severity::info, fmt::format("{} outlier{} excluded", analysis.outliers.size(),
+                                     analysis.outliers.size() == 1 ? "" : "s")});
   const auto blank = static_cast<std::size_t>(
       std::ranges::count_if(analysis.block_mean, [](double mean) { return std::isnan(mean); }));
   if (blank > 0)
     analysis.notes.push_back(
         {100 * blank > analysis.block_mean.size() ? Severity::warning : Severity::info,
-         fmt::format("{} of {} blocks of {:.3g} s are missing: the fit goes "
-                     "across them",
+         fmt::format("{} of {} blocks of {:.3g} s are missing: the fit ignores "
+                     "them",
                      blank, analysis.block_mean.size(), analysis.block_s)});
   if (!analysis.noise_explained)
-    analysis.notes.push_back(
-        {Severity::warning,
-         "the noise model does not explain all of the residuals: there is "
-         "more than noise and this curve, and the intervals may be too narrow"});
+    analysis.notes.push_back({Severity::warning,
+                              "the noise model does not explain the residuals completely: the "
+                              "intervals may be too narrow"});
 }
 
 }  // namespace
@@ -237,9 +236,9 @@ Result<DriftAnalysis> analyse_drift(View<double> series, const DriftOptions& opt
   analysis.start_s = options.since_switch_on_s;
   analysis.duration_s = static_cast<double>(series.size()) / options.rate_hz;
   report_progress(options, 0.0);
-  std::vector<double> kept = without_knocks(series, analysis);
+  std::vector<double> kept = without_outliers(series, analysis);
   if (analysis.missing == kept.size())
-    return Error{Errc::not_finite, "nothing but knocks and missing samples"};
+    return Error{Errc::not_finite, "nothing but outliers and missing samples"};
   const std::size_t block = block_length(kept);
   analysis.block_mean = means_of(kept, block);
   const Sampling sampling{options.rate_hz, block};

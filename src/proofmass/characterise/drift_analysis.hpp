@@ -59,7 +59,7 @@ struct DriftAnalysis {
 
   Envelope data;
   std::vector<Envelope> residuals;  ///< at up to three scales
-  std::vector<signal::Event> knocks;
+  std::vector<signal::Event> outliers;
   std::vector<Note> notes;
 };
 

@@ -58,7 +58,7 @@ TEST(DriftAnalysis, FindsTheWarmUpOfARecording) {
   EXPECT_EQ(analysis.missing, 0U);
   EXPECT_EQ(analysis.block_s, 1.0);
   EXPECT_EQ(analysis.duration_s, 600.0);
-  EXPECT_TRUE(analysis.knocks.empty());
+  EXPECT_TRUE(analysis.outliers.empty());
   EXPECT_TRUE(analysis.notes.empty());
   EXPECT_TRUE(analysis.noise_explained);
   ASSERT_TRUE(analysis.whitened);
@@ -70,7 +70,7 @@ TEST(DriftAnalysis, FitsMeansOverBlocksOfALongRecording) {
   Series series =
       test::sum_of({test::warm_up(5.0, 60.0, 8.0, 8 * n), test::white(0.2, 8.0, 8 * n, 2)});
   const DriftAnalysis analysis = analysed(series, {.rate_hz = 8.0});
-  // 4800 samples by three: as many of up to 2048 blocks as are whole.
+  // 4800 samples in blocks of three: the number of blocks is at most 2048, all complete.
   EXPECT_DOUBLE_EQ(analysis.block_s, 3.0 / 8.0);
   ASSERT_EQ(analysis.block_mean.size(), 1600U);
   for (const std::size_t block : {0UL, 700UL, 1599UL})
@@ -80,7 +80,7 @@ TEST(DriftAnalysis, FitsMeansOverBlocksOfALongRecording) {
   EXPECT_TRUE(holds(analysis.fit.time_constant_s, 60.0));
 }
 
-// A table of means, one a power-up: rows instead of samples.
+// A table of means, one per power-up: rows instead of samples.
 TEST(DriftAnalysis, TakesATableOfTwelveValuesOrMore) {
   Series table = test::sum_of({test::warm_up(5.0, 4.0, 1.0, 30), test::white(0.1, 1.0, 30, 3)});
   const DriftAnalysis analysis = analysed(table, {.rate_hz = 1.0});
@@ -93,7 +93,7 @@ TEST(DriftAnalysis, TakesATableOfTwelveValuesOrMore) {
   EXPECT_EQ(refused(table).code, Errc::too_few_samples);
 }
 
-TEST(DriftAnalysis, LeavesOutWhatIsNoNumber) {
+TEST(DriftAnalysis, ExcludesNonFiniteValues) {
   Series series = record(3);
   for (std::size_t k = 7; k < n; k += 60) series[k] = missing;
   series[100] = std::numeric_limits<double>::infinity();
@@ -117,7 +117,7 @@ TEST(DriftAnalysis, GoesAcrossAGapOfATenth) {
   const DriftAnalysis analysis = analysed(series);
   expect_warm_up(analysis.fit);
   EXPECT_EQ(analysis.missing, 60U);
-  // Fewer, longer blocks: each that is missing costs a column.
+  // Fewer, longer blocks, since each missing one costs a column.
   EXPECT_EQ(analysis.block_s, 2.0);
   EXPECT_TRUE(has_note(analysis, Severity::warning, "30 of 300 blocks"));
   EXPECT_TRUE(std::isfinite(analysis.residual_rms));
@@ -142,7 +142,7 @@ TEST(DriftAnalysis, RefusesWhatDoesNotVary) {
   EXPECT_EQ(refused(series).code, Errc::not_observable);
 }
 
-TEST(DriftAnalysis, RefusesNothingButMissingSamples) {
+TEST(DriftAnalysis, RefusesASeriesOfMissingSamples) {
   EXPECT_EQ(refused(Series(n, missing)).code, Errc::not_finite);
   EXPECT_EQ(refused(Series(n, std::numeric_limits<double>::infinity())).code, Errc::not_finite);
 }
@@ -156,17 +156,17 @@ TEST(DriftAnalysis, RefusesOptionsThatMakeNoSense) {
               Errc::invalid_argument);
 }
 
-TEST(DriftAnalysis, LeavesKnocksOut) {
+TEST(DriftAnalysis, ExcludesOutliers) {
   const Series quiet = record(6);
   Series series = quiet;
   for (std::size_t k = 300; k < 302; ++k) series[k] += 40.0;
   const DriftAnalysis analysis = analysed(series), without = analysed(quiet);
-  ASSERT_EQ(analysis.knocks.size(), 1U);
-  EXPECT_LE(analysis.knocks[0].first, 300U);
-  EXPECT_GE(analysis.knocks[0].last, 301U);
+  ASSERT_EQ(analysis.outliers.size(), 1U);
+  EXPECT_LE(analysis.outliers[0].first, 300U);
+  EXPECT_GE(analysis.outliers[0].last, 301U);
   EXPECT_GE(analysis.missing, 2U);
   EXPECT_TRUE(std::isnan(analysis.block_mean[300]));
-  EXPECT_TRUE(has_note(analysis, Severity::info, "1 knock left out"));
+  EXPECT_TRUE(has_note(analysis, Severity::info, "1 outlier excluded"));
   ASSERT_TRUE(analysis.fit.identified && without.fit.identified);
   EXPECT_NEAR(analysis.fit.a1->value, without.fit.a1->value, 0.2 * without.fit.a1->std);
   EXPECT_LT(*std::ranges::max_element(analysis.data.upper), 20.0);
@@ -183,8 +183,8 @@ TEST(DriftAnalysis, KeepsStepsAsDrift) {
 }
 
 TEST(DriftAnalysis, FindsAWarmUpToTheLastDigitThatItsNoiseLeaves) {
-  // Samples at 0, 1, 2 … s, of which noise a millionth as large hides next to nothing; a hole in
-  // the steep beginning.
+  // Samples at 0, 1, 2 … s with noise a millionth of the signal, and a gap in the steep initial
+  // part.
   const std::size_t many = 7200;
   Series series = test::white(1e-6, 1.0, many, 21);
   for (std::size_t k = 0; k < many; ++k)
@@ -197,7 +197,7 @@ TEST(DriftAnalysis, FindsAWarmUpToTheLastDigitThatItsNoiseLeaves) {
   EXPECT_NEAR(analysis.fit.a2.value, -0.21, 1e-5);
 }
 
-TEST(DriftAnalysis, SaysThatASlowSwingIsNeitherNoiseNorAnExponential) {
+TEST(DriftAnalysis, SaysThatASlowOscillationIsNeitherNoiseNorAnExponential) {
   const std::size_t many = 7200;
   Series series = test::white(1e-3, 1.0, many, 22);
   for (std::size_t k = 0; k < many; ++k)
@@ -215,7 +215,7 @@ TEST(DriftAnalysis, CountsItsTimesFromSwitchingOn) {
   ASSERT_EQ(later.data.t_s.size(), analysis.data.t_s.size());
   for (std::size_t k = 0; k < later.data.t_s.size(); ++k)
     EXPECT_DOUBLE_EQ(later.data.t_s[k], analysis.data.t_s[k] + 30.0);
-  // The same exponential, which began 30 s earlier, and was so much higher.
+  // The same exponential, started 30 s earlier and correspondingly larger.
   ASSERT_TRUE(analysis.fit.identified && later.fit.identified);
   const double T = analysis.fit.time_constant_s->value;
   EXPECT_NEAR(later.fit.time_constant_s->value, T, 0.01);
@@ -243,9 +243,9 @@ TEST(DriftAnalysis, HasAnEnvelopeThatKeepsTheExtremes) {
   const Series series =
       test::sum_of({test::white(0.5, 10.0, many, 10), test::ramp(1e-3, 10.0, many)});
   const DriftAnalysis analysis = analysed(series, {.rate_hz = 10.0});
-  ASSERT_TRUE(analysis.knocks.empty());
+  ASSERT_TRUE(analysis.outliers.empty());
   const Envelope& data = analysis.data;
-  // Six samples to a stretch.
+  // Six samples per interval.
   ASSERT_EQ(data.t_s.size(), 834U);
   EXPECT_EQ(data.scale_s, 0.1);
   for (std::size_t k = 0; k < data.t_s.size(); ++k) {
@@ -266,12 +266,12 @@ TEST(DriftAnalysis, HasAnEnvelopeThatKeepsTheExtremes) {
 }
 
 TEST(DriftAnalysis, SaysWhereTheNoiseIsNotWhatItWasTakenFor) {
-  // A line at a third of the rate is in no noise model.
+  // No noise model contains a line at a third of the rate.
   const DriftAnalysis analysis = analysed(test::sum_of({record(11), test::sine(3.0, 0.3, 1.0, n)}));
   EXPECT_FALSE(analysis.noise_explained);
 }
 
-TEST(DriftAnalysis, TellsItsProgressToTheEnd) {
+TEST(DriftAnalysis, ReportsProgressUntilTheEnd) {
   std::vector<double> told;
   ASSERT_TRUE(analyse_drift(
       record(12), {.rate_hz = 1.0, .progress = [&](std::string_view stage, double fraction) {
@@ -300,7 +300,7 @@ TEST(DriftAnalysis, TakesAnyUnitThatItCanSquareTwice) {
 TEST(DriftAnalysis, RefusesFiguresThatNoDoubleCanSquareTwice) {
   for (const double size : {1e300, 1e160, 1e80, 1e-80, 1e-160, 1e-300})
     EXPECT_EQ(refused(test::scaled(record(13), size)).code, Errc::unsupported) << size;
-  // Of numbers that are hardly any, block means may all be the same.
+  // Block means of denormal numbers may all be equal.
   const Errc least = refused(test::scaled(record(13), 5e-324)).code;
   EXPECT_TRUE(least == Errc::unsupported || least == Errc::not_observable);
   Series extreme(n);
@@ -309,7 +309,7 @@ TEST(DriftAnalysis, RefusesFiguresThatNoDoubleCanSquareTwice) {
   EXPECT_FALSE(analyse_drift(extreme, {.rate_hz = 1.0}));
 }
 
-TEST(DriftAnalysis, TakesASampleThatCannotBeForAKnock) {
+TEST(DriftAnalysis, TakesASampleThatCannotBeForAnOutlier) {
   Series series = record(13);
   series[340] = 1e300;
   series[341] = -1e300;

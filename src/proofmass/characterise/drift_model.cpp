@@ -63,10 +63,10 @@ DriftForecast forecast_of(const DriftPossibility& one, const Horizon& horizon) {
   const Eigen::VectorXd now = one.curve.gradient(one.end.t_s);
   const Eigen::VectorXd then = one.curve.gradient(horizon.t_s);
   const auto interval = [&](double value, const Eigen::VectorXd& of_curve,
-                            const Eigen::Vector3d& of_wander) {
+                            const Eigen::Vector3d& of_slow_noise) {
     Eigen::VectorXd g(of_curve.size() + 3);
-    g << of_curve, of_wander;
-    return normal_interval(value + of_wander.dot(one.end.wander),
+    g << of_curve, of_slow_noise;
+    return normal_interval(value + of_slow_noise.dot(one.end.slow_noise),
                            g.dot(one.end.covariance * g) + growth);
   };
   const double level = one.curve.value(horizon.t_s);
@@ -150,8 +150,8 @@ double DriftCurve::std(double t_s) const {
 Result<DriftForecast> forecast(const DriftFit& fit, double t_s) {
   if (!std::isfinite(t_s) || t_s < fit.end.t_s)
     return Error{Errc::invalid_argument,
-                 fmt::format("the forecast for {:g} s lies before the end of the recording at {:g} "
-                             "s after switching on: ask for a later time",
+                 fmt::format("the forecast for {:g} s is before the end of the recording at {:g} "
+                             "s after power-on: give a later time",
                              t_s, fit.end.t_s)};
   if (fit.identified) return forecast_of({fit.curve, fit.noise, fit.end, 1.0}, {t_s, fit.block_s});
   if (fit.possibilities.empty()) return Error{Errc::not_observable, fit.reason};

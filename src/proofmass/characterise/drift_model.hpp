@@ -102,7 +102,7 @@ struct DriftCurve {
 /// State of curve and drift at one time.
 struct DriftState {
   double t_s = 0.0;
-  Eigen::Vector3d wander = Eigen::Vector3d::Zero();  ///< random walk since 0, flicker, Markov
+  Eigen::Vector3d slow_noise = Eigen::Vector3d::Zero();  ///< random walk since 0, flicker, Markov
   Eigen::MatrixXd covariance;  ///< of the entries of DriftCurve::covariance, then of the drift
 };
 
@@ -126,7 +126,7 @@ enum class DriftReason {
   shorter_than_resolved,  ///< T at or below what the blocks resolve
   begun_later,  ///< an exponential that would have decayed long ago, had it begun at power-on
   shape_undetermined,  ///< a warm-up, but another shape fits it as well as the exponential
-  swing,               ///< a slow sine explains it better than any warm-up
+  oscillation,         ///< a slow sine explains it better than any warm-up
   unexplained          ///< the residual is not noise: another cause changes the bias
 };
 

@@ -32,7 +32,7 @@ DriftCurve curve_of(DriftShape shape) {
   return curve;
 }
 
-/// Moves the j-th of what the covariance is of.
+/// Changes the j-th parameter of the covariance.
 void move(DriftCurve& curve, Index j, double by) {
   const bool line = curve.shape == DriftShape::line;
   const bool steps = curve.shape == DriftShape::steps;
@@ -106,14 +106,14 @@ TEST(DriftNoise, OfAMarkovTermHasItsStandardDeviation) {
   EXPECT_DOUBLE_EQ((DriftNoise{.markov = 0.5, .markov_time_constant_s = 32.0}).markov_std(), 2.0);
 }
 
-/// A warm-up that is known but for what drifts.
-DriftFit known(const DriftNoise& noise, const Eigen::Vector3d& wander) {
+/// A warm-up with known parameters; only the drift is uncertain.
+DriftFit known(const DriftNoise& noise, const Eigen::Vector3d& slow_noise) {
   DriftFit fit;
   fit.curve = curve_of(DriftShape::exponential);
   fit.curve.covariance = MatrixXd::Zero(3, 3);
   fit.noise = noise;
   fit.identified = true;
-  fit.end = {3600.0, wander, MatrixXd::Zero(6, 6)};
+  fit.end = {3600.0, slow_noise, MatrixXd::Zero(6, 6)};
   fit.block_s = 4.0;
   return fit;
 }
@@ -128,7 +128,7 @@ TEST(DriftForecast, RefusesAWarmUpThatIsNotIdentified) {
   EXPECT_EQ(found.error().message, fit.reason);
 }
 
-TEST(DriftForecast, RefusesThePastAndWhatIsNoTime) {
+TEST(DriftForecast, RefusesPastAndNonFiniteTimes) {
   const DriftFit fit = known({}, Eigen::Vector3d::Zero());
   for (const double t_s : {3599.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity()}) {
@@ -172,14 +172,14 @@ TEST(DriftForecast, LetsMarkovNoiseRelaxToItsMean) {
   EXPECT_NEAR(late.change.value, 5.0 * std::exp(-4.0) - 3.0, 1e-12);
 }
 
-TEST(DriftForecast, KnowsThatTheErrorsOfCurveAndWanderCancel) {
+TEST(DriftForecast, IncludesTheCorrelationOfCurveAndSlowNoise) {
   DriftFit fit = known({}, {0.3, 0.0, 0.0});
   fit.end.covariance(0, 0) = fit.end.covariance(3, 3) = 1.0;
   fit.end.covariance(0, 3) = fit.end.covariance(3, 0) = -0.99;
   EXPECT_NEAR(forecast(fit, 5000.0).value().bias.std, std::sqrt(0.02), 1e-12);
 }
 
-/// The exponential of a record whose noise is known, its time constant by Gauss–Newton steps.
+/// The exponential of a record with known noise; its time constant by Gauss–Newton steps.
 class KnownNoise {
  public:
   KnownNoise(const DriftEvidence& evidence, const Eigen::Vector2d& strength, double start_time_s)
@@ -216,7 +216,8 @@ bool holds(const Interval95& interval, double truth) {
   return *interval.lower_95 <= truth && truth <= *interval.upper_95;
 }
 
-// Each record goes on after its end with its own walk; its noise is known, its curve is not.
+// Each record continues after its end with its own random walk; its noise is known, its curve is
+// not.
 TEST(DriftForecast, HoldsNinetyFivePercentOfTwoThousandContinuations) {
   constexpr int records = 2000;
   constexpr std::size_t n = 64, ahead = 40;
@@ -226,7 +227,8 @@ TEST(DriftForecast, HoldsNinetyFivePercentOfTwoThousandContinuations) {
   const double end_s = h * static_cast<double>(n), then_s = end_s + h * static_cast<double>(ahead);
   const auto truth = [&](double t_s) { return a2 - a1 * std::expm1(-t_s / T); };
   for (unsigned record = 0; record < records; ++record) {
-    // Steps of half a block, so that power-on, samples and the end are all on the walk.
+    // Steps of half a block, so that power-on, samples and the end all coincide with points of the
+    // walk.
     const Series walk = test::random_walk(K, 2.0 / h, 2 * (n + ahead), 2 * record);
     Series samples = test::sum_of({curve, test::white(N, 1.0 / h, n, 2 * record + 1)});
     for (std::size_t k = 0; k < n; ++k) samples[k] += walk[2 * k];
@@ -243,7 +245,7 @@ TEST(DriftForecast, HoldsNinetyFivePercentOfTwoThousandContinuations) {
   EXPECT_LE(change_held, 0.97 * records);
 }
 
-/// How often the band at so many blocks after the end holds the flicker then, the noise known.
+/// Coverage of the band for flicker noise a given number of blocks after the end, with known noise.
 double share_of_flicker_held(std::size_t ahead) {
   constexpr unsigned records = 150;
   constexpr std::size_t n = 128;
@@ -277,7 +279,7 @@ double share_of_flicker_held(std::size_t ahead) {
   return static_cast<double>(held) / records;
 }
 
-// Of 150, 5 % scatter by 1.8 %.
+// The scatter of 5 % of 150 is 1.8 %.
 TEST(DriftForecast, HoldsFlickerThatGoesOn) {
   for (const std::size_t ahead : {8UL, 64UL}) {
     const double share = share_of_flicker_held(ahead);

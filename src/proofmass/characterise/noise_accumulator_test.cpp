@@ -57,7 +57,7 @@ TEST(NoiseAccumulator, IsWhatAnalyseNoiseFolds) {
   EXPECT_EQ(folded.model.flicker.upper_95, whole.model.flicker.upper_95);
 }
 
-TEST(NoiseAccumulator, HasNothingToSayOfNothing) {
+TEST(NoiseAccumulator, IsEmptyWithoutSamples) {
   const NoiseAccumulator empty({.rate_hz = 100.0});
   const NoiseAnalysis analysis = empty.finish();
   EXPECT_TRUE(analysis.deviation.points.empty());

@@ -24,7 +24,7 @@ Status check(View<double> series, const NoiseOptions& options) {
   if (options.taus.kind == TauGrid::Kind::all &&
       static_cast<double>(series.size()) * static_cast<double>(series.size()) / 4.0 > most_work)
     return Error{Errc::invalid_argument,
-                 fmt::format("every τ of {} samples would take hours: ask for so many per decade, "
+                 fmt::format("every τ of {} samples would take hours: use N-per-decade, "
                              "or cut the recording",
                              series.size())};
   return Done{};
@@ -70,7 +70,7 @@ Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& opt
   if (Status varies = raw.check_spread(options.lsb); !varies) return varies.error();
   if (Status free = raw.check_rails(options.lsb); !free) return free.error();
   View<double> used = series;
-  if (options.progress) options.progress("knocks and steps", 0.0);
+  if (options.progress) options.progress("outliers and steps", 0.0);
   std::vector<signal::Event> events = signal::find_events(series, {.rate_hz = options.rate_hz});
   if (options.exclude_events && !events.empty()) {
     apart = without_events(series, events, options.rate_hz);

@@ -53,11 +53,11 @@ bool says(const NoiseAnalysis& analysis, const char* words) {
 struct Published {
   Statistic statistic;
   std::vector<std::pair<double, double>> tau_and_deviation;
-  bool uncorrected = false;  ///< published without the correction of its bias
+  bool uncorrected = false;  ///< published without bias correction
   bool to_five_digits = false;
 };
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name that GoogleTest asks for
+// NOLINTNEXTLINE(readability-identifier-naming): name required by GoogleTest
 void PrintTo(const Published& published, std::ostream* out) {
   *out << name_of(published.statistic) << (published.uncorrected ? ", uncorrected" : "");
 }
@@ -97,7 +97,7 @@ TEST_P(ThousandPoints, AreAsNistPublishedThemAsPhaseAndAsRate) {
   expect_published(test::nbs14_phase(), GetParam());
 }
 
-// Corrected as for white rates throughout.
+// Corrected as for white frequency noise throughout.
 INSTANTIATE_TEST_SUITE_P(
     Nist,
     TenPoints,
@@ -141,8 +141,8 @@ INSTANTIATE_TEST_SUITE_P(
                    {128, 0.030862393},
                    {256, 0.012447414}}}));
 
-/// How far from Stable32's limits ours may be: where its degrees of freedom are others than those
-/// of SP 1065 (allan/edf_test.cpp), and half a unit of the last digit printed.
+/// Accepted difference from Stable32's limits: where its degrees of freedom differ from those of SP
+/// 1065 (allan/edf_test.cpp), plus half a unit of the last printed digit.
 double tolerance_of(Statistic statistic, const test::Stable32Row& row) {
   const bool modified_total = statistic == Statistic::mtotdev || statistic == Statistic::ttotdev;
   if (modified_total && row.m >= 10) return row.alpha == 0 ? 0.032 : 0.065;
@@ -170,7 +170,7 @@ void expect_stable32(Statistic statistic, const std::string& table, const NoiseO
     ASSERT_NE(point, found.deviation.points.end());
     if (point->alpha != row.alpha) continue;
     ++compared;
-    // Where a bias is corrected, some of its tables are not.
+    // Some of its tables are not corrected for bias.
     EXPECT_NEAR(std::min(std::abs(point->value / row.deviation - 1.0),
                          std::abs(point->uncorrected / row.deviation - 1.0)),
                 0.0, 5e-5);
@@ -178,7 +178,7 @@ void expect_stable32(Statistic statistic, const std::string& table, const NoiseO
     EXPECT_NEAR(point->lower / point->value / (row.lower / row.deviation), 1.0, tolerance);
     EXPECT_NEAR(point->upper / point->value / (row.upper / row.deviation), 1.0, tolerance);
   }
-  // Some of its last rows have other types than ours.
+  // In some of its last rows the noise types differ from ours.
   EXPECT_GE(compared + 2, rows.size()) << table;
 }
 
@@ -201,7 +201,7 @@ TEST(AnalyseNoise, GivesStable32sLimitsByLag1AndWithTheNoiseTypeFixed) {
 }
 
 // The mean of a rate over a sample has other degrees of freedom than Stable32's phase: 667 of 999
-// where it has 782, which moves the limits at m = 1 by half a percent at most.
+// instead of 782, which changes the limits at m = 1 by at most half a percent.
 TEST(AnalyseNoise, GivesStable32sLimitsByTheModelToo) {
   if (test::stable32_folder().empty())
     GTEST_SKIP() << "NO PUBLISHED RECORDINGS: set PROOFMASS_DATA to their folder";
@@ -209,7 +209,7 @@ TEST(AnalyseNoise, GivesStable32sLimitsByTheModelToo) {
     expect_stable32(statistic, std::string(name_of(statistic)) + "_octave", {});
 }
 
-TEST(AnalyseNoise, TakesTheNoiseTypeFromWhereItIsTold) {
+TEST(AnalyseNoise, TakesTheNoiseTypeFromTheGivenSource) {
   const Series phase = test::nbs14_phase();
   NoiseOptions options = options_for(Statistic::oadev, SeriesKind::phase);
   const NoiseAnalysis by_model = analysed(phase, options);
@@ -262,7 +262,7 @@ TEST(AnalyseNoise, OfAFewSamplesGivesACurveButNoModel) {
   EXPECT_GT(analysed(test::normals(400, 3), options_for(Statistic::oadev)).model.ordinates, 0U);
 }
 
-TEST(AnalyseNoise, TheLevelIsTheMeanAndMovesNothingElse) {
+TEST(AnalyseNoise, TheLevelIsTheMeanAndAffectsNothingElse) {
   const Series noise = test::white(1e-3, rate_hz, 20'000, 4);
   const NoiseAnalysis plain = analysed(noise, at_rest());
   const NoiseAnalysis raised = analysed(sum_of({noise, Series(noise.size(), 9.81)}), at_rest());
@@ -336,7 +336,7 @@ TEST(AnalyseNoise, OfAWholeRecordStatisticUsesTheLongestPieceAndSaysSo) {
   NoiseOptions options = at_rest();
   options.statistic = Statistic::totdev;
   const NoiseAnalysis found = analysed(gapped, options);
-  EXPECT_TRUE(says(found, "1100 of 5000 samples are left out"));
+  EXPECT_TRUE(says(found, "1100 of 5000 samples are excluded"));
   const NoiseAnalysis alone = analysed(View<double>(gapped).subspan(1100), options);
   ASSERT_EQ(found.deviation.points.size(), alone.deviation.points.size());
   for (std::size_t k = 0; k < alone.deviation.points.size(); ++k)
@@ -385,23 +385,23 @@ TEST(AnalyseNoise, TakesNoiseOfOneStepAndWarns) {
   const double sigma = 0.01;
   const NoiseAnalysis found =
       analysed(rounded(test::scaled(test::normals(40'000, 13), sigma), 0.01), options);
-  // Sheppard: rounding adds a twelfth of the step's square.
+  // Sheppard's correction: rounding adds a twelfth of the squared step.
   const double expected = std::sqrt((sigma * sigma + 1e-4 / 12.0) / rate_hz);
   EXPECT_NEAR(found.model.white.value / expected, 1.0, 0.02);
   EXPECT_EQ(found.lsb, 0.01);
-  EXPECT_TRUE(says(found, "the converter's step"));
+  EXPECT_TRUE(says(found, "the quantisation step"));
   EXPECT_TRUE(std::any_of(found.notes.begin(), found.notes.end(),
                           [](const Note& note) { return note.severity == Severity::warning; }));
 }
 
-TEST(AnalyseNoise, AFineStepIsNoWarning) {
+TEST(AnalyseNoise, AFineStepGivesNoWarning) {
   NoiseOptions options = at_rest();
   options.lsb = 0.01;
   const NoiseAnalysis found = analysed(rounded(test::normals(20'000, 14), 0.01), options);
   for (const Note& note : found.notes) EXPECT_EQ(note.severity, Severity::info) << note.text;
 }
 
-Series knocked(const Series& noise) {
+Series disturbed(const Series& noise) {
   Series series = noise;
   for (std::size_t k = 0; k < 40; ++k)
     series[20'000 + k] +=
@@ -410,20 +410,20 @@ Series knocked(const Series& noise) {
   return series;
 }
 
-TEST(AnalyseNoise, TellsOfKnocksAndStepsAndLeavesThemInUnlessAsked) {
+TEST(AnalyseNoise, ReportsOutliersAndStepsAndExcludesThemOnRequest) {
   const Series noise = test::white(1e-3, rate_hz, 60'000, 15);
   const NoiseAnalysis clean = analysed(noise, at_rest());
   EXPECT_TRUE(clean.events.empty());
   NoiseOptions options = at_rest();
-  const NoiseAnalysis kept = analysed(knocked(noise), options);
+  const NoiseAnalysis kept = analysed(disturbed(noise), options);
   options.exclude_events = true;
-  const NoiseAnalysis dropped = analysed(knocked(noise), options);
+  const NoiseAnalysis dropped = analysed(disturbed(noise), options);
   EXPECT_GE(kept.events.size(), 2U);
   EXPECT_EQ(dropped.events.size(), kept.events.size());
   EXPECT_EQ(kept.missing, 0U);
   EXPECT_GT(dropped.missing, 0U);
-  EXPECT_TRUE(says(kept, "are in the figures"));
-  EXPECT_TRUE(says(dropped, "left out of everything"));
+  EXPECT_TRUE(says(kept, "included in the figures"));
+  EXPECT_TRUE(says(dropped, " excluded"));
   const DeviationPoint &of_kept = kept.deviation.points.back(),
                        &of_dropped = dropped.deviation.points.back(),
                        &of_clean = clean.deviation.points.back();
@@ -469,7 +469,7 @@ TEST(AnalyseNoise, RefusesEveryTauOfALongRecord) {
   EXPECT_EQ(result.error().code, Errc::invalid_argument);
 }
 
-TEST(AnalyseNoise, TellsHowFarItHasCome) {
+TEST(AnalyseNoise, ReportsProgress) {
   std::vector<double> fractions;
   NoiseOptions options = at_rest();
   options.progress = [&](std::string_view, double fraction) { fractions.push_back(fraction); };

@@ -57,10 +57,10 @@ void expect_nothing_but_white(const NoiseModelFit& model) {
   EXPECT_FALSE(model.bandwidth_hz.has_value());
 }
 
-TEST(FitNoiseModel, FindsWhiteNoiseAndNothingElse) {
+TEST(FitNoiseModel, FindsWhiteNoiseOnly) {
   const NoiseModelFit model = model_of(test::white(1e-3, rate_hz, quarter_of_an_hour, 1));
   expect_found(model.white, 1e-3, "white");
-  // Half the interval, whose lower side allows for quantisation noise that is not seen.
+  // Half the interval, whose lower side allows for unobservable quantisation noise.
   const double least = 1e-3 / std::sqrt(2.0 * quarter_of_an_hour);
   EXPECT_GT(model.white.std, 0.95 * least);
   EXPECT_LT(model.white.std, 2.0 * least);
@@ -70,7 +70,7 @@ TEST(FitNoiseModel, FindsWhiteNoiseAndNothingElse) {
   EXPECT_GE(model.ordinates, 100U);
   EXPECT_DOUBLE_EQ(model.rate_hz, rate_hz);
   EXPECT_DOUBLE_EQ(model.duration_s, 900.0);
-  // What could hide below the white noise is small beside it.
+  // Flicker noise below the white noise is small compared with it.
   EXPECT_LT(model.flicker.upper_95, 2e-4);
   EXPECT_LT(model.random_walk.upper_95, 4e-5);
 }
@@ -145,8 +145,8 @@ TEST(FitNoiseModel, FindsTheFilterOfWhiteNoise) {
   EXPECT_FALSE(model.markov.has_value());
 }
 
-// A roll-off near half the rate that is taken for a little too low leaves a rise behind, which is
-// quantisation's.
+// If the roll-off near half the rate is estimated slightly too low, the remaining rise looks like
+// quantisation noise.
 TEST(FitNoiseModel, TakesNoRollOffNearHalfTheRateForQuantisation) {
   constexpr double T = 1.0 / (2.0 * std::numbers::pi * 40.0);
   constexpr std::size_t ten_minutes = 60'000;
@@ -157,7 +157,7 @@ TEST(FitNoiseModel, TakesNoRollOffNearHalfTheRateForQuantisation) {
     records += model.quantisation.verdict == Verdict::identified ? 1 : 0;
   }
   EXPECT_LE(records, 1);
-  // Nor is quantisation that is there taken for another bandwidth.
+  // Conversely, real quantisation noise is not mistaken for another bandwidth.
   const NoiseModelFit model =
       model_of(sum_of({test::relaxation(T, rate_hz, ten_minutes, 21),
                        test::quantisation(0.03, rate_hz, ten_minutes, 22)}));
@@ -178,7 +178,7 @@ TEST(FitNoiseModel, FindsARampWithItsSign) {
   }
 }
 
-TEST(FitNoiseModel, ARampIsKnownNoBetterThanByLeastSquaresAndNotMuchWorse) {
+TEST(FitNoiseModel, ARampIsAboutAsPreciseAsByLeastSquares) {
   const NoiseModelFit model = model_of(sum_of({test::white(1e-3, rate_hz, quarter_of_an_hour, 12),
                                                test::ramp(1e-5, rate_hz, quarter_of_an_hour)}));
   const double least_squares = 1e-3 * std::sqrt(12.0 / std::pow(900.0, 3));
@@ -196,7 +196,7 @@ TEST(FitNoiseModel, ARampDoesNotChangeTheRest) {
   EXPECT_NEAR(steep.slope_per_s - 1e-4, level.slope_per_s, 0.1 * level.ramp.std);
 }
 
-TEST(FitNoiseModel, ASteepRampIsNothingButARamp) {
+TEST(FitNoiseModel, ASteepRampIsIdentifiedAsARampOnly) {
   const Series noise = test::white(1e-4, rate_hz, 100'000, 4);
   for (const double slope : {1e-4, 1e-3}) {
     const NoiseModelFit model = model_of(sum_of({noise, test::ramp(slope, rate_hz, 100'000)}));
@@ -236,7 +236,7 @@ TEST(FitNoiseModel, ALineDoesNotMakeTheNoiseLarger) {
   const NoiseModelFit quiet = model_of(noise);
   const NoiseModelFit swaying =
       model_of(sum_of({noise, test::sine(1e-2, 0.5, rate_hz, quarter_of_an_hour)}));
-  // By itself it raises the Allan deviation at 1 s from 1e-3 to 6e-3.
+  // It alone raises the Allan deviation at 1 s from 1e-3 to 6e-3.
   EXPECT_GT(sine_allan_variance(1e-2, 0.5, 1.0), 3e-5);
   EXPECT_NEAR(swaying.white.value / quiet.white.value, 1.0, 0.02);
   expect_found(swaying.white, 1e-3, "white");
@@ -254,7 +254,7 @@ TEST(FitNoiseModel, ReadsNoFlickerWhereWhiteNoiseMeetsARandomWalk) {
   expect_found(model.white, N, "white");
   expect_found(model.random_walk, K, "random walk");
   expect_absent(model.flicker, "flicker");
-  // The curve has a minimum of its own, which would read as flicker.
+  // The curve has its own minimum, which would be read as flicker.
   const double minimum_s = std::numbers::sqrt3 * N / K;
   const double read = std::sqrt(model.allan_variance(minimum_s)) / 0.664;
   EXPECT_NEAR(read, 1.62e-4, 0.1e-4);
@@ -354,8 +354,8 @@ TEST(FitNoiseModel, WhatIsNotSeenNeedsALongerRecordThanThis) {
   EXPECT_LT(*model.white.record_needed_s, 1.0);
 }
 
-// Temperature: neither a piece of a sine nor a parabola is a random walk.
-TEST(FitNoiseModel, ASlowDeterministicChangeIsNoRandomWalkWithoutDoubt) {
+// Temperature: neither part of a sine nor a parabola is a random walk.
+TEST(FitNoiseModel, ASlowDeterministicChangeIsNotACertainRandomWalk) {
   constexpr std::size_t n = 30'000;
   int surely_walks = 0, taken_out = 0;
   for (const double periods : {0.5, 0.8, 1.3, 2.4, 4.6}) {
@@ -387,7 +387,7 @@ TEST(FitNoiseModel, ARandomWalkIsNotDoubtedWhereManyFrequenciesShowIt) {
   EXPECT_LE(doubted, 1);
 }
 
-// A recording of the length that an earlier release promised (359 s) shows this ramp never.
+// A recording of the length promised by an earlier release (359 s) never shows this ramp.
 TEST(FitNoiseModel, TheRecordThatARampNeedsShowsIt) {
   constexpr double slow_hz = 10.0, slope = 2e-6;
   const auto of_length = [&](std::size_t samples, unsigned seed) {
@@ -406,7 +406,7 @@ TEST(FitNoiseModel, TheRecordThatARampNeedsShowsIt) {
   EXPECT_GE(seen, 25);
 }
 
-// The printed ± is that of the interval, of whichever side is longer.
+// The printed ± is that of the longer side of the interval.
 TEST(FitNoiseModel, StandardDeviationsOfSlowTermsAreThoseOfTheirIntervals) {
   const NoiseModelFit model = model_of(sum_of(
       {test::white(1e-3, rate_hz, 60'000, 90), test::random_walk(3e-4, rate_hz, 60'000, 91)}));

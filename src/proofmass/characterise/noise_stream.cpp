@@ -40,7 +40,7 @@ Status check_times(const NoiseOptions& options, std::size_t expected_samples) {
         most_spacing)
       return whole_only(
           fmt::format("the deviation at just {:.6g} s, {} samples, is taken", tau_s, m),
-          "choose octave or so many times per decade");
+          "choose octave or N-per-decade");
   }
   return Done{};
 }
@@ -51,11 +51,11 @@ Status check_stream(const NoiseOptions& options, std::size_t expected_samples) {
     return whole_only(fmt::format("the {} is taken", title_of(options.statistic)),
                       "choose oadev, mdev, tdev or ohdev");
   if (options.taus.kind == TauGrid::Kind::all)
-    return whole_only("every τ is taken", "ask for octave or so many times per decade");
+    return whole_only("every τ is taken", "choose octave or N-per-decade");
   if (options.noise_type == NoiseTypeSource::lag1)
     return whole_only("noise types by lag 1 are found", "leave them to the model");
   if (options.exclude_events)
-    return whole_only("knocks and steps are left out", "analyse it with them");
+    return whole_only("outliers and steps are excluded", "analyse it with them");
   if (options.kind == SeriesKind::phase)
     return whole_only("phase data are analysed", "differentiate them first");
   return check_times(options, expected_samples);
@@ -96,7 +96,7 @@ Result<NoiseAnalysis> NoiseStream::finish(const StreamEnd& end) {
   note_stationarity(analysis);
   note_missing(analysis, variances.left_out);
   analysis.notes.push_back({Severity::warning,
-                            "knocks and steps were not looked for, and whether lines are steady "
+                            "outliers and steps were not searched for, and the stability of lines "
                             "was not tested: the recording was analysed in pieces (cut it with "
                             "--from and --to for both)"});
   note_resolution(analysis, overview_.short_term_std());

@@ -31,7 +31,7 @@ Result<NoiseAnalysis> in_pieces(View<double> series,
 std::vector<std::string> texts_of(const NoiseAnalysis& analysis) {
   std::vector<std::string> texts;
   for (const Note& note : analysis.notes)
-    if (!note.text.starts_with("knocks and steps")) texts.push_back(note.text);
+    if (!note.text.starts_with("outliers and steps")) texts.push_back(note.text);
   return texts;
 }
 
@@ -71,7 +71,7 @@ TEST(NoiseStream, SaysThatTheNoiseChanges) {
   EXPECT_EQ(found.notes.front().text.find("not stationary"), 0U);
 }
 
-TEST(NoiseStream, TakesTheRateThatIsKnownAtTheEnd) {
+TEST(NoiseStream, UsesTheRateKnownAtTheEnd) {
   const std::vector<double> y = white_and_random_walk(50'000);
   const NoiseAnalysis found = in_pieces(y, {.rate_hz = 100.0}, {.rate_hz = 99.0}).value();
   const NoiseAnalysis whole = analyse_noise(y, {.rate_hz = 99.0}).value();
@@ -103,7 +103,7 @@ TEST(NoiseStream, SaysWhatNeedsTheWholeRecordAndWhatToDo) {
         Statistic::htotdev, Statistic::theo1, Statistic::pdev})
     expect_refused({.rate_hz = 100.0, .statistic = statistic},
                    "or choose oadev, mdev, tdev or ohdev");
-  expect_refused({.rate_hz = 100.0, .taus = {.kind = TauGrid::Kind::all}}, "ask for octave");
+  expect_refused({.rate_hz = 100.0, .taus = {.kind = TauGrid::Kind::all}}, "choose octave");
   expect_refused({.rate_hz = 100.0, .noise_type = NoiseTypeSource::lag1}, "lag 1");
   expect_refused({.rate_hz = 100.0, .exclude_events = true}, "--from and --to");
   expect_refused({.rate_hz = 100.0, .kind = SeriesKind::phase}, "phase");
@@ -155,7 +155,7 @@ TEST(RecordOverview, TakesTheEndsOfALongQuantisedNoiseForNoRails) {
     overview.add(y);
   }
   EXPECT_TRUE(overview.check_rails(1.0));
-  // A sensor that goes no further than one and a half standard deviations.
+  // A sensor whose values stay within one and a half standard deviations.
   overview = {};
   for (int piece = 0; piece < 200; ++piece) {
     for (double& x : y) x = std::min(std::round(normal(rng)), 6.0);

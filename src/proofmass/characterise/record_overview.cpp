@@ -103,8 +103,8 @@ Status RecordOverview::check_spread(std::optional<double> lsb) const {
   if (spread * spread - added >= least) return Done{};
   return Error{
       Errc::not_observable,
-      fmt::format("the readings spread by {:.2f} steps of the converter, of which the "
-                  "steps themselves make 0.29: noise below half a step is not "
+      fmt::format("the standard deviation is {:.2f} quantisation steps, of which "
+                  "quantisation itself contributes 0.29: noise below half a step is not "
                   "distinguishable from rounding: record with a finer converter or more gain",
                   spread / *lsb)};
 }

@@ -89,10 +89,10 @@ void add_outliers(RunSet& set) {
   for (const RunLevel& run : set.runs) {
     const double off = (run.mean.value - centre) / spread;
     if (std::abs(off) <= 5.0) continue;
-    set.notes.push_back(
-        fmt::format("{} lies {:.1f} robust standard deviations {} the median of the runs; it is in "
-                    "all figures",
-                    run.name, std::abs(off), off > 0.0 ? "above" : "below"));
+    set.notes.push_back(fmt::format(
+        "{} is {:.1f} robust standard deviations {} the median of the runs; it is included in "
+        "all figures",
+        run.name, std::abs(off), off > 0.0 ? "above" : "below"));
   }
 }
 

@@ -83,7 +83,7 @@ TEST(RunSet, OfTwoRunsIsNone) {
   EXPECT_EQ(compare_runs(made.runs, {}).error().code, Errc::too_few_samples);
 }
 
-TEST(RunSet, NamesTheRunThatLiesFarOffAndKeepsIt) {
+TEST(RunSet, NamesAnOutlyingRunAndKeepsIt) {
   test::MadeRuns made = test::made_of({.runs = 10, .between_std = 0.5});
   for (double& y : made.series[4]) y += 20.0;
   const RunSet set = compare_runs(made.runs, {}).value();
@@ -100,7 +100,7 @@ TEST(RunSet, NamesTheRunThatIsNoisier) {
   EXPECT_FALSE(says(set, "run2 is noisier"));
 }
 
-TEST(RunSet, TellsATrendFromRunToRun) {
+TEST(RunSet, DetectsATrendOverTheRuns) {
   test::MadeRuns made = test::made_of({.runs = 12, .between_std = 0.1});
   for (std::size_t i = 0; i < 12; ++i)
     for (double& y : made.series[i]) y += 0.3 * static_cast<double>(i);
@@ -110,7 +110,7 @@ TEST(RunSet, TellsATrendFromRunToRun) {
   EXPECT_TRUE(says(set, "rises from run to run"));
 }
 
-// 60 power-ups whose means follow −2.4 (1 − e^(−n/5.2)), beside a scatter of 0.14 from run to run.
+// 60 power-ups whose means follow −2.4 (1 − e^(−n/5.2)), with a scatter of 0.14 between runs.
 TEST(RunSet, FindsTheWarmUpThatGoesOnFromRunToRun) {
   int held = 0;
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {

@@ -36,7 +36,7 @@ Series louder_half(double factor, unsigned seed, std::size_t n = samples) {
                    [=](double x) { return x < 0.5 ? 1.0 : factor; });
 }
 
-// Less than one alarm in a hundred: of 60 records more than three would be improbable.
+// The false-alarm rate is below 1 %: more than three of 60 records would be improbable.
 TEST(Stationarity, IsNotDoubtedOfStationaryNoiseOfAnyColour) {
   EXPECT_LE(alarms(60, [](unsigned s) { return test::white(1.0, rate_hz, samples, s); }), 3);
   EXPECT_LE(alarms(60, [](unsigned s) { return test::random_walk(1.0, rate_hz, samples, s); }), 3);
@@ -45,7 +45,7 @@ TEST(Stationarity, IsNotDoubtedOfStationaryNoiseOfAnyColour) {
   EXPECT_LE(alarms(30, [](unsigned s) { return test::quantisation(1.0, rate_hz, samples, s); }), 2);
 }
 
-// White noise behind poles far below the rate: of 100 such records the test used to doubt 42.
+// White noise behind poles far below the rate: an earlier test flagged 42 of 100 such records.
 Series behind_poles(int poles, double time_constant_s, unsigned seed) {
   const std::size_t past = 10'000;
   Series y = test::normals(samples + past, seed);

@@ -14,7 +14,7 @@ using test::Series;
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// Cycles between 290 and 310 K.
+/// Sinusoidal cycles between 290 and 310 K.
 Series cycles(double count, std::size_t n) {
   Series T(n);
   for (std::size_t k = 0; k < n; ++k) {
@@ -24,7 +24,7 @@ Series cycles(double count, std::size_t n) {
   return T;
 }
 
-/// From one temperature to another, evenly.
+/// Linear change from one temperature to another.
 Series sweep(double from_k, double to_k, std::size_t n) {
   Series T(n);
   for (std::size_t k = 0; k < n; ++k)
@@ -66,7 +66,7 @@ TEST(TemperatureModel, RecoversACubicWithoutNoise) {
   const TemperatureModel model = fitted(of(T, cubic), T);
   EXPECT_EQ(model.verdict, Verdict::identified) << model.reason;
   ASSERT_EQ(model.degree, 3);
-  const double x = (model.reference_k - 300.0) / 10.0;  // the reference is not quite at 300 K
+  const double x = (model.reference_k - 300.0) / 10.0;  // the reference is not exactly at 300 K
   const double expected[] = {cubic(model.reference_k), (2.0 - 3.0 * x + 6.0 * x * x) / 10.0,
                              (-1.5 + 6.0 * x) / 100.0, 2.0 / 1000.0};
   for (std::size_t j = 0; j < 4; ++j)
@@ -139,7 +139,7 @@ TEST(TemperatureModel, ChoosesTheDegreeInNineOfTenNoisyRecordings) {
   }
 }
 
-TEST(TemperatureModel, ItsIntervalsHoldForResidualsThatWander) {
+TEST(TemperatureModel, ItsIntervalsHoldForResidualsWithSlowNoise) {
   const Series T = joined({sweep(290.0, 310.0, 512), sweep(310.0, 290.0, 512)});
   const Series line = of(T, [](double at) { return 0.8 * (at - 300.0); });
   for (const double walk : {0.02, 0.05}) {
@@ -185,7 +185,7 @@ TEST(TemperatureModel, FindsHysteresisWhereThereIsNoneInFewRecordings) {
   EXPECT_LE(found, 14) << "7 % of 200";
 }
 
-TEST(TemperatureModel, SaysWhatOneSweepCannotTell) {
+TEST(TemperatureModel, ReportsWhatOneSweepDoesNotDetermine) {
   const Series T = sweep(290.0, 310.0, 4096);
   const TemperatureModel rose = fitted(of(T, cubic), T);
   EXPECT_FALSE(rose.hysteresis);
@@ -205,8 +205,8 @@ TEST(TemperatureModel, ADwellDoesNotOutvoteTheRamp) {
   const Series e = test::scaled(test::normals(T.size(), 4), 0.1);
   const TemperatureModel model =
       fit_temperature(test::sum_of({kink, e}), T, {.rate_hz = 1.0, .most_degree = 3}).value();
-  // |x| over [−1, 1] is P0/2 + 5/8 P2 up to degree 3, which is 9/8 at its ends. Were the dwells,
-  // three quarters of the time, to have their way, the curve would have the 10 that is true there.
+  // |x| over [−1, 1] is P0/2 + 5/8 P2 up to degree 3, which is 9/8 at its ends. If the dwells,
+  // three quarters of the time, dominated, the curve would take the value 10 that holds there.
   EXPECT_NEAR(model.at(310.0).value().value, 11.25, 0.6);
 }
 
@@ -250,7 +250,7 @@ TEST(TemperatureModel, PassesOverMissingSamples) {
   EXPECT_NEAR(model.at(304.0).value().value, cubic(304.0), 1e-9);
 }
 
-TEST(TemperatureModel, SaysWhereNothingWasRecorded) {
+TEST(TemperatureModel, ReportsTemperaturesWithoutData) {
   Series T = cycles(3.0, 6000);
   for (double& at : T) at = at > 296.0 && at < 304.0 ? missing : at;
   const TemperatureModel model = fitted(of(T, cubic), T);

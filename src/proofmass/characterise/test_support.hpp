@@ -23,11 +23,11 @@ inline std::vector<double> nbs14_phase() {
   return phase;
 }
 
-/// Phase of the 10-point set there, p. 107.
+/// Phase of the 10-point set of the same source, p. 107.
 inline const std::vector<double> ten_point_phase{
     0, 103.11111, 123.22222, 157.33333, 166.44444, 48.55555, -96.33333, -2.22222, 111.88889, 0};
 
-/// White rates about a mean one, summed.
+/// Cumulative sum of white rates with mean one.
 inline std::vector<double> phase_of_white_rates(std::size_t points,
                                                 double mean_rate,
                                                 unsigned seed) {
@@ -50,7 +50,7 @@ struct Stable32Row {
   std::size_t m = 0;
   int alpha = 0;
   double lower = 0.0, deviation = 0.0, upper = 0.0;  ///< limits 0 if not requested
-  bool doubtful = false;  ///< commented out by the publishers of the table
+  bool doubtful = false;                             ///< commented out by the table's publishers
   double terms = 0.0;
 };
 
@@ -69,7 +69,7 @@ inline std::vector<Stable32Row> read_stable32_table(const std::filesystem::path&
   return rows;
 }
 
-/// The phase record of the tables.
+/// The phase record to which the tables belong.
 inline std::vector<double> stable32_phase() {
   std::vector<double> x;
   std::ifstream in(stable32_folder() / "PHASE.DAT");
@@ -78,7 +78,7 @@ inline std::vector<double> stable32_phase() {
   return x;
 }
 
-/// Half a unit of the last of the five digits that the tables have, and a hair for ties.
+/// Half a unit of the last of the five digits of the tables, plus a small allowance for ties.
 inline double printed(double deviation) {
   return 0.51 * std::pow(10.0, std::floor(std::log10(deviation)) - 4.0);
 }

@@ -173,7 +173,7 @@ void say(const AttitudeModel& model, const std::vector<signal::Rest>& rests, Att
   for (std::size_t r = 0; r < rests.size(); ++r) {
     RestUse use{rests[r], reached[r] != 0 && model.rest_used[r] != 0, ""};
     if (reached[r] == 0)
-      use.why_not = "none of its samples has a reading of both sensors";
+      use.why_not = "none of its samples has values of both sensors";
     else if (!use.used)
       use.why_not = "the gyroscope turns while the accelerometer is at rest";
     any = any || use.used;

@@ -46,7 +46,7 @@ struct AttitudeOptions {
   double accel_bias_walk_mps2_rts = 2e-4;  ///< its random walk
   double accel_scale_std = 0.01;           ///< relative scale error of the accelerometer
   double rest_speed_std_mps = 0.01;        ///< velocity at rest, one sample
-  double rest_wander_radps_rthz = 2e-5;    ///< attitude creep at rest, white
+  double rest_creep_radps_rthz = 2e-5;     ///< attitude creep at rest, white
   /// Prior standard deviation of each velocity component in motion, renewed at this interval. It
   /// keeps the mean specific force vertical where there are no rests.
   double speed_std_mps = 1.0;

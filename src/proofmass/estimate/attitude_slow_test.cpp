@@ -9,8 +9,8 @@ namespace {
 
 using namespace attitude_test;
 
-// Biases and noise are drawn as the options say; the quantities are those of the last rest, and of
-// the middle of a move for what the smoother knows between rests.
+// Biases and noise are drawn according to the options; tested at the last rest, and for the
+// smoother also in the middle of a move.
 TEST(AttitudeMonteCarlo, NinetyFivePercentBandsHoldTheTruthInNinetyThreeToNinetySevenPercent) {
   constexpr int runs = 600;
   AttitudeOptions options;
@@ -22,7 +22,7 @@ TEST(AttitudeMonteCarlo, NinetyFivePercentBandsHoldTheTruthInNinetyThreeToNinety
   options.accel_bias_std_mps2 = 0.05;
   options.rate_bias_walk_radps_rts = options.accel_bias_walk_mps2_rts = 0.0;
   options.rest_speed_std_mps = 1e-3;
-  options.rest_wander_radps_rthz = 0.0;
+  options.rest_creep_radps_rthz = 0.0;
   Body body;
   body.rate_hz = 25.0;
   int inside = 0, count = 0;

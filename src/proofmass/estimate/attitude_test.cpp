@@ -16,7 +16,7 @@ using attitude_test::Scene;
 using attitude_test::scene;
 using attitude_test::SensorErrors;
 
-/// Sensors whose figures are known, and nothing else in doubt.
+/// Sensors with known figures and no other uncertainty.
 AttitudeOptions exact_options() {
   AttitudeOptions options;
   options.gravity_std_mps2 = 0.0;
@@ -25,7 +25,7 @@ AttitudeOptions exact_options() {
   options.rate_scale_std = options.accel_scale_std = 0.0;
   options.rate_bias_walk_radps_rts = options.accel_bias_walk_mps2_rts = 0.0;
   options.rest_speed_std_mps = 1e-4;
-  options.rest_wander_radps_rthz = 0.0;
+  options.rest_creep_radps_rthz = 0.0;
   options.accel_bias_std_mps2 = 0.0;
   return options;
 }
@@ -60,7 +60,7 @@ TEST(Attitude, FindsTheBiasesOfBothSensors) {
   EXPECT_LT(attitude.accel_bias_std_mps2.back().maxCoeff(), 0.01);
 }
 
-TEST(Attitude, AtOneRestTheBiasAcrossGravityCannotBeToldFromTilt) {
+TEST(Attitude, AtOneRestTheBiasAcrossGravityIsNotSeparableFromTilt) {
   Body body;
   body.moves = 0;
   body.start.setZero();
@@ -163,7 +163,7 @@ TEST(Attitude, AGapBeginsANewStretch) {
 
 TEST(Attitude, GravityFreeAccelerationIsThatOfTheBody) {
   Body body;
-  body.start = {0.2, 0.0, 0.0};  // x level, so that the heading of both is 0
+  body.start = {0.2, 0.0, 0.0};  // x horizontal, so that the heading of both is 0
   const Scene moving = scene(body, {});
   const Attitude attitude = estimated(moving, exact_options());
   const auto accel = gravity_free_acceleration(moving.series, attitude);
@@ -205,7 +205,7 @@ TEST(Attitude, SaysWhyItCannot) {
   EXPECT_EQ(code(nothing, {}), Errc::too_few_samples);
 }
 
-/// Runs with biases and noise drawn as the options say.
+/// Runs with biases and noise drawn according to the options.
 TEST(Attitude, ErrorsAreAsLargeAsTheirCovariance) {
   constexpr int runs = 40;
   AttitudeOptions options = exact_options();

@@ -18,7 +18,7 @@ struct Body {
   double rest_s = 2.0;  ///< before, between and after the moves
   double move_s = 3.0;
   int moves = 2;
-  Mat<3> start = {0.2, -0.3, 0.0};     ///< rotation vector of R_world_sensor at the start
+  Mat<3> start = {0.2, -0.3, 0.0};     ///< rotation vector of the initial R_world_sensor
   Mat<3> turn_rad = {0.5, -0.4, 0.8};  ///< of each move, about the body's axes
   Mat<3> shift_m = {0.4, -0.2, 0.3};   ///< of each move, in world axes
 };
@@ -40,7 +40,7 @@ struct SensorErrors {
   std::uint64_t seed = 1;
 };
 
-/// Completed share of a move at s in [0, 1], with its first two derivatives by s.
+/// Completed fraction of a move at s in [0, 1], with its first two derivatives with respect to s.
 inline Mat<3> minimum_jerk(double s) {
   const double s2 = s * s, s3 = s2 * s;
   return {s3 * (10.0 - 15.0 * s + 6.0 * s2), s2 * (30.0 - 60.0 * s + 30.0 * s2),

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A level that drifts under white noise, followed by a filter that believes other figures.
+/// A random-walk level in white noise, with a filter that may assume other noise parameters.
 struct LocalLevel {
   double walk_std = 0.1, noise_std = 1.0;  ///< true, per step
   double believed_walk_std = 0.1, believed_noise_std = 1.0;
@@ -23,7 +23,7 @@ struct LocalLevel {
   std::size_t steps = 20000;
   std::uint64_t seed = 1;
   double outlier_share = 0.0;
-  double drift = 0.0;  ///< per step, of the measurements
+  double drift = 0.0;  ///< ramp per step in the measurements
 };
 
 Consistency run(const LocalLevel& o) {
@@ -31,7 +31,7 @@ Consistency run(const LocalLevel& o) {
   Random random(o.seed, "local level");
   double level = 0.0, x = 0.0;
   const double Q = std::pow(o.believed_walk_std, 2), R = std::pow(o.believed_noise_std, 2);
-  double P = 0.5 * (Q + std::sqrt(Q * Q + 4.0 * Q * R)) - Q;  // as it settles
+  double P = 0.5 * (Q + std::sqrt(Q * Q + 4.0 * Q * R)) - Q;  // steady-state value
   for (std::size_t k = 0; k < o.steps; ++k) {
     level += o.walk_std * random.normal();
     const bool outlier = random.unit() < o.outlier_share;
@@ -85,7 +85,7 @@ TEST(Consistency, CountsOnlyAcceptedChannelsThatWereThere) {
   EXPECT_EQ(result.verdict, Verdict::undetermined);
 }
 
-TEST(Consistency, OfNothingIsUndetermined) {
+TEST(Consistency, WithoutInnovationsIsUndetermined) {
   const Consistency result = ConsistencyCheck({.channels = {"x"}}).judge();
   EXPECT_EQ(result.innovations, 0U);
   EXPECT_EQ(result.verdict, Verdict::undetermined);
@@ -128,9 +128,9 @@ TEST(Consistency, StretchesAddUpNeighbours) {
 }
 
 TEST(Consistency, UndoesWhatAGateHasCutOff) {
-  // Of N(0, 1) within ± 2 the variance is 0.7737.
+  // The variance of N(0, 1) truncated to ± 2 is 0.7737.
   EXPECT_NEAR(*ungated_std(0.773741, 2.0), 1.0, 1e-5);
-  EXPECT_FALSE(ungated_std(1.33, 2.0));  // even over the gate: 4/3
+  EXPECT_FALSE(ungated_std(1.33, 2.0));  // uniform over the gate: 4/3
   EXPECT_EQ(*ungated_std(0.0, 2.0), 0.0);
   const Consistency result = white(1.0, 100000, 5, 2.0);
   EXPECT_NEAR(result.nis, 0.7737, 0.01);
@@ -139,10 +139,10 @@ TEST(Consistency, UndoesWhatAGateHasCutOff) {
   EXPECT_NEAR(*white(1.5, 100000, 5, 3.0).all.std_factor, 1.5, 0.03);
 }
 
-TEST(Consistency, TellsWhichNoiseIsOff) {
+TEST(Consistency, IdentifiesTheWrongNoise) {
   struct Case {
     const char* what;
-    double walk, noise;  ///< believed, truth 0.1 and 1
+    double walk, noise;  ///< assumed; the truth is 0.1 and 1
     Verdict verdict;
     Remedy remedy;
     double factor, tolerance;
@@ -164,13 +164,13 @@ TEST(Consistency, TellsWhichNoiseIsOff) {
   }
 }
 
-TEST(Consistency, WhatIsTooSmallToMatterIsNoVerdictHoweverSignificant) {
+TEST(Consistency, ASignificantButNegligibleDeviationIsConsistent) {
   const Consistency result = white(1.02, 1000000);
   EXPECT_GT(result.nis, result.nis_upper);
   EXPECT_EQ(result.verdict, Verdict::consistent);
 }
 
-TEST(Consistency, WhatMattersButMayBeChanceIsNoVerdict) {
+TEST(Consistency, ALargeButInsignificantDeviationIsConsistent) {
   EXPECT_EQ(white(1.15, 40, 8).verdict, Verdict::consistent);
 }
 
@@ -212,7 +212,7 @@ TEST(Consistency, NamesTheChannelThatIsOff) {
   EXPECT_NEAR(result.remedy_factor, 2.0, 0.1);
 }
 
-TEST(Consistency, AnErrorCommonToAllChannelsIsNoSingleOnes) {
+TEST(Consistency, AnErrorCommonToAllChannelsIsNotAttributedToOne) {
   ConsistencyCheck check({.channels = {"x", "y"}});
   Random random(6, "channels");
   for (int k = 0; k < 5000; ++k)

@@ -10,15 +10,15 @@ namespace proofmass::estimate {
 namespace {
 
 constexpr std::size_t fewest = 20;
-/// Factors of the standard deviation for which a 95 % band has a coverage of 97 % or 93 %.
+/// Factors on the standard deviation for which a 95 % band has a coverage of 97 % and 93 %.
 constexpr double band_holds_97 = 0.9032, band_holds_93 = 1.0817;
-/// Sums over stretches that are a quarter too large, or too small.
+/// Sums over stretches that are too large, or too small, by a quarter.
 constexpr double too_far = 1.25;
-/// Too small sums are harmful only below this: with f of a filter on a random walk, the estimate
-/// scatters √((f + 1/f)/2) times the optimum, and stays within its stated uncertainty.
+/// Small sums matter only below this factor f: a filter on a random walk then has √((f + 1/f)/2)
+/// times the optimal error, within its stated uncertainty.
 constexpr double far_behind = 1.0 / 3.0;
 constexpr double too_correlated = 0.2;
-/// A share of rejected measurements that no noise explains.
+/// Fraction of rejected measurements that no noise explains.
 constexpr double too_many_gated = 0.05;
 
 /// P(|N(0, 1)| < x).
@@ -33,29 +33,29 @@ double mean_square_within(double x) {
   return 1.0 - 2.0 * x * density / share_within(x);
 }
 
-/// Whether the ratio ~ χ²(dof)/dof departs from 1 significantly.
+/// True if the ratio ~ χ²(dof)/dof differs significantly from 1.
 bool significant(double ratio, double dof, double level) {
   return ratio > chi_square_quantile(1.0 - 0.5 * level, dof) / dof ||
          ratio < chi_square_quantile(0.5 * level, dof) / dof;
 }
 
-/// Logarithm of the factor by which the standard deviations are off; 0 where they are not.
+/// Logarithm of the ratio of true to stated standard deviation; 0 if not significant.
 double size_error(const ChannelConsistency& figures, double level) {
   const double s = *figures.std_factor;
   if (s > band_holds_97 && s < band_holds_93) return 0.0;
-  // Squares of a correlated series hold less: n (1 − ρ²)/(1 + ρ²) of a first-order process.
+  // Effective number of squares of a first-order correlated series: n (1 − ρ²)/(1 + ρ²).
   const double rho2 = std::min(std::pow(figures.lag_one.value_or(0.0), 2), 0.99);
   const double dof = static_cast<double>(figures.innovations) * (1.0 - rho2) / (1.0 + rho2);
   return significant(s * s, dof, level) ? std::log(std::max(s, 1e-9)) : 0.0;
 }
 
 struct Colour {
-  double log_factor = 0.0;  ///< above 0: sums go too far
-  bool slow = false;        ///< neighbours do not show it
+  double log_factor = 0.0;  ///< positive: sums are too large
+  bool slow = false;        ///< not visible between neighbours
   bool matters = false;
 };
 
-/// The stretches whose sums depart furthest, if they do so by more than chance.
+/// The stretches with the largest deviation of their sums, if it is significant.
 Colour colour_of(const ChannelConsistency& figures, double level) {
   level /= static_cast<double>(1 + figures.stretches.size());
   Colour found;
@@ -77,15 +77,15 @@ Colour colour_of(const ChannelConsistency& figures, double level) {
   return found;
 }
 
-/// Innovations stray far more rarely than by their size they should: a few carry the mean.
+/// True if |ν| > 1.96 is much rarer than the mean square implies: a few outliers dominate it.
 bool few_carry_it(const ChannelConsistency& figures) {
   if (!figures.inside_95) return false;
   const double expected_outside = 1.0 - share_within(1.96 / *figures.std_factor);
   return 1.0 - *figures.inside_95 < 0.5 * expected_outside;
 }
 
-/// Which noise is off, with size = ln(s) and colour = ln(√V): √V s is the factor of what the state
-/// does over a stretch, hence of √Q, and s that of the measurement noise.
+/// Sets which noise to change, with size = ln(s) and colour = ln(√V): the factor on √Q is √V s,
+/// since it determines the change of the state over a stretch; the factor on √R is s.
 void set_remedy(ChannelConsistency& figures, double size, const Colour& colour) {
   const double process = size + colour.log_factor;
   const auto move = [&](Remedy what, double log_factor) {
@@ -103,7 +103,8 @@ void set_remedy(ChannelConsistency& figures, double size, const Colour& colour) 
 
 std::optional<double> ungated_std(double mean_square, double gate) {
   if (std::isinf(gate)) return std::sqrt(mean_square);
-  constexpr double widest = 4.0;  // in gates: m is then within 0.6 % of an even spread's
+  constexpr double widest = 4.0;  // relative to the gate: m is then within 0.6 % of that of a
+                                  // uniform distribution
   const auto seen = [&](double s) { return s * s * mean_square_within(gate / s); };
   double low = std::sqrt(mean_square), high = widest * gate;
   if (!(mean_square > 0.0)) return 0.0;
@@ -127,7 +128,7 @@ void decide(ChannelConsistency& figures, double gate, std::size_t judged) {
     figures.remedy = Remedy::outliers;
     return;
   }
-  // The size, and how it is spread in time.
+  // Test of magnitude, and of correlation in time.
   const double level = 0.05 / (2.0 * static_cast<double>(judged));
   const double size = size_error(figures, level);
   const Colour colour = colour_of(figures, level);

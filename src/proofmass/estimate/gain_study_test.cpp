@@ -6,7 +6,7 @@
 namespace proofmass::estimate::gain_study_test {
 namespace {
 
-// The thesis' simulation: 100 s in steps of 0.2 s from P₀ = 100.
+// The thesis's simulation: 100 s in steps of 0.2 s from P₀ = 100.
 GainStudy thesis(double q, double R) {
   return gain_study({.jerk_psd_m2ps5 = q,
                      .accel_variance_m2ps4 = R,
@@ -44,7 +44,7 @@ TEST(GainStudy, SettlesTheLaterTheLessIsForgiven) {
   const GainStudy study = thesis(1.0, 4.0);
   EXPECT_EQ(settling_s(study, 0, 0.02), study.settling_s[0]);
   EXPECT_GT(settling_s(study, 0, 1e-3).value(), study.settling_s[0].value());
-  // Each step brings the gain nearer by (1 − k)², k = 0.2.
+  // Each step reduces the distance of the gain from its limit by (1 − k)², k = 0.2.
   const double tenth_s = settling_s(study, 2, 1e-4).value() - settling_s(study, 2, 1e-3).value();
   EXPECT_NEAR(tenth_s, 0.2 * std::log(0.1) / (2.0 * std::log(0.8)), 0.2);
 }
@@ -69,7 +69,7 @@ TEST(GainStudy, ALongerStepMakesTheGainLargerAndTheEstimateWorse) {
     EXPECT_GT(effects[k].accel_std_mps2, effects[k - 1].accel_std_mps2);
     EXPECT_GT(effects[k].predicted_std_mps2, effects[k].accel_std_mps2);
   }
-  // k → 1 where measurements are so rare that each stands alone.
+  // k → 1 for measurements so rare that they are independent.
   EXPECT_NEAR(effects.back().accel_std_mps2, 1.0, 0.1);
 }
 

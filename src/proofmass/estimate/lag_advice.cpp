@@ -105,12 +105,12 @@ StateLagAdvice detail::state_advice(const LagGain& gain,
                                     std::optional<double> filter_variance) {
   StateLagAdvice advice;
   if (!filter_variance) {
-    advice.why_not = "the readings do not show it: its variance grows without limit, lag or no lag";
+    advice.why_not = "not observable: its variance grows without limit at any lag";
     return advice;
   }
   const double reduction = gain.variance_reduction()(state);
   if (!(reduction > nothing * *filter_variance)) {
-    advice.why_not = "later readings say nothing of it that the filter does not know already";
+    advice.why_not = "later measurements contain no further information on it";
     return advice;
   }
   advice.lag = StateLag{*filter_variance, *filter_variance - reduction, gain.shortest(state, 0.95),

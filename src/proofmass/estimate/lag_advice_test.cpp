@@ -10,7 +10,7 @@ namespace {
 
 const LinearModel<3, 2, 1> oscillator = test::driven_oscillator(0.1);
 
-// The motion of a carried accelerometer with the position read beside the acceleration.
+// The motion of a carried accelerometer with position measured in addition to acceleration.
 LinearModel<4, 2> fixed_motion() {
   const auto one = test::biased_motion(0.005);
   LinearModel<4, 2> m;
@@ -61,7 +61,8 @@ TEST(LagGain, OfAnEndlessLagIsTheFixedIntervalSmoothers) {
   EXPECT_TRUE(endless.isApprox(gain.variance_reduction(~std::size_t{0}), 1e-13));
 }
 
-// In turned axes rounding couples what is seen with a position that runs away.
+// In rotated axes rounding couples the observable states with the unbounded variance of the
+// position.
 TEST(LagGain, HoldsWhereNoAxisIsWhollyUnseen) {
   const auto model = test::biased_motion(0.005);
   Mat<4, 4> T;
@@ -100,8 +101,8 @@ TEST(LagGain, TheShortestLagIsEnoughAndOneLessIsNot) {
     }
 }
 
-// What an accelerometer alone says of its bias comes over the bias's own time constant; of position
-// and velocity it says nothing at all.
+// Information of an accelerometer on its own bias accumulates over the bias's time constant; it has
+// none on position and velocity.
 TEST(LagAdvice, HasNoneForWhatTheReadingsDoNotShow) {
   const auto model = test::biased_motion(0.005);
   const auto advice = advise_lag(model, steady_state(model).value());
@@ -110,15 +111,15 @@ TEST(LagAdvice, HasNoneForWhatTheReadingsDoNotShow) {
     const auto& none = advice[static_cast<std::size_t>(unseen)];
     EXPECT_FALSE(none.lag);
     EXPECT_EQ(lag_words(none, "position", 0.005),
-              "position: no lag pays: the readings do not show it: its variance grows without "
-              "limit, lag or no lag");
+              "position: no lag pays: not observable: its variance grows without limit at any "
+              "lag");
   }
   ASSERT_TRUE(advice[3].lag);
   EXPECT_GT(advice[3].lag->lag_95, 100U);
 }
 
-// A number that is at rest and drifts a little: P⁺ and P[k|∞] of the local level are known in
-// closed form, and each measurement more brings the same share, (1 − K)², of what is left.
+// A slowly drifting level: P⁺ and P[k|∞] of the local level are known in closed form, and each
+// additional measurement removes the same fraction, (1 − K)², of the remainder.
 TEST(LagAdvice, OfALocalLevelIsTheClosedForm) {
   LinearModel<1, 1> level;
   level.F << 1.0;
@@ -141,9 +142,8 @@ TEST(LagAdvice, OfALocalLevelIsTheClosedForm) {
             "later readings give; its standard deviation then falls by 23 %");
 }
 
-// An input-free state that the measurements repeat each time: what comes later has no bearing on
-// it.
-TEST(LagAdvice, HasNoneWhereLaterReadingsSayNothing) {
+// A white state that is measured at every epoch: later measurements contain no information on it.
+TEST(LagAdvice, HasNoneIfLaterMeasurementsAreUninformative) {
   LinearModel<1, 1> forgetful;
   forgetful.F << 0.0;
   forgetful.H << 1.0;
@@ -151,8 +151,7 @@ TEST(LagAdvice, HasNoneWhereLaterReadingsSayNothing) {
   forgetful.R << 1.0;
   const auto advice = advise_lag(forgetful, steady_state(forgetful).value());
   EXPECT_FALSE(advice[0].lag);
-  EXPECT_EQ(advice[0].why_not,
-            "later readings say nothing of it that the filter does not know already");
+  EXPECT_EQ(advice[0].why_not, "later measurements contain no further information on it");
 }
 
 }  // namespace

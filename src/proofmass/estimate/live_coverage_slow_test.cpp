@@ -7,7 +7,7 @@
 #include "proofmass/estimate/tilt_test_support.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 
-// How often the bands of 95 % of the live angle and inclination hold what is true.
+// Coverage of the 95 % bands of the live angle and inclination.
 namespace proofmass::estimate::live_coverage_slow_test {
 namespace {
 

@@ -35,7 +35,7 @@ Followed follow(const TiltRecord& record, const LiveTiltOptions& options, std::s
   return test::followed(live_tilt(options).value(), stream_of(record), piece);
 }
 
-/// Share of the rows from two seconds on whose band of 95 % holds the pitch.
+/// Coverage of the pitch by the 95 % band, for the rows from two seconds on.
 double coverage(const Followed& followed, const MovingBase& base, const std::string& what = "") {
   double held = 0.0, all = 0.0;
   for (std::size_t k = 200; k < followed.fed.rows.rows(); ++k) {
@@ -83,7 +83,7 @@ TEST(LiveTilt, BandsHoldHoweverStrongTheBaseTurnsWithoutGyroscope) {
   }
 }
 
-// From the first row on, and with no single error of many standard deviations.
+// From the first row on, and without errors of many standard deviations.
 TEST(LiveTilt, BandsHoldUnderALevelAccelerationWithoutGyroscope) {
   for (const double fastest_hz : {0.2, 3.0}) {
     int held = 0, all = 0;
@@ -121,7 +121,7 @@ TEST(LiveTilt, TheGyroscopeHelpsWhereTheBaseIsShaken) {
   EXPECT_LT(std_of(true), 0.7 * std_of(false));
 }
 
-TEST(LiveTilt, AtRestItStandsWhereGravityIs) {
+TEST(LiveTilt, AtRestItConvergesToGravity) {
   const TiltRecord record = still_record(force_at(0.3, -0.2), 0.02, 2000, 4);
   const Followed followed = follow(record, options_for(record));
   EXPECT_NEAR(followed["roll"].back(), 0.3, 3.0 * followed["roll_std"].back());
@@ -130,14 +130,14 @@ TEST(LiveTilt, AtRestItStandsWhereGravityIs) {
   EXPECT_LT(followed["smoothed_pitch_std"].back(), followed["pitch_std"].back());
 }
 
-TEST(LiveTilt, MissingReadingsWidenTheBandAndAreTold) {
+TEST(LiveTilt, MissingMeasurementsWidenTheBandAndAreReported) {
   MovingBase base = moving_base({.samples = 1000}, 5);
   for (std::size_t k = 500; k < 550; ++k) base.record.accel_mps2[1][k] = std::nan("");
   const Followed followed = follow(base.record, options_for(base.record));
   EXPECT_GT(followed["pitch_std"][549], followed["pitch_std"][499]);
   EXPECT_TRUE(std::isnan(followed["nis"][520]));
-  EXPECT_TRUE(followed.fed.says("50 readings left out") ||
-              followed.fed.says("10 readings left out"));
+  EXPECT_TRUE(followed.fed.says("50 measurements excluded") ||
+              followed.fed.says("10 measurements excluded"));
   EXPECT_GT(coverage(followed, base), 0.92);
 }
 

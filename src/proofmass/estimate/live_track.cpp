@@ -137,7 +137,7 @@ class LiveTrack final : public LiveAnalysis {
   void cross_gap(double time_s) {
     const double missing_s = time_s - last_s_;
     const bool too_long = missing_s > longest_gap_s;
-    say(at_second(missing_s) + " s without a reading before " + at_second(time_s) + " s: " +
+    say(at_second(missing_s) + " s without a measurement before " + at_second(time_s) + " s: " +
         (too_long ? "the position is lost and counts from 0 again at the next rest"
                   : "position and velocity are less sure from there on"));
     if (too_long) lose();
@@ -191,7 +191,7 @@ class LiveTrack final : public LiveAnalysis {
     constexpr double clear_share = 0.8;
     if (found.share < clear_share)
       say("only " + std::to_string(std::lround(100.0 * found.share)) +
-          " % of the first motion lies along one direction: give the axis (--axis)");
+          " % of the first motion is along one direction: give the axis (--axis)");
     begin();
     for (const LiveReading& reading : std::exchange(gathered_, {})) filter(reading, out);
   }
@@ -247,7 +247,7 @@ class LiveTrack final : public LiveAnalysis {
     if (!doubted_since_s_) {
       doubted_since_s_ = time_s;
       say("nothing is felt from " + at_second(time_s) +
-          " s on, but it should be under way: taken for motion at constant speed");
+          " s on, but it should be under way: taken as motion at constant speed");
     }
     return time_s - *doubted_since_s_ < longest_cruise_s;
   }

@@ -20,7 +20,7 @@ struct Shares {
   Share end, stops, on_the_way, smoothed;
 };
 
-/// `lean` in m/s²/√Hz: the sensor rocks while it moves, which no rest shows.
+/// `lean` in m/s²/√Hz: rocking of the sensor in motion, which rests do not show.
 Shares cover(Carriage carriage, double lean, std::size_t runs) {
   Shares found;
   LiveTrackOptions options = live_options();
@@ -61,7 +61,7 @@ void expect_cautious(const Shares& found) {
 
 const std::vector<double> eight_strokes{0.4, -0.4, 0.4, -0.4, 0.4, -0.4, 0.4, -0.4};
 
-TEST(LiveTrackCoverage, BandsHoldTheTruthWhereNothingButNoiseErrs) {
+TEST(LiveTrackCoverage, BandsCoverTheTruthUnderNoiseOnly) {
   const Shares found = cover({.strokes_m = eight_strokes, .dwell_s = 3.5}, 0.0, 200);
   EXPECT_EQ(found.end.of, 200.0);
   EXPECT_EQ(found.stops.of, 1600.0);

@@ -43,7 +43,7 @@ TEST(LiveTrack, PiecesOfAnySizeGiveTheSameRows) {
   }
 }
 
-TEST(LiveTrack, FollowsStrokesAndKnowsTheirStops) {
+TEST(LiveTrack, FollowsStrokesAndDetectsTheirStops) {
   const CarriageRecord made = record(carriage());
   const LiveTrackRun run = run_live(made.sensor, along_x());
   ASSERT_GT(run.rows.rows(), 1000u);
@@ -153,7 +153,7 @@ TEST(LiveTrack, AGapInTheMotionIsSaidAndWidensTheBand) {
   cut(made.sensor.time_s);
   for (std::vector<double>& axis : made.sensor.accel_mps2) cut(axis);
   const LiveTrackRun run = run_live(made.sensor, along_x());
-  EXPECT_TRUE(run.says("without a reading"));
+  EXPECT_TRUE(run.says("without a measurement"));
   EXPECT_GT(run.last(live_position_std), 2.0 * whole.last(live_position_std));
   EXPECT_LT(std::abs(run.last(live_position)), 2.0 * run.last(live_position_std));
   EXPECT_LT(run.last(live_velocity_std), 0.01);
@@ -172,10 +172,10 @@ TEST(LiveTrack, ASensorThatTurnedIsSaidAndLessSureFromThereOn) {
   EXPECT_LT(std::abs(run.last(live_position)), 2.0 * run.last(live_position_std));
 }
 
-TEST(LiveTrack, ConstantSpeedIsNoStop) {
+TEST(LiveTrack, ConstantSpeedIsNotAStop) {
   CarriageRecord made = record({.strokes_m = {0.4}, .dwell_s = 4.0});
   TrackSensor& sensor = made.sensor;
-  // The stroke's push alone, then nothing for 4 s, then its braking: 0.75 s of each.
+  // The stroke's acceleration, then nothing for 4 s, then its deceleration: 0.75 s each.
   const std::size_t turn = sample_at(sensor, 4.75), count = sensor.time_s.size();
   for (std::size_t i = 0; i < 3; ++i) {
     std::vector<double>& axis = sensor.accel_mps2[i];
@@ -192,8 +192,8 @@ TEST(LiveTrack, ConstantSpeedIsNoStop) {
   EXPECT_LT(run.last(live_position_std), 0.2);
 }
 
-// Noise that grows with the motion is no reason to take the motion for noise.
-TEST(LiveTrack, ASwingThatRocksIsNoRest) {
+// Noise that grows with the motion must not make the motion look like noise.
+TEST(LiveTrack, AnOscillationWithRockingIsNotARest) {
   CarriageRecord made =
       record({.strokes_m = {0.5, -0.5, 0.5, -0.5, 0.5, -0.5}, .dwell_s = 4.0, .harmonic = true});
   std::mt19937_64 engine(201);
@@ -216,8 +216,8 @@ TEST(LiveTrack, WithoutReadingsOrWithAClockSetBackItGoesOn) {
   const std::size_t back = sample_at(made.sensor, 11.0);
   for (std::size_t k = back; k < made.sensor.time_s.size(); ++k) made.sensor.time_s[k] -= 10.0;
   const LiveTrackRun run = run_live(made.sensor, along_x());
-  EXPECT_TRUE(run.says("readings left out"));
-  EXPECT_TRUE(run.says("the clock went back"));
+  EXPECT_TRUE(run.says("measurements excluded"));
+  EXPECT_TRUE(run.says("the clock stepped back"));
   EXPECT_EQ(run.last(live_resting), 0.0);
   EXPECT_LT(run.last(live_velocity_std), 0.05);
   for (const double value : run.rows.channels[live_position]) EXPECT_TRUE(std::isfinite(value));
@@ -277,7 +277,7 @@ TEST(LiveTrack, OneAxisIsEnough) {
   EXPECT_LT(run.last(live_position_std), 0.02);
 }
 
-// Of closures that noise alone explains little scale is left, of large ones as much as they show.
+// Closures explained by noise leave little scale uncertainty; large ones as much as they imply.
 TEST(MotionScale, FollowsTheClosures) {
   MotionScale calm, rough;
   EXPECT_GT(calm.scale(), 10.0);

@@ -48,7 +48,7 @@ struct LiveTrackRun {
   }
 };
 
-/// Fed in pieces of `piece` samples.
+/// Feeds the data in blocks of `piece` samples.
 inline LiveTrackRun run_live(const TrackSensor& sensor,
                              const LiveTrackOptions& options,
                              std::size_t piece = 50) {

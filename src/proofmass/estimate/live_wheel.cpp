@@ -120,7 +120,7 @@ class LiveWheel final : public LiveAnalysis {
     filter_->step(instant);
     if (!filter_->is_lost()) return give(instant.time_s, out);
     notes_.push_back({Severity::warning, "the wheel was lost at " + at_second(instant.time_s) +
-                                             " s and is looked for anew: turns may be lost"});
+                                             " s and is searched again: turns may be lost"});
     turns_std_rad_ += rad_per_turn;
     forget();
   }

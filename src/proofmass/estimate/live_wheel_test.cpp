@@ -40,7 +40,7 @@ LiveWheelOptions options_for(std::size_t sensors, std::optional<double> radius_m
   for (std::size_t s = 0; s < sensors; ++s)
     options.sensors.push_back({"acc" + std::to_string(s + 1), 3 * s, 3 * s + 1, 3 * s + 2});
   options.wheel.radius_m = radius_m;
-  options.wheel.bandwidth_hz = 5000.0;  // what record() makes is not delayed
+  options.wheel.bandwidth_hz = 5000.0;  // the simulated measurements have no delay
   return options;
 }
 
@@ -48,7 +48,7 @@ Followed follow(const Stream& stream, const LiveWheelOptions& options, std::size
   return test::followed(live_wheel(options).value(), stream, piece);
 }
 
-/// Share of the rows from `from_s` on whose band of 95 % holds the truth, whole turns apart.
+/// Coverage of the truth (modulo turns) by the 95 % band, for the rows from `from_s` on.
 double coverage(const Followed& run,
                 const Drive& drive,
                 double from_s,
@@ -150,7 +150,7 @@ TEST(LiveWheel, TwoOppositeSensorsAreTakenTogether) {
   EXPECT_LT(both["angle_std"].back(), one["angle_std"].back());
 }
 
-TEST(LiveWheel, FollowsAWheelThatStandsAndThenTurns) {
+TEST(LiveWheel, FollowsAWheelThatStartsFromRest) {
   const Drive drive{{0.4, 0.0}, {{6.0, 0.0}, {2.0, 2.0}, {12.0, 2.0}}};
   const Followed one = follow(one_sensor(drive), options_for(1));
   EXPECT_TRUE(one.fed.says("hardly turns yet"));
@@ -177,7 +177,7 @@ TEST(LiveWheel, LeavesOutWhatNoAccelerometerCanHaveMeantAndSaysSo) {
   EXPECT_TRUE(one.fed.says("their time does not rise"));
 }
 
-TEST(LiveWheel, AfterALongHoleLooksForTheWheelAnew) {
+TEST(LiveWheel, SearchesTheWheelAgainAfterALongGap) {
   Stream stream = one_sensor();
   for (std::size_t k = 1000; k < stream.stamps_s.size(); ++k) stream.stamps_s[k] += 60.0;
   const Followed one = follow(stream, options_for(1));
@@ -187,15 +187,15 @@ TEST(LiveWheel, AfterALongHoleLooksForTheWheelAnew) {
   EXPECT_GT(coverage(one, later, 75.0), 0.93);
 }
 
-TEST(LiveWheel, StartsAnewWhereTheClockIsSetBack) {
+TEST(LiveWheel, RestartsIfTheClockIsSetBack) {
   Stream stream = one_sensor();
   for (std::size_t k = 1000; k < stream.stamps_s.size(); ++k) stream.stamps_s[k] -= 9.0;
   const Followed one = follow(stream, options_for(1));
-  EXPECT_TRUE(one.fed.says("the clock went back"));
+  EXPECT_TRUE(one.fed.says("the clock stepped back"));
   EXPECT_NEAR(one.fed.rows.stamps_s.back(), stream.stamps_s.back(), 1e-9);
 }
 
-TEST(LiveWheel, SaysThatThereIsNoWheel) {
+TEST(LiveWheel, ReportsThatThereIsNoWheel) {
   Stream stream = one_sensor();
   test::Normal noise(3);
   for (auto& channel : stream.channels)
@@ -205,13 +205,13 @@ TEST(LiveWheel, SaysThatThereIsNoWheel) {
   EXPECT_TRUE(one.fed.says("no wheel found"));
 }
 
-TEST(LiveWheel, SaysThatTheRadiusIsNotKnown) {
+TEST(LiveWheel, ReportsThatTheRadiusIsUnknown) {
   const Drive slow{{0.3, 11 * rpm}, {{12.0, 11 * rpm}}};
   EXPECT_TRUE(follow(one_sensor(slow), options_for(1, std::nullopt)).fed.says("give --radius"));
 }
 
 TEST(LiveWheel, AStepAllocatesNothingOnceTheWheelIsFound) {
-  // Two speeds at the start show the place, so that nothing is gathered any more.
+  // Two speeds at the start determine the lever arm, after which no data are collected any more.
   const Drive drive{{0.3, 5.0}, {{1.0, 5.0}, {2.0, 10.0}, {9.0, 10.0}}};
   const Stream stream = one_sensor(drive);
   auto live = live_wheel(options_for(1)).value();

@@ -27,7 +27,7 @@ TEST(Pva, TwoStepsEqualOneOfTwiceTheLength) {
   EXPECT_TRUE(two.Q.isApprox(one.F * one.Q * one.F.transpose() + one.Q, 1e-14));
 }
 
-TEST(Pva, AStepOfNoTimeChangesNothing) {
+TEST(Pva, AStepOfZeroDurationChangesNothing) {
   const LinearModel none = pva_model(of_length(0.0));
   EXPECT_EQ(none.F, (Mat<3, 3>::Identity()));
   EXPECT_EQ(none.Q, (Mat<3, 3>::Zero()));
@@ -76,8 +76,8 @@ TEST(PvaBias, AfterManyTimeConstantsTheBiasHasItsStationaryVariance) {
                    0.5 * bias_options.bias_psd_m2ps5 * bias_options.time_constant_s);
 }
 
-// At rest the acceleration is known to be small, so what the accelerometer reads is the bias, and
-// the filter that knows its warm-up ends nearer than the one that takes it for still.
+// At rest the acceleration is small a priori, so the accelerometer measures the bias, and the
+// filter with the warm-up model ends closer to the truth than the one with a constant bias.
 TEST(PvaBias, KnowingTheWarmUpKeepsItOutOfTheAcceleration) {
   constexpr double a1 = 0.1, a2 = -0.03;
   const auto run_with = [&](double settles_at) {

@@ -24,7 +24,7 @@ struct Cell {
   int digits;
 };
 
-// Table 2.1 of the thesis, but for three of its cells: "015 mm" is 15 mm, and see below.
+// Table 2.1 of the thesis, except for three of its cells: "015 mm" is 15 mm, and see below.
 constexpr std::array<std::array<Cell, 4>, 4> table{{
     {{{0.12e-3, 2}, {12e-3, 2}, {0.44, 2}, {1.6e3, 2}}},
     {{{1.5e-3, 2}, {150e-3, 2}, {5.3, 2}, {19e3, 2}}},
@@ -48,7 +48,7 @@ TEST(PositionBudget, OfTheGradesIsTheThesissTable) {
   }
 }
 
-// The thesis prints 0.13 mm and 620 mm there: half a digit from ½ b t² with 10 m/s² to the g.
+// The thesis prints 0.13 mm and 620 mm there: half a digit from ½ b t² with 10 m/s² per g.
 TEST(PositionBudget, TwoCellsOfTheThesisTakeTenMetresPerSecondSquaredForG) {
   const auto rows = position_budget(grade_sensors(), std::array{1.0});
   const double ten = 10.0 / standard_gravity_mps2;
@@ -65,7 +65,7 @@ TEST(PositionBudget, CarriesTheBiasesUncertainty) {
   EXPECT_DOUBLE_EQ(rows[0].errors[1].position_m.std, 0.04);
 }
 
-// Second computation: white noise of density N, sampled, is integrated twice many times over.
+// Independent computation: sampled white noise of density N is integrated twice, many times over.
 TEST(PositionBudget, NoiseSpreadsThePositionAsItsIntegralDoes) {
   constexpr double N = 1e-3, dt = 0.05;
   constexpr int steps = 200, runs = 4000;
@@ -74,7 +74,7 @@ TEST(PositionBudget, NoiseSpreadsThePositionAsItsIntegralDoes) {
   for (int run = 0; run < runs; ++run) {
     double position = 0.0, velocity = 0.0;
     for (int k = 0; k < steps; ++k) {
-      double sum = 0.0;  // of 12 evens: mean 0, variance 1
+      double sum = 0.0;  // sum of 12 uniform deviates: mean 0, variance 1
       for (int i = 0; i < 12; ++i) sum += static_cast<double>(engine() >> 11U) * 0x1p-53;
       const double accel = N / std::sqrt(dt) * (sum - 6.0);
       position += velocity * dt + 0.5 * accel * dt * dt;
@@ -92,7 +92,7 @@ TEST(PositionBudget, NoiseSpreadsThePositionAsItsIntegralDoes) {
 TEST(PositionBudget, AddsNoiseAndBiasInQuadrature) {
   const std::vector<BudgetSensor> sensors{
       {.name = "s", .bias_mps2 = {0.0, 0.03}, .noise = {.white_mps2_rthz = 0.04}}};
-  const double t = 4.0 / 3.0;  // there ½ t² and √(t³/3) are equal
+  const double t = 4.0 / 3.0;  // ½ t² and √(t³/3) are equal there
   const double each = 0.5 * t * t;
   EXPECT_NEAR(position_budget(sensors, std::array{t})[0].errors[0].position_m.std, 0.05 * each,
               1e-14);
@@ -105,8 +105,8 @@ struct Cosine {
   double amplitude, omega, phase;
 };
 
-/// Flicker of the one-sided density B²/(π f) as cosines of random phase and normal amplitude, one
-/// for each of many narrow bands that a logarithmic scale has, from a period of longest_s on.
+/// Flicker noise of one-sided density B²/(π f) as cosines with random phases and normal amplitudes,
+/// one for each of many narrow bands on a logarithmic scale, up to a period of longest_s.
 std::vector<Cosine> flicker_of(double B, double longest_s, std::mt19937_64& random) {
   constexpr double width = 0.02, decades = 7.0;
   std::normal_distribution<double> normal;
@@ -114,7 +114,7 @@ std::vector<Cosine> flicker_of(double B, double longest_s, std::mt19937_64& rand
   std::vector<Cosine> cosines;
   for (double octave = 0.0; octave < decades * std::numbers::ln10; octave += width) {
     const double f = std::exp(octave + 0.5 * width) / longest_s;
-    // A normal amplitude: the variance of a cosine is half its square.
+    // For a normal amplitude: the variance of a cosine is half its square.
     const double variance = B * B / std::numbers::pi * width;
     cosines.push_back(
         {std::sqrt(2.0 * variance) * normal(random), 2.0 * std::numbers::pi * f, turn(random)});
@@ -171,8 +171,8 @@ TEST(PositionBudget, ARandomWalkCountsAsItsIncrementsIntegratedTwice) {
   EXPECT_NEAR(std::sqrt(squares / runs) / std_m, 1.0, 0.07);
 }
 
-// Its own noise for an ADIS16405, N 450 µg/√Hz, B 267 µg, K 45 µg/√s, with a bias good to 0.1 mg:
-// what bias and white noise alone leave out grows to several times what they give.
+// An ADIS16405's own noise, N 450 µg/√Hz, B 267 µg, K 45 µg/√s, with a bias known to 0.1 mg: the
+// contributions other than bias and white noise grow to several times theirs.
 TEST(PositionBudget, OfATypicalSensorMostComesFromFlickerAndRandomWalk) {
   constexpr double ug = 1e-6 * standard_gravity_mps2;
   const BudgetNoise noise{.white_mps2_rthz = 450.0 * ug,

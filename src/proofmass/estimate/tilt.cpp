@@ -17,8 +17,8 @@ void follow(const TiltRecord& record, const TiltOptions& options, TiltSolution& 
   if (const std::size_t held = drop_held(instants); held > 0)
     solution.notes.push_back(
         {Severity::warning, std::to_string(held) + " of " + std::to_string(solution.samples) +
-                                " rows repeat the one before: the sensor is slower than the "
-                                "recording, and each reading counts once"});
+                                " rows repeat the previous one: the sensor is slower than the "
+                                "recording, and each measurement counts once"});
   const TiltKnown known = known_of(record, options, solution, instants);
   if (options.progress) options.progress("fitting the noise", 0.0);
   const bool gyroscope = has_rates(record);

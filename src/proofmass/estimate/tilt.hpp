@@ -91,9 +91,9 @@ struct TiltSeries {
 };
 
 struct TiltSolution {
-  std::size_t samples = 0;    ///< in the recording
-  std::size_t unusable = 0;   ///< number without a measurement on every channel
-  std::size_t told_less = 0;  ///< measurements with a weight of one half or less
+  std::size_t samples = 0;        ///< in the recording
+  std::size_t unusable = 0;       ///< number without a measurement on every channel
+  std::size_t down_weighted = 0;  ///< measurements with a weight of one half or less
   std::size_t axes = 0;
   bool moving = false;
   TiltAngles final{};   ///< at the last rest, or at the last sample of a moving base

@@ -6,7 +6,7 @@
 #include "proofmass/estimate/tilt.hpp"
 #include "proofmass/estimate/tilt_test_support.hpp"
 
-// How often bands of 95 % hold what is true.
+// Coverage of the 95 % bands.
 namespace proofmass::estimate::tilt_slow_test {
 namespace {
 
@@ -52,7 +52,7 @@ TEST(TiltCoverage, AtRestWithAnUncertainCalibrationIsNinetyFivePercent) {
   EXPECT_NEAR(pitch.share(), 0.95, 0.02);
 }
 
-// A converter of 0.04 m/s² (10 bits, ± 2 g) and noise from 0.05 to 1 of its steps.
+// A quantisation step of 0.04 m/s² (10 bits, ± 2 g) and noise from 0.05 to 1 steps.
 TEST(TiltCoverage, AtRestWithACoarseConverterIsAtLeastNinetyThreePercent) {
   constexpr double step = 0.04;
   for (const double noise : {0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 1.0}) {
@@ -79,9 +79,9 @@ TEST(TiltCoverage, AtRestWithACoarseConverterIsAtLeastNinetyThreePercent) {
   }
 }
 
-// A sensor whose biases moved after its calibration by up to a size, in one attitude. The norm
-// shows one of three components: where gravity is uncertain by as much, a large one may hide.
-TEST(TiltCoverage, WithASensorFileOfAnotherSessionIsAtLeastNinetyThreePercentWhereGravityIsKnown) {
+// A sensor whose biases changed since its calibration, in a single attitude. The norm determines
+// one of three components; if gravity is as uncertain, a large change may be undetectable.
+TEST(TiltCoverage, WithASensorFileOfAnotherSessionIsAtLeastNinetyThreePercentForKnownGravity) {
   constexpr double mg = 1e-3 * standard_gravity_mps2;
   Random random(8, "moved");
   const auto held_by = [&](double gravity_std_mps2, const auto& draw_change) {
@@ -113,7 +113,7 @@ TEST(TiltCoverage, WithASensorFileOfAnotherSessionIsAtLeastNinetyThreePercentWhe
   }
 }
 
-// Shares of epochs 2 s apart, of roll and pitch together.
+// Coverage at epochs 2 s apart, roll and pitch together.
 struct Shares {
   double smoothed, filtered;
 };
@@ -143,7 +143,7 @@ TEST(TiltCoverage, OnAMovingBaseWithGyroscopeAndRestsIsNinetyFivePercent) {
   EXPECT_NEAR(held.filtered, 0.95, 0.02);
 }
 
-// The largest of three equal eigenvalues' estimates stands for all: cautious.
+// The largest of three estimates of equal eigenvalues is used for all: cautious.
 TEST(TiltCoverage, OnAMovingBaseWithGyroscopeAndNoRestIsAtLeastNinetyThreePercent) {
   const Shares held = moving_coverage({}, 0.0);
   EXPECT_GT(held.smoothed, 0.93);
@@ -156,12 +156,12 @@ TEST(TiltCoverage, OnAMovingBaseWithoutGyroscopeIsAtLeastNinetyThreePercent) {
   EXPECT_GT(held.filtered, 0.93);
 }
 
-// A base that is swayed along one level direction, slowly or faster, with rests at its ends and
-// without: docs/methods/tilt.md has the table.
+// A base accelerated sinusoidally along one horizontal direction at various periods, with and
+// without rests at its ends: the table in docs/methods/tilt.md.
 struct Sway {
   const char* name;
   MovingOptions base;
-  double least;  ///< share held by the smoother
+  double least;  ///< minimum coverage by the smoother
 };
 
 void PrintTo(const Sway& sway, std::ostream* out) {

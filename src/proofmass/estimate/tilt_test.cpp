@@ -47,21 +47,21 @@ TEST(Tilt, AtRestCountsCorrelatedNoise) {
   double noise = 0.0;
   for (int k = 0; k < 20000; ++k) values.push_back(noise = 0.95 * noise + random.normal());
   const StretchMean mean = stretch_mean(values, 0.0);
-  // The variance of the mean of an autoregression is σ²/(1 − φ)²/N.
+  // For an autoregression the variance of the mean is σ²/(1 − φ)²/N.
   EXPECT_NEAR(std::sqrt(mean.variance), 20.0 / std::sqrt(20000.0), 0.3 * 20.0 / std::sqrt(20000.0));
 }
 
-// Forty batches of values that are correlated over a fifth of the stretch.
-TEST(Tilt, AtRestCountsWhatWandersFromBatchToBatch) {
+// Forty batches of values that are correlated over a fifth of the interval.
+TEST(Tilt, AtRestCountsSlowNoiseBetweenBatches) {
   Random random(31, "wander");
   double squares = 0.0, variances = 0.0;
   for (int run = 0; run < 200; ++run) {
     std::vector<double> values;
-    double wander = 10.0 * random.normal();
+    double slow = 10.0 * random.normal();
     const double phi = std::exp(-1.0 / 100.0);
     for (int k = 0; k < 2000; ++k) {
-      wander = phi * wander + 10.0 * std::sqrt(1.0 - phi * phi) * random.normal();
-      values.push_back(wander + random.normal());
+      slow = phi * slow + 10.0 * std::sqrt(1.0 - phi * phi) * random.normal();
+      values.push_back(slow + random.normal());
     }
     const StretchMean mean = stretch_mean(values, 0.0);
     squares += square(mean.mean) / 200.0;
@@ -71,7 +71,8 @@ TEST(Tilt, AtRestCountsWhatWandersFromBatchToBatch) {
   EXPECT_LT(variances, 2.0 * squares);
 }
 
-// A hum of 1.5 steps leaves more of the rounding than Gaussian noise of its variance would.
+// A sinusoidal vibration of 1.5 steps leaves more rounding error than Gaussian noise of equal
+// variance.
 TEST(Tilt, AHumDithersTheRoundingAwayOnlyInPart) {
   double squares = 0.0, variances = 0.0;
   constexpr int levels = 50;
@@ -88,8 +89,8 @@ TEST(Tilt, AHumDithersTheRoundingAwayOnlyInPart) {
   EXPECT_LT(variances, 1.0 / 12.0);
 }
 
-TEST(Tilt, AStretchThatIsQuietAgainstTheVibrationIsNoRestWhereItsLevelMoves) {
-  // 0.3 m/s² of vibration, and beneath it a sway of 2 m/s² that takes ten seconds.
+TEST(Tilt, AQuietStretchWithAChangingLevelIsNotARest) {
+  // Vibration of 0.3 m/s², and a slow acceleration of 2 m/s² with a period of ten seconds.
   const MovingBase base = moving_base({.samples = 6000,
                                        .accel_std_mps2 = 0.0,
                                        .sway_mps2 = 2.0,
@@ -110,7 +111,7 @@ TEST(Tilt, AStretchThatIsQuietAgainstTheVibrationIsNoRestWhereItsLevelMoves) {
   EXPECT_GT(within, 0.9 * static_cast<double>(base.pitch_rad.size()));
 }
 
-TEST(Tilt, ARestKeepsWhatAWarmSensorWanders) {
+TEST(Tilt, ARestKeepsTheDriftOfAWarmSensor) {
   TiltRecord record = still_record(force_at(0.1, 0.2), 0.02, 6000, 33);
   for (std::size_t k = 0; k < 6000; ++k)
     record.accel_mps2[0][k] += 0.01 * static_cast<double>(k) / 6000.0;
@@ -149,10 +150,10 @@ TEST(Tilt, TakesAnUnknownSensorToBeAsFarOffAsItsNormShows) {
   ASSERT_TRUE(solution) << solution.error().message;
   EXPECT_NEAR(solution->final.pitch_rad->std, 0.02, 1e-3);
   ASSERT_FALSE(solution->notes.empty());
-  EXPECT_NE(solution->notes.front().text.find("departs from gravity"), std::string::npos);
+  EXPECT_NE(solution->notes.front().text.find("differs from gravity"), std::string::npos);
 }
 
-// Two axes that never change and one that flickers between two codes.
+// Two constant axes and one that alternates between two codes.
 TEST(Tilt, CountsWhatACoarseConverterHides) {
   constexpr double step = 0.04;
   TiltRecord record = still_record(force_at(-0.6521, -0.002), 0.05 * step, 1000, 6);
@@ -229,7 +230,7 @@ TEST(Tilt, FollowsAMovingBaseWithoutAGyroscope) {
   EXPECT_LT(rms_error_rad(solution->series.pitch_rad, base.pitch_rad), 0.02);
 }
 
-// Swayed on the level at 1 m/s², 5.8° of apparent tilt, while it does not turn. Its crests are as
+// Horizontal acceleration of 1 m/s² without rotation, an apparent tilt of 5.8°. Its maxima are as
 // quiet as rests.
 TEST(Tilt, WithoutAGyroscopeTheBandHoldsWhatALevelAccelerationHides) {
   int inside = 0, all = 0;
@@ -318,7 +319,7 @@ TEST(Tilt, CountsAReadingThatALoggerRepeatsOnce) {
   }));
 }
 
-// One reading of 1e300 in a recording of a moving base ended the filter.
+// A single measurement of 1e300 in a recording of a moving base used to end the filter.
 TEST(Tilt, LeavesOutWhatNoSensorReads) {
   for (const TiltBase moves : {TiltBase::still, TiltBase::moving}) {
     TiltRecord record = still_record(force_at(0.1, 0.2), 0.02, 400, 17);
@@ -356,7 +357,7 @@ TEST(Tilt, SaysWhyItCannot) {
   timeless.time_s.clear();
   TiltOptions moving;
   moving.base = TiltBase::moving;
-  EXPECT_NE(message(timeless, moving).find("takes time"), std::string::npos);
+  EXPECT_NE(message(timeless, moving).find("needs time"), std::string::npos);
   TiltRecord flat = still_record(force_at(0.0, 0.0), 0.01, 300, 16);
   flat.accel_mps2[1].clear();
   EXPECT_NE(message(flat, moving).find("three axes"), std::string::npos);

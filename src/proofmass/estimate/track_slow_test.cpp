@@ -20,7 +20,7 @@ struct Coverages {
   Coverage end, on_the_way, strokes;
 };
 
-// The bands of many records of the same carriage, each with its own noise.
+// Coverage by the bands of many records of the same carriage with independent noise.
 Coverages cover(Carriage carriage, std::size_t runs) {
   Coverages found;
   TrackOptions options;
@@ -62,7 +62,7 @@ TEST(TrackCoverage, NinetyFivePercentBandsFromRestToRestHoldTheTruthInNinetyThre
   RecordProperty("strokes", std::to_string(found.strokes.share()));
 }
 
-// One closure says little of what errs in motion: the bands are wider than they had to be.
+// One closure hardly determines the errors in motion: the bands are wider than necessary.
 TEST(TrackCoverage, OneMotionAloneIsNeverTooSure) {
   const Coverages found = cover(
       {.strokes_m = {0.5, -0.5, 0.5, -0.5, 0.5, -0.5, 0.5, -0.5}, .dwell_s = 4.0, .harmonic = true},

@@ -50,7 +50,7 @@ TEST(Track, WithoutNoiseIsExactToATenthOfAMillimetre) {
   EXPECT_NEAR(found.smoother->displacement_m.value, 0.0, 1e-4);
 }
 
-TEST(Track, ReadingsThatDoNotChangeAtRestAreNoBetterThanTheirStep) {
+TEST(Track, ConstantReadingsAtRestAreAsUncertainAsTheirStep) {
   Carriage carriage{.noise_std_mps2 = 0.0};
   CarriageRecord made = record(carriage);
   for (auto& axis : made.sensor.accel_mps2)
@@ -94,8 +94,8 @@ TEST(Track, CountsThereAndBackWithoutARestBetweenAsOneStroke) {
   }
 }
 
-// Where a harmonic motion turns, its acceleration is at rest for a moment.
-TEST(Track, TakesNoTurningPointForARest) {
+// At the turning points of a harmonic motion the acceleration is constant for a moment.
+TEST(Track, DoesNotTakeATurningPointAsARest) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Carriage carriage{.strokes_m = {0.5, -0.5, 0.5, -0.5},
                       .stroke_s = 2.5,
@@ -135,7 +135,7 @@ TEST(Track, FusesFixesOfThePosition) {
   EXPECT_LT(fixed.smoother->displacement_m.std, 0.5 * alone.smoother->displacement_m.std);
 }
 
-TEST(Track, ATurnThatTheUserKnowsIsAVelocityOfZero) {
+TEST(Track, AGivenTurnIsAVelocityOfZero) {
   const CarriageRecord made = record({.strokes_m = {0.5, -0.5}, .stroke_s = 5.0, .harmonic = true});
   TrackOptions options = exact_scale();
   options.still = {{0.0, 1.98}, {12.01, 13.98}};
@@ -170,10 +170,10 @@ TEST(Track, RefusesARecordWithoutARestAndSaysWhatToRecord) {
   const auto found = estimate_track(made.sensor, {});
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, Errc::not_observable);
-  EXPECT_NE(found.error().message.find("lie still for 2 s"), std::string::npos);
+  EXPECT_NE(found.error().message.find("still for 2 s"), std::string::npos);
 }
 
-TEST(Track, SaysThatSlowMotionCannotBeToldFromDrift) {
+TEST(Track, ReportsThatSlowMotionIsNotSeparableFromDrift) {
   const CarriageRecord made = record({.strokes_m = {2.0}, .stroke_s = 20.0});
   const auto found = estimate_track(made.sensor, {});
   ASSERT_FALSE(found);
@@ -188,7 +188,7 @@ TEST(Track, ASensorThatNeverMovesWentNowhere) {
   EXPECT_LT(displacement.std, 1.0);
   EXPECT_TRUE(found.strokes.empty());
   EXPECT_TRUE(found.no_motion_shown);
-  EXPECT_TRUE(says(found, "no motion stands out of the noise"));
+  EXPECT_TRUE(says(found, "no motion exceeds the noise"));
 }
 
 TEST(Track, TheBandHoldsTheTruthAcrossMissingReadings) {
@@ -198,13 +198,14 @@ TEST(Track, TheBandHoldsTheTruthAcrossMissingReadings) {
   made.sensor.accel_mps2[0][700] = 3e34;
   const TrackSolution found = track(made);
   EXPECT_EQ(found.missing, 13U);
-  EXPECT_TRUE(says(found, "13 samples without a reading"));
+  EXPECT_TRUE(says(found, "13 samples are missing"));
   for (std::size_t k = 0; k < made.position_m.size(); ++k)
     EXPECT_NEAR(found.series.position_m[k], made.position_m[k],
                 5.0 * found.series.position_std_m[k] + 1e-9);
 }
 
-// A lift: it pushes off, cruises shaking, brakes. `derivative` gives jerk for acceleration.
+// A lift: it accelerates, moves at constant speed with vibration, and brakes. `derivative`: jerk
+// instead of acceleration.
 CarriageRecord lift(bool derivative, std::uint64_t seed = 3) {
   CarriageRecord made;
   std::mt19937_64 engine(seed);
@@ -244,8 +245,8 @@ TEST(Track, NoticesAColumnThatIsJerkAndGivesNoFigure) {
   EXPECT_TRUE(track(lift(true), options).smoother);
 }
 
-// How far an error of the level carries the position between two rests is no sign of either.
-TEST(Track, TellsJerkFromAccelerationWhateverTheNoise) {
+// The position drift due to a level error between two rests is not evidence for either.
+TEST(Track, DistinguishesJerkFromAccelerationAtAnyNoise) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     EXPECT_TRUE(track(lift(true, seed)).suspected_jerk) << seed;
     EXPECT_FALSE(track(lift(false, seed)).suspected_jerk) << seed;
@@ -261,9 +262,9 @@ TEST(Track, TakesNoCruiseForARest) {
   EXPECT_LT(found.smoother->peak_m.std, 3.0);
 }
 
-TEST(Track, AGyroscopeTellsGravityFromMotion) {
-  // Tilts by 3° on the way and back: without a gyroscope gravity leans in by half a metre per
-  // second squared.
+TEST(Track, AGyroscopeSeparatesGravityAndMotion) {
+  // Tilts by 3° during the motion and back: without a gyroscope gravity contributes half a metre
+  // per second squared.
   CarriageRecord made = record({.strokes_m = {0.6}, .stroke_s = 4.0, .at_rest_mps2 = {0, 0, g}});
   std::mt19937_64 engine(5);
   std::normal_distribution<double> noise(0.0, 1.0);

@@ -29,7 +29,7 @@ struct CarriageRecord {
   std::vector<double> position_m, velocity_mps, accel_mps2;
 };
 
-/// Position, velocity and acceleration at the share s of a stroke of length 1 in time 1.
+/// Position, velocity and acceleration at fraction s of a stroke of length 1 in time 1.
 inline std::array<double, 3> stroke_shape(double s, bool harmonic) {
   if (harmonic) {
     const double w = std::numbers::pi;
@@ -72,7 +72,7 @@ inline CarriageRecord record(const Carriage& carriage) {
     if (!carriage.harmonic) rest(carriage.dwell_s);
   }
   if (carriage.harmonic) {
-    // The force does not end abruptly either.
+    // The force does not end abruptly, either.
     for (std::size_t i = 0; i < 3; ++i)
       out.sensor.accel_mps2[i].back() += 0.5 * carriage.direction[i] * out.accel_mps2.back();
     rest(carriage.dwell_s);

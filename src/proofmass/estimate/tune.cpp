@@ -64,7 +64,7 @@ Status check_series(const TuneSeries& series) {
   for (const View<double> segment : series.segments) {
     for (const double x : segment) {
       if (std::isinf(x))
-        return Error{Errc::not_finite, "a reading is infinite; NaN says there is none"}.at(
+        return Error{Errc::not_finite, "a measurement is infinite; use NaN for a missing one"}.at(
             series.name);
       if (std::isnan(x)) continue;
       ++count;
@@ -77,8 +77,8 @@ Status check_series(const TuneSeries& series) {
                                             std::to_string(fewest) + " are needed"}
         .at(series.name);
   if (low == high)
-    return Error{Errc::not_observable, "all readings are equal: there is no noise to tune by"}.at(
-        series.name);
+    return Error{Errc::not_observable, "all measurements are equal: there is no noise to tune by"}
+        .at(series.name);
   return Done{};
 }
 
@@ -251,7 +251,7 @@ class Fit {
     found.verdict = TuneVerdict::not_observable;
     found.reason = "not distinguishable from zero";
     if (found.role == TuneRole::markov_std) {
-      found.reason += ": white noise and a random walk say as much";
+      found.reason += ": white noise and a random walk explain the data";
     } else {
       // One-sided, hence 90 % two-sided.
       found.upper_95 = profile_limit(problem_, {.unknown = k,
@@ -270,7 +270,7 @@ class Fit {
       if (stays || j == k) continue;
       TunedParameter& gone = candidate_of(j).found;
       gone.verdict = TuneVerdict::not_observable;
-      gone.reason = "there is no Markov bias that it could be of";
+      gone.reason = "there is no Markov bias to which it applies";
     }
     problem_ = std::move(rest);
   }

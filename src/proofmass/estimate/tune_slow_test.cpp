@@ -1,4 +1,4 @@
-// Whether what is called 95 % is 95 %.
+// Coverage of the 95 % intervals.
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ struct Truth {
   int runs;
 };
 
-// Shares of the runs in which each parameter's truth lay inside, R first.
+// Coverage of each parameter over the runs, R first.
 std::array<double, 2> coverage(const Truth& truth) {
   std::array<double, 2> inside{};
   for (int run = 0; run < truth.runs; ++run) {
@@ -50,7 +50,7 @@ TEST(TuneCoverage, ALimitOfANoiseThatIsNotThereIsSeldomBroken) {
   const auto share = coverage({.samples = 300, .step_variance = 0.0, .runs = 800});
   EXPECT_GT(share[0], 0.93);
   EXPECT_LT(share[0], 0.97);
-  EXPECT_GT(share[1], 0.95);  // zero is called a value in 1.7 % of the runs
+  EXPECT_GT(share[1], 0.95);  // in 1.7 % of the runs zero is reported as a value
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace proofmass::estimate::tune_study_test {
 namespace {
 
-/// A tuning with these figures: noise of a measurement and of the level's walk, R.
+/// A tuning with given noise densities of measurement and level, and R.
 Tuning tuning_with(double white, double random_walk, double R) {
   TunedSeries series;
   series.name = "x";

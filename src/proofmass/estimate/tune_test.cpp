@@ -68,7 +68,7 @@ TEST(Tune, EstimatesLieWithinTheirStandardDeviations) {
   EXPECT_NEAR(walk.value, 0.02, 3.0 * walk.std);
   EXPECT_LT(white.std, 0.01 * white.value);
   EXPECT_LT(walk.std, 0.1 * walk.value);
-  // White noise alone: std of a standard deviation is 1/√(2N).
+  // For white noise alone the relative std of a standard deviation is 1/√(2N).
   EXPECT_NEAR(white.std / white.value, 1.0 / std::sqrt(2.0 * 20'000), 2e-3);
 }
 
@@ -151,7 +151,7 @@ TEST(Tune, AFixedParameterStaysAndTheOthersFollow) {
   EXPECT_NEAR(find(found, "reading_variance").value->value, squares / 99.0, 1e-3);
 }
 
-TEST(Tune, ASharedParameterIsKnownBetterThanEachAlone) {
+TEST(Tune, ASharedParameterIsMorePreciseThanEachAlone) {
   const auto x = simulated({.samples = 3000, .step_std = 0.1, .seed = 1});
   const auto y = simulated({.samples = 3000, .reading_std = 2.0, .step_std = 0.1, .seed = 2});
   const std::vector<TuneSeries> both{{"x", 1.0, {x}}, {"y", 1.0, {y}}};

@@ -66,8 +66,8 @@ void add_distance(const WheelOptions& options, WheelSolution& solution) {
   }
   if (!radius) {
     solution.notes.push_back({Severity::warning,
-                              "distance_m: neither a rim radius was given (--rim-radius) nor can "
-                              "the sensor's own be told from this recording"});
+                              "distance_m: no rim radius was given (--rim-radius), and the "
+                              "recording does not determine the sensor's own"});
     return;
   }
   solution.distance_m = Uncertain{path_rad * radius->value,
@@ -97,14 +97,14 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
       std::ranges::find_if(series.atan2_angle_rad, [](double angle) { return !std::isnan(angle); });
   if (first != series.atan2_angle_rad.end())
     solution.atan2.turns = Uncertain{(series.atan2_angle_rad.back() - *first) / rad_per_turn, 0.0};
-  solution.atan2.note = "readings as they are: bias and centripetal force stay in";
+  solution.atan2.note = "raw measurements: includes bias and centripetal acceleration";
   const auto plain = plain_places(solution.sensors, readings.phase_rad);
   if (plain)
     series.double_integral_angle_rad = double_integral_angle(
         readings, plain->places_m, series.angle_rad.front(), series.speed_radps.front());
   if (series.double_integral_angle_rad.empty()) {
     solution.double_integration.note =
-        "needs the radius of every sensor, which this recording does not show: give --radius";
+        "needs the radius of every sensor, which this recording does not determine: give --radius";
     return;
   }
   solution.double_integration.turns = Uncertain{
@@ -115,7 +115,7 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
       "starts from the smoother's first angle and speed; an error of b m/s^2 grows as b t^2 / (2 "
       "r)";
   if (plain->taken)
-    solution.double_integration.note += "; took the sensors' first axes for the spoke";
+    solution.double_integration.note += "; the sensors' first axes are assumed radial";
 }
 
 void note_gyroscope(const PlanarReadings& readings, WheelSensorFit& fit, WheelSolution& solution) {
@@ -126,11 +126,12 @@ void note_gyroscope(const PlanarReadings& readings, WheelSensorFit& fit, WheelSo
   if (saturated == 0) return;
   solution.notes.push_back(
       {Severity::warning,
-       fit.name + (fit.has_gyro ? ": " + std::to_string(saturated) +
-                                      " readings of the gyroscope are at the end of its range, and "
-                                      "are not used"
-                                : ": the gyroscope reads the same value throughout, and is not "
-                                  "used")});
+       fit.name + (fit.has_gyro
+                       ? ": " + std::to_string(saturated) +
+                             " measurements of the gyroscope are at the limit of its range, and "
+                             "are not used"
+                       : ": the gyroscope's output is constant, and is not "
+                         "used")});
 }
 
 void add_sensor(const WheelSensor& sensor,
@@ -211,9 +212,9 @@ void judge_turns(const WheelFit& fit, const std::string& where, WheelSolution& s
   solution.smoother.note = "the angle was lost " + where;
   solution.notes.push_back(
       {Severity::bad,
-       "turns: readings are missing or spoilt " + where +
-           ", for so long that the angle is unknown by more than 45 degrees: a turn more or less "
-           "cannot be distinguished"});
+       "turns: measurements are missing or corrupt " + where +
+           ", for so long that the angle is uncertain by more than 45 degrees: the number of turns "
+           "is ambiguous"});
 }
 
 /// A wheel that vibrates is most likely on a vehicle, whose acceleration tilts the apparent
@@ -227,13 +228,15 @@ void note_travel(const WheelReadings& readings, WheelSolution& solution) {
   const double lean_deg = rolling.std * strongest / readings.gravity_mps2 / rad_per_deg;
   solution.notes.push_back(
       {Severity::info,
-       "the wheel shakes as if it carried a vehicle, whose speeding up and braking shift the "
-       "apparent gravity by rolling radius x angular acceleration / g: the rolling radius is taken "
+       "the wheel vibrates like a vehicle's, whose acceleration and braking tilt the "
+       "apparent gravity by rolling radius x angular acceleration / g: the rolling radius is "
+       "assumed "
        "as " +
            std::to_string(std::lround(rolling.value * 1e3)) + " mm +- " +
-           std::to_string(std::lround(rolling.std * 1e3)) + " mm, which leaves up to " +
+           std::to_string(std::lround(rolling.std * 1e3)) +
+           " mm, which makes the angle uncertain by up to " +
            std::to_string(static_cast<int>(std::ceil(lean_deg))) +
-           " degrees of the angle open meanwhile; --rolling-radius narrows it (0 for a bench)"});
+           " degrees during acceleration; --rolling-radius reduces this (0 for a bench)"});
 }
 
 /// Errors: invalid_argument (a radius so far from the recording's that its unit must be wrong).
@@ -249,12 +252,12 @@ Status check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolut
     };
     const std::string text = solution.sensors[s].name + ": --radius " +
                              std::to_string(std::lround(*options.radius_m * 1e3)) + " mm +- " +
-                             in_mm(given_std) + " mm contradicts the recording, which says " +
+                             in_mm(given_std) + " mm contradicts the recording's " +
                              std::to_string(std::lround(found.value * 1e3)) + " mm +- " +
                              in_mm(found.std) + " mm: ";
     if (*options.radius_m > another_unit * (std::abs(found.value) + 4.0 * found.std))
       return Error{Errc::invalid_argument, text + "it is expected in metres, 0.1 for 100 mm"};
-    solution.notes.push_back({Severity::bad, text + "leave it out or mend it"});
+    solution.notes.push_back({Severity::bad, text + "omit or correct it"});
   }
   return Done{};
 }

@@ -1,4 +1,4 @@
-// What takes seconds: a million steps, and many seeds of the thesis's rig.
+// Tests that take seconds: a million steps, and many seeds of the thesis's rig.
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@ using test::Drive;
 using test::Mount;
 using test::rpm;
 
-/// Position, speed and acceleration, of which the position is read: after the first reading it is
-/// known 1e16 times better than the rest, and what is predicted depends on the speed alone.
+/// Position, velocity and acceleration with the position measured: after the first measurement it
+/// is known 1e16 times better than the rest, and its prediction depends only on the velocity.
 struct ReadPosition {
   static constexpr int states = 4, moving = 3, channels = 1;
   LinearModel<3, 1> pva =
@@ -26,7 +26,7 @@ struct ReadPosition {
   }
   void measure(const Mat<4>& x, std::size_t k, Readings<4, 1>& out) const {
     out.count = 1;
-    // Every other reading has an offset in it, which tells the offset from the position.
+    // Every other measurement includes an offset, which makes offset and position separable.
     const double offset = k % 2 == 0 ? 0.0 : 1.0;
     out.rows[0] = {0.0, x(0) + offset * x(3), 1e-6, Mat<4>(1, 0, 0, offset)};
   }
@@ -42,7 +42,7 @@ TEST(Filter, CovarianceStaysSymmetricAndPositiveDefiniteOverAMillionSteps) {
   filter(model, 0, model.size(), Gate{}, state, [&](std::size_t k, const auto& step) {
     if (k % 100 != 0 && k > 1000) return;
     const Mat<4, 4>& P = step.filtered.cov;
-    // Scaled to a unit diagonal: what is left is correlations, and those have to be below one.
+    // Scaled to a unit diagonal; the off-diagonal entries are correlations and must be below one.
     const Mat<4> scale = P.diagonal().cwiseSqrt().cwiseInverse();
     const Mat<4, 4> correlations = scale.asDiagonal() * P * scale.asDiagonal();
     if (!correlations.allFinite() || correlations.llt().info() != Eigen::Success) ++broken;
@@ -55,7 +55,8 @@ TEST(Filter, CovarianceStaysSymmetricAndPositiveDefiniteOverAMillionSteps) {
 }
 
 /// The thesis's rig at 11 rpm: two sensors at R = 0.1 m with parallel axes, 60 s at 200 Hz, 0.0184
-/// m/s² of noise, biases within ±0.3 m/s², a warm-up of 0.1 m/s², and a ripple of 2 % once a turn.
+/// m/s² of noise, biases within ±0.3 m/s², a warm-up of 0.1 m/s², and a ripple of 2 % once per
+/// turn.
 struct Rig {
   Drive drive{{0.0, 11 * rpm}, {{60.0, 11 * rpm}}};
   std::vector<WheelSensor> sensors;
@@ -79,19 +80,19 @@ struct Rig {
 
 struct RigScore {
   double filtered_rms_rad = 0.0, smoothed_rms_rad = 0.0;
-  double angle_nees = 0.0;  ///< of the smoothed angle half way
+  double angle_nees = 0.0;  ///< for the smoothed angle at half time
   double turns_nees = 0.0;
 };
 
 RigScore score(const Rig& rig) {
   WheelOptions options;
   options.radius_m = 0.1;
-  options.bandwidth_hz = 1e5;  // these sensors do not delay
+  options.bandwidth_hz = 1e5;  // the sensors have no delay
   options.rolling_radius_m = 0.0;
   const auto solution = estimate_wheel(rig.sensors, options).value();
   const WheelSeries& s = solution.series;
-  // Which way the axes point against the wheel's marks no accelerometer can tell: here they are
-  // parallel, and the angle is the rig's but for whole turns.
+  // The orientation of the axes relative to the wheel's marks is not observable by accelerometers:
+  // here they are parallel, and the angle equals the rig's up to whole turns.
   const double whole = std::round((s.angle_rad.front() - rig.drive.start.angle_rad) / rad_per_turn);
   RigScore sum;
   double count = 0.0;
@@ -127,15 +128,15 @@ TEST(ThesisRig, AngleIsAsGoodAsPromisedAndAsGoodAsItSays) {
   EXPECT_LT(mean.filtered_rms_rad, 0.03 * rad_per_deg);
   EXPECT_LT(mean.smoothed_rms_rad, 0.015 * rad_per_deg);
   const Bounds bounds = mean_chi_square_95(seeds);
-  // The bands are cautious (docs/methods/wheel.md), as a warm-up is no random walk: not three times
-  // too wide.
+  // The bands are cautious (docs/methods/wheel.md), since a warm-up is not a random walk: but not
+  // three times too wide.
   EXPECT_GT(mean.angle_nees, 0.11);
   EXPECT_LT(mean.angle_nees, bounds.upper);
   EXPECT_GT(mean.turns_nees, 0.11);
   EXPECT_LT(mean.turns_nees, bounds.upper);
 }
 
-/// Squared errors over variances.
+/// Squared errors divided by variances.
 struct Nees {
   double sum = 0.0, largest = 0.0;
   std::size_t count = 0;
@@ -149,8 +150,8 @@ struct Nees {
   }
 };
 
-// A radius says how far from the axle the sensor is, not in which of its own directions, and at one
-// speed that direction is a bias.
+// A radius fixes the distance of the sensor from the axle but not the mounting azimuth, which at
+// one speed is confounded with a bias.
 TEST(WheelAtOneSpeed, WithItsRadiusGivenErrsInBiasAndScaleAsFarAsItSays) {
   Nees bias, scale, mounting;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
@@ -187,8 +188,8 @@ TEST(WheelAtOneSpeed, WithItsRadiusGivenErrsInBiasAndScaleAsFarAsItSays) {
   EXPECT_LT(mounting.largest, 12.0);
 }
 
-// The scale is measured in the gravity that the axle's tilt leaves; a bias along the axle looks
-// like a tilt.
+// The scale is measured in the component of gravity that remains with a tilted axle; a bias along
+// the axle is equivalent to a tilt.
 TEST(WheelAtTwoSpeeds, WithABiasAlongTheAxleErrsInRadiusAndScaleAsFarAsItSays) {
   Nees radius, scale;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {

@@ -44,7 +44,8 @@ struct Stage {
 struct Drive {
   Turning start;
   std::vector<Stage> stages;
-  double ripple = 0.0, ripple_phase_rad = 0.0;  ///< share of the first speed, once a turn of it
+  double ripple = 0.0, ripple_phase_rad = 0.0;  ///< ripple relative to the first speed, once per
+                                                ///< turn at that speed
 
   [[nodiscard]] double duration_s() const {
     double sum = 0.0;
@@ -81,7 +82,7 @@ struct Drive {
 /// One sensor with its mounting and errors. `x y z` are its own axes.
 struct Mount {
   std::complex<double> place_m{0.1, 0.0};  ///< in the wheel's axes
-  double turned_rad = 0.0;                 ///< its u against the wheel's first axis
+  double turned_rad = 0.0;                 ///< angle of its u relative to the wheel's first axis
   std::array<double, 2> bias_mps2{}, scale{1.0, 1.0};
   double skew_rad = 0.0;
   double noise_mps2 = 0.02;
@@ -94,7 +95,7 @@ struct Mount {
 
 struct Site {
   double gravity_mps2 = standard_gravity_mps2;
-  double axle_tilt_rad = 0.0;     ///< of the axle from level
+  double axle_tilt_rad = 0.0;     ///< inclination of the axle
   double rolling_radius_m = 0.0;  ///< 0: fixed axle
 };
 
@@ -149,7 +150,7 @@ inline std::array<std::array<double, 3>, 3> tilted(double about_z, double about_
            {cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx}}};
 }
 
-/// A row as corrupted by a broken transfer.
+/// Corrupts a row, like a faulty transfer.
 inline void spoil(WheelSensor& sensor, std::size_t row, double value) {
   for (auto& axis : sensor.accel_mps2)
     if (!axis.empty()) axis[row] = value;

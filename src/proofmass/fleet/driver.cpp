@@ -150,7 +150,7 @@ Result<Ended> ended_of(const std::string& line, std::string& document) {
     json.at("document").get_to(document);
     return ended;
   } catch (const nlohmann::json::exception&) {
-    return Error{Errc::corrupt, "the driver wrote a line that is no result: " + line};
+    return Error{Errc::corrupt, "the driver wrote a line that is not a result: " + line};
   }
 }
 

@@ -112,7 +112,7 @@ void read_provenance(const Json& document, DocumentRows& found) {
 Result<DocumentRows> rows_of_document(std::string_view text) {
   const Json document = Json::parse(text, nullptr, false);
   if (!document.is_object() || !document.contains("proofmass"))
-    return Error{Errc::corrupt, "is no document of Proofmass"};
+    return Error{Errc::corrupt, "is not a document of Proofmass"};
   DocumentRows found;
   read_provenance(document, found);
   Row common;

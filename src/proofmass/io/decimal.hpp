@@ -93,9 +93,9 @@ inline const char* scan_exponent(const char* p, int& exponent10) {
 
 }  // namespace detail
 
-/// Parses [+-]digits[point digits][e[+-]digits] and returns the end; nullptr if there is no number
-/// or one of more than 19 significant digits, whose mantissa would not fit. The text must end in a
-/// non-digit followed by decimal_padding bytes.
+/// Parses [+-]digits[point digits][e[+-]digits] and returns the end; nullptr if there is not a
+/// number or one of more than 19 significant digits, whose mantissa would not fit. The text must
+/// end in a non-digit followed by decimal_padding bytes.
 inline const char* scan_decimal(const char* p, char point, Decimal& out) {
   // Signs are unpredictable: no branch may depend on them.
   out.negative = *p == '-';

@@ -50,7 +50,7 @@ class Visitor {
   bool start_array(std::size_t) { return enter(true); }
   bool end_array() { return leave(); }
   bool parse_error(std::size_t byte, const std::string&, const nlohmann::detail::exception&) {
-    problem_ = fmt::format("is no JSON from its byte {} on", byte);
+    problem_ = fmt::format("is not JSON from its byte {} on", byte);
     return false;
   }
   // NOLINTEND(readability-identifier-naming)

@@ -159,7 +159,7 @@ TEST_F(PyramidFile, OfARecordingThatHasChangedIsNotUsed) {
   const auto read = read_pyramid(path_.string());
   ASSERT_FALSE(read.has_value());
   EXPECT_EQ(read.error().code, Errc::unsupported);
-  EXPECT_NE(read.error().message.find("another state of the recording"), std::string::npos);
+  EXPECT_NE(read.error().message.find("another version of the recording"), std::string::npos);
 }
 
 TEST_F(PyramidFile, ThatIsNotThereIsSaidSo) {

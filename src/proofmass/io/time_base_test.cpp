@@ -77,7 +77,7 @@ TEST(TimeBase, ReadsCalendarTimes) {
   ASSERT_TRUE(zoned.has_value()) << zoned.error().message;
   EXPECT_EQ(zoned->time.rate_hz, 100.0);
   EXPECT_EQ(zoned->time.start_ns, 1'705'479'286'000'000'000);
-  EXPECT_FALSE(is_noted(*zoned, "taken for UTC"));
+  EXPECT_FALSE(is_noted(*zoned, "taken as UTC"));
 
   const auto local = read_text(
       "date;clock;a\n17.01.2024;08:14:46,00;1,5\n17.01.2024;08:14:46,01;1\n"
@@ -85,7 +85,7 @@ TEST(TimeBase, ReadsCalendarTimes) {
   ASSERT_TRUE(local.has_value()) << local.error().message;
   EXPECT_EQ(local->time.rate_hz, 100.0);
   EXPECT_EQ(local->time.start_ns, 1'705'479'286'000'000'000);
-  EXPECT_TRUE(is_noted(*local, "taken for UTC"));
+  EXPECT_TRUE(is_noted(*local, "taken as UTC"));
 
   const auto blank = read_text(
       "2024-01-17 08:14:46.00 1.5\n2024-01-17 08:14:46.01 2.5\n"

@@ -143,7 +143,7 @@ TEST(Clock, LosesAndGainsNoHourToSummerTime) {
     const auto read = read_text(table("when", stamps));
     ASSERT_TRUE(read.has_value());
     expect_even(*read, 0.01);
-    EXPECT_TRUE(is_noted(*read, "at line 302, with no row missing: taken for summer time"))
+    EXPECT_TRUE(is_noted(*read, "at line 302, with no row missing: interpreted as summer time"))
         << notes_of(*read);
     EXPECT_EQ(read->time.mended_backwards, jump_s > 0.0 ? 0u : 1u);
   }

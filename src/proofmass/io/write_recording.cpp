@@ -65,7 +65,7 @@ Result<std::unique_ptr<RecordingWriter>> open_writer(const std::string& path,
                  path + ": the extension names no format that is written: " + all_endings()};
   if (extension->open != csv_writer && is_special_file(path))
     return Error{Errc::unsupported,
-                 path + ": is no regular file, into which only CSV can be written"};
+                 path + ": is not a regular file: only CSV can be written to it"};
   auto file = create_file(path);
   if (!file) return file.error();
   std::unique_ptr<OutputFile> output = std::move(file).value();

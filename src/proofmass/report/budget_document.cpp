@@ -14,7 +14,7 @@ using estimate::BudgetRow;
 
 constexpr double mps2_per_mg = 1e-3 * standard_gravity_mps2;
 
-// "15 mm ± 2 mm": error by the bias, and its standard deviation.
+// "15 mm ± 2 mm": error due to the bias, and its standard deviation.
 std::string error_words(const BudgetError& error) {
   const std::string size = length_words(error.position_m.value);
   return error.position_m.std > 0.0 ? size + " ± " + length_words(error.position_m.std) : size;
@@ -102,7 +102,7 @@ Fields row_fields(const BudgetRow& row) {
           field::records("error_m", row.errors, error_fields)};
 }
 
-// Contributions to the standard deviation at the last time; no row where it is 0.
+// Contributions to the standard deviation at the last time; those that are 0 are omitted.
 Table parts_table(const BudgetReport& report) {
   Table table{"", {"Sensor", "Bias", "White noise", "Flicker", "Random walk", "Ramp"}, {}};
   for (const BudgetRow& row : report.rows) {

@@ -15,8 +15,8 @@ struct BudgetReport {
   std::vector<estimate::BudgetRow> rows;
 };
 
-/// Position error against time, as a table and as a figure. It refers to the report, which must
-/// outlive it.
+/// Position error against time, as a table and as a figure. Holds a reference to the report, which
+/// must outlive it.
 [[nodiscard]] Document describe(const BudgetReport& report);
 
 }  // namespace proofmass::report

@@ -81,7 +81,8 @@ void add_move(Fields& fields, estimate::Remedy remedy, double factor) {
 
 Field consistency_field(const Consistency& consistency, const NoiseNames& names) {
   Fields fields = figures(consistency.all);
-  // The verdict is the gravest of all channels, the figures are those of all together.
+  // The verdict is the most severe of the channels' verdicts; the figures are those of all channels
+  // pooled.
   fields.push_back(verdict(consistency.verdict));
   add_move(fields, consistency.remedy, consistency.remedy_factor);
   if (consistency.worst_channel)

@@ -8,10 +8,10 @@
 #include "proofmass/report/fields.hpp"
 #include "proofmass/report/page/page.hpp"
 
-// Consistency of a filter, as every estimating verb reports it.
+// Consistency of a filter, in the form common to all estimating verbs.
 namespace proofmass::report {
 
-/// Names of the noise figures that the verdict proposes to change; nouns, or parameters of a model.
+/// Names of the noise parameters that the remedy refers to: nouns, or parameters of a model.
 struct NoiseNames {
   std::string measurement = "the measurement noise";
   std::string process = "the process noise";
@@ -36,7 +36,7 @@ struct NoiseNames {
 [[nodiscard]] Field consistency_field(const estimate::Consistency& consistency,
                                       const NoiseNames& names = {});
 
-/// Section of a page: verdict, mean NIS, each channel, sums over stretches.
+/// Section of a page: verdict, mean NIS, each channel, sums over intervals.
 [[nodiscard]] Section consistency_section(const estimate::Consistency& consistency,
                                           const NoiseNames& names = {});
 

@@ -24,7 +24,7 @@ std::string move_words(const std::string& what, double factor) {
                      significant(factor >= 1.0 ? factor : 1.0 / factor, 2));
 }
 
-/// The stretch whose scatter is furthest from 1.
+/// The interval whose scatter factor differs most from 1.
 const StretchScatter* furthest_stretch(const ChannelConsistency& one) {
   if (one.stretches.empty()) return nullptr;
   return &*std::ranges::max_element(one.stretches, {}, [](const StretchScatter& s) {

@@ -11,12 +11,13 @@ namespace proofmass::report {
 
 struct ConvertReport {
   std::string input, output;   ///< files
-  const Recording& recording;  ///< what there is besides values
+  const Recording& recording;  ///< everything but the values
   std::size_t samples = 0;
   const std::vector<Note>& notes;
 };
 
-/// Which samples went where, in one line. It refers to the report, which must outlive it.
+/// Number of samples, source and destination, in one line. Holds a reference to the report, which
+/// must outlive it.
 [[nodiscard]] Document describe(const ConvertReport& report);
 
 }  // namespace proofmass::report

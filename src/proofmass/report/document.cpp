@@ -9,7 +9,7 @@
 namespace proofmass::report {
 namespace {
 
-constexpr std::size_t most_printed_rows = 20;  // of a long table on a terminal
+constexpr std::size_t most_printed_rows = 20;  // rows of a long table printed on a terminal
 
 void print(std::string& out, const Table& table) {
   if (table.page_only || table.rows.empty()) return;
@@ -44,7 +44,7 @@ void print(std::string& out, const std::vector<Note>& notes) {
         fmt::format("  - {}: {}\n", words.at(static_cast<std::size_t>(note.severity)), note.text);
 }
 
-// The labelled entries, those in lists among them.
+// The labelled entries, including those in lists.
 void collect_labelled(const Fields& fields, std::vector<const Field*>& out) {
   for (const Field& field : fields) {
     if (!field.about.label.empty()) out.push_back(&field);

@@ -35,14 +35,14 @@ Value value_of(const Field& field) {
   return items;
 }
 
-// Keys of one object that are null for one reason.
+// Keys of one object that are null for the same reason.
 struct NullGroup {
   std::string reason;
   std::vector<std::string> keys;
 };
 
-// Such keys with the object that they belong to, and what it has in common with the others of its
-// list: "positions[]".
+// Null keys of one object. `pattern` is its path without indices ("positions[]"), which it shares
+// with the other objects of its list.
 struct Nulls {
   std::string place, pattern;
   NullGroup group;
@@ -72,7 +72,7 @@ std::string inside(const std::string& place, const std::string& key) {
   return place.empty() ? key : place + "." + key;
 }
 
-// What names an object of a list: its first text that is a name.
+// Identifying text of an object in a list.
 std::string name_in(const Fields& fields) {
   for (const Field& field : fields)
     if (field.key == "name" || field.key == "file" || field.key == "channel" || field.key == "id" ||
@@ -81,14 +81,14 @@ std::string name_in(const Fields& fields) {
   return {};
 }
 
-// An object among the entries, by its path.
+// Path of an object in the document, with and without list indices.
 struct Path {
   std::string place, pattern;
 };
 
 void collect(const Fields& fields, const Path& path, std::vector<Nulls>& out);
 
-// Nulls among the items of a list belong to the object around it; objects in it stand by
+// Nulls directly in a list belong to the enclosing object; objects in a list are treated by
 // themselves.
 void look(const Field& field,
           const std::string& key,
@@ -365,7 +365,7 @@ std::string shown_value(const Field& field) {
   const Display display =
       field.about.display.value_or(Display{field.shape.unit == "1" ? "" : field.shape.unit});
   std::optional<Uncertain> figure = scaled(field.figure, display.factor);
-  if (figure && std::isnan(figure->std)) figure->std = 0.0;  // the value alone
+  if (figure && std::isnan(figure->std)) figure->std = 0.0;  // shown without a standard deviation
   return with_std(figure, display.unit, absent);
 }
 

@@ -14,66 +14,66 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/report/json.hpp"
 
-// The entries of a verb's result. Each states its key, its meaning and its value, or the reason why
-// there is none; the JSON document, its schema, the list of reasons and the rows that people read
-// are all made from them.
+// The entries of a verb's result. Each states its key, its meaning, and its value or the reason for
+// its absence; the JSON document, its schema, the reasons of nulls and the printed rows are
+// generated from them.
 namespace proofmass::report {
 
 struct Field;
 using Fields = std::vector<Field>;
 
-/// Unit in which people read a quantity: shown = value · factor.
+/// Display unit of a quantity: shown = value · factor.
 struct Display {
   std::string_view unit = {};
   double factor = 1.0;
 };
 
-/// What an entry states beside its value.
+/// Metadata of an entry.
 struct About {
   std::string meaning = {};             ///< for the schema: conventions, signs, when it is null
-  std::string label = {};               ///< for people; empty: only in the document
-  std::string why_null = {};            ///< the reason, should there be no value
-  std::optional<Display> display = {};  ///< of a number; absent: as in the document
-  std::string why_no_std = {};  ///< the reason, should a quantity have no standard deviation
+  std::string label = {};               ///< printed label; empty: the entry is in the document only
+  std::string why_null = {};            ///< reason, if the value is absent
+  std::optional<Display> display = {};  ///< for a number; absent: as in the document
+  std::string why_no_std = {};          ///< reason, if a quantity has no standard deviation
 };
 
-/// What may stand under a key.
+/// Type and constraints of a value.
 struct Shape {
   enum class Kind { text, choice, flag, count, integer, number, quantity, list, object, map };
 
   Kind kind = Kind::text;
-  std::string unit = {};                  ///< of a quantity
-  std::vector<std::string> choices = {};  ///< of a choice
+  std::string unit = {};                  ///< for a quantity
+  std::vector<std::string> choices = {};  ///< for a choice
   bool nullable = false;
-  bool not_negative = false;               ///< of a number
-  bool std_nullable = false;               ///< of a quantity
-  bool of_texts = false;                   ///< of a list
-  std::optional<std::size_t> length = {};  ///< of a list that always has as many items
-  std::optional<double> maximum = {};      ///< of a number or count
-  std::string pattern = {};  ///< regular expression: of a text, or of the keys of a map
-  bool decides = false;      ///< of a choice: which entries the object has depends on it
+  bool not_negative = false;               ///< for a number
+  bool std_nullable = false;               ///< for a quantity
+  bool of_texts = false;                   ///< for a list
+  std::optional<std::size_t> length = {};  ///< for a list of fixed length
+  std::optional<double> maximum = {};      ///< for a number or count
+  std::string pattern = {};  ///< regular expression: for a text, or for the keys of a map
+  bool decides = false;      ///< for a choice: the other entries of the object depend on it
 };
 
 struct Field {
   std::string key;  ///< empty in a list
   Shape shape;
   About about = {};
-  Value scalar = {};                     ///< null where there is no value, and in lists and objects
-  std::optional<Uncertain> figure = {};  ///< of a quantity; its std NaN where there is none
-  std::optional<Fields> fields = {};     ///< of a list or an object
-  /// Of a long list, whose first item alone is in `fields`.
+  Value scalar = {};                     ///< null if there is no value, and for lists and objects
+  std::optional<Uncertain> figure = {};  ///< for a quantity; std is NaN if absent
+  std::optional<Fields> fields = {};     ///< for a list or an object
+  /// A long list, of which `fields` has the first item only.
   struct Items {
     std::size_t count = 0;
-    std::function<Fields(std::size_t)> at = {};  ///< the entries of an item
+    std::function<Fields(std::size_t)> at = {};  ///< the entries of item i
   };
   std::optional<Items> items = {};
 };
 
-// One function for each kind. A number that is not finite is absent.
+// One function for each kind. A number that is not finite becomes absent.
 namespace field {
 
 [[nodiscard]] Field text(std::string key, std::string_view value, About about = {});
-/// A text that is absent where it is empty.
+/// Absent if the text is empty.
 [[nodiscard]] Field text_or_null(std::string key, std::string_view value, About about = {});
 /// One of a fixed set of words.
 [[nodiscard]] Field choice(std::string key,
@@ -87,7 +87,7 @@ namespace field {
 [[nodiscard]] Field integer(std::string key, const std::optional<int>& value, About about = {});
 [[nodiscard]] Field number(std::string key, double value, About about = {});
 [[nodiscard]] Field number(std::string key, const std::optional<double>& value, About about = {});
-/// A number that cannot be negative: a length, a standard deviation, a probability.
+/// A number ≥ 0: a length, a standard deviation, a probability.
 [[nodiscard]] Field magnitude(std::string key,
                               const std::optional<double>& value,
                               About about = {});
@@ -100,7 +100,7 @@ namespace field {
                              const std::optional<Uncertain>& value,
                              std::string_view unit,
                              About about = {});
-/// The same, where the value may be known without its standard deviation.
+/// The same, for a value that may be known without its standard deviation.
 [[nodiscard]] Field measured(std::string key,
                              const std::optional<double>& value,
                              const std::optional<double>& std,
@@ -115,11 +115,11 @@ namespace field {
 [[nodiscard]] Field object_or_null(std::string key, std::optional<Fields> fields, About about = {});
 /// Entries of one kind under keys that are not fixed.
 [[nodiscard]] Field map(std::string key, Fields entries, About about = {});
-/// The items' keys are left empty.
+/// The keys of the items are left empty.
 [[nodiscard]] Field list(std::string key, Fields items, About about = {});
-/// A list that always has as many items.
+/// A list of fixed length.
 [[nodiscard]] Field fixed_list(std::string key, Fields items, About about = {});
-/// The same entry without its value.
+/// The same entry with its value replaced by a reason for its absence.
 [[nodiscard]] Field without_value(Field field, std::string_view why);
 /// A list that may be absent.
 [[nodiscard]] Field list_or_null(std::string key, std::optional<Fields> items, About about = {});
@@ -127,7 +127,7 @@ namespace field {
 /// A list of strings.
 [[nodiscard]] Field texts(std::string key, const std::vector<std::string>& items, About about = {});
 
-/// Whether the type says how many values there are: std::array, fixed vectors of Eigen.
+/// True if the type fixes the number of values: std::array, fixed-size vectors of Eigen.
 template <class Range>
 inline constexpr bool has_fixed_size = requires { std::tuple_size<Range>::value; } ||
                                        requires { requires(Range::SizeAtCompileTime > 0); };
@@ -154,7 +154,7 @@ template <class Range, class FieldsOf>
   return list(std::move(key), std::move(items), std::move(about));
 }
 
-/// The same for as many as a million elements: their entries are made one at a time, while the
+/// The same for long lists (a million elements): the entries of an element are made while the
 /// document is written; `range` must live until then. No entry may be absent.
 template <class Range, class FieldsOf>
 [[nodiscard]] Field long_records(std::string key,
@@ -178,16 +178,16 @@ void append(Fields& fields, Fields more);
 
 [[nodiscard]] bool is_absent(const Field& field);
 
-/// The entries as JSON, in their order.
+/// The entries as JSON, in order.
 [[nodiscard]] Object json_of(const Fields& fields);
 
-/// One sentence for each null, those of one object with one reason together:
-/// "sensors[0] (a.csv): radius_m, bias[0]: null: this recording does not determine them"; the same
-/// of more than three objects of a list together, too: "positions[]: std: null (24 times): ...".
+/// One sentence for each group of nulls:
+/// - those of one object with the same reason: "sensors[0] (a.csv): radius_m, bias[0]: null: this
+///   recording does not determine them";
+/// - those of more than three objects of a list: "positions[]: std: null (24 times): ...".
 [[nodiscard]] std::vector<std::string> reasons_for_nulls(const Fields& fields);
 
-/// The value as people read it, in its display unit, a list in parentheses; "not determined" where
-/// there is none.
+/// The value in its display unit, a list in parentheses; "not determined" if absent.
 [[nodiscard]] std::string shown_value(const Field& field);
 
 }  // namespace proofmass::report

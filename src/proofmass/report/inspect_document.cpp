@@ -37,7 +37,7 @@ bool has_values(const ChannelAudit& channel) {
   return channel.moments.count > 0;
 }
 
-// A statistic over the plausible values.
+// A statistic of the plausible values.
 Field statistic(const char* key, const ChannelAudit& channel, double figure) {
   return field::number(key, has_values(channel) ? std::optional(figure) : std::nullopt,
                        {.why_null = "no plausible value"});
@@ -115,14 +115,14 @@ Field timing(const TimingAudit& timing) {
        lost(timing)});
 }
 
-// One name among the labels of a recording.
+// Use of one name among the labels of a recording.
 struct LabelUse {
   std::string name;
   std::size_t runs = 0;
   std::size_t samples = 0;
 };
 
-// In the order of their first appearance.
+// In order of first appearance.
 std::vector<LabelUse> label_uses(const Recording& recording) {
   std::vector<LabelUse> uses;
   for (const Label& label : recording.labels) {
@@ -194,7 +194,7 @@ std::string rate_words(const TimingAudit& timing) {
                      compact(long_run_hz, 7));
 }
 
-// Below a nanosecond it is the rounding of the stamps.
+// Values below a nanosecond are rounding of the stamps.
 std::string jitter_words(const TimingAudit& timing) {
   constexpr double rounding_s = 1e-9;
   if (!timing.jitter_s) return "unknown";

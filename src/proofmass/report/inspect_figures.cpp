@@ -24,7 +24,7 @@ std::string description(std::size_t overview_span) {
   return fmt::format("Minimum and maximum of every {} samples.", overview_span);
 }
 
-// Channels first … first + count - 1 of the recording, which share a unit.
+// Channels first … first + count - 1 of the recording, which have the same unit.
 Figure channels_figure(const InspectedFile& file, std::size_t first, std::size_t count) {
   const Recording& recording = file.recording;
   const bool timed = recording.time.rate_hz > 0.0 || !recording.time.is_uniform();
@@ -38,7 +38,7 @@ Figure channels_figure(const InspectedFile& file, std::size_t first, std::size_t
   for (std::size_t k = 0; k < count; ++k) {
     const Channel& channel = recording.channels[first + k];
     figure.title += (k == 0 ? "" : ", ") + channel.name;
-    // An absurd value would flatten the rest; the table counts them.
+    // An absurd value would compress the rest; the table counts such values.
     std::vector<double> values = channel.values;
     for (double& value : values)
       if (std::abs(value) > signal::absurd_magnitude) value = std::nan("");
@@ -48,7 +48,7 @@ Figure channels_figure(const InspectedFile& file, std::size_t first, std::size_t
   return figure;
 }
 
-// The longest 0.1 % of the steps are in the last bar, unless all others are equal.
+// The longest 0.1 % of the steps are pooled in the last bar, unless all others are equal.
 Figure steps_figure(const Recording& recording) {
   const std::vector<double>& stamps = recording.time.stamps_s;
   std::vector<double> steps_ms;

@@ -12,7 +12,7 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// Two samples of one channel without a value, without time.
+// Two samples of one channel, without values or times.
 struct Empty {
   Recording recording;
   signal::RecordingAudit audit;

@@ -18,9 +18,9 @@ namespace proofmass::report {
 class Value;
 struct Member;
 using Array = std::vector<Value>;
-using Object = std::vector<Member>;  ///< keys keep the order in which they are written here
+using Object = std::vector<Member>;  ///< keys in insertion order
 
-/// A JSON value. A double that is not finite becomes null: JSON has no NaN, and neither have we.
+/// A JSON value. A double that is not finite becomes null, since JSON has no NaN.
 class Value {
  public:
   Value();
@@ -63,18 +63,18 @@ struct Member {
   Value value;
 };
 
-/// What a document begins with; the version of Proofmass is added.
+/// Head of a document; the version of Proofmass is added.
 struct DocumentHead {
   std::string verb;
   std::vector<std::string> input;     ///< files as the user named them
-  std::vector<std::string> warnings;  ///< sentences; the reason of every null among them
+  std::vector<std::string> warnings;  ///< sentences, including the reason of every null
 };
 
-/// The document of one run: "proofmass", "verb", "input", "warnings", then the body, indented by
-/// two, closed by a newline. Bytes that are not UTF-8 become U+FFFD.
+/// The document of one run: "proofmass", "verb", "input", "warnings", then the body; indented by
+/// two, with a final newline. Bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string to_json(const DocumentHead& head, const Object& body);
 
-/// A value by itself, indented by two, without a newline at its end.
+/// A value by itself, indented by two, without a final newline.
 [[nodiscard]] std::string json_text(const Value& value);
 
 /// The value, or null.
@@ -83,15 +83,14 @@ template <class T>
   return value ? Value(*value) : Value();
 }
 
-/// {"value", "std", "unit"}, or null where there is no figure or it is not finite.
+/// {"value", "std", "unit"}; null if the figure is absent or not finite.
 [[nodiscard]] Value quantity(const std::optional<Uncertain>& figure, std::string_view unit);
 
-/// A quantity whose value and standard deviation are both multiplied by `factor`, for units that
-/// are not SI.
+/// Value and standard deviation multiplied by `factor`, for units other than SI.
 [[nodiscard]] std::optional<Uncertain> scaled(const std::optional<Uncertain>& figure,
                                               double factor);
 
-/// The texts of the notes that are at least as grave as `least`.
+/// The texts of the notes of severity `least` or higher.
 [[nodiscard]] std::vector<std::string> texts(const std::vector<Note>& notes, Severity least);
 
 /// An array of strings, of numbers, …

@@ -6,21 +6,22 @@
 #include <utility>
 #include <vector>
 
-// What a laboratory needs to repeat a result: who computed it, when, from what and how.
+// Information needed to repeat a result: program, version, date, inputs and options.
 namespace proofmass::report {
 
 struct ProvenanceInput {
-  std::string path;  ///< as the user named it, or of a file in a folder that was named
+  std::string path;  ///< as the user named it, or of a file in a named folder
   std::optional<std::uint64_t> bytes{};
   std::string sha256{};  ///< 64 hexadecimal digits; empty where `bytes` is absent
-  std::string reason{};  ///< why there is no sum
+  std::string reason{};  ///< reason if there is no checksum
 };
 
 struct Provenance {
-  std::string command;                                       ///< as it can be typed again
-  std::vector<std::pair<std::string, std::string>> options;  ///< flags in force, with their values
+  std::string command;                                       ///< can be pasted into a shell
+  std::vector<std::pair<std::string, std::string>> options;  ///< flags in effect, with their
+                                                             ///< values
   std::string date;                                          ///< UTC, "2026-11-24T12:45:50Z"
-  std::string commit;                                        ///< of the source; empty: not known
+  std::string commit;                                        ///< of the source; empty if unknown
   std::string host;
   std::vector<ProvenanceInput> inputs;
 };
@@ -28,7 +29,7 @@ struct Provenance {
 /// A document of to_json() with "provenance" as its last member.
 [[nodiscard]] std::string with_provenance(std::string document, const Provenance& provenance);
 
-/// A page of html() with the same in its footer.
+/// A page of html() with the provenance in its footer.
 [[nodiscard]] std::string page_with_provenance(std::string page, const Provenance& provenance);
 
 }  // namespace proofmass::report

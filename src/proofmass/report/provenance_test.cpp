@@ -35,7 +35,7 @@ TEST(Provenance, IsTheLastMemberOfADocumentThatIsOtherwiseTheSame) {
   EXPECT_EQ(document, nlohmann::ordered_json::parse(plain));
 }
 
-TEST(Provenance, StandsInTheFooterOfAPageAndIsEscaped) {
+TEST(Provenance, IsInTheFooterOfAPageAndEscaped) {
   const std::string page = page_with_provenance(
       html({.verb = "noise", .title = "a", .inputs = {"a </footer>"}, .conclusion = "b"}), some());
   const std::size_t footer = page.find("<footer>");

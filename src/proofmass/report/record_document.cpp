@@ -164,7 +164,7 @@ bool is_bad(const RecordSummary& summary) {
 }
 
 std::string missing_words(const RecordSummary& summary) {
-  // Samples that the disk failed to take have a sentence of their own.
+  // Samples that could not be written to disk have a sentence of their own.
   const std::uint64_t lost = summary.lost - std::min(summary.lost, summary.not_written);
   if (summary.gap_count == 0 && summary.lost == 0) return " Nothing was lost, and there is no gap.";
   if (summary.gap_count == 0 && lost == 0) return {};
@@ -201,7 +201,7 @@ std::vector<std::string> course(const RecordSummary& summary) {
   return out;
 }
 
-// `count` of them happened.
+// Events of one kind; `count` is their total number.
 Table events_table(const std::string& name,
                    const std::vector<RecordEvent>& events,
                    std::size_t count) {

@@ -9,26 +9,26 @@
 
 namespace proofmass::report {
 
-/// A recording as it was made.
+/// A finished recording.
 struct RecordReport {
   std::string source;
-  std::vector<std::pair<std::string, std::string>> settings{};  ///< asked for and granted
+  std::vector<std::pair<std::string, std::string>> settings{};  ///< requested and granted
   RecordSummary summary{};
-  std::vector<Note> notes{};  ///< of the verb itself
+  std::vector<Note> notes{};  ///< notes of the verb
 };
 
-/// What is in the file, what is missing from it, and how the clock ran. --strict fails if anything
-/// is missing or doubtful.
+/// What the file contains, what is missing, and how the clock ran. --strict fails if anything is
+/// missing or doubtful.
 [[nodiscard]] Document describe(const RecordReport& report);
 
 /// "12.40 s: 0.5 s without a sample: …"
 [[nodiscard]] std::string event_words(const RecordEvent& event);
 
-/// The sources that can be recorded from now; `kinds` are grammar and sentence of each kind of
-/// source, `found` URI and description of what is there.
+/// The sources available now. `kinds` has grammar and sentence of each kind of source, `found` URI
+/// and description of each source.
 struct SourceList {
   std::vector<std::pair<std::string, std::string>> kinds{}, found{};
-  std::vector<Note> notes{};  ///< why a kind could not be looked for
+  std::vector<Note> notes{};  ///< why sources of a kind could not be listed
 };
 [[nodiscard]] Document describe(const SourceList& list);
 

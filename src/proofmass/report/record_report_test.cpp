@@ -30,7 +30,7 @@ RecordEvent gap_event() {
   return {EventKind::gap, Severity::bad, 12.4, 0.5, 100, "0.5 s without a sample"};
 }
 
-TEST(RecordReport, SaysThatNothingIsMissing) {
+TEST(RecordReport, ReportsThatNothingIsMissing) {
   const RecordReport report = whole_recording();
   EXPECT_THAT(to_text(describe(report)),
               HasSubstr("12\u202f000 samples of 2 channels over 60 s from sim: to run.mcap"));
@@ -49,7 +49,7 @@ TEST(RecordReport, NamesGapsWithTheirTime) {
   EXPECT_TRUE(describe(report).bad);
 }
 
-TEST(RecordReport, DoesNotSayThatNothingWasLostWhereTheDiskFailed) {
+TEST(RecordReport, DoesNotReportACompleteRecordingIfTheDiskFailed) {
   RecordReport report = whole_recording();
   report.summary.end = RecordEnd::disk_failed;
   report.summary.lost = report.summary.not_written = 19'200;
@@ -100,7 +100,7 @@ TEST(RecordReport, NamesWhyTheSourceWasLost) {
   EXPECT_THAT(to_json(describe(report)), HasSubstr("source_gone"));
 }
 
-TEST(RecordReport, HasClockAndLatencyWhereTheyAreKnown) {
+TEST(RecordReport, HasClockAndLatencyIfKnown) {
   RecordReport report = whole_recording();
   EXPECT_THAT(to_text(describe(report)), Not(HasSubstr("Clock")));
   report.summary.clock.rate_error = Uncertain{12e-6, 1e-6};

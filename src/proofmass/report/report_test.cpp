@@ -49,7 +49,7 @@ TEST(WheelConclusion, SaysTheAnswerInOneSentence) {
             "The wheel turned 79.6141 ± 0.0021 times backwards in 100 s; top speed 147 rpm.");
 }
 
-TEST(WheelConclusion, SaysSoWhereThereIsNoAnswer) {
+TEST(WheelConclusion, StatesThatThereIsNoAnswer) {
   WheelReport report = fake_report();
   report.solution.turns.reset();
   report.solution.peak_speed_radps.reset();
@@ -73,7 +73,7 @@ TEST(WheelJson, HasSpeedInRpmAndTheRestInSi) {
   EXPECT_DOUBLE_EQ(json["methods"]["smoother"]["turns"].get<double>(), -79.6141);
 }
 
-// Each null of the document has a sentence among the warnings that names it.
+// Each null of the document has a warning that names it.
 TEST(WheelJson, GivesAReasonForEachNull) {
   const Json json = Json::parse(to_json(describe(fake_report())));
   const std::string warnings = json["warnings"].dump();
@@ -93,7 +93,7 @@ TEST(WheelJson, PutsTheFirstSensorAtZeroAgainstItself) {
   EXPECT_EQ(json["sensors"][0]["clock_offset_s"]["value"], 0.0);
 }
 
-TEST(WheelHtml, ShowsConclusionSensorsAndWhatCannotBeTold) {
+TEST(WheelHtml, ShowsConclusionSensorsAndUndeterminedFigures) {
   const WheelReport report = fake_report();
   const std::string text = to_html(describe(report));
   EXPECT_NE(text.find("79.6141 ± 0.0021 times backwards"), std::string::npos);
@@ -102,7 +102,7 @@ TEST(WheelHtml, ShowsConclusionSensorsAndWhatCannotBeTold) {
   EXPECT_NE(text.find("Figure 6."), std::string::npos);
 }
 
-TEST(WheelHtml, StandsWithoutASingleInstant) {
+TEST(WheelHtml, IsCompleteWithoutEpochs) {
   WheelReport report = fake_report();
   report.solution.series = {};
   EXPECT_NE(to_html(describe(report)).find("</html>"), std::string::npos);

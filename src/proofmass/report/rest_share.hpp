@@ -7,16 +7,17 @@
 
 #include "proofmass/report/fields.hpp"
 
-// What `noise` and `drift` share: whether the recording is at rest, and channels that cannot be
+// Shared by `noise` and `drift`: whether the recording is at rest, and channels that cannot be
 // analysed.
 namespace proofmass::report {
 
-/// How much of a recording is at rest, and its longest rest.
+/// Fraction of a recording at rest, and its longest rest.
 struct RestShare {
   double share = 0.0;
-  double longest_start_s = 0.0, longest_end_s = 0.0;  ///< on the recording's clock; equal if none
+  double longest_start_s = 0.0, longest_end_s = 0.0;  ///< on the recording's clock; equal if
+                                                      ///< there is none
 
-  /// What a knock or the ends leave out is not motion.
+  /// The remainder, excluded around outliers and at the ends, is not motion.
   [[nodiscard]] bool is_at_rest() const { return share >= 0.9; }
 };
 
@@ -25,7 +26,8 @@ struct RestShare {
 [[nodiscard]] std::string motion_sentence(const std::optional<RestShare>& rest,
                                           std::string_view what);
 
-/// The same for several channels, in short: "Not at rest (x, y): the figures describe the motion."
+/// The same for several channels, abbreviated: "Not at rest (x, y): the figures describe the
+/// motion."
 [[nodiscard]] std::string motion_sentence_of_channels(const std::string& names);
 
 /// The entry `rest` of a channel.
@@ -36,7 +38,7 @@ template <class Channel>
   return "not analysed: " + channel.refused;
 }
 
-/// Why no channel could be analysed, or empty where one was.
+/// Reason why no channel could be analysed; empty if at least one was.
 template <class Channels>
 [[nodiscard]] std::string why_no_channel(const Channels& channels) {
   const auto is_analysed = [](const auto& channel) { return channel.refused.empty(); };

@@ -25,7 +25,7 @@ Value type_of(const char* name, const Samples& samples) {
   return Array{name, "null"};
 }
 
-// The entries of objects by key, in the order of their first appearance.
+// The entries of objects by key, in order of first appearance.
 struct KeySamples {
   std::string key;
   Samples samples;
@@ -42,12 +42,12 @@ std::vector<KeySamples> by_key(const std::vector<const Fields*>& objects) {
   return keys;
 }
 
-// The word of the choice on which the other entries depend.
+// Value of the choice on which the other entries depend.
 const std::string& word_in(const Fields& object, const std::string& key) {
   return std::get<std::string>(std::ranges::find(object, key, &Field::key)->scalar.state());
 }
 
-// What all of the objects with this word have and the others need not.
+// Keys that all objects with this word have and that not all objects have.
 Object condition(const std::string& key,
                  const std::string& word,
                  const std::vector<const Fields*>& objects) {
@@ -65,7 +65,7 @@ Object condition(const std::string& key,
           {"then", Object{{"required", std::move(required)}}}};
 }
 
-// One condition for each word that the samples have.
+// One condition for each word that occurs in the samples.
 void add_conditions(Object& schema, const std::vector<const Fields*>& objects) {
   if (objects.empty()) return;
   const auto found = std::ranges::find_if(*objects.front(),
@@ -95,13 +95,13 @@ void add_entries(Object& schema, Object properties, const std::vector<const Fiel
   add_conditions(schema, objects);
 }
 
-// The same, and that there are no others.
+// The same, with no other properties allowed.
 void add_properties(Object& schema, Object properties, const std::vector<const Fields*>& objects) {
   add_entries(schema, std::move(properties), objects);
   schema.push_back({"additionalProperties", false});
 }
 
-// The unit of a quantity, if all samples have the same. An absent one may have none.
+// The unit of a quantity if all samples agree; an absent value may have none.
 std::optional<std::string> only_unit(const Samples& samples) {
   std::optional<std::string> unit;
   for (const Field* field : samples) {
@@ -112,7 +112,7 @@ std::optional<std::string> only_unit(const Samples& samples) {
   return unit;
 }
 
-// What is in the lists or maps, at least one entry.
+// Entries of the lists or maps, at least one.
 Samples entries_of(const Samples& samples) {
   Samples entries;
   for (const Field* field : samples)
@@ -236,7 +236,7 @@ Object list_of_texts(const char* description) {
   return {{"type", "array"}, {"items", typed("string", description)}};
 }
 
-// What each document begins with.
+// Head of every document.
 Object head(const std::string& verb) {
   Object version = typed("string", "version that wrote the document");
   version.push_back({"pattern", "^\\d+\\.\\d+\\.\\d+"});
@@ -246,7 +246,7 @@ Object head(const std::string& verb) {
           {"warnings", list_of_texts("a sentence; the reason of every null is among them")}};
 }
 
-// How the document was made; the program adds it to every document that it writes.
+// Provenance, which the program adds to every document that it writes.
 Object provenance() {
   Object input{{"type", "object"},
                {"properties",
@@ -282,7 +282,7 @@ Object quantity_schema() {
            Array{Object{{"type", "null"}}, figure_schema("number", Object{{"type", "string"}})}}};
 }
 
-// What a schema begins with.
+// Head of a schema.
 Object title(const std::string& description, const std::string& verb, const std::string& name) {
   return {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
           {"$id", name + ".schema.json"},
@@ -291,7 +291,7 @@ Object title(const std::string& description, const std::string& verb, const std:
           {"type", "object"}};
 }
 
-// What every document has.
+// Properties of every document.
 Object common_properties(const std::string& verb) {
   Object properties = head(verb);
   properties.push_back({"provenance", provenance()});

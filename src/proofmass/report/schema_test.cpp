@@ -84,7 +84,7 @@ TEST(JsonSchema, HasThePatternsOfTextsAndOfTheKeysOfMaps) {
   EXPECT_EQ(schema_of(map)["propertyNames"]["pattern"], "^[a-z]$");
 }
 
-// A document whose other entry depends on its mode.
+// A document with a second entry that depends on its mode.
 Document in_mode(const char* word, const char* key) {
   Field mode = field::choice("mode", word, {"still", "moving"});
   mode.shape.decides = true;
@@ -107,7 +107,7 @@ TEST(JsonSchema, AllowsNullBesideTheWordsOfAnAbsentChoice) {
   EXPECT_EQ(schema["properties"]["a"]["enum"], (json{"x", "y", nullptr}));
 }
 
-// With every entry that a consistency may have.
+// Every entry that a consistency can have.
 estimate::Consistency full_consistency() {
   estimate::ConsistencyCheck check({.channels = {"x"}, .rate_hz = 100.0});
   for (int k = 0; k < 3000; ++k) check.add(0, std::sin(k * k), 0.5);
@@ -197,7 +197,7 @@ TEST(Schemas, Recover) {
                 {describe(RecoverReport{})});
 }
 
-// With every entry that a calibration may have.
+// Every entry that a calibration can have.
 CalibrateReport full_calibration() {
   CalibrateReport report = fake_supply_report();
   report.check =
@@ -293,7 +293,7 @@ TEST(Schemas, Tumble) {
       {describe(full), describe(volts), describe(refused)});
 }
 
-// A curve with every term.
+// Adds every term to a curve.
 void complete(characterise::DriftFit& fit) {
   fit.possibilities.resize(1);
   fit.curve.steps.resize(1);
@@ -313,7 +313,7 @@ TEST(Schemas, Drift) {
   all.runs.front().set->level_curve = all.channels.front().analysis->fit;
   complete(all.runs.front().set->warm_up.fit);
   all.runs[1].set->trend_per_run.reset();
-  DriftReport volts = all;  // no unit is fixed
+  DriftReport volts = all;  // without a fixed unit
   volts.channels.front().unit = volts.runs.front().unit = *parse_unit("V");
   volts.forecast_s.reset();
   expect_schema(
@@ -337,7 +337,7 @@ TEST(Schemas, Noise) {
   analysis.model.slow_change = characterise::SlowChange{};
   analysis.stationarity = {.tested = true, .line_hz = {}, .relative_level = {0.7, 1.4}};
   analysis.parts = {{0.0, 5000.0, analysis.model}, {5000.0, 10'000.0, {}}};
-  NoiseReport volts = all;  // no unit is fixed
+  NoiseReport volts = all;  // without a fixed unit
   volts.channels.front().unit = *parse_unit("V");
   expect_schema("Allan deviation, spectrum and noise coefficients of a sensor at rest. SI.",
                 {describe(plain), describe(all), describe(volts)});

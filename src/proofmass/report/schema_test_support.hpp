@@ -9,10 +9,10 @@
 
 #include "proofmass/report/schema.hpp"
 
-// For tests.
+// Support for the tests of schemas.
 namespace proofmass::report {
 
-/// docs/schema has this file with this text. With PROOFMASS_WRITE_SCHEMAS set it is written.
+/// docs/schema must have this file with this text; it is written if PROOFMASS_WRITE_SCHEMAS is set.
 inline void expect_schema_file(const std::string& name, const std::string& schema) {
   const std::string path =
       std::string(PROOFMASS_SOURCE_DIR) + "/docs/schema/" + name + ".schema.json";
@@ -23,7 +23,7 @@ inline void expect_schema_file(const std::string& name, const std::string& schem
       << path << " differs: PROOFMASS_WRITE_SCHEMAS=1 before this test program regenerates it";
 }
 
-/// docs/schema is what json_schema() makes.
+/// docs/schema must agree with json_schema().
 inline void expect_schema(const std::string& description,
                           const std::vector<Document>& samples,
                           const std::string& name = {}) {
@@ -31,7 +31,7 @@ inline void expect_schema(const std::string& description,
                      json_schema(description, samples, name));
 }
 
-/// docs/schema is what json_schema_of_kinds() makes.
+/// docs/schema must agree with json_schema_of_kinds().
 inline void expect_schema_of_kinds(const std::string& description,
                                    const std::vector<std::vector<Document>>& kinds) {
   expect_schema_file(kinds.front().front().page.verb, json_schema_of_kinds(description, kinds));

@@ -12,7 +12,7 @@ namespace {
 using simulate::TruePose;
 using simulate::TrueStroke;
 
-// Turns and top speed, from the truth beside the recording.
+// Revolutions and maximum speed, from the true trajectory.
 struct Motion {
   double turns = 0.0, peak_rpm = 0.0;
 };
@@ -29,7 +29,7 @@ Motion motion(const Recording& truth) {
   return found;
 }
 
-// Entries that the rig and the procedures share; `Report` is of either.
+// Entries common to the rig and the procedures; `Report` is either report type.
 template <class Report>
 Fields file_fields(const Report& report) {
   return {field::text("file", report.output, {.meaning = "the recording; - is standard output"}),
@@ -60,7 +60,7 @@ Document document_of(const Report& report, std::string conclusion, Fields fields
           .fields = std::move(fields)};
 }
 
-// Which files hold what.
+// The files and their content.
 template <class Report>
 Table files_table(const Report& report, const std::string& truth) {
   const Recording& recording = report.result.recording;
@@ -115,7 +115,7 @@ Field axes(const ProcedureReport& report) {
                                  "others in SI"});
 }
 
-// The three values of a calibration's figure, for people in a unit of their own.
+// The three values of a calibration figure, in a display unit of their own.
 Field true_figures(const char* key, const sensor::AxisFigures& figures, About about) {
   Fields items;
   for (const auto& figure : figures)
@@ -158,7 +158,7 @@ Fields procedure_fields(const ProcedureReport& report) {
   return fields;
 }
 
-// "0.22589, −0.06487, 0.14264": more digits than a result has, since they are exact.
+// "0.22589, −0.06487, 0.14264": more digits than for estimates, since the values are exact.
 std::string three(const sensor::AxisFigures& values, double to_shown, int decimals) {
   std::string text;
   for (const auto& figure : values)

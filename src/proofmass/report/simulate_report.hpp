@@ -10,23 +10,23 @@
 namespace proofmass::report {
 
 struct SimulateReport {
-  std::vector<std::string> inputs;  ///< the rig's description, if it came from a file
+  std::vector<std::string> inputs;  ///< description of the rig, if read from a file
   std::string output, truth;        ///< files written
   const simulate::RigOptions& options;
   const simulate::RigResult& result;
 };
 
-/// What was simulated, and which files hold it.
+/// What was simulated, and the files that contain it.
 [[nodiscard]] Document describe(const SimulateReport& report);
 
 struct ProcedureReport {
-  std::vector<std::string> inputs{};      ///< the description, if it came from a file
+  std::vector<std::string> inputs{};      ///< the description, if read from a file
   std::string output, truth{}, sensor{};  ///< files written
   const simulate::ProcedureOptions& options;
   const simulate::ProcedureResult& result;
 };
 
-/// The same of a calibration procedure or a slide, with the figures of the true sensor.
+/// The same for a calibration procedure or a slide, with the figures of the true sensor.
 [[nodiscard]] Document describe(const ProcedureReport& report);
 
 }  // namespace proofmass::report

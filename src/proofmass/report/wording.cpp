@@ -9,7 +9,7 @@
 namespace proofmass::report {
 namespace {
 
-// Decimals (negative: places before the point) at which to round so that std keeps its digits.
+// Decimals (negative: places before the point) at which rounding leaves std its significant digits.
 int decimals_for(double std) {
   const int exponent = static_cast<int>(std::floor(std::log10(std)));
   const double leading = std::round(std / std::pow(10.0, exponent - 2));  // 100 … 1000
@@ -115,7 +115,8 @@ std::string file_name(std::string_view path) {
 
 std::size_t letters(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // not a later byte of a letter
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // not a continuation byte of a code
+                                                              // point
   }));
 }
 

@@ -47,13 +47,13 @@ TEST(DurationWords, CarriesSecondsIntoMinutesAndMinutesIntoHours) {
   EXPECT_EQ(duration_words(12000.0), "3 h 20 min");
 }
 
-TEST(CountWords, KnowsOneFromManyAndPartsThousands) {
+TEST(CountWords, DistinguishesSingularAndPluralAndSeparatesThousands) {
   EXPECT_EQ(count_words(1, "row"), "1 row");
   EXPECT_EQ(count_words(0, "row"), "0 rows");
   EXPECT_EQ(count_words(1234567, "row"), "1\u202f234\u202f567 rows");
 }
 
-TEST(Escaped, LeavesNothingThatHtmlWouldTakeForMarkup) {
+TEST(Escaped, EscapesAllMarkup) {
   EXPECT_EQ(escaped("<a href='x'>&\"\x01</a>"), "&lt;a href=&#39;x&#39;&gt;&amp;&quot;&lt;/a&gt;");
 }
 
@@ -61,7 +61,7 @@ TEST(Aligned, CountsLettersAndNotBytes) {
   EXPECT_EQ(aligned({{"µm", "1"}, {"m", "22"}}), "  µm  1\n  m   22\n");
 }
 
-TEST(FileName, IsWhatStandsBehindTheFolders) {
+TEST(FileName, IsTheLastComponentOfThePath) {
   EXPECT_EQ(file_name("/data/run 1/a.csv: acc1"), "a.csv: acc1");
   EXPECT_EQ(file_name("a.csv"), "a.csv");
   EXPECT_EQ(file_name("folder/"), "folder/");

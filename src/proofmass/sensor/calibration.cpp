@@ -209,7 +209,7 @@ Status apply(const SensorModel& model, const Triad& triad, Recording& recording)
   if (lacks_an_axis(model.calibration, columns))
     recording.notes.push_back(
         {Severity::warning, triad.name + ": the calibration corrects for an axis that was not "
-                                         "recorded; the force along it was taken for 0"});
+                                         "recorded; the force along it was taken as 0"});
   correct(model.calibration, columns);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!channels[axis]) continue;

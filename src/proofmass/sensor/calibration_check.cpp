@@ -63,7 +63,7 @@ Status check_covariance(const MeasuredCalibration& measured) {
     if (figures[k] && std::abs(std - figures[k]->std) > 1e-3 * std::max(std, figures[k]->std))
       return Error{Errc::invalid_argument,
                    fmt::format("calibration.covariance: gives {} a standard deviation of {:.4g}, "
-                               "which is {:.4g} beside its value",
+                               "which is stated as {:.4g} with its value",
                                nine_names[k], std, figures[k]->std)};
   }
   return Done{};

@@ -161,7 +161,7 @@ TEST(ApplySensor, SaysThatAnAxisIsMissing) {
   EXPECT_EQ(recording.notes[0].severity, Severity::warning);
 }
 
-TEST(ApplySensor, SaysWhyItCannotAndTouchesNothing) {
+TEST(ApplySensor, GivesTheReasonOfAFailureAndChangesNothing) {
   Recording recording = recording_of({{1, 2, 3}}, counts);
   const auto no_lsb = apply(thesis_sensor(), recording);
   ASSERT_FALSE(no_lsb);

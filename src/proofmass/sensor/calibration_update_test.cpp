@@ -337,8 +337,8 @@ TEST(CalibrationUpdate, RefusesWhatCannotBeACalibrationAndLeavesTheModelAlone) {
             }),
             "calibration.covariance: has a negative variance in some direction");
   EXPECT_EQ(refused([](M& m, SensorModel&) { m.bias[0]->std = 0.5; }),
-            "calibration.covariance: gives bias x a standard deviation of 0.25, which is 0.5 "
-            "beside its value");
+            "calibration.covariance: gives bias x a standard deviation of 0.25, which is stated "
+            "as 0.5 with its value");
   EXPECT_TRUE(refused([](M& m, SensorModel&) {
                 m.serial = "17";
               }).starts_with("the file is of the sensor with serial number 16"));

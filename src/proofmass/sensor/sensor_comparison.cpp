@@ -50,10 +50,11 @@ void note_repeatability(const SensorModel& before,
     return c.bias[0] && c.bias[0]->std && !c.stability[0];
   };
   if (!lacks(before) || !lacks(after)) return;
-  notes.push_back({Severity::warning,
-                   "calibration.stability: neither file says how well the biases repeat from one "
-                   "session to another: a change of them is tested against the repeatability "
-                   "within one recording only, and an unchanged sensor may fail that"});
+  notes.push_back(
+      {Severity::warning,
+       "calibration.stability: neither file states the repeatability of the biases between "
+       "sessions: a change of them is tested against the repeatability "
+       "within one recording only, and an unchanged sensor may fail that"});
 }
 
 /// Two-sided probability of a change by chance.
@@ -214,9 +215,10 @@ void note_electrical(const SensorModel& before,
     any = any || differs(o.sensitivity[axis], n.sensitivity[axis]) ||
           differs(o.zero_g_fraction[axis], n.zero_g_fraction[axis]);
   if (any && comparison.effect && comparison.effect->reading_unit == "m/s^2")
-    notes.push_back({Severity::warning,
-                     "the electrical figures differ: a recording in volts or counts turns into "
-                     "other readings in m/s^2 by them, which the largest error does not contain"});
+    notes.push_back(
+        {Severity::warning,
+         "the electrical figures differ: they convert a recording in volts or counts to "
+         "other values in m/s^2, which the largest error does not include"});
 }
 
 /// Notes circumstances that may explain changes of figures.
@@ -229,7 +231,7 @@ void note_circumstances(const SensorModel& before,
       std::abs(old_temperature->si() - new_temperature->si()) > 2.0)
     notes.push_back({Severity::warning,
                      fmt::format("the calibrations were made {:.1f} K apart in temperature: a "
-                                 "change may be the temperature's",
+                                 "change may be due to temperature",
                                  std::abs(old_temperature->si() - new_temperature->si()))});
   const auto& old_gravity = before.calibration.gravity;
   const auto& new_gravity = after.calibration.gravity;
@@ -238,8 +240,8 @@ void note_circumstances(const SensorModel& before,
   if (std::abs(relative) > 1e-5)
     notes.push_back(
         {Severity::warning,
-         fmt::format("gravity was taken for {:.6g} m/s^2 in OLD and for {:.6g} m/s^2 in "
-                     "NEW: at one place the scales differ by {:.2g} % for that alone",
+         fmt::format("gravity was {:.6g} m/s^2 in OLD and {:.6g} m/s^2 in "
+                     "NEW: at one location the scales differ by {:.2g} % due to this alone",
                      old_gravity->si(), new_gravity->si(), 100.0 * std::abs(relative))});
 }
 

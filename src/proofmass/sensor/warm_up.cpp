@@ -42,10 +42,11 @@ Result<std::vector<double>> without(const WarmUp& gone,
                                     const TimeBase& time,
                                     double since_switch_on_s) {
   if (channel.unit.quantity != Quantity::acceleration)
-    return Error{Errc::invalid_argument,
-                 fmt::format("channel {} is no acceleration: calibrate it before its warm-up is "
-                             "taken out",
-                             channel.name)};
+    return Error{
+        Errc::invalid_argument,
+        fmt::format("channel {} is not an acceleration: calibrate it before its warm-up is "
+                    "corrected",
+                    channel.name)};
   std::vector<double> values = channel.values;
   for (std::size_t k = 0; k < values.size(); ++k) {
     const double since_s = since_switch_on_s + time.at(k);
@@ -136,7 +137,7 @@ Status remove_warm_up(const DriftModel& drift,
     return Error{Errc::invalid_argument, "the sensor file has no drift.a1, a2, T of these axes"};
   if (!left_alone.empty())
     recording.notes.push_back({Severity::info, "the sensor file has no warm-up of " + left_alone +
-                                                   ": what there is of it stays in the readings"});
+                                                   ": any warm-up remains in the data"});
   for (auto& [index, values] : corrected) {
     recording.channels[index].values = std::move(values);
     recording.channels[index].unit = {Quantity::acceleration, 1.0, 0.0, "m/s^2"};

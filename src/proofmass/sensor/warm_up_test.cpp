@@ -188,8 +188,8 @@ TEST(RemoveWarmUp, LeavesReadingsAsOfTheWarmedUpSensor) {
   EXPECT_EQ(recording.channels[1].values, before.channels[1].values);
   ASSERT_EQ(recording.notes.size(), 1U);
   EXPECT_EQ(recording.notes[0].text,
-            "the sensor file has no warm-up of acc_y, acc_z: what there is of it stays in the "
-            "readings");
+            "the sensor file has no warm-up of acc_y, acc_z: any warm-up remains in the "
+            "data");
 }
 
 TEST(RemoveWarmUp, BringsTheChannelToMetresPerSecondSquared) {
@@ -219,7 +219,8 @@ TEST(RemoveWarmUp, SaysWhyItCannotAndLeavesTheRecordingAlone) {
   EXPECT_EQ(refused(incomplete, three_axes(3), all), "drift.a1 of axis z: is missing");
   Recording volts = three_axes(3);
   volts.channels[0].unit = *parse_unit("V");
-  EXPECT_TRUE(refused(drift_of_x(), volts, all).starts_with("channel acc_x is no acceleration"));
+  EXPECT_TRUE(
+      refused(drift_of_x(), volts, all).starts_with("channel acc_x is not an acceleration"));
   Recording timeless = three_axes(3);
   timeless.time = {};
   EXPECT_EQ(refused(drift_of_x(), timeless, all), "a warm-up needs the time of the samples");

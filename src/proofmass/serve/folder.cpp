@@ -59,7 +59,7 @@ Result<std::string> Folder::existing(std::string_view name) const {
   const fs::path real = fs::canonical(fs::path(path_) / plain, failed);
   if (failed) return Error{Errc::unreadable, fmt::format("{}: {}", plain, failed.message())};
   if (!is_within(path_, real)) return outside;
-  if (!fs::is_regular_file(real, failed)) return Error{Errc::unreadable, plain + ": is no file"};
+  if (!fs::is_regular_file(real, failed)) return Error{Errc::unreadable, plain + ": is not a file"};
   return plain;
 }
 

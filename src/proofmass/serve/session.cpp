@@ -95,7 +95,7 @@ class Session : public std::enable_shared_from_this<Session> {
     if (failed &&
         failed.category() == http::make_error_code(http::error::end_of_stream).category() &&
         failed != http::error::end_of_stream && failed != http::error::partial_message)
-      return refuse(error_response(400, "this is no HTTP request"));
+      return refuse(error_response(400, "this is not an HTTP request"));
     if (failed) return close();
     const RequestHead head = head_of(parser_->get());
     const auto now = TokenBucket::Clock::now();

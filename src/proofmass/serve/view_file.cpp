@@ -23,7 +23,7 @@ Unit unit_of(const nlohmann::json& json) {
 Result<ViewHead> read_head(const std::string& path) {
   std::ifstream in(path);
   const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
-  if (!json.is_object()) return Error{Errc::corrupt, path + ": is no head of a view"};
+  if (!json.is_object()) return Error{Errc::corrupt, path + ": is not a head of a view"};
   try {
     ViewHead head;
     head.samples = json.at("samples").get<std::uint64_t>();
@@ -36,7 +36,7 @@ Result<ViewHead> read_head(const std::string& path) {
           {channel.at("name").get<std::string>(), unit_of(channel.at("unit")), {}});
     for (const auto& rest : json.at("rests"))
       head.rests.push_back({rest.at(0).get<double>(), rest.at(1).get<double>()});
-    head.knocks_s = json.at("knocks_s").get<std::vector<double>>();
+    head.outliers_s = json.at("knocks_s").get<std::vector<double>>();
     return head;
   } catch (const nlohmann::json::exception& wrong) {
     return Error{Errc::corrupt, path + ": " + wrong.what()};

@@ -28,7 +28,7 @@ struct ViewHead {
   std::vector<Channel> channels;  ///< without values
   std::vector<Stretch> rests;
   std::string why_no_rests;
-  std::vector<double> knocks_s;  ///< within the rests
+  std::vector<double> outliers_s;  ///< within the rests
 };
 
 /// Lays a recording that comes in pieces down in a folder so that any stretch of it can be drawn
@@ -44,7 +44,7 @@ class ViewWriter {
   ~ViewWriter();
 
   [[nodiscard]] Status add(const Block& block);
-  /// Finds rests and knocks, of recordings of up to 5 million samples, and completes the folder.
+  /// Finds rests and outliers, of recordings of up to 5 million samples, and completes the folder.
   [[nodiscard]] Status finish(const Recording& head);
 
  private:

@@ -132,7 +132,7 @@ TEST_F(ViewFileTest, CutsOneChannelAndRefusesTooMuch) {
   EXPECT_EQ(view.cut({1.0, 2.0}, 2, 100).error().code, Errc::invalid_argument);
 }
 
-TEST_F(ViewFileTest, MarksRestsAndTheKnockWithinOne) {
+TEST_F(ViewFileTest, MarksRestsAndTheOutlierWithinOne) {
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0.0, 0.01);
   Recording recording;
@@ -152,8 +152,8 @@ TEST_F(ViewFileTest, MarksRestsAndTheKnockWithinOne) {
   ASSERT_EQ(head.rests.size(), 2U) << head.why_no_rests;
   EXPECT_NEAR(head.rests[0].to_s, 20.0, 0.5);
   EXPECT_NEAR(head.rests[1].from_s, 30.0, 0.5);
-  ASSERT_EQ(head.knocks_s.size(), 1U);
-  EXPECT_NEAR(head.knocks_s[0], 45.01, 0.05);
+  ASSERT_EQ(head.outliers_s.size(), 1U);
+  EXPECT_NEAR(head.outliers_s[0], 45.01, 0.05);
 }
 
 TEST_F(ViewFileTest, AnIncompleteFolderIsNoView) {

@@ -25,7 +25,7 @@ std::vector<std::size_t> axes_of(const ViewHead& head) {
   return axes;
 }
 
-// Each knock once, however many axes have felt it.
+// Each outlier once, however many axes have felt it.
 std::vector<double> merged(std::vector<double> times_s) {
   constexpr double same_s = 0.05;
   std::ranges::sort(times_s);
@@ -39,7 +39,7 @@ std::vector<double> merged(std::vector<double> times_s) {
 
 Status find_marks(const std::string& folder, ViewHead& head) {
   if (head.samples > most_samples) {
-    head.why_no_rests = "rests and knocks are marked in recordings of up to 5 000 000 samples";
+    head.why_no_rests = "rests and outliers are marked in recordings of up to 5 000 000 samples";
     return Done{};
   }
   std::vector<MappedValues> files;
@@ -67,10 +67,10 @@ Status find_marks(const std::string& folder, ViewHead& head) {
     for (const View<double> axis : axes)
       for (const signal::Event& event : signal::find_events(
                axis.subspan(rest.first, rest.last + 1 - rest.first), {.rate_hz = head.rate_hz}))
-        if (event.kind == signal::EventKind::knock)
-          head.knocks_s.push_back(time(rest.first + (event.first + event.last) / 2));
+        if (event.kind == signal::EventKind::outlier)
+          head.outliers_s.push_back(time(rest.first + (event.first + event.last) / 2));
   }
-  head.knocks_s = merged(std::move(head.knocks_s));
+  head.outliers_s = merged(std::move(head.outliers_s));
   return Done{};
 }
 

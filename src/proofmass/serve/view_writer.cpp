@@ -23,9 +23,9 @@ nlohmann::ordered_json head_json(const ViewHead& head) {
                         {"quantity", std::string(name_of(channel.unit.quantity))},
                         {"to_si", channel.unit.to_si}});
   for (const Stretch& rest : head.rests) rests.push_back({rest.from_s, rest.to_s});
-  return {{"samples", head.samples},           {"rate_hz", head.rate_hz},  {"end_s", head.end_s},
-          {"has_stamps", head.has_stamps},     {"channels", channels},     {"rests", rests},
-          {"why_no_rests", head.why_no_rests}, {"knocks_s", head.knocks_s}};
+  return {{"samples", head.samples},           {"rate_hz", head.rate_hz},    {"end_s", head.end_s},
+          {"has_stamps", head.has_stamps},     {"channels", channels},       {"rests", rests},
+          {"why_no_rests", head.why_no_rests}, {"knocks_s", head.outliers_s}};
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ Status ViewWriter::finish(const Recording& recording) {
                 .channels = recording.channels,
                 .rests = {},
                 .why_no_rests = {},
-                .knocks_s = {}};
+                .outliers_s = {}};
   if (const Status s = find_marks(state_->folder, head); !s) return s;
   if (const Status s = io::store_pyramid(pyramid, state_->folder + "/" + view_channel_name(0)); !s)
     return s;

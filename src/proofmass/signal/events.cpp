@@ -36,17 +36,17 @@ std::vector<Event> find_events(View<double> series, const EventOptions& options)
   // √1.25 is the filter's gain for white noise.
   const double fine_sigma = group_scales(blocks[0], blocks[0].size(), 0.0)[0] / std::sqrt(1.25);
   const bool dithered = fine_sigma >= 0.5 * grain.quantum;
-  const double knock_floor = dithered ? 0.0 : 0.5 * grain.quantum;
+  const double outlier_floor = dithered ? 0.0 : 0.5 * grain.quantum;
   const double step_floor = dithered ? 0.0 : 0.3 * grain.quantum;
   std::array<Bar, fine_scales> bars;
   for (std::size_t scale = 0; scale < bars.size(); ++scale)
     bars[scale] =
-        bar_of(blocks[scale], group_of(options.rate_hz, fine_block), knock_floor, series.size());
+        bar_of(blocks[scale], group_of(options.rate_hz, fine_block), outlier_floor, series.size());
 
   std::vector<Hit> hits = hits_on_fine_scales(source, blocks, bars);
   add_missing(source, hits);
   std::vector<Step> steps;
-  search_coarse_scales({source, options.rate_hz, step_floor, knock_floor}, hits, steps);
+  search_coarse_scales({source, options.rate_hz, step_floor, outlier_floor}, hits, steps);
   return assemble(source, std::move(hits), std::move(steps), options.rate_hz);
 }
 

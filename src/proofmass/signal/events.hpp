@@ -8,10 +8,10 @@
 
 namespace proofmass::signal {
 
-enum class EventKind { knock, step };
+enum class EventKind { outlier, step };
 
-/// A deviation that noise, drift and lines do not explain. An outlier (`knock`) is over within
-/// seconds and leaves the level unchanged; a step changes it.
+/// A deviation that noise, drift and lines do not explain. An outlier (`knock` in documents) is
+/// over within seconds and leaves the level unchanged; a step changes it.
 struct Event {
   EventKind kind;
   std::size_t first, last;  ///< inclusive; a step alone: the first sample at the new level
@@ -27,7 +27,7 @@ struct EventOptions {
 /// of w = 1, 2, 4, … samples slide along the series; with m their means, w apart, the two filters
 /// are
 ///
-///     knock: m[k] − (m[k−2] + m[k−1] + m[k+1] + m[k+2]) / 4          w = 1 … 2 s,
+///     outlier: m[k] − (m[k−2] + m[k−1] + m[k+1] + m[k+2]) / 4          w = 1 … 2 s,
 ///     step:  (m[k−2] − 3 m[k−1] + 3 m[k] − m[k+1]) / 2               w = 16 … 30 s or 1024,
 ///
 /// both with w up to N / 32 from 16 samples on. Neither passes constants or slopes, so the outputs

@@ -186,7 +186,7 @@ TEST(Events, NeedData) {
   EXPECT_TRUE(events_of(Series(5'000, std::numeric_limits<double>::infinity())).empty());
 }
 
-TEST(Knock, OfTwelveSigmaForOneSampleIsFound) {
+TEST(Outlier, OfTwelveSigmaForOneSampleIsFound) {
   int missed = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     Noise noise(seed);
@@ -199,13 +199,13 @@ TEST(Knock, OfTwelveSigmaForOneSampleIsFound) {
   EXPECT_LE(missed, 1);
 }
 
-TEST(Knock, HasItsPlaceAndSize) {
+TEST(Outlier, HasItsPlaceAndSize) {
   for (const std::size_t at : {0u, 1u, 4'000u, 9'998u, 9'999u}) {
     Noise noise(7);
     Series series = noise.white(10'000);
     series[at] = -40.0;
     const auto events = events_of(series);
-    expect_one(events, EventKind::knock, at, 8);
+    expect_one(events, EventKind::outlier, at, 8);
     EXPECT_NEAR(events[0].size, -40.0, 0.5);
     // The level is less certain at an end.
     const double gain = at == 0 || at == 9'999 ? std::sqrt(2.5) : std::sqrt(1.25);
@@ -213,7 +213,7 @@ TEST(Knock, HasItsPlaceAndSize) {
   }
 }
 
-TEST(Knock, IsFoundAsABurstOfFiveSigmaForAFifthOfASecond) {
+TEST(Outlier, IsFoundAsABurstOfFiveSigmaForAFifthOfASecond) {
   int missed = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     Noise noise(seed);
@@ -221,53 +221,53 @@ TEST(Knock, IsFoundAsABurstOfFiveSigmaForAFifthOfASecond) {
     const std::size_t first = noise.below(series.size() - 20);
     for (std::size_t k = 0; k < 20; ++k) series[first + k] += 5.0 * noise.normal();
     const auto events = events_of(series);
-    if (events.size() != 1 || events[0].kind != EventKind::knock || events[0].first + 10 < first ||
-        events[0].last > first + 30)
+    if (events.size() != 1 || events[0].kind != EventKind::outlier ||
+        events[0].first + 10 < first || events[0].last > first + 30)
       ++missed;
   }
   EXPECT_LE(missed, 3);
 }
 
-TEST(Knock, IsFoundAsALeanOfTwoSeconds) {
+TEST(Outlier, IsFoundAsALeanOfTwoSeconds) {
   Noise noise(8);
   const Series series = raised_from(raised_from(noise.white(10'000), 5'000, 4.0), 5'200, -4.0);
   const auto events = events_of(series);
   ASSERT_EQ(events.size(), 1u);
-  EXPECT_EQ(events[0].kind, EventKind::knock);
+  EXPECT_EQ(events[0].kind, EventKind::outlier);
   EXPECT_NEAR(static_cast<double>(events[0].first), 5'000.0, 20.0);
   EXPECT_NEAR(static_cast<double>(events[0].last), 5'200.0, 20.0);
 }
 
-TEST(Knocks, AreToldApart) {
+TEST(Outliers, AreSeparated) {
   Noise noise(9);
   Series series = noise.white(20'000);
   for (std::size_t k = 1; k <= 9; ++k) series[2'000 * k] += k % 2 == 0 ? 20.0 : -1e6;
   const auto events = events_of(series);
   ASSERT_EQ(events.size(), 9u);
   for (std::size_t k = 1; k <= 9; ++k) {
-    EXPECT_EQ(events[k - 1].kind, EventKind::knock);
+    EXPECT_EQ(events[k - 1].kind, EventKind::outlier);
     EXPECT_NEAR(static_cast<double>(events[k - 1].first), static_cast<double>(2'000 * k), 8.0);
     EXPECT_NEAR(events[k - 1].size, k % 2 == 0 ? 20.0 : -1e6, 3.0);
   }
 }
 
-TEST(Knock, IsFoundOnARandomWalkAndOnSway) {
+TEST(Outlier, IsFoundOnARandomWalkAndOnSway) {
   Noise noise(10);
   Series walk = sum(noise.white(10'000), noise.walk(10'000, 0.1));
   walk[3'000] += 15.0;
-  expect_one(events_of(walk), EventKind::knock, 3'000, 8);
+  expect_one(events_of(walk), EventKind::outlier, 3'000, 8);
   Series sway = noise.line(10'000, 5.0, 0.5);
   sway[3'000] += 15.0;
-  expect_one(events_of(sway), EventKind::knock, 3'000, 8);
+  expect_one(events_of(sway), EventKind::outlier, 3'000, 8);
 }
 
-TEST(Knock, IsJudgedByTheNoiseAboutIt) {
+TEST(Outlier, IsJudgedByTheNoiseAboutIt) {
   Noise noise(11);
   Series series = noise.white(60'000);
   for (std::size_t k = 45'000; k < series.size(); ++k) series[k] *= 20.0;
   EXPECT_TRUE(events_of(series).empty());
   series[10'000] += 15.0;
-  expect_one(events_of(series), EventKind::knock, 10'000, 8);
+  expect_one(events_of(series), EventKind::outlier, 10'000, 8);
 }
 
 TEST(Step, OfSixSigmaIsFoundWithItsPlaceAndSize) {
@@ -294,7 +294,7 @@ TEST(Step, OfOneSigmaIsFoundWhereTheRecordIsFlat) {
   EXPECT_GE(found, 47);
 }
 
-TEST(Step, TakesTheKnockThatMadeItAlong) {
+TEST(Step, TakesTheOutlierThatMadeItAlong) {
   Noise noise(12);
   Series series = raised_from(noise.white(20'000), 9'000, 8.0);
   for (std::size_t k = 8'990; k < 9'010; ++k) series[k] += 60.0 * noise.normal();
@@ -381,7 +381,7 @@ TEST(Events, AreAscendingAndApartWhateverTheData) {
 }
 
 TEST(DropEvents, TakesAMarginOfATenthOfASecondOrTwoSamples) {
-  const std::vector<Event> events{{EventKind::knock, 100, 104, 5.0, 9.0},
+  const std::vector<Event> events{{EventKind::outlier, 100, 104, 5.0, 9.0},
                                   {EventKind::step, 198, 198, 5.0, 9.0}};
   Series series(200, 1.0);
   drop_events(series, events, 100.0);
@@ -403,14 +403,14 @@ TEST(DropEvents, LeavesARecordWithoutEvents) {
   EXPECT_FALSE(std::isnan(series[5'950]));
 }
 
-TEST(Events, AKnockThatDiesAwaySlowlyIsNoStep) {
+TEST(Events, AnOutlierThatDiesAwaySlowlyIsNoStep) {
   Noise noise(12);
   Series series = noise.white(60'000);
   for (std::size_t k = 0; k < 300; ++k)
     series[30'000 + k] += 150.0 * std::exp(-static_cast<double>(k) / 20.0);
   const auto events = find_events(series, {.rate_hz = 100.0});
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_EQ(events[0].kind, EventKind::knock);
+  EXPECT_EQ(events[0].kind, EventKind::outlier);
   EXPECT_NEAR(events[0].size, 150.0, 5.0);
   EXPECT_NEAR(static_cast<double>(events[0].first), 30'000.0, 10.0);
   // 150 σ decay to 1 σ after 100 samples.

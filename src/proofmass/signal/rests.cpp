@@ -72,8 +72,9 @@ RestSearch find_rests(View<View<double>> axes, const RestOptions& options) {
   }
   if (noise->unrest >= 1.0) {
     search.why_none =
-        "the sensor never lay still: even where the recording is quietest, its mean swings as far "
-        "as its samples scatter";
+        "the sensor was never at rest: even where the recording is quietest, its mean varies as "
+        "much "
+        "as its samples";
     return search;
   }
   drop_stuck(blocks, *noise);
@@ -88,8 +89,7 @@ RestSearch find_rests(View<View<double>> axes, const RestOptions& options) {
   };
   std::erase_if(joined, is_short);
   if (joined.empty()) {
-    search.why_none =
-        fmt::format("nowhere does the sensor lie still for {} samples", lengths.shortest);
+    search.why_none = fmt::format("the sensor is nowhere at rest for {} samples", lengths.shortest);
     return search;
   }
   std::erase_if(runs, is_short);

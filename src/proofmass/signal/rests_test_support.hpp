@@ -65,10 +65,10 @@ struct Session {
     const Vector way = noise.direction();
     for (std::size_t k = 0; k < count; ++k) {
       const double done = static_cast<double>(k + 1) / static_cast<double>(count + 1);
-      const double swing = shake * std::sin(40.0 * done) + 0.5 * shake * std::sin(97.0 * done);
+      const double vibration = shake * std::sin(40.0 * done) + 0.5 * shake * std::sin(97.0 * done);
       Vector force{};
       for (std::size_t a = 0; a < 3; ++a)
-        force[a] = 9.81 * ((1.0 - done) * from[a] + done * up[a]) + swing * way[a];
+        force[a] = 9.81 * ((1.0 - done) * from[a] + done * up[a]) + vibration * way[a];
       add(force);
     }
   }

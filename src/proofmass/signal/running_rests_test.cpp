@@ -152,7 +152,7 @@ TEST(RunningRests, AreFoundAfterAHandThatCameFirst) {
   expect_near(followed(made).told, made, 0.3);
 }
 
-TEST(RunningRests, EndWithAKnockAndBeginAnew) {
+TEST(RunningRests, EndWithAnOutlierAndBeginAnew) {
   Noise noise(11);
   Session made;
   made.rest(16.0);

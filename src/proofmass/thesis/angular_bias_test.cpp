@@ -38,7 +38,7 @@ const std::vector<Item>& simulated_items() {
   return all;
 }
 
-/// Five positions of x and y of table 5.1, in m/s² with the noise stated.
+/// Five positions of x and y from table 5.1, in m/s², with a stated noise.
 TumbleRecord drawn(std::uint64_t seed, double noise_mps2) {
   TumbleRecord record{.source = "drawn", .simulated = true, .positions = {}, .channels = {}};
   std::array<TumbleChannel, 2> channels;
@@ -65,7 +65,7 @@ TEST(TumbleItems, WorkedReadingsGiveWhatTheirFormulaSays) {
   EXPECT_NEAR(finding(table, "worked_bias_x").ours->value / g, -0.19787, 1e-12);
   EXPECT_NEAR(finding(table, "worked_bias_y").ours->value / g, -0.223795, 1e-12);
   EXPECT_NEAR(finding(table, "worked_scale_error_y").ours->value, 0.809205 - 1.0, 1e-12);
-  // Ten times too small, and one with the wrong sign.
+  // The thesis's figures are ten times too small, one of them with the wrong sign.
   EXPECT_NEAR(*finding(table, "worked_bias_x").thesis / g, -0.01978, 1e-12);
   EXPECT_NEAR(*finding(table, "worked_bias_y").thesis / g, 0.02238, 1e-12);
 }
@@ -78,7 +78,7 @@ TEST(TumbleItems, TheMakersFiguresGiveTheVoltagesOfTheOrientations) {
   EXPECT_NEAR(finding(figure, "sensitivity").ours->value * g, 0.33, 1e-12);
 }
 
-// 95 % ± 2 % of 1200 are three standard deviations of the count.
+// 95 % ± 2 % of 1200 is three standard deviations of the count.
 TEST(TumbleItems, IntervalsHoldTheTruthInNineteenOfTwentyTumbles) {
   constexpr int trials = 1200;
   std::array<int, 6> inside{};
@@ -111,7 +111,7 @@ TEST(TumbleItems, TheSimulatedRecordingGivesBackTable5_1) {
     const auto* bias = axis.fit.find(calibrate::TumbleQuantity::K0);
     EXPECT_NEAR(*scale->value - 1.0, printed->scale_error, 5.0 * *scale->std);
     EXPECT_NEAR(*bias->value, printed->bias_mps2, 5.0 * *bias->std);
-    // White noise of 150 µg/√Hz in a minute: 14 µg a mean, and the converter's rounding with it.
+    // White noise of 150 µg/√Hz over a minute has a std of 14 µg per mean; quantisation adds to it.
     EXPECT_LT(*scale->std, 3e-5);
     EXPECT_LT(*bias->std, 0.03 * mg_mps2);
   }
@@ -168,7 +168,7 @@ TEST(TumbleItems, AUsersUnitChangesNoFigure) {
   }
 }
 
-TEST(TumbleItems, AChannelThatDoesNotSwingIsRefusedByName) {
+TEST(TumbleItems, AConstantChannelIsRefusedByName) {
   TumbleRecord record = drawn(1, 1e-3);
   record.channels[1].name = "z";
   std::ranges::fill(record.channels[1].output, 0.2);
@@ -211,7 +211,7 @@ TEST(TumbleItems, OfARecordingTheScaleFactorIsAsUncertainAsGravityAtLeast) {
   EXPECT_NE(item(placed, "table 5.1").ours.find("In them is the gravity"), std::string::npos);
 }
 
-// A mean over T of white noise of one-sided density D has the variance D²/(2T).
+// The mean over T of white noise with one-sided density D has variance D²/(2T).
 TEST(TumbleItems, TheDwellIsLongEnoughByMonteCarlo) {
   const double error = printed_x().scale_error, dwell_s = white_dwell_s(error);
   const double mean_std = 150e-6 / std::sqrt(2.0 * dwell_s);

@@ -12,7 +12,7 @@ struct Cell {
   double printed_m, exact_m;
 };
 
-// ½ b t² by hand, 1 mg = 9.80665e-3 m/s².
+// ½ b t² computed by hand, 1 mg = 9.80665e-3 m/s².
 constexpr std::array<Cell, 16> cells{{
     {"navigation_1s", 0.13e-3, 0.1225831e-3},
     {"navigation_10s", 12e-3, 12.25831e-3},

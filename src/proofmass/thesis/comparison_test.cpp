@@ -26,7 +26,7 @@ TEST(Comparison, AgreesWithinTwoStandardDeviations) {
   EXPECT_TRUE(agrees(fake_finding("k", 2.0, Uncertain{3.0, 0.5})));
 }
 
-TEST(Comparison, CountsWhatCannotBeToldAsPrintedAndNotAsCompared) {
+TEST(Comparison, CountsUndeterminedFiguresAsPrintedOnly) {
   const Agreement all = agreement(fake_report().programme.items);
   EXPECT_EQ(all.printed, 3U);
   EXPECT_EQ(all.compared, 2U);

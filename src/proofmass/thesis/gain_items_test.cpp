@@ -27,7 +27,7 @@ double ours(std::string_view id, std::string_view key) {
   return found->ours.value().value;
 }
 
-// The same Riccati recursion once more, of the third column alone and in plain numbers.
+// The same Riccati recursion, for the third column only and in scalars.
 struct Recursion {
   double pa, va, aa;  // covariance of position, velocity and acceleration with the acceleration
 };
@@ -76,13 +76,13 @@ TEST(GainItems, AnErrorOfTheAccelerationFallsWithTheTimeConstant) {
   for (const auto& options : {quick_filter, slow_filter}) {
     const auto study = gain_study(options);
     const double constant_s = filter_response(study, 1.0).time_constant_s;
-    double error = 1.0;  // of the settled filter without noise: (1 − k) each step
+    double error = 1.0;  // of the settled filter without noise: a factor of (1 − k) per step
     for (int k = 0; k < 50; ++k) error *= 1.0 - study.limit[2];
     EXPECT_NEAR(error, std::exp(-50 * 0.2 / constant_s), 1e-12);
   }
 }
 
-// Noise through the settled filter, R k/(2 − k), and the lag of the sine, |1 − H|²/2.
+// Noise through the settled filter, R k/(2 − k), and the error due to lag for the sine, |1 − H|²/2.
 TEST(GainItems, TheFiltersErrorIsItsNoiseAndItsLag) {
   for (const auto& options : {quick_filter, slow_filter}) {
     const double k = gain_study(options).limit[2], c = std::cos(0.2), s = std::sin(0.2);
@@ -94,7 +94,7 @@ TEST(GainItems, TheFiltersErrorIsItsNoiseAndItsLag) {
     for (const auto axis : {SimulatedAxis::x, SimulatedAxis::y}) {
       const ReadingErrors found = reading_errors(options, axis, 7, 40);
       const double mean_std = found.filtered.std / std::sqrt(40.0);
-      // The first readings, before the filter has settled, add a little.
+      // The first measurements, before the filter has settled, contribute a little.
       EXPECT_NEAR(found.filtered.value, expected, 4.0 * mean_std + 0.01);
       EXPECT_LT(found.smoothed.value, found.filtered.value);
       EXPECT_NEAR(found.reading.value, std::sqrt(options.accel_variance_m2ps4),
@@ -135,8 +135,8 @@ TEST(GainItems, ALongerStepLeavesMoreVariance) {
   EXPECT_LT(ours("figure 4.3", "limit_variance_0p2_s"), ours("figure 4.3", "limit_variance_1_s"));
 }
 
-// With the acceleration known at once, position is left with what P₀ and the jerk give it:
-// P₀ (1 + t²) and less than what the jerk adds to a position that nothing is read of, q t⁵/20.
+// If the acceleration is known at once, the position variance due to P₀ is P₀ (1 + t²), and that
+// due to jerk is below q t⁵/20, its value without measurements.
 TEST(GainItems, ThePositionIsLeftWithAtLeastTheVelocityOfTheStart) {
   for (const char* id : {"figure 5.8", "figure 5.10"}) {
     EXPECT_GT(ours(id, "position_std"), std::sqrt(100.0 * (1.0 + 100.0 * 100.0)));

@@ -38,10 +38,11 @@ TEST(MotorItems, TheSpeedOfTheRimIsItsRadiusTimesTheAngularVelocity) {
 
 TEST(MotorItems, PowerIsForceTimesSpeedAtTheRimToo) {
   EXPECT_NEAR(ours("power"), 0.32 / 0.15 * ours("rim_speed"), 1e-12);
-  EXPECT_NEAR(*finding(section(), "power").thesis, 0.32 * 0.066, 5e-5);  // as it was reckoned
+  EXPECT_NEAR(*finding(section(), "power").thesis, 0.32 * 0.066,
+              5e-5);  // as the thesis computes it
 }
 
-// 1 hp is 5252 lbf ft times rpm: 220 in·lb at 31 rpm are 0.1082 hp of the eighth that goes in.
+// 1 hp is 5252 lbf ft times rpm: 220 in·lb at 31 rpm are 0.1082 hp, of an input of 1/8 hp.
 TEST(MotorItems, ThePlateOfTheMotorKeepsTheBooksOfItsPower) {
   EXPECT_NEAR(ours("rated_power"), 220.0 / 12.0 * 31.0 / 5252.113 * 745.69987, 1e-3);
   EXPECT_LT(ours("rated_power"), *finding(section(), "input_power").thesis);

@@ -7,7 +7,7 @@
 namespace proofmass::thesis::programme_test {
 namespace {
 
-// Two hours at rest would take most of the time.
+// Shortened: two hours at rest would dominate the run time.
 const Programme& simulated() {
   static const Programme programme =
       run_programme({}, {.seeds = 2, .static_duration_s = 600.0}).value();
@@ -45,7 +45,7 @@ void expect_number_or_reason(const Finding& finding, const std::string& which) {
   EXPECT_TRUE(finding.ours->std >= 0.0 && std::isfinite(finding.ours->std)) << which;
 }
 
-// One test, for each runs in a process of its own and the programme takes a while.
+// A single test, since each runs in its own process and the programme takes a while.
 TEST(Programme, GivesAllTextsAndEachNumberOnceOrAReason) {
   for (const Item& item : simulated().items) {
     expect_texts(item);

@@ -16,7 +16,7 @@ constexpr double milli_g = 1e-3 * standard_gravity_mps2;
 
 // --- the simulated test --------------------------------------------------------------------------
 
-/// A quarter of the thesis's two hours, once for all tests.
+/// A quarter of the thesis's two hours, computed once for all tests.
 const StaticTest& half_an_hour() {
   static const StaticTest test = analyse_static(simulate_static(1, {}, 1800.0).value(), {}).value();
   return test;
@@ -64,7 +64,8 @@ TEST(StaticSimulation, HasNoGravityInItsAxes) {
   }
 }
 
-// Four axes with three intervals each: at 95 % eleven or twelve of them in nine cases of ten.
+// Four axes with three intervals each: at 95 % eleven or twelve of them cover, in nine cases of
+// ten.
 TEST(StaticTest, FindsTheWarmUpThatWasSimulated) {
   const StaticTest& test = half_an_hour();
   ASSERT_EQ(test.axes.size(), 4U);
@@ -77,7 +78,7 @@ TEST(StaticTest, FindsTheWarmUpThatWasSimulated) {
   }
 }
 
-TEST(StaticTest, PlainLeastSquaresAreOffByMoreThanTheyBelieve) {
+TEST(StaticTest, PlainLeastSquaresUnderestimateTheirError) {
   double squares = 0.0;
   for (const AxisTest& axis : half_an_hour().axes) {
     const double error =
@@ -87,8 +88,8 @@ TEST(StaticTest, PlainLeastSquaresAreOffByMoreThanTheyBelieve) {
   EXPECT_GT(std::sqrt(squares / 4.0), 1.5);
 }
 
-// ADXL335: 150 µg/√Hz one-sided is N = 106.1 two-sided; behind 49.7 Hz (32 kΩ, 0.1 µF) 40 samples
-// a second show √(x coth x) of it, x = π 49.7/40, and 1000 a second 1.004.
+// ADXL335: 150 µg/√Hz one-sided is N = 106.1 two-sided. With a bandwidth of 49.7 Hz (32 kΩ, 0.1
+// µF), 40 samples a second alias to √(x coth x) of it, x = π 49.7/40, and 1000 a second to 1.004.
 TEST(StaticTest, PickingSamplesDoublesTheNoiseThatMeansKeep) {
   const DecimationNoise& noise = half_an_hour().noise;
   EXPECT_NEAR(noise.slow->model.white.value / milli_g, 0.1065, 0.005);
@@ -159,7 +160,7 @@ TEST(StaticItems, OfARecordWithoutAWarmUpSayWhyThereIsNone) {
   EXPECT_NEAR(finding_of(tracks, "axis1_bias_end").ours->value, 0.02, 1e-4);
 }
 
-// The share of lags within ±1.96/√n is a mean of 70 indicators of 95 %: ± 2.6 %.
+// The fraction of lags within ±1.96/√n is a mean of 70 indicators of 95 %: ± 2.6 %.
 TEST(StaticItems, OfWhiteResidualsHave95PercentInsideTheBounds) {
   std::vector<double> samples = white(200'000, 1);
   for (std::size_t k = 0; k < samples.size(); ++k)

@@ -52,8 +52,8 @@ TEST(IntegratedTwice, OfAConstantWithASpeedIsTheParabolaThoughReadingsAreMissing
   EXPECT_NEAR(integrated_twice(time_s, accel, 3.0).back(), 3.0 + 1.0, 1e-12);
 }
 
-// At 11 rpm gravity left in the readings comes to metres within 2 s for nearly every start angle,
-// a bias of table 5.1 to 0.4 m: only the former is of the size of what the thesis prints.
+// At 11 rpm, uncompensated gravity gives metres within 2 s for nearly every start angle, a bias of
+// table 5.1 0.4 m: only gravity explains the errors printed in the thesis.
 TEST(GravityPath, IsOfTheSizeOfTheErrorsThatTheThesisPrints) {
   double squares = 0.0;
   for (int k = 0; k < 360; ++k)
@@ -66,7 +66,7 @@ TEST(GravityPath, IsOfTheSizeOfTheErrorsThatTheThesisPrints) {
   EXPECT_LT(0.5 * 22.29e-3 * standard_gravity_mps2 * 4.0, 0.45);
 }
 
-// A second computation: all states at once by weighted least squares.
+// Independent computation: all states at once by weighted least squares.
 TEST(ThesisPaths, SmootherEqualsOneLeastSquaresProblem) {
   constexpr int count = 30;
   const FusedReading reading = noisy_reading(count, 3);
@@ -74,9 +74,10 @@ TEST(ThesisPaths, SmootherEqualsOneLeastSquaresProblem) {
       {.motion = {.dt_s = 0.005, .jerk_psd_m2ps5 = 1.0, .accel_variance_m2ps4 = 1e-4},
        .time_constant_s = reading.time_constant_s,
        .bias_psd_m2ps5 = 0.0});
-  // The unknowns: the start's departure (p, v known; a, ε) and the white jerk's part of each step.
+  // Unknowns: deviation of the initial state (p, v known; a, ε unknown) and the contribution of
+  // white jerk to each step.
   constexpr int jerks = 3 * (count - 1), unknowns = 2 + jerks;
-  Eigen::MatrixXd states = Eigen::MatrixXd::Zero(4, unknowns + 1);  // last column: what is known
+  Eigen::MatrixXd states = Eigen::MatrixXd::Zero(4, unknowns + 1);  // last column: known part
   states(2, 0) = states(3, 1) = 1.0;
   states(3, unknowns) = 0.2;
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(unknowns, unknowns);
@@ -106,18 +107,18 @@ TEST(ThesisPaths, SmootherEqualsOneLeastSquaresProblem) {
 TEST(ThesisPaths, GainSettlesAtTheClosedFormOfItsModel) {
   const ThesisPaths paths = thesis_paths(noisy_reading(600, 5)).value();
   const auto limit = estimate::gain_study({.accel_variance_m2ps4 = 1e-4, .step_s = 0.005}).limit;
-  // Beside it, what is not known of the bias: (0.02 m/s²)² against 1e-4.
+  // The unknown part of the bias is negligible: (0.02 m/s²)² against 1e-4.
   EXPECT_NEAR(paths.gain.back(), limit[2], 2e-5);
   EXPECT_GT(paths.gain.front(), 0.999);
 }
 
-TEST(ThesisPaths, SmootherKnowsNoMoreThanTheFilterAtTheEnd) {
+TEST(ThesisPaths, SmootherEqualsTheFilterAtTheEnd) {
   const ThesisPaths paths = thesis_paths(noisy_reading(400, 9)).value();
   EXPECT_DOUBLE_EQ(paths.smoothed_m.back(), paths.filtered_m.back());
   EXPECT_DOUBLE_EQ(paths.smoothed_std_m.back(), paths.filtered_std_m.back());
 }
 
-// Appendix A.1 with four rows: its mean of y1 and y2 is the fused reading's path.
+// Appendix A.1 with four rows: its mean of y1 and y2 is the path from the fused measurement.
 TEST(FourteenStates, HoldTheFusedPairOfOneAxis) {
   RigRun run;
   const WheelRecord record = simulate_wheel(run).value();
@@ -136,7 +137,7 @@ TEST(FourteenStates, HoldTheFusedPairOfOneAxis) {
     epochs[k].u.setConstant(0.1);
     fused.accel_mps2.push_back(0.5 * (epochs[k].z(1) + epochs[k].z(3)));
   }
-  // Two motions of density 2 have a mean of density 1.
+  // The mean of two motions of density 2 has density 1.
   auto series = estimate::LinearSeries<14, 4, 2>::make(std::move(epochs), [&](double dt_s) {
     estimate::FusionModelOptions options;
     options.axes.fill({.dt_s = dt_s, .jerk_psd_m2ps5 = 2.0, .accel_variance_m2ps4 = variance});

@@ -30,7 +30,7 @@ TEST(ThesisJson, HasEachNumberUnderItsKeyInSi) {
   EXPECT_EQ(item["ours"]["values"]["at_2_s"]["unit"], "m");
 }
 
-TEST(ThesisJson, HasNothingOfTheThesisWhereItPrintsNothing) {
+TEST(ThesisJson, HasNoThesisValueIfNoneIsPrinted) {
   const Json item = Json::parse(to_json(describe(fake_report())))["items"][2];
   EXPECT_TRUE(item["thesis"]["values"].empty());
   EXPECT_EQ(item["ours"]["values"].size(), 1U);

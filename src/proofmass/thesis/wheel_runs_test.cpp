@@ -17,7 +17,7 @@ namespace {
 
 constexpr double g = standard_gravity_mps2;
 
-/// A simulated run as a user's own recording: no truth, nothing known of the sensors.
+/// A simulated run in the form of a user's recording: no truth, no knowledge of the sensors.
 WheelRecord as_own(WheelRecord record, std::size_t sensors) {
   record.simulated = false;
   record.source = "mine.csv";
@@ -112,7 +112,7 @@ TEST(SimulatedWheel, StartsAtRestAndTurnsOnce) {
   EXPECT_GE(record.true_angle_rad.back() - record.true_angle_rad.front(), 0.99 * rad_per_turn);
 }
 
-/// 40 runs, either kind.
+/// 40 runs with or without datasheet errors.
 std::vector<RunErrors> forty_runs(bool datasheet_errors) {
   std::vector<RunErrors> runs;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -136,7 +136,8 @@ TEST(WheelModel, HoldsAFewHundredthsOfAMillimetreOverOneTurn) {
   EXPECT_LT(rms_over(runs, end)->value, 0.1e-3);
   EXPECT_GE(inside(runs, &RunErrors::wheel_smoothed), 36U);
   EXPECT_GE(inside(runs, &RunErrors::wheel_moved), 36U);
-  // The thesis's filter, its gravity cancelled, is a thousand times worse and knows it.
+  // The thesis's filter, with gravity cancelled, is a thousand times worse, and its covariance
+  // shows it.
   const auto thesis = [](const RunErrors& run) { return std::optional(run.roll->filtered.end); };
   EXPECT_NEAR(rms_over(runs, thesis)->value, runs.front().roll->filtered.end_std, 0.06);
   const auto smoother = [](const RunErrors& run) {
@@ -145,14 +146,15 @@ TEST(WheelModel, HoldsAFewHundredthsOfAMillimetreOverOneTurn) {
   EXPECT_LT(rms_over(runs, smoother)->value, 0.01);
 }
 
-// What sits askew no accelerometer on the wheel can see; it leaves the way since the start alone.
+// Misalignment is not observable by accelerometers on the wheel; it affects the angle, not the
+// rotation since the start.
 TEST(WheelModel, WithDatasheetErrorsItsBandHoldsForTheWayAndNotForThePlace) {
   const std::vector<RunErrors> runs = forty_runs(true);
   EXPECT_LT(inside(runs, &RunErrors::wheel_smoothed), 20U);
   EXPECT_GE(inside(runs, &RunErrors::wheel_moved), 34U);
 }
 
-// Scales of 10 % put the first predictions wrong by many times the noise.
+// Scale errors of 10 % make the first predictions wrong by many times the noise.
 TEST(WheelModel, FollowsEveryRunWithDatasheetErrors) {
   for (const double rpm : {16.0, 21.0})
     for (std::uint64_t seed = 1; seed <= 50; ++seed) {

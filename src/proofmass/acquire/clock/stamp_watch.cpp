@@ -31,9 +31,9 @@ void StampWatch::look(const std::vector<std::int64_t>& stamps_ns, std::vector<No
     repeated_.told = repeated_.seen;
   }
   if (backwards_.is_due()) {
-    notes.push_back(
-        {Severity::warning, fmt::format("the device's stamps went back {} times, by {:.6g} s here",
-                                        backwards_.seen, worst_s)});
+    notes.push_back({Severity::warning,
+                     fmt::format("the device's stamps stepped back {} times, by {:.6g} s here",
+                                 backwards_.seen, worst_s)});
     backwards_.told = backwards_.seen;
   }
 }

@@ -31,7 +31,7 @@ TEST(StampWatch, TellsRepeatedAndBackwardStampsAcrossBuffers) {
   watch.look({2'000'000'000, 500'000'000}, notes);
   ASSERT_EQ(notes.size(), 2U);
   EXPECT_EQ(notes[0].text, "the device stamped 1 rows with the time of the row before");
-  EXPECT_EQ(notes[1].text, "the device's stamps went back 1 times, by 1.5 s here");
+  EXPECT_EQ(notes[1].text, "the device's stamps stepped back 1 times, by 1.5 s here");
 }
 
 TEST(StampWatch, DoesNotFloodTheRecording) {

@@ -36,7 +36,7 @@ Status open_inputs(const ComediRequest& request, ComediCommand& out) {
       static_cast<unsigned>(comedi_get_subdevice_flags(out.device.get(), out.subdevice));
   if ((flags & SDF_CMD_READ) == 0)
     return command_refused(
-        fmt::format("{} ({}) gives single readings only, which cannot be recorded at a "
+        fmt::format("{} ({}) gives single values only, which cannot be recorded at a "
                     "rate",
                     request.path, comedi_get_board_name(out.device.get())));
   out.sample_bytes = (flags & SDF_LSAMPL) != 0 ? sizeof(lsampl_t) : sizeof(sampl_t);
@@ -94,8 +94,9 @@ Status add_channel(unsigned channel,
                         comedi_get_hardcal_converter(device, out.subdevice, channel, request.range,
                                                      COMEDI_TO_PHYSICAL, &polynomial) >= 0;
   if (!is_known)
-    return command_refused(fmt::format(
-        "channel {}: the card does not say what its figures mean ({})", channel, comedi_reason()));
+    return command_refused(
+        fmt::format("channel {}: the card does not state the scale of its values ({})", channel,
+                    comedi_reason()));
   const comedi_range* const bounds =
       comedi_get_range(device, out.subdevice, channel, request.range);
   const bool is_volts = bounds != nullptr && bounds->unit == UNIT_volt;
@@ -153,7 +154,7 @@ Status set_rate(const ComediRequest& request, ComediCommand& out) {
   const unsigned scan_ns = out.command.scan_begin_src == TRIG_TIMER
                                ? out.command.scan_begin_arg
                                : out.command.convert_arg * out.command.chanlist_len;
-  if (scan_ns == 0) return command_refused("the card does not say at which rate it reads");
+  if (scan_ns == 0) return command_refused("the card does not state its sample rate");
   out.rate_hz = 1e9 / scan_ns;
   out.settings.emplace_back("rate asked", fmt::format("{} Hz", request.rate_hz));
   out.settings.emplace_back("rate granted", fmt::format("{:.9g} Hz", out.rate_hz));

@@ -57,7 +57,7 @@ class ComediSource : public Source {
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) return Arrived::nothing;
     if (count < 0 && errno == EPIPE) return restart(arrival);
     if (count < 0) return gone();
-    if (count == 0) return Error{Errc::device, "the card has stopped reading of itself"};
+    if (count == 0) return Error{Errc::device, "the card has stopped sampling"};
     filled_ += static_cast<std::size_t>(count);
     take_rows(arrival);
     return arrival.rows() > 0 ? Arrived::rows : Arrived::nothing;
@@ -103,7 +103,7 @@ class ComediSource : public Source {
   Result<Arrived> restart(Arrival& arrival) {
     if (std::exchange(has_restarted_, true))
       return Error{Errc::device,
-                   "the card's buffer runs over before anything of it is read: ask for a lower "
+                   "the card's buffer overflows before it is read: request a lower "
                    "rate or fewer channels"};
     comedi_cancel(card_.device.get(), card_.subdevice);
     filled_ = 0;
@@ -112,7 +112,7 @@ class ComediSource : public Source {
     const double silent_s = 1e-9 * static_cast<double>(host_now_ns() - last_ns_);
     lost_ += static_cast<std::uint64_t>(std::max(1.0, std::round(silent_s * card_.rate_hz)));
     arrival.notes.push_back(
-        {Severity::warning, fmt::format("the card's buffer ran over and it was started anew: about "
+        {Severity::warning, fmt::format("the card's buffer overflowed and it was restarted: about "
                                         "{} rows are missing",
                                         lost_)});
     return Arrived::nothing;

@@ -77,7 +77,7 @@ class Listener {
   Status start_anew(const std::string& words) {
     const auto lost = task_->unread();
     if (++starts_in_vain_ > most_starts_in_vain)
-      return Error{Errc::device, fmt::format("{}; the task was started anew {} times in vain",
+      return Error{Errc::device, fmt::format("{}; the task was restarted {} times without success",
                                              words, most_starts_in_vain)};
     if (const Status again = task_->start_anew(); !again) return again.error();
     // The card acquired nothing from its stop until now; that time is known from the host's clock
@@ -87,7 +87,7 @@ class Listener {
     lost_ = std::max(static_cast<std::uint64_t>(missing), lost.value_or(0));
     const std::string count = lost ? fmt::format("{} rows that the card took", *lost)
                                    : "rows whose number the driver does not report";
-    tell({Severity::bad, fmt::format("{}: {} are lost; the task was started anew, and by the "
+    tell({Severity::bad, fmt::format("{}: {} are lost; the task was restarted, and by the "
                                      "host's clock {:.0f} rows are missing",
                                      words, count, missing)});
     return Done{};

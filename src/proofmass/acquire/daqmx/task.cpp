@@ -48,7 +48,7 @@ std::string advice_on_channels(const DaqmxCalls& calls, const std::string& devic
   const auto channels = daqmx_channels_of(calls, device);
   if (channels.empty()) {
     const auto devices = daqmx_devices(calls);
-    return devices.empty() ? "the driver knows of no device"
+    return devices.empty() ? "the driver has no device"
                            : fmt::format("there are {}", fmt::join(devices, ", "));
   }
   std::string text = fmt::format("{} ({}) has {}", device, daqmx_product(calls, device),
@@ -67,7 +67,7 @@ std::string advice_on_rate(const DaqmxCalls& calls, const std::string& device) {
   double most_hz = 0.0;
   if (calls.get_dev_ai_max_multi_chan_rate == nullptr ||
       calls.get_dev_ai_max_multi_chan_rate(device.c_str(), &most_hz) < 0)
-    return "ask for a lower rate=";
+    return "request a lower rate=";
   return fmt::format(
       "{} takes {:g} samples a second at most, which the channels share where it "
       "takes them one by one",

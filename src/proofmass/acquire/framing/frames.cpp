@@ -103,7 +103,7 @@ class FrameDecoder final : public Decoder, private FrameSink {
       return;
     }
     garbage_.add(by_checksum ? fmt::format("a wrong checksum: {} bytes passed over", bytes)
-                             : fmt::format("{} bytes passed over that are no frame of {}", bytes,
+                             : fmt::format("skipped {} bytes that are not a frame of {}", bytes,
                                            layout_.bytes),
                  rows_.notes());
   }
@@ -114,7 +114,7 @@ class FrameDecoder final : public Decoder, private FrameSink {
   std::optional<std::size_t> clock_field_;
   std::int64_t host_ns_ = 0;
   std::uint64_t came_ = 0;
-  RepeatedNote garbage_{"times bytes were passed over that are no frame"};
+  RepeatedNote garbage_{"times bytes that are not a frame were skipped"};
 };
 
 }  // namespace

@@ -197,7 +197,7 @@ void LineDecoder::read(std::string_view text, std::int64_t host_ns) {
       return;
     case LineFit::header:
       rows_.begin_anew();
-      restarts_.add("the header came once more: the device began anew", notes);
+      restarts_.add("the header was repeated: the device restarted", notes);
       return;
     case LineFit::broken:
       rows_.lose(1);
@@ -206,7 +206,7 @@ void LineDecoder::read(std::string_view text, std::int64_t host_ns) {
       break;
   }
   ++counts_.lines;
-  misfits_.add(fmt::format("a line that is no row passed over: {}", io::shown(text)), notes);
+  misfits_.add(fmt::format("skipped a line that is not a row: {}", io::shown(text)), notes);
 }
 
 std::string LineDecoder::what_came() const {

@@ -58,7 +58,7 @@ TEST(FramingLines, TellThatTheHeaderCameOnceMore) {
   const Decoded out = decode(many_rows(5) + "t_us,ax (g),ay (g)\n7,1,2\n");
   EXPECT_EQ(out.rows(), 6u);
   EXPECT_EQ(out.counts.lines, 0u);
-  EXPECT_TRUE(out.is_noted("began anew"));
+  EXPECT_TRUE(out.is_noted("device restarted"));
   EXPECT_LT(out.device_ns.back(), out.device_ns[4]) << "the device's clock went back, and is left";
 }
 
@@ -213,7 +213,7 @@ TEST(FramingLines, DoNotTakeACountForAClock) {
   decoder->describe(out.head);
   drain(*decoder, out);
   EXPECT_FALSE(out.head.has_device_clock);
-  EXPECT_TRUE(out.is_noted("goes up by one"));
+  EXPECT_TRUE(out.is_noted("increases by one"));
 }
 
 TEST(FramingLines, NameTheColumnsThatAreThere) {

@@ -95,8 +95,7 @@ void tell_what_is_left(const RowEvidence& rows, DecidedPlan& decided) {
         {Severity::warning, fmt::format("no figures in {}: not recorded", fmt::join(words, ", "))});
   if (!rows.has_names)
     decided.notes.push_back(
-        {Severity::info,
-         "the columns have no names: named by their place; columns=x,y,z names them"});
+        {Severity::info, "the columns have no names: named by position; columns=x,y,z names them"});
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ bool RowQueue::place(const std::optional<Tick>& tick) {
   if (!device_ns) {
     ++untimed_;
     ++pending_lost_;
-    untimed_notes_.add(fmt::format("a row whose {} is no time was passed over", plan_.clock->name),
+    untimed_notes_.add(fmt::format("skipped a row whose {} is not a time", plan_.clock->name),
                        notes_);
     return false;
   }
@@ -71,7 +71,7 @@ bool RowQueue::count(View<double> fields) {
   }
   if (step.restarted)
     restart_notes_.add(
-        fmt::format("{} went to {:.0f}: the device began anew, or many rows are missing",
+        fmt::format("{} went to {:.0f}: the device restarted, or many rows are missing",
                     plan_.counter->name, count),
         notes_);
   pending_lost_ += step.lost;

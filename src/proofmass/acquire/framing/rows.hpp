@@ -98,7 +98,7 @@ class RowQueue {
   std::vector<Note> notes_;
   RepeatedNote late_notes_{"rows that came late"};
   RepeatedNote restart_notes_{"times that the count jumped"};
-  RepeatedNote untimed_notes_{"rows without a reading of the clock"};
+  RepeatedNote untimed_notes_{"rows without a time"};
   std::uint64_t pending_lost_ = 0;
   double count_ = 0.0;  ///< count at the last row
   std::uint64_t rows_ = 0, lost_ = 0, late_ = 0, untimed_ = 0;

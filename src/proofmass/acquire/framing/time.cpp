@@ -104,7 +104,7 @@ Result<std::int64_t> unit_of_clock(const RowEvidence& rows,
   }
   if (const auto unit_ns = unit_by_size(rows, field, notes)) return *unit_ns;
   return Error{Errc::invalid_argument,
-               fmt::format("{}: nothing says in what unit this clock counts: add time-unit=s, ms, "
+               fmt::format("{}: the unit of this clock is unknown: add time-unit=s, ms, "
                            "us or ns, or time=none",
                            clock.label.name)};
 }
@@ -129,7 +129,7 @@ std::optional<std::size_t> named_clock(const RowEvidence& rows, std::vector<Note
   if (pace_of(rows.first[*best]).ascends()) return best;
   if (best_likeness == 1) return std::nullopt;
   notes.push_back({Severity::warning,
-                   fmt::format("{} does not go forward: not taken for the device's clock; time={} "
+                   fmt::format("{} does not go forward: not taken as the device's clock; time={} "
                                "says that it is",
                                rows.fields[*best].label.name, rows.fields[*best].label.name)});
   return std::nullopt;
@@ -148,9 +148,10 @@ std::optional<std::size_t> nameless_clock(const RowEvidence& rows,
   const std::string& name = rows.fields[0].label.name;
   if (!rows.fields[0].is_figures || pace.up + 1 < rows.host_ns.size()) return std::nullopt;
   if (pace.by_ones) {
-    notes.push_back({Severity::info, fmt::format("{} goes up by one: say time={} if it is a clock, "
-                                                 "counter={} if it counts the rows",
-                                                 name, name, name)});
+    notes.push_back(
+        {Severity::info, fmt::format("{} increases by one: give time={} if it is a clock, "
+                                     "counter={} if it counts the rows",
+                                     name, name, name)});
     return std::nullopt;
   }
   const bool came_at_once = options.carrier == Carrier::pipe && !unit_by_host(rows, 0) &&
@@ -158,7 +159,7 @@ std::optional<std::size_t> nameless_clock(const RowEvidence& rows,
   if (!unit_by_host(rows, 0) && !came_at_once) return std::nullopt;
   notes.push_back(
       {Severity::info,
-       fmt::format("{} ascends: taken for the device's clock; time=none says it is none", name)});
+       fmt::format("{} ascends: taken as the device's clock; time=none prevents this", name)});
   return 0;
 }
 

@@ -183,7 +183,7 @@ Result<IioColumns> choose_columns(iio_device* device, const std::vector<std::str
       return Error{Errc::invalid_argument, fmt::format("channels={}: {} has {}", name,
                                                        iio_name(device), fmt::join(names, ", "))};
   if (all.empty())
-    return Error{Errc::device, fmt::format("{} has no buffer: its driver gives single readings "
+    return Error{Errc::device, fmt::format("{} has no buffer: its driver gives single values "
                                            "only, which cannot be recorded at a rate",
                                            iio_name(device))};
   IioColumns out;

@@ -124,7 +124,7 @@ TEST(IioSource, TellsStampsThatGoBack) {
   ASSERT_TRUE(source) << source.error().message;
   const Arrival rows = gather(**source, 200).value();
   ASSERT_FALSE(rows.notes.empty());
-  EXPECT_EQ(rows.notes[0].text, "the device's stamps went back 1 times, by 0.004 s here");
+  EXPECT_EQ(rows.notes[0].text, "the device's stamps stepped back 1 times, by 0.004 s here");
 }
 
 TEST(IioSource, SaysThatTheDeviceRefusesTheTrigger) {

@@ -22,7 +22,7 @@ Error refused(const iio_device* device, const iio_device* trigger, int code) {
   const std::string name = iio_name(device), other = iio_name(trigger);
   if (code == -EBUSY)
     return {Errc::device,
-            fmt::format("trigger {}: {} is being read: stop who reads it; where nobody does, one "
+            fmt::format("trigger {}: {} is being read: stop the reader; if there is none, one "
                         "that died left its buffer enabled: write 0 to its buffer/enable",
                         other, name)};
   return {Errc::device,
@@ -106,8 +106,8 @@ Status ask_rate(iio_device* timer, double rate_hz) {
   if (code >= 0) return Done{};
   const auto there = own_text(timer, "sampling_frequency_available");
   if (code == -ENOENT)
-    return Error{Errc::device, fmt::format("rate={}: nothing here sets a rate: {} has none to set",
-                                           rate_hz, iio_name(timer))};
+    return Error{Errc::device, fmt::format("rate={}: the rate cannot be set: {} has none", rate_hz,
+                                           iio_name(timer))};
   return Error{Errc::device, fmt::format("rate={}: {} refuses it ({}){}", rate_hz, iio_name(timer),
                                          iio_reason(code), there ? "; it takes " + *there : "")};
 }

@@ -40,8 +40,7 @@ std::string refusal_of(int code) {
     case 5:
       return "it wants a user: give user= and password=";
     default:
-      return code < 0 ? "nobody answers there: is the broker running, and the port right?"
-                      : words_of(code);
+      return code < 0 ? "no response: is the broker running, and the port right?" : words_of(code);
   }
 }
 

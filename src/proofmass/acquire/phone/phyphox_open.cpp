@@ -81,7 +81,7 @@ Result<PhyphoxStart> begin(Opening& phone, std::vector<PhyphoxGroup> groups) {
   if (!*done)
     return Error{
         Errc::device,
-        "the phone refuses to start the measurement: start it there, and see what it says"};
+        "the phone refuses to start the measurement: start it there, and read its message"};
   return start;
 }
 

@@ -99,10 +99,9 @@ Status PhyphoxSource::take(const HttpAnswer& answer) {
 
 Status PhyphoxSource::take_bad(std::string why) {
   if (++bad_answers_ >= most_bad_answers)
-    return phyphox_gone({Errc::device, fmt::format("{} answers in a row were none, the last: {}",
+    return phyphox_gone({Errc::device, fmt::format("{} consecutive invalid responses, the last: {}",
                                                    bad_answers_, why)});
-  tell(Severity::warning,
-       fmt::format("phyphox: an answer was none, and is asked for again: {}", why));
+  tell(Severity::warning, fmt::format("phyphox: invalid response, retrying: {}", why));
   return Done{};
 }
 
@@ -118,7 +117,7 @@ Status PhyphoxSource::take_session(const PhyphoxReply& reply) {
   if (reply.session != start_.session) {
     start_.session = reply.session;
     tell(Severity::warning,
-         "phyphox: the experiment was opened anew on the phone, its clock begins again");
+         "phyphox: the experiment was reopened on the phone, its clock restarts");
     for (PhyphoxCursor& cursor : start_.cursors) cursor.start_anew();
   }
   if (reply.measuring != was_measuring_)

@@ -71,7 +71,7 @@ TEST_F(PhyphoxSource, TellsThatTheExperimentWasOpenedAnew) {
   OPEN(source, {"--rate", "500", "--restart-at", "250"});
   const Taken taken = take_rows(**source, 600);
   ASSERT_GE(taken.device_ns.size(), 600U);
-  EXPECT_TRUE(says(taken.notes, "opened anew"));
+  EXPECT_TRUE(says(taken.notes, "was reopened"));
   const auto back = std::ranges::adjacent_find(taken.device_ns, std::greater<>());
   ASSERT_NE(back, taken.device_ns.end());
   EXPECT_EQ(*(back + 1), 0) << "the new session is read from its first row on";
@@ -91,7 +91,7 @@ TEST_F(PhyphoxSource, AsksAgainWhereAnAnswerIsCutOff) {
   OPEN(source, {"--rate", "500", "--garbage-every", "4"});
   const Taken taken = take_rows(**source, 400);
   EXPECT_EQ(taken.error, "");
-  EXPECT_TRUE(says(taken.notes, "asked for again"));
+  EXPECT_TRUE(says(taken.notes, "retrying"));
   EXPECT_EQ(broken_steps(taken.channels[0]), "");
 }
 

@@ -178,7 +178,7 @@ void RecordSession::look_at_clocks() {
   const std::int64_t jump_ns = ahead_ns - std::exchange(realtime_ahead_ns_, ahead_ns);
   if (std::abs(jump_ns) > step_ns)
     tell(EventKind::host_jump, Severity::warning,
-         fmt::format("the host's time of day was set {} s {}; the recording's time goes on",
+         fmt::format("the host's time of day was set {} s {}; the recording's time continues",
                      fixed(std::abs(static_cast<double>(jump_ns)) * 1e-9, 3),
                      jump_ns > 0 ? "on" : "back"));
 }

@@ -134,7 +134,7 @@ Result<SerialPort> open_serial_port(const SerialSettings& settings) {
   const int number = descriptor.number();
   if (number < 0) return refusal(device, errno);
   if (::isatty(number) == 0)
-    return Error{Errc::device, fmt::format("{}: is no serial device", device)};
+    return Error{Errc::device, fmt::format("{}: is not a serial device", device)};
   // TIOCEXCL does not exclude root; this lock excludes other instances of this program.
   if (::flock(number, LOCK_EX | LOCK_NB) != 0) return refusal(device, errno);
   (void)::ioctl(number, TIOCEXCL);

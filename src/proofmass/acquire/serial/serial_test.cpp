@@ -165,7 +165,7 @@ TEST(SerialSource, SaysWhyItCannot) {
     return source ? std::string() : source.error().message;
   };
   EXPECT_NE(refusal("serial:/dev/no-such-port").find("is it plugged in?"), std::string::npos);
-  EXPECT_NE(refusal("serial:/dev/null").find("is no serial device"), std::string::npos);
+  EXPECT_NE(refusal("serial:/dev/null").find("is not a serial device"), std::string::npos);
   EXPECT_NE(refusal("serial:").find("expected a device"), std::string::npos);
   EXPECT_NE(refusal("serial:/dev/null?baud=fast").find("baud=fast"), std::string::npos);
   EXPECT_NE(refusal("serial:/dev/null?flow=soft").find("expected none, hard"), std::string::npos);

@@ -63,7 +63,7 @@ Status equip(SourceUri& uri, bool described, RigOptions& options) {
   if (!axes) return axes.error();
   if (described && (*sensors || *axes))
     return Error{Errc::invalid_argument,
-                 "sensors and axes stand in the rig's file: leave them out, or change them there"};
+                 "sensors and axes are given in the rig's file: omit them, or change them there"};
   if (*sensors) options.sensors = spread(options.sensors.front(), **sensors);
   if (*axes) options.axes = static_cast<int>(**axes);
   return Done{};

@@ -58,7 +58,7 @@ class SimSource final : public Source {
                                      std::chrono::milliseconds patience) override {
     arrival.clear(head_.recording.channels.size());
     if (next_ >= unplug_row_)
-      return Error{Errc::device, fmt::format("gone after {} s, as unplug= has asked for",
+      return Error{Errc::device, fmt::format("disconnected after {} s, as requested by unplug=",
                                              *course_.faults.unplug_s)};
     if (next_ >= course_.rows) return Arrived::ended;
     if (next_ == stall_row_ && !stalled_.wait_until(stall_ns(), patience)) return Arrived::nothing;

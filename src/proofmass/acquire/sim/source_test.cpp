@@ -163,7 +163,7 @@ TEST(SimSource, IsTheRigThatAFileDescribes) {
   std::ofstream(path) << simulate::format_rig_file(options);
   const Taken taken = taken_of("sim:wheel?speed=max&seconds=1&file=" + path);
   EXPECT_EQ(taken.channels, rig_rows(options, 1.0));
-  EXPECT_NE(refusal("sim:wheel?axes=3&file=" + path).find("stand in the rig's file"),
+  EXPECT_NE(refusal("sim:wheel?axes=3&file=" + path).find("are given in the rig's file"),
             std::string::npos);
   std::filesystem::remove(path);
 }
@@ -248,7 +248,7 @@ TEST(SimFaults, UnpluggedItIsGoneForGood) {
   const Taken taken = taken_of(*source);
   ASSERT_TRUE(taken.error);
   EXPECT_EQ(taken.error->code, Errc::device);
-  EXPECT_EQ(taken.error->message, "gone after 0.5004 s, as unplug= has asked for");
+  EXPECT_EQ(taken.error->message, "disconnected after 0.5004 s, as requested by unplug=");
   EXPECT_EQ(taken.device_ns.size(), 501U);
   EXPECT_TRUE(taken_of(*source).error);
 }

@@ -139,7 +139,7 @@ Status check_file(const std::string& path) {
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status) ||
       std::filesystem::is_directory(status))
     return Done{};
-  return invalid("is no file: what comes through a pipe or a device is read by stdin: or serial:");
+  return invalid("is not a file: for a pipe or a device use stdin: or serial:");
 }
 
 SourceHead head_of(const SourceUri& uri, const Recording& file, std::optional<double> speed) {
@@ -178,8 +178,7 @@ Result<std::unique_ptr<Source>> open_replay(SourceUri& uri, const OpenOptions& o
                                    most_bytes_in_memory);
   if (!opened) return opened.error();
   OpenedFile file = std::move(opened).value();
-  if (!has_time(file))
-    return invalid("the file does not say when its samples were taken: add rate=HZ");
+  if (!has_time(file)) return invalid("the file has no times: add rate=HZ");
   SourceHead head = head_of(uri, recording_of(file), *speed);
   return std::unique_ptr<Source>(
       std::make_unique<ReplaySource>(std::move(file), std::move(head), *speed));

@@ -201,8 +201,7 @@ TEST(ReplaySource, TellsOfTheLabelsItLeavesOut) {
 TEST(ReplaySource, WantsARateWhereTheFileHasNoTime) {
   const std::string path = write("timeless.csv", "x,y\n3,1\n1,2\n2,3\n");
   EXPECT_EQ(open_source("replay:" + path).error().message,
-            fmt::format("replay:{}: the file does not say when its samples were taken: add rate=HZ",
-                        path));
+            fmt::format("replay:{}: the file has no times: add rate=HZ", path));
   const Replayed replayed = gathered(*open("replay:" + path + "?rate=1000"));
   EXPECT_EQ(replayed.device_ns, (std::vector<std::int64_t>{0, 1'000'000, 2'000'000}));
 }

@@ -44,7 +44,7 @@ class MultiPositionPlan final : public GuidePlan {
   RestVerdict judge(const signal::RunningRests& rests) override;
   std::vector<GuideStep> take(std::vector<Pose>& poses) override;
   std::string lost_words(double seconds) override {
-    return fmt::format("It moved after {:.1f} s: lay it down so again, and let go of it.", seconds);
+    return fmt::format("It moved after {:.1f} s: place it there again, and let go of it.", seconds);
   }
   void skip() override {
     skipped_.push_back(next_up_);
@@ -81,7 +81,7 @@ std::string MultiPositionPlan::prompt() const {
   std::string text =
       fmt::format("Position {}: {}, and let go of it.", poses_.size() + 1, next_words_);
   if (fit_ && fit_->has_nine() && poses_.size() >= fewest_)
-    text += fmt::format(" So far readings of 1 g are good to {:.2g} mg; {:.2g} mg is asked for.",
+    text += fmt::format(" So far the accuracy at 1 g is {:.2g} mg; the target is {:.2g} mg.",
                         1e3 * fit_->error_g(), 1e3 * options_.target_std_g);
   return text;
 }
@@ -142,7 +142,7 @@ std::vector<GuideStep> MultiPositionPlan::take(std::vector<Pose>& poses) {
       {GuideKind::enough,
        fmt::format(
            "{} positions{}.", poses_.size(),
-           nine ? fmt::format(": readings of 1 g are good to {:.2g} mg by bias, scale and angles",
+           nine ? fmt::format(": the accuracy at 1 g is {:.2g} mg, from bias, scale and angles",
                               1e3 * fit_->error_g())
                 : std::string(" do not determine bias, scale and angles"))});
   return steps;

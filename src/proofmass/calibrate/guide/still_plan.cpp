@@ -37,7 +37,7 @@ class StillPlan final : public GuidePlan {
   std::string lost_words(double seconds) override {
     for (signal::DyadicLadder& ladder : ladders_) ladder.break_off();
     return fmt::format(
-        "It was moved after {}: the clock starts anew. What came before stays in the file.",
+        "It was moved after {}: the time restarts. Earlier samples remain in the file.",
         minutes_words(seconds));
   }
   void skip() override { done_ = true; }

@@ -61,7 +61,7 @@ class TumblePlan final : public GuidePlan {
  private:
   [[nodiscard]] double step_deg() const { return 360.0 / static_cast<double>(positions_); }
   [[nodiscard]] double next_deg() const { return step_deg() * static_cast<double>(next_); }
-  /// How far the table must be turned on, within ±180°.
+  /// Remaining rotation to the next setting, within ±180°.
   [[nodiscard]] std::optional<double> off_deg(const Eigen::Vector3d& mean) const {
     const std::optional<double> angle_rad = axes_.angle_rad(mean);
     if (!angle_rad) return std::nullopt;
@@ -85,7 +85,7 @@ std::optional<std::string> TumblePlan::refusal(const Eigen::Vector3d& mean) cons
   if (!last_) return std::nullopt;
   const std::optional<double> off = off_deg(mean);
   if (!off) {
-    // Less than half the noise of a sample is no turn of a table.
+    // A change below half the noise of a sample is not a rotation of the table.
     if ((mean - *last_).norm() < 0.5 * noise_) return "";
     return std::nullopt;
   }

@@ -42,10 +42,10 @@ std::optional<double> TurnedAxes::angle_rad(const Eigen::Vector3d& mean) const {
     const Eigen::Vector3d& first = means_.front();
     return angles_rad_.front() + std::atan2(first.cross(mean).norm(), first.dot(mean));
   }
-  const Eigen::Matrix<double, 3, 2> swing = follows_->rightCols<2>();
-  const Eigen::Matrix2d normal = swing.transpose() * swing;
+  const Eigen::Matrix<double, 3, 2> response = follows_->rightCols<2>();
+  const Eigen::Matrix2d normal = response.transpose() * response;
   const Eigen::Vector2d part =
-      positive_inverse(normal) * (swing.transpose() * (mean - follows_->col(0)));
+      positive_inverse(normal) * (response.transpose() * (mean - follows_->col(0)));
   return std::atan2(part(0), part(1));
 }
 

@@ -100,7 +100,7 @@ bool carry_parameters(const std::vector<GivenPose>& poses) {
 Result<State> linear_start(const std::vector<GivenPose>& poses) {
   if (!carry_parameters(poses)) {
     return Error{Errc::not_observable,
-                 "the directions given lie in a plane or nearly: add positions across it"};
+                 "the given directions are coplanar or nearly so: add positions out of the plane"};
   }
   const Eigen::Matrix4d N = spread_of(poses);
   Eigen::Matrix<double, 4, 3> right = Eigen::Matrix<double, 4, 3>::Zero();
@@ -112,7 +112,7 @@ Result<State> linear_start(const std::vector<GivenPose>& poses) {
   const Eigen::Matrix3d A = X.topRows<3>().transpose();
   if (!(A.determinant() > 0.0)) {
     return Error{Errc::invalid_argument,
-                 "the directions given are the mirror image of the readings, or an axis does not "
+                 "the given directions are the mirror image of the data, or an axis does not "
                  "follow them: is the sign of an axis wrong?"};
   }
   const auto [Q, M] = positive_qr(A.inverse());
@@ -300,10 +300,11 @@ bool is_finite(const GivenFit& fit) {
 }
 
 Error contradicted(const std::vector<GivenPose>& poses) {
-  return {Errc::not_observable,
-          fmt::format("the {} positions contradict each other, and those that agree do not carry "
-                      "the parameters: check the directions given, and add positions",
-                      poses.size())};
+  return {
+      Errc::not_observable,
+      fmt::format("the {} positions contradict each other, and those that agree do not determine "
+                  "the parameters: check the given directions, and add positions",
+                  poses.size())};
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ MultiPositionOptions given(double noise_dof) {
   return {.model = PoseModel::given_12, .gravity_mps2 = g, .noise_dof = noise_dof};
 }
 
-// Directions as a fixture would give them that the sensor sits in turned.
+// Directions in the frame of a fixture in which the sensor is mounted with a rotation.
 std::vector<Pose> mounted(std::vector<Pose> poses, const Eigen::Matrix3d& R_sensor_fixture) {
   for (Pose& pose : poses) pose.up = R_sensor_fixture.transpose() * *pose.up;
   return poses;
@@ -38,7 +38,7 @@ TEST(GivenDirections, FindTheMountingBesideNineParameters) {
   EXPECT_LT(*fit.placement_std_rad, 1e-9);
 }
 
-TEST(GivenDirections, TellHowWellThePositionsWereSet) {
+TEST(GivenDirections, DetermineTheAccuracyOfThePlacement) {
   std::mt19937_64 random(2);
   const Parameters truth = drawn_sensor(random);
   const auto poses = drawn_poses(truth, {.count = 200, .tilt_rad = 0.02}, random);

@@ -18,7 +18,7 @@ using test::g;
 using test::mg;
 using test::reading;
 
-// --- the scale of the numbers --------------------------------------------------------------------
+// --- normalisation of the measurements -----------------------------------------------------------
 
 std::vector<Pose> reading_of(const std::vector<Eigen::Vector3d>& means) {
   std::vector<Pose> poses;
@@ -31,7 +31,7 @@ TEST(ReadingScale, IsMidrangeAndHalfRange) {
       reading_scale(reading_of({{100.0, 7.0, 4.0}, {300.0, 7.0, 10.0}, {120.0, 7.0, 5.0}}), g);
   ASSERT_TRUE(scale);
   EXPECT_TRUE(scale->center.isApprox(Eigen::Vector3d(200.0, 7.0, 7.0)));
-  // An axis that moved little counts as it moved; one that did not, as the others did.
+  // An axis with little variation is scaled by its own range; one with none by that of the others.
   EXPECT_TRUE(scale->half.isApprox(Eigen::Vector3d(100.0, 100.0, 3.0)));
   EXPECT_FALSE(reading_scale(reading_of({{1.0, 2.0, 3.0}, {1.0, 2.0, 3.0}}), g));
 }
@@ -44,7 +44,7 @@ TEST(ReadingScale, HoldsTheLargestNumbers) {
   EXPECT_TRUE(one_sided->center.allFinite());
 }
 
-// --- how large the noise is ----------------------------------------------------------------------
+// --- magnitude of the noise ----------------------------------------------------------------------
 
 TEST(ScatterOfResiduals, IsThatOfTheNoiseWhereNothingIsLeft) {
   const Scatter scatter = scatter_of(0.0, 0.0, 30.0);
@@ -72,7 +72,7 @@ TEST(ScatterOfResiduals, PoolsWhatAgreesAndOnlyThat) {
   EXPECT_EQ(other.dof, 10.0);
 }
 
-// --- which poses belong together -----------------------------------------------------------------
+// --- consistent poses ----------------------------------------------------------------------------
 
 struct Drawn {
   Parameters truth;
@@ -101,7 +101,7 @@ std::vector<NormalisedPose> normalised(const std::vector<Pose>& poses) {
   return normalise(poses, reading_scale(poses, g).value());
 }
 
-/// Over its standard deviation by a fit that the pose had no part in.
+/// Residual divided by its standard deviation, from a fit without the pose.
 double studentised_by(const NormFit& others, double factor, const NormalisedPose& pose) {
   const NormTerm term = norm_term(others.p, pose);
   const double by_fit = (term.gradient * others.cofactor * term.gradient.transpose()).value();
@@ -146,8 +146,8 @@ TEST(PoseSelection, KeepsWhatIsSuspectInTheFitThatJudgesTheOthers) {
   EXPECT_NEAR(kept.leave_one_out[k].value(), term.residual / (1.0 - leverage), 1e-9);
 }
 
-TEST(PoseSelection, TakesBackWhatTheNoiseExplains) {
-  // The others are without noise, so that twice the noise stands out; but no more than that.
+TEST(PoseSelection, KeepsAPositionThatTheNoiseExplains) {
+  // The other positions are noise-free, so that twice the noise is visible, but not significant.
   const Drawn drawn(7, {.noise_mps2 = 0.0}, 0.2 * mg);
   const PoseSelection found = selected(normalised(drawn.poses), 1000.0);
   for (std::size_t k = 0; k < drawn.poses.size(); ++k) EXPECT_FALSE(found.suspect[k]) << k;
@@ -165,7 +165,8 @@ TEST(PoseSelection, NamesTwoThatAreBad) {
   }
 }
 
-// More than a robust start can bear: none is named then, but what is said of the residuals is true.
+// Beyond the breakdown point of the robust start: no position is named, but the statement on the
+// residuals is correct.
 TEST(PoseSelection, SaysThatTheFitIsBadWhereAThirdOfThePosesAre) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Drawn drawn(seed, {}, 0.0);
@@ -193,7 +194,7 @@ Count count_of(std::size_t poses, double push_mps2, unsigned runs) {
   return out;
 }
 
-TEST(PoseSelection, SuspectsOneOfAHundredFitsForNothing) {
+TEST(PoseSelection, HasAFalseAlarmInOneOfAHundredFits) {
   EXPECT_LE(count_of(24, 0.0, 150).wrongly, 2);
 }
 
@@ -210,7 +211,7 @@ TEST(PoseSelection, NamesOneOfTwelveAndNoOther) {
   EXPECT_EQ(count.wrongly, 0);
 }
 
-TEST(PoseSelection, SaysAmongWhichOneIsBadWhereElevenCannotTell) {
+TEST(PoseSelection, ListsTheDoubtfulPositionsIfElevenAreNotConclusive) {
   const Count count = count_of(11, 5.0 * mg, 50);
   EXPECT_GE(count.named, 25);
   EXPECT_EQ(count.wrongly, 0);
@@ -218,8 +219,8 @@ TEST(PoseSelection, SaysAmongWhichOneIsBadWhereElevenCannotTell) {
   EXPECT_EQ(count.doubted, count.doubtful);
 }
 
-// Directions at random, as a hand lays them: some positions are checked by few others. A good one
-// was named in one of forty such sensors by a search that began from a robust fit.
+// Random directions, as placed by hand: some positions are checked by few others. A search that
+// started from a robust fit named a good one in one of forty such sensors.
 struct Blame {
   int named = 0, wrongly = 0, hidden_in_doubt = 0;
 };
@@ -244,7 +245,7 @@ Blame blame_of(std::size_t count, std::size_t bad, double push_mps2, unsigned ru
   return out;
 }
 
-TEST(PoseSelection, BlamesNoGoodPositionForABadOne) {
+TEST(PoseSelection, DoesNotSuspectGoodPositionsBesideABadOne) {
   for (const std::size_t count : {std::size_t{12}, std::size_t{13}, std::size_t{14}}) {
     const Blame blame = blame_of(count, 1, 2.0 * mg, 60);
     EXPECT_EQ(blame.wrongly, 0) << count;
@@ -270,8 +271,8 @@ TEST(PoseSelection, NamesNoneForNoiseThatIsLargerThanStated) {
   EXPECT_LE(named, 6);
 }
 
-// Two ways to leave one out that fit alike: the figures are their mean, and the covariance spans
-// both.
+// If two exclusions fit equally well, the figures are their mean, and the covariance includes their
+// difference.
 TEST(PoseSelection, SpansTheFitsWithoutEachDoubtfulPosition) {
   int in_doubt = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
@@ -293,8 +294,8 @@ TEST(PoseSelection, SpansTheFitsWithoutEachDoubtfulPosition) {
   EXPECT_GT(in_doubt, 3);
 }
 
-// An error of the size that is said to be noticed, put on its position, is as many standard
-// deviations as that.
+// An error of the size stated as detectable, added to its position, has that number of standard
+// deviations.
 TEST(PoseSelection, SaysWhichErrorsItWouldNotice) {
   const Drawn drawn(11, {.count = 14, .noise_mps2 = 0.0}, 0.0);
   const std::vector<NormalisedPose> clean = normalised(drawn.poses);

@@ -8,7 +8,7 @@
 #include "proofmass/calibrate/multi_position_check.hpp"
 #include "proofmass/calibrate/multi_position_test_support.hpp"
 
-// Any set of positions ends in figures or in an error in words of our own.
+// Any set of positions gives either figures or an error message of this library.
 namespace proofmass::calibrate::pose_subsets_test {
 namespace {
 
@@ -16,7 +16,7 @@ using test::drawn_direction;
 using test::drawn_sensor;
 using test::reading;
 
-// How the directions of a set lie.
+// Arrangement of the directions of a set.
 enum class Directions { anywhere, in_a_plane, on_a_cone, few_repeated, near_one, axes_alone };
 constexpr std::array all_directions{Directions::anywhere,  Directions::in_a_plane,
                                     Directions::on_a_cone, Directions::few_repeated,
@@ -42,7 +42,7 @@ Eigen::Vector3d direction_of(Directions kind, std::size_t k, std::mt19937_64& ra
   return any;
 }
 
-// Of a set: noise and what is claimed of it in m/s², how the directions lie, one reading far off.
+// Properties of a set: true and stated noise in m/s², arrangement of the directions, one outlier.
 struct Kind {
   std::size_t count;
   Directions directions;

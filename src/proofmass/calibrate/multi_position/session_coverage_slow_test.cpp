@@ -3,7 +3,7 @@
 
 #include "proofmass/calibrate/session_noise_test_support.hpp"
 
-// The table "A bias that wanders" of docs/methods/calibration.md.
+// The table "Bias drift between rests" of docs/methods/calibration.md.
 namespace proofmass::calibrate::session_coverage_slow_test {
 namespace {
 
@@ -33,7 +33,7 @@ TEST(SessionCoverage, OfFlickerNoise) {
 
 TEST(SessionCoverage, OfARandomWalk) {
   expect_honest("walk 0.1 mm/s^2/sqrt(s)", {.walk_mps2_rts = 1e-4});
-  // In one of the 600 the figures are 15 standard deviations off: see the page's limits.
+  // In one of the 600 the error is 15 standard deviations: see the limits in that page.
   expect_honest("walk 1 mm/s^2/sqrt(s)", {.walk_mps2_rts = 1e-3}, 20.0);
 }
 

@@ -127,10 +127,10 @@ Result<MultiPosition> calibrate_six_position(View<Pose> poses,
   set_residual_sums(out);
   if (noise_dof == 0.0) out.notes.emplace_back(noise_missing);
   out.notes.emplace_back(
-      "misalignment_rad: null: six positions taken for exact cannot tell it apart from how the "
-      "sensor was placed; turn it through 12 or more free positions instead");
+      "misalignment_rad: null: six positions assumed exact do not separate it from the "
+      "sensor's placement; use 12 or more free positions instead");
   out.notes.emplace_back(
-      "lack_of_fit: null: six positions taken for exact leave nothing to test them by");
+      "lack_of_fit: null: six positions assumed exact leave no redundancy to test");
   return out;
 }
 

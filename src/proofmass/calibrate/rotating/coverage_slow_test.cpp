@@ -4,7 +4,7 @@
 
 #include "proofmass/calibrate/rotation_test_support.hpp"
 
-// How often the 95 % intervals hold the truth, by repetition with noise of several colours.
+// Coverage of the 95 % intervals, by repetition with noise of several colours.
 namespace proofmass::calibrate::rotation_coverage_slow_test {
 namespace {
 
@@ -32,7 +32,7 @@ void count(const RotationAxis& axis, const sensor::ModelEquation& truth, Tally& 
   }
 }
 
-// 93 to 97 % plus two standard deviations of so many runs.
+// 93 to 97 % plus two standard deviations for the number of runs.
 void expect_coverage(const Tally& tally, int runs, double most) {
   const double allowance = 2.0 * std::sqrt(0.05 * 0.95 / runs);
   for (std::size_t q = 0; q < rotation_quantities; ++q) {
@@ -56,7 +56,7 @@ PlainWheel noisy_wheel(unsigned seed) {
 }
 
 constexpr int runs = 200;
-// Noise that remembers half a block makes the intervals too wide, if anything.
+// Noise with a correlation time of half a block makes the intervals too wide, if anything.
 constexpr double long_memory_s = 5.0;
 
 double most_for(double memory_s) {
@@ -65,9 +65,8 @@ double most_for(double memory_s) {
 
 class RotationCoverage : public testing::TestWithParam<double> {};
 
-// Markov noise as large as the white one, with a memory from a tenth of a second to two turns.
-// Without an encoder a ripple of the speed may be there, which the intervals hold; these wheels
-// have none.
+// Markov noise as large as the white noise, with correlation times from a tenth of a second to two
+// turns. Without an encoder the intervals allow for a speed ripple, which these wheels do not have.
 TEST_P(RotationCoverage, OfOneAxisWithoutAnEncoderIsNinetyFivePerCentOrMore) {
   Tally tally;
   for (unsigned run = 0; run < runs; ++run) {
@@ -127,7 +126,8 @@ TEST(RotationCoverageOfRadius, AndBiasAtTwoSpeedsIsNinetyFivePerCent) {
   }
   std::printf("  radius %.3f\n", inside / static_cast<double>(runs));
   EXPECT_NEAR(inside / static_cast<double>(runs), 0.95, 0.02 + 0.018);
-  // A ripple that may be the sensor's is in the bias of one axis with all of its size.
+  // A ripple that cannot be separated from the sensor's errors enters the bias of a single axis in
+  // full.
   expect_coverage(tally, runs, 1.0);
 }
 

@@ -236,10 +236,10 @@ void fill_rotation(const RotationState& state,
   }
   fill_radius(state, estimate, options, fit);
   if (widened_names.empty()) return;
-  fit.notes.push_back(fmt::format(
-      "neighbouring blocks of {:.0f} turns agree more than chance in {}: the reading drifts; "
-      "standard deviations were widened for it",
-      estimate.blocks.turns_per_block, widened_names));
+  fit.notes.push_back(
+      fmt::format("adjacent blocks of {:.0f} turns are correlated in {}: the output drifts; "
+                  "standard deviations were increased accordingly",
+                  estimate.blocks.turns_per_block, widened_names));
 }
 
 }  // namespace proofmass::calibrate

@@ -7,15 +7,15 @@
 
 #include "proofmass/calibrate/rotation_test_support.hpp"
 
-// Coverage of the 95 % intervals on wheels as they are: a speed that ripples, a radius that one
-// speed does not determine, a filter in the sensor.
+// Coverage of the 95 % intervals for realistic wheels: speed ripple, a radius that one speed does
+// not determine, a filter in the sensor.
 namespace proofmass::calibrate::rotation_scenarios_slow_test {
 namespace {
 
 using Q = RotationQuantity;
 constexpr int tests = 100;
 
-/// Uniform within.
+/// Uniform distribution.
 struct Range {
   double low = 0.0, high = 0.0;
   [[nodiscard]] double draw(std::mt19937& random) const {
@@ -25,22 +25,22 @@ struct Range {
 
 struct Scenario {
   const char* name;
-  std::array<Range, 3> ripple{};  ///< of the speed, once to three times a turn
+  std::array<Range, 3> ripple{};  ///< of the speed, at one to three times per turn
   Range radius_m{0.02, 0.2};
   std::size_t axes = 2, speeds = 1;
   bool encoder = false;
-  double wander = 0.0;   ///< of the speed, relative amplitude of a slow sine
-  double pole_hz = 0.0;  ///< of the sensor's filter; 0: none
+  double speed_drift = 0.0;  ///< relative amplitude of a slow sine in the speed
+  double pole_hz = 0.0;      ///< bandwidth of the sensor's filter; 0: none
 };
 
-/// What one test came from.
+/// Truth of one test.
 struct Bench {
   std::vector<sensor::ModelEquation> equations;
   std::vector<RotationRecording> recordings;
   double radius_m = 0.0;
 };
 
-/// A filter of one pole, run at the samples with its step response exact for straight lines.
+/// A one-pole filter, sampled, exact for piecewise linear inputs.
 void filter(std::vector<double>& x, double pole_hz, double rate_hz) {
   const double tau = 1.0 / (rad_per_turn * pole_hz), h = 1.0 / rate_hz, a = std::exp(-h / tau);
   double state = x.front(), before = x.front();
@@ -67,11 +67,11 @@ RotationRecording recording(const Scenario& scenario,
     size[n] = scenario.ripple[n].draw(random);
     phase[n] = Range{0.0, rad_per_turn}.draw(random);
   }
-  const double swing_phase = Range{0.0, rad_per_turn}.draw(random);
-  const double swing = rad_per_turn / Range{40.0, 150.0}.draw(random);
+  const double slow_phase = Range{0.0, rad_per_turn}.draw(random);
+  const double slow_radps = rad_per_turn / Range{40.0, 150.0}.draw(random);
   wheel.angle = [=](double t) {
     double theta = speed * t + 0.7;
-    theta += scenario.wander * speed / swing * std::sin(swing * t + swing_phase);
+    theta += scenario.speed_drift * speed / slow_radps * std::sin(slow_radps * t + slow_phase);
     for (int n = 1; n <= 3; ++n) {
       const auto k = static_cast<std::size_t>(n - 1);
       theta += size[k] / n * std::sin(n * speed * t + phase[k]);
@@ -96,7 +96,7 @@ Bench draw(const Scenario& scenario, unsigned seed) {
                                .K0 = tenth.draw(random),
                                .delta_o = k + 1 == scenario.axes ? angle.draw(random) : 0.0});
   bench.radius_m = scenario.radius_m.draw(random);
-  // To an encoder's angle a mounting between the quarters would be a misalignment.
+  // With an encoder, a mounting angle other than a multiple of 90° would be a misalignment.
   const double mounting_rad = scenario.encoder ? 0.0 : Range{0.0, rad_per_turn}.draw(random);
   const Range rpm = scenario.speeds > 1 ? Range{8.0, 14.0} : Range{8.0, 30.0};
   const double speed = rpm.draw(random) * radps_per_rpm;
@@ -190,7 +190,7 @@ INSTANTIATE_TEST_SUITE_P(
             .name = "two speeds, 0.1 to 0.3 %", .ripple = {little, little, little}, .speeds = 2},
         Scenario{.name = "two speeds, 0.6 to 2 %", .ripple = {much, much, much}, .speeds = 2},
         Scenario{.name = "two speeds, 2 % once", .ripple = {two, none, none}, .speeds = 2},
-        Scenario{.name = "two speeds that wander by 0.2 %", .speeds = 2, .wander = 0.002},
+        Scenario{.name = "two speeds that wander by 0.2 %", .speeds = 2, .speed_drift = 0.002},
         Scenario{.name = "two speeds, encoder",
                  .ripple = {much, much, much},
                  .speeds = 2,

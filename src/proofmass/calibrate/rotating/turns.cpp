@@ -79,17 +79,17 @@ bool alike(double a, double b) {
 }  // namespace
 
 std::vector<std::size_t> axes_in_plane(View<View<double>> readings) {
-  std::vector<double> swing;
+  std::vector<double> range;
   for (const View<double>& one : readings) {
     const auto low = quantile(one, 0.05), high = quantile(one, 0.95);
-    swing.push_back(low && high ? *high - *low : 0.0);
+    range.push_back(low && high ? *high - *low : 0.0);
   }
   std::vector<std::size_t> order(readings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order,
-                           [&](std::size_t a, std::size_t b) { return swing[a] > swing[b]; });
+                           [&](std::size_t a, std::size_t b) { return range[a] > range[b]; });
   order.resize(std::min<std::size_t>(order.size(), 2));
-  if (order.size() == 2 && swing[order[1]] < 0.5 * swing[order[0]]) order.pop_back();
+  if (order.size() == 2 && range[order[1]] < 0.5 * range[order[0]]) order.pop_back();
   std::ranges::sort(order);
   return order;
 }

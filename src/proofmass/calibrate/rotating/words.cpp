@@ -20,17 +20,18 @@ void note_doubts(const RotationState& state, const RotationOptions& options, Rot
   for (std::size_t axis = 0; axis < state.axes; ++axis) {
     const double left = relative_residual(state, axis);
     if (left > much) {
-      fit.doubts.push_back(fmt::format(
-          "axis {}: {:.0f} % of the readings' swing does not follow gravity's turn: a test wants a "
-          "wheel on a bench, whose axle is stationary",
-          axis + 1, 100.0 * left));
+      fit.doubts.push_back(
+          fmt::format("axis {}: {:.0f} % of the output's variation does not follow the rotation of "
+                      "gravity: a test needs a "
+                      "wheel on a bench, whose axle is stationary",
+                      axis + 1, 100.0 * left));
     }
     const auto& k1 = fit.axes[axis][RotationQuantity::K1].value;
     if (options.readings_are_accelerations && k1 && std::abs(k1->value - 1.0) > off) {
       fit.doubts.push_back(
-          fmt::format("axis {}: K1 = {} of readings that are accelerations, where about 1 is "
+          fmt::format("axis {}: K1 = {} for data in units of acceleration, where about 1 is "
                       "expected: the unit or gravity is wrong, the axle is not horizontal, or the "
-                      "axis does not lie in the plane of the wheel",
+                      "axis is not in the plane of the wheel",
                       axis + 1, compact(k1->value, 3)));
     }
   }
@@ -109,8 +110,8 @@ void note_ripples(const RotationOptions& options, RotationFit& fit) {
   note_shared(fit, fit.notes);
   if (fit.axes.size() == 1)
     fit.notes.push_back(
-        "one axis without an encoder does not show which way the wheel turns: the sign of Kip is "
-        "that of a wheel on which the reading's rise is followed by its top");
+        "one axis without an encoder does not determine the sense of rotation: the sign of Kip is "
+        "valid if the output's rise precedes its maximum");
 }
 
 }  // namespace proofmass::calibrate

@@ -12,8 +12,9 @@ namespace proofmass::calibrate {
 namespace {
 
 constexpr double quarter = 0.5 * std::numbers::pi;
-constexpr double least_swing = 0.2;  // of the largest
-constexpr double least_seen = 0.05;  // rms of a sine or cosine at the positions: it is excited
+constexpr double least_amplitude = 0.2;  // relative to the largest
+constexpr double least_seen = 0.05;      // rms of a sine or cosine over the positions from which it
+                                         // counts as excited
 
 // output ≈ mean + S sin ψ + C cos ψ over the positions of one plane.
 struct FirstHarmonic {
@@ -98,9 +99,9 @@ std::string phase_words(const TumbleAxis& axis, const std::array<FirstHarmonic, 
     const double off = std::remainder(std::atan2(found[p].C, found[p].S) - phase, 4.0 * quarter);
     constexpr double much = 10.0 / 90.0 * quarter;
     if (found[p].sees_sine && found[p].sees_cosine && std::abs(off) > much)
-      text += fmt::format(", from which it stands {}° off", fixed(off / quarter * 90.0, 0));
+      text += fmt::format(", with a deviation of {}°", fixed(off / quarter * 90.0, 0));
   }
-  return text.empty() ? "does not follow the angle: its axis lies along the table's" : text;
+  return text.empty() ? "does not follow the angle: its axis is parallel to the table's" : text;
 }
 
 bool along_sine(const TumbleAxis& axis) {
@@ -111,12 +112,12 @@ TumbleAxis place_axis(const std::array<FirstHarmonic, 2>& found, double largest,
   TumbleAxis axis;
   for (std::size_t p = 0; p < 2; ++p) {
     const FirstHarmonic& h = found[p];
-    axis.swing = std::max(axis.swing, h.amplitude());
+    axis.amplitude = std::max(axis.amplitude, h.amplitude());
     if (!h.sees_sine && !h.sees_cosine) continue;
-    const bool swings = h.amplitude() > least_swing * largest;
-    if (is_input || swings) axis.phase_rad[p] = is_input ? 0.0 : nearest_quarter(h);
+    const bool oscillates = h.amplitude() > least_amplitude * largest;
+    if (is_input || oscillates) axis.phase_rad[p] = is_input ? 0.0 : nearest_quarter(h);
   }
-  // 0° and 180° alone do not move the input axis of a second plane.
+  // A second plane with only 0° and 180° does not excite the input axis.
   const FirstHarmonic& second = found[1];
   if (!axis.phase_rad[1] && along_sine(axis) && second.sees_cosine && !second.sees_sine)
     axis.phase_rad[1] = axis.phase_rad[0];

@@ -17,10 +17,10 @@ struct TumbleAxis {
   /// In each plane: the multiple of 90° for which the output follows sin(angle + mount + phase);
   /// absent if the axis is parallel to the table's, or without positions.
   std::array<std::optional<double>, 2> phase_rad;
-  double swing = 0.0;  ///< largest once-per-turn amplitude, unit of the output
-  std::string words;   ///< "y follows cos(angle): 90° were added to its angles"
+  double amplitude = 0.0;  ///< largest once-per-turn amplitude, unit of the output
+  std::string words;       ///< "y follows cos(angle): 90° were added to its angles"
 
-  [[nodiscard]] bool swings() const { return phase_rad[0] || phase_rad[1]; }
+  [[nodiscard]] bool follows_angle() const { return phase_rad[0] || phase_rad[1]; }
 };
 
 /// Finds the phases of all channels of one sensor, `outputs` each as long as `positions` (whose own

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double quarter = 0.5 * std::numbers::pi;
 
-// Outputs of axes that stand at such phases, with misalignment and bias.
+// Outputs of axes at the given phases, with misalignment and bias.
 std::vector<double> follow(const std::vector<TumblePosition>& plan,
                            double phase,
                            double size = 1.0) {
@@ -29,10 +29,10 @@ TEST(TumbleAxes, FindsThePhaseOfEveryAxis) {
   const auto axes = tumble_axes(plan, outputs);
   EXPECT_EQ(axes[0].phase_rad[0], 0.0);
   EXPECT_EQ(axes[1].phase_rad[0], quarter);
-  EXPECT_FALSE(axes[2].swings());
+  EXPECT_FALSE(axes[2].follows_angle());
   EXPECT_EQ(axes[3].phase_rad[0], 3.0 * quarter);
   EXPECT_NE(axes[1].words.find("follows cos(angle): 90° were added"), std::string::npos);
-  EXPECT_NE(axes[2].words.find("lies along the table's"), std::string::npos);
+  EXPECT_NE(axes[2].words.find("is parallel to the table's"), std::string::npos);
 }
 
 TEST(TumbleAxes, LetsTheUserOverrule) {
@@ -42,16 +42,17 @@ TEST(TumbleAxes, LetsTheUserOverrule) {
   EXPECT_EQ(tumble_axes(plan, outputs, 0)[0].phase_rad[0], 0.0);
 }
 
-TEST(TumbleAxes, TellsHowFarAnAxisStandsOff) {
+TEST(TumbleAxes, ReportsTheDeviationOfAnAxis) {
   const auto plan = table_turn(8);
   const std::vector<std::vector<double>> outputs{follow(plan, 0.4)};
   EXPECT_NE(tumble_axes(plan, outputs)[0].words.find("24° off"), std::string::npos);
 }
 
-TEST(TumbleAxes, KnowsTheInputAxisInASecondPlaneOfTwoPositions) {
+TEST(TumbleAxes, FindsTheInputAxisInASecondPlaneOfTwoPositions) {
   std::vector<TumblePosition> plan = table_turn(4);
   append(plan, in_plane(table_turn(2), 2));
-  // x: sin in plane 1, 0 in plane 2; y: cos in plane 1, along the table in plane 2; z the reverse.
+  // x: sin in plane 1, 0 in plane 2; y: cos in plane 1, parallel to the table in plane 2; z the
+  // reverse.
   const std::vector<std::vector<double>> outputs{
       {0, 1, 0, -1, 0, 0}, {1, 0, -1, 0, 0, 0}, {0, 0, 0, 0, 1, -1}};
   const auto axes = tumble_axes(plan, outputs);

@@ -9,15 +9,15 @@
 namespace proofmass::calibrate {
 namespace {
 
-// One coefficient with the linear form of its numerator.
+// One coefficient, with its numerator as a linear form in β.
 struct Form {
   TumbleCoefficient coefficient;
   std::vector<std::pair<std::size_t, double>> parts;  // column, factor
-  double factor = 1.0;                                // beside the power of g
-  bool whole = true;                                  // all columns are there
+  double factor = 1.0;                                // besides the power of g
+  bool whole = true;                                  // all columns were fitted
 };
 
-// A part that the numerator is made of.
+// One term of a numerator.
 struct Part {
   TumbleTerm term;
   int plane;
@@ -51,7 +51,7 @@ Form misalignment(const TumbleDesign& design, std::size_t mounting) {
   form.coefficient.mount_rad = m.mount_rad;
   const auto column = design.find(TumbleTerm::cosine, m.plane, mounting);
   form.whole = column.has_value();
-  // δo stands with + aₚ, δp with − aₒ.
+  // In the model equation, δo multiplies + aₚ and δp multiplies − aₒ.
   if (column) form.parts.emplace_back(*column, m.plane == 2 ? -1.0 : 1.0);
   if (!column) form.coefficient.reason = why_missing(design, TumbleTerm::cosine, m.plane);
   return form;
@@ -96,7 +96,7 @@ std::vector<Form> forms_of(const TumbleDesign& design) {
   return forms;
 }
 
-Eigen::VectorXd swing_form(const TumbleDesign& design) {
+Eigen::VectorXd amplitude_form(const TumbleDesign& design) {
   Eigen::VectorXd s = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(design.columns.size()));
   if (const auto sine = design.find(TumbleTerm::sine)) s(static_cast<Eigen::Index>(*sine)) = 1.0;
   if (const auto cube = design.find(TumbleTerm::cube)) s(static_cast<Eigen::Index>(*cube)) = 3.0;
@@ -109,12 +109,12 @@ Eigen::VectorXd vector_of(const Form& form, Eigen::Index size) {
   return L;
 }
 
-// Derivatives of all coefficients: rows those, columns β and, last, g.
+// Jacobian of all coefficients: one row each, with the columns β and finally g.
 Eigen::MatrixXd differentiate(const TumbleSolution& solution, std::vector<Form>& forms) {
   const Eigen::VectorXd& beta = solution.regression.beta;
-  const Eigen::VectorXd s = swing_form(solution.design);
-  const double swing = s.dot(beta), g = solution.options.gravity_mps2;
-  Eigen::VectorXd whole = beta;  // with what was taken off the outputs
+  const Eigen::VectorXd s = amplitude_form(solution.design);
+  const double amplitude = s.dot(beta), g = solution.options.gravity_mps2;
+  Eigen::VectorXd whole = beta;  // including the offset subtracted from the outputs
   if (const auto U = solution.design.find(TumbleTerm::up_down))
     whole(static_cast<Eigen::Index>(*U)) += solution.output_offset;
   Eigen::MatrixXd J =
@@ -124,23 +124,23 @@ Eigen::MatrixXd differentiate(const TumbleSolution& solution, std::vector<Form>&
     if (!form.whole) continue;
     const auto row = static_cast<Eigen::Index>(k);
     if (form.coefficient.quantity == TumbleQuantity::K1) {
-      form.coefficient.value = swing / g;
+      form.coefficient.value = amplitude / g;
       J.row(row).head(beta.size()) = s.transpose() / g;
-      J(row, beta.size()) = -swing / (g * g);
+      J(row, beta.size()) = -amplitude / (g * g);
       continue;
     }
     const int power = acceleration_power(form.coefficient.quantity);
     const double unit = form.factor * std::pow(g, power);
     const Eigen::VectorXd L = vector_of(form, beta.size());
-    const double ratio = L.dot(whole) / swing;
+    const double ratio = L.dot(whole) / amplitude;
     form.coefficient.value = unit * ratio;
-    J.row(row).head(beta.size()) = unit / swing * (L - ratio * s).transpose();
+    J.row(row).head(beta.size()) = unit / amplitude * (L - ratio * s).transpose();
     J(row, beta.size()) = power * *form.coefficient.value / g;
   }
   return J;
 }
 
-// Bias in units of the output: K1 (K0 + Kpp g²), of the first plane that has it, or U alone.
+// Bias in units of the output: K1 (K0 + Kpp g²) of the first plane that has it, or U.
 void find_bias(const TumbleSolution& solution, TumbleFit& fit) {
   const TumbleDesign& design = solution.design;
   const TumbleRegression& regression = solution.regression;
@@ -156,11 +156,12 @@ void find_bias(const TumbleSolution& solution, TumbleFit& fit) {
   fit.bias_output_std = std::sqrt(std::max(L.dot(covariance * L), 0.0));
 }
 
-// Welch–Satterthwaite: for a sum of shares, one of which has finite degrees of freedom.
+// Welch–Satterthwaite for a sum of contributions, one of which has finite degrees of freedom.
 void judge(TumbleCoefficient& coefficient, double variance, double noise, double dof) {
   coefficient.std = std::sqrt(std::max(variance, 0.0));
   if (dof > 0.0 && noise > 0.0) coefficient.dof = dof * variance * variance / (noise * noise);
-  // The sum of the degrees of freedom alone would overrate a scatter that is small by chance.
+  // The half width combines the contributions' own coverage factors: the effective degrees of
+  // freedom alone would make it too narrow if the estimated scatter is small by chance.
   const double rest = std::max(variance - noise, 0.0);
   coefficient.half_width_95 =
       std::hypot(coverage_factor(0.95, dof) * std::sqrt(std::max(noise, 0.0)),
@@ -169,8 +170,8 @@ void judge(TumbleCoefficient& coefficient, double variance, double noise, double
 
 }  // namespace
 
-double swing_of(const TumbleDesign& design, const Eigen::VectorXd& beta) {
-  return swing_form(design).dot(beta);
+double amplitude_of(const TumbleDesign& design, const Eigen::VectorXd& beta) {
+  return amplitude_form(design).dot(beta);
 }
 
 void find_coefficients(const TumbleSolution& solution, TumbleFit& fit) {
@@ -192,7 +193,7 @@ void find_coefficients(const TumbleSolution& solution, TumbleFit& fit) {
   if (fit.noise_known && fit.scatter == 1.0) fit.shares.front().source = "noise of the means";
   fit.covariance = Eigen::MatrixXd::Zero(J.rows(), J.rows());
   for (const TumbleShare& share : fit.shares) fit.covariance += share.covariance;
-  // Beside the errors of indexing hardly a residual may be left that shows the scatter.
+  // With stated errors of indexing the residuals may contain too little information on the scatter.
   const bool scatter_unseen = !fit.noise_known &&
                               solution.options.indexing_std_rad.value_or(0.0) > 0.0 &&
                               regression.dof < 2.0;

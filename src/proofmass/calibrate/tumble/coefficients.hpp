@@ -16,7 +16,7 @@ struct TumbleSolution {
 };
 
 /// K1 g = S + 3 T, from the regression.
-[[nodiscard]] double swing_of(const TumbleDesign& design, const Eigen::VectorXd& beta);
+[[nodiscard]] double amplitude_of(const TumbleDesign& design, const Eigen::VectorXd& beta);
 
 /// Fills coefficients, covariance, shares and the bias in units of the output:
 ///

@@ -10,12 +10,12 @@
 namespace proofmass::calibrate {
 namespace {
 
-constexpr double fits_p = 0.01;    // below, the stated noise is too small
-constexpr double allowed = 1.353;  // ln L below its maximum: one-sided 95 %
-constexpr double decisive = 4.0;   // ln L of one explanation above another
-constexpr double exceeded = 0.5;   // the same where residuals exceed what was assumed
+constexpr double fits_p = 0.01;    // p-value below which the stated noise is too small
+constexpr double allowed = 1.353;  // decrease of ln L from its maximum: one-sided 95 %
+constexpr double decisive = 4.0;   // difference in ln L that decides between two explanations
+constexpr double exceeded = 0.5;   // decrease of ln L if the residuals exceed the assumption
 
-/// The restricted likelihood as a function of the sizes.
+/// Restricted likelihood as a function of the sizes.
 class SizeSearch {
  public:
   SizeSearch(const Eigen::MatrixXd& A, const Eigen::VectorXd& y, const TumbleErrors& errors)
@@ -23,11 +23,11 @@ class SizeSearch {
     const TumbleSolved plain = solve_tumble(A, y, errors, {});
     const auto dof = static_cast<double>(A.rows() - A.cols());
     scatter_ = std::sqrt(plain.chi_square / dof);
-    // Angle and drift of the size of the noise or, if larger, of the residuals.
+    // Units of angle and drift that correspond to the noise or, if larger, to the residuals.
     const double noise = errors.noise_known ? std::max(1.0, scatter_) : scatter_;
     const double output = noise * errors.noise_std.mean();
     const double lever = errors.lever.cwiseAbs().maxCoeff();
-    // A stated noise is at least its stated value: 1.
+    // A stated noise has a factor of at least 1.
     constexpr double above_lowest = 31.6227766;
     unit_ = {.noise = errors.noise_known ? above_lowest : noise,
              .indexing_rad = lever > 0.0 ? output / lever : 0.0,
@@ -43,15 +43,15 @@ class SizeSearch {
   }
   [[nodiscard]] const TumbleSizes& unit() const { return unit_; }
   [[nodiscard]] double scatter() const { return scatter_; }
-  /// Whether the stated noise alone does not explain the residuals.
+  /// True if the stated noise alone does not explain the residuals.
   [[nodiscard]] bool misfits() const {
     const auto dof = static_cast<double>(A_.rows() - A_.cols());
     const double square = scatter_ * scatter_;
     return (errors_.noise_dof > 0.0 ? fisher_f_p(square, dof, errors_.noise_dof)
                                     : chi_square_p(square * dof, dof)) < fits_p;
   }
-  /// The best of one size, the others as they are: zero or 10^(−1.5 … 2.5) units, and then between
-  /// the best one's neighbours.
+  /// Maximises over one size, the others fixed: over zero and 10^(−1.5 … 2.5) units, then on a
+  /// finer grid about the best value.
   void climb(double TumbleSizes::* size, TumbleSizes& at, double& best) const {
     constexpr int steps = 16;
     const TumbleSizes from = at;
@@ -75,7 +75,7 @@ class SizeSearch {
       at = next;
     }
   }
-  /// The largest of a size at which ln L is no more than `below` under `best`; no larger than most.
+  /// Largest value of a size for which ln L ≥ `level`, at most `most`.
   [[nodiscard]] double highest(double TumbleSizes::* size,
                                const TumbleSizes& at,
                                double level,
@@ -104,7 +104,7 @@ class SizeSearch {
   double scatter_ = 0.0;
 };
 
-// What an assumed size becomes.
+// Value to use for an assumed size.
 double judged(const SizeSearch& search,
               double TumbleSizes::* size,
               const TumbleSizes& at,
@@ -137,7 +137,7 @@ TumbleCovariance::TumbleCovariance(const TumbleErrors& errors, const TumbleSizes
   log_determinant_ += inner.log_determinant;
 }
 
-// By Sherman and Morrison's formula, setting by setting.
+// Sherman–Morrison formula for each setting.
 Eigen::MatrixXd TumbleCovariance::solve_settings(const Eigen::MatrixXd& X) const {
   Eigen::MatrixXd out = weight_.asDiagonal() * X;
   Eigen::MatrixXd along = Eigen::MatrixXd::Zero(square_.size(), X.cols());
@@ -182,11 +182,12 @@ TumbleSolved solve_tumble(const Eigen::MatrixXd& A,
   out.covariance = normal.inverse;
   out.gain = normal.inverse * B.transpose();
   out.beta = out.gain * y;
-  out.beta += out.gain * (y - A * out.beta);  // one step of refinement
+  out.beta += out.gain * (y - A * out.beta);  // one step of iterative refinement
   out.projected = V.solve(y - A * out.beta);
   const double square = (y - A * out.beta).dot(out.projected);
   out.chi_square = std::max(square, 0.0);
-  // Sizes that far exceed the noise leave V without precision: a sum of squares below zero.
+  // If the sizes far exceed the noise, V is ill-conditioned and the sum of squares can become
+  // negative.
   constexpr double rounding = 1e-3;
   out.log_likelihood = square < -rounding
                            ? -std::numeric_limits<double>::infinity()
@@ -230,12 +231,12 @@ TumbleSizes find_sizes(const Eigen::MatrixXd& A,
     if (p < fits_p) {
       climb(true);
     } else if (search.misfits() && best - search.of(scattered) < decisive) {
-      // Larger errors of all positions explain the residuals nearly as well: one of them is an
-      // outlier.
+      // A larger noise of all positions explains the residuals nearly as well, which indicates an
+      // outlier: the noise is increased as well.
       sizes.noise = search.scatter();
     }
   } else if (best - plain < 2.0) {
-    // Only scatter is needed, which then explains all of the residuals.
+    // Scatter alone explains the residuals sufficiently.
     at = {.noise = scatter,
           .indexing_rad = errors.indexing_assumed ? 0.0 : errors.indexing_std_rad,
           .drift = errors.drift_assumed ? 0.0 : errors.drift_std};

@@ -9,8 +9,8 @@
 namespace proofmass::calibrate::tumble_components_test {
 namespace {
 
-// Six positions of a box on its faces, with the angles of a table that it was not on: residuals of
-// 1 g where the noise of a mean is 2e-4 of it.
+// Six positions of a box on its faces, with table angles that do not apply: residuals of 1 g where
+// the noise of a mean is 2e-4 g.
 TEST(FitTumble, EndsWhereTheAnglesContradictTheOutputs) {
   const double quarter = 0.5 * std::numbers::pi;
   const double angles[] = {0.0, quarter, 2.0 * quarter, 3.0 * quarter, 0.0, 0.0};

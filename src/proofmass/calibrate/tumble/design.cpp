@@ -8,8 +8,10 @@
 namespace proofmass::calibrate {
 namespace {
 
-constexpr double alike_rad = 0.5 * std::numbers::pi / 180.0;  // two visits of one setting
-constexpr double least_of_its_own = 0.05;  // rms of a column beside those that are fitted
+constexpr double alike_rad = 0.5 * std::numbers::pi / 180.0;  // tolerance for two visits of one
+                                                              // setting
+constexpr double least_of_its_own = 0.05;  // rms of the part of a column that is orthogonal to
+                                           // the fitted ones
 
 double turn_part(double angle_rad) {
   constexpr double turn = 2.0 * std::numbers::pi;
@@ -32,7 +34,8 @@ std::size_t mounting_of(const TumblePosition& position, std::vector<TumbleMounti
   return place;
 }
 
-// The same number where the table stood alike: neighbours on the circle within half a degree.
+// Numbers the settings: angles within half a degree of each other (modulo a turn) have the same
+// number.
 std::vector<std::size_t> settings(View<TumblePosition> positions) {
   std::vector<std::size_t> order(positions.size()), setting(positions.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
@@ -66,7 +69,7 @@ void clock(View<TumblePosition> positions, TumbleDesign& design) {
   design.span = positions.empty() ? 0.0 : last - first;
 }
 
-// Of the positions in one mounting: their time, and that between visits of one setting at most.
+// For one mounting: its duration, and the longest time between two visits of one setting.
 struct Stay {
   double whole = 0.0, between = 0.0;
 };
@@ -84,7 +87,7 @@ Stay stay_of(std::size_t mounting, const std::vector<std::size_t>& of, const Tum
   return out;
 }
 
-// Whether in one mounting a setting was visited again half of that mounting's time later, or more.
+// True if in one mounting two visits of a setting are at least half of its duration apart.
 bool is_closed(const std::vector<std::size_t>& mounting, const TumbleDesign& design) {
   for (std::size_t m = 0; m < design.mountings.size(); ++m) {
     const Stay stay = stay_of(m, mounting, design);
@@ -93,7 +96,7 @@ bool is_closed(const std::vector<std::size_t>& mounting, const TumbleDesign& des
   return false;
 }
 
-// What a position adds to a column.
+// Variables of one position on which the columns depend.
 struct Row {
   double phi, theta, when, temperature;
   int plane, direction;
@@ -138,23 +141,23 @@ double element(const TumbleColumn& column, const Row& row) {
   return 0.0;
 }
 
-// Columns taken one by one, with an orthonormal basis of what they span.
+// Sequential choice of columns, with an orthonormal basis of their span.
 class Selection {
  public:
   Selection(std::vector<Row> rows, TumbleDesign& design)
       : rows_(std::move(rows)), design_(design) {}
 
-  // `spare`: positions that must be left to judge by.
+  // `spare`: minimum redundancy that must remain.
   void offer(const TumbleColumn& column, std::size_t spare) {
     const auto n = static_cast<Eigen::Index>(rows_.size());
     Eigen::VectorXd a(n);
     for (Eigen::Index k = 0; k < n; ++k) a(k) = element(column, rows_[static_cast<std::size_t>(k)]);
     Eigen::VectorXd own = a;
-    for (int pass = 0; pass < 2; ++pass)  // twice is enough for rounding
+    for (int pass = 0; pass < 2; ++pass)  // reorthogonalisation: two passes suffice
       for (const Eigen::VectorXd& q : basis_) own -= q.dot(own) * q;
     const double rms = own.norm() / std::sqrt(static_cast<double>(n));
     if (rms < least_of_its_own) {
-      design_.missing.push_back({column, LeftOut::not_told_apart});
+      design_.missing.push_back({column, LeftOut::not_separable});
     } else if (columns_.size() + 1 + spare > rows_.size()) {
       design_.missing.push_back({column, LeftOut::none_to_spare});
     } else {
@@ -182,7 +185,8 @@ class Selection {
   std::vector<Eigen::VectorXd> basis_, columns_;
 };
 
-// What a column must leave over: the term that only tests the model, enough for the test.
+// Minimum redundancy after adding a term: for a parameter, and for a term that only tests the
+// model.
 constexpr std::size_t one_to_spare = 1, test_to_spare = 3;
 
 void choose(View<TumblePosition> positions,
@@ -203,7 +207,7 @@ void choose(View<TumblePosition> positions,
     select.offer({.term = TumbleTerm::temperature}, one_to_spare);
   else
     select.not_asked_for(TumbleTerm::temperature);
-  // The two readings of one setting determine a drift even where they leave nothing over.
+  // Two visits of one setting determine a drift even without redundancy.
   if (design.closed)
     select.offer({.term = TumbleTerm::drift}, noise_known ? 0 : one_to_spare);
   else
@@ -223,7 +227,7 @@ void choose(View<TumblePosition> positions,
   offer_indexing({TumbleTerm::indexing_cos2, TumbleTerm::indexing_sin2});
 }
 
-// Each temperature less their mean, over their span; zeros where one is missing or all are alike.
+// (T − T̄)/span; zeros if one temperature is missing or all are equal.
 std::vector<double> relative_temperatures(View<TumblePosition> positions, double& span) {
   std::vector<double> out(positions.size(), 0.0);
   span = 0.0;

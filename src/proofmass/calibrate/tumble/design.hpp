@@ -46,14 +46,14 @@ struct TumbleMounting {
 
 /// Why a column is not in the fit.
 enum class LeftOut {
-  not_asked_for,   ///< the positions were not designed for it
-  not_told_apart,  ///< the angles do not determine it from what is fitted
-  none_to_spare,   ///< no redundancy would remain
+  not_asked_for,  ///< the positions were not designed for it
+  not_separable,  ///< the angles do not determine it from what is fitted
+  none_to_spare,  ///< no redundancy would remain
 };
 
 struct TumbleMissing {
   TumbleColumn column;
-  LeftOut why = LeftOut::not_told_apart;
+  LeftOut why = LeftOut::not_separable;
 };
 
 struct TumbleDesign {
@@ -62,12 +62,14 @@ struct TumbleDesign {
   std::vector<TumbleMissing> missing;  ///< not fitted
   Eigen::MatrixXd A;                   ///< positions × columns
   std::vector<double> phi_rad;         ///< of each position
-  std::vector<std::size_t> setting;    ///< of each position: equal where the table stood alike
-  std::vector<double> when;            ///< of each position, in seconds or places, from 0
-  double span = 0.0;                   ///< of `when`
+  std::vector<std::size_t> setting;    ///< setting number of each position; equal angles of the
+                                       ///< table have equal numbers
+  std::vector<double> when;            ///< time of each position, in seconds or as its index,
+                                       ///< from 0
+  double span = 0.0;                   ///< range of `when`
   bool in_time = false;                ///< `when` is in seconds
   bool closed = false;                 ///< a position was revisited late enough
-  double kelvin_span = 0.0;            ///< of the temperatures; 0 where they are not known
+  double kelvin_span = 0.0;            ///< range of the temperatures; 0 if unknown
 
   [[nodiscard]] std::optional<std::size_t> find(TumbleTerm term,
                                                 int plane = 0,

@@ -71,7 +71,7 @@ std::vector<Dwell> at_rest(View<Dwell> steady, View<signal::Rest> rests) {
 }
 
 Result<DwellOutputs> dwell_outputs(View<double> output, View<Dwell> dwells, double lsb) {
-  // One axis, taken for three.
+  // pose_means expects three axes: the same one three times.
   const auto found = pose_means({output, output, output}, dwells, {lsb, lsb, lsb});
   if (!found) return found.error();
   DwellOutputs out;
@@ -87,7 +87,7 @@ std::vector<double> dwell_angles(View<double> angle_rad, View<Dwell> dwells) {
   std::vector<double> means;
   for (const Dwell& dwell : dwells) {
     const double at = angle_rad[dwell.first];
-    double sum = 0.0;  // of the differences: an angle may jump by a turn
+    double sum = 0.0;  // sum of wrapped differences, since an angle may jump by a turn
     for (std::size_t k = dwell.first; k <= dwell.last; ++k)
       sum += std::remainder(angle_rad[k] - at, rad_per_turn);
     means.push_back(at + sum / static_cast<double>(dwell.last - dwell.first + 1));

@@ -7,7 +7,7 @@
 namespace proofmass::calibrate::tumble_dwells_test {
 namespace {
 
-/// Stops of so many samples every 15 degrees, with a turn of 30 samples between them.
+/// Stops of `samples` samples every 15 degrees, with rotations of 30 samples between them.
 std::vector<double> stopping(std::size_t stops, std::size_t samples) {
   constexpr std::size_t turn = 30;
   std::vector<double> angle;

@@ -14,15 +14,16 @@ namespace proofmass::calibrate {
 namespace {
 
 constexpr double chance = 0.01;
-constexpr double rounding = 1e-12;  // of the outputs' size: residuals below are none
+constexpr double rounding = 1e-12;  // relative to the outputs' magnitude: smaller residuals are
+                                    // rounding
 
-// Of so large a studentised residual or larger, one position alone.
+// p-value of a single studentised residual.
 double residual_p(double t, double dof) {
   if (dof > 0.0) return student_t_p(t, dof);
   return chi_square_p(t * t, 1.0);
 }
 
-// Externally studentised, with the degrees of freedom that are left.
+// Externally studentised residual; nullopt without sufficient degrees of freedom.
 std::optional<double> studentised(double z, double dof, bool external) {
   if (!external) return z;
   if (dof < 2.0) return std::nullopt;
@@ -30,7 +31,7 @@ std::optional<double> studentised(double z, double dof, bool external) {
   return z * std::sqrt((dof - 1.0) / left);
 }
 
-// The same number where a position is the same in all that the model knows of.
+// Numbers the positions: equal if all variables of the model are equal.
 std::vector<std::size_t> visits(View<TumblePosition> positions, std::size_t& count) {
   constexpr double same_rad = 1e-5;
   std::vector<std::size_t> number;
@@ -53,7 +54,8 @@ struct Within {
   double rss = 0.0, dof = 0.0;
 };
 
-// About the mean of each position visited, the drift taken out if the model has it.
+// Residual sum of squares about the mean of each visited position, with the drift fitted if the
+// model has it.
 Within within_visits(View<TumblePosition> positions,
                      const Eigen::VectorXd& outputs,
                      const Eigen::VectorXd* drift) {
@@ -84,7 +86,7 @@ Within within_visits(View<TumblePosition> positions,
   return out;
 }
 
-// The errors of all positions but one.
+// Errors of the positions `kept`.
 TumbleErrors without(const TumbleErrors& errors, const std::vector<Eigen::Index>& kept) {
   TumbleErrors out = errors;
   out.noise_std = errors.noise_std(kept);
@@ -96,8 +98,8 @@ TumbleErrors without(const TumbleErrors& errors, const std::vector<Eigen::Index>
   return out;
 }
 
-// (P y)_k/√P_kk with the sizes of the errors as the other positions alone have them; nullopt where
-// they do not determine the fit, or contradict each other themselves.
+// (P y)_k/√P_kk with sizes estimated from the other positions only; nullopt if they do not
+// determine the fit, or are inconsistent themselves.
 std::optional<double> against_the_others(const TumbleSolution& solution, Eigen::Index row) {
   const Eigen::MatrixXd& A = solution.design.A;
   const TumbleErrors& errors = solution.regression.errors;
@@ -113,8 +115,8 @@ std::optional<double> against_the_others(const TumbleSolution& solution, Eigen::
   return solve_tumble(A, solution.outputs, errors, sizes).deleted(row);
 }
 
-// The positions that fit the others least, each tried against a fit without it: a wrong reading
-// widens the errors by which it would be judged.
+// Tests the positions with the largest deletion residuals, each against a fit without it, since an
+// outlier inflates the error sizes by which it would be judged.
 void name_suspects(const TumbleSolution& solution, double least, TumbleFit& fit) {
   constexpr std::size_t most_candidates = 4;
   const TumbleErrors& errors = solution.regression.errors;
@@ -145,10 +147,11 @@ std::string rate_unit(bool in_time) {
   return in_time ? "per second" : "per position";
 }
 
-// Of the two visits of one position that lie farthest apart.
+// From the two visits of one position that are furthest apart in time.
 std::optional<double> closure_rate(const TumbleSolution& solution, View<TumblePosition> positions) {
   const TumbleDesign& design = solution.design;
-  const double scale = swing_of(design, solution.regression.beta) / solution.options.gravity_mps2;
+  const double scale =
+      amplitude_of(design, solution.regression.beta) / solution.options.gravity_mps2;
   double farthest = 0.0;
   std::optional<double> rate;
   for (std::size_t j = 0; j < positions.size(); ++j) {
@@ -173,7 +176,7 @@ void find_residuals(const TumbleSolution& solution,
   const TumbleRegression& regression = solution.regression;
   const bool indexing = regression.indexing_std_rad > 0.0,
              by_deletion = regression.deleted.size() > 0;
-  // With two kinds of error there is no exact rule: Student's t errs to the careful side.
+  // With two kinds of error there is no exact distribution; Student's t is conservative.
   const bool external = (!fit.noise_known || fit.scatter > 1.0) && !indexing && !by_deletion;
   const auto dof = static_cast<double>(fit.dof);
   const double left = external ? dof - 1.0 : regression.dof;
@@ -187,7 +190,7 @@ void find_residuals(const TumbleSolution& solution,
     out.fitted = positions[k].output - out.residual;
     const double variance = regression.residual_variance(row);
     if (regression.has_scale) out.std = std::sqrt(variance);
-    // A position that alone carries a parameter is met exactly.
+    // The residual of a position that alone determines a parameter is zero.
     const bool judged = out.std && *out.std > rounding * size && fit.dof > 0;
     if (judged && by_deletion)
       out.studentised = regression.deleted(row);
@@ -216,7 +219,7 @@ std::optional<TumbleLackOfFit> find_lack_of_fit(const TumbleSolution& solution,
                                 : chi_square_p(regression.chi_square, static_cast<double>(dof));
     return out;
   }
-  // An error of indexing comes again at each visit: repeated positions do not show it.
+  // An error of indexing is repeated at each visit, so repeated positions do not show it.
   if (solution.options.indexing_std_rad.value_or(0.0) > 0.0) return std::nullopt;
   const auto drift = solution.design.find(TumbleTerm::drift);
   Eigen::VectorXd column;
@@ -245,27 +248,27 @@ TumbleDrift find_drift(const TumbleSolution& solution,
   out.removed = found != nullptr && found->value.has_value();
   if (!out.known) {
     out.words =
-        "drift during the test is unknown: no position was visited again late enough, and a change "
-        "of the bias would be taken for the other coefficients";
+        "drift during the test is unknown: no position was revisited late enough, and a change "
+        "of the bias would affect the other coefficients";
     return out;
   }
   if (!out.removed) {
     out.rate_mps2 = closure_rate(solution, positions);
     out.words = fmt::format(
-        "the repeated position shows a drift of {} m/s² {}, which was left in: {} positions "
-        "leave none over to judge by if it is taken out",
+        "the repeated position shows a drift of {} m/s² {}, which was not removed: {} positions "
+        "leave no redundancy if it is removed",
         compact(out.rate_mps2.value_or(0.0), 3), rate_unit(out.in_time), positions.size());
     return out;
   }
   out.rate_mps2 = found->value;
-  out.words = fmt::format("drift of {} m/s² {} was taken out", compact(*found->value, 3),
+  out.words = fmt::format("drift of {} m/s² {} was removed", compact(*found->value, 3),
                           rate_unit(out.in_time));
   if (found->std && *found->std > 0.0) {
     out.p = residual_p(*found->value / *found->std, found->dof);
     out.words += *out.p < 0.05 ? fmt::format(": it is more than chance (p = {:.2g})", *out.p)
                                : fmt::format(": it may be chance (p = {:.2g})", *out.p);
   }
-  if (!out.in_time) out.words += "; the rows' order was taken for that of the visits";
+  if (!out.in_time) out.words += "; the rows' order was taken as that of the visits";
   return out;
 }
 

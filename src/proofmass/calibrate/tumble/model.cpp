@@ -75,14 +75,14 @@ int acceleration_power(TumbleQuantity quantity) {
 
 FourPointResult four_point(const FourPoint& readings, double gravity_mps2) {
   PM_EXPECTS(readings.E90 != readings.E270 && gravity_mps2 > 0.0);
-  const double swing = 0.5 * (readings.E90 - readings.E270);  // K1 g
+  const double amplitude = 0.5 * (readings.E90 - readings.E270);  // K1 g
   FourPointResult out;
-  out.K1 = swing / gravity_mps2;
+  out.K1 = amplitude / gravity_mps2;
   out.bias_0g_mps2 = 0.5 * (readings.E0 + readings.E180) / out.K1;
   out.bias_up_down_mps2 = 0.5 * (readings.E90 + readings.E270) / out.K1;
-  out.misalignment_rad = 0.5 * (readings.E0 - readings.E180) / swing;
+  out.misalignment_rad = 0.5 * (readings.E0 - readings.E180) / amplitude;
   const double square = 0.5 * (readings.E90 + readings.E270 - readings.E0 - readings.E180);
-  out.K2_minus_Kpp_s2pm = square / swing / gravity_mps2;
+  out.K2_minus_Kpp_s2pm = square / amplitude / gravity_mps2;
   return out;
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double beyond_chance = 0.01;
 
-// The lever of each setting as a vector over the positions.
+// Sensitivity to the indexing error of each setting, as a vector over the positions.
 std::vector<Eigen::VectorXd> setting_levers(const TumbleErrors& errors) {
   const std::size_t count = 1 + *std::max_element(errors.setting.begin(), errors.setting.end());
   std::vector<Eigen::VectorXd> levers(count, Eigen::VectorXd::Zero(errors.lever.size()));
@@ -24,7 +24,7 @@ std::vector<Eigen::VectorXd> setting_levers(const TumbleErrors& errors) {
   return levers;
 }
 
-// V^(−½) X of V = I + u² Σ v vᵀ, whose v have no position in common.
+// V^(−½) X for V = I + u² Σ v vᵀ, where the vectors v have disjoint supports.
 Eigen::MatrixXd whitened(Eigen::MatrixXd X, const std::vector<Eigen::VectorXd>& levers, double u) {
   for (const Eigen::VectorXd& v : levers) {
     const double square = v.squaredNorm();
@@ -41,7 +41,7 @@ double residual_square(const Eigen::MatrixXd& A, const Eigen::VectorXd& y) {
   return (y - A * (inverse * (A.transpose() * y))).squaredNorm();
 }
 
-// χ² about the best fit to what was whitened; where it is beyond chance sigma grows.
+// χ² about the best fit to the whitened data; sigma is increased if χ² is significant.
 void judge_by_noise(const Eigen::MatrixXd& B, const Eigen::VectorXd& z, TumbleRegression& out) {
   const auto dof = static_cast<double>(B.rows() - B.cols());
   out.sigma = 1.0;
@@ -68,7 +68,7 @@ void judge_by_residuals(const Eigen::MatrixXd& A,
   out.has_scale = true;
 }
 
-// χ² of the noise alone, and of what is stated beside it: what is assumed does not explain misfits.
+// χ² of the noise and the stated errors; assumed errors do not count as an explanation of misfit.
 double chi_square_as_stated(const Eigen::MatrixXd& A,
                             const Eigen::VectorXd& y,
                             const TumbleErrors& errors) {
@@ -101,13 +101,13 @@ TumbleRegression regress_with_components(const Eigen::MatrixXd& A,
   out.noise_covariance = by_noise * by_noise.transpose();
   const Eigen::MatrixXd by_drift = sizes.drift * G * errors.drift;
   out.drift_covariance = by_drift * by_drift.transpose();
-  // The rest is the settings': V is the sum of the three.
+  // V is the sum of the three components; the remainder is that of indexing.
   out.indexing_covariance = Eigen::MatrixXd::Zero(A.cols(), A.cols());
   if (sizes.indexing_rad > 0.0)
     out.indexing_covariance = solved.covariance - out.noise_covariance - out.drift_covariance;
   out.deleted.resize(y.size());
   for (Eigen::Index k = 0; k < y.size(); ++k) out.deleted(k) = solved.deleted(k);
-  // r = V P y, so that a residual is as many standard deviations off as (P y)_k is.
+  // r = V P y: the standardised residual equals that of (P y)_k.
   out.residual_variance = Eigen::VectorXd::Zero(y.size());
   for (Eigen::Index k = 0; k < y.size(); ++k) {
     const double z = out.deleted(k);
@@ -133,19 +133,21 @@ TumbleRegression regress_tumble(const Eigen::MatrixXd& A,
   out.errors = errors;
   const Eigen::Index n = A.rows();
   const double u = errors.indexing_std_rad;
-  // From here on in units of each position's noise.
+  // Below, in units of each position's noise.
   const Eigen::VectorXd root_weight = errors.noise_std.cwiseInverse();
   const Eigen::MatrixXd B = root_weight.asDiagonal() * A;
   const Eigen::VectorXd z = root_weight.cwiseProduct(y);
   const Eigen::MatrixXd cofactor = positive_inverse(B.transpose() * B);
   out.beta = cofactor * (B.transpose() * z);
-  out.beta += cofactor * (B.transpose() * (z - B * out.beta));  // one step of refinement
+  out.beta += cofactor * (B.transpose() * (z - B * out.beta));  // one step of iterative
+                                                                // refinement
   const Eigen::VectorXd r = z - B * out.beta;
   out.residual = y - A * out.beta;
   out.rss = out.residual.squaredNorm();
 
   const Eigen::MatrixXd hat = B * cofactor;
-  Eigen::VectorXd indexing = Eigen::VectorXd::Zero(n);  // its share of each residual's variance
+  Eigen::VectorXd indexing = Eigen::VectorXd::Zero(n);  // contribution to the variance of each
+                                                        // residual
   out.indexing_covariance = Eigen::MatrixXd::Zero(A.cols(), A.cols());
   std::vector<Eigen::VectorXd> levers;
   if (u > 0.0) levers = setting_levers(errors);

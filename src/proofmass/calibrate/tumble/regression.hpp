@@ -43,7 +43,7 @@ struct TumbleRegression {
   double rss = 0.0;         ///< Σ residual²
   double chi_square = 0.0;  ///< rᵀV⁻¹r about the best fit, V of the stated errors (known noise)
   bool has_scale = false;   ///< sigma is known: stated noise, or positions to spare
-  TumbleErrors errors;      ///< those that it was done with
+  TumbleErrors errors;      ///< errors used in the regression
 };
 
 /// β = (AᵀWA)⁻¹AᵀWy = G y, W = diag(1/noise_std²);

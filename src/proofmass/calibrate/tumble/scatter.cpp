@@ -8,13 +8,13 @@
 namespace proofmass::calibrate {
 namespace {
 
-// V for one σ², with what the likelihood needs of it.
+// V for one σ², with the terms of the likelihood.
 class Covariance {
  public:
   Covariance(double variance, const std::vector<Eigen::VectorXd>& common)
       : variance_(variance), common_(common) {}
 
-  // V⁻¹ X, by Sherman and Morrison's formula for each w.
+  // V⁻¹ X, by the Sherman–Morrison formula for each w.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& X) const {
     Eigen::MatrixXd out = X;
     for (const Eigen::VectorXd& w : common_) {

@@ -10,14 +10,14 @@
 
 #include "proofmass/calibrate/tumble_test_support.hpp"
 
-// Coverage of the 95 % intervals on tables as they are: drift that is not straight, angles that are
-// not exact, a wrong reading. Nothing is stated but, in part, the noise.
+// Coverage of the 95 % intervals for realistic tables: nonlinear drift, inaccurate angles, an
+// outlier. Nothing is stated except, in some cases, the noise.
 namespace proofmass::calibrate::tumble_scenarios_slow_test {
 namespace {
 
 using Q = TumbleQuantity;
 constexpr int tests = 200;
-constexpr double sigma = 1e-3;  // m/s², of a reading
+constexpr double sigma = 1e-3;  // m/s², of a measurement
 
 /// The bias of each position, m/s².
 using Drift = std::function<std::vector<double>(std::size_t count, std::mt19937_64& random)>;
@@ -26,8 +26,8 @@ struct Scenario {
   std::string name;
   std::vector<TumblePosition> plan;
   Drift drift = {};
-  double angle_std_deg = 0.0;  ///< of each setting, the same at each visit
-  double wrong_mps2 = 0.0;     ///< of one position at random
+  double angle_std_deg = 0.0;  ///< of each setting, equal at each visit
+  double wrong_mps2 = 0.0;     ///< error of one randomly chosen position
   bool noise_stated = true;
 };
 
@@ -35,7 +35,7 @@ double uniform(double low, double high, std::mt19937_64& random) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-/// A function of the part of the test that is over.
+/// A function of the elapsed fraction of the test.
 Drift as(const std::function<double(double)>& shape) {
   return [=](std::size_t count, std::mt19937_64& random) {
     const double sign = uniform(-1.0, 1.0, random) < 0.0 ? -1.0 : 1.0;
@@ -46,7 +46,7 @@ Drift as(const std::function<double(double)>& shape) {
   };
 }
 
-/// 10 mm/s² in all.
+/// Total change 10 mm/s².
 Drift exponential() {
   return as([](double x) { return 0.01 * (1.0 - std::exp(-3.0 * x)) / (1.0 - std::exp(-3.0)); });
 }
@@ -81,7 +81,7 @@ Drift walk() {
 
 struct Reading {
   std::vector<TumblePosition> positions;
-  TableTruth truth;  ///< K0 at the mean of the test
+  TableTruth truth;  ///< K0 at the centre of the test
   std::optional<std::size_t> wrong;
 };
 
@@ -89,7 +89,7 @@ Reading read(const Scenario& scenario, unsigned seed) {
   std::mt19937_64 random(seed);
   Reading out;
   const std::size_t n = scenario.plan.size();
-  const bool cubic = n > 7;  // four positions take it for scale
+  const bool cubic = n > 7;  // with four positions it is part of the scale
   out.truth = {.K1 = uniform(0.97, 1.03, random),
                .K0 = uniform(-0.5, 0.5, random),
                .K2 = uniform(-1e-5, 1e-5, random),
@@ -157,7 +157,7 @@ void expect_honest(const Scenario& scenario, std::map<Q, Tally>& tallies, const 
                 tally.widths[tally.widths.size() / 2]);
     EXPECT_GT(share, 0.91 - 3.0 * std::sqrt(0.05 * 0.95 / tally.given))
         << scenario.name << ": " << name_of(quantity);
-    // Student's t of one or two degrees of freedom has longer tails.
+    // Student's t with one or two degrees of freedom has longer tails.
     if (scenario.noise_stated) {
       EXPECT_LT(tally.largest_z, 8.0) << scenario.name << ": " << name_of(quantity);
     }
@@ -224,7 +224,7 @@ TEST_P(TumbleScenarios, HoldTheTruth) {
     names.clean += fit.lack_of_fit && fit.lack_of_fit->p > 0.01 && !right;
   }
   expect_honest(scenario, tallies, names);
-  // A step or a walk of ten times the noise between two positions is like a wrong reading.
+  // A step or random walk of ten times the noise between two positions is equivalent to an outlier.
   if (!scenario.drift) {
     EXPECT_LT(names.wrong, tests / 30) << scenario.name;
   }

@@ -24,24 +24,24 @@ bool quarters_only(const TumbleDesign& design) {
 std::string not_asked_words(TumbleTerm term) {
   switch (term) {
     case TumbleTerm::drift:
-      return "no position was visited again late enough: return to the first one at the end";
+      return "no position was revisited late enough: return to the first one at the end";
     case TumbleTerm::temperature:
-      return "the positions have no temperatures, or all the same";
+      return "the positions have no temperatures, or equal ones";
     case TumbleTerm::hysteresis:
     case TumbleTerm::backlash:
       return "the positions are not known to have been reached from both directions";
     default:
-      return "the sensor was not mounted anew, turned on the table";
+      return "the sensor was not remounted in another orientation on the table";
   }
 }
 
-std::string not_told_words(TumbleTerm term) {
+std::string not_separable_words(TumbleTerm term) {
   switch (term) {
     case TumbleTerm::sine:
       return "no position has gravity along the input axis";
     case TumbleTerm::cosine:
     case TumbleTerm::square:
-      return "there are not positions enough both upright and level";
+      return "there are not enough positions both vertical and horizontal";
     case TumbleTerm::product:
       return "at these angles sin 2φ is 0 or cannot be distinguished from the other terms: add "
              "positions "
@@ -54,9 +54,8 @@ std::string not_told_words(TumbleTerm term) {
              "quarters";
     case TumbleTerm::indexing_cos2:
     case TumbleTerm::indexing_sin2:
-      return "an error twice a turn stays the same when the sensor is mounted turned by 180°: "
-             "mount "
-             "it turned by 90° as well";
+      return "an error twice per turn is unchanged if the sensor is mounted rotated by 180°: mount "
+             "it rotated by 90° as well";
     default:
       return "these positions do not separate it from the other terms";
   }
@@ -68,16 +67,16 @@ std::string rms_words(double rms_rad) {
                         : fmt::format("{:.3g}°", rms_rad / rad_per_deg);
 }
 
-// Amplitude of the harmonic with this rms.
+// Amplitude of the harmonic with this rms, in 1e-6.
 double micro(double rms_rad, double factor) {
   return 1e6 * factor * std::numbers::sqrt2 * rms_rad;
 }
 
 std::string once_words(double rms_rad) {
   return fmt::format(
-      "an indexing error of once a turn of {} rms would look like K2 − Kpp of up to {:.3g} µg/g² "
+      "an indexing error of {} rms once per turn would look like K2 − Kpp of up to {:.3g} µg/g² "
       "with K0 + Kpp g² of {:.3g} µg, or like Kip of up to {:.3g} µg/g²; K0 + K2 g² is free of it. "
-      "Mounting the sensor anew, turned by 180°, separates them",
+      "Remounting the sensor rotated by 180° separates them",
       rms_words(rms_rad), micro(rms_rad, 1.0), micro(rms_rad, 1.0), micro(rms_rad, 1.0));
 }
 
@@ -85,9 +84,9 @@ std::string twice_words(double rms_rad, bool cube) {
   const std::string third =
       cube ? fmt::format(" and K3 of up to {:.3g} µg/g³", micro(rms_rad, 2.0)) : "";
   return fmt::format(
-      "an indexing error of twice a turn of {} rms would look like a scale-factor error of up to "
-      "{:.3g} ppm{}, or a misalignment of up to {:.3g} µrad. Mounting the sensor anew, turned by "
-      "90°, separates them",
+      "an indexing error of {} rms twice per turn would look like a scale-factor error of up to "
+      "{:.3g} ppm{}, or a misalignment of up to {:.3g} µrad. Remounting the sensor rotated by "
+      "90° separates them",
       rms_words(rms_rad), micro(rms_rad, cube ? 2.0 : 1.0), third, micro(rms_rad, 0.5));
 }
 
@@ -102,14 +101,14 @@ std::string found_words(const TumbleFit& fit, Q cosine, Q sine, const char* how_
   return text;
 }
 
-// Is the input axis upright in all positions?
+// True if the input axis is vertical in all positions.
 bool upright_only(const TumbleDesign& design) {
   constexpr double level = 0.05;
   return std::all_of(design.phi_rad.begin(), design.phi_rad.end(),
                      [](double phi) { return std::abs(std::cos(phi)) < level; });
 }
 
-// Does it point up in one and down in another?
+// True if the input axis points up in one position and down in another.
 bool both_ways(const TumbleDesign& design) {
   constexpr double upright = 0.95;
   const auto points = [&](double way) {
@@ -123,47 +122,47 @@ std::string scale_words(const TumbleDesign& design) {
   if (design.find(TumbleTerm::cube)) return "scale factor K1";
   if (quarters_only(design) && both_ways(design))
     return "K1 (1 + K3 g²): the slope between +1 g and −1 g";
-  return design.find(TumbleTerm::square) ? "scale factor K1, K3 taken for 0"
-                                         : "scale factor K1, K3 and K2 − Kpp taken for 0";
+  return design.find(TumbleTerm::square) ? "scale factor K1, K3 taken as 0"
+                                         : "scale factor K1, K3 and K2 − Kpp taken as 0";
 }
 
 std::string up_down_words(const TumbleDesign& design) {
   const std::string words = "K0 + K2 g²: half the sum of the readings at +1 g and −1 g";
   if (design.find(TumbleTerm::square) || upright_only(design)) return words;
-  return design.find(TumbleTerm::cosine) ? "bias, K2 − Kpp taken for 0"
-                                         : "bias, K2 − Kpp and misalignment taken for 0";
+  return design.find(TumbleTerm::cosine) ? "bias, K2 − Kpp taken as 0"
+                                         : "bias, K2 − Kpp and misalignment taken as 0";
 }
 
 std::string plane_words(const char* words, int plane, const TumbleDesign& design) {
   return design.find(TumbleTerm::square, plane)
              ? words
-             : fmt::format("{}, K2 − {} taken for 0", words, plane == 2 ? "Koo" : "Kpp");
+             : fmt::format("{}, K2 − {} taken as 0", words, plane == 2 ? "Koo" : "Kpp");
 }
 
 }  // namespace
 
 std::string why_missing(const TumbleDesign& design, TumbleTerm term, int plane) {
-  switch (design.why_not(term, plane).value_or(LeftOut::not_told_apart)) {
+  switch (design.why_not(term, plane).value_or(LeftOut::not_separable)) {
     case LeftOut::not_asked_for:
       return not_asked_words(term);
     case LeftOut::none_to_spare:
-      return fmt::format("{} positions are too few: none would be over for it",
+      return fmt::format("{} positions are too few: no redundancy would remain",
                          design.phi_rad.size());
-    case LeftOut::not_told_apart:
+    case LeftOut::not_separable:
       break;
   }
-  return not_told_words(term);
+  return not_separable_words(term);
 }
 
 std::string no_std_words(const TumbleDesign& design) {
   return fmt::format(
-      "no standard deviation: {} positions for {} parameters leave none over to judge by, and the "
+      "no standard deviation: {} positions for {} parameters leave no redundancy, and the "
       "noise of the outputs is not stated",
       design.phi_rad.size(), design.columns.size());
 }
 
 std::string unseen_scatter_words() {
-  return "no standard deviation: beside the stated errors of indexing the residuals do not show "
+  return "no standard deviation: with the stated errors of indexing the residuals do not determine "
          "the "
          "scatter of the outputs; state their noise, or repeat more positions";
 }
@@ -262,23 +261,23 @@ void add_assumptions(const TumbleSolution& solution, TumbleFit& fit) {
   const TumbleRegression& regression = solution.regression;
   if (!regression.has_scale) return;
   const double K1 =
-      std::abs(swing_of(solution.design, regression.beta)) / solution.options.gravity_mps2;
-  fit.drift.wander_std_mps2 = regression.drift_std / K1;
-  fit.drift.wander_assumed = !solution.options.drift_std_mps2;
+      std::abs(amplitude_of(solution.design, regression.beta)) / solution.options.gravity_mps2;
+  fit.drift.nonlinear_std_mps2 = regression.drift_std / K1;
+  fit.drift.nonlinear_assumed = !solution.options.drift_std_mps2;
   const auto by = [](double used, double assumed) {
-    if (used > 1.001 * assumed) return "as the residuals ask for";
+    if (used > 1.001 * assumed) return "as the residuals require";
     return used < 0.999 * assumed ? "the most that the residuals allow" : "an assumption";
   };
   if (fit.indexing.assumed)
     fit.notes.push_back(fmt::format(
         "the error of the table's angles is not stated: a standard deviation of {} was used, {}",
         rms_words(fit.indexing.std_rad), by(fit.indexing.std_rad, assumed_indexing_std_rad)));
-  if (fit.drift.wander_assumed)
+  if (fit.drift.nonlinear_assumed)
     fit.notes.push_back(fmt::format(
-        "how the bias wanders about a straight line is not stated: amplitudes of {} mg (standard "
+        "the bias drift about a straight line is not stated: amplitudes of {} mg (standard "
         "deviation) over the test were used, {}",
-        compact(1e3 * fit.drift.wander_std_mps2 / standard_gravity_mps2, 2),
-        by(fit.drift.wander_std_mps2, assumed_drift_std_mps2)));
+        compact(1e3 * fit.drift.nonlinear_std_mps2 / standard_gravity_mps2, 2),
+        by(fit.drift.nonlinear_std_mps2, assumed_drift_std_mps2)));
 }
 
 }  // namespace proofmass::calibrate

@@ -7,8 +7,8 @@
 namespace proofmass::calibrate::budget_coverage_slow_test {
 namespace {
 
-// In how many of so many calibrations value ± U holds the truth, of each parameter. Gravity is
-// 1e-3 m/s² off at random and the converter's reference 0.02 % either way.
+// Number of calibrations in which value ± U contains the truth, for each parameter. Gravity has a
+// random error of 1e-3 m/s², the converter's reference one of 0.02 % in either direction.
 std::array<double, 9> coverage(bool noise_known, int calibrations) {
   constexpr double gravity_std = 1e-3, reference = 2e-4;
   const std::vector<TypeB> lines{parse_type_b("ADC reference,scale,0.02 %,uniform").value()};

@@ -10,7 +10,7 @@
 #include "proofmass/calibrate/uncertainty/draw.hpp"
 #include "proofmass/core/units.hpp"
 
-// An analog sensor turned through 24 positions.
+// An analog sensor in 24 positions.
 namespace proofmass::calibrate {
 
 inline constexpr double g = standard_gravity_mps2;

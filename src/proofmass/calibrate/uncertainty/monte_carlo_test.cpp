@@ -17,7 +17,7 @@ double sum(View<double> x) {
   return std::accumulate(x.begin(), x.end(), 0.0);
 }
 
-// The budget of a sum, or of what has these sensitivities.
+// Budget of a sum, or of a function with these sensitivities.
 UncertaintyBudget budget_of_inputs(double y, View<Input> inputs, std::vector<double> sensitivity) {
   std::vector<BudgetLine> lines;
   for (std::size_t i = 0; i < inputs.size(); ++i)
@@ -37,7 +37,7 @@ TEST(Propagate, OfFourNormalInputsIsNormal) {
   EXPECT_EQ(validate(budget_of_inputs(0.0, inputs, {1, 1, 1, 1}), found).agreement, Agreement::yes);
 }
 
-// JCGM 101, 9.2.3: four rectangular ones of the same width, ± 3.88.
+// JCGM 101, 9.2.3: four rectangular inputs of equal width, ± 3.88.
 TEST(Propagate, OfFourRectangularInputsIsNarrowerThanNormal) {
   const std::vector<Input> inputs(4, Input{0.0, 1.0, D::uniform});
   const double exact = 2.0 * std::sqrt(3.0) * (2.0 - std::pow(3.0 / 5.0, 0.25));
@@ -51,7 +51,8 @@ TEST(Propagate, OfFourRectangularInputsIsNarrowerThanNormal) {
   EXPECT_EQ(validate(budget, found, 1).agreement, Agreement::yes);
 }
 
-// JCGM 101, 9.2.4: one of them ten times as wide: u = 10.1, the guide ± 19.9, really ± 17.0.
+// JCGM 101, 9.2.4: one of them ten times as wide: u = 10.1; the GUM gives ± 19.9, the correct
+// interval is ± 17.0.
 TEST(Validate, ContradictsTheBudgetThatOneRectangleDominates) {
   std::vector<Input> inputs(4, Input{0.0, 1.0, D::uniform});
   inputs[3].std = 10.0;
@@ -67,8 +68,8 @@ TEST(Validate, ContradictsTheBudgetThatOneRectangleDominates) {
   EXPECT_NE(judged.verdict.find("contradicts the budget"), std::string::npos);
 }
 
-// JCGM 101, 9.3: the mass of a weight in air, 1.2341 mg, u 0.0754 mg, [1.0834, 1.3825] mg; the
-// guide's first order gives u 0.0539 mg, [1.1285, 1.3395] mg.
+// JCGM 101, 9.3: calibration of a mass, 1.2341 mg, u 0.0754 mg, [1.0834, 1.3825] mg; the
+// first-order GUM gives u 0.0539 mg, [1.1285, 1.3395] mg.
 TEST(Propagate, GivesTheMassCalibrationOfTheSupplement) {
   const std::vector<Input> inputs{{100000.0, 0.050, D::normal},
                                   {1.234, 0.020, D::normal},
@@ -106,9 +107,9 @@ TEST(Propagate, GivesTheComparisonLossOfTheSupplement) {
   }
 }
 
-// JCGM 101, 9.4.3: the same, correlated by 0.9, at x1 = 0.050: E = x1² + 2u²,
-// var = 4 x1² u² + 4 u⁴ (1 + r²).
-TEST(Propagate, HeedsCorrelation) {
+// JCGM 101, 9.4.3: the same with correlation 0.9 at x1 = 0.050: E = x1² + 2u², var = 4 x1² u² + 4
+// u⁴ (1 + r²).
+TEST(Propagate, IncludesCorrelation) {
   const Measurement loss = [](View<double> x) { return 1e6 * (x[0] * x[0] + x[1] * x[1]); };
   Eigen::MatrixXd r = Eigen::MatrixXd::Identity(2, 2);
   r(0, 1) = r(1, 0) = 0.9;
@@ -150,7 +151,7 @@ TEST(Propagate, OfWhatDoesNotVaryIsThatValue) {
   EXPECT_EQ(validate(budget_of_inputs(2.0, inputs, {1.0}), found).agreement, Agreement::yes);
 }
 
-TEST(Validate, OfTooFewDrawsCannotTell) {
+TEST(Validate, IsUndecidedWithTooFewDraws) {
   const std::vector<Input> inputs(4, Input{0.0, 1.0, D::normal});
   const auto found = propagate(sum, inputs, {.draws = 200}).value();
   const auto judged = validate(budget_of_inputs(0.0, inputs, {1, 1, 1, 1}), found);
@@ -158,7 +159,7 @@ TEST(Validate, OfTooFewDrawsCannotTell) {
   EXPECT_NE(judged.verdict.find("too few"), std::string::npos);
 }
 
-// JCGM 101, 8.1.3: 0.00035 is 35e-5, so δ = 5e-6; 0.0996 rounds to 10e-2 in two digits.
+// JCGM 101, 8.1.3: 0.00035 is 35e-5, so δ = 5e-6; 0.0996 rounds to 10e-2 with two digits.
 TEST(Validate, TakesHalfOfTheLastDigit) {
   const auto tolerance = [](double u, int digits) {
     const std::vector<Input> inputs{{0.0, u}};
@@ -174,7 +175,7 @@ TEST(Validate, TakesHalfOfTheLastDigit) {
 TEST(Draw, HasTheMomentsOfEachDistribution) {
   struct Case {
     D distribution;
-    double dof, variance, fourth;  // of ⟨x⁴⟩/⟨x²⟩²
+    double dof, variance, fourth;  // fourth: kurtosis ⟨x⁴⟩/⟨x²⟩²
   };
   for (const Case& c : {Case{D::normal, 0, 1, 3}, Case{D::uniform, 0, 1, 1.8},
                         Case{D::triangular, 0, 1, 2.4}, Case{D::arcsine, 0, 1, 1.5},

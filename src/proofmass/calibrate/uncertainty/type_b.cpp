@@ -17,7 +17,7 @@ namespace {
 struct TargetWord {
   TypeBTarget target;
   std::string_view word;
-  std::string_view example;  ///< a unit of it
+  std::string_view example;  ///< an example of its unit
   std::initializer_list<std::string_view> si_units;
 };
 const std::array<TargetWord, 7> targets{{
@@ -86,7 +86,7 @@ std::optional<Amount> amount_of(std::string_view text) {
   return Amount{value, trimmed({stop, static_cast<std::size_t>(text.data() + text.size() - stop)})};
 }
 
-// "2 K * 1 mg/K" is 2 mg; anything else is what it is.
+// The amount, where "2 K * 1 mg/K" is evaluated to 2 mg.
 std::optional<Amount> product_of(std::string_view text) {
   constexpr std::array<std::string_view, 3> signs{"*", "×", " x "};
   for (const std::string_view sign : signs) {
@@ -110,7 +110,7 @@ Status read_amount(std::string_view text, TypeB& line) {
                                 target.example),
                     text);
   const auto unit = sensor::parse_figure_unit(amount->unit);
-  // A figure's "1" is written as nothing, but here it would be a unit forgotten.
+  // parse_figure_unit() accepts an empty unit as "1", but here the unit was probably omitted.
   if (!unit || amount->unit.empty() || std::ranges::count(target.si_units, unit->si_symbol) == 0)
     return expected(fmt::format("a unit of {} (\"{}\")", target.word, target.example), text);
   line.std = amount->value * unit->to_si;
@@ -152,7 +152,7 @@ Status read_distribution(const std::vector<std::string_view>& parts, TypeB& line
   return Done{};
 }
 
-// What all axes share: one converter's reference, one field, one supply.
+// Sources common to all axes: a converter's reference, gravity, a supply.
 bool is_common(std::string_view source) {
   const std::string word = lower(source);
   return word == "adc reference" || word == "gravity" || word == "supply";

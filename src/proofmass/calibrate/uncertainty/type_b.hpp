@@ -8,7 +8,7 @@
 #include "proofmass/calibrate/uncertainty_budget.hpp"
 #include "proofmass/core/result.hpp"
 
-// Uncertainty contributions that the data do not show and the user must state.
+// Uncertainty contributions that the data do not show and the user must state (type B evaluation).
 namespace proofmass::calibrate {
 
 /// Target of a contribution.

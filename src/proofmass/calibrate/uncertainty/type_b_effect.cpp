@@ -7,7 +7,7 @@ namespace {
 
 using Eigen::Index;
 
-// Of the target's three parameters, the first; -1 where it has none here.
+// Index of the first of the target's three parameters; −1 if it has none here.
 Index first_of(TypeBTarget target) {
   switch (target) {
     case TypeBTarget::bias:

@@ -79,7 +79,7 @@ TEST(AveragingFactors, GivenReachToTheLastTermWhateverTheStopRatio) {
   EXPECT_EQ(given({0.1, 0.12}, Statistic::theo1, 10), (Factors{10}));
 }
 
-TEST(AveragingFactors, GivenThatAreNoTimesAreLeftOut) {
+TEST(AveragingFactors, ThatAreNotTimesAreOmitted) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double infinite = std::numeric_limits<double>::infinity();
   EXPECT_EQ(given({nan, infinite, -infinite, -1.0, 0.0, 0.004, 1e300, 0.02}, Statistic::oadev, 100),

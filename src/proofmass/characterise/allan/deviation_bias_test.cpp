@@ -11,7 +11,7 @@ namespace proofmass::characterise::deviation_bias_test {
 namespace {
 
 TEST(VarianceBias, TurnsNistsUncorrectedNumbersIntoItsCorrectedOnes) {
-  // The 10-point and 1000-point sets of SP 1065, white rate noise.
+  // The 10-point and 1000-point sets of SP 1065, white frequency noise.
   EXPECT_NEAR(64.509 / std::sqrt(variance_bias(Statistic::mtotdev, 0, 1, 10)), 75.50203, 1e-3);
   EXPECT_NEAR(64.794 / std::sqrt(variance_bias(Statistic::mtotdev, 0, 2, 10)), 75.83606, 1e-3);
   EXPECT_NEAR(74.818 / std::sqrt(variance_bias(Statistic::ttotdev, 0, 2, 10)), 87.56794, 1e-3);
@@ -34,7 +34,7 @@ TEST(VarianceBias, OfTheHadamardTotalVarianceStartsAtTwoSamples) {
   EXPECT_EQ(variance_bias(Statistic::htotdev, -4, 20, 1001), 0.679);
 }
 
-// The mean of a statistic over records of white phase noise, over the true variance.
+// Ratio of the mean of a statistic over records of white phase noise to the true variance.
 double share_read(const std::function<double(View<double>)>& statistic, double true_variance) {
   constexpr unsigned records = 400;
   double sum = 0.0;
@@ -63,7 +63,7 @@ TEST(VarianceBias, OfTheo1IsWhatTheExactExpectationsGive) {
   EXPECT_NEAR(1.0 / variance_bias(Statistic::theo1, 2, 100, 201), 3.0 / 5625.0 / 2.405e-3, 1e-4);
 }
 
-TEST(VarianceBias, IsNoneWhereNoneIsPublishedAndThenNothingIsSaid) {
+TEST(VarianceBias, IsAbsentIfNoneIsPublished) {
   for (const Statistic statistic :
        {Statistic::adev, Statistic::oadev, Statistic::mdev, Statistic::tdev, Statistic::hdev,
         Statistic::ohdev, Statistic::pdev}) {

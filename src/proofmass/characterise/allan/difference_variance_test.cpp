@@ -34,14 +34,14 @@ std::vector<PhaseVariance> variances(Statistic statistic,
   return all.finish();
 }
 
-// The averages of m samples from each place on, in long double.
+// Average of m samples from `first` on, in long double.
 long double average(View<double> y, std::size_t first, std::size_t m) {
   long double sum = 0.0L;
   for (std::size_t k = 0; k < m; ++k) sum += static_cast<long double>(y[first + k]);
   return sum / static_cast<long double>(m);
 }
 
-// The definitions over averages of adjacent samples, word for word.
+// Definitions in terms of averages of adjacent samples, implemented literally.
 double by_definition(Statistic statistic, View<double> y, std::size_t m) {
   const bool third = statistic == Statistic::hdev || statistic == Statistic::ohdev;
   const bool overlap = statistic != Statistic::adev && statistic != Statistic::hdev;
@@ -131,7 +131,7 @@ TEST(DifferenceVariances, StartATermAtEachDecimatedPlace) {
   EXPECT_EQ(found[3].terms, (10'000U - 2048U) / 32 + 1);
 }
 
-TEST(DifferenceVariances, LoseNextToNothingByDecimation) {
+TEST(DifferenceVariances, LoseAlmostNoPrecisionByDecimation) {
   const std::vector<std::size_t> factors{64, 512, 4096};
   for (const auto& y : {white(200'000), random_walk(200'000)}) {
     for (const Statistic statistic : {Statistic::oadev, Statistic::mdev, Statistic::ohdev}) {
@@ -146,7 +146,7 @@ TEST(DifferenceVariances, LoseNextToNothingByDecimation) {
 }
 
 TEST(DifferenceVariances, OfALongRandomWalkStayExactAtTheShortestTau) {
-  // The double integral of a random walk grows with the power 2.5 of its length.
+  // The double integral of a random walk grows with its length to the power 2.5.
   const auto y = random_walk(2'000'000);
   const auto modified = variances(Statistic::mdev, y, {1, 32}),
              plain = variances(Statistic::oadev, y, {1});

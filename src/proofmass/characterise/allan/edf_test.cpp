@@ -16,7 +16,7 @@ struct Published {
   double edf;
 };
 
-// As computed by an independent package (allantools), to the digits printed.
+// As computed by an independent package (allantools), to the printed digits.
 TEST(GreenhallRileyEdf, IsThePublishedSumToEveryDigit) {
   const std::vector<Published> cases = {
       {{.alpha = 0, .m = 1, .phase_points = 1001}, 782.0303},
@@ -33,7 +33,7 @@ TEST(GreenhallRileyEdf, IsThePublishedSumToEveryDigit) {
   for (const auto& [known, edf] : cases) EXPECT_NEAR(greenhall_riley_edf(known), edf, 6e-5);
 }
 
-// The same package takes Greenhall and Riley's tables beyond 100 lags, fits to about 1 %.
+// The same package uses Greenhall and Riley's fitted tables beyond 100 lags, accurate to about 1 %.
 TEST(GreenhallRileyEdf, IsNearTheFittedTablesWhereTheSumIsLong) {
   const std::vector<Published> cases = {
       {{.alpha = 0, .m = 100, .phase_points = 1001}, 12.8149},
@@ -77,7 +77,7 @@ long double s_z(const EdfCase& c, int alpha, long double t) {
          s_x(t - 3) - s_x(t + 3);
 }
 
-/// Every lag, in extended precision, as written in the paper.
+/// Sum over every lag in extended precision, as written in the paper.
 double word_for_word(const EdfCase& c, const AlphaShares& shares) {
   const std::size_t length = c.m * static_cast<std::size_t>(c.d) + (c.modified ? c.m : 1);
   const std::size_t M = 1 + (c.phase_points - length) / c.stride;
@@ -107,7 +107,7 @@ struct Grid {
   bool sampled;
 };
 
-// All orders, laws, averagings and strides at each factor, records of so many τ.
+// All orders, laws, averages and strides at each factor, for records of a given number of τ.
 std::vector<EdfCase> cases_of(const Grid& grid) {
   std::vector<EdfCase> cases;
   const auto add = [&](int d, int alpha, bool modified, std::size_t m) {
@@ -144,7 +144,7 @@ TEST(GreenhallRileyEdf, TakesLongSumsInBlocksWithoutLosingATenthOfAPercent) {
 }
 
 TEST(GreenhallRileyEdf, OfWhitePhaseHasAClosedFormEvenForFewIndependentTerms) {
-  // Phases 100 τ0 apart are independent: only lags of whole τ count. r = M/m < 2 here.
+  // Phases 100 τ0 apart are independent: only lags of whole τ contribute. r = M/m < 2 here.
   const std::size_t m = 100;
   const std::size_t N = 2 * m + 1 + 149;
   const double M = 150.0;
@@ -177,8 +177,8 @@ TEST(GreenhallRileyEdf, RefusesWhatDoesNotConverge) {
   EXPECT_DEATH((void)greenhall_riley_edf({.alpha = -3, .m = 1, .phase_points = 100}), "converges");
 }
 
-/// The sum over all lags with the autocovariance that spectrum and transfer function give, by the
-/// midpoint rule over frequency.
+/// Sum over all lags with the autocovariance from spectrum and transfer function, by the midpoint
+/// rule over frequency.
 double from_the_spectrum(const EdfCase& c) {
   constexpr double pi = 3.14159265358979323846;
   constexpr int steps = 4'000;
@@ -206,8 +206,8 @@ TEST(EdfFromSampleToSample, IsThatOfTheSpectrum) {
   const Grid grid{.factors = {1, 2, 5, 40}, .per_tau = {7}, .sampled = true};
   for (const EdfCase& known : cases_of(grid)) {
     SCOPED_TRACE(words(known));
-    // Of flicker, averaged as in the modified variance, correlations reach beyond the lags that are
-    // summed.
+    // For flicker noise averaged as in the modified variance, correlations extend beyond the summed
+    // lags.
     const double tolerance = known.modified && known.alpha == -1 ? 7e-3 : 4e-3;
     EXPECT_NEAR(greenhall_riley_edf(known) / from_the_spectrum(known), 1.0, tolerance);
   }
@@ -224,7 +224,7 @@ TEST(EdfFromSampleToSample, HasClosedFormsAtOneSample) {
     return greenhall_riley_edf(
         {.alpha = alpha, .m = 1, .phase_points = 1'000'002, .sampled = true});
   };
-  // Correlations of (1 − B)⁴ and (1 − B)² noise: −2/3, 1/6 and −1/2; of flicker 1/(1 − 4k²).
+  // Correlations of (1 − B)⁴ and (1 − B)² noise: −2/3, 1/6 and −1/2; for flicker noise 1/(1 − 4k²).
   EXPECT_NEAR(edf_of(2) / M, 18.0 / 35.0, 1e-5);
   EXPECT_NEAR(edf_of(0) / M, 2.0 / 3.0, 1e-5);
   constexpr double pi = 3.14159265358979323846;
@@ -233,7 +233,7 @@ TEST(EdfFromSampleToSample, HasClosedFormsAtOneSample) {
 
 TEST(EdfFromSampleToSample, TendsToThePapersWhereTauIsManySamples) {
   for (int alpha = 2; alpha >= -2; --alpha) {
-    if (alpha == 1) continue;  // Its variance depends on the bandwidth.
+    if (alpha == 1) continue;  // its variance depends on the bandwidth
     EdfCase known{.alpha = alpha, .m = 1000, .phase_points = 20'000};
     const double paper = greenhall_riley_edf(known);
     known.sampled = true;
@@ -295,12 +295,12 @@ std::vector<double> simulated_edf(int alpha,
 TEST(Edf, OfTheAllanDeviationIsWhatSimulatedRecordsScatterBy) {
   const std::vector<std::size_t> factors = {16, 40};
   for (const int alpha : {1, 0, -2}) {
-    // Flicker phase made sample by sample has more of its power near half the rate than the
-    // paper's, which is averaged over each sample: its exact edf is 1.18 of the formula's.
+    // Flicker phase noise generated at the samples has more power near half the rate than that of
+    // the paper, which is averaged over each sample: its exact edf is 1.18 times the formula's.
     const double expected = alpha == 1 ? 1.18 : 1.0;
     const std::vector<double> simulated = simulated_edf(alpha, factors, 257);
     for (std::size_t f = 0; f < factors.size(); ++f)
-      // The scatter of 2000 variances is itself known to about 4 %.
+      // The estimated scatter of 2000 variances has an uncertainty of about 4 %.
       EXPECT_NEAR(simulated[f] / edf(Statistic::oadev, alpha, factors[f], 257), expected, 0.12)
           << "α=" << alpha << " m=" << factors[f];
   }
@@ -313,8 +313,8 @@ struct Exact {
   double edf;
 };
 
-// 2 E²/Var = (tr AC)²/tr(ACAC) of the statistic as a quadratic form A, C the covariance of 201
-// phases of discrete power-law noise.
+// 2 E²/Var = (tr AC)²/tr(ACAC) for the statistic as a quadratic form A, with C the covariance of
+// 201 phases of discrete power-law noise.
 TEST(Edf, OfTheParabolicDeviationIsTheExactOne) {
   const std::vector<Exact> cases = {
       {Statistic::pdev, 2, 2, 113.06}, {Statistic::pdev, 2, 20, 13.06},
@@ -361,7 +361,8 @@ TEST(Edf, OfTheTotalFamilyAndTheo1IsWithinAFifthOfTheExactOne) {
 }
 
 TEST(Edf, OfATotalDeviationIsThatOfItsPlainKinWhereNoFitWasMade) {
-  // At m = 1 the total variance is the Allan variance, and Hadamard's is Hadamard's.
+  // At m = 1 the total variance equals the Allan variance, and the Hadamard total variance the
+  // Hadamard variance.
   EXPECT_EQ(edf(Statistic::htotdev, 0, 1, 1001), edf(Statistic::ohdev, 0, 1, 1001));
   EXPECT_EQ(edf(Statistic::totdev, 0, 1, 1001), edf(Statistic::oadev, 0, 1, 1001));
   EXPECT_EQ(edf(Statistic::ttotdev, -1, 9, 1001), edf(Statistic::mdev, -1, 9, 1001));
@@ -370,7 +371,7 @@ TEST(Edf, OfATotalDeviationIsThatOfItsPlainKinWhereNoFitWasMade) {
   EXPECT_EQ(edf(Statistic::htotdev, -3, 15, 1001), edf(Statistic::ohdev, -3, 15, 1001));
 }
 
-// Exact value 7.28, see above; the published polynomial crosses it here.
+// The exact value is 7.28, see above; the published polynomial crosses it here.
 TEST(Edf, OfTheo1InRandomWalkIsThePublishedPolynomial) {
   EXPECT_NEAR(edf(Statistic::theo1, -2, 40, 201), 7.35, 0.01);
 }
@@ -408,12 +409,13 @@ TEST(Edf, GivesStable32sLimits) {
   expect_limits(Statistic::htotdev, {64, 0, .029694, .033576, .039530}, 0.002);
 }
 
-/// How far from Stable32's limits ours may be, relatively.
+/// Accepted relative difference from Stable32's limits.
 ///
-/// totdev: Stable32 gives the total variance at m = 1, where it is Allan's, twice Allan's edf.
-/// mtotdev, ttotdev: its edf from m = 10 on is 1.33 T/τ − 1.9 (α = 0) and 1.73 T/τ − 3.0 (α = 1)
-/// where SP 1065 has 1.10 T/τ − 1.2 and 1.20 T/τ − 1.4, and the exact values side with SP 1065.
-/// htotdev: none is published for α = 1.
+/// - totdev: Stable32 gives the total variance at m = 1, where it equals Allan's, twice Allan's
+///   edf.
+/// - mtotdev, ttotdev: its edf from m = 10 on is 1.33 T/τ − 1.9 (α = 0) and 1.73 T/τ − 3.0 (α = 1),
+///   where SP 1065 has 1.10 T/τ − 1.2 and 1.20 T/τ − 1.4; the exact values support SP 1065.
+/// - htotdev: no edf is published for α = 1.
 double tolerance_of(Statistic statistic, const test::Stable32Row& row) {
   const bool modified_total = statistic == Statistic::mtotdev || statistic == Statistic::ttotdev;
   if (modified_total && row.m >= 10) return row.alpha == 0 ? 0.032 : 0.065;

@@ -30,7 +30,7 @@ std::vector<double> power_law_phase(int alpha, std::size_t count, unsigned seed)
   return phase;
 }
 
-TEST(Lag1NoiseType, TellsTheSevenPowerLawsApart) {
+TEST(Lag1NoiseType, DistinguishesTheSevenPowerLaws) {
   for (int alpha = 2; alpha >= -4; --alpha) {
     const std::vector<double> phase = power_law_phase(alpha, 4000, 7);
     const auto type = lag1_noise_type(phase, 1, -4);
@@ -73,7 +73,7 @@ TEST(RatioNoiseType, SaysWhatStable32SaysOfThePublishedSet) {
   EXPECT_EQ(ratio_noise_type(phase, 150), std::nullopt);  // 6 averages
 }
 
-TEST(RatioNoiseType, TellsWhiteFromFlickerPhaseAndRandomWalkFromWhiteRate) {
+TEST(RatioNoiseType, DistinguishesWhiteAndFlickerPhaseAndRandomWalkAndWhiteRate) {
   EXPECT_EQ(ratio_noise_type(power_law_phase(2, 2000, 2), 80), 2);
   EXPECT_EQ(ratio_noise_type(power_law_phase(1, 2000, 2), 80), 1);
   EXPECT_LE(ratio_noise_type(power_law_phase(-2, 2000, 2), 80), -1);
@@ -112,7 +112,7 @@ TEST(IdentifyNoiseTypes, AgreesWithEveryLag1RowOfStable32AndAllButAFewByRatio) {
       if (const auto type = lag1_noise_type(phase, row.m, lowest)) {
         EXPECT_EQ(type->alpha, row.alpha);
         ++by_lag1;
-        // Beyond T/10 Stable32 stops asking in some tables and keeps its last answer.
+        // Beyond T/10 Stable32 does not determine the type in some tables and keeps the last one.
       } else if (row.m <= 100) {
         ratio_misses += ratio_noise_type(phase, row.m, lowest) != row.alpha ? 1 : 0;
         ++by_ratio;

@@ -18,7 +18,7 @@ TEST(Theo1, AgreesWithPublishedValuesOnAThousandPoints) {
   EXPECT_NEAR(std::sqrt(theo1(x, 1.0, 1000).variance), 5.0524e-3, 5e-8);
 }
 
-/// As published: i from 0 here, δ from 0 to m/2 − 1.
+/// As published: i starts at 0 here, δ runs from 0 to m/2 − 1.
 double by_definition(const std::vector<double>& x, double tau0_s, std::size_t m) {
   double sum = 0.0;
   for (std::size_t i = 0; i < x.size() - m; ++i)
@@ -65,7 +65,7 @@ TEST(Theo1, LosesLittleByAStride) {
 
 struct Table {
   const char* file;
-  double bias;  ///< what sigma² was multiplied by
+  double bias;  ///< factor applied to sigma²
 };
 
 class Theo1Table : public testing::TestWithParam<Table> {};

@@ -21,7 +21,8 @@ double deviation(Variance variance, View<double> phase, std::size_t m) {
   return std::sqrt(variance(phase, 1.0, m).variance);
 }
 
-// Where tables give the Hadamard total deviation divided by the root of its bias for white rates.
+// In tables that give the Hadamard total deviation divided by the root of its bias for white
+// frequency noise.
 const double htot_bias = std::sqrt(0.995);
 
 TEST(TotalVariance, AgreesWithNistOnTenPoints) {
@@ -51,7 +52,7 @@ TEST(ModifiedTotalVariance, AgreesWithNistOnAThousandPoints) {
   EXPECT_NEAR(deviation(modified_total_variance, x, 1), 2.0664e-1, 5e-6);
   EXPECT_NEAR(deviation(modified_total_variance, x, 10), 5.5529e-2, 5e-7);
   EXPECT_NEAR(deviation(modified_total_variance, x, 100), 1.9547e-2, 5e-7);
-  // Published divided by the root of the bias for white rates.
+  // Published divided by the root of the bias for white frequency noise.
   EXPECT_NEAR(deviation(modified_total_variance, x, 10) / std::sqrt(0.73), 6.499161e-2, 5e-9);
   EXPECT_NEAR(deviation(modified_total_variance, x, 100) / std::sqrt(0.73), 2.287774e-2, 5e-9);
 }
@@ -69,7 +70,7 @@ TEST(HadamardTotalVariance, AgreesWithNistOnAThousandPoints) {
   EXPECT_NEAR(deviation(hadamard_total_variance, x, 100) / htot_bias, 3.058103e-2, 5e-9);
 }
 
-// The definitions, word for word.
+// Literal implementations of the definitions.
 
 double total_by_definition(const std::vector<double>& x, double tau0_s, std::size_t m) {
   const std::size_t N = x.size();
@@ -177,7 +178,7 @@ TEST(TotalVariances, TakeTheShortestRecordsThereAre) {
   EXPECT_EQ(hadamard_total_variance(x, 1.0, 1).terms, 1u);
 }
 
-/// Over as many shifts as there are samples in a stride every stretch comes once.
+/// With as many shifts as there are samples in a stride, every interval occurs once.
 double at_full_overlap(Variance variance, View<double> x, std::size_t m, std::size_t stride) {
   double sum = 0.0;
   std::size_t terms = 0;
@@ -230,14 +231,14 @@ TEST(AffordableStride, HoldsTheCostAndTheOverlap) {
   }
 }
 
-// Stable32's tables of the phase record that comes with it.
+// Stable32's tables for the phase record distributed with it.
 
 struct Table {
   const char* file;
   Variance variance;
   bool of_rates_in_nist_1000;
-  bool time;                         ///< times τ / √3
-  double (*bias)(int, std::size_t);  ///< by alpha and m: what sigma² was divided by
+  bool time;                         ///< multiplied by τ / √3
+  double (*bias)(int, std::size_t);  ///< factor applied to sigma², by alpha and m
 };
 
 double none(int /*alpha*/, std::size_t /*m*/) {

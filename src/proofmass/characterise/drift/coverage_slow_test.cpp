@@ -11,8 +11,8 @@
 #include "proofmass/characterise/drift/drift_test_support.hpp"
 #include "proofmass/characterise/drift/fit.hpp"
 
-// How often intervals of the warm-up hold the truth, and how often a warm-up is seen where there is
-// none: hundreds of recordings of 2 h at 1 Hz, in mg, as means over 4 s.
+// Coverage of the intervals of the warm-up, and rate of false warm-ups: hundreds of recordings of 2
+// h at 1 Hz, in mg, as means over 4 s.
 namespace proofmass::characterise::drift_coverage_slow_test {
 namespace {
 
@@ -26,14 +26,14 @@ DriftFit fitted(const Series& series) {
   return fit_drift(test::evidence_of(series, {rate_hz, 4})).fit;
 }
 
-/// The record of a seed; three seeds on are another one.
+/// The record for a seed; seeds that differ by three are independent.
 using Source = std::function<Series(unsigned seed)>;
 
 Series white(unsigned seed) {
   return test::white(1.0, rate_hz, samples, seed);
 }
 
-/// Two standard deviations of a share p of so many trials.
+/// Two standard deviations of a fraction p of that many trials.
 double allowance(double p, int trials) {
   return 2.0 * std::sqrt(p * (1.0 - p) / trials);
 }
@@ -49,8 +49,8 @@ int holds(const std::optional<Interval95>& interval, double truth) {
              : 0;
 }
 
-/// Intervals are meant to hold in 95 % of cases: 92 to 98 % and two standard deviations of as many
-/// trials are let pass, which is 88.2 to 99.98 % of 200.
+/// Nominal coverage is 95 %: 92 to 98 % plus two standard deviations of the number of trials is
+/// accepted, which is 88.2 to 99.98 % for 200.
 void expect_share(int count, int trials, const char* of) {
   const double share = static_cast<double>(count) / trials;
   testing::Test::RecordProperty(of, std::to_string(share));
@@ -58,7 +58,7 @@ void expect_share(int count, int trials, const char* of) {
   EXPECT_LE(share, 0.98 + allowance(0.98, trials)) << of;
 }
 
-// In a random walk a hyperbola may fit as well.
+// Under a random walk a hyperbola may fit as well.
 void expect_covered(const Source& noise, double least_identified) {
   constexpr int runs = 200;
   const Series curve = test::sum_of(
@@ -151,14 +151,14 @@ TEST(DriftCoverage, SeldomSeesAWarmUpInAStraightLine) {
 
 // --- other shapes --------------------------------------------------------------------------------
 
-/// A curve of the share of the recording, of some 5 mg in all; its forecast is asked for after
-/// half as long again.
+/// A curve as a function of the fraction of the recording, with a total change of some 5 mg; its
+/// forecast is tested at 1.5 times the duration.
 struct OtherCurve {
   const char* name;
   double (*of_share)(double share);
 };
 
-// A swing through one, a half and a quarter of its period, and the other four shapes.
+// Sines of one, a half and a quarter period, and the other four shapes.
 constexpr std::array<OtherCurve, 7> other_curves{
     {{"square root", [](double u) { return 5.0 * std::sqrt(u); }},
      {"logarithm", [](double u) { return 5.0 * std::log1p(60.0 * u) / std::log(61.0); }},

@@ -21,7 +21,7 @@ inline Series warm_up(double a1, double time_constant_s, double rate_hz, std::si
   return y;
 }
 
-/// A step of this size at a sample.
+/// A step of this size at a given sample.
 inline Series step_at(std::size_t from, double size, std::size_t n) {
   Series y(n, 0.0);
   for (std::size_t k = from; k < n; ++k) y[k] = size;
@@ -32,7 +32,7 @@ inline Series level(double value, std::size_t n) {
   return Series(n, value);
 }
 
-/// Evidence of means over this many samples each.
+/// Evidence from means over this many samples each.
 inline DriftEvidence evidence_of(const Series& samples,
                                  const Sampling& sampling,
                                  double start_s = 0.0) {

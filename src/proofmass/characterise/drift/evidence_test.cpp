@@ -22,7 +22,7 @@ DriftEvidence made(const Series& means, double start_s = 0.0) {
   return DriftEvidence::make(means, blocks_of_three, start_s).value();
 }
 
-/// √h times the transform of block means: what the columns are closed forms of.
+/// √h times the transform of block means, of which the columns are closed forms.
 template <class Mean>
 VectorXd transform_of(Mean mean_of_block) {
   Series means(n);
@@ -36,11 +36,11 @@ void expect_equal(const VectorXd& found, const VectorXd& wanted, double toleranc
   EXPECT_LT((found - wanted).norm(), tolerance * wanted.norm());
 }
 
-/// Mean of 1 − e^(−t/T) over a block, in long double as it cancels where T is long.
+/// Mean of 1 − e^(−t/T) over a block, in long double because of cancellation for large T.
 double mean_rise(double from_s, double time_constant_s) {
   const auto T = static_cast<long double>(time_constant_s), x = static_cast<long double>(h) / T;
   const long double before = -std::expm1(-static_cast<long double>(from_s) / T);
-  // Below 1e-3 the series of 1 − (1 − e^(−x))/x.
+  // Below 1e-3 by the series of 1 − (1 − e^(−x))/x.
   const long double within = x < 1e-3L ? x / 2 - x * x / 6 + x * x * x / 24 - x * x * x * x / 120
                                        : 1.0L + std::expm1(-x) / x;
   return static_cast<double>(before + (1.0L - before) * within);
@@ -129,7 +129,7 @@ TEST(DriftEvidence, HasTheValueAtABlocksMiddle) {
   }
 }
 
-TEST(DriftEvidence, KnowsItsTimes) {
+TEST(DriftEvidence, HasTheRightTimes) {
   const DriftEvidence evidence = made(test::normals(n, 3), 20.0);
   EXPECT_EQ(evidence.blocks(), 96);
   EXPECT_DOUBLE_EQ(evidence.block_s(), 1.5);

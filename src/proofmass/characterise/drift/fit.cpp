@@ -73,12 +73,13 @@ std::string reason_for(const DriftFit& fit,
       return {};
     case DriftReason::no_warm_up:
       return fmt::format(
-          "no warm-up seen: an exponential explains no more than noise does (p = "
+          "no warm-up found: an exponential explains no more than noise (p = "
           "{:.2g})",
           fit.constant_p);
     case DriftReason::hidden_by_noise:
       return fmt::format(
-          "amplitude not above the {}: wander of the bias explains the drift without a warm-up (p "
+          "amplitude not above the {}: slow noise of the bias explains the drift without a warm-up "
+          "(p "
           "= {:.2g})",
           noise.random_walk > 0.0 ? "random walk"
           : noise.markov > 0.0    ? "Markov noise"
@@ -98,27 +99,28 @@ std::string reason_for(const DriftFit& fit,
           "for longer",
           record_s, times_of(fit));
     case DriftReason::unexplained:
-      return "something moves the bias that is neither noise nor an exponential: what is left is "
-             "not white once the noise is divided out";
+      return "the bias changes in a way that is neither noise nor an exponential: the whitened "
+             "residuals "
+             "are not white";
     case DriftReason::begun_later:
       return fmt::format(
-          "a drift with a time constant of {:.3g} s, {:.3g} s after switching on, is no warm-up: "
-          "it would have been over long before",
+          "a drift with a time constant of {:.3g} s, {:.3g} s after power-on, is not a warm-up: "
+          "it would have settled long before",
           fit.best_time_constant_s, evidence.start_s());
     case DriftReason::shape_undetermined:
       return fmt::format(
           "a warm-up; its shape cannot be determined from this recording: a curve of another shape "
           "than the exponential fits as well or better ({})",
           rivals_of(fit));
-    case DriftReason::swing:
+    case DriftReason::oscillation:
       return fmt::format(
-          "no warm-up but a slow swing: a sine with a period of {:.3g} s, of the temperature "
-          "perhaps, explains the drift better than any warm-up",
+          "no warm-up but a slow oscillation: a sine with a period of {:.3g} s, possibly due to "
+          "temperature, explains the drift better than any warm-up",
           fit.curve.time_constant_s);
     case DriftReason::shorter_than_resolved:
       return fmt::format(
           "settled within {:.3g} s, which is too short for blocks of {:.3g} s: "
-          "analyse the beginning alone with --to",
+          "analyse only the beginning with --to",
           fit.best_time_constant_s * 3.0, evidence.block_s());
   }
   return {};
@@ -148,7 +150,8 @@ class DriftVerdict {
     fit.why = why(T);
     if (fit.why == DriftReason::shorter_than_resolved) fit.time_constant_below_s = T.upper_95;
     const std::vector<const DriftTrial*> as_good = trials_.as_good();
-    const bool open = fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::swing;
+    const bool open =
+        fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::oscillation;
     if ((fit.why == DriftReason::identified && !explained(exponential_)) ||
         (open && !explained(*as_good.front())))
       fit.why = DriftReason::unexplained;
@@ -224,7 +227,7 @@ class DriftVerdict {
     // A sine alone is not a warm-up.
     const std::vector<const DriftTrial*> as_good = trials_.as_good();
     return as_good.size() == 1 && as_good.front()->at.shape == DriftShape::sine
-               ? DriftReason::swing
+               ? DriftReason::oscillation
                : DriftReason::shape_undetermined;
   }
 

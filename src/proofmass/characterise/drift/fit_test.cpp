@@ -22,7 +22,7 @@ Series with_white(const Series& curve, unsigned seed, double white = 1.0) {
   return test::sum_of({curve, test::white(white, 0.25, curve.size(), seed)});
 }
 
-/// What holds of every fit, whatever came out.
+/// Properties of every fit, whatever the verdict.
 void expect_sound(const DriftFit& fit) {
   EXPECT_EQ(fit.identified, fit.why == DriftReason::identified);
   EXPECT_EQ(fit.identified, fit.reason.empty());
@@ -55,7 +55,7 @@ void expect_not_identified(const DriftFit& fit, DriftReason why) {
   EXPECT_EQ(fit.why, why) << fit.reason;
 }
 
-/// T = 100 s of a record of 1024 s.
+/// A warm-up of T = 100 s in a record of 1024 s.
 Series clear_warm_up(unsigned seed) {
   return with_white(test::warm_up(5.0, 100.0, 0.25, n), seed);
 }
@@ -85,7 +85,7 @@ TEST(DriftFit, IdentifiesTheWarmUpOfTheThesis) {
     EXPECT_LT(fit.constant_p, 1e-6);
     EXPECT_NEAR(fit.noise.white, 0.05, 0.005);
   }
-  // One in twenty intervals misses.
+  // One in twenty intervals fails.
   EXPECT_GE(held_a1, 3);
   EXPECT_GE(held_time, 3);
   EXPECT_GE(held_a2, 3);
@@ -114,7 +114,7 @@ TEST(DriftFit, TakesAStraightLineForALine) {
 
 TEST(DriftFit, FindsStepsWhereTheyAre) {
   for (const unsigned seed : {1U, 2U, 3U}) {
-    // Ten times their noise from block to block.
+    // Ten times the noise between blocks.
     const DriftFit fit =
         fitted(with_white(test::sum_of({test::step_at(100, 5.0, n), test::step_at(180, -4.0, n)}),
                           seed, 0.6),
@@ -139,20 +139,21 @@ TEST(DriftFit, TakesNoRandomWalkForAWarmUp) {
     hidden += fit.why == DriftReason::hidden_by_noise ? 1 : 0;
     EXPECT_NEAR(fit.noise.random_walk, 0.1, 0.05);
   }
-  // That is, a plain fit would have been sure.
+  // An ordinary fit would have been confident.
   EXPECT_GE(hidden, 1);
 }
 
-TEST(DriftFit, CannotTellATimeConstantOfTwiceTheRecord) {
+TEST(DriftFit, DoesNotIdentifyATimeConstantOfTwiceTheRecord) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const Series curve = test::warm_up(10.0, 2.0 * record_s, 0.25, n);
-    // In much noise it is a straight line, in little not, but beyond the record all the same.
+    // With large noise it is taken as a straight line, with small noise as curved; in either case
+    // beyond the record.
     expect_not_identified(fitted(with_white(curve, seed)), DriftReason::line);
     expect_not_identified(fitted(with_white(curve, seed, 0.01)), DriftReason::longer_than_record);
   }
 }
 
-TEST(DriftFit, CannotTellATimeConstantOfAFewBlocks) {
+TEST(DriftFit, DoesNotIdentifyATimeConstantOfAFewBlocks) {
   for (const unsigned seed : {1U, 2U, 3U})
     expect_not_identified(fitted(with_white(test::warm_up(20.0, 3.0 * h, 0.25, n), seed)),
                           DriftReason::shorter_than_resolved);
@@ -172,7 +173,7 @@ TEST(DriftFit, FindsTwoExponentialsTheLargerFirst) {
     held += holds(*fit.second_a1, -3.0) ? 1 : 0;
     held += holds(*fit.second_time_constant_s, 60.0) ? 1 : 0;
   }
-  // Of twelve.
+  // of twelve
   EXPECT_GE(held, 9);
 }
 
@@ -226,7 +227,7 @@ TEST(DriftFit, DoesNotMindGravity) {
 }
 
 TEST(DriftFit, CountsTimeFromSwitchingOn) {
-  // The same warm-up, seen from 200 s on.
+  // The same warm-up, observed from 200 s on.
   const Series late = test::warm_up(40.0, 100.0, 0.25, n + 50);
   const DriftFit fit = fitted(with_white(Series(late.begin() + 50, late.end()), 3, 0.2), 200.0);
   ASSERT_TRUE(fit.identified) << fit.reason;
@@ -249,7 +250,7 @@ TEST(DriftFit, GoesAcrossMissingBlocks) {
 
 // --- other shapes --------------------------------------------------------------------------------
 
-/// Values of a curve at the middle of each block.
+/// Values of a curve at the centre of each block.
 Series sampled(double (*curve)(double t_s)) {
   Series y(n);
   for (std::size_t k = 0; k < n; ++k) y[k] = curve(h * (static_cast<double>(k) + 0.5));
@@ -266,7 +267,7 @@ struct OtherShape {
   double (*curve)(double t_s);
 };
 
-// Each goes up by some 5 in the record, in white noise of 0.15 a block.
+// Each rises by some 5 over the record, in white noise of 0.15 per block.
 constexpr std::array<OtherShape, 4> other_shapes{
     {{DriftShape::square_root, [](double t) { return 0.16 * std::sqrt(t); }},
      {DriftShape::logarithm, [](double t) { return 1.6 * std::log(1.0 + t / 45.0); }},
@@ -290,7 +291,7 @@ TEST(DriftFit, DoesNotCallAnExponentialWhatIsAnotherShape) {
   }
 }
 
-TEST(DriftFit, DoesNotCallASwingOfTheTemperatureAWarmUp) {
+TEST(DriftFit, DoesNotCallAnOscillationOfTheTemperatureAWarmUp) {
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     const DriftFit whole = fitted(with_white(
         sampled([](double t) { return 3.0 * std::sin(6.2831853 * t / record_s); }), seed, 1.0));
@@ -304,7 +305,8 @@ TEST(DriftFit, DoesNotCallASwingOfTheTemperatureAWarmUp) {
   }
 }
 
-// A curve by its definition, its block means by a fine sum: second way to the columns of the fit.
+// A curve by its definition, with block means by a fine sum: an independent computation of the
+// fit's columns.
 TEST(DriftFit, FindsTheScaleOfALogarithmWithinItsStd) {
   Series y(n, 0.0);
   constexpr int parts = 200;
@@ -320,7 +322,8 @@ TEST(DriftFit, FindsTheScaleOfALogarithmWithinItsStd) {
   EXPECT_LT(std_of_log, 0.05);
 }
 
-// The whitened residual of a model that fits has variance 1, as its density times the block is.
+// The whitened residuals of a model that fits have variance 1, since density times block length is
+// 1.
 TEST(DriftFit, WhitensByTheNoiseItFitted) {
   const FittedDrift found = fit_drift(test::evidence_of(
       test::sum_of({clear_warm_up(5), test::random_walk(0.2, 0.25, n, 6)}), sampling));
@@ -332,8 +335,8 @@ TEST(DriftFit, WhitensByTheNoiseItFitted) {
   EXPECT_NEAR(products / squares, 0.0, 3.0 / std::sqrt(static_cast<double>(n)));
 }
 
-// Of white noise the walk is dropped, and the bound is that of least squares over blocks.
-TEST(DriftFit, KnowsWhichWarmUpItWouldHaveMissed) {
+// Under white noise the random walk is dropped, and the bound is that of least squares over blocks.
+TEST(DriftFit, StatesTheSmallestDetectableWarmUp) {
   const Series means = with_white(test::level(0.0, n), 7);
   const DriftFit fit = fitted(means);
   ASSERT_EQ(fit.noise.random_walk, 0.0);
@@ -348,8 +351,8 @@ TEST(DriftFit, KnowsWhichWarmUpItWouldHaveMissed) {
               std::abs(dense.coefficients(1)) + 1.959964 * std::sqrt(dense.covariance(1, 1)), 1e-6);
 }
 
-// The loss at the ends of an interval is what bounds it: 3.84, a little more where the noise is
-// known to few degrees of freedom.
+// The loss at the ends of an interval defines it: 3.84, and slightly more if the noise has few
+// degrees of freedom.
 TEST(DriftFit, HasAProfileThatCrossesItsBoundAtTheEndsOfTheInterval) {
   const DriftFit fit = fitted(clear_warm_up(8));
   ASSERT_TRUE(fit.identified);

@@ -15,18 +15,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::array<Term, 3> wandering{Term::random_walk, Term::flicker, Term::markov};
+constexpr std::array<Term, 3> slow_terms{Term::random_walk, Term::flicker, Term::markov};
 constexpr Index terms = 3;
 
 // Density of each drift term at each ordinate, k = 0 first. There a random walk has none, as it is
 // counted from its own mean over the record until pinned; the others' are those of half the lowest
 // frequency.
-MatrixXd wander_densities(const DriftEvidence& evidence, const DriftTrial& trial) {
+MatrixXd slow_noise_densities(const DriftEvidence& evidence, const DriftTrial& trial) {
   MatrixXd S = MatrixXd::Zero(evidence.blocks(), terms);
   for (std::size_t k = 0; k < trial.noise.terms.size(); ++k) {
     const auto column = static_cast<Index>(k);
     for (Index j = 0; j < terms; ++j) {
-      const Term term = wandering[static_cast<std::size_t>(j)];
+      const Term term = slow_terms[static_cast<std::size_t>(j)];
       if (trial.noise.terms[k] != term) continue;
       S.col(j).tail(evidence.blocks() - 1) = trial.noise.P.col(column) * trial.fit.strength(column);
       if (term == Term::flicker) S(0, j) = 2.0 * S(1, j);
@@ -84,7 +84,7 @@ Functionals functionals(const DriftEvidence& evidence,
                         const VectorXd& residual) {
   const Index rest = evidence.blocks() - 1;
   constexpr Index count = 2 + terms;  // level, walk at the start, terms at the end
-  const MatrixXd S = wander_densities(evidence, trial);
+  const MatrixXd S = slow_noise_densities(evidence, trial);
   const VectorXd start = evidence.at(evidence.start_s()), end = evidence.at(evidence.end_s());
   Functionals out{VectorXd::Zero(count), MatrixXd::Zero(count, count),
                   MatrixXd::Zero(count, J.cols())};
@@ -177,7 +177,7 @@ PlacedCurve place(const DriftEvidence& evidence, const DriftTrial& trial) {
                                       (trial.fit.density.cwiseInverse().asDiagonal() * rows))
                    : MatrixXd(0, 0);
   const Functionals found = functionals(evidence, trial, J, residual);
-  // [a2; wander since 0]: level less the walk since 0, and the walk's end less its start.
+  // [a2; slow noise since 0]: level less the walk since 0, and the walk's end less its start.
   MatrixXd turn = MatrixXd::Zero(1 + terms, found.value.size());
   turn(0, 0) = turn(0, 1) = 1.0;
   turn(1, 1) = -1.0;
@@ -187,7 +187,7 @@ PlacedCurve place(const DriftEvidence& evidence, const DriftTrial& trial) {
   MatrixXd of_values =
       turn * found.covariance * turn.transpose() + sensitivity * of_curve * sensitivity.transpose();
   add_unseen(evidence, trial, of_values);
-  const MatrixXd cross = (of_curve * sensitivity.transpose());  // curve by [a2; wander]
+  const MatrixXd cross = (of_curve * sensitivity.transpose());  // curve by [a2; slow noise]
 
   PlacedCurve placed;
   MatrixXd all(1 + own + terms, 1 + own + terms);

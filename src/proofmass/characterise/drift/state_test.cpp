@@ -18,7 +18,7 @@ using test::Series;
 constexpr std::size_t n = 128;
 constexpr double rate_hz = 0.5, h = 2.0, N = 1.0, K = 0.03, T = 40.0;
 
-/// A shape fitted with the noise given and time constants held, as try_shape leaves it.
+/// A shape fitted with given noise and fixed time constants, as by try_shape.
 DriftTrial trial_of(const DriftEvidence& evidence, const ShapeAt& at) {
   DriftTrial trial;
   trial.at = at;
@@ -35,7 +35,7 @@ Series record(unsigned seed) {
                        test::random_walk(K, rate_hz, n, seed + 1)});
 }
 
-/// What the dense model with W(0) = 0 says of [the curve's parameters; W at the end].
+/// Result of the dense model with W(0) = 0 for [parameters of the curve; W at the end].
 struct Wanted {
   VectorXd value;
   MatrixXd covariance;
@@ -80,10 +80,11 @@ Wanted dense(const DriftEvidence& evidence, const Series& samples, const ShapeAt
   return wanted;
 }
 
-// The fit takes the blocks for means over continuous time, of which the walk before the first and
-// after the last has K² h/3; of samples in the middle of their blocks it has K² h/2, and the walk
-// at an edge is interpolated. So the level and the walk at the end are held to K² h in variance,
-// which is 1.4 % of theirs here, and to a tenth of √(K² h) in value; all else is exact.
+// The fit treats the blocks as means over continuous time, for which the walk before the first and
+// after the last block has variance K² h/3; for samples at the centres of their blocks it is K²
+// h/2, and the walk at an edge is interpolated. The tolerance for the level and the walk at the end
+// is therefore K² h in variance, 1.4 % of theirs here, and a tenth of √(K² h) in value; all else is
+// exact.
 struct Held {
   Wanted wanted;
   VectorXd value;
@@ -120,13 +121,13 @@ Held held(const Series& samples, const ShapeAt& at, double start_s) {
   found.value.resize(found.wanted.value.size());
   found.value.head(2) << placed.curve.a2, placed.curve.a1;
   if (at.shape == DriftShape::exponential_and_line) found.value(2) = placed.curve.slope_per_s;
-  found.value.tail(1) << placed.end.wander(0);
+  found.value.tail(1) << placed.end.slow_noise(0);
   const Index entries = found.wanted.covariance.rows();
   found.covariance = placed.end.covariance.topLeftCorner(entries, entries);
   // The noise has neither flicker nor a Markov term.
   EXPECT_EQ(placed.end.covariance.rows(), entries + 2);
   EXPECT_EQ(placed.end.covariance.rightCols(2).norm(), 0.0);
-  EXPECT_EQ(placed.end.wander.tail(2).norm(), 0.0);
+  EXPECT_EQ(placed.end.slow_noise.tail(2).norm(), 0.0);
   EXPECT_TRUE(
       placed.curve.covariance.isApprox(found.covariance.topLeftCorner(entries - 1, entries - 1)));
   return found;
@@ -165,7 +166,7 @@ TEST(DriftState, GoesAcrossMissingBlocksAsTheDenseModelDoes) {
   }
 }
 
-// Nothing but the level: its variance is N²/duration.
+// Only the level: its variance is N²/duration.
 TEST(DriftState, OfAConstantInWhiteNoiseIsTheMean) {
   const Series samples = test::white(N, rate_hz, n, 7);
   const DriftEvidence evidence = test::evidence_of(samples, {rate_hz, 1});
@@ -199,7 +200,7 @@ TEST(DriftState, OfStepsHasTheirTimesSizesAndErrors) {
   }
 }
 
-/// The exponential beside white noise and a Markov term, its strengths given.
+/// The exponential with white noise and a Markov term of given strength.
 DriftTrial markov_trial(const DriftEvidence& evidence, double q, double relaxation_s) {
   DriftTrial trial;
   trial.at = exponential;
@@ -249,9 +250,9 @@ Wanted dense_markov(const DriftEvidence& evidence, const Series& samples, double
   return wanted;
 }
 
-// The cosines take a stationary process for one reflected at both ends of the record, which makes
-// twice its variance of it there. With a record of 26 relaxations the variances of the curve come
-// out up to 1.4 times too large and that of the Markov noise at the end up to 2.1 times: never too
+// The cosine transform treats a stationary process as reflected at both ends of the record, which
+// doubles its variance there. With a record of 26 relaxation times the variances of the curve are
+// up to 1.4 times too large and that of the Markov noise at the end up to 2.1 times, never too
 // small.
 TEST(DriftState, OfMarkovNoiseErrsOnTheWideSideAndNotByMuch) {
   for (const double q : {0.05, 0.2}) {
@@ -274,7 +275,7 @@ TEST(DriftState, OfMarkovNoiseErrsOnTheWideSideAndNotByMuch) {
     };
     near(placed.curve.a2, 0, 0);
     near(placed.curve.a1, 1, 1);
-    near(placed.end.wander(2), 2, 3);
+    near(placed.end.slow_noise(2), 2, 3);
   }
 }
 

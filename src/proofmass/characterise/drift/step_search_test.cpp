@@ -26,7 +26,7 @@ VectorXd density_of(const DriftEvidence& evidence) {
   return NoiseChoice(evidence).base().P * Eigen::Vector2d(1.0, 0.01);
 }
 
-/// Twice what a step adds to the log-likelihood, by fitting without and with it.
+/// Twice the increase in log-likelihood due to a step, by fitting with and without it.
 double refitted(const DriftEvidence& evidence,
                 const MatrixXd& fitted,
                 const VectorXd& density,
@@ -61,7 +61,7 @@ TEST(StepSearch, GainsWhatARefitGainsAtTheBestOfAllPlaces) {
     EXPECT_GE(found.gain, refitted(evidence, fitted, density, block) - 1e-6) << block;
 }
 
-TEST(StepSearch, GainsNothingByAStepThatIsFittedAlready) {
+TEST(StepSearch, HasNoGainForAFittedStep) {
   const DriftEvidence evidence =
       test::evidence_of(test::sum_of({noise(5), test::step_at(60, 15.0, n)}), sampling);
   const VectorXd density = density_of(evidence);

@@ -9,7 +9,7 @@ Status check_options(const NoiseOptions& options) {
   if (!std::isfinite(options.rate_hz) || options.rate_hz <= 0.0)
     return Error{Errc::invalid_argument, "rate_hz must be positive and finite"};
   if (std::isnan(options.confidence) || options.confidence <= 0.0 || options.confidence >= 1.0)
-    return Error{Errc::invalid_argument, "confidence must lie between 0 and 1"};
+    return Error{Errc::invalid_argument, "confidence must be between 0 and 1"};
   if (options.noise_type == NoiseTypeSource::fixed && (options.alpha > 2 || options.alpha < -4))
     return Error{Errc::invalid_argument, "the noise type must be one of 2, 1, 0, -1, -2, -3, -4"};
   return Done{};

@@ -12,8 +12,8 @@
 
 #include "proofmass/characterise/noise_analysis.hpp"
 
-// How often limits and intervals hold the truth: thousands of recordings of processes whose Allan
-// variance is known exactly. Rates are at 100 Hz.
+// Coverage of limits and intervals: thousands of recordings of processes whose Allan variance is
+// known exactly. Rates are at 100 Hz.
 namespace proofmass::characterise::noise_coverage_slow_test {
 namespace {
 
@@ -35,7 +35,7 @@ std::array<const Coefficient*, 5> coefficients(const NoiseModelFit& model) {
 }
 
 /// Noise of spectrum S = τ0 / (2 sin(π f τ0)) at the discrete frequencies of a period eight times
-/// the recording and none between; a recording is an eighth of the period.
+/// the recording, of which a recording is one eighth.
 class Flicker {
  public:
   explicit Flicker(std::size_t samples) : samples_(samples) {
@@ -52,7 +52,7 @@ class Flicker {
       spectrum[k] = {size * real, size * imaginary};
     }
     fourier_.inv(series, spectrum);
-    // Real and imaginary parts are independent of each other.
+    // The real and imaginary parts are independent.
     std::vector<double> first(samples_);
     spare_.resize(samples_);
     for (std::size_t i = 0; i < samples_; ++i) {
@@ -62,7 +62,7 @@ class Flicker {
     return first;
   }
 
-  /// The sum over all frequencies that there are, of S times 2 sin⁴(π f τ) / (m sin(π f τ0))².
+  /// The sum over all discrete frequencies of S times 2 sin⁴(π f τ) / (m sin(π f τ0))².
   [[nodiscard]] double allan_variance(std::size_t m) const {
     double sum = 0.0;
     for (std::size_t k = 1; k < period_; ++k) {
@@ -109,7 +109,7 @@ class Process {
     return series;
   }
 
-  /// Of the process, sample by sample.
+  /// Exact value for the process, sample by sample.
   [[nodiscard]] double allan_deviation(std::size_t m) const {
     const auto n = static_cast<double>(m);
     const double tau_s = n / rate_hz;
@@ -130,16 +130,17 @@ class Process {
   std::mt19937_64 random_;
 };
 
-/// What became of one coefficient.
+/// Counts for one coefficient.
 struct Tally {
-  int covered = 0;  ///< by the central interval
-  int bounded = 0;  ///< by the upper bound
-  int absent = 0;   ///< not observable, its value 0, with a bound
+  int covered = 0;  ///< true value within the central interval
+  int bounded = 0;  ///< true value below the upper bound
+  int absent = 0;   ///< not observable: value 0 with a bound
 };
 
 struct Outcome {
   int records = 0;
-  std::map<std::size_t, int> covered;  ///< by the limits of the deviation, at each m
+  std::map<std::size_t, int> covered;  ///< true value within the limits of the deviation, at each
+                                       ///< m
   std::array<Tally, 5> coefficients;
 };
 
@@ -174,7 +175,8 @@ Outcome analyse(Process process, int records) {
   return outcome;
 }
 
-/// Whether a share is within [low, high], but for three standard deviations of so many trials.
+/// Checks that a fraction is within [low, high] up to three standard deviations of that many
+/// trials.
 void expect_share(int count, int trials, double low, double high) {
   const double share = static_cast<double>(count) / trials;
   const auto scatter = [&](double p) { return 3.0 * std::sqrt(p * (1.0 - p) / trials); };
@@ -190,7 +192,8 @@ void expect_limits_cover(const Outcome& outcome, std::size_t samples) {
     expect_share(covered, outcome.records, 0.93, 0.97);
     in_all += covered;
   }
-  // Points of one record go together: as many trials as records, no more.
+  // The points of one record are correlated: the number of independent trials is that of the
+  // records.
   const double factors = static_cast<double>(outcome.covered.size());
   SCOPED_TRACE(testing::Message() << samples << " samples, all m");
   expect_share(static_cast<int>(in_all / factors), outcome.records, 0.945, 0.96);
@@ -200,8 +203,8 @@ void expect_intervals_cover(const Outcome& outcome, const Truth& truth) {
   for (std::size_t k = 0; k < outcome.coefficients.size(); ++k) {
     SCOPED_TRACE(testing::Message() << "coefficient " << k << " of " << truth.values()[k]);
     const Tally& tally = outcome.coefficients[k];
-    // Of what is not there the interval starts at 0 unless it is taken for something.
-    // A ramp's counts with a random walk that cannot be seen, and is wide where there is none.
+    // For an absent term the interval starts at 0 unless it is mistaken for another. A ramp is
+    // confused with an unobservable random walk, and its interval is wide if it is absent.
     const bool there = truth.values()[k] > 0.0 && k != ramp;
     expect_share(tally.covered, outcome.records, 0.93, there ? 0.975 : 1.0);
     expect_share(tally.bounded, outcome.records, 0.93, there ? 0.97 : 1.0);
@@ -245,8 +248,8 @@ TEST(NoiseCoverage, OfMixedNoiseIsWhatIntervalsSay) {
     expect_intervals_cover(analyse({truth, samples, seed++}, records), truth);
 }
 
-TEST(NoiseCoverage, OfWhiteNoiseWithOthersTooWeakToTellIsWhatTheirBoundsSay) {
-  // Each is found in fewer than half of the records.
+TEST(NoiseCoverage, OfTermsBelowWhiteNoiseIsThatOfTheirBounds) {
+  // Each is identified in fewer than half of the records.
   const Truth rounded{.quantisation = 0.02, .white = 1.0};
   const Truth drifting{.white = 1.0, .ramp = 0.025};
   for (const Truth& truth : {rounded, drifting}) {
@@ -257,7 +260,7 @@ TEST(NoiseCoverage, OfWhiteNoiseWithOthersTooWeakToTellIsWhatTheirBoundsSay) {
   }
 }
 
-TEST(NoiseCoverage, OfWhiteNoiseAloneNothingElseIsSeen) {
+TEST(NoiseCoverage, OfWhiteNoiseAloneFindsNoOtherTerm) {
   const Outcome outcome = analyse({{.white = 1.0}, 2000, 61}, 1500);
   EXPECT_EQ(outcome.coefficients[white].absent, 0);
   for (const Place place : {quantisation, flicker, random_walk, ramp}) {

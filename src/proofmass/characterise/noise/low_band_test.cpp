@@ -30,7 +30,7 @@ std::vector<CosineOrdinate> ordinates_of(View<double> series) {
   return gathered(series).ordinates();
 }
 
-/// Amplitudes are a linear map of the samples: its matrix, one column for each sample.
+/// The amplitudes are a linear map of the samples: its matrix, one column per sample.
 MatrixXd map_to_amplitudes(std::size_t samples) {
   MatrixXd map(static_cast<Index>(samples - 1), static_cast<Index>(samples));
   for (std::size_t n = 0; n < samples; ++n) {
@@ -43,7 +43,7 @@ MatrixXd map_to_amplitudes(std::size_t samples) {
   return map;
 }
 
-/// Checks that a covariance is diagonal, and the diagonal the term's density.
+/// Checks that a covariance is diagonal with the term's density on the diagonal.
 void expect_independent(const MatrixXd& covariance, Term term, std::size_t samples) {
   for (Index k = 0; k < covariance.rows(); ++k) {
     const double f = static_cast<double>(k + 1) * rate_hz / (2.0 * static_cast<double>(samples));
@@ -81,7 +81,7 @@ TEST(BlockMeans, ARampHasTheAmplitudesThatTheyGiveIt) {
       EXPECT_NEAR(found[k].of_ramp, 0.0, 1e-9 * std::abs(found[0].of_ramp)) << k + 1;
     }
   }
-  // Of many samples −T^{3/2} √8 / (π k)² for odd k.
+  // For many samples −T^{3/2} √8 / (π k)² for odd k.
   const double duration_s = samples / rate_hz;
   EXPECT_NEAR(found[0].of_ramp / (-std::pow(duration_s, 1.5) * std::sqrt(8.0) /
                                   (std::numbers::pi * std::numbers::pi)),
@@ -133,7 +133,7 @@ TEST(BlockMeans, OrdinatesOfBlocksReachAQuarterOfTheirRate) {
   EXPECT_EQ(found.size(), 32'768U / 2U);
 }
 
-/// Mean of amplitude² over what it should be, with its standard deviation in `scatter`.
+/// Mean ratio of amplitude² to its expectation, with its standard deviation in `scatter`.
 double mean_ratio(const std::vector<CosineOrdinate>& found,
                   Term term,
                   std::size_t block,
@@ -165,7 +165,7 @@ TEST(BlockMeans, OrdinatesOfFlickerHaveItsDensity) {
   const auto found = ordinates_of(test::flicker(1.0, 30'000, 7));
   const double ratio = mean_ratio(found, Term::flicker, 1, scatter);
   EXPECT_NEAR(ratio, 1.0, 4.0 * scatter);
-  // Also at the lowest, where a window would leak.
+  // Also at the lowest ordinates, where a window would cause leakage.
   const std::vector<CosineOrdinate> lowest(found.begin(), found.begin() + 300);
   const double ratio_of_lowest = mean_ratio(lowest, Term::flicker, 1, scatter);
   EXPECT_NEAR(ratio_of_lowest, 1.0, 4.0 * scatter);
@@ -190,8 +190,8 @@ TEST(BlockMeans, InOddPiecesAreWhatTheyAreInOne) {
 
 TEST(BlockMeans, AreMissingWhereMoreThanHalfOfTheirSamplesAre) {
   Series series(131'072, 2.0);
-  series[0] = series[1] = series[2] = nan_value;  // three of the first four
-  series[4] = series[5] = nan_value;              // two of the next
+  series[0] = series[1] = series[2] = nan_value;  // three of the first four samples
+  series[4] = series[5] = nan_value;              // two of the next four
   series[6] = 3.0;
   const Series means = gathered(series).means();
   EXPECT_TRUE(std::isnan(means[0]));
@@ -199,7 +199,7 @@ TEST(BlockMeans, AreMissingWhereMoreThanHalfOfTheirSamplesAre) {
   EXPECT_DOUBLE_EQ(means[2], 2.0);
 }
 
-/// Positions at which the frequency falls: where the next stretch begins.
+/// Positions at which the frequency decreases: where the next interval begins.
 std::vector<std::size_t> stretches_in(const std::vector<CosineOrdinate>& found) {
   std::vector<std::size_t> sizes{0};
   for (std::size_t k = 0; k < found.size(); ++k) {

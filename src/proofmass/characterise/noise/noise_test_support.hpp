@@ -37,7 +37,7 @@ inline Series white(double N, double rate_hz, std::size_t n, unsigned seed) {
   return scaled(normals(n, seed), N * std::sqrt(rate_hz));
 }
 
-/// Q (w[k+1] − w[k]) / τ0: the rate of a phase measured with independent errors.
+/// Q (w[k+1] − w[k]) / τ0: rate of a phase measured with independent errors.
 inline Series quantisation(double Q, double rate_hz, std::size_t n, unsigned seed) {
   Series w = normals(n + 1, seed);
   for (std::size_t k = 0; k < n; ++k) w[k] = w[k + 1] - w[k];
@@ -52,7 +52,8 @@ inline Series random_walk(double K, double rate_hz, std::size_t n, unsigned seed
   return scaled(std::move(w), K / std::sqrt(rate_hz));
 }
 
-/// A stationary process of autocorrelation exp(−|t|/T), sampled, of density 1 at frequency zero.
+/// A stationary process with autocorrelation exp(−|t|/T), sampled, with density 1 at frequency
+/// zero.
 inline Series relaxation(double time_constant_s, double rate_hz, std::size_t n, unsigned seed) {
   const double phi = std::exp(-1.0 / (time_constant_s * rate_hz));
   Series w = normals(n, seed);
@@ -66,7 +67,7 @@ inline Series markov(
   return scaled(relaxation(time_constant_s, rate_hz, n, seed), q * time_constant_s);
 }
 
-/// In place, of a power of two; sign −1 forward, +1 back (without 1/n).
+/// In-place transform of a power-of-two length; sign −1 forward, +1 inverse (without 1/n).
 inline void fourier(std::vector<std::complex<double>>& z, double sign) {
   const std::size_t n = z.size();
   if (n == 1) return;
@@ -86,7 +87,7 @@ inline void fourier(std::vector<std::complex<double>>& z, double sign) {
   }
 }
 
-/// B (1 − z⁻¹)^(−½) w, after as long a past again.
+/// B (1 − z⁻¹)^(−½) w, after a run-in of equal length.
 /// Source: N. J. Kasdin, Proc. IEEE 83 (1995) 802, equation 104.
 inline Series flicker(double B, std::size_t n, unsigned seed) {
   std::size_t length = 1;

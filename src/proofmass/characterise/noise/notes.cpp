@@ -20,10 +20,10 @@ void note_resolution(NoiseAnalysis& analysis, double spread) {
   const double density = *analysis.lsb / std::sqrt(12.0 * analysis.rate_hz);
   const bool coarse = spread < 2.0 * *analysis.lsb;
   const double white = analysis.model.white.value;
-  std::string text =
-      fmt::format("the converter's step is {:.2g} of the readings' spread", *analysis.lsb / spread);
+  std::string text = fmt::format("the quantisation step is {:.2g} of the standard deviation",
+                                 *analysis.lsb / spread);
   if (white > 0.0)
-    text += fmt::format(": rounding alone has {:.0f} % of the density of the white noise found",
+    text += fmt::format(": rounding alone has {:.0f} % of the density of the white noise",
                         100.0 * density / white);
   analysis.notes.push_back({coarse ? Severity::warning : Severity::info, std::move(text)});
 }
@@ -46,33 +46,34 @@ void note_events(NoiseAnalysis& analysis, bool excluded) {
   if (analysis.events.empty()) return;
   const auto steps = static_cast<std::size_t>(
       std::ranges::count(analysis.events, signal::EventKind::step, &signal::Event::kind));
-  const std::size_t knocks = analysis.events.size() - steps;
-  const std::string all =
-      counted(knocks, "knock") + (knocks > 0 && steps > 0 ? " and " : "") + counted(steps, "step");
+  const std::size_t outliers = analysis.events.size() - steps;
+  const std::string all = counted(outliers, "outlier") +
+                          (outliers > 0 && steps > 0 ? " and " : "") + counted(steps, "step");
   if (excluded) {
-    analysis.notes.push_back({Severity::warning, all + " left out of everything"});
+    analysis.notes.push_back({Severity::warning, all + " excluded"});
     return;
   }
   const bool one = analysis.events.size() == 1;
   analysis.notes.push_back(
       {Severity::warning,
-       fmt::format("{0} {1} in the figures, and {1} no noise of the sensor: leave {2} out with "
-                   "--exclude-events",
-                   all, one ? "is" : "are", one ? "it" : "them")});
+       fmt::format(
+           "{0} {1} included in the figures but {1} not noise of the sensor: exclude {2} with "
+           "--exclude-events",
+           all, one ? "is" : "are", one ? "it" : "them")});
 }
 
 void note_missing(NoiseAnalysis& analysis, std::size_t left_out) {
   if (left_out > analysis.samples / 100)
     analysis.notes.push_back(
         {Severity::warning,
-         fmt::format("this statistic needs one piece without gaps: {} of {} samples are left out",
+         fmt::format("this statistic needs an interval without gaps: {} of {} samples are excluded",
                      left_out, analysis.samples)});
   if (analysis.missing == 0) return;
   const double share =
       static_cast<double>(analysis.missing) / static_cast<double>(analysis.samples);
   analysis.notes.push_back(
       {share > 0.05 ? Severity::warning : Severity::info,
-       fmt::format("{} of {} samples are missing: the deviation counts the terms that are complete",
+       fmt::format("{} of {} samples are missing: the deviation uses complete terms only",
                    analysis.missing, analysis.samples)});
 }
 
@@ -85,8 +86,8 @@ void note_model(NoiseAnalysis& analysis) {
   }
   if (model.misfit > 0.0)
     analysis.notes.push_back(
-        {Severity::info, fmt::format("the spectrum departs from the model by {:.0f} % beyond its "
-                                     "scatter; standard deviations are widened for it",
+        {Severity::info, fmt::format("the spectrum differs from the model by {:.0f} % beyond its "
+                                     "scatter; standard deviations are increased accordingly",
                                      100.0 * model.misfit)});
   if (model.slow_change) {
     analysis.notes.push_back(
@@ -95,9 +96,9 @@ void note_model(NoiseAnalysis& analysis) {
                      "recording, {}",
                      model.slow_change->period_s, model.duration_s / model.slow_change->period_s,
                      model.slow_change->taken_out
-                         ? "was taken out: it is no noise; temperature makes such"
+                         ? "was removed: it is not noise but typical of temperature"
                          : "explains the recording as well as slow noise does: the intervals of "
-                           "flicker noise and random walk reach down to zero for it")});
+                           "flicker noise and random walk therefore extend to zero")});
     if (!model.slow_change->taken_out) return;
   }
   const auto ambiguous = [](const Coefficient& c) {
@@ -106,9 +107,9 @@ void note_model(NoiseAnalysis& analysis) {
   if (ambiguous(model.random_walk) || ambiguous(model.flicker))
     analysis.notes.push_back(
         {Severity::warning,
-         "there is slow noise beyond the white, but this recording is too short to separate "
-         "flicker "
-         "from random walk: the simpler reading is given, its interval reaches down to zero"});
+         "there is slow noise, but this recording is too short to separate flicker from random "
+         "walk: "
+         "the simpler explanation is given, with an interval that extends to zero"});
 }
 
 }  // namespace proofmass::characterise

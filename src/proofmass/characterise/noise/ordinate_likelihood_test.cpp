@@ -24,7 +24,7 @@ VectorXd strengths(double N, double K) {
   return Eigen::Vector2d(N * N, K * K);
 }
 
-/// Warm-up, white noise and a random walk of 0.3 of it in √s.
+/// Warm-up, white noise of density 1 and a random walk of 0.3 per √s.
 Series record(unsigned seed) {
   return test::sum_of({test::warm_up(4.0, 30.0, rate_hz, n), test::white(1.0, rate_hz, n, seed),
                        test::random_walk(0.3, rate_hz, n, seed + 1)});
@@ -36,7 +36,7 @@ Series with_gap(Series samples) {
   return samples;
 }
 
-/// The same record twice: as ordinates, where each sample is a block, and dense.
+/// The same record in two forms: as ordinates, with each sample a block, and dense.
 struct Both {
   DriftEvidence evidence;
   NoiseColumns noise;
@@ -103,12 +103,12 @@ TEST(OrdinateLikelihood, OfWhiteNoiseIsTheMeanSquareOfTheResidual) {
   EXPECT_NEAR(plain.strength(0), squares / rows, 1e-9 * squares);
   EXPECT_TRUE(plain.coefficients.isApprox(b, 1e-9));
   EXPECT_NEAR(plain.log_likelihood, -0.5 * rows * (std::log(squares / rows) + 1.0), 1e-9);
-  // As near as the scoring goes, which stops at 1e-6 of log-likelihood.
+  // Within the tolerance of the scoring, which stops at 1e-6 in the log-likelihood.
   const double restricted = squares / (rows - 2.0);
   EXPECT_NEAR(fit_ordinates(both.z, P, {X, X}).strength(0), restricted, 1e-5 * restricted);
 }
 
-TEST(OrdinateLikelihood, OfNothingFittedIsThatOfTheOrdinates) {
+TEST(OrdinateLikelihood, WithoutAFitIsThatOfTheOrdinates) {
   const Both both(record(2));
   const OrdinateFit fit = evaluate_ordinates(both.z, both.noise.P, {}, strengths(1.0, 0.3));
   double wanted = 0.0;
@@ -133,7 +133,7 @@ TEST(OrdinateLikelihood, LeavesMissingBlocksOutByTheirColumns) {
   expect_same_least_squares(both);
 }
 
-// About 1e-6 of log-likelihood is where the scoring stops.
+// The scoring stops at about 1e-6 in the log-likelihood.
 TEST(OrdinateLikelihood, FindsTheStrengthsThatAreBestOnADenseGrid) {
   for (const unsigned seed : {5U, 7U, 9U}) {
     const Both both(record(seed));
@@ -157,15 +157,15 @@ TEST(OrdinateLikelihood, ComesToTheSamePlaceFromAnywhere) {
                   best, 1e-4);
 }
 
-TEST(OrdinateLikelihood, LeavesATermAtNothingThatIsNotThere) {
-  // Alternating signs hold less at low frequencies than white noise does.
+TEST(OrdinateLikelihood, LeavesAnAbsentTermAtZero) {
+  // Alternating signs have less power at low frequencies than white noise.
   Series samples = test::normals(n, 13);
   for (std::size_t k = n; --k > 0;) samples[k] -= samples[k - 1];
   const Both both(samples);
   EXPECT_EQ(fit_ordinates(both.z, both.noise.P, both.means).strength(1), 0.0);
 }
 
-// Score by differences of the likelihood, and the information of one strength beside another.
+// The score by differences of the likelihood, and the information on one strength given another.
 TEST(PromisedGain, IsTheScoreTestOfOneMoreColumn) {
   const Both both(record(17));
   const MatrixXd white = both.noise.P.col(0);
@@ -187,7 +187,7 @@ TEST(PromisedGain, IsTheScoreTestOfOneMoreColumn) {
   EXPECT_NEAR(promised, score * score / own, 1e-3 * promised);
 }
 
-TEST(PromisedGain, IsNothingWhereTheScorePointsBelowZero) {
+TEST(PromisedGain, IsZeroForANegativeScore) {
   Series samples = test::normals(n, 13);
   for (std::size_t k = n; --k > 0;) samples[k] -= samples[k - 1];
   const Both both(samples);

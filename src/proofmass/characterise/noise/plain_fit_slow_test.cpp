@@ -10,8 +10,8 @@
 #include "proofmass/fit/curve.hpp"
 #include "proofmass/signal/whiteness.hpp"
 
-// Why a warm-up is not fitted by plain least squares and judged by the autocorrelation of its
-// residuals: 2 h at 1 Hz, in mg, as a reference for what fit_drift does instead.
+// Reference that shows why fit_drift does not use ordinary least squares with a test of the
+// residuals' autocorrelation: 2 h at 1 Hz, in mg.
 namespace proofmass::characterise::plain_fit_slow_test {
 namespace {
 
@@ -27,9 +27,9 @@ double warm_up(double t_s, View<double> p) {
 }
 
 struct PlainFits {
-  /// Root mean square of (value − truth)/std, of a1, T and a2: 1 where the std is true.
+  /// Root mean square of (value − truth)/std for a1, T and a2: 1 if the std is correct.
   std::array<double, 3> understated_by{};
-  /// Share of the fits whose residuals pass Ljung and Box's test of 20 lags at 5 %.
+  /// Fraction of the fits whose residuals pass Ljung and Box's test of 20 lags at 5 %.
   double passed = 0.0;
 };
 

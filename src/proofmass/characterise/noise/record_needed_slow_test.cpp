@@ -7,7 +7,7 @@
 #include "proofmass/characterise/noise/record_needed.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 
-// How often a term is identified in recordings as long as record_needed_s says: 95 % are promised.
+// How often a term is identified in recordings of length record_needed_s, which promises 95 %.
 namespace proofmass::characterise::record_needed_slow_test {
 namespace {
 
@@ -15,7 +15,7 @@ using test::Series;
 
 struct Case {
   const char* name;
-  double quantisation, flicker, random_walk, ramp;  // beside white noise of 1
+  double quantisation, flicker, random_walk, ramp;  // in addition to white noise of 1
   double rate_hz;
   Coefficient NoiseModelFit::* asked;
 };
@@ -71,7 +71,7 @@ TEST(RecordNeeded, IdentifiesEachTermWithTheProbabilityItPromises) {
       seen += (found->model.*of.asked).verdict == Verdict::identified ? 1 : 0;
     }
     RecordProperty(std::string("identified of 150: ") + of.name, seen);
-    // 95 %, less three standard deviations of 150 trials.
+    // 95 % minus three standard deviations of 150 trials.
     EXPECT_GE(seen, 134);
   }
 }

@@ -14,9 +14,8 @@
 #include "proofmass/characterise/noise/noise_test_support.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 
-// The table of docs/methods/noise.md: recordings of random length and random composition, and how
-// often interval and value ± 1.96 std hold the truth, in each scenario. White noise is 1
-// throughout.
+// The table of docs/methods/noise.md: recordings of random length and random composition, and the
+// coverage of the interval and of value ± 1.96 std in each scenario. White noise is 1 throughout.
 namespace proofmass::characterise::noise_scenarios_slow_test {
 namespace {
 
@@ -43,7 +42,7 @@ struct Outcome {
 class Dice {
  public:
   explicit Dice(unsigned seed) : engine_(seed) {}
-  double between(double low, double high) {  // even in the logarithm
+  double between(double low, double high) {  // uniform in the logarithm
     return low * std::pow(high / low, std::uniform_real_distribution<>()(engine_));
   }
   std::size_t samples() { return static_cast<std::size_t>(between(5000.0, 60'000.0)); }
@@ -125,7 +124,7 @@ void print(const std::string& name, const Outcome& outcome) {
   }
 }
 
-/// At least `share` of the trials, but for three standard deviations.
+/// At least `share` of the trials, up to three standard deviations.
 void expect_at_least(double share, int count, int trials) {
   if (trials == 0) return;
   EXPECT_GE(count, share * trials - 3.0 * std::sqrt(share * (1.0 - share) * trials));
@@ -195,7 +194,7 @@ TEST(NoiseScenarios, IntervalsAndPrintedDeviationsHoldTheTruth) {
   for (const auto& [name, draw] : scenarios) expect_honest(name, analysed(records, draw));
 }
 
-TEST(NoiseScenarios, ASlowSineOrABendIsNoRandomWalkWithoutDoubt) {
+TEST(NoiseScenarios, ASlowSineOrABendIsNotACertainRandomWalk) {
   const auto sine = [](Dice& d, unsigned s) {
     Drawn drawn = mixture({0, 1, 0, 0, 0}, d.samples(), s);
     const double periods = 1.0 / d.between(0.2, 2.0), phase = d.between(1.0, 6.28);
@@ -241,7 +240,7 @@ TEST(NoiseScenarios, NoiseThatChangesIsNotCalledStationary) {
     SCOPED_TRACE(name);
     print(name, outcome);
     EXPECT_GE(outcome.not_stationary, outcome.records - 3);
-    // Of the level at the beginning.
+    // relative to the initial level
     EXPECT_GE(outcome.terms[1].in_interval, 0.93 * outcome.records);
   }
 }

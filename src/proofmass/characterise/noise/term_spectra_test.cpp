@@ -27,7 +27,7 @@ double square(double x) {
 }
 
 /// σ²(m h) of a series of step h and density S: ∫ S(f) 2 sin⁴(π f m h) / (m sin(π f h))² df over
-/// |f| < 1/(2h), by the midpoint rule, which is exact of trigonometric polynomials.
+/// |f| < 1/(2h), by the midpoint rule, which is exact for trigonometric polynomials.
 double allan_variance(const Density& density, double step_s, std::size_t m, std::size_t points) {
   double sum = 0.0;
   for (std::size_t k = 0; k < points; ++k) {
@@ -74,7 +74,8 @@ TEST(RelaxationDensity, IntegratesToTheAllanVarianceOfExponentialCorrelation) {
     const double phi = std::exp(-tau0_s / time_constant_s);
     const double variance = rate_hz * (1.0 - phi) / (1.0 + phi);
     for (const std::size_t m : {1U, 3U, 40U}) {
-      // By the autocovariance: the mean over m samples, and its covariance with the next.
+      // From the autocovariance: variance of the mean over m samples, and its covariance with the
+      // next mean.
       double own = 0.0, next = 0.0;
       for (std::size_t i = 0; i < m; ++i) {
         for (std::size_t j = 0; j < m; ++j) {
@@ -179,11 +180,11 @@ TEST(TermDensity, OfFlickerOverBlocksIsTheSumOfItsAliasesWhereBlocksAreUsed) {
   }
 }
 
-// The differences of a random walk's means are sums of steps: their autocovariance by counting.
+// Differences of a random walk's means are sums of its steps: their autocovariance by counting.
 TEST(TermDensity, OfMeansOfARandomWalkIsTheTransformOfTheirDifferences) {
   for (const std::size_t block : {1U, 2U, 7U, 64U}) {
     const auto D = static_cast<double>(block);
-    std::vector<double> weight;  // of each step in the difference of two neighbouring means
+    std::vector<double> weight;  // of each step in the difference of two adjacent means
     for (std::size_t k = 1; k < 2 * block; ++k)
       weight.push_back(static_cast<double>(std::min(k, 2 * block - k)) / D);
     double own = 0.0, next = 0.0;
@@ -239,15 +240,15 @@ TEST(SineAllanVariance, IsThatOfASampledSine) {
 }
 
 TEST(RelaxationAllanVariance, OfOneSampleIsHalfTheMeanSquareStep) {
-  // Neighbours of variance 1 correlate by φ, and the density at zero is τ0 (1 + φ)/(1 − φ).
+  // Adjacent values of variance 1 have correlation φ; the density at zero is τ0 (1 + φ)/(1 − φ).
   const double T = 0.03, hz = 100.0, phi = std::exp(-1.0 / (T * hz));
   EXPECT_NEAR(relaxation_allan_variance(T, 1.0, hz), hz * (1.0 - phi) * (1.0 - phi) / (1.0 + phi),
               1e-10);
 }
 
 TEST(RelaxationAllanVariance, OfManySamplesIsThatOfWhiteNoiseOrOfARandomWalk) {
-  EXPECT_NEAR(relaxation_allan_variance(0.01, 1e5, 100.0) * 1e3, 1.0, 1e-4);  // σ² τ, density 1
-  const double T = 1e4, tau_s = 10.0;  // far below T: a walk with K = 1/T
+  EXPECT_NEAR(relaxation_allan_variance(0.01, 1e5, 100.0) * 1e3, 1.0, 1e-4);  // σ² τ for density 1
+  const double T = 1e4, tau_s = 10.0;  // far below T: a random walk with K = 1/T
   EXPECT_NEAR(relaxation_allan_variance(T, tau_s * 100.0, 100.0) / (tau_s / (3.0 * T * T)), 1.0,
               2e-3);
 }

@@ -16,7 +16,7 @@ using Groups = std::vector<SpectralGroup>;
 
 constexpr std::size_t count = 120;
 
-/// Density of white noise and of a random walk at the n-th frequency, 0.01 Hz … 10 Hz.
+/// n-th frequency, from 0.01 Hz to 10 Hz.
 double frequency(std::size_t n) {
   return 0.01 * std::pow(1000.0, static_cast<double>(n) / (count - 1));
 }
@@ -30,8 +30,8 @@ MatrixXd white_and_walk() {
   return X;
 }
 
-/// Densities drawn about S = X θ: the first forty single amplitudes which a ramp reaches, the rest
-/// means of 3 … 20 degrees of freedom.
+/// Densities drawn about S = X θ: the first forty are single amplitudes, which a ramp affects, the
+/// rest means with 3 … 20 degrees of freedom.
 Groups draw(const VectorXd& theta, double slope, unsigned seed) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
@@ -66,7 +66,7 @@ struct Slope {
   double value = 0.0, information = 0.0;
 };
 
-/// Weighted least squares of the amplitudes on the ramp's.
+/// Weighted least-squares fit of the amplitudes to the ramp's.
 Slope slope_at(const Groups& groups, const VectorXd& S) {
   double cross = 0.0, own = 0.0;
   for (std::size_t n = 0; n < groups.size(); ++n) {
@@ -76,7 +76,7 @@ Slope slope_at(const Groups& groups, const VectorXd& S) {
   return {own > 0.0 ? cross / own : 0.0, own};
 }
 
-/// The likelihood as its formula reads.
+/// The likelihood by its definition.
 double log_likelihood(const Groups& groups, const VectorXd& S) {
   const Slope slope = slope_at(groups, S);
   double sum = slope.information > 0.0 ? -0.5 * std::log(slope.information) : 0.0;
@@ -287,7 +287,7 @@ TEST(WhittleLikelihood, AMisfitLowersDegreesOfFreedomAndInformation) {
     EXPECT_NEAR(2.0 / likelihood.dof()(static_cast<Index>(n)), 2.0 / groups[n].dof + 0.04, 1e-12);
   const MatrixXd after = likelihood.information(fit, {0, 1});
   for (const Index column : {0, 1}) EXPECT_LT(after(column, column), before(column, column));
-  // A second one replaces the first.
+  // A second call replaces the first.
   likelihood.allow_misfit(0.0);
   EXPECT_NEAR(likelihood.information(fit, {0, 1})(0, 0) / before(0, 0), 1.0, 1e-12);
 }

@@ -11,7 +11,7 @@ namespace proofmass::characterise::test {
 
 struct RunSource {
   std::size_t runs = 10, samples = 512;
-  double rate_hz = 8.0, white = 1.0;  ///< 64 s, so that the means scatter by an eighth
+  double rate_hz = 8.0, white = 1.0;  ///< 64 s, so that the means scatter by 1/8
   double between_std = 0.0;
   unsigned seed = 1;
 };

@@ -60,7 +60,7 @@ TEST(RunScatter, OfRunsThatDoNotDifferBeginsAtZeroAndPIsNearlyUniform) {
   double furthest = 0.0;
   for (std::size_t k = 0; k < none.p.size(); ++k)
     furthest = std::max(furthest, std::abs(none.p[k] - (static_cast<double>(k) + 0.5) / 300.0));
-  // 0.079 is where Kolmogorov's 5 % stand; that the noise may be coloured makes p a little larger.
+  // Kolmogorov's 5 % limit is 0.079; allowance for coloured noise increases p slightly.
   EXPECT_LT(furthest, 0.15);
   EXPECT_LE(std::ranges::count_if(none.p, [](double p) { return p < 0.05; }), 25);
 }
@@ -104,7 +104,7 @@ TEST(RunTrend, IsLeastSquaresWithStudentsT) {
   const double left = 40.0 / 3.0 - 13.0 * slope;
   EXPECT_NEAR(trend.per_run.value, slope, 1e-12);
   EXPECT_NEAR(trend.per_run.std, std::sqrt(left / 4.0 / 17.5), 1e-12);
-  // Of Student's t with 4 degrees of freedom, P[|T| > t] = 1 − u (3 − u²) / 2, u = t / √(4 + t²).
+  // For Student's t with 4 degrees of freedom, P[|T| > t] = 1 − u (3 − u²) / 2, u = t / √(4 + t²).
   const double t = trend.per_run.value / trend.per_run.std, u = t / std::sqrt(4.0 + t * t);
   EXPECT_NEAR(trend.p, 1.0 - 0.5 * u * (3.0 - u * u), 1e-12);
 }
@@ -121,14 +121,15 @@ TEST(RunNoise, HasTheAllanVariancesOfIeee952) {
   EXPECT_NEAR(noise_of({RunNoiseKind::flicker}).allan_variance(tau)[0].value,
               2.0 * std::numbers::ln2 / std::numbers::pi, 1e-12);
   EXPECT_NEAR(noise_of({RunNoiseKind::random_walk}).allan_variance(tau)[0].value, tau / 3.0, 1e-12);
-  // Markov: σ²(τ) = (T/τ)² (2τ/T − 3 + 4 e^(−τ/T) − e^(−2τ/T)) of unit variance.
+  // Markov process of unit variance: σ²(τ) = (T/τ)² (2τ/T − 3 + 4 e^(−τ/T) − e^(−2τ/T)).
   const double T = 0.1, x = tau / T;
   EXPECT_NEAR(noise_of({RunNoiseKind::markov, T}).allan_variance(tau)[0].value,
               (2.0 * x - 3.0 + 4.0 * std::exp(-x) - std::exp(-2.0 * x)) / (x * x), 1e-12);
 }
 
 TEST(RunNoise, OfARandomWalkHasTheOrdinatesOfItsCovariance) {
-  // Sums of w in 16 × 64 steps, averaged by 16: Cov of block means exactly, then the transform.
+  // Sums of w in 16 × 64 steps, averaged by 16: exact covariance of the block means, then the
+  // transform.
   const Index n = 64, m = 16, N = n * m;
   Eigen::MatrixXd A(n, N);
   for (Index b = 0; b < n; ++b)
@@ -140,7 +141,7 @@ TEST(RunNoise, OfARandomWalkHasTheOrdinatesOfItsCovariance) {
   for (Index k = 0; k < n - 1; ++k) EXPECT_NEAR(found(k) / direct(k), 1.0, 0.01) << k;
 }
 
-TEST(RunNoise, FindsTheWanderOfManyRuns) {
+TEST(RunNoise, FindsTheRandomWalkOfManyRuns) {
   Eigen::MatrixXd y(64, 200);
   for (Index i = 0; i < y.cols(); ++i) {
     const auto seed = static_cast<unsigned>(i);
@@ -171,10 +172,10 @@ TEST(RunBlocks, OfRunsAtRatesApartByAHundredthShareOneTime) {
   for (std::size_t i = 0; i < rates.size(); ++i) made.runs[i].rate_hz = rates[i];
   const RunBlocks blocks = run_blocks(made.runs).value();
   const Eigen::MatrixXd left = residuals(blocks);
-  EXPECT_LT(left.cwiseAbs().maxCoeff(), 0.002);  // by index it would be 0.1
+  EXPECT_LT(left.cwiseAbs().maxCoeff(), 0.002);  // 0.1 if interpreted by index
 }
 
-TEST(RunBlocks, TakesMissingSamplesForNothing) {
+TEST(RunBlocks, IgnoresMissingSamples) {
   test::MadeRuns made = test::made_of({.runs = 4, .samples = 1024});
   for (test::Series& y : made.series)
     for (std::size_t k = 0; k < y.size(); ++k) y[k] = std::exp(-static_cast<double>(k) / 200.0);

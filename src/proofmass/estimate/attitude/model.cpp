@@ -192,7 +192,7 @@ Transition<15, 15> AttitudeModel::transition(const InertialError& x, std::size_t
     step.Q = start_cov(k);
   } else if (stays(k)) {
     step.F.block<3, 3>(velocity, velocity).setZero();
-    step.Q.diagonal().segment<3>(attitude).setConstant(square(options_.rest_wander_radps_rthz) *
+    step.Q.diagonal().segment<3>(attitude).setConstant(square(options_.rest_creep_radps_rthz) *
                                                        sample.dt_s);
     step.Q.diagonal().segment<3>(velocity).setConstant(square(options_.rest_speed_std_mps));
   } else {

@@ -29,8 +29,8 @@ Status check_rests(const std::vector<signal::Rest>& rests, std::size_t size) {
   for (std::size_t r = 0; r < rests.size(); ++r)
     if (rests[r].last < rests[r].first || rests[r].last >= size ||
         (r > 0 && rests[r].first <= rests[r - 1].last))
-      return Error{Errc::invalid_argument,
-                   "rest " + std::to_string(r) + " lies outside the recording or in another one"};
+      return Error{Errc::invalid_argument, "rest " + std::to_string(r) +
+                                               " is outside the recording or overlaps another one"};
   return Done{};
 }
 
@@ -158,9 +158,8 @@ Result<PreparedSeries> prepare(const InertialSeries& series,
   for (std::size_t k = 0; k < series.time_s.size(); ++k)
     if (read(series, k)) rows.push_back(k);
   if (rows.size() < 2)
-    return Error{
-        Errc::too_few_samples,
-        std::to_string(rows.size()) + " samples with a reading of both sensors; 2 are needed"};
+    return Error{Errc::too_few_samples, std::to_string(rows.size()) +
+                                            " samples with values of both sensors; 2 are needed"};
   PreparedSeries out;
   const Filler filler(series, rows);
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -27,7 +27,7 @@ TEST(ConstantGainLag, HasTheTapsOfTheRiccatiLimit) {
 }
 
 /// Largest difference of the constant-gain form from the time-varying one, in standard deviations
-/// of the latter, over the epochs from `from` on.
+/// of the latter, from epoch `from` on.
 template <int N, int M, int U>
 double apart(const LinearModel<N, M, U>& model,
              const Gaussian<N>& start,
@@ -66,8 +66,8 @@ TEST(ConstantGainLag, FromAnyStartComesToTheTimeVaryingOne) {
   EXPECT_LT(apart(oscillator, test::oscillator_prior(), 600, 900, 9), 1e-12);
 }
 
-// Of acceleration alone, position and velocity are not seen and their variances grow; their gains
-// have a limit all the same.
+// With acceleration measurements only, position and velocity are not observable and their variances
+// grow, but their gains have a limit.
 TEST(ConstantGainLag, HasGainsForStatesWhoseVarianceHasNoLimit) {
   const auto biased = test::biased_motion(0.05);
   const LinearModel<3, 1> model{biased.F.topLeftCorner<3, 3>(), biased.Q.topLeftCorner<3, 3>(),
@@ -94,14 +94,14 @@ TEST(ConstantGainLag, HasGainsForStatesWhoseVarianceHasNoLimit) {
     ASSERT_TRUE(constant.step(epochs[k].z));
     past.push_back(constant.filtered());
     if (k < 200 + lag) continue;
-    // What the later measurements add; the filters' own difference is where they started.
+    // Effect of the later measurements; the two filters differ by their initial states.
     const Mat<3> added = *constant.lagged() - past[k - lag];
     const Mat<3> expected = varying[k - lag].mean - filtered[k - lag].mean;
     EXPECT_LT((added - expected).cwiseAbs().maxCoeff(), 1e-11) << "k = " << k;
   }
 }
 
-// The recursion of a much-used library, which carries the filtered covariance with (F − K H)ᵀ.
+// The recursion of a widely used library, which propagates the filtered covariance with (F − K H)ᵀ.
 std::vector<double> wrong_taps(const LinearModel<2, 1>& model,
                                const SteadyState<2, 1>& steady,
                                std::size_t lag) {
@@ -114,8 +114,8 @@ std::vector<double> wrong_taps(const LinearModel<2, 1>& model,
   return taps;
 }
 
-// Constant velocity, lag 8, a step of 1 s: the error is what the model says, and a third less than
-// that of the recursion which takes the wrong covariance; the smoother of everything gains no more.
+// Constant velocity, lag 8, steps of 1 s: the error agrees with the model, is a third smaller than
+// that of the recursion with the wrong covariance, and as small as the fixed-interval smoother's.
 TEST(ConstantGainLag, ErrsAsTheModelSaysAndLessThanTheWrongRecursion) {
   const auto model = test::constant_velocity(1.0, 0.1, 1.0);
   const auto steady = steady_state(model).value();
@@ -152,7 +152,7 @@ TEST(ConstantGainLag, ErrsAsTheModelSaysAndLessThanTheWrongRecursion) {
   EXPECT_NEAR(std::sqrt(steady.smoothed(0, 0)), expected, 0.001);
 }
 
-TEST(ConstantGainLag, RefusesAReadingThatIsMissingAndStandsAsItStood) {
+TEST(ConstantGainLag, RefusesAMissingMeasurementAndIsUnchanged) {
   const auto model = test::constant_velocity(1.0, 0.1, 1.0);
   ConstantGainLag<2, 1> smoother(model, steady_state(model).value(), 2, Mat<2>::Zero());
   ASSERT_TRUE(smoother.step(Mat<1>(3.0)));

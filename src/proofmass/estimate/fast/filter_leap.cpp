@@ -6,7 +6,8 @@
 namespace proofmass::estimate::packed {
 namespace {
 
-/// The constants of a leap are found once and used for every lane: what they are off by adds up.
+/// Extended precision: the constants are computed once and used for every lane, so that their
+/// rounding errors would accumulate.
 using Real = long double;
 template <int N>
 using Square = Eigen::Matrix<Real, N, N>;

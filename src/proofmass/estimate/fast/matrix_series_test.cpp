@@ -13,7 +13,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// Three states, two channels, matrices that change from epoch to epoch, measurements missing.
+// Three states, two channels, time-varying matrices, missing measurements.
 struct Drawn {
   static constexpr int N = 3, M = 2;
   std::size_t size;
@@ -30,7 +30,7 @@ struct Drawn {
       for (int i = 0; i < N * N; ++i)
         F.push_back(0.2 * normal(engine) + (i % (N + 1) == 0 ? 0.8 : 0.0));
       const double a = normal(engine), b = normal(engine);
-      // Of rank one: a direction in which nothing is added.
+      // Rank one: no noise in one direction.
       for (const double row : {a, b, 0.5})
         for (const double column : {a, b, 0.5}) Q.push_back(0.1 * row * column);
       for (int i = 0; i < M * N; ++i) H.push_back(normal(engine));
@@ -117,7 +117,8 @@ TEST(MatrixSeries, FixedLagIsTheSmootherOfTheReadingsSoFar) {
 }
 
 TEST(MatrixSeries, CorrelatedChannelsCountAsTheirDecorrelatedOnes) {
-  // z = (a + b, b) with a and b independent of variance 1 and 2 says what (a, b) says.
+  // z = (a + b, b), with a and b independent of variance 1 and 2, contains the same information as
+  // (a, b).
   const std::vector<double> F{1.0}, Q{0.0}, x{0.0}, P{10.0}, H{1.0, 0.5}, R{3.0, 2.0, 2.0, 2.0},
       z{1.3, 0.4}, H_apart{0.5, 0.5}, R_apart{1.0, 0.0, 0.0, 2.0}, z_apart{0.9, 0.4};
   const auto run = [&](const auto& H_of, const auto& R_of, const auto& z_of) {

@@ -203,10 +203,12 @@ Result<SteadyParts> steady_parts(const MatrixXd& F,
   const MatrixXd closed = s.d.F * keep;
   parts.slowest_steps = slowest_steps(closed);
   if (!std::isfinite(parts.slowest_steps))
-    return no_limit("something that is read is constant and not driven, and is known ever better");
+    return no_limit(
+        "a measured quantity is constant without process noise, so its variance tends to 0");
   const auto P_ud =
       doubled_sum(s.F_uu, s.F_ud * P_dd * closed.transpose() + s.Q_ud, closed.transpose());
-  if (!P_ud) return no_limit("something that no reading sees grows faster than the filter forgets");
+  if (!P_ud)
+    return no_limit("an unobservable quantity grows faster than the filter's errors decay");
   K.bottomRows(u) = *P_ud * s.d.H.transpose() * S_inverse;
 
   const MatrixXd FK_u = s.F_ud * K.topRows(d) + s.F_uu * K.bottomRows(u);

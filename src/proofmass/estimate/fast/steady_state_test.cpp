@@ -20,7 +20,7 @@ LinearModel<4, 1> position_read(LinearModel<4, 1> m) {
   return m;
 }
 
-/// The filter itself, as long as it takes.
+/// Runs the filter itself until convergence.
 template <int N, int M>
 struct Recursion {
   Mat<N, N> predicted, filtered;
@@ -55,14 +55,15 @@ TEST(SteadyState, OfALocalLevelIsTheRootOfItsQuadratic) {
   EXPECT_NEAR(s.gain(0), P / (P + r), 1e-15);
   EXPECT_NEAR(s.innovation_variance(0), P + r, 1e-14);
   EXPECT_NEAR(s.slowest_steps, -1.0 / std::log(r / (P + r)), 1e-9);
-  // Smoothed: 1 / P[k|N] is the sum of both directions' information less the level's own of none.
+  // Smoothed: 1 / P[k|N] is the sum of the information from both directions, minus that of the
+  // level without measurements.
   EXPECT_NEAR(s.smoothed_variance(0).value(),
               P * r / (P + r) - std::pow(P * r / (P + r), 2) * s.Lambda(0, 0), 1e-14);
   EXPECT_NEAR(s.smoothed_variance(0).value(), q * r / std::sqrt(q * q + 4.0 * q * r), 1e-14);
 }
 
-// The fault that a test for small steps of P makes: 5.4 % in the variance of this bias.
-TEST(SteadyState, OfABiasThatNothingReadsIsItsOwnVariance) {
+// Error of a test for small changes of P: 5.4 % in the variance of this bias.
+TEST(SteadyState, OfAnUnobservableBiasIsItsStationaryVariance) {
   for (const double time_constant_s : {1.0, 100.0, 1e4}) {
     const auto s = steady_state(position_read(with_bias_model(time_constant_s))).value();
     EXPECT_TRUE(s.all_have_limits);
@@ -115,8 +116,8 @@ TEST(SteadyState, SmootherIsTheOneFarFromBothEnds) {
   EXPECT_TRUE(s.smoothed.dense().isApprox(run.steps[2000].smoothed.cov.dense(), 1e-9));
 }
 
-// Of two random walks only the sum is read: each variance grows, what is read of them does not.
-TEST(SteadyState, KnowsADirectionWithoutALimitFromAState) {
+// Only the sum of two random walks is measured: each variance grows, that of the sum does not.
+TEST(SteadyState, DistinguishesAnUnboundedDirectionFromAState) {
   LinearModel<3, 1> m;
   m.F.setIdentity();
   m.F(2, 2) = 0.9;
@@ -158,7 +159,7 @@ TEST(SteadyState, DoesNotDependOnTheUnitsOfTheStates) {
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(t.gain(i) / (units(i) * s.gain(i)), 1.0, 1e-9);
 }
 
-TEST(SteadyState, OfNothingReadIsTheModelItself) {
+TEST(SteadyState, WithoutMeasurementsIsTheModelItself) {
   auto m = with_bias_model(1.0);
   m.H.setZero();
   const auto s = steady_state(m).value();
@@ -188,7 +189,7 @@ TEST(SteadyState, SaysWhereEvenTheGainsHaveNoLimit) {
   EXPECT_FALSE(steady_state(exploding).has_value());
 }
 
-TEST(SteadyState, RefusesWhatIsNoModel) {
+TEST(SteadyState, RefusesInvalidModels) {
   auto m = with_bias_model();
   m.R(0) = -1.0;
   EXPECT_EQ(steady_state(m).error().code, Errc::not_positive_definite);

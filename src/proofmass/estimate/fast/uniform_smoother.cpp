@@ -53,7 +53,7 @@ Status check_readings(const Work<N>& work, const Chunk<N>& chunk) {
   const auto z = work.z.subspan(chunk.first, chunk.count);
   const auto infinite = std::ranges::find_if(z, [](double reading) { return std::isinf(reading); });
   if (infinite == z.end()) return Done{};
-  return Error{Errc::not_finite, "the reading is infinite; NaN says there is none"}.at(
+  return Error{Errc::not_finite, "the measurement is infinite; use NaN for a missing one"}.at(
       "instant " + std::to_string(chunk.first + static_cast<std::size_t>(infinite - z.begin())));
 }
 
@@ -122,9 +122,9 @@ template <int N>
 Status check(const LinearModel<N, 1>& model, const Gaussian<N>& prior) {
   if (!model.F.allFinite() || !model.Q.allFinite() || !model.H.allFinite() ||
       !prior.mean.allFinite() || !prior.cov.allFinite())
-    return Error{Errc::not_finite, "the model or the prior holds what is no number"};
+    return Error{Errc::not_finite, "the model or the prior is not finite"};
   if (!(model.R(0) > 0.0) || std::isinf(model.R(0)))
-    return Error{Errc::not_positive_definite, "the variance of a reading is not positive"};
+    return Error{Errc::not_positive_definite, "the variance of a measurement is not positive"};
   return Done{};
 }
 

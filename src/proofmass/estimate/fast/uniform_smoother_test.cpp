@@ -29,7 +29,7 @@ LinearModel<3, 1> position_read(LinearModel<3, 1> m) {
 }
 const LinearModel<3, 1> three = pva_model({0.005, 1.0, 0.02 * 0.02});
 
-// Nothing in it is 0 or 1, so that no pattern fits.
+// Without zeros and ones, so that no sparsity pattern matches.
 LinearModel<3, 1> dense_model() {
   LinearModel<3, 1> m;
   m.F << 0.9, 0.1, 0.05, -0.2, 0.8, 0.1, 0.03, -0.1, 0.97;
@@ -91,7 +91,7 @@ LinearRun<N, 1> reference(const LinearModel<N, 1>& model,
       LinearSeries<N, 1>::make(epochs_of<N>(z), [&](double) { return model; }).value(), start);
 }
 
-/// Largest differences: of means in standard deviations, of covariances as a share of √(Pii Pjj).
+/// Largest differences: of means in standard deviations, of covariances relative to √(Pii Pjj).
 struct Apart {
   double means = 0.0, covs = 0.0;
 };
@@ -216,7 +216,7 @@ TEST(UniformSmoother, GoesBackToVaryingGainsAtAGap) {
   EXPECT_LT(apart(run, reference(model, prior<3>(), z), true, false).means, 1e-9);
 }
 
-// After a gap of 10 s the filter is so unsure that P − P Λ P has no digit left.
+// After a gap of 10 s the uncertainty is so large that P − P Λ P has no correct digit.
 TEST(UniformSmoother, KeepsItsDigitsBehindAGapAndAWideStart) {
   auto z = readings(4'500);
   std::fill_n(z.begin() + 1'000, 2'000, none);
@@ -242,8 +242,8 @@ TEST(UniformSmoother, KeepsItsDigitsBehindAGapAndAWideStart) {
   EXPECT_LT(off.covs, 1e-8);
 }
 
-// A filter that takes small steps of P for its limit freezes this bias's variance 5 % off, and
-// leaves it there: with a time constant of 100 s and 200 measurements a second each step is small.
+// A filter that takes small changes of P as convergence would freeze this bias's variance 5 % off:
+// with a time constant of 100 s and 200 measurements a second each change is small.
 TEST(UniformSmoother, DoesNotFreezeWhatStillMovesSlowly) {
   const auto model = position_read(with_bias_model());
   Gaussian<4> start = prior<4>();
@@ -252,7 +252,7 @@ TEST(UniformSmoother, DoesNotFreezeWhatStillMovesSlowly) {
   const auto run = smooth_uniform<4>(model, start, std::span(z)).value();
   const double limit = steady_state(model).value().filtered_variance(3).value();
   EXPECT_NEAR(limit, 0.05 * 0.05, 1e-12);
-  // Nothing is read of the bias: its variance decays as φ²ᵏ, by itself.
+  // The bias is not measured: its variance decays as φ²ᵏ.
   for (std::size_t k = 0; k < z.size(); k += 777) {
     const double expected =
         limit + (0.5 - limit) * std::exp(-2.0 * 0.005 * static_cast<double>(k) / 100.0);
@@ -270,7 +270,7 @@ TEST(UniformSmoother, KeepsFewCovariancesOnceTheyStay) {
   EXPECT_LT(run.summary.covariances.kept(), 2'500U);
 }
 
-TEST(UniformSmoother, TellsInnovationsAndTheirVariances) {
+TEST(UniformSmoother, ReportsInnovationsAndTheirVariances) {
   const auto z = readings(10'000, Missing::a_second);
   for (const auto& model : {three, position_read(three)})
     for (const bool smooth : {true, false}) {

@@ -10,7 +10,7 @@
 namespace proofmass::estimate {
 namespace {
 
-/// y ← (I − K hᵀ) y, by its rows. `from` is y as it was.
+/// y ← (I − K hᵀ) y; `from` is a copy of y before.
 void keep_rest(const double* K, const double* h, const double* from, double* y, int n) {
   for (int i = 0; i < n; ++i) {
     double sum = 0.0;
@@ -31,7 +31,7 @@ PM_VECTOR_CLONES void symmetric_times(const double* __restrict A,
   for (; j + 4 <= n; j += 4) {
     const double *a0 = A + j * stride, *a1 = a0 + stride, *a2 = a1 + stride, *a3 = a2 + stride;
     const double x0 = x[j], x1 = x[j + 1], x2 = x[j + 2], x3 = x[j + 3];
-    // A reading depends on few of the states.
+    // A measurement depends on few of the states.
     if (x0 == 0.0 && x1 == 0.0 && x2 == 0.0 && x3 == 0.0) continue;
     for (int i = 0; i < n; ++i) y[i] += (a0[i] * x0 + a1[i] * x1) + (a2[i] * x2 + a3[i] * x3);
   }

@@ -23,8 +23,8 @@ LinearModel<1, 1> level_model(double) {
   return m;
 }
 
-// The local level of the package KFAS (J. Helske, Journal of Statistical Software 78 (2017)), by R:
-// y = 10.2394, then nine times 1. One row an epoch: F, att, Ptt, alphahat, V.
+// The local level of the package KFAS (J. Helske, Journal of Statistical Software 78 (2017)),
+// computed in R: y = 10.2394, then nine times 1. One row per epoch: F, att, Ptt, alphahat, V.
 struct LevelRow {
   double F, att, Ptt, alphahat, V;
 };
@@ -63,7 +63,7 @@ TEST(DiffuseStart, AgreesWithAnIndependentPackageOnALocalLevelToAllItsDigits) {
   }
 }
 
-// Level and slope that both walk, seen through the level; a known push on the slope.
+// A level and a slope with random walks, with the level measured and a known input to the slope.
 LinearModel<2, 1, 1> trend_model(double dt_s) {
   LinearModel<2, 1, 1> m;
   m.F << 1.0, dt_s, 0.0, 1.0;
@@ -82,8 +82,8 @@ TrendEpochs trend(const std::vector<double>& z) {
   return epochs;
 }
 
-// Every smoothed moment, lag-one covariance and the likelihood against least squares in 128 bits
-// with a flat prior; every filtered moment against least squares over what was read so far.
+// Compares every smoothed moment, lag-one covariance and the likelihood with 128-bit least squares
+// with a flat prior; every filtered moment with least squares over the measurements so far.
 template <int N, int M, int U>
 void expect_least_squares(const std::vector<Epoch<M, U>>& epochs,
                           const LinearSeries<N, M, U>& series,
@@ -138,7 +138,7 @@ TEST(DiffuseStart, OfATrendEqualsLeastSquaresWithNoPrior) {
                        Start<2>::diffuse(), 1);
 }
 
-TEST(DiffuseStart, ReadingsMissingFromTheFirstOnAndAmongTheNextAreNoTrouble) {
+TEST(DiffuseStart, ToleratesMissingMeasurementsAtTheStart) {
   const auto epochs = trend({none, none, 2.4, none, none, 6.1, none, 11.0, none});
   expect_least_squares(epochs, LinearSeries<2, 1, 1>::make(epochs, trend_model).value(),
                        Start<2>::diffuse(), 5);
@@ -152,7 +152,7 @@ TEST(DiffuseStart, MayBeDiffuseInOneStateOnly) {
                        Start<2>::diffuse({1}, known), 1);
 }
 
-// Four states of which one is known, three channels that see mixtures of them and go missing.
+// Four states, one of them known; three channels measure mixtures of them, with gaps.
 LinearModel<4, 3, 1> mixed_model(double dt_s) {
   LinearModel<4, 3, 1> m;
   m.F << 1.0, dt_s, 0.1, 0.0, -0.2, 0.9, 0.0, 0.1, 0.0, 0.3, 1.0, -0.1, 0.2, 0.0, 0.1, 0.8;
@@ -180,8 +180,8 @@ TEST(DiffuseStart, OfSeveralStatesInSeveralChannelsEqualsLeastSquaresWithNoPrior
                        Start<4>::diffuse(), 3);
 }
 
-// A reading every 5 ms says little of an acceleration: the start is determined long before it is
-// known to any use, and no digit may be lost on the way. The level is far from 0.
+// Measurements every 5 ms contain little information on the acceleration: the start is determined
+// long before it is precise, and no digits may be lost meanwhile. The level is far from 0.
 TEST(DiffuseStart, OfPositionSpeedAndAccelerationAtTwoHundredReadingsASecondLosesFewDigits) {
   constexpr double h = 0.005;
   LinearModel<3, 1> m;
@@ -198,7 +198,7 @@ TEST(DiffuseStart, OfPositionSpeedAndAccelerationAtTwoHundredReadingsASecondLose
                        Start<3>::diffuse(), 6, 1e-9);
 }
 
-// Both conventions, against the limit of a variance κ that grows: ln p + ½ d ln κ.
+// Both conventions, compared with the limit of an increasing variance κ: ln p + ½ d ln κ.
 TEST(DiffuseStart, LikelihoodIsTheLimitOfLargeVariances) {
   const auto epochs = trend({1.2, 2.9, none, 5.5, 7.0});
   const auto series = LinearSeries<2, 1, 1>::make(epochs, trend_model).value();
@@ -228,12 +228,12 @@ TEST(DiffuseStart, WhatNoReadingDeterminesIsInfiniteBeforeAndAfterSmoothing) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_FALSE(run.steps[k].smoothed.determined(1)) << k;
   EXPECT_EQ(run.steps[0].smoothed.cov(0, 1), -infinite);
   EXPECT_EQ(run.lag_one[1](1, 1), infinite);
-  // Of two states of which nothing is known the one reading, one step of 1 on, moves both alike:
+  // With both states unknown, the measurement one step of 1 later affects both equally:
   // cov(level[1], slope[0]) = R κ / 2κ, since level[1] = level[0] + slope[0] + ….
   EXPECT_NEAR(run.lag_one[0](0, 1), 0.35, 1e-14);
 }
 
-TEST(DiffuseStart, WithoutAnyReadingSaysThatNothingIsKnown) {
+TEST(DiffuseStart, IsUndeterminedWithoutMeasurements) {
   const auto epochs = trend({none, none});
   const auto run =
       smooth_linear(LinearSeries<2, 1, 1>::make(epochs, trend_model).value(), Start<2>::diffuse());
@@ -245,7 +245,7 @@ TEST(DiffuseStart, WithoutAnyReadingSaysThatNothingIsKnown) {
   }
 }
 
-// A gate cannot shut out what nothing was expected of, and shuts out what was.
+// A gate cannot reject measurements without a prediction; it rejects others.
 TEST(DiffuseStart, ReadingsThatDetermineItPassAnyGate) {
   const auto epochs = trend({1e6, 1e6 + 2.0, 1e6 + 4.0, -1e6, 1e6 + 7.0});
   const auto run = smooth_linear(LinearSeries<2, 1, 1>::make(epochs, trend_model).value(),
@@ -277,8 +277,8 @@ TEST(DiffuseStart, AReadingOfLittleWeightIsAReadingOfLargerVariance) {
   }
 }
 
-// Position from accelerations alone: nothing says where it starts, all along.
-TEST(DiffuseStart, AStateThatNothingReadsStaysUndeterminedAndHarmsNoOther) {
+// Position from accelerations only: its initial value is never observable.
+TEST(DiffuseStart, AnUnobservableStateStaysUndeterminedAndDoesNotAffectOthers) {
   LinearModel<2, 1> m;
   m.F << 1.0, 0.1, 0.0, 0.99;
   m.Q << 1e-3, 0.0, 0.0, 0.1;
@@ -300,7 +300,7 @@ TEST(DiffuseStart, AStateThatNothingReadsStaysUndeterminedAndHarmsNoOther) {
   EXPECT_NEAR(both.log_likelihood, speed_only.log_likelihood, 1e-10);
 }
 
-TEST(DiffuseStart, AGaussianIsAStartWithNothingDiffuse) {
+TEST(DiffuseStart, AGaussianIsAStartWithoutDiffuseStates) {
   const auto epochs = trend({1.2, none, 2.4});
   Gaussian<2> known;
   known.cov << 0.4, 0.1, 0.1, 0.9;

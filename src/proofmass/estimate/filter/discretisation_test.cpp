@@ -6,13 +6,13 @@
 #include "proofmass/estimate/models/angular_model.hpp"
 #include "proofmass/estimate/models/fusion_model.hpp"
 
-// Every model against the integral of its continuous form, and against two half steps.
+// Every model compared with the integral of its continuous form, and with two half steps.
 namespace proofmass::estimate::discretisation_test {
 namespace {
 
 using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// exp(A) by Taylor's series of A/2ⁿ, squared n times.
+/// exp(A) by the Taylor series of A/2ⁿ, squared n times.
 Matrix exponential(const Matrix& A) {
   int squarings = 0;
   Matrix scaled = A;
@@ -58,7 +58,7 @@ struct Case {
   std::string name;
   Eigen::MatrixXd A, W;
   std::function<Discrete(double dt)> model;
-  /// Beyond this step van Loan's own e^(+dt/T) e^(−dt/T) loses the digits.
+  /// Beyond this step van Loan's e^(+dt/T) e^(−dt/T) loses precision.
   double longest_dt = 20.0;
 };
 
@@ -168,7 +168,7 @@ TEST(Discretisation, TwoStepsEqualOneOfTwiceTheLength) {
     }
 }
 
-TEST(Discretisation, AStepOfNoTimeChangesNothing) {
+TEST(Discretisation, AStepOfZeroDurationChangesNothing) {
   for (const Case& model : cases()) {
     const Discrete none = model.model(0.0);
     EXPECT_TRUE(none.F.isIdentity(0.0)) << model.name;

@@ -11,7 +11,7 @@ namespace {
 
 using test::distance;
 
-// Everything that smoother knows of epoch k given the measurements before `count`.
+// Fixed-interval estimates of all epochs given the measurements before `count`.
 std::vector<Gaussian<3>> whole_interval(std::size_t count, const Gate& gate) {
   auto series = test::uneven_series(count);
   series.set_reopened(test::oscillator_prior().cov);
@@ -105,7 +105,7 @@ TEST(FixedPoint, IsTheFixedIntervalSmootherAtThePointsAskedFor) {
   for (std::size_t i = 0; i < points.size(); ++i) expect_equal(smoothed[i], expected[points[i]]);
 }
 
-// A position and a speed that move, and behind them a gain and an offset that stand.
+// A dynamic position and velocity, followed by a static gain and offset.
 struct Gauge {
   static constexpr int states = 4, moving = 2, channels = 2;
   [[nodiscard]] std::size_t size() const { return 90; }

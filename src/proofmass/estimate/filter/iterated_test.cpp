@@ -13,8 +13,8 @@ namespace {
 
 constexpr double gravity_mps2 = 9.80665;
 
-// A pendulum seen by the accelerometer along its arm: neither its motion nor its reading is linear.
-//   θ' = ω, ω' = −(g/l) sin θ by Euler's rule over h;  z = g sin θ, not read at every instant.
+// A pendulum with an accelerometer along its arm: nonlinear dynamics and measurements.
+//   θ' = ω, ω' = −(g/l) sin θ by Euler's rule with step h;  z = g sin θ, missing at some epochs.
 struct Pendulum {
   static constexpr int states = 2, moving = 2, channels = 1;
   std::vector<double> z;
@@ -45,7 +45,7 @@ FilterState<2> pendulum_start() {
   return start;
 }
 
-Pendulum swing(std::size_t count) {
+Pendulum oscillating(std::size_t count) {
   Pendulum pendulum;
   pendulum.z.assign(count, 0.0);
   Random random(4, "pendulum");
@@ -62,8 +62,8 @@ Pendulum swing(std::size_t count) {
   return pendulum;
 }
 
-// All states at once: Gauss and Newton on the whole posterior with a dense matrix, written down
-// from the model term by term, with no recursion in it.
+// All states at once: Gauss–Newton on the joint posterior with a dense matrix, written down term by
+// term from the model, without recursion.
 struct Dense {
   Eigen::VectorXd x;
   Eigen::MatrixXd information;
@@ -103,7 +103,7 @@ std::vector<Mat<2>> path_of(const Eigen::VectorXd& x) {
 }
 
 TEST(IteratedSmoother, IsTheMostProbablePathFoundWithoutRecursion) {
-  const Pendulum pendulum = swing(60);
+  const Pendulum pendulum = oscillating(60);
   const auto run = smooth_iterated(pendulum, pendulum_start());
   ASSERT_TRUE(run.how.converged) << run.how.iterations << " " << run.how.change;
   Eigen::VectorXd x(120);
@@ -125,7 +125,7 @@ TEST(IteratedSmoother, IsTheMostProbablePathFoundWithoutRecursion) {
 }
 
 TEST(IteratedSmoother, FindsALessImprobablePathThanThePlainOne) {
-  const Pendulum pendulum = swing(60);
+  const Pendulum pendulum = oscillating(60);
   const auto plain = smooth_iterated(pendulum, pendulum_start(), {}, {.iterations = 1});
   const auto run = smooth_iterated(pendulum, pendulum_start());
   EXPECT_FALSE(plain.how.converged);
@@ -133,7 +133,7 @@ TEST(IteratedSmoother, FindsALessImprobablePathThanThePlainOne) {
 }
 
 TEST(IteratedSmoother, OfOneIterationIsThePlainExtendedOne) {
-  const Pendulum pendulum = swing(200);
+  const Pendulum pendulum = oscillating(200);
   const auto run = smooth_iterated(pendulum, pendulum_start(), {}, {.iterations = 1});
   EXPECT_EQ(run.how.iterations, 1);
   smooth(
@@ -159,7 +159,7 @@ TEST(IteratedSmoother, OfALinearModelIsTheLinearSmootherInTwo) {
 }
 
 TEST(IteratedSmoother, SaysThatItHasNotConverged) {
-  const auto run = smooth_iterated(swing(60), pendulum_start(), {}, {.iterations = 2});
+  const auto run = smooth_iterated(oscillating(60), pendulum_start(), {}, {.iterations = 2});
   EXPECT_FALSE(run.how.converged);
   EXPECT_EQ(run.how.iterations, 2);
   EXPECT_GT(run.how.change, 1e-10);
@@ -171,7 +171,7 @@ TEST(IteratedSmoother, OfNothingIsNothing) {
   EXPECT_EQ(run.objective, 0.0);
 }
 
-// A level that moves, and an offset behind it that walks.
+// A dynamic level, and an offset with a random walk.
 struct Level {
   static constexpr int states = 2, moving = 1, channels = 2;
   [[nodiscard]] std::size_t size() const { return 12; }
@@ -204,8 +204,8 @@ TEST(Objective, IsLeastAtTheSmoothedPathOfALinearModel) {
     }
 }
 
-// The reading is the arctangent: from 3 on whole steps of Gauss and Newton's run away, by turns to
-// either side.
+// The measurement is the arctangent: from 3 on, full Gauss–Newton steps diverge with alternating
+// sign.
 struct Arc {
   static constexpr int states = 1, moving = 1, channels = 1;
   [[nodiscard]] std::size_t size() const { return 1; }
@@ -235,7 +235,8 @@ TEST(IteratedSmoother, HalvesStepsThatLeadAway) {
   EXPECT_NEAR(run.states[0].mean(0), 0.0, 1e-9);
 }
 
-// A walker in the plane who hears one or two beacons: the nearer, the more the range bends.
+// A walker in the plane with ranges to one or two beacons: the shorter the range, the stronger its
+// nonlinearity.
 struct Walker {
   static constexpr int states = 4, moving = 4, channels = 2;
   std::vector<Mat<2>> ranges;
@@ -269,7 +270,8 @@ struct Walker {
   void reopen(Gaussian<4>&, std::size_t) const {}
 };
 
-// Newton's method with a dense Hessian by differences of the exact gradient, from a grid's best.
+// Newton's method with a dense Hessian from differences of the exact gradient, started at the best
+// point of a grid.
 Mat<4> most_probable(const Walker& walker, const Gaussian<4>& prior, std::size_t k) {
   const auto gradient = [&](const Mat<4>& x) {
     Readings<4, 2> readings;
@@ -326,7 +328,7 @@ TEST(IteratedFilter, IsTheMostProbableStateFoundWithoutTheFilter) {
 }
 
 TEST(IteratedFilter, OfOneIterationIsThePlainExtendedOne) {
-  const Pendulum pendulum = swing(100);
+  const Pendulum pendulum = oscillating(100);
   FilterState<2> once = pendulum_start(), plain = once;
   StepOf<Pendulum> step;
   for (std::size_t k = 0; k < pendulum.size(); ++k) {
@@ -363,7 +365,7 @@ TEST(IteratedFilter, ThatDoesNotConvergeIsThePlainExtendedOneAndSaysSo) {
 }
 
 TEST(IteratedFilter, AStepAllocatesNothing) {
-  const Pendulum pendulum = swing(50);
+  const Pendulum pendulum = oscillating(50);
   FilterState<2> state = pendulum_start();
   const std::size_t before = test::allocations();
   (void)filter_iterated(pendulum, {}, state, [](std::size_t, const auto&) {});

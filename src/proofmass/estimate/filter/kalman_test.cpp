@@ -8,14 +8,14 @@
 namespace proofmass::estimate::kalman_test {
 namespace {
 
-// Position and speed that move, a gain and an offset that stand, the offset walking: measurements
-// of (1 + gain) · position + offset, and of the speed. Not linear, so only advance()'s own rules
+// Dynamic position and velocity, a static gain and an offset with a random walk: measurements of (1
+// + gain) · position + offset, and of the velocity. Not linear, so only advance()'s own rules
 // apply.
 struct Gauge {
   static constexpr int states = 4, moving = 2, channels = 2;
   std::size_t instants = 300;
   bool linear = false;
-  double jump_at = 1e9;  ///< epoch from which the position reads 1000 more
+  double jump_at = 1e9;  ///< epoch from which the position's measurement is larger by 1000
 
   [[nodiscard]] std::size_t size() const { return instants; }
   [[nodiscard]] Transition<4, 2> transition(const Mat<4>& x, std::size_t k) const {
@@ -73,7 +73,7 @@ Path smoothed_in_chunks(const Gauge& model, const Gate& gate = {}) {
   return path;
 }
 
-// 300 epochs are three chunks; the gate is awake, so its memory has to cross their borders too.
+// 300 epochs are three chunks; the gate is active, so its count must be carried across chunks.
 TEST(Smoother, InChunksIsTheSameAsInOnePiece) {
   Gauge model;
   model.jump_at = 120.0;
@@ -104,7 +104,7 @@ TEST(Smoother, CallsForwardRisingAndBackwardFallingOnceForEachInstant) {
   }
 }
 
-// The standing states behind the moving ones are a short cut; F with ones for them is the long way.
+// The block of static states is an optimisation; the reference has them in F with ones.
 TEST(Smoother, StandingStatesAreStatesWithAnIdentityTransition) {
   Gauge model;
   model.linear = true;
@@ -133,8 +133,7 @@ TEST(Smoother, StandingStatesAreStatesWithAnIdentityTransition) {
   }
 }
 
-// The offset stands at 0.25 and is not to learn: left out of the arithmetic, or in it without
-// variance.
+// The offset is fixed at 0.25: omitted from the arithmetic, or included with zero variance.
 struct HeldGauge : Gauge {
   [[nodiscard]] int active() const { return 3; }
   [[nodiscard]] Transition<4, 2> transition(const Mat<4>& x, std::size_t k) const {
@@ -210,7 +209,7 @@ TEST(Gate, AReadingOfLittleWeightIsAReadingOfLargerVariance) {
   EXPECT_DOUBLE_EQ(update.expected, 4.0);
   EXPECT_DOUBLE_EQ(update.variance, 6.0);          // S · ν / huber
   EXPECT_DOUBLE_EQ(x.cov(0, 0), 1.0 - 1.0 / 6.0);  // P − P² / S
-  EXPECT_DOUBLE_EQ(update.nis(), 9.0);             // judged by the variance the model states
+  EXPECT_DOUBLE_EQ(update.nis(), 9.0);             // with the variance stated by the model
 }
 
 TEST(Gate, BeyondTheLimitAReadingIsLeftOut) {
@@ -233,8 +232,8 @@ TEST(Gate, ANotANumberIsLeftOut) {
   EXPECT_EQ(x.mean(0), 0.0);
 }
 
-// Only the position jumps; the speed's reading still fits, so it is left out where it would keep
-// the patience from running out.
+// Only the position jumps; the velocity is omitted, since its accepted measurements would reset the
+// gate's count.
 struct JumpingLevel {
   static constexpr int states = 1, moving = 1, channels = 1;
   std::vector<double> z;
@@ -252,7 +251,7 @@ struct JumpingLevel {
 TEST(Gate, AfterItsPatienceTheFilterReopensAndFindsTheSignalAgain) {
   JumpingLevel model{std::vector<double>(100, 0.0)};
   for (std::size_t k = 50; k < 100; ++k) model.z[k] = 500.0;
-  model.z[52] = std::numeric_limits<double>::quiet_NaN();  // no measurement is no evidence
+  model.z[52] = std::numeric_limits<double>::quiet_NaN();  // a missing measurement does not count
   const Gate gate{.huber = 3.0, .limit = 10.0, .patience = 8};
   std::vector<double> means;
   std::vector<int> used;
@@ -261,7 +260,7 @@ TEST(Gate, AfterItsPatienceTheFilterReopensAndFindsTheSignalAgain) {
     means.push_back(step.filtered.mean(0));
     used.push_back(step.count > 0 && step.updates[0].used ? 1 : 0);
   });
-  // Eight measurements shut out: 50, 51, 53 … 58. The ninth is believed.
+  // Eight measurements are rejected: 50, 51, 53 … 58. After the covariance reset the ninth is used.
   for (std::size_t k = 50; k <= 58; ++k) EXPECT_EQ(used[k], 0) << "k = " << k;
   EXPECT_NEAR(means[58], 0.0, 1e-9);
   EXPECT_EQ(used[59], 1);
@@ -279,7 +278,7 @@ TEST(Gate, OneOutlierNeitherMovesTheFilterNorRunsDownItsPatience) {
   EXPECT_LT(state.x.cov(0, 0), 0.01);
 }
 
-// Two measurements far more precise than what was known: P − K S Kᵀ would lose all of P's digits.
+// Two measurements far more precise than the prior: P − K S Kᵀ would lose all digits of P.
 TEST(Filter, APriorTenToTheSixteenTimesTheReadingsLosesNoDefiniteness) {
   Gaussian<2> x;
   x.cov << 1e16, 0.99e16, 0.99e16, 1e16;

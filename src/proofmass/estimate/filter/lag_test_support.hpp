@@ -89,7 +89,8 @@ double distance(const Mat<N>& a, const Gaussian<N>& b) {
   return ((a - b.mean).array() / b.cov.diagonal().array().sqrt()).abs().maxCoeff();
 }
 
-/// Difference of two covariances, entry by entry, in the standard deviations of the second.
+/// Difference of two covariances, entry by entry, relative to the standard deviations of the
+/// second.
 template <int N>
 double distance(const Mat<N, N>& A, const Mat<N, N>& B) {
   const Mat<N> std = B.diagonal().cwiseSqrt();

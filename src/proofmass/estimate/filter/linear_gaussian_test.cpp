@@ -19,7 +19,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr auto model_at = test::driven_oscillator;
 constexpr auto prior = test::oscillator_prior;
 
-// Steps that are not alike, one channel missing, the other missing, both missing, input throughout.
+// Irregular steps, with one channel missing, the other, or both, and an input throughout.
 std::vector<Epoch<2, 1>> epochs() {
   const auto at = [](double dt_s, double z0, double z1, double u) {
     return Epoch<2, 1>{dt_s, Mat<2>(z0, z1), Mat<1>(u)};
@@ -29,8 +29,8 @@ std::vector<Epoch<2, 1>> epochs() {
           at(0.1, none, -1.4, -2.0), at(0.8, 0.7, 0.05, 0.4)};
 }
 
-// All states of the first `count` epochs at once: the information of the joint posterior, written
-// down from the model term by term, with no recursion in it.
+// All states of the first `count` epochs at once: the information matrix of the joint posterior,
+// written down term by term from the model, without recursion.
 struct Batch {
   Eigen::VectorXd mean;
   Eigen::MatrixXd cov;
@@ -83,7 +83,7 @@ TEST(LinearGaussian, SmootherEqualsBatchLeastSquaresOfEverything) {
   }
 }
 
-// Rauch, Tung and Striebel with the inverse, all channels of an epoch at once.
+// Rauch–Tung–Striebel smoother with an inverse, all channels of an epoch at once.
 struct Textbook {
   std::vector<Gaussian<3>> predicted, filtered, smoothed;
   double log_likelihood = 0.0, nis = 0.0;
@@ -243,7 +243,7 @@ TEST(LinearGaussian, NoEpochsGiveNoStepsAndLikelihoodOne) {
   EXPECT_EQ(run.log_likelihood, 0.0);
 }
 
-// One run drawn from the model itself: true states, and measurements with a third of them missing.
+// One run drawn from the model itself: true states, and measurements of which a third are missing.
 struct Drawn {
   std::vector<Mat<3>> truth;
   std::vector<Epoch<2, 1>> epochs;

@@ -124,8 +124,9 @@ class LinearSeries {
     for (std::size_t k = 0; k < series.size(); ++k) {
       const Epoch<M, U>& e = series.epochs_[k];
       if (e.z.array().isInf().any() || !e.u.allFinite())
-        return Error{Errc::not_finite, "a reading or input is infinite; NaN says there is none"}.at(
-            epoch(k));
+        return Error{Errc::not_finite,
+                     "a measurement or input is infinite; use NaN for a missing one"}
+            .at(epoch(k));
       if (!(series.model(k).R.array() > 0.0).all())
         return Error{Errc::not_positive_definite, "a channel's variance in R is not positive"}.at(
             epoch(k));

@@ -37,7 +37,8 @@ class LiveFilter {
   /// Cost: O(N³ + M N²), and O(lag · N² (N + M)) with a lag.
   [[nodiscard]] Status step(const LinearModel<N, M, U>& model, const Epoch<M, U>& epoch) {
     if (epoch.z.array().isInf().any() || !epoch.u.allFinite())
-      return Error{Errc::not_finite, "a reading or input is infinite; NaN says there is none"};
+      return Error{Errc::not_finite,
+                   "a measurement or input is infinite; use NaN for a missing one"};
     if (!(model.R.array() > 0.0).all())
       return Error{Errc::not_positive_definite, "a channel's variance in R is not positive"};
     advance(Instant{model, epoch, reopened_}, instants_ == 0 ? 0 : 1, gate_, state_, step_);

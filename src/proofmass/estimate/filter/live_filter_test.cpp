@@ -11,7 +11,7 @@ namespace {
 
 using Live = LiveFilter<3, 2, 1>;
 
-// Equal, NaN to NaN.
+// Equal, where NaN equals NaN.
 template <int N>
 bool same(const Mat<N>& a, const Mat<N>& b) {
   return ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
@@ -76,7 +76,7 @@ TEST(LiveFilter, AStepAllocatesNothing) {
   EXPECT_EQ(refused, 0U);
 }
 
-TEST(LiveFilter, StandsAsItStoodAfterWhatItCannotUse) {
+TEST(LiveFilter, IsUnchangedAfterUnusableInput) {
   const auto model = test::driven_oscillator(0.1);
   Live live(test::oscillator_prior(), {.lag = 3});
   const auto epochs = test::uneven_epochs(5);

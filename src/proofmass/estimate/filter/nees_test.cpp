@@ -22,7 +22,7 @@ TEST(Nees, IsTheErrorInUnitsOfItsCovariance) {
   EXPECT_NEAR(normalised_error_squared(Eigen::Vector2d(2.0, 1.0), cov), 8.0 / 7.0, 1e-12);
 }
 
-TEST(Nees, LiesInsideItsBoundsWhereTheCovarianceIsTrueAndNotWhereItIsSmall) {
+TEST(Nees, IsWithinItsBoundsForATrueCovarianceAndOutsideForASmallOne) {
   Random random(1, "nees");
   NeesTally honest, boastful;
   const Eigen::MatrixXd cov = Eigen::Vector3d(1.0, 4.0, 0.25).asDiagonal();
@@ -47,7 +47,7 @@ TEST(Nees, ShareInsideABandIsBoundedByTheBinomialDistribution) {
   EXPECT_EQ(share_inside_95(3, 0.99).upper, 1.0);
 }
 
-TEST(AuxiliaryTally, KnowsHowWellAMeanSquareIsKnownThoughItsResidualsHangTogether) {
+TEST(AuxiliaryTally, StatesTheUncertaintyOfAMeanSquareOfCorrelatedResiduals) {
   int covered = 0;
   constexpr int runs = 200;
   for (int run = 0; run < runs; ++run) {
@@ -64,7 +64,7 @@ TEST(AuxiliaryTally, KnowsHowWellAMeanSquareIsKnownThoughItsResidualsHangTogethe
   EXPECT_GE(covered, 0.88 * runs);
 }
 
-TEST(AuxiliaryTally, CountsOnlyWhatTheRecordingTells) {
+TEST(AuxiliaryTally, CountsOnlyInformativeResiduals) {
   AuxiliaryTally tally;
   tally.add(1.0, 0.0);
   tally.add(NAN, 1.0);

@@ -26,10 +26,10 @@ struct ReferenceCase {
   Smoother smoother = Smoother::bryson_frazier;
 };
 
-/// The largest differences from 128 bits over all epochs and states.
+/// Largest differences from the 128-bit results over all epochs and states.
 struct WorstError {
   double mean_stds = 0.0;      ///< of smoothed means, in standard deviations
-  double cov_share = 0.0;      ///< of smoothed covariances, as a share of √(Pii Pjj)
+  double cov_share = 0.0;      ///< of smoothed covariances, relative to √(Pii Pjj)
   double lag_one_share = 0.0;  ///< of lag-one covariances, likewise
 };
 

@@ -9,7 +9,7 @@ namespace {
 using test::Measured;
 using test::worst_error;
 
-// 15 seconds of the case that is run over 500 in filter/reference_smoother_slow_test.cpp.
+// The first 15 seconds of the case that filter/reference_smoother_slow_test.cpp runs for 500 s.
 constexpr std::size_t instants = 3000;
 
 TEST(AgainstOneHundredAndTwentyEightBits, SmoothedMeansFromAccelerationsAreRightToTwelveDigits) {
@@ -33,7 +33,7 @@ TEST(AgainstOneHundredAndTwentyEightBits, SmoothedMeansFromPositionsAreRightToEl
   EXPECT_LT(worst.cov_share, 1e-11);
 }
 
-// The inverse costs a digit where position and speed are not observable.
+// The inverse costs a digit if position and velocity are not observable.
 TEST(AgainstOneHundredAndTwentyEightBits, TheSmootherWithTheInverseIsRightToElevenDigits) {
   const auto worst = worst_error({.instants = instants,
                                   .measured = Measured::acceleration,

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-// Three states that stand nearly still, read by two nearly equal channels 1e9 times more precise
+// Three nearly constant states, measured by two nearly identical channels 1e9 times more precise
 // than the prior: R/P₀ = 1e-18.
 using Series = LinearSeries<3, 2>;
 struct Case {
@@ -39,8 +39,8 @@ Case ill_conditioned(double reading_variance) {
   return {epochs, std::move(series), prior};
 }
 
-/// The largest error of a mean in standard deviations, and of a covariance as a share of √(Pii
-/// Pjj); infinite where a variance is not positive.
+/// Largest error of a mean in standard deviations, and of a covariance relative to √(Pii Pjj);
+/// infinite if a variance is not positive.
 struct Worst {
   double mean = 0.0, cov = 0.0;
   void add(const PackedGaussian<3>& x, const test::QuadBatch& exact, std::size_t epoch) {
@@ -73,9 +73,9 @@ TEST(SquareRoot, KeepsWhatTheCovarianceFormLosesWhereReadingsAreABillionTimesThe
   }
   EXPECT_LT(filtered.cov, 1e-12);
   EXPECT_LT(smoothed.cov, 1e-12);
-  // A reading of size 1 is itself rounded by a ten-millionth of its standard deviation.
+  // Rounding of a measurement of magnitude 1 is a ten-millionth of its standard deviation.
   EXPECT_LT(smoothed.mean, 1e-4);
-  EXPECT_EQ(plain_smoothed.cov, std::numeric_limits<double>::infinity());  // no covariance any more
+  EXPECT_EQ(plain_smoothed.cov, std::numeric_limits<double>::infinity());  // not positive definite
 }
 
 TEST(SquareRoot, ItsSquaresAreTheCovariances) {
@@ -96,7 +96,7 @@ TEST(SquareRoot, OfConstantsWithoutNoiseIsExact) {
   m.H << 1.0, 0.0;
   m.R << 4.0;
   Gaussian<2> prior;
-  prior.cov << 4.0, 2.0, 2.0, 1.0;  // of rank one: the second state is half the first
+  prior.cov << 4.0, 2.0, 2.0, 1.0;  // rank one: the second state is half the first
   const std::vector<Epoch<1>> epochs(3, Epoch<1>{1.0, Mat<1>(1.0)});
   const auto run =
       smooth_square_root(LinearSeries<2, 1>::make(epochs, [&](double) { return m; }).value(), prior)

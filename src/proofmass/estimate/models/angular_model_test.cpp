@@ -26,7 +26,7 @@ TEST(AngularModel, ReadsAccelerationWithBiasRateAndAngle) {
   EXPECT_EQ(model.R, Mat<3>(0.04, 1e-4, 1e-4));
 }
 
-TEST(AngularModel, TheRateTellsTheBiasFromTheAcceleration) {
+TEST(AngularModel, TheRateSeparatesBiasAndAcceleration) {
   const auto bias_std = [](bool with_rate) {
     std::vector<Epoch<3, 1>> epochs;
     for (int k = 0; k < 1000; ++k)

@@ -17,7 +17,7 @@ const InertialNoise noise{.white_m2ps3 = 4e-4,
                           .rest_speed_std_mps = 1e-3};
 const InertialStart start{.speed_std_mps = 0.1, .bias_mps2 = 0.0, .bias_std_mps2 = 0.05};
 
-// A rest, a motion of uneven steps with a gap, a rest; a fix on the way.
+// A rest, a motion with irregular steps and a gap, and a rest; with a fix in between.
 std::vector<InertialEpoch> some_epochs() {
   std::vector<InertialEpoch> epochs(40);
   std::mt19937_64 engine(7);
@@ -70,7 +70,7 @@ TEST(InertialAxis, JoinedEpochsSayTheSame) {
   }
 }
 
-// The joint normal of all states, conditioned on all measurements at once.
+// Joint normal distribution of all states, conditioned on all measurements at once.
 TEST(InertialAxis, EqualsTheDenseBatchWithItsCovariancesAcrossTime) {
   const std::vector<InertialEpoch> epochs = some_epochs();
   const InertialAxis model{epochs, noise};
@@ -135,14 +135,14 @@ TEST(Turns, AreFoundPerMotionAndWigglesAreNone) {
   EXPECT_EQ(turns[1], (std::vector<std::size_t>{9, 11}));
 }
 
-TEST(Turns, AnOddSwingOutIsTheOneThatFitsNoOther) {
+TEST(Turns, AnOddLegOutIsTheOneThatFitsNoOther) {
   const std::vector<double> first_alone{0.9, -0.5, 0.5, -0.4, 0.4};
-  auto pairs = pair_swings(first_alone);
+  auto pairs = pair_legs(first_alone);
   ASSERT_EQ(pairs.size(), 3U);
   EXPECT_FALSE(pairs[0].back);
   EXPECT_EQ(pairs[1].out, 1U);
   const std::vector<double> last_alone{0.5, -0.5, 0.4, -0.4, 0.9};
-  pairs = pair_swings(last_alone);
+  pairs = pair_legs(last_alone);
   ASSERT_EQ(pairs.size(), 3U);
   EXPECT_TRUE(pairs[0].back);
   EXPECT_FALSE(pairs[2].back);

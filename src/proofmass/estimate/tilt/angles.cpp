@@ -38,7 +38,7 @@ void set_roll(TiltAngles& out, const Mat<3>& f, const Mat<3, 3>& cov) {
   const double std =
       across > 0.0 ? std_along({0.0, f.z() / across, -f.y() / across}, cov) : largest_std_rad * 2.0;
   if (across == 0.0 || std > largest_std_rad) {
-    out.why_no_roll = "the x axis stands upright, where roll and heading are one angle";
+    out.why_no_roll = "the x axis is vertical, where roll and heading are the same angle";
     return;
   }
   out.roll_rad = Uncertain{std::atan2(f.y(), f.z()), std};
@@ -75,7 +75,7 @@ TiltAngles angles_of(const Mat<3>& force, const Mat<3, 3>& cov) {
   // A sensor in free fall, or without signal, has no direction of gravity.
   constexpr double least = 1e-100;
   if (!(norm > least)) {
-    out.why_no_roll = out.why_no_pitch = "the readings leave the direction open";
+    out.why_no_roll = out.why_no_pitch = "the data do not determine the direction";
     return out;
   }
   set_roll(out, force, cov);
@@ -94,7 +94,7 @@ TiltAngles angles_of(const Mat<3>& force, const Mat<3, 3>& cov) {
     gradient = {-across, force.x() * force.y() / across, force.x() * force.z() / across};
   const double std = std_along(gradient, cov) / (norm * norm);
   if (std > largest_std_rad)
-    out.why_no_pitch = "the readings leave the direction open";
+    out.why_no_pitch = "the data do not determine the direction";
   else
     out.pitch_rad = Uncertain{std::atan2(-force.x(), across), std};
   return out;
@@ -114,12 +114,12 @@ TiltAngles angles_of_some(const Mat<3>& force,
   if (x && out.elevation_rad[0])
     out.pitch_rad = Uncertain{-out.elevation_rad[0]->value, out.elevation_rad[0]->std};
   else if (x)
-    out.why_no_pitch = "the x axis stands nearly upright, where its reading hardly turns with it";
+    out.why_no_pitch = "the x axis is nearly vertical, where its output is insensitive to tilt";
   else if (y && z)
-    out.why_no_pitch = "without an x axis only its size is known, " +
+    out.why_no_pitch = "without an x axis only its magnitude is known, " +
                        degrees(std::acos(std::min(1.0, std::hypot(force.y(), force.z()) / g)));
   else
-    out.why_no_pitch = "it takes the x axis, or y and z for its size";
+    out.why_no_pitch = "needs the x axis, or y and z for its magnitude";
   if (y && z) {
     Mat<3, 3> known = cov;
     known.row(0).setZero();
@@ -140,9 +140,9 @@ TiltAngles angles_of_some(const Mat<3>& force,
     if (cosine > 2.0 * std && std < largest_std_rad)
       out.roll_rad = Uncertain{std::asin(sine), std};
     else
-      out.why_no_roll = "the y axis stands nearly upright, where its reading hardly turns with it";
+      out.why_no_roll = "the y axis is nearly vertical, where its output is insensitive to tilt";
   } else if (x && z) {
-    out.why_no_roll = "without a y axis only its size is known";
+    out.why_no_roll = "without a y axis only its magnitude is known";
     if (out.pitch_rad) {
       const double across = std::sqrt(g * g - force.x() * force.x());
       out.why_no_roll += ", " + degrees(std::acos(std::clamp(force.z() / across, -1.0, 1.0)));

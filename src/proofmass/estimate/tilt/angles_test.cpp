@@ -19,7 +19,7 @@ const Mat<3, 3> small = 1e-6 * Mat<3, 3>::Identity();
 TEST(TiltAngles, AreThoseOfTheRotationThatTheyAreDefinedBy) {
   for (const double roll : {-3.0, -1.2, 0.0, 0.4, 2.9})
     for (const double pitch : {-1.4, -0.3, 0.0, 1.1}) {
-      // R_world_sensor = Ry(pitch) Rx(roll); the sensor reads Rᵀ (0, 0, g).
+      // R_world_sensor = Ry(pitch) Rx(roll); the sensor measures Rᵀ (0, 0, g).
       const Mat<3, 3> R = rotation_by({0.0, pitch, 0.0}) * rotation_by({roll, 0.0, 0.0});
       const TiltAngles angles = angles_of(R.transpose() * Mat<3>(0.0, 0.0, g), small);
       EXPECT_NEAR(angles.roll_rad->value, roll, 1e-12);
@@ -42,7 +42,7 @@ TEST(TiltAngles, HaveTheStandardDeviationsOfTheirDerivatives) {
   EXPECT_NEAR(angles.pitch_rad->std, std::sqrt(pitch.dot(cov * pitch)), 1e-8);
 }
 
-TEST(TiltAngles, HaveNoRollWhereTheXAxisStandsUprightButAPitch) {
+TEST(TiltAngles, HaveAPitchButNoRollIfTheXAxisIsVertical) {
   for (const double x : {g, -g}) {
     const TiltAngles angles = angles_of({x, 0.0, 0.0}, small);
     EXPECT_FALSE(angles.roll_rad);
@@ -65,7 +65,7 @@ TEST(TiltAngles, OfOneAxisAreItsElevation) {
   EXPECT_NEAR(z.elevation_rad[2]->value, std::asin(9.0 / g), 1e-12);
 }
 
-TEST(TiltAngles, OfTwoAxesAreWhatTheyCanTell) {
+TEST(TiltAngles, OfTwoAxesAreThoseThatTheyDetermine) {
   const Mat<3> f = force_at(0.4, -0.2);
   const TiltAngles xy = angles_of_some({f.x(), f.y(), none}, small, {g, 0.0});
   EXPECT_NEAR(xy.pitch_rad->value, -0.2, 1e-12);

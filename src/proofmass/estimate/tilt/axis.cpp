@@ -103,7 +103,7 @@ Result<AxisTiltSolution> estimate_axis_tilt(const AxisTiltRecord& record,
         const Update<3>& u = step.updates[0];
         check_of.add(0, u.innovation, u.expected, u.used);
         s.weight[k] = static_cast<float>(u.expected / u.variance);
-        if (u.expected < 0.5 * u.variance) ++solution.told_less;
+        if (u.expected < 0.5 * u.variance) ++solution.down_weighted;
       },
       [&](std::size_t k, const StepOf<AxisTiltModel>& step, const Hindsight<3>& later) {
         const Mat<3> mean = later.mean(step.filtered);

@@ -47,10 +47,10 @@ struct AxisTiltSeries {
 
 struct AxisTiltSolution {
   std::size_t samples = 0;
-  std::size_t unusable = 0;     ///< samples without angle or rate
-  std::size_t told_less = 0;    ///< measurements with a weight of one half or less
-  Uncertain angle_rad{};        ///< at the last sample
-  Uncertain rate_bias_radps{};  ///< at the last sample
+  std::size_t unusable = 0;       ///< samples without angle or rate
+  std::size_t down_weighted = 0;  ///< measurements with a weight of one half or less
+  Uncertain angle_rad{};          ///< at the last sample
+  Uncertain rate_bias_radps{};    ///< at the last sample
   AxisTiltNoise noise{};
   Consistency consistency{};
   AxisTiltSeries series;

@@ -138,7 +138,7 @@ class FilterNotes {
       if (instants_.resting[k] == 0) check_.add(axis, u.innovation, u.expected, u.used);
     }
     solution_.series.weight[k] = static_cast<float>(weight);
-    if (row > 0 && weight < 0.5) ++solution_.told_less;
+    if (row > 0 && weight < 0.5) ++solution_.down_weighted;
   }
   [[nodiscard]] Consistency judge() const { return check_.judge(); }
 

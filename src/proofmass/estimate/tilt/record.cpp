@@ -41,7 +41,7 @@ Status check_force(const TiltRecord& record, const TiltOptions& options, TiltSol
     else
       norms.push_back(f.norm());
   }
-  if (norms.empty()) return Error{Errc::too_few_samples, "no sample has a reading on every axis"};
+  if (norms.empty()) return Error{Errc::too_few_samples, "no sample has a value on every axis"};
   if (solution.axes < 3) return Done{};
   const double usual = *median(norms), g = options.gravity_mps2.value;
   if (usual < 0.5 * g || usual > 2.0 * g)
@@ -57,7 +57,7 @@ void note_unusable(TiltSolution& solution) {
   if (solution.unusable == 0) return;
   solution.notes.push_back({Severity::warning, std::to_string(solution.unusable) + " of " +
                                                    std::to_string(solution.samples) +
-                                                   " samples lack a reading on some axis"});
+                                                   " samples lack a value on some axis"});
 }
 
 std::size_t count_beyond(double most, const std::array<std::vector<double>, 3>& axes) {
@@ -135,13 +135,13 @@ Result<bool> is_moving(const TiltRecord& record,
   const bool can_follow = timed && solution.axes == 3;
   if (options.base == TiltBase::automatic && !can_follow && !found.rests.empty()) return false;
   if (!timed)
-    return Error{Errc::not_observable, "a moving base takes time: give a time column or the rate"};
+    return Error{Errc::not_observable, "a moving base needs time: give a time column or the rate"};
   if (solution.axes < 3)
-    return Error{Errc::not_observable, "a moving base takes three axes, not " +
+    return Error{Errc::not_observable, "a moving base needs three axes, not " +
                                            std::to_string(solution.axes) +
-                                           "; if it is still, say so"};
+                                           "; if it is still, give --base still"};
   if (solution.samples < solution.unusable + fewest_moving)
-    return Error{Errc::too_few_samples, "a moving base takes at least 50 readings"};
+    return Error{Errc::too_few_samples, "a moving base needs at least 50 measurements"};
   return true;
 }
 

@@ -51,7 +51,7 @@ double left_of_polynomial(View<double> axis, const signal::Rest& rest) {
 
 // Drift of the level of a sensor at rest: 2 mg, that of a poor MEMS accelerometer over minutes.
 // `sure`: additional standard deviations of a block's mean.
-constexpr double wander_mps2 = 2e-3 * standard_gravity_mps2, sure = 4.0;
+constexpr double bias_change_mps2 = 2e-3 * standard_gravity_mps2, sure = 4.0;
 
 // The level of one axis over a rest, block by block; NaN for a block without measurements.
 struct BlockLevels {
@@ -87,7 +87,7 @@ BlockLevels levels_of(
     out.means.push_back(here.count > 0 ? here.mean : no_value);
   }
   const double white = noise / std::sqrt(static_cast<double>(block));
-  out.room = sure * noise_of_means(out.means, white) + wander_mps2 + step;
+  out.room = sure * noise_of_means(out.means, white) + bias_change_mps2 + step;
   return out;
 }
 

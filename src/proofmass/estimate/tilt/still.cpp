@@ -31,7 +31,7 @@ Note change_note(const BiasChange& change, double off_mps2) {
   const std::string widened = decimal(change.std_mps2, 4) + " m/s^2 (--bias-std states it)";
   if (change.probability > 0.95)
     return {Severity::warning,
-            "at rest the force departs from gravity by " + decimal(off_mps2) +
+            "at rest the force differs from gravity by " + decimal(off_mps2) +
                 " m/s^2, more than the calibration allows: the sensor has changed since, or it was "
                 "not at rest; each axis is taken to be off by " +
                 widened};
@@ -74,14 +74,14 @@ bool judge_norm(TiltOptions& options, TiltSolution& solution) {
     options.bias_std_mps2 = off;
     solution.notes.push_back(
         {Severity::warning,
-         "at rest the force departs from gravity by " + decimal(off) +
-             " m/s^2, and nothing says how well the sensor is calibrated: each axis is taken to be "
-             "off by as much; a sensor file gives a better value"});
+         "at rest the force differs from gravity by " + decimal(off) +
+             " m/s^2, and the accuracy of the calibration is unknown: each axis is assumed to be "
+             "off by this amount; a sensor file gives a better value"});
   } else {
     solution.notes.push_back(
         {Severity::warning,
-         "nothing says how well the sensor is calibrated: standard deviations count its noise "
-         "alone, and a bias of 0.1 m/s^2 tilts by 0.6 degrees; give --sensor or --bias-std"});
+         "the accuracy of the calibration is unknown: standard deviations include only its noise, "
+         "while a bias of 0.1 m/s^2 tilts by 0.6 degrees; give --sensor or --bias-std"});
   }
   solution.bias_std_mps2 = options.bias_std_mps2.value_or(0.0);
   return options.bias_std_mps2.has_value();

@@ -41,10 +41,11 @@ Result<std::vector<double>> project(const ParallelAccelerometer& sensor,
     const std::vector<double>& accel = sensor.accel_mps2[a];
     if (accel.empty())
       return Error{Errc::invalid_argument,
-                   "the axis of the motion points where this sensor has none; --axis gives one "
-                   "that all have"};
+                   "this sensor has no axis along the motion; give one with --axis "
+                   "that all sensors have"};
     if (accel.size() != size)
-      return Error{Errc::invalid_argument, "its readings are not as many as the first one's"};
+      return Error{Errc::invalid_argument,
+                   "the number of its samples differs from the first sensor's"};
     for (std::size_t k = 0; k < size; ++k)
       along[k] = signal::is_plausible(accel[k]) ? along[k] + axis[a] * accel[k] : std::nan("");
   }
@@ -66,7 +67,7 @@ Result<SensorAlong> beside_along(const PvaTask& task,
   }
   const Moments level = moments(level_of);
   if (level.count == 0)
-    return Error{Errc::too_few_samples, "no reading at the first rest"}.at(sensor.name);
+    return Error{Errc::too_few_samples, "no data at the first rest"}.at(sensor.name);
   one.level_mps2 = level.mean;
   for (double& x : one.accel_mps2) x -= one.level_mps2;
   const AxisRun run = prepare_axis(task.signal, one.accel_mps2, task.readings,

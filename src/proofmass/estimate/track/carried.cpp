@@ -107,8 +107,8 @@ Result<bool> track_carried(const TrackSensor& sensor,
   });
   if (unused > 0)
     solution.notes.push_back({Severity::info, std::to_string(unused) +
-                                                  " quiet stretches are no rests: the gyroscope "
-                                                  "turns there"});
+                                                  " quiet intervals are not rests: the gyroscope "
+                                                  "measures rotation"});
   ConsistencyCheck check({.channels = {"gyroscope and accelerometer at rest"}});
   for (std::size_t k = 0; k < attitude.nis.size(); ++k)
     if (attitude.readings[k] > 0)

@@ -22,36 +22,35 @@ constexpr double degree = 0.017453292519943295;
 void tell_of_rests(const TrackOptions& options, TrackSolution& solution) {
   auto& notes = solution.notes;
   if (solution.rests_by_quietness)
-    notes.push_back({Severity::info,
-                     "no noise of a resting sensor to go by (readings of several sensors fused, or "
-                     "smoothed): rests are where it is quiet against the motion"});
+    notes.push_back(
+        {Severity::info,
+         "the sensor's noise at rest is unknown (measurements of several sensors fused, or "
+         "smoothed): rests are the intervals that are quiet compared with the motion"});
   const bool decided = solution.alternatives.empty() && !solution.too_many_in_doubt;
   if (solution.cruises > 0 && decided)
     notes.push_back(
         {Severity::warning,
-         text("%zu quiet stretches are taken as constant speed instead of rest: the "
+         text("%zu quiet intervals are taken as constant speed instead of rest: the "
               "velocities integrated up to them cancel, which a tilt or bias would not cause",
               solution.cruises)});
   if (solution.plateaus > 0 && decided)
     notes.push_back({Severity::info,
-                     text("%zu quiet stretches are taken as constant acceleration: the magnitude "
-                          "of the readings differs there from that at rest",
+                     text("%zu quiet intervals are taken as constant acceleration: the magnitude "
+                          "of the measurements differs from that at rest",
                           solution.plateaus)});
   if (solution.false_rests > 0)
-    notes.push_back(
-        {Severity::info,
-         text("%zu short quiet stretches are no rests: velocity and level there are not "
-              "what the motion between the long rests leads to",
-              solution.false_rests)});
+    notes.push_back({Severity::info,
+                     text("%zu short quiet intervals are not rests: their velocity and level are "
+                          "inconsistent with the motion between the long rests",
+                          solution.false_rests)});
   if (solution.no_motion_shown)
-    notes.push_back(
-        {Severity::info,
-         "no motion stands out of the noise: the interval holds what a slow one between "
-         "the two ends could hide"});
+    notes.push_back({Severity::info,
+                     "no motion exceeds the noise: the interval includes a slow motion between "
+                     "the two ends that noise could hide"});
   else if (solution.rests.size() == 1 && options.fixes.empty())
     notes.push_back({Severity::warning,
-                     "only one rest: no second one checks the velocity, so that the band rests on "
-                     "what is usual; let the sensor lie still for 2 s at the end too"});
+                     "only one rest: no second rest checks the velocity, so the band relies on "
+                     "typical errors; keep the sensor still for 2 s at the end as well"});
 }
 
 void tell_of_scale(const TrackSignal& signal,
@@ -61,14 +60,13 @@ void tell_of_scale(const TrackSignal& signal,
   if (signal.resting_norm_mps2 && signal.gravity == GravityContent::present)
     solution.notes.push_back(
         {Severity::info,
-         text(
-             "not calibrated: gravity reads %.4g m/s^2 at rest where it is %.4g; lengths are taken "
-             "to be good to %.2g %%",
-             *signal.resting_norm_mps2, options.gravity_mps2, 100.0 * solution.scale_std)});
+         text("not calibrated: the norm at rest is %.4g m/s^2, gravity %.4g; lengths are assumed "
+              "accurate to %.2g %%",
+              *signal.resting_norm_mps2, options.gravity_mps2, 100.0 * solution.scale_std)});
   else
     solution.notes.push_back(
-        {Severity::info, text("not calibrated: the scale of the readings is taken to be good "
-                              "to %.2g %%; --sensor FILE.toml says better",
+        {Severity::info, text("not calibrated: the scale is assumed accurate "
+                              "to %.2g %%; --sensor FILE.toml gives a better value",
                               100.0 * solution.scale_std)});
 }
 
@@ -76,19 +74,20 @@ void tell_of_turning(TrackSolution& solution) {
   constexpr double noticed_rad = 1.0 * degree;
   if (solution.turned_rad && *solution.turned_rad > noticed_rad && !solution.axis_in_world)
     solution.notes.push_back(
-        {Severity::warning,
-         text("between two rests the sensor turned by %.2g deg: gravity leans into the axis, which "
-              "the band holds as far as the rests show it; gyroscope channels would determine it",
-              *solution.turned_rad / degree)});
+        {Severity::warning, text("between two rests the sensor rotated by %.2g deg, which changes "
+                                 "gravity along the axis: "
+                                 "the band includes this as far as the rests show it; gyroscope "
+                                 "channels would determine it",
+                                 *solution.turned_rad / degree)});
 }
 
 void tell_of_alternatives(TrackSolution& solution) {
   if (solution.too_many_in_doubt)
     solution.notes.push_back(
         {Severity::bad,
-         "the integrated velocity is far from 0 at more than sixteen quiet stretches: rests cannot "
+         "the integrated velocity is far from 0 at more than sixteen quiet intervals: rests cannot "
          "be distinguished from motion at constant speed, and no displacement is given. State when "
-         "the sensor stood still with --still FILE"});
+         "the sensor was at rest with --still FILE"});
   if (solution.alternatives.empty()) return;
   std::string all;
   for (const TrackAlternative& one : solution.alternatives) {
@@ -97,11 +96,11 @@ void tell_of_alternatives(TrackSolution& solution) {
       where += text("%s%.1f to %.1f s", where.empty() ? "" : ", ", span.start_s, span.end_s);
     all += text("%s%.3g m with probability %.2g (%s)", all.empty() ? "" : "; ",
                 one.displacement_m.value, one.probability,
-                where.empty() ? "all of them rests" : ("under way " + where).c_str());
+                where.empty() ? "all of them rest" : ("in motion " + where).c_str());
   }
   solution.notes.push_back(
       {Severity::bad, "rests cannot be distinguished from motion at constant speed: " + all +
-                          "; no displacement is given. State when the sensor stood still with "
+                          "; no displacement is given. State when the sensor was at rest with "
                           "--still FILE, or --rests ends"});
 }
 
@@ -116,7 +115,7 @@ void tell_of_leaning(const TrackOptions& options, TrackSolution& solution) {
   if (solution.axis_in_world || lean_rad < noticed_rad) return;
   solution.notes.push_back(
       {Severity::warning,
-       text("in motion the readings err by some %.2g m/s^2, as if the sensor leaned by %.2g deg: "
+       text("in motion the errors are about %.2g m/s^2, as if the sensor tilted by %.2g deg: "
             "the figures are approximate; a gyroscope would resolve it",
             accel, lean_rad / degree)});
 }
@@ -125,31 +124,31 @@ void tell_of_jerk(TrackSolution& solution) {
   if (!solution.suspected_jerk) return;
   solution.notes.push_back(
       {Severity::bad,
-       "the readings behave like the rate of change of an acceleration (jerk), not like an "
-       "acceleration: twice integrated they stay away from 0 while the sensor shakes as if under "
-       "way, and come back to 0 where it rests, as a velocity does; no displacement is given. If "
-       "they are accelerations, --take-as-acceleration says so"});
+       "the data behave like the derivative of an acceleration (jerk), not like an "
+       "acceleration: integrated twice they differ from 0 while the sensor vibrates as in "
+       "motion, and return to 0 at rest, as a velocity does; no displacement is given. If "
+       "they are accelerations, give --take-as-acceleration"});
 }
 
 }  // namespace
 
 Error no_stop(const TrackSignal& signal) {
-  return {Errc::not_observable,
-          (signal.stops.why_none.empty() ? std::string("the sensor never lay still")
-                                         : signal.stops.why_none) +
-              "; without a rest the bias cannot be distinguished from motion: let the sensor lie "
-              "still for "
-              "2 s before and after, say where it stood with --still FILE, or give positions with "
-              "--fixes FILE"};
+  return {
+      Errc::not_observable,
+      (signal.stops.why_none.empty() ? std::string("the sensor was never at rest")
+                                     : signal.stops.why_none) +
+          "; without a rest the bias cannot be distinguished from motion: keep the sensor "
+          "still for 2 s before and after, state when it was at rest with --still FILE, or give "
+          "positions with "
+          "--fixes FILE"};
 }
 
 Error hidden_motion() {
   return {
       Errc::not_observable,
-      "nearly all of the recording looks like rest, yet its readings integrate to a velocity far "
-      "beyond what their noise does: slow motion cannot be distinguished from drift; say when the "
-      "sensor "
-      "stood still with --still FILE"};
+      "nearly all of the recording looks like rest, yet it integrates to a velocity far "
+      "beyond that of its noise: slow motion cannot be distinguished from drift; state when the "
+      "sensor was at rest with --still FILE"};
 }
 
 double scale_std(const TrackSignal& signal,
@@ -181,8 +180,8 @@ void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackS
   if (solution.missing > 0)
     solution.notes.push_back(
         {Severity::warning,
-         text("%zu samples without a reading: straight lines are drawn across them, with the doubt "
-              "of the motion around",
+         text("%zu samples are missing: interpolated linearly, with the uncertainty "
+              "of the motion around them",
               solution.missing)});
   if (solution.travel_share < 0.8 && !solution.axis_given)
     solution.notes.push_back(

@@ -60,12 +60,13 @@ std::vector<StretchKnots> stretches_in(const std::vector<InertialEpoch>& knots) 
 
 /// Alternatives to a rest: its level equals that of a neighbour, or it does not.
 std::vector<QuietStretch> other_kinds(const std::vector<StretchKnots>& stretches) {
-  constexpr double wander_mps2 = 0.02;
+  constexpr double bias_change_mps2 = 0.02;
   std::vector<QuietStretch> kinds(stretches.size(), QuietStretch::cruise);
   for (std::size_t i = 1; i + 1 < stretches.size(); ++i) {
     const auto apart = [&](std::size_t j) {
       const double std = std::hypot(stretches[i].level_std_mps2, stretches[j].level_std_mps2);
-      return std::abs(stretches[i].level_mps2 - stretches[j].level_mps2) > wander_mps2 + 5.0 * std;
+      return std::abs(stretches[i].level_mps2 - stretches[j].level_mps2) >
+             bias_change_mps2 + 5.0 * std;
     };
     if (apart(i - 1) && apart(i + 1)) kinds[i] = QuietStretch::plateau;
   }
@@ -217,10 +218,11 @@ void drop_plateaus(TrackSignal& signal) {
   const std::vector<RestLevel> levels = rest_levels(signal);
   const auto agree = [&](const RestLevel& a, const RestLevel& b) {
     // An uncalibrated sensor measures another norm of gravity in another orientation.
-    constexpr double bias_mps2 = 0.5, wander_mps2 = 0.02;
+    constexpr double bias_mps2 = 0.5, bias_change_mps2 = 0.02;
     const double sine2 = std::max(0.0, 1.0 - std::pow(a.cosine_to(b), 2));
-    return std::abs(a.length_mps2 - b.length_mps2) <=
-           5.0 * std::hypot(a.std_mps2, b.std_mps2) + wander_mps2 + bias_mps2 * std::sqrt(sine2);
+    return std::abs(a.length_mps2 - b.length_mps2) <= 5.0 * std::hypot(a.std_mps2, b.std_mps2) +
+                                                          bias_change_mps2 +
+                                                          bias_mps2 * std::sqrt(sine2);
   };
   const auto agreeing_s = [&](const RestLevel& level) {
     double sum = 0.0;

@@ -57,9 +57,9 @@ double LiveTrackRests::known_until_s() {
   if (stuck_) {
     held_.clear();
     if (!was_stuck)
-      notes_.push_back({Severity::warning, name_ + ": one reading is repeated at " +
+      notes_.push_back({Severity::warning, name_ + ": a constant value is repeated at " +
                                                at_second(state.newest_s) +
-                                               " s: such readings are left out of the estimate"});
+                                               " s: such samples are excluded from the estimate"});
   }
   if (state.phase != signal::RestPhase::resting) return last_s_;
   if (!look_at_rest(state)) return last_s_;

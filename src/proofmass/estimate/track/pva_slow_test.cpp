@@ -9,8 +9,8 @@
 namespace proofmass::estimate::track_pva_slow_test {
 namespace {
 
-// Ten strokes; in each the sensors lean by an angle of their common body, and each has its own
-// noise and its own bias.
+// Ten strokes; in each the sensors tilt with their common body, and each has its own noise and
+// bias.
 CarriageRecord two_sensors(std::uint64_t seed, double lean_mps2) {
   Carriage carriage;
   carriage.strokes_m = {0.4, -0.4, 0.4, -0.4, 0.4, -0.4, 0.4, -0.4, 0.4, -0.4};

@@ -22,7 +22,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return most;
 }
 
-// A sensor beside the first on the same carriage: another level and other noise.
+// A second sensor on the same carriage with another level and independent noise.
 ParallelAccelerometer beside(const CarriageRecord& motion, double noise_std, std::uint64_t seed) {
   ParallelAccelerometer other{.name = "beside", .accel_mps2 = {}};
   std::mt19937_64 engine(seed);
@@ -49,7 +49,7 @@ TEST(TrackPva, GoesWhereTheInertialFilterGoes) {
 }
 
 TEST(TrackPva, FindsTheJerkThatDroveTheMotion) {
-  // Acceleration a random walk of known density, seen in white noise; then rest.
+  // Acceleration as a random walk of known density in white noise; then rest.
   constexpr double psd = 4.0, h = 0.01;
   std::mt19937_64 engine(5);
   std::normal_distribution<double> normal;
@@ -70,7 +70,7 @@ TEST(TrackPva, FindsTheJerkThatDroveTheMotion) {
   EXPECT_LT(found.std_m2ps5, 0.1 * psd);
 }
 
-TEST(TrackPva, SaysNothingOfTheJerkWhereNothingMoved) {
+TEST(TrackPva, DoesNotEstimateTheJerkWithoutMotion) {
   std::vector<double> time_s, accel;
   for (int k = 0; k < 100; ++k) time_s.push_back(0.01 * k), accel.push_back(0.0);
   const std::vector<PvaSample> samples(100, {.resting = true});
@@ -123,7 +123,7 @@ TEST(TrackPva, ForgetsTheBiasInTheTimeOfTheWarmUp) {
       1e-6);
 }
 
-TEST(TrackFused, TwoSensorsHalveTheVarianceAndSayWhatEachTellsAlone) {
+TEST(TrackFused, TwoSensorsHalveTheVarianceAndListTheResultOfEach) {
   CarriageRecord made = record({.noise_std_mps2 = 0.05});
   made.sensor.beside = {beside(made, 0.05, 9)};
   const TrackSolution fused = solved(
@@ -154,7 +154,7 @@ TEST(TrackFused, ADeadSecondSensorCostsOnlyItself) {
   EXPECT_NEAR(fused.smoother->displacement_m.value, alone.smoother->displacement_m.value, 1e-3);
 }
 
-TEST(TrackFused, RefusesWhatIsNoParallelSensor) {
+TEST(TrackFused, RefusesASensorThatIsNotParallel) {
   CarriageRecord made = record({});
   const TrackOptions options{.model = TrackModel::fused, .axis = {{1.0, 0.0, 0.0}}};
   EXPECT_EQ(estimate_track(made.sensor, options).error().code, Errc::invalid_argument);
@@ -162,7 +162,7 @@ TEST(TrackFused, RefusesWhatIsNoParallelSensor) {
   for (double& x : made.sensor.beside[0].accel_mps2[0]) x = -x;
   EXPECT_NE(estimate_track(made.sensor, options).error().message.find("parallel"),
             std::string::npos);
-  // Turned by 30° about z it reads 0.87 times as much along x, as one of another scale would.
+  // Rotated by 30° about z it measures 0.87 times as much along x, as if its scale differed.
   made.sensor.beside[0] = beside(made, 0.02, 9);
   auto& turned = made.sensor.beside[0].accel_mps2;
   for (std::size_t k = 0; k < turned[0].size(); ++k) {

@@ -39,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Kind{"lift, no vibration", [](Draw& draw) { return rides::lift(draw, 1, 0.0); }},
         Kind{"lift, vibration as the noise", [](Draw& draw) { return rides::lift(draw, 1, 1.0); }},
-        // Few closures say whether what shakes in motion is white: 89 %.
+        // Few closures do not determine whether vibration in motion is white: 89 %.
         Kind{"lift, vibration 3 times", [](Draw& draw) { return rides::lift(draw, 1, 3.0); }, 0.9,
              0.82},
         Kind{"three rides of a lift", [](Draw& draw) { return rides::lift(draw, 3, 0.0); }},

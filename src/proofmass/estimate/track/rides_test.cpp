@@ -13,8 +13,8 @@ void expect_held(const rides::Held& held) {
   EXPECT_EQ(held.wrong, 0);
 }
 
-// At constant speed it is as quiet as at rest, and so it is where the speed rises evenly.
-TEST(TrackRides, ALiftThatDoesNotShakeWentWhereItWent) {
+// Constant speed is as quiet as rest, and so is constant acceleration.
+TEST(TrackRides, CoverALiftWithoutVibration) {
   const auto held = rides::held_by([](Draw& draw) { return rides::lift(draw, 1, 0.0); }, 1, 12);
   expect_held(held);
   EXPECT_LT(held.rms_m(), 1.0);
@@ -30,8 +30,8 @@ TEST(TrackRides, ACartAtConstantSpeedDoesNotRest) {
   EXPECT_LT(held.rms_m(), 0.2);
 }
 
-// A frame at constant speed is exactly one at rest.
-TEST(TrackRides, WhereARecordingBeginsUnderWayThereIsNoFigureButAlternatives) {
+// A frame moving at constant speed is equivalent to one at rest.
+TEST(TrackRides, ARecordingThatBeginsInMotionGivesAlternatives) {
   Draw draw(3);
   const rides::RideRecord made = rides::record(rides::begun_under_way(draw), draw);
   const TrackSolution found = estimate_track(made.sensor, {}).value();
@@ -49,11 +49,11 @@ TEST(TrackRides, WhereARecordingBeginsUnderWayThereIsNoFigureButAlternatives) {
   EXPECT_TRUE(holds_truth);
 }
 
-TEST(TrackRides, StrongMotionAlongOneAxisIsNoRest) {
+TEST(TrackRides, StrongMotionAlongOneAxisIsNotARest) {
   const auto held = rides::held_by(rides::shaken, 1, 12);
   EXPECT_GE(held.given, 8);
   EXPECT_GE(held.held, held.given - 1);
-  EXPECT_LE(held.wrong, 1);  // by chance one of them holds its speed for a second and a half
+  EXPECT_LE(held.wrong, 1);  // one of them happens to have constant speed for a second and a half
 }
 
 TEST(TrackRides, StrokesShorterThanHalfASecondAreKept) {
@@ -62,14 +62,14 @@ TEST(TrackRides, StrokesShorterThanHalfASecondAreKept) {
   EXPECT_LT(held.rms_m(), 0.01);
 }
 
-TEST(TrackRides, SlowStrokesBetweenShortRestsAreNoRests) {
+TEST(TrackRides, SlowStrokesBetweenShortRestsAreNotRests) {
   const auto held = rides::held_by(rides::slow_strokes, 1, 12);
   expect_held(held);
   EXPECT_LT(held.rms_m(), 0.03);
 }
 
-// What shakes in motion alone may be aliased, and then it is in what the measurements integrate to.
-TEST(TrackRides, WhatShakesInMotionAloneIsInTheBand) {
+// Vibration in motion may be aliased and then contributes to the integral of the measurements.
+TEST(TrackRides, VibrationInMotionIsInTheBand) {
   const auto held = rides::held_by([](Draw& draw) { return rides::lift(draw, 1, 6.0); }, 1, 12);
   EXPECT_EQ(held.given, 12);
   EXPECT_GE(held.held, 10);

@@ -50,9 +50,9 @@ struct RideRecord {
   double displacement_m = 0.0;
 };
 
-/// Completed share of the speed change at the share s of a leg.
+/// Completed fraction of the speed change at fraction s of a leg.
 inline double done(double s, double eased) {
-  // Mean of a step with ease-in and one with ease-out, by integrating the profile.
+  // Mean of a step with ease-in and one with ease-out, by integration of the profile.
   constexpr int steps = 200;
   static thread_local std::vector<double> table;
   static thread_local double of = -1.0;
@@ -102,8 +102,8 @@ inline RideRecord record(const Ride& ride, Draw& draw) {
   return out;
 }
 
-/// One ride of a lift after another, with stops between, in a cabin that vibrates `ratio` times as
-/// much as the sensor's noise.
+/// Successive rides of a lift with stops between, in a cabin with vibration of `ratio` times the
+/// sensor's noise.
 inline Ride lift(Draw& draw, int rides, double ratio) {
   Ride ride;
   ride.moving_noise_mps2 = ratio * ride.noise_mps2;
@@ -140,7 +140,7 @@ inline Ride begun_under_way(Draw& draw) {
   return ride;
 }
 
-/// There and back at random along one axis, between two rests.
+/// Random motion back and forth along one axis, between two rests.
 inline Ride shaken(Draw& draw) {
   Ride ride;
   ride.axis = 0;
@@ -157,7 +157,7 @@ inline Ride shaken(Draw& draw) {
   return ride;
 }
 
-/// So slow that the acceleration stays within the noise.
+/// Slow enough for the acceleration to remain within the noise.
 inline Ride slow_slide(Draw& draw) {
   Ride ride;
   ride.axis = 0;
@@ -171,7 +171,7 @@ inline Ride slow_slide(Draw& draw) {
   return ride;
 }
 
-/// Six strokes of 0.2 m, each in about `stroke_s`.
+/// Six strokes of 0.2 m, each with a duration of about `stroke_s`.
 inline Ride strokes(Draw& draw, double stroke_s) {
   Ride ride;
   ride.axis = 0;
@@ -186,7 +186,7 @@ inline Ride strokes(Draw& draw, double stroke_s) {
   return ride;
 }
 
-/// Eight strokes of 0.4 m there and back, each in 1 to 4 s, with rests of 1.2 s between: most of
+/// Eight strokes of 0.4 m back and forth, each in 1 to 4 s, with rests of 1.2 s between: most of
 /// the recording is as quiet as rest.
 inline Ride slow_strokes(Draw& draw) {
   Ride ride;

@@ -51,7 +51,7 @@ Result<GravityContent> gravity_content(double norm_mps2, double gravity_mps2) {
         "m/s^2 with an offset");
   if (std::abs(share / gravity_mps2 - 1.0) < 0.1)
     return bad("at rest the readings are " + figure(norm_mps2) +
-               " m/s^2 long, which is gravity in m/s^2 taken for g: give --unit m/s2");
+               " m/s^2 long, which is gravity in m/s^2 interpreted as g: give --unit m/s2");
   if (share < 0.1) return GravityContent::removed;
   return GravityContent::unknown;
 }

@@ -13,7 +13,7 @@ Result<FoundAxis> given_axis(const TrackSignal& signal, std::array<double, 3> di
     direction[a] /= length;
     const bool there = std::find(signal.axes.begin(), signal.axes.end(), a) != signal.axes.end();
     if (direction[a] != 0.0 && !there)
-      return Error{Errc::invalid_argument, "the axis points where the sensor has none"};
+      return Error{Errc::invalid_argument, "the sensor has no axis in this direction"};
   }
   return FoundAxis{direction, 1.0};
 }

@@ -26,7 +26,7 @@ std::vector<signal::Rest> steady(const std::vector<double>& axis,
   return steady_parts(axes, rests, rate_hz, 0.5);
 }
 
-/// Adds what begin_s … end_s has of one period of a sine, as of a slow stroke.
+/// Adds the part of one sine period between begin_s and end_s, as in a slow stroke.
 void add_stroke(std::vector<double>& axis, double begin_s, double end_s, double peak_mps2) {
   for (std::size_t k = 0; k < axis.size(); ++k) {
     const double share = (static_cast<double>(k) / rate_hz - begin_s) / (end_s - begin_s);

@@ -11,10 +11,10 @@ namespace {
 
 using Motions = std::vector<std::vector<std::size_t>>;
 
-std::vector<double> swings_of(View<double> p, const std::vector<std::size_t>& turns) {
-  std::vector<double> swings;
-  for (std::size_t i = 1; i < turns.size(); ++i) swings.push_back(p[turns[i]] - p[turns[i - 1]]);
-  return swings;
+std::vector<double> legs_of(View<double> p, const std::vector<std::size_t>& turns) {
+  std::vector<double> legs;
+  for (std::size_t i = 1; i < turns.size(); ++i) legs.push_back(p[turns[i]] - p[turns[i - 1]]);
+  return legs;
 }
 
 Motions motions_of(const TrackSolution& solution) {
@@ -25,7 +25,7 @@ Motions motions_of(const TrackSolution& solution) {
   const Motions all = turning_points(p, solution.rests, 0.05 * travel);
   std::vector<double> lengths;
   for (const auto& turns : all)
-    for (const double swing : swings_of(p, turns)) lengths.push_back(std::abs(swing));
+    for (const double leg : legs_of(p, turns)) lengths.push_back(std::abs(leg));
   const auto usual = median(lengths);
   return usual ? turning_points(p, solution.rests, std::max(0.05 * travel, 0.5 * *usual)) : all;
 }
@@ -62,9 +62,7 @@ Uncertain length_of(const Uncertain& a, const Uncertain& b, double std_of_mean) 
   return one < other ? Uncertain{one, a.std} : Uncertain{other, b.std};
 }
 
-Stroke stroke_of(const std::vector<std::size_t>& turns,
-                 const SwingPair& pair,
-                 View<double> time_s) {
+Stroke stroke_of(const std::vector<std::size_t>& turns, const LegPair& pair, View<double> time_s) {
   Stroke stroke;
   stroke.first = turns[pair.out];
   stroke.turn = turns[pair.out + 1];
@@ -75,9 +73,9 @@ Stroke stroke_of(const std::vector<std::size_t>& turns,
   return stroke;
 }
 
-// Sum of the signed swings: linear in the positions of the turning points.
+// Sum of the signed legs: linear in the positions of the turning points.
 double path_std(const Motions& motions,
-                const std::vector<std::vector<double>>& swings,
+                const std::vector<std::vector<double>>& legs,
                 const TurnCovariance& cov,
                 double scale_std) {
   std::vector<double> weight;
@@ -85,11 +83,11 @@ double path_std(const Motions& motions,
   for (std::size_t m = 0; m < motions.size(); ++m) {
     const std::size_t begin = weight.size();
     weight.resize(begin + motions[m].size(), 0.0);
-    for (std::size_t i = 0; i < swings[m].size(); ++i) {
-      const double sign = swings[m][i] < 0.0 ? -1.0 : 1.0;
+    for (std::size_t i = 0; i < legs[m].size(); ++i) {
+      const double sign = legs[m][i] < 0.0 ? -1.0 : 1.0;
       weight[begin + i] -= sign;
       weight[begin + i + 1] += sign;
-      path += std::abs(swings[m][i]);
+      path += std::abs(legs[m][i]);
     }
   }
   double variance = 0.0;
@@ -105,29 +103,29 @@ Strokes find_strokes(const TrackSolution& solution, const PositionCovarianceAt& 
   Strokes found;
   const Motions motions = motions_of(solution);
   std::vector<std::size_t> turns;
-  std::vector<std::vector<double>> swings;
+  std::vector<std::vector<double>> legs;
   for (const auto& motion : motions) {
     turns.insert(turns.end(), motion.begin(), motion.end());
-    swings.push_back(swings_of(solution.series.position_m, motion));
+    legs.push_back(legs_of(solution.series.position_m, motion));
   }
   const TurnCovariance cov(covariance(turns), turns.size(), solution.scale_std);
   std::size_t begin = 0;
   for (std::size_t m = 0; m < motions.size(); begin += motions[m++].size()) {
-    for (const SwingPair& pair : pair_swings(swings[m])) {
+    for (const LegPair& pair : pair_legs(legs[m])) {
       Stroke stroke = stroke_of(motions[m], pair, solution.series.time_s);
       const std::size_t i = begin + pair.out;
-      const double out = swings[m][pair.out];
+      const double out = legs[m][pair.out];
       stroke.out_m = {out, cov.of_difference(i, i + 1, out)};
       stroke.length_m = {std::abs(out), stroke.out_m.std};
       if (pair.back) {
-        const double back = swings[m][pair.out + 1];
+        const double back = legs[m][pair.out + 1];
         stroke.back_m = Uncertain{back, cov.of_difference(i + 1, i + 2, back)};
         stroke.length_m = length_of(*stroke.back_m, stroke.out_m, cov.of_mean(i, out, back));
       }
       if (stroke.length_m.value > 2.0 * stroke.length_m.std) found.strokes.push_back(stroke);
     }
   }
-  if (!turns.empty()) found.path_std_m = path_std(motions, swings, cov, solution.scale_std);
+  if (!turns.empty()) found.path_std_m = path_std(motions, legs, cov, solution.scale_std);
   return found;
 }
 

@@ -16,8 +16,8 @@ struct Strokes {
   std::optional<double> path_std_m;
 };
 
-/// The position reverses where its swing exceeds half the median of all swings beyond a twentieth
-/// of the travel; a swing and the next make a stroke, there and back. A stroke within twice its own
+/// The position reverses where its leg exceeds half the median of all legs beyond a twentieth
+/// of the travel; a leg and the next make a stroke, there and back. A stroke within twice its own
 /// standard deviation is ignored.
 [[nodiscard]] Strokes find_strokes(const TrackSolution& solution,
                                    const PositionCovarianceAt& covariance);

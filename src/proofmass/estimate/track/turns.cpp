@@ -100,7 +100,7 @@ std::vector<std::vector<std::size_t>> turning_points(View<double> position_m,
   return motions;
 }
 
-std::vector<SwingPair> pair_swings(View<double> lengths_m) {
+std::vector<LegPair> pair_legs(View<double> lengths_m) {
   const auto misfit = [&](std::size_t first, std::size_t last) {
     double sum = 0.0;
     for (std::size_t i = first; i + 1 < last; i += 2) {
@@ -110,7 +110,7 @@ std::vector<SwingPair> pair_swings(View<double> lengths_m) {
     return sum;
   };
   const std::size_t n = lengths_m.size();
-  std::vector<SwingPair> pairs;
+  std::vector<LegPair> pairs;
   std::size_t i = 0;
   if (n % 2 == 1 && misfit(1, n) < misfit(0, n - 1)) pairs.push_back({i++, false});
   for (; i + 1 < n; i += 2) pairs.push_back({i, true});

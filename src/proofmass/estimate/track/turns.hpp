@@ -30,17 +30,17 @@ struct PositionCovariance {
                                                     const std::vector<std::size_t>& at);
 
 /// Samples at which the position reverses, including its start and end, for each motion between two
-/// rests; a swing shorter than `least_m` is ignored.
+/// rests; a leg shorter than `least_m` is ignored.
 [[nodiscard]] std::vector<std::vector<std::size_t>> turning_points(
     View<double> position_m, const std::vector<signal::Rest>& rests, double least_m);
 
-struct SwingPair {
-  std::size_t out;    ///< index of the swing
-  bool back = false;  ///< the next swing is its way back
+struct LegPair {
+  std::size_t out;    ///< index of the leg
+  bool back = false;  ///< the next leg is its way back
 };
 
-/// The swings of one motion in pairs, there and back. With an odd number the first or the last has
+/// The legs of one motion in pairs, there and back. With an odd number the first or the last has
 /// no partner, whichever makes the others more similar.
-[[nodiscard]] std::vector<SwingPair> pair_swings(View<double> lengths_m);
+[[nodiscard]] std::vector<LegPair> pair_legs(View<double> lengths_m);
 
 }  // namespace proofmass::estimate

@@ -44,7 +44,7 @@ std::vector<double> some_values(TuneModel model) {
   return values;
 }
 
-// What the package KFAS gives for a level with an exact diffuse start.
+// Results of the package KFAS for a local level with an exact diffuse start.
 TEST(LogLikelihood, OfALocalLevelIsThatOfAnIndependentPackage) {
   const std::vector<double> series{10.2394, 1, 1, 1, 1, 1, 1, 1, 1, 1};
   const TuneSystem system =
@@ -72,7 +72,7 @@ TEST_P(EveryModel, HasTheGradientThatDifferencesHave) {
   }
 }
 
-// Q(2h) = F Q Fᵀ + Q, and the same of the measurements that a sample in two leaves out.
+// Q(2h) = F Q Fᵀ + Q, and the corresponding relation if every other measurement is omitted.
 TEST_P(EveryModel, TwoShortStepsAreALongOne) {
   const TuneSystem once = system_of(GetParam(), some_values(GetParam()), 0.2);
   const TuneSystem twice = system_of(GetParam(), some_values(GetParam()), 0.4);
@@ -81,7 +81,7 @@ TEST_P(EveryModel, TwoShortStepsAreALongOne) {
   EXPECT_LT((twice.Q - Q).norm(), 1e-14);
 }
 
-TEST_P(EveryModel, SaysNothingByAMissingReading) {
+TEST_P(EveryModel, IsUnaffectedByAMissingMeasurement) {
   const std::vector<double> series = walk(50);
   std::vector<double> longer{missing, missing, missing};
   longer.insert(longer.end(), series.begin(), series.end());

@@ -200,7 +200,7 @@ Status set_start(TuneProblem& problem) {
   }
   if (!std::isfinite(best))
     return Error{Errc::not_observable,
-                 "the readings follow the model without any noise: there is nothing to tune"};
+                 "the data follow the model without noise: there is nothing to tune"};
   return Done{};
 }
 

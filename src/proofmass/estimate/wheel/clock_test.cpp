@@ -11,7 +11,7 @@ using test::Drive;
 using test::Normal;
 using test::rpm;
 
-/// A motion as one sensor sees it: on its own clock, `phase` ahead, with white errors.
+/// A motion as measured by one sensor: with its own clock, at angle `phase`, with white noise.
 struct Seen {
   std::vector<double> time_s, angle_rad, speed_radps;
 

@@ -169,15 +169,14 @@ Result<Single> fit_single(const WheelSensor& sensor,
   }
   if (unsure) return *std::move(unsure);
   if (followed)
-    return Error{Errc::not_observable,
-                 sensor.name +
-                     ": the angle was lost: it can be followed only by more than an "
-                     "eighth of a turn from reading to reading; record at a higher "
-                     "rate, or cut the recording by --from and --to"};
+    return Error{Errc::not_observable, sensor.name +
+                                           ": the angle was lost: the wheel turns by more than an "
+                                           "eighth of a turn between samples; record at a higher "
+                                           "rate, or cut the recording by --from and --to"};
   return Error{Errc::not_observable,
                sensor.name +
-                   ": no gravity turning in the plane of the wheel (axle upright, "
-                   "readings not in m/s^2, or not a wheel); check --unit and --spin-axis"};
+                   ": no rotation of gravity in the plane of the wheel (axle vertical, "
+                   "data not in m/s^2, or not a wheel); check --unit and --spin-axis"};
 }
 
 Result<Single> fit_single(const WheelSensor& sensor, FitDepth depth, const WheelOptions& options) {

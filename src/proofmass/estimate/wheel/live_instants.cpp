@@ -71,8 +71,7 @@ Status LiveInstants::check(const Block& samples) const {
         return Error{Errc::invalid_argument, vector.channels.name + ": there is no channel " +
                                                  std::to_string(*channel) + " in the samples"};
   if (samples.stamps_s.empty() && !(clock_.rate_hz > 0.0))
-    return Error{Errc::invalid_argument,
-                 "the samples have no time and nobody says their rate: give --rate"};
+    return Error{Errc::invalid_argument, "the samples have neither time nor rate: give --rate"};
   return Done{};
 }
 
@@ -107,9 +106,9 @@ bool LiveInstants::follows(double time_s) {
     backwards_.last_s = last_time_s_;
     return false;
   }
-  notes_.push_back({Severity::warning, "the clock went back from " + at_second(last_time_s_) +
+  notes_.push_back({Severity::warning, "the clock stepped back from " + at_second(last_time_s_) +
                                            " s to " + at_second(time_s) +
-                                           " s: the estimate starts anew there"});
+                                           " s: the estimate restarts there"});
   behind_ = 0;
   anew_ = true;
   last_time_s_ = -std::numeric_limits<double>::infinity();
@@ -165,10 +164,10 @@ std::vector<Note> LiveInstants::take_notes() {
   for (std::size_t i = 0; i < vectors_.size(); ++i) {
     const Rejected said = std::exchange(rejected_[i], {});
     if (said.count == 0) continue;
-    notes_.push_back({Severity::warning, vectors_[i].channels.name + ": " +
-                                             std::to_string(said.count) +
-                                             " readings left out of the estimate, the last at " +
-                                             at_second(said.last_s) + " s: " + said.why});
+    notes_.push_back(
+        {Severity::warning, vectors_[i].channels.name + ": " + std::to_string(said.count) +
+                                " measurements excluded from the estimate, the last at " +
+                                at_second(said.last_s) + " s: " + said.why});
   }
   if (const Rejected said = std::exchange(backwards_, {}); said.count > 0)
     notes_.push_back({Severity::warning, std::to_string(said.count) +

@@ -15,12 +15,12 @@ using test::Turning;
 template <int S>
 using State = Mat<wheel::states(S)>;
 
-/// Where the place of a sensor, along its u, stands in the state.
+/// Index of a sensor's lever arm (u component) in the state.
 int place_of(int sensors, int s) {
   return wheel::places(sensors) + 2 * s;
 }
 
-/// A model with one epoch at which every sensor was read.
+/// A model with one epoch that has measurements of every sensor.
 template <int S>
 struct OneInstant {
   std::vector<WheelInstant> instants{WheelInstant{0.01, {0, S == 2 ? 0 : WheelInstant::no_row}}};
@@ -46,7 +46,7 @@ struct OneInstant {
   }
 };
 
-/// A state with nothing at zero: any angle, up to 40 rad/s either way, places up to 0.3 m.
+/// A state without zeros: any angle, up to ± 40 rad/s, lever arms up to 0.3 m.
 template <int S>
 State<S> any_state(Normal& normal) {
   State<S> x;
@@ -110,7 +110,7 @@ TEST(WheelModel, JacobianWithRippleDelayAndGyroscopesEqualsDifferences) {
   expect_jacobian_of_differences(instant, 6);
 }
 
-// The rippling speed integrated by steps, from where its angle starts.
+// The rippling speed integrated numerically from the initial angle.
 TEST(WheelModel, SpeedAndAccelerationAreTheDerivativesOfTheRipplingAngle) {
   WheelModel<1> model;
   model.with_ripple = true;
@@ -132,7 +132,7 @@ TEST(WheelModel, SpeedAndAccelerationAreTheDerivativesOfTheRipplingAngle) {
   EXPECT_NEAR((then.speed - before.speed) / (2.0 * h), now.accel, 1e-5);
 }
 
-// One pole's answer to a turning vector: late by atan(ω τ), weaker by its cosine.
+// Response of one pole to a rotating vector: delayed by atan(ω τ), attenuated by its cosine.
 TEST(WheelModel, AFilterReadsGravityLaterAndWeaker) {
   OneInstant<1> instant(0.0, 0.0);
   instant.model.delay_s = 0.02;
@@ -146,7 +146,8 @@ TEST(WheelModel, AFilterReadsGravityLaterAndWeaker) {
   EXPECT_NEAR(rows[1].predicted, read.real(), 1e-12);
 }
 
-// The same force by differentiating a point on the complex plane twice (wheel_test_support.hpp).
+// The same force by differentiating the position of a point in the complex plane twice
+// (wheel_test_support.hpp).
 TEST(WheelModel, PredictsExactlyWhatTheKinematicsOfAPointSay) {
   Normal normal(3);
   for (const double rolling_radius_m : {0.0, 0.31}) {
@@ -160,7 +161,7 @@ TEST(WheelModel, PredictsExactlyWhatTheKinematicsOfAPointSay) {
         const int at = wheel::first_of(s);
         Mount mount;
         mount.turned_rad = s == 0 ? 0.0 : 0.4 + x(wheel::phase);
-        // The model has the place in the sensor's own axes, the mount in the wheel's.
+        // The model has the lever arm in the sensor's own axes, the mount in the wheel's.
         mount.place_m = std::complex(x(place_of(2, s)), x(place_of(2, s) + 1)) *
                         std::polar(1.0, mount.turned_rad);
         mount.bias_mps2 = {x(at + wheel::bias), x(at + wheel::bias + 1)};
@@ -175,8 +176,8 @@ TEST(WheelModel, PredictsExactlyWhatTheKinematicsOfAPointSay) {
   }
 }
 
-// Lele (2010), section 4.4: sensors at ±R with parallel axes; half the sum is gravity's phase, half
-// the difference −R ω² and R α.
+// Lele (2010), section 4.4: sensors at ±R with parallel axes; half the sum is gravity, half the
+// difference −R ω² and R α.
 TEST(WheelModel, OfAnOppositePairSumIsGravityAndDifferenceIsTheMotion) {
   constexpr double R = 0.1;
   const OneInstant<2> instant(0.0, 0.0);
@@ -257,8 +258,8 @@ TEST(WheelModel, OnlyTheBiasesWalk) {
   }
 }
 
-// About a path the measurements are linear in the constants, exactly, and their slope owes nothing
-// to what the filter makes of them.
+// About a given path the measurements are exactly linear in the constants, and their gradient is
+// independent of the filter's state.
 TEST(WheelModel, AboutAPathTheConstantsEnterLinearly) {
   Normal normal(5);
   OneInstant<1> instant(0.0, 0.0);
@@ -281,8 +282,8 @@ TEST(WheelModel, AboutAPathTheConstantsEnterLinearly) {
   }
 }
 
-// A filter shows what was τ earlier: measurements of a rippling wheel through a delay are, but for
-// the weakening of what turns, those of the undelayed wheel τ before.
+// Measurements through a delay τ equal those of an undelayed wheel τ earlier, except for the
+// attenuation of rotating components.
 TEST(WheelModel, ADelayShowsTheMotionOfEarlier) {
   Normal normal(6);
   OneInstant<1> instant(0.0, 0.0);
@@ -298,11 +299,11 @@ TEST(WheelModel, ADelayShowsTheMotionOfEarlier) {
   instant.model.delay_s = late_s;
   const auto delayed = instant.at(x);
   for (std::size_t i = 0; i < 2; ++i)
-    // g (ω τ)² / 2 of weakening, and nothing in proportion to τ.
+    // attenuation g (ω τ)² / 2, without a term proportional to τ
     EXPECT_NEAR(delayed.rows[i].predicted, undelayed.rows[i].predicted, 1.5e-4);
 }
 
-// That a wheel stands does not show whether the filter has its angle.
+// A static wheel constrains the speed, not the angle.
 TEST(WheelModel, StandingIsAConstraintOfTheSpeed) {
   OneInstant<1> instant(0.0, 0.0);
   State<1> x = State<1>::Zero();

@@ -11,7 +11,7 @@
 namespace proofmass::estimate::wheel_passes_test {
 namespace {
 
-/// Of an AR(1) sequence of unit driving noise, in blocks much longer than its memory.
+/// For an AR(1) sequence with unit driving noise, in blocks much longer than its correlation time.
 double block_ratio(double coefficient) {
   constexpr int blocks = 400, each = 500;
   test::Normal normal(3);
@@ -24,19 +24,19 @@ double block_ratio(double coefficient) {
   return variance.ratio();
 }
 
-// Of an AR(1) sequence the sum over a long block has (1 + a) / (1 − a) times the sum of the
-// variances. One standard deviation of the ratio over 400 blocks is 7 %.
+// For an AR(1) sequence the variance of the sum over a long block is (1 + a) / (1 − a) times the
+// sum of the variances. One standard deviation of the ratio over 400 blocks is 7 %.
 TEST(BlockVariance, IsOneOfWhiteScoresAndTheLongRunVarianceOfColouredOnes) {
   EXPECT_NEAR(block_ratio(0.0), 1.0, 0.25);
   EXPECT_NEAR(block_ratio(0.8), 9.0, 2.3);
 }
 
-TEST(BlockVariance, OfWhatCancelsIsNoGain) {
+TEST(BlockVariance, OfCancellingScoresIsNotBelowOne) {
   EXPECT_EQ(block_ratio(-0.8), 1.0);
   EXPECT_EQ(BlockVariance{}.ratio(), 1.0);
 }
 
-/// A path that speeds up evenly from `from_radps` to `to_radps` within ten seconds, at 100 Hz.
+/// A path with constant acceleration from `from_radps` to `to_radps` within ten seconds, at 100 Hz.
 struct Ramp {
   WheelPath path;
   WheelReadings readings;  ///< their times; two rows, for the noise
@@ -61,8 +61,8 @@ TEST(WheelLevers, OfASteadyWheelAreItsSquaredSpeedAndNoAcceleration) {
   }
 }
 
-// The mean of (ω + α t)² over a window that lies evenly about an epoch is ω² + α² h² / 3; with a
-// row more on one side it moves by ω α times a step.
+// The mean of (ω + α t)² over a window centred at an epoch is ω² + α² h² / 3; one more row on one
+// side changes it by ω α times a step.
 TEST(WheelLevers, OfARampAreMeansOverTheTurnAboutEachInstant) {
   const Ramp ramp(10.0, 30.0);
   const WheelLevers levers = levers_of(ramp.path, ramp.readings);
@@ -76,7 +76,7 @@ TEST(WheelLevers, OfARampAreMeansOverTheTurnAboutEachInstant) {
   }
 }
 
-// A hub that shakes may be a vehicle's: three seconds, whatever the speed.
+// A vibrating hub may be a vehicle's: three seconds, whatever the speed.
 TEST(WheelLevers, OfAWheelThatShakesAreMeansOverThreeSeconds) {
   Ramp ramp(10.0, 30.0);
   ramp.readings.shakes = true;
@@ -85,8 +85,8 @@ TEST(WheelLevers, OfAWheelThatShakesAreMeansOverThreeSeconds) {
               w * w + std::pow(ramp.accel_radps2 * 1.5, 2) / 3.0, 0.1);
 }
 
-/// Variance of the sum of scores, over the sum of their variances, of measurements whose misfit is
-/// an AR(1) sequence of unit variance.
+/// Variance of the sum of scores divided by the sum of their variances, for measurements whose
+/// residuals are an AR(1) sequence of unit variance.
 double score_ratio(double coefficient) {
   constexpr int count = 40'000;
   constexpr double rate_hz = 100.0, block_s = 2.0;
@@ -98,7 +98,7 @@ double score_ratio(double coefficient) {
   row.h.setZero();
   row.h(wheel::first_of(0)) = 2.0;
   row.predicted = 0.0;
-  row.variance = 4.0;  // so that Huber's limit is out of reach
+  row.variance = 4.0;  // so that Huber's limit is not reached
   double misfit = 0.0;
   for (int k = count; k-- > 0;) {
     misfit = coefficient * misfit + std::sqrt(1.0 - coefficient * coefficient) * normal();
@@ -137,9 +137,9 @@ struct SlowWheel {
   }
 };
 
-// With process noise far above the wheel's, the filter follows every reading and its innovations
-// show no measurement noise. The variance must not fall below the measurements' own: this lost a
-// wheel at 14 rpm within an hour.
+// With process noise far above the wheel's, the filter follows every measurement and its
+// innovations do not show the measurement noise. The variance must not fall below the true one;
+// such an underestimate lost track of a wheel at 14 rpm within an hour.
 TEST(SettleVariance, IsNotUnderestimatedUnderLargeProcessNoise) {
   SlowWheel slow;
   const auto model = held_model<1>(slow.readings, {.jerk_psd = 1e4}, slow.path);
@@ -149,7 +149,7 @@ TEST(SettleVariance, IsNotUnderestimatedUnderLargeProcessNoise) {
               0.2 * SlowWheel::noise_mps2);
 }
 
-// No motion of the wheel changes the measurements along gravity, so those show a hub that shakes
+// No motion of the wheel changes the measurements along gravity, so those show a vibrating hub
 // however closely the filter follows.
 TEST(SettleVariance, SeesAHubThatShakes) {
   SlowWheel slow;
@@ -181,12 +181,12 @@ TEST(MarkStanding, IsAWheelWhoseReadingsKeepTheirValues) {
   const auto& instants = slow.readings.instants;
   EXPECT_TRUE(std::none_of(instants.begin(), instants.begin() + 1000,
                            [](const WheelInstant& instant) { return instant.stands; }));
-  // 1400 epochs at rest, less the stretch in which the wheel stops and a false alarm rate of 5 %.
+  // 1400 epochs at rest, minus the interval in which the wheel stops and a false-alarm rate of 5 %.
   EXPECT_GE(std::ranges::count(instants, true, &WheelInstant::stands), 1260);
 }
 
 // At 0.1 rad/s, a turn in a minute, a wheel moves.
-TEST(MarkStanding, IsNoSlowWheel) {
+TEST(MarkStanding, IgnoresASlowWheel) {
   SlowWheel slow;
   PlanarReadings& sensor = slow.readings.sensors[0];
   test::Normal normal(4);
@@ -202,12 +202,12 @@ TEST(MarkStanding, IsNoSlowWheel) {
 TEST(WheelReadings, RateIsThatOfRowsWhichArriveInPackets) {
   WheelReadings readings;
   for (int k = 0; k < 2000; ++k)
-    // Ten rows every 25 ms, ten microseconds apart; once a gap of a minute.
+    // Ten rows every 25 ms, ten microseconds apart; one gap of a minute.
     readings.instants.push_back({k % 10 > 0 ? 1e-5 : k == 1000 ? 60.0 : 0.025 - 9e-5});
   EXPECT_NEAR(readings.rate_hz(), 400.0, 4.0);
 }
 
-/// A wheel at 6 rad/s whose speed ripples by 1 % in an order, about a path that does not know it.
+/// A wheel at 6 rad/s with a speed ripple of 1 % in one order, about a path without that ripple.
 struct RipplingWheel {
   static constexpr double rate_hz = 200.0, speed_radps = 6.0, share = 0.01, radius_m = 0.1;
   WheelReadings readings;

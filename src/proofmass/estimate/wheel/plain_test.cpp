@@ -11,7 +11,7 @@ using test::Drive;
 using test::Mount;
 using test::rpm;
 
-/// Measurements of sensors whose x and y are the plane's u and v, all rows on one clock.
+/// Measurements of sensors whose x and y are u and v in the plane, all rows on one clock.
 WheelReadings planar(const Drive& drive, const std::vector<Mount>& mounts, double rate_hz) {
   WheelReadings readings;
   for (const Mount& mount : mounts) {
@@ -112,7 +112,7 @@ TEST(PlainPlaces, AreTheOnesFoundAndOppositeOnesWhereNoDirectionShows) {
   ASSERT_TRUE(taken.has_value());
   EXPECT_TRUE(taken->taken);
   EXPECT_NEAR((taken->places_m.head<2>() - Eigen::Vector2d(0.1, 0.0)).norm(), 0.0, 1e-12);
-  // On the other side of the axle, in axes that are 0.3 ahead.
+  // On the opposite side of the axle, with axes rotated by 0.3.
   const Eigen::Vector2d other(-0.1 * std::cos(0.3), 0.1 * std::sin(0.3));
   EXPECT_NEAR((taken->places_m.tail<2>() - other).norm(), 0.0, 1e-12);
   first.mounting_rad = Uncertain{-0.5, 0.01};

@@ -131,7 +131,7 @@ TEST(WheelPlane, ProjectsWhatIsUsableAndKeepsTheRestEmpty) {
   EXPECT_DOUBLE_EQ(readings.v_mps2[6], sensor.accel_mps2[1][6]);
 }
 
-/// A recording whose gyroscope's third channel reads so.
+/// A recording whose gyroscope has this function as its third channel.
 template <class Reading>
 PlanarReadings with_gyroscope(const Reading& reading) {
   WheelSensor sensor = record(turning, {}, 100.0, 1);
@@ -155,7 +155,7 @@ TEST(WheelPlane, LeavesOutWhatAGyroscopeReadsAtTheEndOfItsRange) {
   EXPECT_EQ(readings.saturated_speeds, saturated);
 }
 
-TEST(WheelPlane, TakesNothingFromAGyroscopeThatNeverChanges) {
+TEST(WheelPlane, IgnoresAConstantGyroscope) {
   const PlanarReadings readings = with_gyroscope([](double) { return 0.5; });
   EXPECT_EQ(readings.saturated_speeds, readings.speed_radps.size());
   for (const double speed : readings.speed_radps) EXPECT_TRUE(std::isnan(speed));
@@ -220,7 +220,7 @@ TEST(ScreenRows, ATimeThatDoesNotRiseIsLeftOutUntilItIsNewAgain) {
   EXPECT_TRUE(std::isfinite(screened.rejected[1].start_s));
 }
 
-// One stamp far ahead must not make the rest of the recording look late.
+// One stamp far in the future must not make the rest of the recording late.
 TEST(ScreenRows, AStampFarAheadCostsItselfAndNotTheRest) {
   WheelSensor sensor = record(turning, {}, 100.0, 1);
   sensor.time_s[20] = 1e9;
@@ -244,12 +244,13 @@ TEST(GravityInPlane, OfATiltedAxleIsWhatTheTiltLeavesAsFarAsABiasLetsItBeSeen) {
   plane.axial_mps2 = g * std::sin(tilt_rad) + bias_mps2;
   const Uncertain in_plane = gravity_in_plane(plane, true, g, 0.02);
   EXPECT_NEAR(in_plane.value, g * std::cos(tilt_rad), 2.0 * in_plane.std);
-  EXPECT_NEAR(in_plane.std, 0.5 * std::tan(tilt_rad), 0.03);  // ∂(g cos τ) of a bias of 0.5 m/s²
+  EXPECT_NEAR(in_plane.std, 0.5 * std::tan(tilt_rad), 0.03);  // ∂(g cos τ) due to a bias of 0.5
+                                                              // m/s²
 }
 
 TEST(GravityInPlane, OfASensorOfTwoAxesIsALevelAxles) {
   WheelPlane plane;
-  plane.axial_mps2 = 3.0;  // of a channel that is not there
+  plane.axial_mps2 = 3.0;  // value of a channel that does not exist
   const Uncertain in_plane = gravity_in_plane(plane, false, standard_gravity_mps2, 0.02);
   EXPECT_NEAR(in_plane.value, standard_gravity_mps2, 3.0 * in_plane.std);
 }

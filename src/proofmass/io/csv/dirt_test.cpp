@@ -32,7 +32,7 @@ TEST(CsvReader, ReadsNoHexadecimals) {
   const auto read = read_text("t,a\n0,1\n1,0x10\n2,3\n");
   ASSERT_TRUE(read.has_value());
   EXPECT_TRUE(std::isnan(read->channels[0].values[1]));
-  EXPECT_TRUE(is_noted(*read, "a: 1 field is no number, the first \"0x10\" on line 3"))
+  EXPECT_TRUE(is_noted(*read, "a: 1 field is not a number, the first \"0x10\" on line 3"))
       << notes_of(*read);
 }
 

@@ -77,7 +77,7 @@ TEST(CsvLabels, AreNoWordsAmongNumbers) {
   ASSERT_TRUE(read.has_value());
   EXPECT_TRUE(read->labels.empty());
   EXPECT_TRUE(std::isnan(read->channels[0].values[1]));
-  EXPECT_TRUE(is_noted(*read, "a: 1 field is no number, the first \"lost\" on line 3"));
+  EXPECT_TRUE(is_noted(*read, "a: 1 field is not a number, the first \"lost\" on line 3"));
   std::string late = "t,a,b\n";
   for (int k = 0; k < 300; ++k) late += std::to_string(k) + ",,2\n";
   const auto mixed = read_text(late + "300,lost,3\n301,5,6\n302,,6\n" + late.substr(6));

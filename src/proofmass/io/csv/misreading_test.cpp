@@ -178,11 +178,11 @@ TEST(CsvMisreading, OfAChannelAsLabelsIsBadData) {
           return c == 1 ? std::string(figure) : fmt::format("{}", r + c);
         }));
     ASSERT_TRUE(read) << figure;
-    EXPECT_TRUE(is_bad(*read, "reading: its fields are no numbers")) << figure << notes_of(*read);
+    EXPECT_TRUE(is_bad(*read, "reading: its fields are not numbers")) << figure << notes_of(*read);
   }
   const auto with_unit = read_text("t,ax (g),ay (g)\n0,low,1\n1,high,2\n2,low,3\n");
   ASSERT_TRUE(with_unit);
-  EXPECT_TRUE(is_bad(*with_unit, "ax: its fields are no numbers")) << notes_of(*with_unit);
+  EXPECT_TRUE(is_bad(*with_unit, "ax: its fields are not numbers")) << notes_of(*with_unit);
   for (const char* label : {"x_up", "pose 3", "1a", "1-2", "2024-01-05x", "+x"}) {
     const auto read =
         read_text(table({"t", "pose", "ay"}, 5, ';', [&](std::size_t r, std::size_t c) {

@@ -47,7 +47,7 @@ void tell_lost_channels(const CsvLayout& layout,
     if (!is_measured && figure.empty()) continue;
     notes.push_back(
         {Severity::bad,
-         fmt::format("{}: its fields are no numbers{}: the channel is lost", label.name,
+         fmt::format("{}: its fields are not numbers{}: the channel is lost", label.name,
                      figure.empty() ? "" : fmt::format(", as \"{}\" is none", figure))});
   }
 }

@@ -178,7 +178,7 @@ class CsvReader final : public RecordingReader {
     std::ranges::move(source_->notes(), std::back_inserter(recording.notes));
     if (rows_->stamps() && rows_->stamps()->zone_missing())
       recording.notes.push_back({Severity::info, header_.labels[*columns_.stamps].name +
-                                                     ": no time zone is given: taken for UTC"});
+                                                     ": no time zone is given: taken as UTC"});
   }
 
  private:

@@ -57,8 +57,7 @@ class StartFinder {
     found_.zero_ns = ns_of(trimmed(text));
     if (found_.zero_ns)
       found_.notes.push_back(
-          {Severity::info,
-           fmt::format("starts at {} by its header, taken for UTC", trimmed(text))});
+          {Severity::info, fmt::format("starts at {} by its header, taken as UTC", trimmed(text))});
   }
   void dead_band(std::string_view counts) {
     const Cell cell = read_cell(counts, '.');

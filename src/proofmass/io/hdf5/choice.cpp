@@ -180,7 +180,7 @@ class Chooser {
       chosen_.insert(&*array);
       if (table_in(*array)) return Done{};
       return Error{Errc::invalid_argument,
-                   fmt::format("{} is no table of samples, at most {} channels",
+                   fmt::format("{} is not a table of samples, at most {} channels",
                                description(dataset_of(*array)), most_mat_channels)};
     }
     if (!path.empty() && take_best(path)) return Done{};

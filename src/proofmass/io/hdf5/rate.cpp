@@ -66,7 +66,7 @@ std::optional<double> hdf5_rate_hz(const Hdf5Catalogue& catalogue,
   const bool can_be = is_rate(said->rate_hz);
   notes.push_back({Severity::info,
                    can_be ? fmt::format("{}: the rate, {} Hz", said->what, in_words(said->rate_hz))
-                          : said->what + ": is no rate that can be"});
+                          : said->what + ": is not a possible rate"});
   return can_be ? std::optional(said->rate_hz) : std::nullopt;
 }
 

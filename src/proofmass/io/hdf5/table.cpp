@@ -98,7 +98,7 @@ Result<Plan> plan_matlab(const OpenHdf5& file, const ReadOptions& options) {
   const bool can_be = figure && is_rate(*figure);
   plan.head.notes.push_back(
       {Severity::info, fmt::format("{}: {}", choice->rate->path,
-                                   can_be ? "the rate in Hz" : "is no rate that can be")});
+                                   can_be ? "the rate in Hz" : "is not a possible rate")});
   if (can_be) plan.head.rate_hz = figure;
   return plan;
 }

@@ -39,7 +39,7 @@ TEST(Lvm, ReadsChannelsAtDeltaXFromTheirStart) {
   EXPECT_TRUE(read->time.is_uniform());
   EXPECT_EQ(read->time.start_ns, noon_ns + 1'000'000'000);
   EXPECT_TRUE(is_noted(*read, "6 decimals"));
-  EXPECT_TRUE(is_noted(*read, "taken for UTC"));
+  EXPECT_TRUE(is_noted(*read, "taken as UTC"));
   EXPECT_TRUE(is_noted(*read, "Operator \"me\""));
 }
 

@@ -134,7 +134,7 @@ class LvmReader final : public TableReader {
     if (table_.x_is_time)
       head_.rate_hz = timing_.rate_hz;
     else
-      head_.notes.push_back({Severity::warning, "X is no time: " + table_.x_heading});
+      head_.notes.push_back({Severity::warning, "X is not a time: " + table_.x_heading});
     std::int64_t at_ns = 0;
     if (timing_.start_ns && !__builtin_add_overflow(start_ns, offset_ns, &at_ns))
       head_.start_ns = at_ns;
@@ -165,7 +165,7 @@ class LvmReader final : public TableReader {
                                        "is not in the file",
                                        decimals, in_words(std::pow(10.0, -decimals)))});
     if (timing_.start_ns)
-      head_.notes.push_back({Severity::info, "Date and Time of the file are taken for UTC"});
+      head_.notes.push_back({Severity::info, "Date and Time of the file are taken as UTC"});
     double apart_s = 0.0;
     const LvmChannel& first = table_.channels.front();
     for (const LvmChannel& channel : table_.channels)
@@ -205,7 +205,7 @@ std::vector<Note> LvmReader::notes() const {
     notes.push_back(
         {Severity::warning,
          fmt::format("channels have X values of their own in {} rows, the first line "
-                     "{}: those of {} are taken for all",
+                     "{}: those of {} are taken as all",
                      faults.other_x, faults.other_x_line, table_.channels.front().heading)});
   if (faults.cut_line)
     notes.push_back({Severity::bad, fmt::format("line {}: breaks off within the row: its last "

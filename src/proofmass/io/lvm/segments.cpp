@@ -203,7 +203,7 @@ class Lister {
     if (strange_lines_ > 0)
       notes.push_back(
           {Severity::warning,
-           fmt::format("{} lines are no rows of figures, the first is line {}: passed over",
+           fmt::format("{} lines are not rows of numbers, the first is line {}: passed over",
                        strange_lines_, first_strange_line_)});
     end_segment();
     if (empty_segments_ > 0)

@@ -131,7 +131,7 @@ Result<MatCatalogue> list_mat4(std::string_view file) {
                    fmt::format("byte {}: no variable begins here, or the file breaks off", offset)};
     if (header->machine > 1)
       return Error{Errc::unsupported,
-                   "is a MAT v4 file of a VAX or Cray, whose numbers are not read: save it anew "
+                   "is a MAT v4 file of a VAX or Cray, whose numbers are not read: save it again "
                    "with save(…, '-v7')"};
     const auto wanted = figure_bytes(*header);
     const std::size_t begin = offset + header->bytes;

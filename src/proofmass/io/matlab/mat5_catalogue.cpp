@@ -35,7 +35,7 @@ class Walker {
     const auto outer = elements_.tag(stream_.most());
     if (!outer) return outer.error();
     if (outer->type != mi_matrix || outer->is_small)
-      return stream_.corrupt(0, "what is compressed here is no variable");
+      return stream_.corrupt(0, "what is compressed here is not a variable");
     if (const Status read = array(Place{}, outer->begin + outer->size); !read) return read;
     return stream_.finish();
   }

@@ -133,8 +133,8 @@ class Chooser {
       chosen_.insert(&*array);
       if (table_of(*array)) return Done{};
       return Error{Errc::invalid_argument,
-                   fmt::format("{} ({}) is no table of samples, at most {} channels", array->path,
-                               array->description(), most_mat_channels)};
+                   fmt::format("{} ({}) is not a table of samples, at most {} channels",
+                               array->path, array->description(), most_mat_channels)};
     }
     if (!name.empty() && take_largest(name)) return Done{};
     return Error{Errc::invalid_argument,

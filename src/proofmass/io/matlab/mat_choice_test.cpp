@@ -108,7 +108,7 @@ TEST(MatChoice, ASingleNumberMayBeTheRate) {
   EXPECT_TRUE(is_noted(*read, "run.Fs: the rate in Hz")) << notes_of(*read);
   const auto mad = read_mat5(doubles("fs", 1, {-1}) + doubles("acc", samples, axes));
   EXPECT_EQ(mad->time.source, TimeSource::none);
-  EXPECT_TRUE(is_noted(*mad, "fs: is no rate that can be")) << notes_of(*mad);
+  EXPECT_TRUE(is_noted(*mad, "fs: is not a possible rate")) << notes_of(*mad);
 }
 
 TEST(MatChoice, TheUserChoosesByName) {

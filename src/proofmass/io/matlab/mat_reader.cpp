@@ -98,7 +98,7 @@ Result<std::optional<double>> rate_of(const MatArray& array,
   const double rate_hz = (*figure)[0][0];
   notes.push_back({Severity::info,
                    fmt::format("{}: {}", array.path,
-                               is_rate(rate_hz) ? "the rate in Hz" : "is no rate that can be")});
+                               is_rate(rate_hz) ? "the rate in Hz" : "is not a possible rate")});
   return is_rate(rate_hz) ? std::optional(rate_hz) : std::nullopt;
 }
 

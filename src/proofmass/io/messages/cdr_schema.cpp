@@ -118,7 +118,7 @@ Result<CdrSchema> read_cdr_schema(std::string_view name, std::string_view text) 
     }
     if (!read_line(line, package_of(message), out.messages[message]))
       return Error{Errc::corrupt,
-                   fmt::format("line {} of its schema is no field: {}", number, shown(line))};
+                   fmt::format("line {} of its schema is not a field: {}", number, shown(line))};
   }
   add_times(out);
   return out;

@@ -171,7 +171,7 @@ class NpzOpener {
     if (is_told) head.rate_hz = values[0];
     head.notes.push_back(
         {Severity::info,
-         fmt::format("{}: {}", array.path, is_told ? "the rate in Hz" : "is no rate that can be")});
+         fmt::format("{}: {}", array.path, is_told ? "the rate in Hz" : "is not a possible rate")});
     return Done{};
   }
 

@@ -116,13 +116,13 @@ Result<Instant> instant_of(const TextLine& line, const InstantColumns& columns) 
   };
   Instant instant{.time_s = figure(*columns.time), .position_m = {}, .std_m = {}, .line = 0};
   instant.line = line.number;
-  if (!std::isfinite(instant.time_s)) return wrong("the time is no number");
+  if (!std::isfinite(instant.time_s)) return wrong("the time is not a number");
   if (columns.position) instant.position_m = figure(*columns.position);
   if (columns.std) instant.std_m = figure(*columns.std);
   if (instant.position_m && !std::isfinite(*instant.position_m))
-    return wrong("the position is no number");
+    return wrong("the position is not a number");
   if (instant.std_m && !(std::isfinite(*instant.std_m) && *instant.std_m > 0.0))
-    return wrong("the standard deviation is no number above 0");
+    return wrong("the standard deviation is not a number above 0");
   return instant;
 }
 

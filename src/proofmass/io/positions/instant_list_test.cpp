@@ -70,10 +70,10 @@ TEST(ReadInstants, WithoutAHeaderTheColumnsAreTimePositionAndStd) {
 
 TEST(ReadInstants, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(refusal("time,position\n1,0.2\n2,there\n"),
-            "fixes.csv: line 3: the position is no number");
-  EXPECT_EQ(refusal("time,position\nsoon,0.2\n"), "fixes.csv: line 2: the time is no number");
+            "fixes.csv: line 3: the position is not a number");
+  EXPECT_EQ(refusal("time,position\nsoon,0.2\n"), "fixes.csv: line 2: the time is not a number");
   EXPECT_EQ(refusal("time,position,std\n1,0.2,0\n"),
-            "fixes.csv: line 2: the standard deviation is no number above 0");
+            "fixes.csv: line 2: the standard deviation is not a number above 0");
   EXPECT_EQ(refusal("time\n1\n2\n1\n"), "fixes.csv: line 4: the same time as in line 2");
   EXPECT_EQ(refusal("time,position\n"), "fixes.csv: has no row");
   EXPECT_NE(refusal("place,colour\n1,2\n").find("expected a header with time"), std::string::npos);

@@ -35,7 +35,7 @@ class IntervalReader {
     interval.start = figure(row, columns_.start.column) * columns_.start.unit_s;
     interval.end = figure(row, columns_.end.column) * columns_.end.unit_s;
     if (!std::isfinite(interval.start) || !std::isfinite(interval.end))
-      return wrong(row, "start or end is no number");
+      return wrong(row, "start or end is not a number");
     if (const auto fault = fault_of(interval); !fault.empty()) return wrong(row, fault);
     interval.label = label_of(row);
     if (columns_.angle) {

@@ -105,9 +105,10 @@ TEST(ReadIntervals, SaysWhichLineIsWrongAndWhy) {
             "rests.csv: line 3: begins at 10, within the interval of line 2 that ends at 10");
   EXPECT_EQ(refusal("first,last\n0.5,10\n"),
             "rests.csv: line 2: the number of a sample is whole and not below zero");
-  EXPECT_EQ(refusal("start,end\n1,2\n3,?\n4,5\n"), "rests.csv: line 3: start or end is no number");
-  EXPECT_EQ(refusal("start,end\n1,2\n3\n4,5\n"), "rests.csv: line 3: start or end is no number");
-  EXPECT_EQ(refusal("start,end\n1,inf\n"), "rests.csv: line 2: start or end is no number");
+  EXPECT_EQ(refusal("start,end\n1,2\n3,?\n4,5\n"),
+            "rests.csv: line 3: start or end is not a number");
+  EXPECT_EQ(refusal("start,end\n1,2\n3\n4,5\n"), "rests.csv: line 3: start or end is not a number");
+  EXPECT_EQ(refusal("start,end\n1,inf\n"), "rests.csv: line 2: start or end is not a number");
   EXPECT_EQ(refusal("start,end,up_x,up_y,up_z\n1,2,0,0,0\n"),
             "rests.csv: line 2: the direction needs three figures that are not all zero");
   EXPECT_EQ(refusal("start,end,up_x,up_y,up_z\n1,2,0,1,\n"),

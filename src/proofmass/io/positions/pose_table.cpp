@@ -123,7 +123,7 @@ class TableReader {
         if (const Status read = complete(row); !read) return read.error();
         table_.rows.push_back(std::move(row));
       } else {
-        tell(Severity::warning, place(k) + ": a mean is no number: left out");
+        tell(Severity::warning, place(k) + ": a mean is not a number: left out");
       }
     }
     if (table_.rows.empty()) return Error{Errc::too_few_samples, "has no row of three means"};
@@ -270,7 +270,7 @@ Result<PoseTable> pose_table(const Recording& recording, const std::optional<Uni
     return table;
   }
   return Error{Errc::corrupt,
-               "is no table of means: expected three columns such as x_mean, y_mean, z_mean, or "
+               "is not a table of means: expected three columns such as x_mean, y_mean, z_mean, or "
                "three columns or three rows in all"};
 }
 

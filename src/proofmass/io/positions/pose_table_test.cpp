@@ -116,7 +116,7 @@ TEST(PoseTable, LeavesOutRowsWithoutMeansAndSaysSo) {
   ASSERT_TRUE(table.has_value()) << table.error().message;
   ASSERT_EQ(table->rows.size(), 2u);
   EXPECT_EQ(table->rows[1].row, 2u);
-  EXPECT_NE(notes_of(*table).find("line 3: a mean is no number: left out"), std::string::npos)
+  EXPECT_NE(notes_of(*table).find("line 3: a mean is not a number: left out"), std::string::npos)
       << notes_of(*table);
   const auto none = table_of("x_mean,y_mean,z_mean\n1,nan,3\nnan,5,6\n");
   ASSERT_FALSE(none.has_value());

@@ -14,7 +14,7 @@ namespace {
 
 Error damaged(std::string_view what) {
   return {Errc::corrupt,
-          fmt::format("is no pyramid of Proofmass, or a damaged one ({}): delete it", what)};
+          fmt::format("is not a pyramid of Proofmass, or a damaged one ({}): delete it", what)};
 }
 
 /// The entries of an archive that is a pyramid.
@@ -141,8 +141,7 @@ Result<Pyramid> read_pyramid(std::unique_ptr<Archive> archive,
   const auto state = reader.figures<std::int64_t>("source", 2);
   if (!state) return state.error();
   if ((*state)[0] != static_cast<std::int64_t>(source.bytes) || (*state)[1] != source.modified_ns)
-    return Error{Errc::unsupported,
-                 "was built from another state of the recording: it is to be built anew"};
+    return Error{Errc::unsupported, "was built from another version of the recording: rebuild it"};
   Pyramid out;
   if (const Status s = read_names(reader, out); !s) return s.error();
   const auto samples = reader.figures<std::int64_t>("samples", 1);

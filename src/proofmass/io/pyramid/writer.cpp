@@ -69,7 +69,7 @@ Status add_level(StoredZipWriter& zip, const PyramidLevel& level, std::size_t in
 Result<SourceState> source_state_of(const std::string& path) {
   struct stat found{};
   if (::stat(path.c_str(), &found) != 0 || !S_ISREG(found.st_mode))
-    return Error{Errc::unreadable, path + ": is no file"};
+    return Error{Errc::unreadable, path + ": is not a file"};
   return SourceState{static_cast<std::uint64_t>(found.st_size),
                      std::int64_t{found.st_mtim.tv_sec} * 1'000'000'000 + found.st_mtim.tv_nsec};
 }

@@ -67,7 +67,7 @@ Result<TdmsIndex> read_tdms_index(TdmsCursor& cursor, std::uint32_t header) {
   constexpr std::uint32_t longest = 64;  // 20 and 28 are usual
   const std::uint64_t at = cursor.position();
   if (header > longest && !is_daqmx(header))
-    return at_byte(at, fmt::format("0x{:X} is no raw data index that is known", header));
+    return at_byte(at, fmt::format("0x{:X} is not a known raw data index", header));
   TdmsIndex index;
   index.type = cursor.take<std::uint32_t>();
   index.kind = tdms_kind(index.type);

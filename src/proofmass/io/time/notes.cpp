@@ -22,7 +22,7 @@ Note on_hours(const MendedStamps& done, const NamedStamps& stamps) {
   std::string what = "went back an hour";
   if (on > 0) what = done.hours_back > 0 ? "leapt an hour and went back one" : "leapt an hour";
   return {Severity::warning,
-          fmt::format("{}: {} at {}, with no row missing: taken for summer time, and taken out",
+          fmt::format("{}: {} at {}, with no row missing: interpreted as summer time and removed",
                       stamps.name, what, done.hours.where(stamps.first_line))};
 }
 

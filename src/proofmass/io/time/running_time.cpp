@@ -79,7 +79,7 @@ void RunningTimeBase::decide_on_stamps(const TimeEvidence& rows) {
   if (!steps.is_of_clock() || steps.ascending < 0.8 || is_count) {
     rejected_ = true;
     decisions_.push_back(
-        {Severity::warning, fmt::format("{}: is no time base, as it {}", stamps.name,
+        {Severity::warning, fmt::format("{}: is not a time base, as it {}", stamps.name,
                                         is_count ? "counts in ones" : "does not ascend")});
     return;
   }

@@ -71,7 +71,7 @@ class StampMender {
   explicit StampMender(const StampRules& rules) : rules_(rules), wraps_(rules.unit_s) {}
 
   /// The first row with a plausible time: most of the following rows come after it, and within a
-  /// reasonable time. nullopt if there is no number.
+  /// reasonable time. nullopt if there is not a number.
   [[nodiscard]] static std::optional<std::size_t> first_good(View<double> stamps,
                                                              const StampRules& rules);
 

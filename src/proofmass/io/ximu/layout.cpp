@@ -163,7 +163,7 @@ MemberHint hint_of(Archive& archive,
     hint.rate_hz = card_rate_hz(archive, session, how);
   hint.notes.push_back({Severity::info,
                         "x-IMU: packet numbers, which count packets of all kinds, "
-                        "are no time and are left out"});
+                        "are not times and are omitted"});
   hint.notes.push_back({Severity::info, hint.rate_hz
                                             ? fmt::format("rate {} Hz by {}", *hint.rate_hz, how)
                                             : "no file beside it says its rate: give --rate"});

@@ -13,7 +13,8 @@ namespace {
 using calibrate::BudgetLine;
 using calibrate::UncertaintyBudget;
 
-// SI units in which the figures of an accelerometer begin with zeros, and those printed instead.
+// SI units in which the figures of an accelerometer have leading zeros, and the units printed
+// instead.
 struct PrintedUnit {
   std::string_view si, printed;
   double factor;
@@ -32,7 +33,7 @@ std::string with_printed_unit(std::string number, std::string_view unit) {
   return number;
 }
 
-// Decimals that leave an uncertainty two significant digits.
+// Decimals that give an uncertainty two significant digits.
 int decimals_of(double uncertainty) {
   constexpr int most = 9, of_certain = 6;
   if (!(uncertainty > 0.0)) return of_certain;
@@ -105,7 +106,7 @@ Table results_table(const CertificateData& data) {
   return table;
 }
 
-// u(x) of a relative contribution is shown in per cent.
+// For a relative contribution u(x) is printed in per cent.
 PrintedUnit printed_input(const std::string& si) {
   return si == "1" ? PrintedUnit{"1", "%", 100.0} : printed(si);
 }

@@ -42,7 +42,7 @@ CertificateData fake_certificate() {
                        .positions = 24,
                        .budgets = {},
                        .not_determined = {},
-                       .monte_carlo = "200 calibrations of drawn readings confirm the budget.",
+                       .monte_carlo = "200 calibrations of simulated data confirm the budget.",
                        .limits = {"The cross-axis sensitivity of the case."}};
   for (std::size_t axis = 0; axis < 3; ++axis)
     data.budgets.push_back(bias(axis, 1.5 + 0.01 * static_cast<double>(axis)));
@@ -93,10 +93,10 @@ TEST(Certificate, NamesEverySourceWithItsShare) {
 
 TEST(Certificate, SaysWhatIsNotStatedAndWhatItDoesNotCover) {
   CertificateData bare;
-  bare.not_determined = {"misalignment: null: six parameters were asked for"};
+  bare.not_determined = {"misalignment: null: six parameters were requested"};
   const std::string page = page_of(bare);
   EXPECT_NE(page.find("not stated"), std::string::npos);
-  EXPECT_NE(page.find("six parameters were asked for"), std::string::npos);
+  EXPECT_NE(page.find("six parameters were requested"), std::string::npos);
   EXPECT_EQ(page.find("Uncertainty budgets"), std::string::npos);
   EXPECT_EQ(page.find("Monte Carlo"), std::string::npos);
   EXPECT_NE(page.find("The angle between the sensor"), std::string::npos);

@@ -96,7 +96,7 @@ Section check_section(const CalibrateReport& report) {
           .tables = {std::move(table)}};
 }
 
-// Bias and scale of each file, units in the head.
+// Bias and scale of each file, with units in the head.
 Table supply_table(const CalibrateReport& report) {
   Table table{"", {"File", "Supply"}, {}};
   for (const SuppliedFit& one : report.supplies) {
@@ -131,7 +131,7 @@ Section supply_section(const CalibrateReport& report) {
   return section;
 }
 
-// The report's certificate, with what follows from the fit.
+// The report's certificate, with what the fit adds to it.
 CertificateData certificate_of(const CalibrateReport& report) {
   CertificateData data = report.certificate;
   data.method = "multi-position, " + model_words(report.fit.model);
@@ -162,7 +162,7 @@ std::vector<Note> calibrate_notes(const CalibrateReport& report) {
     add(Severity::warning, std::move(text));
   if (report.fit.lack_of_fit && report.fit.lack_of_fit->p < some_p)
     add(Severity::warning, lack_of_fit_sentence(report));
-  // A fit whose residuals are rounding has nothing to converge by.
+  // Residuals that are pure rounding give the solver no descent to converge on.
   if (!report.fit.converged && report.fit.residual_rms_mps2 > rounding_g * report.fit.gravity_mps2)
     add(Severity::bad, "the fit did not converge: do not use its figures");
   if (!report.why_no_check.empty())

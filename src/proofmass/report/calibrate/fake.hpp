@@ -9,12 +9,13 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/report/calibrate/report.hpp"
 
-// Made-up calibrations whose every figure is known, for the tests of this module.
+// Synthetic calibrations with known figures, for the tests of this module.
 namespace proofmass::report {
 
 inline constexpr double fake_pose_mg = 1e-3 * standard_gravity_mps2;
 
-/// Rests of 3 s every 5 s, spread over the sphere, residuals ± 0.05 mg, 0.06 mg by the others.
+/// Rests of 3 s every 5 s, spread over the sphere, with residuals of ± 0.05 mg, leave-one-out 0.06
+/// mg.
 inline void add_fake_poses(std::size_t count, CalibrateReport& report) {
   for (std::size_t k = 0; k < count; ++k) {
     const auto place = static_cast<double>(k);
@@ -38,7 +39,7 @@ inline void add_fake_poses(std::size_t count, CalibrateReport& report) {
   }
 }
 
-/// Biases 0.1, −0.2, 0.3 m/s², scales 1.01, 0.99, 1.0, angles 1, −2, 3 mrad; all with 0.0002.
+/// Biases 0.1, −0.2, 0.3 m/s², scales 1.01, 0.99, 1.0, angles 1, −2, 3 mrad; each std is 0.0002.
 inline void add_fake_figures(CalibrateReport& report) {
   calibrate::MultiPosition& fit = report.fit;
   const std::array<double, 9> values{0.1, -0.2, 0.3, 1.01, 0.99, 1.0, 1e-3, -2e-3, 3e-3};
@@ -58,12 +59,12 @@ inline void add_fake_figures(CalibrateReport& report) {
   fit.lack_of_fit = calibrate::LackOfFit{1.1, 0.36, 15.0};
   fit.condition = 4.2;
   fit.next_pose =
-      calibrate::NextPose{Eigen::Vector3d(0.0, 0.0, -1.0), "lay it with −z straight up", 0.54};
+      calibrate::NextPose{Eigen::Vector3d(0.0, 0.0, -1.0), "place it with −z straight up", 0.54};
   fit.iterations = 5;
   fit.converged = true;
 }
 
-/// 24 positions of one recording, all in order, without check and supplies.
+/// 24 consistent positions of one recording, without check and supplies.
 inline CalibrateReport fake_calibrate_report() {
   CalibrateReport report;
   report.inputs = {"turned <1>.csv"};
@@ -88,7 +89,7 @@ inline CalibrateReport fake_calibrate_report() {
   return report;
 }
 
-/// The seventh position is 5.1 mg off and left out.
+/// The seventh position is off by 5.1 mg and excluded.
 inline CalibrateReport fake_suspect_report() {
   CalibrateReport report = fake_calibrate_report();
   calibrate::PoseResidual& bad = report.fit.poses[6];
@@ -99,7 +100,7 @@ inline CalibrateReport fake_suspect_report() {
   return report;
 }
 
-/// Nine positions of a table without noise or times: nothing is left to judge by.
+/// Nine positions of a table without noise or times: no redundancy to test the fit by.
 inline CalibrateReport fake_bare_report() {
   CalibrateReport report = fake_calibrate_report();
   report.files.front() = {.file = "means.csv", .origin = PoseOrigin::table, .poses = 9};
@@ -130,7 +131,7 @@ inline CalibrateReport fake_bare_report() {
   return report;
 }
 
-/// The same sensor in volts at 3.0 and 3.6 V, following its supply.
+/// The same sensor in volts at supplies of 3.0 and 3.6 V, ratiometric.
 inline CalibrateReport fake_supply_report() {
   CalibrateReport report = fake_calibrate_report();
   report.unit = *parse_unit("V");

@@ -28,7 +28,7 @@ std::size_t parameter_count(PoseModel model) {
   return model == PoseModel::norm_9 ? 9 : model == PoseModel::given_12 ? 12 : 6;
 }
 
-// Reasons that several entries share.
+// Reasons shared by several entries.
 constexpr const char* no_std =
     "the noise of the means is not known and there is no redundant position";
 constexpr const char* no_redundancy =
@@ -168,7 +168,7 @@ Field cross_axis(const CalibrateReport& report) {
                   "whose z is its z axis"});
 }
 
-// What only some models have.
+// Entries that only some models have.
 void add_directions(const MultiPosition& fit, Fields& out) {
   if (fit.mounting_rad && fit.mounting_std_rad)
     out.push_back(field::object(

@@ -5,21 +5,21 @@
 // Entries of the document of `calibrate`.
 namespace proofmass::report {
 
-/// The reason where a standard deviation needs the noise of the means.
+/// Reason for an absent standard deviation that depends on the noise of the means.
 inline constexpr const char* noise_of_means_unknown = "the noise of the means is not known";
 
-/// How the positions of each file were given, and how many.
+/// Origin and number of each file's positions.
 [[nodiscard]] Field pose_files_field(const CalibrateReport& report);
 [[nodiscard]] Field positions_field(const CalibrateReport& report);
 
-/// The budget of each figure, its check by Monte Carlo, the drift of the bias, new positions.
+/// Budget of each figure, its Monte Carlo check, bias stability, residuals of new positions.
 [[nodiscard]] Field budgets_field(const CalibrateReport& report);
 [[nodiscard]] Field monte_carlo_field(const CalibrateReport& report);
 [[nodiscard]] Field stability_field(const CalibrateReport& report);
-/// There must be a validation.
+/// Precondition: the report has a validation.
 [[nodiscard]] Field validation_field(const CalibrateReport& report);
 
-/// There must be a dependence on the supply.
+/// Precondition: the report has a fit against the supply.
 [[nodiscard]] Field supply_field(const CalibrateReport& report);
 
 }  // namespace proofmass::report

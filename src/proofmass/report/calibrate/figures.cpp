@@ -16,7 +16,7 @@ double place(std::size_t k) {
   return static_cast<double>(k + 1);
 }
 
-// A step for each position, since the durations of their means may differ.
+// Stepped, since the durations of the means may differ from position to position.
 Band noise_band(const CalibrateReport& report) {
   Band band{.label = "± 2 standard deviations of the noise",
             .x = {},
@@ -35,7 +35,7 @@ Band noise_band(const CalibrateReport& report) {
   return band;
 }
 
-// Half the height of the plot, from the positions that are not suspect.
+// Half height of the plot, from the positions that are not suspect.
 double reach(const CalibrateReport& report) {
   double most = 0.0;
   for (const PoseResidual& pose : report.fit.poses) {
@@ -69,7 +69,7 @@ void add_point(const Eigen::Vector3d& up, Curve& curve) {
   curve.y.push_back(y);
 }
 
-// Circles this many degrees from the centre of each disc.
+// Circles at this angle from the z axis, one in each disc.
 void add_circles(double from_z_deg, Mark mark, Figure& figure) {
   const double r = std::sqrt(1.0 - std::cos(from_z_deg * rad_per_deg));
   for (const double center : {-disc_center, disc_center}) {
@@ -99,7 +99,7 @@ void add_axis_names(Figure& figure) {
 constexpr Ink axis_inks[] = {Ink::blue, Ink::orange, Ink::green};
 constexpr const char* axis_names[] = {"x", "y", "z"};
 
-// One axis: its calibrations as points, and the line through them.
+// One axis: its calibrations as points, and the fitted line.
 template <class Point, class Line>
 void add_axis(const CalibrateReport& report,
               std::size_t axis,

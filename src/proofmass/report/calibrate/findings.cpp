@@ -48,7 +48,7 @@ std::string file_sentence(const CalibrateReport& report, const PoseFile& file) {
   return text + ".";
 }
 
-// With as many parameters as positions the residuals vanish.
+// If all positions are consumed by the parameters, the residuals are identically zero.
 std::string residual_sentence(const calibrate::MultiPosition& fit) {
   const auto used = static_cast<std::size_t>(std::count_if(
       fit.poses.begin(), fit.poses.end(), [](const PoseResidual& pose) { return pose.used; }));
@@ -104,7 +104,7 @@ std::string cross_axis_sentence(const CalibrateReport& report) {
                              joined(words) + ".";
 }
 
-// What ± includes.
+// Components of uncertainty that ± includes.
 std::string scope_sentence(const CalibrateReport& report) {
   const std::string text = "± is the repeatability within this recording; ";
   if (!report.stability)

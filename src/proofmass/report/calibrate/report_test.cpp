@@ -63,7 +63,7 @@ TEST(CalibrateReport, NamesThePositionThatContradictsTheOthersAndWhatToDo) {
   expect_words(calibrate_conclusion(report), {"kept in the fit, as requested"});
 }
 
-TEST(CalibrateReport, SaysThatOneOfSomeIsBadWhereItCannotTellWhich) {
+TEST(CalibrateReport, ReportsAnUnidentifiedBadPosition) {
   CalibrateReport report = fake_calibrate_report();
   report.fit.doubtful = {2, 7};
   expect_words(
@@ -85,7 +85,7 @@ TEST(CalibrateReport, NamesTheSourceWhereNoiseIsNotWhatLimitsIt) {
 
 TEST(CalibrateReport, SaysWhatIsToBeGainedByAnotherPosition) {
   CalibrateReport report = fake_calibrate_report();
-  expect_words(next_pose_sentence(report), {"Next position: lay it with −z straight up", "54 %"});
+  expect_words(next_pose_sentence(report), {"Next position: place it with −z straight up", "54 %"});
   report.fit.next_pose->gain = 0.03;
   expect_words(next_pose_sentence(report), {"would change little", "3 %"});
   report.fit.poses.resize(10);
@@ -147,7 +147,7 @@ TEST(CalibrateReport, GivesTheReasonOfEveryNull) {
                 "cross_axis[2]: null: the z axis defines the frame\n"});
 }
 
-TEST(CalibrateReport, HasNoStandardDeviationWhereNobodyKnowsTheNoise) {
+TEST(CalibrateReport, HasNoStandardDeviationWithoutNoise) {
   const CalibrateReport report = fake_bare_report();
   const json document = document_of(report);
   EXPECT_TRUE(document["bias"][0]["std"].is_null());

@@ -54,7 +54,7 @@ void set_units(std::size_t k, const Unit& unit, CalibrationFigure& out) {
   out.printed_unit = acceleration ? "" : printed + "/g";
 }
 
-// By the budget, which has the degrees of freedom of all its lines.
+// From the budget, which combines the degrees of freedom of all its contributions.
 double half_width(const CalibrateReport& report, const std::string& key, double std) {
   for (const calibrate::UncertaintyBudget& budget : report.budgets)
     if (budget.measurand.quantity == key) return budget.expanded_95;
@@ -65,7 +65,7 @@ std::string with_unit(const std::string& number, const std::string& unit) {
   return unit.empty() ? number : number + " " + unit;
 }
 
-// Two digits without powers of ten, as beside a scale of 1.01002.
+// Two significant digits without an exponent, to match a scale of 1.01002.
 std::string two_digits(double value) {
   constexpr int most = 9;
   if (!(value > 0.0)) return "0";
@@ -73,7 +73,7 @@ std::string two_digits(double value) {
   return fixed(value, decimals);
 }
 
-// Decimals that leave the typical residual two digits; residuals below it are rounding.
+// Decimals that give the typical residual two significant digits; smaller residuals are rounding.
 int residual_decimals(const CalibrateReport& report) {
   const double rms = report.fit.residual_rms_mps2 / mg;
   constexpr double rounding = 1e-6;
@@ -81,7 +81,7 @@ int residual_decimals(const CalibrateReport& report) {
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(rms))), 0, 6);
 }
 
-// All rows but the first, which is the head.
+// The first row is the head, and does not count.
 void without_empty_columns(std::vector<std::vector<std::string>>& rows) {
   for (std::size_t column = rows.front().size(); column-- > 0;) {
     const auto blank = [&](const std::vector<std::string>& row) { return row[column].empty(); };
@@ -100,7 +100,7 @@ std::string verdict_of(const CalibrateReport& report, std::size_t k) {
   return "";
 }
 
-// "12.3–15.1 s", "samples 120–450", "" where no times are known.
+// "12.3–15.1 s", "samples 120–450"; "" if the times are unknown.
 std::string time_words(const CalibrateReport& report, std::size_t k) {
   const calibrate::Pose& pose = report.poses[k];
   if (!pose.start_s || !pose.end_s) return "";
@@ -154,7 +154,7 @@ std::vector<std::vector<std::string>> figure_rows(const CalibrateReport& report)
   std::vector<std::vector<std::string>> rows{{"Figure", "Value", "95 %", "Meaning"}};
   const std::string why = why_no_misalignment(report.fit);
   for (const CalibrationFigure& one : calibration_figures(report)) {
-    const std::string band =  // the sign stays on the line of its number
+    const std::string band =  // keeps the sign on the line of its number
         one.half_width_95 ? "±\u00a0" + two_digits(*one.half_width_95 * one.factor) : "";
     rows.push_back({one.label, figure_words(one, known), band,
                     one.figure ? one.meaning : why.substr(0, why.find(';'))});

@@ -40,7 +40,7 @@ void add_notes(const ChannelRuns& runs, std::vector<Note>& notes) {
     notes.push_back({note.severity, label + "mean of all: " + note.text});
 }
 
-// The report's own, then each channel's with its name; a refusal is bad.
+// The report's notes, then those of each channel with its name; a refused channel is Severity::bad.
 std::vector<Note> all_notes(const DriftReport& report) {
   std::vector<Note> notes = report.notes;
   for (const ChannelDrift& channel : report.channels)
@@ -65,7 +65,8 @@ Fields report_fields(const DriftReport& report, const std::vector<Note>& notes) 
   return fields;
 }
 
-// "x: warm-up of 5.0 ± 0.1 mg with time constant 900 ± 20 s."; of many channels, how many warm up.
+// "x: warm-up of 5.0 ± 0.1 mg with time constant 900 ± 20 s."; for many channels, the number that
+// warm up.
 std::string channels_conclusion(const DriftReport& report) {
   constexpr std::size_t most_named = 3;
   std::string text;
@@ -124,7 +125,7 @@ std::vector<KeyFigure> figures_of(const DriftReport& report) {
   return figures;
 }
 
-// The more channels, the less of each.
+// The more channels, the less detail for each.
 enum class Detail { all, curve, table };
 
 Detail detail_of(const DriftReport& report) {
@@ -143,7 +144,7 @@ void add_all(const ChannelDrift& channel, const std::string& label, Section& sec
     section.tables.push_back(position_table(*channel.outlook->forecast));
   if (has_temperature) section.tables.push_back(temperature_table(channel));
   section.figures.push_back([&, label] { return samples_figure(channel, label); });
-  // The profile of a time constant that is not identified shows little.
+  // The profile of an unidentified time constant is nearly flat.
   if (analysis.fit.identified && !analysis.fit.profile.empty())
     section.figures.push_back([&, label] { return profile_figure(channel, label); });
   for (std::size_t k = 0; k < analysis.residuals.size(); ++k)
@@ -177,7 +178,7 @@ Section channel_section(const DriftReport& report, const ChannelDrift& channel, 
   return section;
 }
 
-// The table is for a terminal where the channels have no sections.
+// The terminal shows the table if the channels have no sections of their own.
 Section overview_section(const DriftReport& report, Detail detail) {
   Table table{"Verdicts", {"Channel", "Verdict", "Bias or level at power-on"}, {}};
   table.page_only = !report.runs.empty() || detail != Detail::table;

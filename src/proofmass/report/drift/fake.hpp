@@ -8,7 +8,7 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/report/drift/report.hpp"
 
-// Made-up analyses whose every figure is known, for the tests of this module.
+// Synthetic analyses with known figures, for the tests of this module.
 namespace proofmass::report {
 
 inline constexpr double fake_mg = 1e-3 * standard_gravity_mps2;
@@ -40,7 +40,7 @@ inline signal::WhitenessTest fake_whiteness(double scale_s, std::size_t values, 
   return test;
 }
 
-/// Least and greatest of the curve and noise of so much standard deviation.
+/// Minimum and maximum of the curve plus noise with standard deviation `std`.
 inline characterise::Envelope fake_envelope(const characterise::DriftCurve* curve,
                                             double duration_s,
                                             double scale_s,
@@ -60,7 +60,7 @@ inline characterise::Envelope fake_envelope(const characterise::DriftCurve* curv
   return envelope;
 }
 
-/// The series behind the fit: curve, envelopes, whiteness at 1, 10 and 100 s.
+/// Series of the fit: curve, envelopes, whiteness at 1, 10 and 100 s.
 inline void fake_series(characterise::DriftAnalysis& analysis, double memory) {
   analysis.rate_hz = 1.0;
   analysis.samples = 7200;
@@ -80,8 +80,8 @@ inline void fake_series(characterise::DriftAnalysis& analysis, double memory) {
   analysis.residuals = {fake_envelope(nullptr, 7200.0, 1.0, 1.5 * fake_mg),
                         fake_envelope(nullptr, 7200.0, 10.0, 0.5 * fake_mg),
                         fake_envelope(nullptr, 7200.0, 100.0, 0.2 * fake_mg)};
-  analysis.knocks = {{signal::EventKind::knock, 1200, 1203, 0.05, 20.0}};
-  analysis.notes = {{Severity::warning, "a knock at 1200 s"}};
+  analysis.outliers = {{signal::EventKind::outlier, 1200, 1203, 0.05, 20.0}};
+  analysis.notes = {{Severity::warning, "an outlier at 1200 s"}};
 }
 
 inline void fake_profile(characterise::DriftFit& fit, double curvature) {
@@ -100,7 +100,7 @@ inline ChannelDrift fake_channel_of(const std::string& name) {
   return channel;
 }
 
-/// A warm-up of 5.00 ± 0.10 mg with 900 ± 20 s from 1.50 ± 0.05 mg on, under white noise and a
+/// A warm-up of 5.00 ± 0.10 mg with 900 ± 20 s, starting at 1.50 ± 0.05 mg, under white noise and a
 /// random walk.
 inline ChannelDrift fake_warm_up(const std::string& name) {
   ChannelDrift channel = fake_channel_of(name);
@@ -139,7 +139,7 @@ inline ChannelDrift fake_warm_up(const std::string& name) {
   return channel;
 }
 
-/// Three steps of −2.0, 4.1 and 1.0 mg in place of an exponential.
+/// Three steps of −2.0, 4.1 and 1.0 mg instead of an exponential.
 inline ChannelDrift fake_steps(const std::string& name) {
   ChannelDrift channel = fake_channel_of(name);
   characterise::DriftAnalysis& analysis = channel.analysis.emplace();
@@ -177,7 +177,7 @@ inline ChannelDrift fake_refused(const std::string& name) {
   return channel;
 }
 
-/// −2 mg/K between 290 and 310 K, heating 0.3 mg above cooling.
+/// −2 mg/K between 290 and 310 K; 0.3 mg more while heating than while cooling.
 inline DriftTemperature fake_temperature() {
   DriftTemperature found{.channel = "temp", .model = {}, .refused = ""};
   characterise::TemperatureModel& model = found.model.emplace();
@@ -218,7 +218,7 @@ inline DriftOutlook fake_outlook() {
   return outlook;
 }
 
-/// Eight runs, 2.1 ± 0.5 mg apart, without a trend; no warm-up in common.
+/// Eight runs with a scatter of 2.1 ± 0.5 mg, without a trend or a common warm-up.
 inline ChannelRuns fake_runs(const std::string& name) {
   ChannelRuns runs{.name = name, .unit = *parse_unit("m/s^2"), .set = {}, .refused = ""};
   characterise::RunSet& set = runs.set.emplace();
@@ -250,7 +250,7 @@ inline ChannelRuns fake_runs(const std::string& name) {
   return runs;
 }
 
-/// x warms up, with temperature and forecast; y steps; z is refused.
+/// x has a warm-up, a temperature curve and a forecast; y has steps; z is refused.
 inline DriftReport fake_drift_report() {
   DriftReport report;
   report.inputs = {"rest <1>.csv"};

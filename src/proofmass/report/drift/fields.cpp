@@ -87,7 +87,7 @@ Field tests(const DriftFit& fit) {
        field::probability("line_p", fit.line_p)});
 }
 
-// What only some shapes have, and only some fits can bound.
+// Entries that only some shapes have, and that only some fits bound.
 void add_optional(const DriftFit& fit, const Unit& unit, Fields& fields) {
   if (fit.slope_per_s)
     fields.push_back(interval_estimate("slope_per_s", fit.slope_per_s,
@@ -191,12 +191,12 @@ Field profile(const DriftFit& fit) {
   return field::list("profile", std::move(items));
 }
 
-Field knocks(const DriftAnalysis& analysis, const std::string& unit) {
+Field outliers(const DriftAnalysis& analysis, const std::string& unit) {
   const auto at_s = [&](std::size_t sample) {
     return analysis.start_s + static_cast<double>(sample) / analysis.rate_hz;
   };
   return field::records(
-      "knocks", analysis.knocks,
+      "knocks", analysis.outliers,
       [&](const signal::Event& event) -> Fields {
         return {field::number("start_s", at_s(event.first), {.meaning = "since power-on"}),
                 field::number("end_s", at_s(event.last)), field::number("size", event.size),
@@ -315,7 +315,7 @@ Fields drift_fields(const ChannelDrift& channel) {
                   field::records("whiteness", analysis.whiteness, whiteness_fields,
                                  {.meaning = "of the samples less the curve, by scale: what a "
                                              "least-squares fit assumes"}),
-                  candidates(fit), profile(fit), knocks(analysis, unit)});
+                  candidates(fit), profile(fit), outliers(analysis, unit)});
   if (channel.temperature) fields.push_back(temperature_field(*channel.temperature, channel.unit));
   if (channel.outlook) fields.push_back(forecast(*channel.outlook, channel.unit));
   return fields;

@@ -8,18 +8,18 @@
 // Entries of the document of `drift`.
 namespace proofmass::report {
 
-/// The figure and its standard deviation without its interval.
+/// The figure with its standard deviation, without its interval.
 [[nodiscard]] std::optional<Uncertain> uncertain(
     const std::optional<characterise::Interval95>& figure);
 
-/// A figure of a fit. `about` has the reason why there is none; one without a finite standard
-/// deviation is null, too.
+/// A figure of a fit; null with the reason in `about` if it is absent or has no finite standard
+/// deviation.
 [[nodiscard]] Field interval_estimate(const char* key,
                                       const std::optional<characterise::Interval95>& figure,
                                       const std::string& unit,
                                       About about);
 
-/// [lower, upper]; null with the reason `why` where there may be no figure.
+/// [lower, upper]; null with the reason `why` if not defined.
 [[nodiscard]] Field interval_ends(const char* key,
                                   const std::optional<characterise::Interval95>& figure,
                                   const std::string& why,
@@ -37,7 +37,7 @@ namespace proofmass::report {
 /// The entries of a channel over several runs.
 [[nodiscard]] Fields runs_fields(const ChannelRuns& runs);
 
-/// The warm-up that all runs share, as that of a channel. The runs must have a set.
+/// The warm-up common to all runs, in the form of a channel. Precondition: the runs have a set.
 [[nodiscard]] ChannelDrift common_warm_up(const ChannelRuns& runs);
 
 }  // namespace proofmass::report

@@ -21,7 +21,7 @@ std::string axis_label(const std::string& what, const ShownUnit& shown) {
   return shown.symbol.empty() ? what : what + " (" + shown.symbol + ")";
 }
 
-// Least and greatest in turn, as a plot of the samples themselves looks.
+// Alternates minimum and maximum, like a plot of all samples.
 Curve zigzag(const characterise::Envelope& envelope, double per_si) {
   Curve curve{.label = "", .x = {}, .y = {}, .ink = Ink::grey, .mark = Mark::thin};
   for (std::size_t k = 0; k < envelope.t_s.size(); ++k) {
@@ -42,7 +42,7 @@ double largest(const characterise::Envelope& envelope) {
   return size;
 }
 
-// Ends of an axis about zero on which three ticks have room, whatever the reach.
+// Limits of an axis symmetric about zero that leave room for three ticks.
 void about_zero(double reach, Figure& figure) {
   if (!(reach > 0.0) || !std::isfinite(reach)) return;
   const double decade = std::pow(10.0, std::floor(std::log10(reach)));
@@ -51,7 +51,7 @@ void about_zero(double reach, Figure& figure) {
   figure.y.min = -*figure.y.max;
 }
 
-// Even times, and both sides of each step.
+// Evenly spaced times, and both sides of each step.
 std::vector<double> curve_times(const DriftCurve& curve, double from_s, double to_s) {
   constexpr std::size_t count = 400;
   std::vector<double> times_s;
@@ -109,7 +109,7 @@ void add_fit(const DriftAnalysis& analysis, double per_si, Figure& figure) {
   figure.curves.push_back(std::move(curve));
 }
 
-// From the end of the recording to the time of the forecast, with the slow noise until then.
+// From the end of the recording to the time of the forecast, including the slow noise in between.
 void add_forecast(const ChannelDrift& channel, double per_si, Figure& figure) {
   if (!channel.outlook || !channel.outlook->forecast) return;
   constexpr int count = 60;
@@ -144,7 +144,7 @@ Curve profile_curve(const DriftFit& fit) {
   return curve;
 }
 
-// As much of the x axis as has something below the top, and some room about it.
+// Limits the x axis to the part of the curve below `top`, with a margin.
 void show_within(const Curve& curve, double top, Figure& figure) {
   constexpr double room = 1.5;
   const auto low = [&](double y) { return y <= top; };
@@ -186,11 +186,11 @@ Figure drift_figure(const ChannelDrift& channel, const std::string& label) {
     bias.x.push_back(analysis.block_time_s(k));
     bias.y.push_back(analysis.block_mean[k] * shown.per_si);
   }
-  Curve wander{
+  Curve slow_noise{
       .label = "with slow noise, white noise removed", .x = bias.x, .y = {}, .ink = Ink::blue};
-  for (const double value : analysis.block_bias) wander.y.push_back(value * shown.per_si);
+  for (const double value : analysis.block_bias) slow_noise.y.push_back(value * shown.per_si);
   figure.curves.push_back(std::move(bias));
-  figure.curves.push_back(std::move(wander));
+  figure.curves.push_back(std::move(slow_noise));
   add_fit(analysis, shown.per_si, figure);
   add_forecast(channel, shown.per_si, figure);
   return figure;

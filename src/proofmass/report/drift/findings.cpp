@@ -113,7 +113,7 @@ void add_outlook(const ChannelDrift& channel, Sentences& sentences) {
       bias_words(later.change, channel.unit)));
 }
 
-// The warm-up over the runs, times in runs.
+// Warm-up over the runs, with times in runs.
 void add_level_curve(const ChannelRuns& runs, Sentences& sentences) {
   const RunSet& set = *runs.set;
   if (!set.level_curve) return;
@@ -183,8 +183,8 @@ std::vector<std::string> drift_findings(const ChannelDrift& channel) {
   add_noise(channel, sentences);
   add_temperature(channel, sentences);
   add_outlook(channel, sentences);
-  const std::size_t knocks = channel.analysis->knocks.size();
-  if (knocks > 0) sentences.push_back(count_words(knocks, "knock") + " excluded.");
+  const std::size_t outliers = channel.analysis->outliers.size();
+  if (outliers > 0) sentences.push_back(count_words(outliers, "outlier") + " excluded.");
   return sentences;
 }
 

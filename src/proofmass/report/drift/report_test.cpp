@@ -61,7 +61,7 @@ TEST(DriftVerdict, OfAnExponentialGivesItsSizeAndTimeConstant) {
             "warm-up of 5.00 ± 0.10 mg with time constant 900 ± 20 s");
 }
 
-TEST(DriftVerdict, OfStepsSaysThatTheyAreNoExponential) {
+TEST(DriftVerdict, OfStepsStatesThatTheyAreNotAnExponential) {
   EXPECT_EQ(drift_verdict(fake_steps("x")),
             "no warm-up identified: steps rather than an exponential: 3 steps of up to 4.10 mg");
 }
@@ -236,7 +236,7 @@ TEST(DriftJson, GivesPositionCostsAsHalfBiasTimesTimeSquared) {
               1e-9);
 }
 
-TEST(DriftJson, CountsNoCostOfGravityNorOfWhatIsNoAcceleration) {
+TEST(DriftJson, HasPositionErrorsOnlyForBiasesInAcceleration) {
   ChannelDrift channel = fake_warm_up("z");
   channel.outlook = fake_outlook();
   channel.outlook->forecast->bias = fake_interval(9.81, 0.001);
@@ -352,8 +352,8 @@ TEST(ProfileFigure, MarksTheIntervalOfTheTimeConstant) {
 TEST(DriftHtml, ShowsLessOfEachTheMoreChannelsThereAre) {
   DriftReport report = fake_drift_report();
   report.runs = {fake_runs("acc_x")};
-  // Two of the runs; drift, samples, profile, 3 scales twice and temperature of x; the same less
-  // one of y and its profile.
+  // Two of the runs. x: drift, samples, profile, residuals and autocorrelation at 3 scales,
+  // temperature. y: the same without one scale and the profile.
   EXPECT_EQ(count_of(to_html(describe(report)), "</svg>"), 2U + 10U + 8U);
   report.channels.assign(10, fake_steps("y"));
   EXPECT_EQ(count_of(to_html(describe(report)), "</svg>"), 2U + 10U);

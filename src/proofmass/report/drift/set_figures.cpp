@@ -16,7 +16,7 @@ using characterise::TemperatureModel;
 
 constexpr double zero_celsius_k = 273.15;
 
-// Values with bars: the dots, and their bars as one broken line.
+// Values with error bars: points, and the bars as one curve with gaps.
 struct Bars {
   Curve dots, bars;
 };
@@ -108,7 +108,7 @@ Figure levels_figure(const ChannelRuns& runs) {
   const ShownUnit shown = bias_unit(runs.unit, size);
   Bars turn_on = bars_of("turn-on: first " + duration_words(set.window_s), Ink::orange);
   Bars mean = bars_of("mean of the run", Ink::blue);
-  constexpr double aside = 0.12;  // so that the two do not hide each other
+  constexpr double aside = 0.12;  // horizontal offset, so that the two do not overlap
   for (std::size_t k = 0; k < set.runs.size(); ++k) {
     const characterise::RunLevel& run = set.runs[k];
     const double number = static_cast<double>(k) + 1.0;

@@ -15,7 +15,7 @@ using characterise::DriftReason;
 using characterise::DriftShape;
 using characterise::Interval95;
 
-// Decimals that show a width to two digits.
+// Decimals that give an interval's width two significant digits.
 int decimals_of(double width) {
   if (!(width > 0.0) || !std::isfinite(width)) return 3;
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(width))), 0, 9);
@@ -47,7 +47,7 @@ std::string steps_words(const characterise::DriftCurve& curve, const Unit& unit)
          (curve.steps.size() == 1 ? " of " : " of up to ") + size;
 }
 
-// "longer than 2 h", where the data bound it from one side.
+// "longer than 2 h", if the data bound it on one side only.
 std::string one_sided_words(const DriftFit& fit) {
   if (fit.time_constant_above_s) {
     return "longer than " + duration_words(*fit.time_constant_above_s) + " (95 %)";
@@ -78,7 +78,7 @@ std::string why_not(const DriftFit& fit, const Unit& unit) {
     case DriftReason::unexplained:
       return "the bias changes in a way that neither noise nor an exponential explains";
     case DriftReason::shape_undetermined:
-    case DriftReason::swing:
+    case DriftReason::oscillation:
     case DriftReason::no_warm_up:
     case DriftReason::identified:
       break;
@@ -139,7 +139,7 @@ std::string bias_words(double value, const Unit& unit) {
 }
 
 std::string slope_words(const Interval95& figure, const Unit& unit) {
-  // Drift is slow: shown per hour.
+  // Drift is slow: displayed per hour.
   constexpr double hour_s = 3600.0;
   return bias_words(Uncertain{figure.value * hour_s, figure.std * hour_s}, unit) + "/h";
 }
@@ -174,7 +174,7 @@ std::string reason_code(DriftReason reason) {
       return "begun_later";
     case DriftReason::shape_undetermined:
       return "shape_undetermined";
-    case DriftReason::swing:
+    case DriftReason::oscillation:
       return "swing";
     case DriftReason::unexplained:
       return "unexplained";
@@ -187,7 +187,7 @@ std::string reason_code(DriftReason reason) {
 std::string drift_verdict(const ChannelDrift& channel) {
   if (!channel.analysis) return why_not_analysed(channel);
   const DriftFit& fit = channel.analysis->fit;
-  if (fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::swing)
+  if (fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::oscillation)
     return fit.reason;
   if (!fit.identified || !fit.a1 || !fit.time_constant_s) {
     return "no warm-up identified: " + why_not(fit, channel.unit);

@@ -12,23 +12,23 @@ namespace proofmass::report {
 /// "x", or with several files "run 3.csv: x".
 [[nodiscard]] std::string channel_label(const DriftReport& report, const ChannelDrift& channel);
 
-/// Unit of the series, as documents name it.
+/// Unit of the series, in the notation of the documents.
 [[nodiscard]] std::string level_unit(const Unit& unit);
 
-/// "m/s^2/K^2": a unit per power of a kelvin.
+/// "m/s^2/K^2": unit per power of a kelvin.
 [[nodiscard]] std::string per_kelvin(const std::string& unit, std::size_t power);
 
-/// Unit in which a bias of about some size is shown: mg from 1 mg on.
+/// Display unit for a bias of about `size`: mg from 1 mg on.
 [[nodiscard]] ShownUnit bias_unit(const Unit& unit, double size);
 
-/// "4.80 … 5.21 mg", "above 4.80 mg", "not bounded": as many decimals as its width means.
+/// "4.80 … 5.21 mg", "above 4.80 mg", "not bounded"; decimals from the interval's width.
 [[nodiscard]] std::string bias_interval_words(const characterise::Interval95& interval,
                                               const Unit& unit);
 
-/// The same for a time: "862 … 941 s".
+/// "862 … 941 s": the same for a time.
 [[nodiscard]] std::string time_interval_words(const characterise::Interval95& interval);
 
-/// The same for a number of runs: "4.5 … 6.1 runs".
+/// "4.5 … 6.1 runs": the same for a number of runs.
 [[nodiscard]] std::string runs_interval_words(const characterise::Interval95& interval);
 
 /// "5.00 ± 0.10 mg"
@@ -46,11 +46,11 @@ namespace proofmass::report {
 /// "exponential and line".
 [[nodiscard]] std::string shape_words(characterise::DriftShape shape);
 
-/// "hidden_by_noise": the reason in the document.
+/// "hidden_by_noise": the reason as in the document.
 [[nodiscard]] std::string reason_code(characterise::DriftReason reason);
 
 /// "warm-up of 5.00 ± 0.10 mg with time constant 900 ± 20 s", "no warm-up identified: steps rather
-/// than an exponential: 3 steps of up to 4.1 mg", "not analysed: …"; no full stop.
+/// than an exponential: 3 steps of up to 4.1 mg", "not analysed: …"; without a full stop.
 [[nodiscard]] std::string drift_verdict(const ChannelDrift& channel);
 
 /// "Residuals at 1 s white, at 100 s not: …".
@@ -62,16 +62,16 @@ namespace proofmass::report {
 /// The same for several runs.
 [[nodiscard]] std::vector<std::string> run_findings(const ChannelRuns& runs);
 
-/// "turn-on repeatability 2.10 ± 0.30 mg"; no full stop.
+/// "turn-on repeatability 2.10 ± 0.30 mg"; without a full stop.
 [[nodiscard]] std::string scatter_words(const characterise::RunScatter& scatter, const Unit& unit);
 
-/// "Bias at power-on a2", or for an axis that bears gravity "Level at power-on a2".
+/// "Bias at power-on a2", or for an axis under gravity "Level at power-on a2".
 [[nodiscard]] std::string level_words(const ChannelDrift& channel);
 
-/// Whether ½ b t² of this series is a position, in metres.
+/// True if ½ b t² of this series is a position in metres.
 [[nodiscard]] bool costs_position(const Unit& unit);
 
-/// Whether a bias is so large that it contains gravity.
+/// True if a bias is too large not to contain gravity.
 [[nodiscard]] bool holds_gravity(const characterise::Interval95& bias_mps2);
 
 }  // namespace proofmass::report

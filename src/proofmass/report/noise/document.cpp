@@ -15,9 +15,9 @@ using characterise::DeviationPoint;
 using characterise::NoiseAnalysis;
 using characterise::NoisePart;
 
-constexpr std::size_t sentences_in_conclusion = 3;  // of a single channel
+constexpr std::size_t sentences_in_conclusion = 3;  // for a single channel
 
-// The report's own, then each channel's with its name; a refusal is bad.
+// The report's notes, then those of each channel with its name; a refused channel is Severity::bad.
 std::vector<Note> all_notes(const NoiseReport& report) {
   std::vector<Note> notes = report.notes;
   for (const ChannelNoise& channel : report.channels) {
@@ -52,7 +52,7 @@ std::string conclusion(const NoiseReport& report) {
   return text + ".";
 }
 
-// White noise, flicker and random walk; of many channels the white noise alone.
+// White noise, flicker and random walk; for many channels the white noise only.
 std::vector<KeyFigure> figures_of(const NoiseReport& report) {
   constexpr std::size_t most_channels = 3;
   const std::size_t shown = report.channels.size() > most_channels ? 1 : 3;
@@ -116,8 +116,8 @@ Table parts_table(const ChannelNoise& channel) {
   return table;
 }
 
-// The deviation as data sheets quote it; all of a curve of few points, which somebody has chosen or
-// a short record has.
+// The deviation at the averaging times of data sheets; all points of a short curve, whose times
+// were chosen by the user or limited by a short record.
 Table deviation_table(const ChannelNoise& channel) {
   constexpr std::size_t few = 12;
   const DeviationCurve& curve = channel.analysis->deviation;
@@ -167,7 +167,7 @@ Table events_table(const ChannelNoise& channel, bool excluded) {
               {}};
   table.long_list = true;
   for (const signal::Event& event : channel.analysis->events)
-    table.rows.push_back({event.kind == signal::EventKind::knock ? "Knock" : "Step",
+    table.rows.push_back({event.kind == signal::EventKind::outlier ? "Outlier" : "Step",
                           event_time_words(event, channel.analysis->rate_hz),
                           noise_words(event.size, channel.unit, NoiseScale::level),
                           significant(event.significance, 2)});
@@ -181,7 +181,7 @@ std::string data_words(const NoiseAnalysis& analysis) {
       analysis.missing > 0 ? ", " + grouped(analysis.missing) + " of them missing" : "");
 }
 
-// The sentences of a single channel begin in the conclusion.
+// For a single channel the first sentences are in the conclusion.
 Section channel_section(const NoiseReport& report, const ChannelNoise& channel) {
   Section section{.heading = channel.name, .points = noise_findings(channel), .on_terminal = true};
   if (report.channels.size() == 1)

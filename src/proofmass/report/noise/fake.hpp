@@ -6,7 +6,7 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/report/noise/report.hpp"
 
-// A made-up analysis whose every figure is known, for the tests of this module.
+// A synthetic analysis with known figures, for the tests of this module.
 namespace proofmass::report {
 
 inline characterise::Coefficient identified(double value, double std) {
@@ -29,7 +29,7 @@ inline characterise::Coefficient bounded(double upper, std::optional<double> nee
           .record_needed_s = needed_s};
 }
 
-/// A curve that follows the model and a line at 0.562 Hz, at 100 Hz for 10 000 s.
+/// A curve that follows the model and a line at 0.562 Hz; 100 Hz for 10 000 s.
 inline void fake_curve(characterise::NoiseAnalysis& analysis) {
   const signal::SpectralLine& line = analysis.lines.lines.front();
   for (std::size_t m = 1; m < 250'000; m = m * 5 / 4 + 1) {
@@ -102,9 +102,9 @@ inline ChannelNoise fake_channel(const std::string& name) {
                            .amplitude_std = 1.5 * ug,
                            .excess_db = 9.4}};
   analysis.lines.floor = {106.4 * ug, 0.5 * ug, 20.0, 40.0};
-  analysis.events = {{signal::EventKind::knock, 120'000, 120'030, 0.02, 31.0},
+  analysis.events = {{signal::EventKind::outlier, 120'000, 120'030, 0.02, 31.0},
                      {signal::EventKind::step, 700'000, 700'000, -0.001, 12.0}};
-  analysis.notes = {{Severity::warning, "a knock at 1200 s"}};
+  analysis.notes = {{Severity::warning, "an outlier at 1200 s"}};
   fake_curve(analysis);
   fake_spectrum(analysis);
   return channel;

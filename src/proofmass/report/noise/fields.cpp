@@ -17,7 +17,7 @@ using characterise::NoiseModelFit;
 using characterise::NoisePart;
 
 Fields reading_fields(const DeviationPoint& point) {
-  const About limit{.why_null = "so few degrees of freedom set no limit at this confidence"};
+  const About limit{.why_null = "too few degrees of freedom for a limit at this confidence"};
   return {field::magnitude("tau_s", point.tau_s), field::magnitude("value", point.value),
           field::magnitude("lower", point.lower, limit),
           field::magnitude("upper", point.upper, limit)};
@@ -41,7 +41,7 @@ Fields point_fields(const DeviationPoint& point, bool knows_lag1) {
   return fields;
 }
 
-// The minimum is one within the curve, not at an end.
+// Minimum inside the curve, not at one of its ends.
 Field minimum(const std::vector<CurveReading>& readings) {
   const auto found = std::ranges::find_if(readings, &CurveReading::is_minimum);
   std::optional<Fields> fields;
@@ -150,7 +150,7 @@ Field misfit(const NoiseModelFit& model) {
        field::count("groups", model.ordinates, {.meaning = "of spectral values in the fit"})});
 }
 
-// The square of a coefficient times a factor.
+// The square of a coefficient, times a factor.
 Field squared(const char* key,
               const Coefficient& found,
               double factor,
@@ -163,7 +163,8 @@ Field squared(const char* key,
 }
 
 Field markov_for_flicker(const NoiseAnalysis& analysis, const Unit& unit) {
-  constexpr double maximum_at = 1.89;  // of a Markov process's Allan variance, in time constants
+  constexpr double maximum_at = 1.89;  // of a Markov process's Allan variance, in units of its
+                                       // time constant
   std::optional<Fields> fields;
   if (const auto flat_s = flicker_tau_s(analysis)) {
     const sensor::FirstOrderMarkov process =
@@ -202,7 +203,7 @@ Field filter(const NoiseAnalysis& analysis, const Unit& unit) {
       {.meaning = "for estimators"});
 }
 
-// What a recording too short for coefficients does not have.
+// Entries that need coefficients, which a short recording does not give.
 Fields model_fields(const ChannelNoise& channel) {
   if (has_coefficients(channel)) {
     const NoiseModelFit& model = channel.analysis->model;

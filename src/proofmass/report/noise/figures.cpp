@@ -33,7 +33,7 @@ double middle(const std::vector<double>& values) {
   return values.empty() ? 0.0 : values[values.size() / 2];
 }
 
-// One term as the figure draws it.
+// One term as drawn in the figure.
 struct DrawnTerm {
   const NamedCoefficient* name;
   double read_at_s;
@@ -61,10 +61,11 @@ std::vector<DrawnTerm> drawn_terms(const NoiseAnalysis& analysis) {
 }
 
 struct Window {
-  double first_s, last_s, floor;  // least and greatest τ; least deviation shown
+  double first_s, last_s, floor;  // smallest and largest τ; smallest deviation shown
 };
 
-// Where it is read if that is on the figure, else where the term makes up most of the sum.
+// The conventional τ of the term if it is within the figure, else the τ at which the term has its
+// largest share of the sum.
 double marked_tau_s(const DrawnTerm& term, const NoiseModelFit& model, const Window& window) {
   const bool inside = term.read_at_s >= window.first_s && term.read_at_s <= window.last_s &&
                       std::sqrt(term.variance(term.read_at_s)) >= window.floor;
@@ -98,7 +99,7 @@ void add_terms(const ChannelNoise& channel, const Window& window, double shown, 
   for (const DrawnTerm& term : terms) {
     figure.curves.push_back({"", taus, curve(term.variance), term.ink, Mark::thin});
     const double tau_s = marked_tau_s(term, analysis.model, window);
-    // Under its line, on the side where the curve is far: nothing else is there.
+    // Below the term's line, on the side away from the curve, where the figure is empty.
     const bool falls =
         term.name->scale == NoiseScale::density || term.name->scale == NoiseScale::integral;
     figure.callouts.push_back({.text = term_words(term, channel),
@@ -139,7 +140,8 @@ void add_terms(const ChannelNoise& channel, const Window& window, double shown, 
                            Ink::orange, Mark::dashes});
 }
 
-// Room below the curve for what is read off there, but for no more than a decade and a half.
+// Lower limit of the axis: includes the values read off the terms' lines, at most a decade and a
+// half below the curve.
 double least_shown(const NoiseAnalysis& analysis, double lowest) {
   double least = lowest;
   for (const DrawnTerm& term : drawn_terms(analysis)) {
@@ -254,7 +256,7 @@ Figure spectrum_figure(const ChannelNoise& channel) {
   const signal::Spectrum& spectrum = analysis.spectrum;
   Curve curve{"spectrum", {}, {}};
   Curve fitted{"fitted density, without lines", {}, {}, Ink::orange};
-  // The end bins are half as wide: theirs are not densities like the others.
+  // The first and last bins are half as wide, so their densities are not comparable.
   for (std::size_t k = 1; k + 1 < spectrum.frequency_hz.size(); ++k) {
     curve.x.push_back(spectrum.frequency_hz[k]);
     curve.y.push_back(std::sqrt(spectrum.one_sided_psd[k]));

@@ -65,7 +65,7 @@ TEST(NoiseFindings, GiveLimitsAndTheRecordNeededForWhatIsNotIdentified) {
   EXPECT_TRUE(says(sentences,
                    "No random walk detected: below 1.20 µg/√s with 95 % confidence; identifying as "
                    "much needs 3 h of recording."));
-  EXPECT_TRUE(says(sentences, "1 knock and 1 step of level"));
+  EXPECT_TRUE(says(sentences, "1 outlier and 1 step of level"));
 }
 
 TEST(NoiseFindings, WarnOfALineThatReadsAsWhiteNoise) {
@@ -80,7 +80,7 @@ TEST(NoiseFindings, OfARefusedChannelAreTheReason) {
 }
 
 TEST(EventTime, HasTheResolutionOfASample) {
-  EXPECT_EQ(event_time_words({signal::EventKind::knock, 1240, 1263, 1.0, 9.0}, 100.0),
+  EXPECT_EQ(event_time_words({signal::EventKind::outlier, 1240, 1263, 1.0, 9.0}, 100.0),
             "12.40 … 12.63 s");
   EXPECT_EQ(event_time_words({signal::EventKind::step, 5, 5, 1.0, 9.0}, 1.0), "5 s");
 }
@@ -107,7 +107,7 @@ TEST(LineEffect, IsWhereASineRaisesTheAllanVarianceMost) {
   EXPECT_NEAR(effect.raise, std::sqrt((noise + added(effect.tau_s)) / noise) - 1.0, 1e-12);
 }
 
-TEST(FlickerTau, LiesInTheMinimumOrBetweenTheWhiteNoiseAndTheEnd) {
+TEST(FlickerTau, IsTheMinimumOrBetweenTheWhiteNoiseAndTheEnd) {
   ChannelNoise channel = fake_channel("acc_x");
   characterise::NoiseAnalysis& analysis = *channel.analysis;
   const double meeting_s = std::pow(75.2 / 21.0, 2) / (2.0 * std::numbers::ln2 / std::numbers::pi);

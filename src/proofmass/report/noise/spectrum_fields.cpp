@@ -9,8 +9,8 @@ namespace {
 
 using characterise::NoiseAnalysis;
 
-// Means over intervals that are even on a log scale; an interval is all line or no line, so that
-// lines keep their position and their power.
+// Means over intervals that are even on a log scale. An interval contains either only line bins or
+// none, which preserves the position and power of the lines.
 struct ThinnedSpectrum {
   std::vector<double> frequency_hz, one_sided_psd;
 };
@@ -19,7 +19,7 @@ ThinnedSpectrum thinned_spectrum(const NoiseAnalysis& analysis) {
   constexpr double most_points = 500.0;
   const signal::Spectrum& spectrum = analysis.spectrum;
   const std::vector<bool>& in_line = analysis.lines.in_line;
-  // The end bins are half as wide: theirs are not densities like the others.
+  // The first and last bins are half as wide, so their densities are not comparable.
   const std::size_t bins = spectrum.frequency_hz.size() - 1;
   const auto marked = [&](std::size_t k) { return k < in_line.size() && in_line[k]; };
   const double ratio =
@@ -105,7 +105,7 @@ Field lines(const ChannelNoise& channel) {
 Field events(const ChannelNoise& channel) {
   const auto fields_of = [&](const signal::Event& event) -> Fields {
     const double rate_hz = channel.analysis->rate_hz;
-    return {field::choice("kind", event.kind == signal::EventKind::knock ? "knock" : "step",
+    return {field::choice("kind", event.kind == signal::EventKind::outlier ? "knock" : "step",
                           {"knock", "step"}),
             field::number("start_s", static_cast<double>(event.first) / rate_hz),
             field::number("end_s", static_cast<double>(event.last) / rate_hz),

@@ -25,7 +25,7 @@ bool is_plain(const Unit& unit) {
   return unit.symbol.empty() || unit.symbol == "1";
 }
 
-// The unit whose prefix may be chosen, before what the scale adds to it.
+// Unit to which a prefix can be added, and what NoiseScale appends to it.
 struct Base {
   double per_si = 1.0;
   std::string symbol, behind;
@@ -121,7 +121,7 @@ std::string walk_sentence(const ChannelNoise& channel, const Coefficient& walk) 
                      unless_enough(walk));
 }
 
-// Terms that are mentioned only where they are present.
+// Terms mentioned only if present.
 void add_rarer_terms(const ChannelNoise& channel, std::vector<std::string>& sentences) {
   const NoiseModelFit& model = channel.analysis->model;
   const Unit& unit = channel.unit;
@@ -201,12 +201,12 @@ void add_judgement(const NoiseAnalysis& analysis, std::vector<std::string>& sent
         "include this.",
         significant(100.0 * model.misfit, 2)));
   }
-  const auto knocks = static_cast<std::size_t>(
+  const auto outliers = static_cast<std::size_t>(
       std::count_if(analysis.events.begin(), analysis.events.end(),
-                    [](const auto& event) { return event.kind == signal::EventKind::knock; }));
-  const std::size_t steps = analysis.events.size() - knocks;
-  if (knocks > 0 || steps > 0) {
-    std::string what = knocks > 0 ? count_words(knocks, "knock") : "";
+                    [](const auto& event) { return event.kind == signal::EventKind::outlier; }));
+  const std::size_t steps = analysis.events.size() - outliers;
+  if (outliers > 0 || steps > 0) {
+    std::string what = outliers > 0 ? count_words(outliers, "outlier") : "";
     if (steps > 0) what += (what.empty() ? "" : " and ") + count_words(steps, "step") + " of level";
     sentences.push_back(what + " in the recording: see the events.");
   }
@@ -278,7 +278,7 @@ ShownUnit shown_unit(const Unit& unit, NoiseScale scale, double size) {
   const Base base = base_of(unit, scale);
   const std::string plain = base.symbol + base.behind;
   const double micros = std::abs(size) * base.per_si * 1e6;
-  // Instrument makers' own unit is the millionth; left only where that is hard to read.
+  // Instrument makers use parts per million; changed only if that is hard to read.
   if (!base.takes_prefix || micros >= 1e7) return {base.per_si, plain};
   if (micros >= 1e4) return {base.per_si * 1e3, "m" + plain};
   if (micros >= 0.1 || !(micros > 0.0)) return {base.per_si * 1e6, "µ" + plain};
@@ -346,7 +346,7 @@ std::optional<double> flicker_tau_s(const NoiseAnalysis& analysis) {
 LineEffect line_effect(const NoiseAnalysis& analysis, const signal::SpectralLine& line) {
   const auto& points = analysis.deviation.points;
   if (points.empty()) return {};
-  constexpr double at_largest = 0.3710;  // where sin²(π f τ)/(π f τ) is, in periods
+  constexpr double at_largest = 0.3710;  // argument f τ of the maximum of sin²(π f τ)/(π f τ)
   const double tau_s =
       std::clamp(at_largest / line.frequency_hz, points.front().tau_s, points.back().tau_s);
   const double noise = analysis.model.allan_variance(tau_s);
@@ -414,7 +414,7 @@ std::vector<std::string> noise_findings(const ChannelNoise& channel) {
 }
 
 std::string event_time_words(const signal::Event& event, double rate_hz) {
-  // As many decimals as distinguish neighbouring samples.
+  // Enough decimals to distinguish adjacent samples.
   const int decimals = std::max(0, static_cast<int>(std::ceil(std::log10(rate_hz))));
   const auto time = [&](std::size_t sample) {
     return fixed(static_cast<double>(sample) / rate_hz, decimals);

@@ -16,11 +16,11 @@
 namespace proofmass::report {
 namespace {
 
-// The box of a figure in its own units; the page scales it to its width.
+// The box of a figure in user units; the page scales it to its width.
 constexpr double width = 900.0, left = 66.0, right = 26.0, foot = 48.0, row = 20.0;
 constexpr double swatch = 24.0, letter = 6.9;  // advance of the 12.5-unit type, on average
 
-// From the values of an axis to places on the page.
+// Maps the values of an axis to coordinates of the figure.
 struct Mapping {
   double low, high;
   bool log;
@@ -35,7 +35,7 @@ struct Mapping {
   [[nodiscard]] double operator()(double value) const {
     const double part =
         log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
-    // Far outside is far enough: renderers lose their way among huge coordinates.
+    // Bounded, because some renderers fail on very large coordinates.
     return from + std::clamp(part, -20.0, 20.0) * (to - from);
   }
 };
@@ -53,14 +53,14 @@ struct Extent {
   }
 };
 
-// Makes room about a single value.
+// Gives a range of zero width some extent.
 void widen(double& low, double& high, bool log) {
   const double room = std::max(std::abs(low) * 1e-3, 1e-9);
   low = log ? low / 2.0 : low - room;
   high = log ? high * 2.0 : high + room;
 }
 
-// `margin` is the part of the range that stays free at either end which is not prescribed.
+// `margin`: part of the range added at each end that is not prescribed.
 Mapping mapping(const Axis& axis, const Extent& data, double margin) {
   const bool log = axis.scale == AxisScale::log;
   double low = axis.min.value_or(data.low), high = axis.max.value_or(data.high);
@@ -104,7 +104,7 @@ double text_width(std::string_view text) {
   return letter * static_cast<double>(letters(text));
 }
 
-// By which the page's script finds the shapes of a curve, and what it calls them.
+// Name by which the page's script finds the shapes of a curve and labels it.
 std::string data_name(const std::string& label) {
   return label.empty() ? "" : fmt::format(" data-name=\"{}\"", escaped(label));
 }
@@ -125,7 +125,7 @@ void draw_line(std::string& text, const Mappings& map, const Curve& curve) {
       pen_down = false;
       continue;
     }
-    // A value alone between two gaps still is drawn: h0 with round caps is a dot.
+    // A single value between two gaps is drawn, too: h0 with round caps is a dot.
     fmt::format_to(out, "{}", pen_down ? "" : "M");
     point(out, map, line.x[k], line.y[k]);
     if (!pen_down) fmt::format_to(out, "h0 L");
@@ -147,7 +147,7 @@ void draw_points(std::string& text, const Mappings& map, const Curve& curve) {
 }
 
 void draw_ticks(std::string& text, const Mappings& map, const Curve& curve) {
-  std::set<int> columns;  // of which each is drawn once, however many events fall into it
+  std::set<int> columns;  // drawn once each, however many events fall into it
   for (const double x : curve.x) {
     if (map.x.holds(x)) columns.insert(static_cast<int>(std::lround(map.x(x))));
   }
@@ -175,7 +175,7 @@ void draw(std::string& text, const Mappings& map, const Curve& curve) {
   }
 }
 
-// A band is drawn in one closed piece for each stretch without a gap.
+// One closed path for each part of the band without a gap.
 void draw(std::string& text, const Mappings& map, const Band& band) {
   const Envelope area = thinned_band(band.x, band.lower, band.upper);
   const auto shown = [&](std::size_t k) {
@@ -203,7 +203,7 @@ void draw(std::string& text, const Mappings& map, const Level& level) {
                  map.y(level.y), map.x.to);
 }
 
-// A word that would run out of the plot goes to the other side of its dot.
+// A label that would extend beyond the plot is moved to the other side of its dot.
 void draw(std::string& text, const Mappings& map, const Callout& callout) {
   if (!map.x.holds(callout.x) || !map.y.holds(callout.y)) return;
   const double x = map.x(callout.x), y = map.y(callout.y);
@@ -230,7 +230,7 @@ std::vector<Tick> ticks_of(const Mapping& map, const Axis& axis, int most) {
   return map.log ? log_ticks(map.low, map.high, most) : linear_ticks(map.low, map.high, most);
 }
 
-// Faint lines at 2 … 9 times each power of ten, without which a log scale is hard to read.
+// Faint lines at 2 … 9 times each power of ten, which make a log scale readable.
 void draw_minor_grid(std::string& text, const Mapping& map, const Mapping& across, bool upright) {
   constexpr double most_decades = 8.0;
   if (!map.log || std::log10(map.high / map.low) > most_decades) return;
@@ -281,7 +281,7 @@ void draw_axes(std::string& text, const Mappings& map, const Figure& figure) {
 
 struct Entry {
   std::string label;
-  std::string sample;  // SVG of a swatch whose middle left is at 0, 0
+  std::string sample;  // SVG of a swatch with its left centre at 0, 0
 };
 
 std::vector<Entry> legend(const Figure& figure) {
@@ -308,8 +308,8 @@ std::vector<Entry> legend(const Figure& figure) {
   return entries;
 }
 
-// Draws the legend in as many rows as it needs, above the plot where it covers nothing, and returns
-// their height.
+// Draws the legend in as many rows as necessary, above the plot so that it covers nothing, and
+// returns its height.
 double draw_legend(std::string& text, const std::vector<Entry>& entries) {
   double x = left, y = 0.5 * row;
   text += "<g class=\"pm-legend\">\n";
@@ -329,7 +329,7 @@ double draw_legend(std::string& text, const std::vector<Entry>& entries) {
   return entries.empty() ? 0.0 : y + 0.5 * row;
 }
 
-// What the page's script needs to turn places back into values. A map without axes has none.
+// Scales by which the page's script converts coordinates to values. A figure without axes has none.
 std::string scale_of(const Mappings& map, const Figure& figure) {
   if (figure.x.scale == AxisScale::bare || figure.y.scale == AxisScale::bare) return "";
   const auto axis = [](const Mapping& one) {

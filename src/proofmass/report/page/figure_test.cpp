@@ -27,7 +27,7 @@ std::ptrdiff_t count(const std::string& text, const std::string& pattern) {
                        std::sregex_iterator());
 }
 
-// The path of the only curve, without that of its sample in the legend.
+// The path of the only curve, excluding its swatch in the legend.
 std::string curve_path(const std::string& text) {
   const std::size_t at = text.find("<path class=\"pm-line", text.find("clip-path=\"url"));
   return text.substr(at, text.find("/>", at) - at);
@@ -46,7 +46,7 @@ TEST(Svg, HasNoNumberThatIsNone) {
   EXPECT_EQ(text.find("inf"), std::string::npos);
 }
 
-TEST(Svg, OfNothingAndOfOneValueIsStillAFigure) {
+TEST(Svg, IsAFigureEvenForNoValueOrOne) {
   EXPECT_NE(svg(plot({}), "f").find("</svg>"), std::string::npos);
   EXPECT_NE(svg(plot({5.0}), "f").find("</svg>"), std::string::npos);
 }
@@ -117,7 +117,7 @@ TEST(Svg, StaysSmallHoweverLongTheSeries) {
   EXPECT_LT(svg(plot(std::move(y)), "f").size(), 80'000U);
 }
 
-TEST(Html, FetchesNothing) {
+TEST(Html, HasNoExternalResources) {
   Page page{.verb = "wheel", .title = "<x>.csv", .inputs = {"<x>.csv"}, .conclusion = "It turned."};
   page.sections = {{.heading = "H", .figures = {plot({1.0, 2.0}), plot({2.0, 1.0})}}};
   const std::string text = html(page);

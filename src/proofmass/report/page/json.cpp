@@ -93,7 +93,7 @@ Value figure_json(const Figure& figure) {
 }
 
 Value table_json(const Table& table) {
-  constexpr std::size_t most_rows = 100;  // of a table that may be cut
+  constexpr std::size_t most_rows = 100;  // rows of a table that may be cut
   const std::size_t shown =
       table.long_list ? std::min(table.rows.size(), most_rows) : table.rows.size();
   Array rows;

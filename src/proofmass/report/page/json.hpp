@@ -6,10 +6,10 @@
 
 namespace proofmass::report {
 
-/// What the page shows, as JSON for programs that draw it themselves: conclusion, key figures,
-/// notes, and sections with their tables and with every plot's axes, curves and bands as numbers,
-/// thinned as in the page (page/thinning.hpp). A value that is not finite, which breaks a curve, is
-/// null.
+/// The content of the page as JSON, for programs that draw it themselves: conclusion, key figures,
+/// notes, and sections with their tables and with the axes, curves and bands of every plot as
+/// numbers, thinned as in the page (page/thinning.hpp). A value that is not finite, which breaks a
+/// curve, is null.
 /// {"proofmass", "verb", "title", "inputs", "conclusion", "key_figures": [{"label", "value"}],
 /// "notes": [{"severity", "text"}], "sections": [{"heading", "id", "paragraphs", "points", "sides",
 /// "tables", "figures", "parts"}]}

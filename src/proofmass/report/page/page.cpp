@@ -15,8 +15,8 @@ namespace {
 
 using Out = std::back_insert_iterator<std::string>;
 
-constexpr int top_level = 2;            // of a section's heading
-constexpr std::size_t most_rows = 100;  // of a table that may be cut
+constexpr int top_level = 2;            // level of a section's heading
+constexpr std::size_t most_rows = 100;  // rows of a table that may be cut
 
 std::string_view word(Severity severity) {
   switch (severity) {
@@ -30,7 +30,7 @@ std::string_view word(Severity severity) {
   return "bad";
 }
 
-// A figure and its standard deviation stay on one line.
+// Keeps a figure and its standard deviation on one line.
 std::string unbroken(const std::string& cell) {
   std::string text = escaped(cell);
   const std::string plain = " ± ", firm = "\u00a0±\u00a0";
@@ -111,7 +111,7 @@ void write_points(std::string& text, const std::vector<std::string>& points) {
   text += "</ul>\n";
 }
 
-// Figures are counted through the page, whether or not that is shown.
+// Figures are counted over the whole page, whether or not the number is shown.
 struct FigureCount {
   bool shown = true;
   int figures = 0;
@@ -184,8 +184,8 @@ void write_items(std::string& text, const std::string& items) {
   if (!items.empty()) text += "<ul class=\"notes\">\n" + items + "</ul>\n";
 }
 
-// What is wrong stands at the top; a long list of warnings is folded, so that the results come
-// first.
+// Bad notes and warnings come first; a long list of warnings is folded, so that the results remain
+// visible.
 void write_grave_notes(std::string& text, const std::vector<Note>& notes) {
   constexpr std::ptrdiff_t most_open = 8;
   const auto warnings = std::ranges::count(notes, Severity::warning, &Note::severity);
@@ -197,7 +197,7 @@ void write_grave_notes(std::string& text, const std::vector<Note>& notes) {
   if (warnings > most_open) text += "</details>\n";
 }
 
-// What is merely so stands at the end.
+// Informational notes come last.
 void write_plain_notes(std::string& text, const std::vector<Note>& notes) {
   const std::string items = items_of(notes, [](Severity s) { return s <= Severity::info; });
   if (items.empty()) return;

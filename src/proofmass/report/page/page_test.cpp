@@ -37,7 +37,7 @@ TEST(Page, SetsShortTextsBesideEachOther) {
                   "<div><b>One</b><p>first &amp; last</p></div>\n<div><b>Other</b>"));
 }
 
-TEST(Page, ListsWhatHasAnIdInItsContentsAndNothingElse) {
+TEST(Page, ListsExactlyThePartsWithAnIdInItsContents) {
   Page page = page_with_parts();
   EXPECT_FALSE(has(html(page), "<nav"));
   page.contents = true;

@@ -4,12 +4,12 @@
 
 namespace proofmass::report {
 
-/// Zoom, readout and legend toggles of the figures of a page (SVG by svg() of page/figure.hpp):
-/// they work on the shapes that are drawn, so the page carries no data twice. Without a script, and
-/// on paper, the figures are as drawn.
+/// Zoom, readout and legend toggles for the figures of a page (SVG by svg() of page/figure.hpp). The
+/// script works on the drawn shapes, so the page contains no second copy of the data. Without a
+/// script, and in print, the figures remain as drawn.
 [[nodiscard]] std::string_view page_script();
 
-/// Style of what the script adds.
+/// Style of the elements that the script adds.
 [[nodiscard]] std::string_view page_script_css();
 
 }  // namespace proofmass::report

@@ -4,7 +4,7 @@
 
 namespace proofmass::report {
 
-/// How a page looks, on either ground, on paper and on a phone; in the colours of figure_css().
+/// Style of a page for dark and light screens, print and phones, in the colours of figure_css().
 [[nodiscard]] std::string_view page_css();
 
 }  // namespace proofmass::report

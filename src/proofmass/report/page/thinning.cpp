@@ -15,7 +15,7 @@ struct Range {
   std::size_t begin, end;
 };
 
-// The b-th of `buckets` stretches of n values; none is empty where n >= buckets.
+// The b-th of `buckets` intervals of n values; none is empty if n >= buckets.
 Range stretch(std::size_t n, std::size_t buckets, std::size_t b) {
   return {n * b / buckets, n * (b + 1) / buckets};
 }
@@ -33,7 +33,7 @@ void keep_extremes(View<double> x, View<double> y, Range range, Polyline& out) {
     if (y[k] > y[high]) high = k;
     last = k;
   }
-  std::size_t previous = range.end;  // which is also what all four are if no value is finite
+  std::size_t previous = range.end;  // also the value of all four if no value is finite
   for (const std::size_t k : {first, std::min(low, high), std::max(low, high), last}) {
     if (k == previous) continue;
     out.x.push_back(x[k]);
@@ -68,7 +68,7 @@ Envelope thinned_band(View<double> x, View<double> lower, View<double> upper, st
     const Range range = stretch(x.size(), buckets, b);
     double least = none, greatest = none;
     for (std::size_t k = range.begin; k < range.end; ++k) {
-      // fmin and fmax pass over a NaN beside a number.
+      // fmin and fmax ignore a NaN if the other argument is a number.
       if (std::isfinite(lower[k])) least = std::fmin(least, lower[k]);
       if (std::isfinite(upper[k])) greatest = std::fmax(greatest, upper[k]);
     }
@@ -76,7 +76,7 @@ Envelope thinned_band(View<double> x, View<double> lower, View<double> upper, st
     out.lower.push_back(least);
     out.upper.push_back(greatest);
   }
-  // So that the band reaches both ends of the curve it belongs to.
+  // The band must extend to both ends of the curve to which it belongs.
   out.x.front() = x.front();
   out.x.back() = x.back();
   return out;

@@ -5,28 +5,28 @@
 
 #include "proofmass/core/view.hpp"
 
-// Long series made short enough to draw, without losing what stands out of them.
+// Reduction of long series for plotting that preserves extremes.
 namespace proofmass::report {
 
-/// Stretches that a long curve is drawn from: about one for each unit of the width of a plot.
+/// Number of intervals into which a long curve is divided: about one per unit of a plot's width.
 inline constexpr std::size_t max_buckets = 1000;
 
 struct Polyline {
   std::vector<double> x, y;
 };
 
-/// The curve thinned to `buckets` stretches of equally many values, each of which keeps its first,
-/// smallest, largest and last: no spike is lost, which is why it is not an average. The curve as it
-/// is where it has at most four values for each. A stretch with a value that is not finite ends in
-/// a NaN, so that the gap stays to be seen. x and y are equally long, buckets > 0.
+/// The curve reduced to `buckets` intervals of equally many values. Each keeps its first, smallest,
+/// largest and last value, so that no spike is lost, as it would be in an average. Unchanged if it
+/// has at most four values per interval. An interval with a value that is not finite ends in a NaN,
+/// so that the gap remains visible. Preconditions: x and y have equal lengths, buckets > 0.
 [[nodiscard]] Polyline thinned(View<double> x, View<double> y, std::size_t buckets = max_buckets);
 
 struct Envelope {
   std::vector<double> x, lower, upper;
 };
 
-/// The band thinned: least lower and greatest upper bound of each stretch, at its middle x. NaN
-/// where a stretch has no finite bound.
+/// The reduced band: smallest lower and largest upper bound of each interval, at its middle x. NaN
+/// if an interval has no finite bound.
 [[nodiscard]] Envelope thinned_band(View<double> x,
                                     View<double> lower,
                                     View<double> upper,

@@ -50,7 +50,7 @@ TEST(Thinned, LetsAGapBeSeen) {
   EXPECT_EQ(std::count_if(line.y.begin(), line.y.end(), [](double v) { return std::isnan(v); }), 1);
 }
 
-TEST(Thinned, OfNothingButGapsHasNoValue) {
+TEST(Thinned, HasNoValueForGapsOnly) {
   const std::vector<double> x = counting(10'000), y(x.size(), std::nan(""));
   for (const double value : thinned(x, y, 100).y) EXPECT_TRUE(std::isnan(value));
 }

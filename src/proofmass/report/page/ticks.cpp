@@ -11,7 +11,7 @@
 namespace proofmass::report {
 namespace {
 
-// The least of 1, 2, 5 times a power of ten that fits into the range at most `most` times.
+// The smallest of 1, 2, 5 times a power of ten that fits into the range at most `most` times.
 double nice_step(double range, int most) {
   const double raw = range / most;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
@@ -31,18 +31,18 @@ std::string superscript(int number) {
   return out;
 }
 
-// "2.5·10⁻⁷", for axes whose plain numbers would not fit.
+// "2.5·10⁻⁷", for axes on which plain numbers would not fit.
 std::string with_power(double value, int power, int decimals) {
   if (value == 0.0) return "0";
   return fixed(value / std::pow(10.0, power), decimals) + "·10" + superscript(power);
 }
 
-// "0.02": digit · 10^exponent in plain figures.
+// "0.02": digit · 10^exponent in decimal notation.
 std::string plain_power(int exponent, int digit) {
   return fixed(digit * std::pow(10.0, exponent), std::max(0, -exponent));
 }
 
-// 1, 2 and 5 times each power of ten inside.
+// 1, 2 and 5 times each power of ten within the range.
 std::vector<Tick> one_two_five(double low, double high) {
   std::vector<Tick> ticks;
   const auto last = static_cast<int>(std::floor(std::log10(high)));

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-// Where an axis is marked, and how the marks read.
+// Positions and labels of axis ticks.
 namespace proofmass::report {
 
 struct Tick {
@@ -11,13 +11,14 @@ struct Tick {
   std::string label;
 };
 
-/// Marks from `low` to `high`: 1, 2 or 5 times a power of ten apart, at most `most` + 1 of them,
-/// with as many decimals as they need and a power of ten taken out of very large and very small
-/// ones. Empty if the range is empty, not finite, or too narrow for doubles to tell its ends apart.
+/// Ticks from `low` to `high`, spaced by 1, 2 or 5 times a power of ten; at most `most` + 1 of
+/// them, with as many decimals as they need. A common power of ten is factored out of very large
+/// and very small values. Empty if the range is empty, not finite, or too narrow for double
+/// precision.
 [[nodiscard]] std::vector<Tick> linear_ticks(double low, double high, int most);
 
-/// Powers of ten within [low, high], both positive, "10⁻³"; 2 and 5 times them too where there is
-/// room, and every second, third … power where there are more than `most`. Where fewer than two lie
+/// Powers of ten within [low, high], both positive, "10⁻³"; also 2 and 5 times them if there is
+/// room, and every second, third … power if there are more than `most`. If fewer than two are
 /// inside, linear_ticks of the same range.
 [[nodiscard]] std::vector<Tick> log_ticks(double low, double high, int most);
 

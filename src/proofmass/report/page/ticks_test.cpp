@@ -35,7 +35,7 @@ TEST(LinearTicks, AreNeverMoreThanAskedForAndLieInside) {
   }
 }
 
-TEST(LinearTicks, TellNeighboursApart) {
+TEST(LinearTicks, DistinguishNeighbours) {
   const auto ticks = linear_ticks(79.6141, 79.6149, 6);
   ASSERT_GE(ticks.size(), 3U);
   EXPECT_NE(ticks[0].label, ticks[1].label);

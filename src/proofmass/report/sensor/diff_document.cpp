@@ -17,7 +17,7 @@ using sensor::LargestError;
 using sensor::SensorComparison;
 using sensor::Verdict;
 
-/// A value in the unit of the new file's figure, or else of the old one's.
+/// Converts to the unit of the new file's figure, or of the old one's if there is none.
 struct InUnit {
   sensor::FigureUnit unit;
 
@@ -36,7 +36,7 @@ struct InUnit {
   }
 };
 
-// The words of a verdict are too long for a column: a paragraph explains them.
+// A column has room for one word; a paragraph explains the verdict.
 std::string short_verdict(const FigureComparison& figure) {
   if (figure.verdict == Verdict::changed) return "changed";
   return figure.verdict == Verdict::same ? "same" : verdict_words(figure);
@@ -62,7 +62,7 @@ std::vector<std::string> cells(const FigureComparison& figure, std::size_t numbe
       figure.p_adjusted ? probability_words(*figure.p_adjusted) : ""};
 }
 
-// A table for each section of the file.
+// One table for each section of the file.
 std::vector<Table> tables_of(const SensorComparison& comparison) {
   std::vector<Table> tables;
   std::string section;
@@ -78,13 +78,13 @@ std::vector<Table> tables_of(const SensorComparison& comparison) {
   return tables;
 }
 
-// Changes in units of their standard deviation; those without one are not drawn.
+// Changes in units of their standard deviation; figures without one are omitted.
 Figure changes_figure(const SensorComparison& comparison) {
   Figure figure{.title = "Changes in units of their standard deviation",
                 .description =
                     "One dot for each figure that both files have with its standard "
                     "deviation, by its number in the table. 95 % of unchanged figures "
-                    "lie in the band.",
+                    "are in the band.",
                 .x = {.label = "Figure (number in the table)"},
                 .y = {.label = "New − old (standard deviations)"},
                 .height = 280.0};
@@ -209,7 +209,7 @@ Field figure_or_null(const char* key,
                          std::move(about));
 }
 
-// Why a figure was not compared or not tested.
+// Reason why a figure was not compared or not tested.
 std::string why_untested(const FigureComparison& figure) {
   return figure.reason.empty() ? std::string(words_of(figure.verdict)) : figure.reason;
 }

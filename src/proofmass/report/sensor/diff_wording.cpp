@@ -17,7 +17,7 @@ using sensor::Verdict;
 
 constexpr double mps2_per_mg = 1e-3 * standard_gravity_mps2;
 
-/// The error in a unit of which `si` is one.
+/// The error in a unit equal to `si` SI units.
 std::string words(const LargestError& error, double si, std::string_view unit) {
   if (error.std && *error.std > 0.0) return with_std({error.value / si, *error.std / si}, unit);
   return compact(error.value / si, 3) + (unit == "°" ? "" : " ") + std::string(unit);
@@ -27,7 +27,7 @@ bool in_calibration(const FigureComparison& figure) {
   return figure.before.section == "calibration";
 }
 
-/// Names of the figures of one verdict, inside or outside the calibration.
+/// Names of the figures with one verdict, inside or outside the calibration.
 std::vector<std::string> names_of(const SensorComparison& comparison,
                                   Verdict verdict,
                                   bool calibration) {

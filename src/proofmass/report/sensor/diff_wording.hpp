@@ -9,7 +9,7 @@
 // Wording of `sensor diff`.
 namespace proofmass::report {
 
-/// What the comparison comes to, in sentences: the conclusion, then what follows from it.
+/// The comparison in sentences: the conclusion, then its consequences.
 [[nodiscard]] std::vector<std::string> sensor_diff_findings(const SensorDiff& report);
 
 /// "2.31 ± 0.08 mg"

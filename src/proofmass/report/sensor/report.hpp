@@ -11,7 +11,7 @@
 
 namespace proofmass::report {
 
-/// A sensor file as it is.
+/// The content of a sensor file.
 struct SensorShow {
   std::string file;
   sensor::SensorModel model;
@@ -21,15 +21,15 @@ struct SensorShow {
 /// The result of `sensor show`: every figure with its unit, standard deviation and origin.
 [[nodiscard]] Document describe(const SensorShow& report);
 
-/// Two sensor files and what has changed from the one to the other.
+/// Two sensor files and the changes from one to the other.
 struct SensorDiff {
   std::string old_file, new_file;
-  std::vector<Note> notes;  ///< of the files; the comparison has its own
+  std::vector<Note> notes;  ///< notes of the files; the comparison has its own
   sensor::SensorComparison comparison;
 };
 
-/// The result of `sensor diff`: what has changed, by how many standard deviations, and the error
-/// that the old file would cause.
+/// The result of `sensor diff`: the changes, also in standard deviations, and the error that the
+/// old file would cause.
 [[nodiscard]] Document describe(const SensorDiff& report);
 
 /// A sensor file in another format.

@@ -36,7 +36,7 @@ SensorDiff diff_of(const SensorModel& before, const SensorModel& after) {
   return {"a/old.toml", "b/new.toml", {}, sensor::compare(before, after)};
 }
 
-/// The calibration of another day: the same figures from another origin.
+/// The calibration of another day: the same figures with another origin.
 SensorModel again(double x_bias_mps2) {
   SensorModel model = calibrated(x_bias_mps2);
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -111,7 +111,7 @@ TEST(SensorDiff, SaysWhatChangedAndWhatItWouldDo) {
       says(findings, "No test of the calibration as a whole: no covariance in OLD and NEW"));
 }
 
-TEST(SensorDiff, SaysThatNothingChanged) {
+TEST(SensorDiff, StatesThatNothingChanged) {
   const auto findings = sensor_diff_findings(diff_of(calibrated(0.1), again(0.103)));
   EXPECT_EQ(findings[0], "The calibration is the same within its uncertainty.");
   EXPECT_FALSE(says(findings, "Changed"));
@@ -158,7 +158,7 @@ TEST(SensorDiff, ItsPageHasTheFigureWhereThereIsSomethingToDraw) {
   EXPECT_FALSE(has(to_html(describe(diff_of(calibrated(0.1), calibrated(0.1)))), "<svg"));
 }
 
-/// With every entry that a calibration may have.
+/// Every entry that a calibration can have.
 SensorModel full(double x_bias_mps2) {
   SensorModel model = again(x_bias_mps2);
   model.calibration.misalignment = make_axis_figures({0.01, 0.02, 0.03}, "rad", "tumble 2");

@@ -25,7 +25,7 @@ std::string section_words(std::string_view section) {
   return "Electrical";
 }
 
-// As its author wrote it; the unit has a column of its own.
+// As written in the file, without the unit, which has its own column.
 std::string value_words(const sensor::Figure& figure) {
   if (figure.std && *figure.std > 0.0) return with_std({figure.value, *figure.std});
   return compact(figure.value, 9);
@@ -38,7 +38,8 @@ std::vector<std::string> cells(const FigureSlot& slot) {
   return {name, value_words(figure), unit, figure.std ? "" : "not stated", figure.origin};
 }
 
-// The figures of one section, with a column for missing standard deviations if there are any.
+// The figures of one section; has a column for reasons of missing standard deviations if there are
+// any.
 Table section_table(const SensorShow& report, std::string_view section) {
   Table table{section_words(section), {"figure", "value", "unit", "std", "origin"}, {}};
   for (const FigureSlot& slot : sensor::figure_slots(report.model))
@@ -50,7 +51,7 @@ Table section_table(const SensorShow& report, std::string_view section) {
   return table;
 }
 
-// The two figures of the calibration whose errors are most correlated.
+// The two calibration figures with the most correlated errors.
 std::string correlation_words(const sensor::Calibration& calibration) {
   constexpr std::array<std::string_view, 9> names{
       "bias x",  "bias y",          "bias z",          "scale x",        "scale y",
@@ -119,7 +120,7 @@ Field covariance(const sensor::Calibration& calibration) {
                               .why_null = "the file has none"});
 }
 
-// A text of the file that may be missing, for people only where it is there.
+// An optional text of the file; printed only if present.
 Field described(const char* key, const std::string& text, const char* label, const char* meaning) {
   return field::text(key, text, {.meaning = meaning, .label = text.empty() ? "" : label});
 }

@@ -5,7 +5,7 @@
 
 namespace proofmass::report {
 
-/// Which figure of a sensor file it is: "section", "key" and, where there is one, "axis".
+/// Identifies a figure of a sensor file: "section", "key" and, if any, "axis".
 [[nodiscard]] Fields slot_fields(const sensor::FigureSlot& slot);
 
 }  // namespace proofmass::report

@@ -22,8 +22,8 @@ std::string degree_text(double angle_rad) {
   return significant(angle_rad * deg_per_rad, 2) + "°";
 }
 
-// Roll is ill-conditioned where x is nearly vertical: its standard deviation is ten times the
-// tilt's.
+// Roll is ill-conditioned if x is nearly vertical: its standard deviation is ten times that of the
+// tilt.
 bool is_nearly_vertical(const TiltAngles& angles) {
   constexpr double near_rad = 10.0 * rad_per_deg;
   return angles.inclination && angles.inclination->axis == 0 &&
@@ -57,7 +57,7 @@ std::string conclusion(const TiltReport& report) {
   return fmt::format("{}, over the last of {} rests.", words, solution.rests.size());
 }
 
-// Labelled where they are the result, unlabelled for a single rest.
+// Labelled if it is the result, unlabelled for a single rest.
 Field roll(const TiltAngles& angles, const char* label = "") {
   return field::measured(
       "roll_rad", angles.roll_rad, "rad",
@@ -167,7 +167,7 @@ Fields axis_fields(const TiltReport& report) {
       mode("angle"),
       field::count("samples", axis.samples),
       unusable(axis.unusable),
-      down_weighted_count(axis.told_less),
+      down_weighted_count(axis.down_weighted),
       field::measured("roll_rad", std::nullopt, "rad", none),
       field::measured("pitch_rad", std::nullopt, "rad", none),
       field::measured("angle_rad", axis.angle_rad, "rad",
@@ -214,7 +214,7 @@ Fields tilt_fields(const TiltReport& report) {
       mode(solution.moving ? "moving" : "still"),
       field::count("samples", solution.samples, {.meaning = "in the recording"}),
       unusable(solution.unusable),
-      down_weighted_count(solution.told_less),
+      down_weighted_count(solution.down_weighted),
       axes(solution.axes),
       roll(solution.final, "Roll"),
       pitch(solution.final, "Pitch"),
@@ -272,7 +272,7 @@ Table motion_table(const TiltSolution& solution) {
       {"Its correlation time", significant(motion.accel_time_s, 2) + " s"},
       {"White noise of a measurement in motion", significant(motion.reading_std_mps2, 2) + " m/s²"},
       {"Norm of gravity", fixed(motion.gravity_mps2, 4) + " m/s²"},
-      {"Down-weighted measurements", grouped(solution.told_less)}};
+      {"Down-weighted measurements", grouped(solution.down_weighted)}};
   if (!solution.rate_bias_radps) return table;
   for (std::size_t i = 0; i < 3; ++i)
     table.rows.push_back(
@@ -294,7 +294,7 @@ Table noise_table(const AxisTiltSolution& axis) {
            {"Motion disturbance of the angle", degree_text(noise.motion_std_rad) + " rms"},
            {"Its correlation time", significant(noise.motion_time_s, 2) + " s"},
            {"White noise of the angle", degree_text(noise.reading_std_rad)},
-           {"Down-weighted measurements", grouped(axis.told_less)}}};
+           {"Down-weighted measurements", grouped(axis.down_weighted)}}};
 }
 
 Section method_section(const TiltReport& report) {

@@ -6,10 +6,10 @@
 
 #include "proofmass/report/tilt/report.hpp"
 
-// Made-up solutions whose every figure is known, for the tests of this module.
+// Synthetic solutions with known figures, for the tests of this module.
 namespace proofmass::report {
 
-/// One rest of a hundred samples with no roll, then as a moving base if asked for.
+/// One rest of a hundred samples with zero roll; `moving`: by the filter of a moving base.
 inline TiltReport fake_tilt(bool moving) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   TiltReport report;
@@ -19,7 +19,7 @@ inline TiltReport fake_tilt(bool moving) {
   solution.samples = 100;
   solution.axes = 3;
   solution.moving = moving;
-  solution.final.why_no_roll = "the x axis stands upright";
+  solution.final.why_no_roll = "the x axis is vertical";
   solution.final.pitch_rad = Uncertain{std::numbers::pi / 2, 0.01};
   for (int k = 0; k < 100; ++k) {
     solution.series.time_s.push_back(0.01 * k);
@@ -39,7 +39,7 @@ inline TiltReport fake_tilt(bool moving) {
   }
   solution.rests.push_back({.first = 0, .last = 99});
   solution.rests.back().angles = solution.final;
-  solution.notes = {{Severity::warning, "nothing says how well it is calibrated"}};
+  solution.notes = {{Severity::warning, "the accuracy of the calibration is unknown"}};
   if (moving) {
     solution.motion = estimate::TiltMotion{.gyroscope = true, .drive = 1e-3};
     estimate::ConsistencyCheck check({.channels = {"x", "y", "z"}, .rate_hz = 100.0});

@@ -31,7 +31,7 @@ Band band(const char* label,
   return out;
 }
 
-// Where the filter down-weighted a measurement by half or more.
+// Times at which the filter reduced the weight of a measurement to half or less.
 Curve down_weighted(const std::vector<double>& time_s, const std::vector<float>& weight) {
   Curve out{"down-weighted", {}, {}, Ink::red, Mark::ticks};
   for (std::size_t k = 0; k < weight.size(); ++k)
@@ -39,7 +39,7 @@ Curve down_weighted(const std::vector<double>& time_s, const std::vector<float>&
   return out;
 }
 
-// From sample numbers where there is no time.
+// Sample numbers if there are no times.
 std::vector<double> times_of(const std::vector<double>& time_s, std::size_t size) {
   if (!time_s.empty()) return time_s;
   std::vector<double> numbers(size);
@@ -47,7 +47,7 @@ std::vector<double> times_of(const std::vector<double>& time_s, std::size_t size
   return numbers;
 }
 
-// All but the outermost values, so that one wide band does not press the rest flat.
+// Excludes the outermost values, so that a single wide band does not compress the rest.
 void fit_axis(Figure& figure) {
   std::vector<double> values;
   for (const Curve& curve : figure.curves)

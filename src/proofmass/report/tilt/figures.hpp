@@ -6,8 +6,7 @@
 
 namespace proofmass::report {
 
-// Angles with the 95 % bands of filter and smoother, and ticks where a measurement was
-// down-weighted.
+// Angles with the 95 % bands of filter and smoother, and ticks at down-weighted measurements.
 [[nodiscard]] Figure roll_figure(const estimate::TiltSolution& solution);
 [[nodiscard]] Figure pitch_figure(const estimate::TiltSolution& solution);
 [[nodiscard]] Figure axis_angle_figure(const estimate::AxisTiltSolution& solution);

@@ -7,13 +7,13 @@
 namespace proofmass::report::tilt_report_test {
 namespace {
 
-TEST(TiltReport, GivesANullAndItsReasonWhereThereIsNoRoll) {
+TEST(TiltReport, GivesANullAndItsReasonWithoutARoll) {
   const std::string json = to_json(describe(fake_tilt(false)));
   EXPECT_NE(json.find("\"roll_rad\": null"), std::string::npos);
-  EXPECT_NE(json.find("roll_rad: null: the x axis stands upright"), std::string::npos);
+  EXPECT_NE(json.find("roll_rad: null: the x axis is vertical"), std::string::npos);
   EXPECT_NE(json.find("\"mode\": \"still\""), std::string::npos);
   EXPECT_EQ(json.find("consistency"), std::string::npos);
-  EXPECT_NE(to_text(describe(fake_tilt(false))).find("No roll: the x axis stands upright."),
+  EXPECT_NE(to_text(describe(fake_tilt(false))).find("No roll: the x axis is vertical."),
             std::string::npos);
 }
 

@@ -5,7 +5,7 @@
 #include "proofmass/core/random.hpp"
 #include "proofmass/report/track/report.hpp"
 
-// A made-up solution whose every figure is known, for the tests of this module.
+// A synthetic solution with known figures, for the tests of this module.
 namespace proofmass::report {
 
 /// Three strokes of 0.4 m there and back and one of 0.2 m one way, each after a rest of 2 s.
@@ -83,7 +83,7 @@ inline TrackReport fake_track() {
   return report;
 }
 
-/// The same as two sensors showed it.
+/// The same motion from two fused sensors.
 inline TrackReport fake_fused() {
   TrackReport report = fake_track();
   estimate::TrackSolution& solution = report.solution;
@@ -94,14 +94,14 @@ inline TrackReport fake_fused() {
   return report;
 }
 
-/// The same readings, that look like jerk.
+/// The same measurements under the jerk model.
 inline TrackReport fake_jerk() {
   TrackReport report = fake_track();
   estimate::TrackSolution& solution = report.solution;
   solution.suspected_jerk = true;
   solution.smoother = solution.kalman = solution.double_integration = std::nullopt;
   solution.strokes.clear();
-  solution.notes = {{Severity::bad, "the readings behave like jerk"}};
+  solution.notes = {{Severity::bad, "the data behave like jerk"}};
   return report;
 }
 

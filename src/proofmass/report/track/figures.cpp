@@ -30,7 +30,7 @@ std::vector<double> shifted(const std::vector<double>& values,
   return out;
 }
 
-// What the plot has to hold.
+// Range of the values to be shown.
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
 
@@ -42,7 +42,7 @@ struct Range {
   void hold(const std::vector<double>& values) {
     for (const double value : values) hold(value);
   }
-  // All but the outermost 2 % at either end.
+  // Excludes the outermost 2 % at either end.
   void hold_most(const std::vector<double>& values) {
     hold(quantile(values, 0.02).value_or(none));
     hold(quantile(values, 0.98).value_or(none));
@@ -54,7 +54,7 @@ struct Range {
   }
 };
 
-// Over the whole height of a plot whose range is set.
+// Over the full height of a plot with fixed range.
 void shade_rests(const TrackSolution& solution, Figure& figure) {
   if (!figure.y.min || !figure.y.max || solution.rests.empty()) return;
   const std::vector<double>& time_s = solution.series.time_s;
@@ -72,7 +72,7 @@ void shade_rests(const TrackSolution& solution, Figure& figure) {
   figure.bands.insert(figure.bands.begin(), std::move(band));
 }
 
-// Each stroke's number at its turning point, where there is room for them.
+// Number of each stroke at its turning point, if there is room.
 void mark_strokes(const TrackSolution& solution, Figure& figure) {
   constexpr std::size_t most_numbers = 15;
   const TrackSeries& series = solution.series;
@@ -115,8 +115,8 @@ Figure position_figure(const TrackReport& report) {
   const TrackSeries& series = solution.series;
   Figure figure{.title = "Position along the axis",
                 .description =
-                    "Given all readings (smoother), those so far (filter), and twice "
-                    "integrated. A true position lies in its 95 % band 95 times in 100.",
+                    "From all measurements (smoother), those so far (filter), and by double "
+                    "integration. The true position is in its 95 % band 95 times in 100.",
                 .x = time_axis(),
                 .y = {.label = "Position (m)"},
                 .height = 360.0};
@@ -154,14 +154,14 @@ Figure velocity_figure(const TrackSolution& solution) {
   const double factor = solution.factor_95;
   Figure figure{.title = "Velocity along the axis",
                 .description =
-                    "Given all readings, with its 95 % band. A dot is what the filter "
-                    "had left over when the sensor stopped, which should have been 0.",
+                    "From all measurements, with its 95 % band. Dots are the filter's "
+                    "residual velocities at stops, whose true value is 0.",
                 .x = time_axis(),
                 .y = {.label = "Velocity (m/s)"}};
   Band band{"95 % band", series.time_s,
             shifted(series.velocity_mps, series.velocity_std_mps, -factor),
             shifted(series.velocity_mps, series.velocity_std_mps, factor)};
-  Curve left{"left over on arrival", {}, {}, Ink::orange, Mark::points};
+  Curve left{"residual at a stop", {}, {}, Ink::orange, Mark::points};
   for (const estimate::Closure& closure : solution.closures) {
     left.x.push_back(closure.end_s);
     left.y.push_back(closure.velocity_mps);
@@ -181,7 +181,7 @@ Figure velocity_figure(const TrackSolution& solution) {
 Figure accel_figure(const TrackSolution& solution) {
   const TrackSeries& series = solution.series;
   Figure figure{.title = "Acceleration along the axis",
-                .description = "As read, less the level of the first rest.",
+                .description = "As measured, minus the level of the first rest.",
                 .x = time_axis(),
                 .y = {.label = "Acceleration (m/s²)"}};
   Range range;
@@ -199,7 +199,7 @@ Figure position_std_figure(const TrackSolution& solution) {
     return values;
   };
   return {.title = "Standard deviation of the position",
-          .description = "How sure each is of the position, instant by instant.",
+          .description = "Uncertainty of the position against time, for filter and smoother.",
           .x = time_axis(),
           .y = {.label = "Standard deviation (mm)", .scale = AxisScale::log},
           .curves = {{"filter", series.time_s, in_mm(series.filtered_position_std_m), Ink::green},

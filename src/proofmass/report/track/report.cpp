@@ -31,7 +31,7 @@ Recording track_series(const TrackReport& report) {
   out.channels.push_back(channel("accel", "m/s^2", series.accel_mps2));
   out.channels.push_back(
       {"resting", {}, std::vector<double>(series.resting.begin(), series.resting.end())});
-  // A method that had nothing to say has no column.
+  // A method without results has no column.
   std::erase_if(out.channels,
                 [&](const Channel& c) { return c.values.size() != series.time_s.size(); });
   return out;

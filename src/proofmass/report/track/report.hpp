@@ -9,21 +9,21 @@
 
 namespace proofmass::report {
 
-/// A solution and what it was computed from.
+/// A solution and its input.
 struct TrackReport {
   std::vector<std::string> inputs;  ///< files, as the user named them
-  std::vector<Note> notes;          ///< of reading and preparing; the solution's own are added
+  std::vector<Note> notes;          ///< notes of reading and preparation; the solution's are
+                                    ///< added
   estimate::TrackOptions options;
   estimate::TrackSolution solution;
 };
 
-/// Displacement by each method, error budget, strokes, stops, consistency. It refers to the report,
-/// which must outlive it.
+/// Displacement by each method, error budget, strokes, stops, consistency. Holds a reference to the
+/// report, which must outlive it.
 [[nodiscard]] Document describe(const TrackReport& report);
 
-/// The whole time line as a recording with the columns time, position, position_std, velocity, …:
-/// what `--output` writes. Where the data may not be
-/// accelerations it has the data alone.
+/// The whole time history as a recording with the columns time, position, position_std, velocity,
+/// …; the content of `--output`. Contains the input only if that may not be acceleration.
 [[nodiscard]] Recording track_series(const TrackReport& report);
 
 }  // namespace proofmass::report

@@ -14,7 +14,7 @@ using calibrate::TumbleCoefficient;
 using calibrate::TumbleFit;
 using Q = calibrate::TumbleQuantity;
 
-// The keys of every document, whether the test determines them or not.
+// The keys of every document, whether or not the test determines them.
 constexpr std::array standard_keys{Q::K1, Q::K0,  Q::K2_minus_Kpp, Q::misalignment,
                                    Q::K3, Q::Kip, Q::K0_up_down};
 
@@ -40,13 +40,13 @@ Field absent_figure(Q quantity, const std::string& why) {
   return field::measured(key_of(quantity), std::nullopt, std::nullopt, "", {.why_null = why});
 }
 
-// Drift and indexing errors are objects of their own.
+// Drift and indexing errors have objects of their own.
 bool is_listed(Q quantity) {
   return quantity != Q::drift && quantity != Q::indexing_cos && quantity != Q::indexing_sin &&
          quantity != Q::indexing_cos2 && quantity != Q::indexing_sin2;
 }
 
-// The first of each quantity: there may be a misalignment for each mounting.
+// The first coefficient of each quantity, since there may be a misalignment for each mounting.
 std::vector<const TumbleCoefficient*> listed(const TumbleFit& fit) {
   std::vector<const TumbleCoefficient*> out;
   for (const TumbleCoefficient& c : fit.coefficients)
@@ -130,10 +130,10 @@ Field drift(const TumbleFit& fit) {
        field::probability(
            "p", found.p,
            {.meaning = "probability of this drift or more by chance", .why_null = found.words}),
-       field::magnitude("wander_std_mps2", found.wander_std_mps2,
+       field::magnitude("wander_std_mps2", found.nonlinear_std_mps2,
                         {.meaning = "standard deviation of the bias drift about a straight line, "
                                     "as used"}),
-       field::flag("wander_assumed", found.wander_assumed, {.meaning = "not stated"}),
+       field::flag("wander_assumed", found.nonlinear_assumed, {.meaning = "not stated"}),
        field::text("words", found.words)});
 }
 
@@ -402,7 +402,7 @@ Section channel_section(const ChannelTumble& channel) {
   return section;
 }
 
-// What a certificate states of the test.
+// Conditions of the test, as a certificate states them.
 Section conditions_section(const TumbleReport& report) {
   const std::string gravity_std = report.gravity_std_mps2 > 0.0
                                       ? ", std " + significant(report.gravity_std_mps2, 2) + " m/s²"

@@ -7,10 +7,10 @@
 
 #include "proofmass/report/tumble/report.hpp"
 
-// Made-up tumble tests of known coefficients, for the tests of this module.
+// Synthetic tumble tests with known coefficients, for the tests of this module.
 namespace proofmass::report {
 
-/// Outputs in volts of an axis about 1.65 V; the sixth position is off by `off_v`.
+/// Outputs in volts of an axis about 1.65 V; that of the sixth position is off by `off_v`.
 inline ChannelTumble fake_channel(int count, double noise_v, double off_v = 0.0) {
   constexpr double g = standard_gravity_mps2;
   ChannelTumble out;
@@ -39,7 +39,7 @@ inline TumbleReport fake_tumble(ChannelTumble one) {
   return report;
 }
 
-/// Outputs in two planes, in m/s², with every entry that a channel may have.
+/// Outputs in two planes, in m/s², with every entry that a channel can have.
 inline TumbleReport fake_full_tumble() {
   ChannelTumble one = fake_channel(12, 1e-4);
   one.unit = *parse_unit("m/s^2");

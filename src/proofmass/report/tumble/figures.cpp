@@ -63,7 +63,7 @@ std::string unit_of(const ChannelTumble& channel) {
   return channel.unit.symbol.empty() ? "" : " (" + print_unit(channel.unit.symbol) + ")";
 }
 
-// The first harmonics of the fit, all that is visible: K1 (K0 + g sin φ + δ g cos φ).
+// First harmonics of the fit, which is all that is visible: K1 (K0 + g sin φ + δ g cos φ).
 Curve fitted_curve(const ChannelTumble& channel, const Group& group, Ink ink) {
   Curve curve{.label = {}, .x = {}, .y = {}, .ink = ink, .mark = Mark::line};
   const auto* scale = channel.fit->find(calibrate::TumbleQuantity::K1);

@@ -6,10 +6,10 @@
 // The plots of a tumble's page.
 namespace proofmass::report {
 
-/// Output against the table's angle: the readings, and the fit of each plane and mounting.
+/// Output against the table's angle: measurements, and the fit for each plane and mounting.
 [[nodiscard]] Figure tumble_output_figure(const ChannelTumble& channel);
 
-/// Residuals against the angle with their 95 % band; suspects named.
+/// Residuals against the angle with their 95 % band; suspects labelled.
 [[nodiscard]] Figure tumble_residual_figure(const ChannelTumble& channel);
 
 }  // namespace proofmass::report

@@ -14,7 +14,7 @@ using calibrate::FittedCoefficient;
 using calibrate::ModelFit;
 using sensor::Coefficient;
 
-// "{}" stands for the unit of the output.
+// Replaces "{}" by the unit of the output.
 std::string with_output_unit(std::string_view pattern, const std::string& output_unit) {
   std::string unit(pattern);
   const auto place = unit.find("{}");
@@ -31,7 +31,7 @@ std::string shown_unit(const std::string& unit) {
   return unit == "1" ? "" : print_unit(unit);
 }
 
-// In the standard's units: g, not m/s².
+// In the units of the standard: g instead of m/s².
 std::optional<Uncertain> in_standard(const FittedCoefficient& one) {
   if (!one.value) return std::nullopt;
   return Uncertain{sensor::in_standard_unit(one.coefficient, one.value->value),
@@ -192,7 +192,7 @@ Table combinations_table(const ModelOutput& output) {
   return table;
 }
 
-// Why something is absent, each reason once.
+// Reasons of absent coefficients, each once.
 std::vector<std::string> absence_reasons(const ModelOutput& output) {
   std::vector<std::string> all;
   for (const FittedCoefficient& one : output.fit.coefficients)
@@ -285,7 +285,7 @@ Section method_section() {
           "known."}};
 }
 
-// The report's notes, then those of the fits with the output's name.
+// The report's notes, then those of the fits, prefixed with the output's name.
 std::vector<Note> all_notes(const ModelEquationReport& report) {
   std::vector<Note> notes = report.notes;
   for (const ModelOutput& output : report.outputs)

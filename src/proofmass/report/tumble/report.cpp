@@ -50,7 +50,7 @@ std::vector<Note> tumble_notes(const TumbleReport& report) {
   const bool any = longest(report) != nullptr;
   for (const ChannelTumble& channel : report.channels) {
     const std::string prefix = channel.name + ": ";
-    const bool harmless = any && !channel.axis.swings();
+    const bool harmless = any && !channel.axis.follows_angle();
     if (!channel.refused.empty())
       notes.push_back({harmless ? Severity::warning : Severity::bad, prefix + channel.refused});
     if (!channel.fit) continue;

@@ -13,37 +13,38 @@
 
 namespace proofmass::report {
 
-/// One output on the table: its coefficients, or why they are absent.
+/// One output of the test: its coefficients, or the reason for their absence.
 struct ChannelTumble {
   std::string name;
-  Unit unit;  ///< of the outputs: SI where known, else counts or none
+  Unit unit;  ///< unit of the outputs: SI if known, else counts or none
   calibrate::TumbleAxis axis;
-  std::vector<calibrate::TumblePosition> positions;  ///< in its unit, those of the fit
+  std::vector<calibrate::TumblePosition> positions;  ///< in `unit`; the positions of the fit
   std::optional<calibrate::TumbleFit> fit;
   std::string refused;
 };
 
-/// A tumble test and what it was computed from.
+/// A tumble test and its input.
 struct TumbleReport {
   std::vector<std::string> inputs;  ///< files, as the user named them
   std::vector<ChannelTumble> channels;
-  std::size_t main = 0;     ///< the channel whose coefficients are at the top of the document
-  std::vector<Note> notes;  ///< of reading and preparing; those of the fits are added
+  std::size_t main = 0;     ///< channel with its coefficients at the top level of the document
+  std::vector<Note> notes;  ///< notes of reading and preparation; those of the fits are added
   double gravity_mps2 = standard_gravity_mps2, gravity_std_mps2 = 0.0;
   std::optional<double> indexing_std_rad = {};  ///< as stated
-  std::string source;                           ///< of the positions: "a table of positions"
+  std::string source;                           ///< origin of the positions: "a table of
+                                                ///< positions"
 };
 
 /// For each channel coefficients, output and residuals against angle; the conditions of the test.
-/// It refers to the report, which must outlive it.
+/// Holds a reference to the report, which must outlive it.
 [[nodiscard]] Document describe(const TumbleReport& report);
 
-/// All notes: the report's own, then each channel's with its name. A refusal is bad; that of an
-/// axis along the table's only if no other channel has coefficients.
+/// All notes: the report's, then each channel's with its name. A refusal is Severity::bad; that of
+/// an axis parallel to the table's only if no other channel has coefficients.
 [[nodiscard]] std::vector<Note> tumble_notes(const TumbleReport& report);
 
 /// Angle, direction, mounting and plane, then for each channel output, fit, residual and its
-/// standard deviation: what `--output` writes.
+/// standard deviation; the content of `--output`.
 [[nodiscard]] Recording tumble_series(const TumbleReport& report);
 
 }  // namespace proofmass::report

@@ -71,7 +71,7 @@ TEST(TumbleReport, NamesARefusedChannelAndKeepsTheOthers) {
     return most;
   };
   EXPECT_EQ(worst(), Severity::bad);
-  // An axis along the table's is as it should be, unless it is all there is.
+  // An axis parallel to the table's is normal, unless there is no other.
   report.channels[1].axis.phase_rad[0].reset();
   EXPECT_EQ(worst(), Severity::warning);
   report.channels.erase(report.channels.begin());

@@ -15,7 +15,7 @@ using Q = calibrate::RotationQuantity;
 
 constexpr double g = standard_gravity_mps2;
 
-// How a coefficient is shown: in mg, mrad and the standard's g. K1 is in the unit of the output.
+// Display of a coefficient: in mg, mrad and the standard's g. K1 is in the unit of the output.
 struct QuantityInfo {
   const char* label;
   std::string_view unit;  // SI
@@ -50,7 +50,7 @@ Field coefficient(const RotationCoefficient& one, const std::string& output_unit
                          unit_of(one.quantity, output_unit), std::move(shown));
 }
 
-// As people read it.
+// The coefficient in its display unit.
 std::string coefficient_words(const RotationReport& report, const RotationAxis& axis, Q quantity) {
   const RotationCoefficient& one = axis[quantity];
   if (quantity != Q::K1) return shown_value(coefficient(one, report.unit));
@@ -206,7 +206,7 @@ Table sections_table(const RotationReport& report) {
   return table;
 }
 
-// Why coefficients are absent, each reason once.
+// Reasons of absent coefficients, each once.
 std::vector<std::string> absence_reasons(const RotationReport& report) {
   std::vector<std::string> all;
   for (const RotationAxis& axis : report.fit.axes)

@@ -54,8 +54,8 @@ std::string mounted(const TumbleCoefficient& coefficient) {
 
 std::string lack_of_fit_words(const calibrate::TumbleLackOfFit& found) {
   constexpr double chance = 0.05;
-  // A drift or an angle error that follows the turn leaves no residual: the test cannot confirm the
-  // model.
+  // A drift or an angle error with the period of the turn leaves no residual, so the test cannot
+  // confirm the model.
   const char* verdict =
       found.p < chance ? "exceed what chance explains" : "are consistent with chance";
   return fmt::format("Lack of fit against the {}: F = {}, p = {}: the residuals {}.", found.against,

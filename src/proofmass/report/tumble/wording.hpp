@@ -10,7 +10,7 @@
 // Coefficients and sentences of `tumble`, in the notation of the standard.
 namespace proofmass::report {
 
-/// A coefficient in the standard's own units: g in place of m/s².
+/// Unit of a coefficient in the standard: g instead of m/s².
 struct InG {
   double factor = 1.0;  ///< from SI
   std::string unit;     ///< "mg", "ug/g^2", "V/g"
@@ -23,17 +23,17 @@ struct InG {
 /// "K2 − Kpp", "δo (mounted at 180°)".
 [[nodiscard]] std::string symbol_words(const calibrate::TumbleCoefficient& coefficient);
 
-/// "12.1 ± 0.3 mg"; a value alone where it has no std; "not determined".
+/// "12.1 ± 0.3 mg"; the value alone if it has no std; "not determined".
 [[nodiscard]] std::string coefficient_words(const calibrate::TumbleCoefficient& coefficient,
                                             const Unit& output);
 
 /// "x: misalignment_rad (mounted at 180°)".
 [[nodiscard]] std::string key_words(const calibrate::TumbleCoefficient& coefficient);
 
-/// Whether the coefficient is listed: it has a value, or it is one of the standard's own.
+/// True if the coefficient is listed: it has a value, or it is one of the standard's.
 [[nodiscard]] bool is_shown(const calibrate::TumbleCoefficient& coefficient);
 
-/// Rows of symbol, figure, 95 % interval, meaning or reason.
+/// Rows of symbol, figure, 95 % interval, and meaning or reason for absence.
 [[nodiscard]] std::vector<std::vector<std::string>> coefficient_rows(const ChannelTumble& channel);
 
 /// "x: scale factor 0.3301 ± 0.0002 V/g, bias 12.1 ± 0.3 mg at 0 g."
@@ -42,8 +42,7 @@ struct InG {
 /// Findings about the fit of one channel, a sentence each.
 [[nodiscard]] std::vector<std::string> tumble_sentences(const ChannelTumble& channel);
 
-/// Effect of indexing errors of the table on the coefficients, or their size; from the main
-/// channel.
+/// Effect of the table's indexing errors on the coefficients, or their size; from the main channel.
 [[nodiscard]] std::vector<std::string> table_sentences(const TumbleReport& report);
 
 }  // namespace proofmass::report

@@ -6,7 +6,7 @@
 // A tuning of synthetic data, for the tests of this module.
 namespace proofmass::report {
 
-/// White noise of 0.05 m/s² on a level that walks by `step_std` a sample.
+/// White noise of 0.05 m/s² on a level with a random walk of `step_std` per sample.
 inline TuneReport fake_tuned(double step_std) {
   Random random(1, "tune report");
   std::vector<double> values;

@@ -19,9 +19,9 @@ Figure innovations_figure(const TuneReport& report, std::size_t channel) {
   const estimate::TunedSeries& series = report.tuning.series[channel];
   Figure figure{.title = report.channels[channel].name + ": innovations",
                 .description =
-                    "Each reading less what the filter expected, in the standard "
-                    "deviations that it states: 95 in 100 lie between the lines if the "
-                    "figures are right.",
+                    "Each measurement minus its prediction, in predicted standard "
+                    "deviations: 95 in 100 are between the lines if the noise parameters "
+                    "are correct.",
                 .x = {.label = "Time (s)"},
                 .y = {.label = "Innovation (standard deviations)"}};
   Curve curve{"innovation", series.time_s, series.innovation, Ink::blue, Mark::thin};
@@ -40,7 +40,7 @@ Figure autocorrelation_figure(const TuneReport& report, std::size_t channel) {
   const signal::WhitenessTest& test = report.consistency.whiteness[channel].front();
   Figure figure{.title = report.channels[channel].name + ": autocorrelation of the innovations",
                 .description = fmt::format(
-                    "Autocorrelation; of white innovations 95 in 100 values lie between the "
+                    "Autocorrelation; for white innovations 95 in 100 values are between the "
                     "lines: here {} in 100.",
                     std::lround(100.0 * test.inside_bounds)),
                 .x = {.label = "Lag (s)"},
@@ -58,7 +58,7 @@ Figure autocorrelation_figure(const TuneReport& report, std::size_t channel) {
 Figure gain_figure(const estimate::TuneStudy& study) {
   Figure figure{.title = study.channel + ": gain against time",
                 .description =
-                    "What share of a reading's surprise the filter takes for "
+                    "Fraction of an innovation that the filter attributes to the "
                     "acceleration: it falls from one to a limit that depends on Q/R alone, "
                     "the sooner the larger Q is. A dot marks where it stays within 2 %.",
                 .x = {.label = "Time (s)", .scale = AxisScale::log},
@@ -84,8 +84,8 @@ Figure covariance_figure(const estimate::TuneStudy& study) {
   constexpr std::array names{"position (m)", "velocity (m/s)", "acceleration (m/s²)"};
   Figure figure{.title = study.channel + ": standard deviations against time, as tuned",
                 .description =
-                    "From readings of the acceleration alone that of the acceleration "
-                    "comes to rest, those of velocity and position grow without bound.",
+                    "With measurements of acceleration only, that of the acceleration "
+                    "settles, and those of velocity and position grow without bound.",
                 .x = {.label = "Time (s)", .scale = AxisScale::log},
                 .y = {.label = "Standard deviation", .scale = AxisScale::log}};
   if (study.cases.empty()) return figure;
@@ -104,12 +104,12 @@ Figure covariance_figure(const estimate::TuneStudy& study) {
 Figure step_figure(const estimate::TuneStudy& study) {
   Figure figure{.title = study.channel + ": standard deviation against the step",
                 .description =
-                    "Of the acceleration, once the gain has settled: readings further "
-                    "apart, each as noisy, determine less.",
+                    "Acceleration, once the gain has settled: less frequent measurements "
+                    "of equal noise determine it less precisely.",
                 .x = {.label = "Step (s)", .scale = AxisScale::log},
                 .y = {.label = "Standard deviation of acceleration", .scale = AxisScale::log},
                 .height = 240.0};
-  Curve after{"after a reading", {}, {}, Ink::blue}, before{"before it", {}, {}, Ink::orange};
+  Curve after{"after a measurement", {}, {}, Ink::blue}, before{"before it", {}, {}, Ink::orange};
   for (const estimate::StepSizeEffect& step : study.steps) {
     after.x.push_back(step.step_s);
     after.y.push_back(step.accel_std_mps2);

@@ -7,20 +7,20 @@
 
 namespace proofmass::report {
 
-/// Normalised innovations of a channel against time, with where 95 % of them should lie.
+/// Normalised innovations of a channel against time, with the expected 95 % limits.
 [[nodiscard]] Figure innovations_figure(const TuneReport& report, std::size_t channel);
 
-/// Whether the innovations of a channel were tested for whiteness.
+/// True if the innovations of a channel were tested for whiteness.
 [[nodiscard]] bool has_whiteness(const TuneReport& report, std::size_t channel);
 
-/// Autocorrelation of a channel's innovations at the sample. Precondition: has_whiteness().
+/// Autocorrelation of a channel's innovations at single samples. Precondition: has_whiteness().
 [[nodiscard]] Figure autocorrelation_figure(const TuneReport& report, std::size_t channel);
 
-/// Gain of the acceleration against time, each case with where it has settled.
+/// Gain of the acceleration against time, with the settling time of each case.
 [[nodiscard]] Figure gain_figure(const estimate::TuneStudy& study);
 /// Standard deviations of position, velocity and acceleration against time, as tuned.
 [[nodiscard]] Figure covariance_figure(const estimate::TuneStudy& study);
-/// Standard deviation of the acceleration against the step.
+/// Standard deviation of the acceleration against the time step.
 [[nodiscard]] Figure step_figure(const estimate::TuneStudy& study);
 
 }  // namespace proofmass::report

@@ -12,10 +12,10 @@
 
 namespace proofmass::report {
 
-/// One channel beside what was tuned by it.
+/// Name and unit of a channel, beside its tuning.
 struct TuneChannel {
   std::string name;
-  Unit unit;  ///< of the series analysed: SI where known, else counts or none
+  Unit unit;  ///< unit of the analysed series: SI if known, else counts or none
   std::size_t segments = 1;
 };
 
@@ -24,17 +24,16 @@ struct TuneReport {
   std::vector<Note> notes;
   estimate::TuneChoice choice;
   estimate::Tuning tuning;
-  std::vector<TuneChannel> channels;  ///< as tuning.series
+  std::vector<TuneChannel> channels;  ///< in the order of tuning.series
   estimate::Consistency consistency;
-  std::vector<estimate::TuneStudy> studies;  ///< of channels with two white noises
+  std::vector<estimate::TuneStudy> studies;  ///< for channels with two white noises
 };
 
-/// Model, parameters, innovations, study of gain and covariance. It refers to the report, which
-/// must outlive it.
+/// Model, parameters, innovations, study of gain and covariance. Holds a reference to the report,
+/// which must outlive it.
 [[nodiscard]] Document describe(const TuneReport& report);
 
-/// Innovations and the standard deviations that the filter states, against time: what `--output`
-/// writes.
+/// Innovations and their predicted standard deviations against time; the content of `--output`.
 [[nodiscard]] Recording tune_series(const TuneReport& report);
 
 }  // namespace proofmass::report

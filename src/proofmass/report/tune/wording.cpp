@@ -14,7 +14,7 @@ using estimate::TuneModel;
 using estimate::TuneRole;
 using estimate::TuneVerdict;
 
-// Powers of m and s of a unit of mechanics; nullopt of any other.
+// Exponents of m and s in a mechanical unit; nullopt for any other.
 struct Powers {
   int metre = 0;
   double second = 0.0;
@@ -165,7 +165,7 @@ std::string choice_words(const estimate::TuneChoice& choice) {
   std::string words =
       choice.basis == given ? "Chosen by --model." : fmt::format("Chosen because {}.", share);
   if (!choice.rests.empty())
-    words += fmt::format(" Only the {} are used, each from a level of its own.",
+    words += fmt::format(" Only the {} are used, each with its own level.",
                          count_words(choice.rests.size(), "rest"));
   else if (choice.rest_share && *choice.rest_share < 1.0)
     words += " No rest was found in it: all of it is used.";
@@ -194,8 +194,8 @@ Table settling_table(const estimate::TuneStudy& study) {
 }
 
 Table step_table(const estimate::TuneStudy& study) {
-  Table table{"Step between readings, Q and R as tuned",
-              {"Step", "Gain", "settles in", "Std after a reading", "and before it"},
+  Table table{"Time between measurements, Q and R as tuned",
+              {"Step", "Gain", "settles in", "Std after a measurement", "and before it"},
               {}};
   for (const estimate::StepSizeEffect& step : study.steps) {
     table.rows.push_back({compact(step.step_s, 3) + " s", significant(step.gain, 3),

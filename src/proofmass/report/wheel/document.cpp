@@ -18,7 +18,7 @@ using estimate::WheelSolution;
 constexpr double rpm_per_radps = 1.0 / radps_per_rpm;
 constexpr Display degrees{"°", deg_per_rad}, millimetres{"mm", 1e3}, milliseconds{"ms", 1e3};
 
-// An angle of less than a turn is given in degrees.
+// An angle of less than a revolution is given in degrees.
 std::string how_far(const Uncertain& turns) {
   const Uncertain size{std::abs(turns.value), turns.std};
   const std::string way = turns.value < 0.0 ? "backwards" : "forwards";
@@ -88,8 +88,8 @@ Field spin_axis(const WheelSensorFit& fit) {
                         {.meaning = "unit vector in the sensor's axes", .label = "Spin axis"});
 }
 
-// Relative to the first sensor: exactly zero for the first itself, as is the offset of a clock that
-// both share.
+// Relative to the first sensor: exactly zero for the first sensor itself, as is the offset of a
+// shared clock.
 std::optional<Uncertain> relative(const std::optional<Uncertain>& figure, bool zero) {
   return !figure && zero ? Uncertain{0.0, 0.0} : figure;
 }

@@ -5,7 +5,7 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/report/wheel/report.hpp"
 
-// A made-up solution whose every figure is known, for the tests of this module.
+// A synthetic solution with known figures, for the tests of this module.
 namespace proofmass::report {
 
 inline estimate::WheelSensorFit fake_sensor(const std::string& name) {
@@ -23,7 +23,7 @@ inline estimate::WheelSensorFit fake_sensor(const std::string& name) {
   return fit;
 }
 
-/// A wheel that speeds up to −147 rpm and stops again, at 120 Hz for a hundred seconds.
+/// A wheel that accelerates to −147 rpm and stops again, at 120 Hz for a hundred seconds.
 inline WheelReport fake_report() {
   WheelReport report;
   report.inputs = {"wheel <1>.csv"};

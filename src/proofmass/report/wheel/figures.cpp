@@ -42,7 +42,7 @@ std::vector<double> difference_deg(const std::vector<double>& angle,
   return times(shifted(angle, to, -1.0), deg_per_rad);
 }
 
-// From zero, unless the recording begins well behind it.
+// From zero, unless the recording begins well after it.
 Axis time_axis(const WheelSeries& series) {
   Axis axis{.label = "Time (s)"};
   if (series.time_s.empty()) return axis;
@@ -54,7 +54,7 @@ Axis time_axis(const WheelSeries& series) {
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
 
-  // Widens to what all but the outermost 0.2 % of the values at either end take.
+  // Extends the range to all but the outermost 0.2 % of the values at either end.
   void hold(const std::vector<double>& values) {
     const auto bottom = quantile(values, 0.002), top = quantile(values, 0.998);
     if (!bottom || !top) return;
@@ -68,7 +68,7 @@ struct Range {
   }
 };
 
-// Turns by double integration, with a label that tells where it went.
+// Turns by double integration; if it leaves the range, the label states the final value.
 Curve double_integral(const WheelSeries& series, const Range& range) {
   Curve curve{.label = "double integration",
               .x = series.time_s,
@@ -86,7 +86,7 @@ bool has(const WheelSeries& series, const std::vector<double>& values) {
   return !values.empty() && values.size() == series.time_s.size();
 }
 
-// How many instants used so many channels.
+// Number of epochs by the number of channels used.
 std::array<std::size_t, 256> channels_histogram(const WheelSeries& series) {
   std::array<std::size_t, 256> instants{};
   for (const unsigned char channels : series.channels_used) ++instants[channels];
@@ -156,7 +156,7 @@ Figure filter_figure(const WheelSolution& solution) {
   const WheelSeries& series = solution.series;
   Figure figure{.title = "Filter against smoother, with their bands",
                 .description =
-                    "The filter knows only what came before, the smoother all of the "
+                    "The filter uses past measurements only, the smoother the whole "
                     "recording. The filter's error should stay inside its band 95 % of "
                     "the time.",
                 .x = time_axis(series),
@@ -168,7 +168,7 @@ Figure filter_figure(const WheelSolution& solution) {
   smoother.label = "smoother, 95 %";
   Curve curve{"filter − smoother", series.time_s,
               difference_deg(series.filtered_angle_rad, series.angle_rad), Ink::green};
-  // Until it has found itself the filter's band may be many turns wide; the rest is worth seeing.
+  // Before convergence the filter's band may be many turns wide; the range is chosen for the rest.
   const double reach = 3.0 * std::max(quantile(filter.upper, 0.8).value_or(0.0),
                                       quantile(smoother.upper, 0.98).value_or(0.0));
   if (reach > 0.0) {
@@ -184,7 +184,7 @@ Figure angle_std_figure(const WheelSolution& solution) {
   const WheelSeries& series = solution.series;
   return {
       .title = "Standard deviation of the angle",
-      .description = "How sure each is of the angle, instant by instant.",
+      .description = "Uncertainty of the angle against time, for filter and smoother.",
       .x = time_axis(series),
       .y = {.label = "Standard deviation (°)", .scale = AxisScale::log},
       .curves = {
@@ -197,7 +197,7 @@ Figure speed_figure(const WheelSolution& solution) {
   constexpr double rpm = 1.0 / radps_per_rpm;
   return {
       .title = "Speed",
-      .description = "Speed of the wheel as the smoother has it, with its 95 % band.",
+      .description = "Smoothed speed of the wheel with its 95 % band.",
       .x = time_axis(series),
       .y = {.label = "Speed (rpm)"},
       .bands = {{"95 % band", series.time_s,
@@ -210,9 +210,9 @@ Figure innovations_figure(const WheelSolution& solution) {
   const WheelSeries& series = solution.series;
   Figure figure{.title = "Innovations",
                 .description =
-                    "How surprising each reading was: the filter's innovations squared "
-                    "over their variance. Of a filter whose noise figures are true, one "
-                    "in twenty lies above the 95 % level.",
+                    "Squared innovations of the filter divided by their variance. If the "
+                    "noise parameters are correct, one in twenty is above the 95 % "
+                    "level.",
                 .x = time_axis(series),
                 .y = {.label = "NIS", .scale = AxisScale::log}};
   std::vector<double> nis(series.nis.begin(), series.nis.end());
@@ -220,7 +220,7 @@ Figure innovations_figure(const WheelSolution& solution) {
     if (series.channels_used[k] == 0) nis[k] = none;
   }
   Envelope largest = thinned_band(series.time_s, nis, nis);
-  figure.curves.push_back({nis.size() > largest.x.size() ? "NIS, largest of each stretch" : "NIS",
+  figure.curves.push_back({nis.size() > largest.x.size() ? "NIS, largest of each interval" : "NIS",
                            std::move(largest.x), std::move(largest.upper), Ink::blue});
   const std::array<std::size_t, 256> instants = channels_histogram(series);
   for (int channels = 1; channels < 256; ++channels) {
@@ -231,7 +231,7 @@ Figure innovations_figure(const WheelSolution& solution) {
                      count_words(static_cast<std::size_t>(channels), "channel"), fixed(level, 2)),
          level});
   }
-  Curve gated{"readings rejected", {}, {}, Ink::red, Mark::ticks};
+  Curve gated{"measurements rejected", {}, {}, Ink::red, Mark::ticks};
   for (std::size_t k = 0; k < series.channels_gated.size(); ++k) {
     if (series.channels_gated[k] != 0) gated.x.push_back(series.time_s[k]);
   }

@@ -30,7 +30,7 @@ Recording wheel_series(const WheelReport& report) {
                   channel("filtered_angle_std", "rad", series.filtered_angle_std_rad),
                   channel("atan2_angle", "rad", series.atan2_angle_rad),
                   channel("double_integral_angle", "rad", series.double_integral_angle_rad)};
-  // A method that had nothing to say has no column.
+  // A method without results has no column.
   std::erase_if(out.channels,
                 [&](const Channel& c) { return c.values.size() != series.time_s.size(); });
   return out;

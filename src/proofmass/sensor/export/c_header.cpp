@@ -59,7 +59,7 @@ std::string_view suffix(std::string_view si_symbol) {
 /// Origin of the figures, written once if it is the same for all.
 std::string origins(const AxisFigures& figures) {
   const auto text = [](const std::optional<Figure>& f) {
-    return !f ? std::string("not known") : f->origin.empty() ? "origin not said" : f->origin;
+    return !f ? std::string("not known") : f->origin.empty() ? "origin not stated" : f->origin;
   };
   const std::string x = text(figures[0]), y = text(figures[1]), z = text(figures[2]);
   if (x == y && y == z) return comment_text(x);

@@ -92,8 +92,8 @@ Result<std::string> imu_yaml(const SensorModel& model, const ImuYamlOptions& opt
   if (const Status fits = check_white(model.noise.white); !fits) return fits.error();
   std::string out = fmt::format(
       "# Noise of {}, for visual-inertial calibration; written by proofmass sensor export.\n"
-      "# One number has to stand for three axes: it is that of the worst, so that none is trusted\n"
-      "# too much. Densities are two-sided, as the Allan deviation gives them.\n\n"
+      "# One number for three axes: that of the noisiest, so that none is overweighted.\n"
+      "# Densities are two-sided, as the Allan deviation gives them.\n\n"
       "# White noise, N, in m/s^2/sqrt(Hz):\n",
       name_or(model, "an accelerometer"));
   out += yaml_axes(model.noise.white);

@@ -52,8 +52,8 @@ Note note_on_clipping(const ChannelAudit& channel) {
     case Clipping::undetermined:
       return {Severity::warning,
               fmt::format("{}: crests beyond {} are flatter than those of an oscillation, and all "
-                          "alike: soft clipping or the shape of the motion, which one recording of "
-                          "one strength cannot tell",
+                          "alike: soft clipping or the shape of the motion, which a recording at "
+                          "one amplitude cannot distinguish",
                           channel.name, limits_of(channel, 3))};
     default:
       return {Severity::bad, fmt::format("{}: {} at the rails ({}): it may be clipped",
@@ -100,7 +100,7 @@ void tell_zero_rows(const OddValues& rows, const PlaceWords& words, std::vector<
   if (rows.count == 0) return;
   notes.push_back({Severity::warning,
                    fmt::format("{} in which every inertial channel is exactly zero, at {}: the "
-                               "sensor had nothing to say",
+                               "sensor gave no data",
                                counted(rows.count, "row"), span_of(rows, words))});
 }
 

@@ -9,7 +9,7 @@ namespace proofmass::signal {
 namespace {
 
 /// The largest deviation in a segment from the median of a second on either side.
-double size_of_knock(View<double> series, const Stretch& at, double rate_hz) {
+double size_of_outlier(View<double> series, const Stretch& at, double rate_hz) {
   const std::size_t side = std::max<std::size_t>(16, samples_in(1.0, rate_hz));
   std::vector<double> beside;
   const auto keep = [&](std::size_t first, std::size_t end) {
@@ -68,8 +68,8 @@ void settle_burst(const Source& source, Event& event, double rate_hz) {
     event.size = change;
     return;
   }
-  event.kind = EventKind::knock;
-  event.size = size_of_knock(source.series, {event.first, event.last}, rate_hz);
+  event.kind = EventKind::outlier;
+  event.size = size_of_outlier(source.series, {event.first, event.last}, rate_hz);
 }
 
 /// An outlier decays below its detection threshold. Extends its end in tenths of a second while
@@ -122,8 +122,8 @@ std::vector<Event> events_from(View<double> series,
     const auto owner = std::ranges::find_if(
         steps, [&](const Step& step) { return lies_beside(at, step, rate_hz); });
     if (owner == steps.end()) {
-      events.push_back(
-          {EventKind::knock, at.first, at.last, size_of_knock(series, at, rate_hz), hit.sigmas});
+      events.push_back({EventKind::outlier, at.first, at.last, size_of_outlier(series, at, rate_hz),
+                        hit.sigmas});
     } else {
       Event& event = events[static_cast<std::size_t>(owner - steps.begin())];
       event.first = std::min(event.first, at.first);
@@ -156,7 +156,7 @@ std::vector<Event> assemble(const Source& source,
   for (Event& event : events) {
     if (event.kind == EventKind::step && event.last > event.first)
       settle_burst(source, event, rate_hz);
-    if (event.kind == EventKind::knock) follow_to_its_end(source, event, rate_hz);
+    if (event.kind == EventKind::outlier) follow_to_its_end(source, event, rate_hz);
   }
   std::ranges::sort(events, {}, &Event::first);
   part_overlapping(events);

@@ -114,7 +114,7 @@ void find_steps(const Record& record,
 }
 
 /// Finds outliers with windows of `width` blocks and marks them as missing in the level.
-void find_knocks(
+void find_outliers(
     const Record& record, Level& level, View<double> m, std::size_t width, std::vector<Hit>& hits) {
   if (m.size() < 5 * width) return;
   std::vector<double> outputs(m.size(), nan);
@@ -123,7 +123,7 @@ void find_knocks(
         m[k] - 0.25 * ((m[k - 2 * width] + m[k - width]) + (m[k + width] + m[k + 2 * width]));
   const std::vector<Tally> blocks = tallies(outputs);
   const Bar bar = bar_of(blocks, group_of(record.rate_hz, coarse_block * level.block),
-                         record.knock_floor, outputs.size());
+                         record.outlier_floor, outputs.size());
   for (const std::size_t k : places_above(blocks, bar, m.size())) {
     const std::size_t block = k / coarse_block;
     if (std::isnan(m[k])) continue;
@@ -140,12 +140,12 @@ void search_coarse_scales(const Record& record, std::vector<Hit>& hits, std::vec
   const std::size_t size = record.source.series.size();
   const std::size_t longest_step =
       std::min(size / 32, std::max<std::size_t>(1024, samples_in(30.0, record.rate_hz)));
-  const std::size_t longest_knock =
+  const std::size_t longest_outlier =
       std::min(size / 32, std::max<std::size_t>(16, samples_in(2.0, record.rate_hz)));
   Level level = base_level(record.source);
   for (std::size_t width = 1;;) {
     const std::size_t w = width * level.block;
-    if (w > longest_step && w > longest_knock) return;
+    if (w > longest_step && w > longest_outlier) return;
     std::vector<double> m = windows(level, width);
     const std::size_t known = steps.size();
     if (w <= longest_step) find_steps(record, level, m, width, steps);
@@ -153,7 +153,7 @@ void search_coarse_scales(const Record& record, std::vector<Hit>& hits, std::vec
       level_out(level, View<Step>(steps).subspan(known));
       m = windows(level, width);
     }
-    if (w <= longest_knock) find_knocks(record, level, m, width, hits);
+    if (w <= longest_outlier) find_outliers(record, level, m, width, hits);
     if (width < 4) {
       width *= 2;
     } else {

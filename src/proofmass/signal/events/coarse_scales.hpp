@@ -12,7 +12,7 @@ namespace proofmass::signal {
 struct Record {
   const Source& source;
   double rate_hz;
-  double step_floor, knock_floor;  ///< lower bounds of the std of the filters' outputs
+  double step_floor, outlier_floor;  ///< lower bounds of the std of the filters' outputs
 };
 
 /// Searches scales of 16 samples and more, short to long; findings of one scale are hidden from the

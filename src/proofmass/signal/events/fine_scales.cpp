@@ -36,7 +36,7 @@ class FineScales {
   void add_tallies(std::size_t blocks, std::vector<Tally>& tallies) const {
     const std::size_t known = tallies.size();
     tallies.resize(known + blocks);
-    tally_knocks(m_.data() + margin, w_, blocks, &tallies[known]);
+    tally_outliers(m_.data() + margin, w_, blocks, &tallies[known]);
     for (std::size_t b = 0; b < blocks; ++b)
       if (std::isnan(tallies[known + b].mean)) tallies[known + b] = tally_with_gaps(b);
   }

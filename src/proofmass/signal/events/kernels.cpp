@@ -36,7 +36,7 @@ void average_pairs(const double* __restrict in,
 }
 
 PM_VECTOR_CLONES
-void tally_knocks(const double* m, std::size_t w, std::size_t blocks, Tally* out) {
+void tally_outliers(const double* m, std::size_t w, std::size_t blocks, Tally* out) {
   for (std::size_t b = 0; b < blocks; ++b, m += fine_block) {
     double sum[lanes], max[lanes];
     for (std::size_t first = 0; first < lanes; first += quad) {

@@ -24,7 +24,7 @@ inline constexpr std::size_t fine_block = 64;  ///< samples
 
 /// Tallies of m[k] − (m[k−2w] + m[k−w] + m[k+w] + m[k+2w]) / 4 over blocks of fine_block positions
 /// from m[0] on; the mean is NaN if one output is. Reads 2 w values beyond either side.
-void tally_knocks(const double* m, std::size_t w, std::size_t blocks, Tally* out);
+void tally_outliers(const double* m, std::size_t w, std::size_t blocks, Tally* out);
 
 inline constexpr std::size_t coarse_block = 8;  ///< outputs
 

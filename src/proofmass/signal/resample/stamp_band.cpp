@@ -6,9 +6,9 @@
 namespace proofmass::signal {
 namespace {
 
-constexpr double wander = 1.0 / 4096.0;  // drift of the band per row, relative to its width
-constexpr double most_reach = 1024.0;    // rows tried on either side of the likeliest
-constexpr double slack = 0.02;           // in steps: rounding of sums, and the clock's own jitter
+constexpr double drift_per_row = 1.0 / 4096.0;  // drift of the band per row, relative to its width
+constexpr double most_reach = 1024.0;           // rows tried on either side of the likeliest
+constexpr double slack = 0.02;  // in steps: rounding of sums, and the clock's own jitter
 
 }  // namespace
 
@@ -56,8 +56,8 @@ void StampBand::take(double stamp, double missing) {
   const double off = stamp - first_ - number_ * step_;
   number_ += 1.0;
   strain_ += std::max({0.0, off - (low_ + width_), (high_ - width_) - off});
-  low_ = std::min(low_ + wander * width_, off);
-  high_ = std::max(high_ - wander * width_, off);
+  low_ = std::min(low_ + drift_per_row * width_, off);
+  high_ = std::max(high_ - drift_per_row * width_, off);
   // A stamp outside the band moves it: the latest one counts.
   if (off >= high_) low_ = std::max(low_, high_ - width_);
   if (off <= low_) high_ = std::min(high_, low_ + width_);

@@ -36,7 +36,7 @@ TEST(StampBand, TakesNoStampThatIsLateForMissingRows) {
   EXPECT_EQ(numbers_in_band(stamps, 1.2, 1.0).back(), 3999.0);
 }
 
-TEST(StampBand, FollowsAClockThatWanders) {
+TEST(StampBand, FollowsAClockThatDrifts) {
   std::vector<double> stamps;
   for (int k = 0; k < 50'000; ++k) stamps.push_back(std::floor(1.2 * k + 5.0 * std::sin(2e-5 * k)));
   EXPECT_EQ(numbers_in_band(stamps, 1.2, 1.0).back(), 49'999.0);

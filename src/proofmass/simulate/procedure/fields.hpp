@@ -30,9 +30,9 @@ void visit_timing(Timing& t, Visit&& visit) {
   visit("move_s", t.move_s, 1.0, "from one position to the next");
   visit("dwell_jitter", t.dwell_jitter, 1.0, "even draw of +- this fraction");
   visit("move_jitter", t.move_jitter, 1.0, "even draw of +- this fraction");
-  visit("settle_s", t.settle_s, 1.0, "of the dwell: a swing dies out, then exact rest");
-  visit("settle_mps2", t.settle_mps2, 1.0, "largest swing");
-  visit("settle_hz", t.settle_hz, 1.0, "of the swing");
+  visit("settle_s", t.settle_s, 1.0, "of the dwell: a decaying oscillation, then exact rest");
+  visit("settle_mps2", t.settle_mps2, 1.0, "largest oscillation");
+  visit("settle_hz", t.settle_hz, 1.0, "of the oscillation");
 }
 
 template <class Table, class Visit>
@@ -73,7 +73,7 @@ void visit_hand(Hand& h, Visit&& visit) {
   visit("sway_rms_mps2", h.sway_rms_mps2, 1.0, "up to 3 Hz");
   visit("tremor_rms_mps2", h.tremor_rms_mps2, 1.0, "8 to 12 Hz");
   visit("wobble_rms_deg", h.wobble_rms_rad, rad_per_deg, "about the shortest turn, up to 2 Hz");
-  visit("bump_mps2", h.bump_mps2, 1.0, "of setting it down, and of some knocks");
+  visit("bump_mps2", h.bump_mps2, 1.0, "of setting it down, and of some shocks");
   visit("bad_pose", h.bad_pose, 1.0, "number of a position that is disturbed; 0 = none");
   visit("bad_pose_push_mg", h.bad_pose_push_mps2, 1e-3 * standard_gravity_mps2,
         "by which the force is then too large");

@@ -69,20 +69,21 @@ void PoseMotion::draw_arrivals(const ProcedureOptions& options) {
   for (std::size_t k = 1; k < plan_.size(); ++k) {
     Arrival& arrival = arrivals_[k];
     const double from_s = plan_[k - 1].end_s, to_s = plan_[k].stand_s;
-    const auto knock = [&](double middle_share, double strength) {
+    const auto shock = [&](double middle_share, double strength) {
       const double duration_s = std::min(0.022 + 0.01 * random.uniform(), 0.2 * (to_s - from_s));
       const double start_s = from_s + (to_s - from_s - duration_s) * middle_share;
       const double size = hand_.bump_mps2 * strength * (1.0 + 0.5 * random.uniform());
-      arrival.knocks.push_back({start_s, duration_s, size * (plan_[k].up + 0.5 * vector())});
+      arrival.shocks.push_back({start_s, duration_s, size * (plan_[k].up + 0.5 * vector())});
     };
     const double chance = random.uniform(), where = 0.5 + 0.3 * random.uniform();
     if (!plan_[k].turned_here) {
-      knock(0.0, 0.2);
-      if (chance > 1.0 / 3.0) knock(where, 0.5);
-      knock(1.0, 1.0);
+      shock(0.0, 0.2);
+      if (chance > 1.0 / 3.0) shock(where, 0.5);
+      shock(1.0, 1.0);
     }
-    arrival.swing_mps2 = options.timing.settle_mps2 * vector();
-    arrival.swing_radps = rad_per_turn * options.timing.settle_hz * (1.0 + 0.2 * random.uniform());
+    arrival.ringing_mps2 = options.timing.settle_mps2 * vector();
+    arrival.ringing_radps =
+        rad_per_turn * options.timing.settle_hz * (1.0 + 0.2 * random.uniform());
   }
 }
 
@@ -95,7 +96,7 @@ SensorMotion PoseMotion::at(double t_s) const {
   const std::size_t k = last_stood(t_s);
   if (t_s >= plan_[k].end_s && k + 1 < plan_.size())
     return plan_[k + 1].turned_here ? on_table(k + 1, t_s) : in_hand(k + 1, t_s);
-  return {.force_mps2 = plan_[k].force_mps2 * plan_[k].up + swing(k, t_s)};
+  return {.force_mps2 = plan_[k].force_mps2 * plan_[k].up + ringing(k, t_s)};
 }
 
 std::size_t PoseMotion::rest_at(double t_s) const {
@@ -118,12 +119,12 @@ double PoseMotion::moving_rad(double PlannedPose::* angle, double t_s) const {
 }
 
 // Decays to exactly zero within the settling.
-Eigen::Vector3d PoseMotion::swing(std::size_t pose, double t_s) const {
+Eigen::Vector3d PoseMotion::ringing(std::size_t pose, double t_s) const {
   const PlannedPose& p = plan_[pose];
   if (t_s >= p.rest_s) return Eigen::Vector3d::Zero();
   const double passed_s = t_s - p.stand_s, share = passed_s / (p.rest_s - p.stand_s);
   const double size = std::exp(-4.0 * share) * (1.0 - share) * (1.0 - share);
-  return size * std::sin(arrivals_[pose].swing_radps * passed_s) * arrivals_[pose].swing_mps2;
+  return size * std::sin(arrivals_[pose].ringing_radps * passed_s) * arrivals_[pose].ringing_mps2;
 }
 
 SensorMotion PoseMotion::on_table(std::size_t next, double t_s) const {
@@ -165,10 +166,10 @@ SensorMotion PoseMotion::in_hand(std::size_t next, double t_s) const {
   SensorMotion motion;
   motion.force_mps2 = (weight_mps2 + heave_mps2(s, move_s, hand_.lift_m)) * up +
                       swell(s) * (sway_.at(t_s) + carrier * tremor_.at(t_s));
-  for (const Knock& knock : arrivals_[next].knocks) {
-    const double part = (t_s - knock.start_s) / knock.duration_s;
+  for (const Shock& shock : arrivals_[next].shocks) {
+    const double part = (t_s - shock.start_s) / shock.duration_s;
     if (part > 0.0 && part < 1.0)
-      motion.force_mps2 += std::sin(std::numbers::pi * part) * knock.peak_mps2;
+      motion.force_mps2 += std::sin(std::numbers::pi * part) * shock.peak_mps2;
   }
   if (with_rates_) {
     constexpr double h = 1e-3;

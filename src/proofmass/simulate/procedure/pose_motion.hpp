@@ -38,15 +38,15 @@ class PoseMotion {
 
  private:
   /// A half-sine of force that begins and ends at 0.
-  struct Knock {
+  struct Shock {
     double start_s, duration_s;
     Eigen::Vector3d peak_mps2;
   };
   /// Random values of the move to a position and of its settling.
   struct Arrival {
-    std::vector<Knock> knocks;
-    Eigen::Vector3d swing_mps2;
-    double swing_radps;
+    std::vector<Shock> shocks;
+    Eigen::Vector3d ringing_mps2;
+    double ringing_radps;
   };
 
   [[nodiscard]] std::size_t last_stood(double t_s) const;
@@ -54,7 +54,7 @@ class PoseMotion {
   [[nodiscard]] SensorMotion in_hand(std::size_t next, double t_s) const;
   [[nodiscard]] Eigen::Vector3d up_in_hand(std::size_t next, double t_s) const;
   [[nodiscard]] Eigen::Vector3d omega_in_hand(std::size_t next, double t_s) const;
-  [[nodiscard]] Eigen::Vector3d swing(std::size_t pose, double t_s) const;
+  [[nodiscard]] Eigen::Vector3d ringing(std::size_t pose, double t_s) const;
   void draw_arrivals(const ProcedureOptions& options);
 
   std::vector<PlannedPose> plan_;

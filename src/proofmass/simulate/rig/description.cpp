@@ -40,7 +40,7 @@ void Fill::operator()(std::uint64_t& member) const {
 void must_be_empty(const toml::table& table, std::string_view section) {
   if (!table.empty())
     fail(table.begin()->second, table.begin()->first.str(),
-         fmt::format("is no key of {}; `proofmass simulate --print-config` shows them all",
+         fmt::format("is not a key of {}; `proofmass simulate --print-config` shows them all",
                      section));
 }
 

@@ -202,7 +202,7 @@ std::string note_words() {
       "misalignment; its scale factor is (E0 − E180)/(2g). A scale-factor error of 0.0041 % "
       "stands out of the noise of 150 µg/√Hz after {} s at each position, but standard gravity "
       "in place of that of Halifax alone is {} %, 1 mV of the supply 0.03 %: without gravity and "
-      "supply measured it says nothing. Nor does a bias stay: it wanders and warms up, which "
+      "supply measured it is meaningless. Nor is a bias constant: it drifts and warms up, which "
       "means over several days hide. Give each figure its interval, repeat the first position, "
       "and turn through more than four.",
       fixed(white_dwell_s(printed_x().scale_error), 0),

@@ -127,7 +127,7 @@ Result<TumbledAxes> analyse_tumble(const TumbleRecord& record, double gravity_mp
   TumbledAxes out;
   for (std::size_t k = 0; k < axes.size(); ++k) {
     const TumbleChannel& channel = record.channels[k];
-    if (!axes[k].swings()) {
+    if (!axes[k].follows_angle()) {
       out.refused.push_back(channel.name + ": the output " + axes[k].words +
                             ", and a tumble about it does not excite it.");
       continue;

@@ -6,8 +6,8 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/simulate/rig.hpp"
 
-// Shared by the tests of docs/errata.md: the thesis's wheel with a level axle, and sensors with
-// neither errors nor delay.
+// Shared by the tests of docs/errata.md: the thesis's wheel with a horizontal axle, and sensors
+// with neither errors nor delay.
 namespace proofmass::thesis::errata {
 
 inline constexpr double g = standard_gravity_mps2;
@@ -15,7 +15,8 @@ inline constexpr double mg = 1e-3 * g;
 inline constexpr double radius_m = 0.1;  ///< section 3.1.2
 inline constexpr double rpm_11 = 11.0 * radps_per_rpm;
 
-/// At one speed without ripple from `start_angle_rad` on, two opposite sensors with parallel axes.
+/// Constant speed without ripple from `start_angle_rad` on; two opposite sensors with parallel
+/// axes.
 inline simulate::RigOptions wheel(double speed_radps, double start_angle_rad = 0.0) {
   simulate::RigOptions options;
   options.bias_spread_mps2 = 0.0;

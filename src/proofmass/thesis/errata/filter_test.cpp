@@ -12,7 +12,7 @@ namespace {
 
 using estimate::Mat;
 
-/// A prior and one reading of the acceleration a step later, by the library's filter.
+/// A prior and one measurement of the acceleration one step later, by the library's filter.
 struct OneReading {
   double variance_m2ps4 = 0.5, reading_mps2 = 2.5;
   estimate::Gaussian<3> prior;
@@ -35,7 +35,7 @@ struct OneReading {
     predicted.cov = model.F * prior.cov * model.F.transpose() + model.Q;
   }
 
-  /// The error's covariance with any gain.
+  /// Covariance of the error for any gain.
   [[nodiscard]] Mat<3, 3> covariance(const Mat<3>& gain) const {
     const Mat<3, 3> left = Mat<3, 3>::Identity() - gain * model.H;
     return left * predicted.cov * left.transpose() + model.R(0) * gain * gain.transpose();
@@ -46,7 +46,8 @@ struct OneReading {
   }
 };
 
-// (4.9), (4.27): K = A P⁻ Cᵀ (C P⁻ Cᵀ + R)⁻¹. Least squares in information form knows no gain.
+// (4.9), (4.27): K = A P⁻ Cᵀ (C P⁻ Cᵀ + R)⁻¹. Compared with least squares in information form,
+// which has no gain.
 TEST(ErrataChapter4, AGainWithTheTransitionInItIsNotThatOfLeastSquares) {
   const OneReading one(0.5);
   const Mat<3, 3> before = one.predicted.cov.inverse();
@@ -62,7 +63,7 @@ TEST(ErrataChapter4, AGainWithTheTransitionInItIsNotThatOfLeastSquares) {
   EXPECT_GT(one.covariance(printed).trace(), 1.05 * one.filtered.cov.trace());
 }
 
-// (4.10), (4.30), (4.33): right.
+// (4.10), (4.30), (4.33): correct.
 TEST(ErrataChapter4, TheOtherFormsOfCovarianceAndGainAreRight) {
   const OneReading one(0.5);
   const Mat<3, 3> short_form =
@@ -72,20 +73,21 @@ TEST(ErrataChapter4, TheOtherFormsOfCovarianceAndGainAreRight) {
             1e-12);
 }
 
-// (4.11): K = 0, x̂[k] = x̂[k−1]; it is P⁻ that goes to zero where a reading is not trusted.
-TEST(ErrataChapter4, WithoutTrustInTheReadingThePredictionStaysAndNotTheFormerEstimate) {
+// (4.11): K = 0, x̂[k] = x̂[k−1]; P⁻ goes to zero if measurements are not trusted.
+TEST(ErrataChapter4, WithInfiniteRThePredictionRemainsNotThePreviousEstimate) {
   const OneReading one(1e15);
   EXPECT_LT(one.gain().norm(), 1e-13);
   EXPECT_LT((one.filtered.mean - one.predicted.mean).norm(), 1e-12);
   EXPECT_GT((one.filtered.mean - one.prior.mean).norm(), 1.0);
-  EXPECT_GT(one.predicted.cov(2, 2), 3.0);  // P⁻ is what it was
+  EXPECT_GT(one.predicted.cov(2, 2), 3.0);  // P⁻ is unchanged
 }
 
-// (4.12): K = H⁻¹, x̂ = H⁻¹ y where R goes to zero. H is one row of three.
-TEST(ErrataChapter4, AnExactReadingTellsWhatItReadsAndNoMore) {
+// (4.12): K = H⁻¹, x̂ = H⁻¹ y as R goes to zero. H has one row and three columns.
+TEST(ErrataChapter4, AnExactMeasurementDeterminesOnlyTheMeasuredQuantity) {
   const OneReading one(1e-12);
   EXPECT_NEAR(one.filtered.mean(2), one.reading_mps2, 1e-10);
-  EXPECT_NEAR(one.model.H.row(0).dot(one.gain()), 1.0, 1e-11);  // H K = 1 is what is left of it
+  EXPECT_NEAR(one.model.H.row(0).dot(one.gain()), 1.0, 1e-11);  // all that remains of (4.12) is H
+                                                                // K = 1
   EXPECT_GT(one.filtered.cov(0, 0), 0.5 * one.predicted.cov(0, 0));
   EXPECT_GT(one.filtered.cov(1, 1), 0.5 * one.predicted.cov(1, 1));
 }
@@ -103,12 +105,12 @@ estimate::GainStudy study(double q, double R, double P0 = 100.0) {
 TEST(ErrataChapter4, TheGainIsInProportionNeitherToQNorToOneOverR) {
   EXPECT_NEAR(study(4.0, 1.0).limit[2] / study(4.0, 4.0).limit[2], 1.62, 0.01);
   EXPECT_NEAR(study(4.0, 1.0).limit[2] / study(1.0, 1.0).limit[2], 1.62, 0.01);
-  // At most with the root, where it is small.
+  // At most with the square root, if the gain is small.
   EXPECT_NEAR(study(1e-6, 1.0).limit[2] / study(1e-6, 4.0).limit[2], 2.0, 0.01);
 }
 
 // 4.1.4: "The initial guess of P is large which reflect less confidence on the measurement".
-TEST(ErrataChapter4, AWideStartBelievesTheFirstReading) {
+TEST(ErrataChapter4, AWidePriorGivesTheFirstMeasurementFullWeight) {
   EXPECT_GT(study(1.0, 1.0, 100.0).instants.front().gain[2], 0.98);
   EXPECT_LT(study(1.0, 1.0, 0.01).instants.front().gain[2], 0.25);
 }
@@ -124,7 +126,7 @@ TEST(ErrataChapter4, TheStatesNoisesAreCorrelatedAndNotWholly) {
   EXPECT_NEAR(correlation(0, 1), std::sqrt(15.0) / 4.0, 1e-12);
   EXPECT_NEAR(correlation(0, 2), std::sqrt(5.0) / 3.0, 1e-12);
   EXPECT_NEAR(correlation(1, 2), std::sqrt(3.0) / 2.0, 1e-12);
-  // Two steps of 0.1 s are one of 0.2 s; of the diagonal alone they give less than half.
+  // Two steps of 0.1 s must equal one of 0.2 s; the diagonal alone gives less than half.
   Mat<3, 3> F;
   F << 1.0, 0.1, 0.005, 0.0, 1.0, 0.1, 0.0, 0.0, 1.0;
   const Mat<3, 3> whole = F * Q(0.1) * F.transpose() + Q(0.1);
@@ -136,8 +138,8 @@ TEST(ErrataChapter4, TheStatesNoisesAreCorrelatedAndNotWholly) {
 
 // 4.1.4: Q and R are tuned "such that error covariance P and Kalman gain K converges quickly".
 TEST(ErrataChapter4, TheGainThatSettlesSoonestIsNotTheBest) {
-  constexpr double q = 0.2, R = 4.0;  // of the acceleration, a step
-  // Variance of the error of a filter of gain k on a level that walks, from its own recursion.
+  constexpr double q = 0.2, R = 4.0;  // process noise of the acceleration per step
+  // Error variance of a filter of gain k on a random-walk level, by its own recursion.
   const auto error = [&](double k) {
     return ((1.0 - k) * (1.0 - k) * q + k * k * R) / (1.0 - (1.0 - k) * (1.0 - k));
   };

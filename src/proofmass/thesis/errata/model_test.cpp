@@ -23,7 +23,7 @@ estimate::LinearModel<3, 1> pva(double dt_s) {
   return estimate::pva_model({.dt_s = dt_s, .jerk_psd_m2ps5 = 1.0, .accel_variance_m2ps4 = 1e-4});
 }
 
-/// Where a model of motion believes itself after 10 s of reading 1 m/s², begun at rest.
+/// Position estimate of a motion model after 10 s of measuring 1 m/s², from rest.
 double position_after_ten_seconds(const estimate::LinearModel<3, 1>& model) {
   const std::vector<estimate::Epoch<1>> epochs(101, {.dt_s = 0.1, .z = Mat<1>(1.0)});
   estimate::Gaussian<3> at_rest;
@@ -34,7 +34,7 @@ double position_after_ten_seconds(const estimate::LinearModel<3, 1>& model) {
 }
 
 // (4.45): y = [1 0 0] x + v.
-TEST(ErrataChapter4, AReadingOfTheAccelerationIsNoReadingOfThePosition) {
+TEST(ErrataChapter4, AMeasurementOfTheAccelerationIsNotOneOfThePosition) {
   estimate::LinearModel<3, 1> model = pva(0.1);
   EXPECT_EQ(model.H, (Mat<1, 3>(0.0, 0.0, 1.0)));
   EXPECT_NEAR(position_after_ten_seconds(model), 50.0, 1e-3);
@@ -43,11 +43,11 @@ TEST(ErrataChapter4, AReadingOfTheAccelerationIsNoReadingOfThePosition) {
 }
 
 // (4.44): "in discrete form", x[k] = [0 1 0; 0 0 1; 0 0 0] x[k−1] + …
-TEST(ErrataChapter4, TheMatrixOfADifferentialEquationIsNoTransition) {
+TEST(ErrataChapter4, TheMatrixOfADifferentialEquationIsNotATransition) {
   Mat<3, 3> A;
   A << 0, 1, 0, 0, 0, 1, 0, 0, 0;
   const Mat<3, 3> cube = A * A * A;
-  EXPECT_TRUE(cube.isZero(0.0));  // after three steps nothing is left of any state
+  EXPECT_TRUE(cube.isZero(0.0));  // after three steps no state has any effect
   constexpr double dt = 0.3;
   const Mat<3, 3> exponential = Mat<3, 3>::Identity() + dt * A + 0.5 * dt * dt * A * A;
   const auto model = estimate::angular_model({.dt_s = dt, .jerk_psd_rad2ps5 = 1.0});
@@ -56,8 +56,8 @@ TEST(ErrataChapter4, TheMatrixOfADifferentialEquationIsNoTransition) {
   EXPECT_EQ(model.H(estimate::angular::accel_channel, estimate::angular::accel_radps2), 1.0);
 }
 
-// (4.48), (4.49): σ_a² = W Δt³/6, "increases as a cubic function of time". White jerk in ten
-// thousand steps.
+// (4.48), (4.49): σ_a² = W Δt³/6, "increases as a cubic function of time". Compared with white jerk
+// in ten thousand steps.
 TEST(ErrataChapter4, AnAccelerationOfWhiteJerkSpreadsWithTimeAndNotWithItsCube) {
   constexpr double W = 2.0, t = 3.0, dt = t / 10000.0;
   Mat<3, 3> F, P = Mat<3, 3>::Zero();
@@ -68,9 +68,10 @@ TEST(ErrataChapter4, AnAccelerationOfWhiteJerkSpreadsWithTimeAndNotWithItsCube) 
   }
   const Mat<3, 3> Q =
       estimate::pva_model({.dt_s = t, .jerk_psd_m2ps5 = W, .accel_variance_m2ps4 = 1.0}).Q;
-  EXPECT_LT((P - Q).norm(), 1e-3 * Q.norm());  // (4.50) is right
+  EXPECT_LT((P - Q).norm(), 1e-3 * Q.norm());  // (4.50) is correct
   EXPECT_NEAR(Q(2, 2), W * t, 1e-12);
-  EXPECT_NEAR(Q(0, 2), W * t * t * t / 6.0, 1e-12);  // (4.49) is its covariance with the position
+  EXPECT_NEAR(Q(0, 2), W * t * t * t / 6.0, 1e-12);  // (4.49) is the covariance of acceleration
+                                                     // and position
 }
 
 // (4.54), (4.55): φ = T/(T + Δt), input Δt (a1 + a2)/(T + Δt).
@@ -79,7 +80,7 @@ TEST(ErrataChapter4, ThePrintedStepOfTheBiasIsOfFirstOrder) {
   const auto ours = [](double dt) {
     return estimate::bias_step({.dt_s = dt, .time_constant_s = T_s, .bias_psd_m2ps5 = 0.0}).phi;
   };
-  EXPECT_LT(std::abs(printed(0.005) - ours(0.005)), 3e-9);  // at 200 Hz it does no harm
+  EXPECT_LT(std::abs(printed(0.005) - ours(0.005)), 3e-9);  // negligible at 200 Hz
   EXPECT_NEAR(ours(T_s), std::exp(-1.0), 1e-15);
   EXPECT_EQ(printed(T_s), 0.5);
   EXPECT_NEAR(ours(35.0) * ours(35.0), ours(T_s), 1e-15);
@@ -101,7 +102,7 @@ double bias_variance_after(const Mat<1, 4>& H, int readings) {
   return estimate::filter_linear(series, prior).steps.back().filtered.cov(3, 3);
 }
 
-// (4.56): C = [0 0 1 0]. Without readings the variance of the bias obeys P ← φ² P + w.
+// (4.56): C = [0 0 1 0]. Without measurements the variance of the bias obeys P ← φ² P + w.
 TEST(ErrataChapter4, WithThePrintedRowNoReadingEverTouchesTheBias) {
   const auto step =
       estimate::bias_step({.dt_s = 1.0, .time_constant_s = T_s, .bias_psd_m2ps5 = 1e-3});
@@ -113,7 +114,7 @@ TEST(ErrataChapter4, WithThePrintedRowNoReadingEverTouchesTheBias) {
       {.motion = {.dt_s = 1.0, .jerk_psd_m2ps5 = 1.0, .accel_variance_m2ps4 = 1.0},
        .time_constant_s = T_s,
        .bias_psd_m2ps5 = 0.0});
-  EXPECT_EQ(ours.H, (Mat<1, 4>(0, 0, 1, 1)));  // as (4.61) has it
+  EXPECT_EQ(ours.H, (Mat<1, 4>(0, 0, 1, 1)));  // as in (4.61)
 }
 
 // (4.60), A.1: the input column, with 1 for the acceleration, times the measured acceleration.
@@ -124,15 +125,15 @@ TEST(ErrataChapter4, ThePrintedInputAddsTheReadingAgainAtEveryStep) {
   const Mat<4> column(0, 0, 1, dt * (a1 + a2) / (T_s + dt));
   Mat<4> printed = Mat<4>::Zero();
   for (int k = 0; k < 200; ++k) printed = (A * printed + column * measured).eval();
-  EXPECT_NEAR(printed(2), 200 * measured, 1e-9);  // of a steady 0.1 after one second
+  EXPECT_NEAR(printed(2), 200 * measured, 1e-9);  // for a constant 0.1 after one second
 
   const auto ours =
       estimate::angular_model({.dt_s = dt, .jerk_psd_rad2ps5 = 1.0, .bias_time_constant_s = T_s});
   EXPECT_EQ((Mat<3>(ours.B.topRows<3>())), Mat<3>(Mat<3>::Zero()));
-  EXPECT_NEAR(ours.B(3), dt / T_s, 1e-8);  // times a1 + a2, measured or not
+  EXPECT_NEAR(ours.B(3), dt / T_s, 1e-8);  // multiplies a1 + a2, independent of the measurements
 }
 
-// (4.62), A.1: W σ_ε² in each step, however long.
+// (4.62), A.1: W σ_ε² in each step, whatever its length.
 TEST(ErrataChapter4, ThePrintedNoiseOfTheBiasDoublesWithTheRate) {
   const auto after_a_second = [](int steps, auto variance_of) {
     const double phi = std::exp(-1.0 / (T_s * steps));
@@ -149,8 +150,8 @@ TEST(ErrataChapter4, ThePrintedNoiseOfTheBiasDoublesWithTheRate) {
   EXPECT_NEAR(after_a_second(400, ours) / after_a_second(200, ours), 1.0, 1e-12);
 }
 
-// 4.3: W "was set to one"; A.1: "W= 1rad/sec". As a density of jerk, with the noise of the
-// datasheet behind 50 Hz, it leaves the filter nothing to do.
+// 4.3: W "was set to one"; A.1: "W= 1rad/sec". As a density of jerk, with the datasheet's noise in
+// a bandwidth of 50 Hz, this makes the filter pass the measurements through.
 TEST(ErrataChapter4, ADensityOfOneHandsTheReadingsOn) {
   const double rms = sensor::filtered_noise_rms(sensor::adxl335.noise_density_mps2_rthz[0], 50.0);
   const auto study = estimate::gain_study(
@@ -162,9 +163,10 @@ TEST(ErrataChapter4, ADensityOfOneHandsTheReadingsOn) {
 // bandwidth"; 4.1.4: R is "provided by manufacturer in the data sheet as standard deviation".
 TEST(ErrataChapter4, TheRmsIsTheRootOfDensitySquaredTimesTheNoiseBandwidth) {
   const double density = sensor::adxl335.noise_density_mps2_rthz[0];
-  const double printed = density * density * 50.0;  // (m/s²)²: no acceleration
+  const double printed = density * density * 50.0;  // (m/s²)², not an acceleration
   const double rms = sensor::filtered_noise_rms(density, 50.0);
-  double squares = 0.0;  // of a one-pole filter, by the rectangle rule to 10 MHz in even ratios
+  double squares = 0.0;  // of a one-pole filter: rectangle rule on a logarithmic grid up to 10
+                         // MHz
   for (double f = 1e-4; f < 1e7; f *= 1.001) squares += 0.001 * f / (1.0 + f * f / 2500.0);
   EXPECT_NEAR(rms, density * std::sqrt(squares), 1e-3 * rms);
   EXPECT_GT(rms, 70.0 * printed);
@@ -186,16 +188,16 @@ TEST(ErrataAppendixA, FourReadingsAreFourRowsAndTheBiasesStandOnce) {
   const auto model =
       estimate::fusion_model({.axes = {axis, axis, axis, axis}, .bias_x = bias, .bias_y = bias});
   Mat<14> state = Mat<14>::Zero();
-  state(2) = 1.0;   // x1 forward
-  state(8) = -1.0;  // x2 back: a spinning board
+  state(2) = 1.0;   // x1 forwards
+  state(8) = -1.0;  // x2 backwards: a rotating board
   state(estimate::fusion::bias_y_mps2) = 0.5;
   EXPECT_EQ((Mat<4>(model.H * state)), Mat<4>(1.0, 0.5, -1.0, 0.5));
   Eigen::Matrix<double, 1, 14> printed;
   printed << 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0;
-  EXPECT_EQ(printed.dot(state), 0.0);  // it sees nothing of either
-  EXPECT_EQ(model.F.rows(), 14);       // four times Φ are 16
+  EXPECT_EQ(printed.dot(state), 0.0);  // insensitive to both
+  EXPECT_EQ(model.F.rows(), 14);       // four times Φ would be 16
   EXPECT_LT(model.F(12, 12), 1.0);
-  EXPECT_EQ(model.F(3, 3), 1.0);  // the fourth state is a position, no bias
+  EXPECT_EQ(model.F(3, 3), 1.0);  // the printed one treats a position as a bias
 }
 
 }  // namespace

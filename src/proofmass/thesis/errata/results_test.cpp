@@ -23,7 +23,7 @@ TEST(ErrataChapter5, AScaleErrorOfFortyMillionthsIsHalfAKelvinOrHalfADegree) {
   EXPECT_NEAR(1.0 - std::cos(0.52 * rad_per_deg), printed, 0.02 * printed);
 }
 
-// (5.2): m1 = (E90 − E270)/2, of either axis. At 90° and 270° y is level.
+// (5.2): m1 = (E90 − E270)/2 for both axes. At 90° and 270° y is horizontal.
 TEST(ErrataChapter5, OfYTheHalfDifferenceAtNinetyAndTwoHundredSeventyIsAnAngle) {
   constexpr double off_rad = 1.0 * rad_per_deg, scale = 1.01;
   const auto read = [](std::string_view axis, double deg) {
@@ -38,13 +38,13 @@ TEST(ErrataChapter5, OfYTheHalfDifferenceAtNinetyAndTwoHundredSeventyIsAnAngle) 
   EXPECT_NEAR(half_difference("acc1_x", 90.0), scale * g * std::cos(off_rad), 1e-12);
   EXPECT_NEAR(half_difference("acc1_y", 90.0), scale * g * std::sin(off_rad), 1e-12);
   EXPECT_NEAR(half_difference("acc1_y", 0.0), scale * g * std::cos(off_rad), 1e-12);
-  // So read, the scale factor of y would be 98 % wrong.
+  // By this formula the scale factor of y would be 98 % wrong.
   EXPECT_LT(half_difference("acc1_y", 90.0) / g - 1.0, -0.98);
 }
 
-// 5.1.2, of y: (0.58541 + 1.0330)/2 = 0.809 of what one g should read. The makers' own figures: the
-// sensor's outputs have 32 kΩ in series, the card's input is 127 kΩ to a divider of 39.2 kΩ to 2.5
-// V and 30.9 kΩ to ground (NI USB-6008/6009 User Guide, "Analog Input", figure).
+// 5.1.2, of y: (0.58541 + 1.0330)/2 = 0.809 of the expected output for one g. Manufacturers'
+// figures: 32 kΩ in series with the sensor's outputs; at the card's input 127 kΩ to a divider of
+// 39.2 kΩ to 2.5 V and 30.9 kΩ to ground (NI USB-6008/6009 User Guide, "Analog Input", figure).
 TEST(ErrataChapter5, TheCardsInputIsALoadThatTheReadingsOfYLookLike) {
   constexpr double input_ohm = 127e3 + 39.2e3 * 30.9e3 / (39.2e3 + 30.9e3);
   constexpr double open_v = 2.5 * 30.9e3 / (39.2e3 + 30.9e3);
@@ -53,16 +53,15 @@ TEST(ErrataChapter5, TheCardsInputIsALoadThatTheReadingsOfYLookLike) {
   const double printed = 0.5 * (0.58541 + 1.0330);
   const double least =
       *sensor::adxl335.sensitivity_v_per_mps2.min / *sensor::adxl335.sensitivity_v_per_mps2.typ;
-  EXPECT_LT(printed, least);          // no ADXL335 is that weak by itself,
-  EXPECT_GT(printed, share * least);  // behind the card's input it is one like any other
+  EXPECT_LT(printed, least);          // no ADXL335 has so low a scale by itself,
+  EXPECT_GT(printed, share * least);  // but a normal one has it with the card's input as load
   EXPECT_NEAR(printed / share, 0.99, 0.005);
-  // The zero goes down with it by 0.3 g, the spread of zeros being 0.5 g: printed −0.20 and −0.22
-  // g.
+  // The zero is also lowered, by 0.3 g, where zeros scatter by 0.5 g: printed −0.20 and −0.22 g.
   const double zero_v = share * 1.65 + (1.0 - share) * open_v;
   EXPECT_NEAR((zero_v - 1.65) / 0.330, -0.30, 0.005);
 }
 
-/// The filter's acceleration on a_x = sin t in steps of 0.2 s, as an amplitude and a lag.
+/// Amplitude and lag of the filter's acceleration for a_x = sin t in steps of 0.2 s.
 std::array<double, 2> amplitude_and_lag_deg(double q, double R) {
   const auto model =
       estimate::pva_model({.dt_s = 0.2, .jerk_psd_m2ps5 = q, .accel_variance_m2ps4 = R});
@@ -73,15 +72,15 @@ std::array<double, 2> amplitude_and_lag_deg(double q, double R) {
   prior.cov.diagonal().setConstant(100.0);
   const std::vector models(epochs.size(), model);
   const auto run = filter_linear(estimate::LinearSeries<3, 1>::make(epochs, models).value(), prior);
-  // Two epochs of a sine of known frequency tell it.
+  // Two epochs determine a sine of known frequency.
   const double a = run.steps[499].filtered.mean(2), b = run.steps[500].filtered.mean(2);
   const double s = std::sin(99.8), c = std::cos(99.8), s1 = std::sin(100.0), c1 = std::cos(100.0);
   const double det = s * c1 - c * s1, in = (a * c1 - c * b) / det, quad = (s * b - s1 * a) / det;
   return {std::hypot(in, quad), -std::atan2(quad, in) / rad_per_deg};
 }
 
-// 5.3: "filter did not follow the simulated acceleration when R > Q". A filter of gain k is
-// k/(1 − (1 − k) e^(−iωΔ)) to a sine.
+// 5.3: "filter did not follow the simulated acceleration when R > Q". The frequency response of a
+// filter of gain k is k/(1 − (1 − k) e^(−iωΔ)).
 TEST(ErrataChapter5, WithQBelowRThreeQuartersOfTheSineAreFollowedThirtySixDegreesLate) {
   for (const auto [q, R] : {std::array{4.0, 1.0}, std::array{1.0, 4.0}}) {
     const double k =
@@ -117,7 +116,7 @@ TEST(ErrataChapter5, AGainThatEndsAtATenthIsThereInATenthOfASecond) {
   EXPECT_NEAR(study.limit[2], k, 1e-12);
   EXPECT_GT(study.instants.front().gain[2], 0.99);
   EXPECT_LT(*study.settling_s[2], 0.2);
-  // And such an R is a noise of 0.67 m/s², fifty times the sensor's.
+  // Such an R corresponds to a noise of 0.67 m/s², fifty times the sensor's.
   const double rms = sensor::filtered_noise_rms(sensor::adxl335.noise_density_mps2_rthz[0], 50.0);
   EXPECT_GT(std::sqrt(R), 50.0 * rms);
 }
@@ -127,7 +126,7 @@ TEST(ErrataChapter6, NoTwoOfThePrintedErrorsAreSeventyTwoPercentApart) {
   struct Pair {
     double from_m, to_m;
   };
-  // Roll at 2 s, and "reduced to six meter"; pitch 9, Kalman 6, smoothed "almost by four" less.
+  // Roll at 2 s, "reduced to six meter"; pitch 9, Kalman 6, smoothed "almost by four" less.
   const std::array<Pair, 6> printed{{{6.88, 3.58},
                                      {6.88, 6.0},
                                      {9.0, 6.0},
@@ -138,7 +137,7 @@ TEST(ErrataChapter6, NoTwoOfThePrintedErrorsAreSeventyTwoPercentApart) {
   for (const auto& [from_m, to_m] : printed)
     nearest = std::min(nearest, std::abs(100.0 * (1.0 - to_m / from_m) - 72.0));
   EXPECT_GT(nearest, 5.0);
-  // Nor is any of them the 0.10 m of 6.1, or within the 0.63 m that the sensor went.
+  // None of them is the 0.10 m of 6.1, or within the sensor's path length of 0.63 m.
   for (const auto& [from_m, to_m] : printed) EXPECT_GT(to_m, rad_per_turn * errata::radius_m);
 }
 

@@ -41,8 +41,8 @@ TEST(ErrataChapter2, UnderGravityAloneASensorWithoutBiasReadsGravity) {
   EXPECT_NEAR(errata::first(rig, "acc1_y"), 0.2, 1e-12);
 }
 
-// Table 2.1, "Horizontal position error" after an hour. A navigator that levels itself on a round
-// Earth follows x'' = b − (g/r) x, here stepped through by leapfrog.
+// Table 2.1, "Horizontal position error" after an hour. A levelled navigator on a round Earth obeys
+// x'' = b − (g/r) x, integrated here by leapfrog.
 TEST(ErrataChapter2, HalfBiasTimesTimeSquaredHoldsForMinutesAndNotForAnHour) {
   constexpr double bias = 1e-3, earth_m = 6.371e6, dt = 0.1;
   double x = 0.0, v = 0.5 * dt * bias, after_a_minute = 0.0;
@@ -57,8 +57,8 @@ TEST(ErrataChapter2, HalfBiasTimesTimeSquaredHoldsForMinutesAndNotForAnHour) {
   EXPECT_NEAR(rows[0].errors[1].position_m.value / x, 8.0, 0.1);
 }
 
-// 2.4.3: "for performance goal of 1 %, initial alignment error must not exceed by 8°". Right.
-TEST(ErrataChapter2, EightDegreesCostOnePercentOfTheScaleAndNothingOfTheBias) {
+// 2.4.3: "for performance goal of 1 %, initial alignment error must not exceed by 8°". Correct.
+TEST(ErrataChapter2, EightDegreesChangeTheScaleByOnePercentAndNotTheBias) {
   const double off = 8.0 * rad_per_deg;
   const auto found = calibrate::four_point({.E0 = g * std::sin(off),
                                             .E90 = g * std::cos(off),
@@ -69,7 +69,7 @@ TEST(ErrataChapter2, EightDegreesCostOnePercentOfTheScaleAndNothingOfTheBias) {
   EXPECT_NEAR(found.bias_0g_mps2, 0.0, 1e-12);
 }
 
-// (2.2) with S_y and S_z taken, as they are named, for the sensitivities of the y and z axes.
+// (2.2) with S_y and S_z as the sensitivities of the y and z axes, as they are named.
 TEST(ErrataChapter2, CrossAxisSensitivityIsNotMadeOfTheOtherAxesOwnSensitivities) {
   const double S = 0.330 / g;
   Eigen::Matrix3d sensitivity = S * Eigen::Matrix3d::Identity();
@@ -79,26 +79,26 @@ TEST(ErrataChapter2, CrossAxisSensitivityIsNotMadeOfTheOtherAxesOwnSensitivities
   const auto found = calibrate::cross_axis_sensitivities(sensitivity, covariance).value();
   ASSERT_TRUE(found[0].value);
   EXPECT_NEAR(found[0].value->value, 0.01 * std::numbers::sqrt2, 1e-6);
-  EXPECT_FALSE(found[1].value);  // y feels y alone
+  EXPECT_FALSE(found[1].value);  // y responds to y only
   EXPECT_NEAR(std::hypot(sensitivity(1, 1), sensitivity(2, 2)) / sensitivity(0, 0), 1.414, 1e-3);
 }
 
 // 2.5: "the effect of cross coupling can be ignored".
 TEST(ErrataChapter2, TheDatasheetsCrossAxisSensitivityIsHalfTheBiasOfTable51) {
-  simulate::RigOptions rig = errata::wheel(0.0);  // x level, y upwards
+  simulate::RigOptions rig = errata::wheel(0.0);  // x horizontal, y upwards
   rig.sensors[0].cross_axis[0] = sensor::adxl335.cross_axis;
   EXPECT_NEAR(errata::first(rig, "acc1_x"), 10.0 * mg, 0.01 * mg);
   EXPECT_GT(errata::first(rig, "acc1_x"), 0.5 * 19.68 * mg);
 }
 
 // (2.4): E = K1 + K1 A + K0 + ε.
-TEST(ErrataChapter2, AScaleFactorThatStandsAloneIsReadWhereNothingActs) {
+TEST(ErrataChapter2, AnAdditiveScaleFactorIsMeasuredWithoutInput) {
   const sensor::ModelEquation volts{.K1 = 0.330 / g, .K0 = 0.2};
   const auto printed = [&](double accel) { return volts.K1 + volts.K1 * accel + volts.K0; };
   for (const double accel : {-g, 0.0, 3.0}) {
     const double ours = sensor::output(volts, {.ai_mps2 = accel});
     EXPECT_NEAR(ours, volts.K1 * (volts.K0 + accel), 1e-15);
-    // 1 m/s² too much, and 0.2 V where 0.2 m/s² are 7 mV.
+    // 1 m/s² too much; and 0.2 V where 0.2 m/s² corresponds to 7 mV
     EXPECT_NEAR(printed(accel) - ours, volts.K1 + (1.0 - volts.K1) * volts.K0, 1e-15);
   }
 }
@@ -107,7 +107,7 @@ TEST(ErrataChapter2, AScaleFactorThatStandsAloneIsReadWhereNothingActs) {
 TEST(ErrataChapter3, OnATurningWheelTheRadialAxisReadsItsCentripetalAcceleration) {
   EXPECT_NEAR(errata::first(errata::wheel(errata::rpm_11), "acc1_x"), -13.5 * mg, 0.1 * mg);
   EXPECT_NEAR(errata::first(errata::wheel(21.0 * radps_per_rpm), "acc1_x"), -49.3 * mg, 0.1 * mg);
-  // Nor is the other axis ever without gravity when this one is.
+  // The other axis is not free of gravity either when this one is.
   EXPECT_NEAR(errata::first(errata::wheel(0.0), "acc1_y"), g, 1e-12);
 }
 
@@ -126,7 +126,7 @@ TEST(ErrataChapter3, TheCardHasFourteenBitsAndSharesItsRate) {
   EXPECT_NEAR(sensor::lsb_v(5.0, sensor::usb6009.bits_differential) / (0.330 / g), 1.85 * mg,
               0.01 * mg);
   EXPECT_FALSE(sensor::usb6009.simultaneous);
-  EXPECT_EQ(sensor::usb6009.rate_hz / 4.0, 12e3);  // of each of two sensors' two axes
+  EXPECT_EQ(sensor::usb6009.rate_hz / 4.0, 12e3);  // for two axes of each of two sensors
 }
 
 // 3.2.1: "Bandwidth range of 200 Hz to 1 KHz" beside "0.1 µF for sensor frequency of 50 Hz".
@@ -136,7 +136,7 @@ TEST(ErrataChapter3, TwoHundredHertzAndATenthOfAMicrofaradAreNotOneFilter) {
   EXPECT_NEAR(sensor::filter_bandwidth_hz(sensor::adxl335, 5e-9), 1000.0, 10.0);
 }
 
-// 3.2.1: "The capacitor in series with output". In series it would block what does not change.
+// 3.2.1: "The capacitor in series with output". A series capacitor would block constant signals.
 TEST(ErrataChapter3, TheFilterLetsGravityThrough) {
   simulate::RigOptions rig = errata::wheel(0.0, std::numbers::pi / 2.0);
   rig.sensors[0].filter_signal = true;

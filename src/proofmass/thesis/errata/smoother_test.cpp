@@ -5,11 +5,11 @@
 
 #include "proofmass/estimate/models/bias_models.hpp"
 
-// docs/errata.md, section 4.1.5: the smoother, on a level that decays and is driven,
+// docs/errata.md, section 4.1.5: the smoother, for a first-order autoregressive level,
 //
 //   x[k] = F x[k−1] + w,   z[k] = x[k] + v,   x[0] ~ N(0, P0),
 //
-// where least squares is a tridiagonal system.
+// for which least squares is a tridiagonal system.
 namespace proofmass::thesis::errata_smoother_test {
 namespace {
 
@@ -40,8 +40,8 @@ estimate::LinearRun<1, 1> smoothed_by_the_library(double F, Series z, bool diffu
       diffuse ? estimate::Start<1>::diffuse() : estimate::Start<1>(prior));
 }
 
-/// Minimises x[0]²/P0 + Σ (x[k] − F x[k−1])²/q + Σ (z[k] − x[k])²/R by elimination, and inverts
-/// its matrix column by column.
+/// Minimises x[0]²/P0 + Σ (x[k] − F x[k−1])²/q + Σ (z[k] − x[k])²/R by elimination, and inverts its
+/// matrix column by column.
 Estimate least_squares(double F, const Series& z) {
   const std::size_t n = z.size();
   Series diagonal(n, 1.0 / R + 1.0 / q + F * F / q);
@@ -71,14 +71,14 @@ Estimate least_squares(double F, const Series& z) {
   return out;
 }
 
-/// How the equations of the way back are read.
+/// Readings of the equations of the backward pass.
 struct Form {
   bool transposed = false;  ///< (4.36): (P⁻)ᵀ for the inverse
   bool minus = false;       ///< (4.38): P⁺ + G (P⁻ − Pˢ) Gᵀ
   bool twice = false;       ///< (4.39): G (xˢ − x⁻) Gᵀ
 };
 
-/// (4.34) to (4.39) from the library's filter.
+/// (4.34) to (4.39) applied to the library's filter.
 Estimate way_back(double F, const Series& z, const Form& form) {
   const auto run = smoothed_by_the_library(F, z);
   const auto& end = run.steps.back().filtered;
@@ -149,9 +149,9 @@ TEST(ErrataChapter4, AFilterRunBackwardIsHalfOfTheSmoother) {
   const auto backward =
       smoothed_by_the_library(1.0, Series(readings.rbegin(), readings.rend()), true);
   for (std::size_t k = 0; k < last; ++k) {
-    const auto& ahead = forward.steps[k].filtered;              // up to k
-    const auto& behind = backward.steps[last - k].filtered;     // back to k
-    const auto& later = backward.steps[last - k - 1].filtered;  // back to k + 1
+    const auto& ahead = forward.steps[k].filtered;              // measurements up to k
+    const auto& behind = backward.steps[last - k].filtered;     // measurements from k on
+    const auto& later = backward.steps[last - k - 1].filtered;  // measurements from k + 1 on
     const double weight = 1.0 / ahead.cov(0, 0), other = 1.0 / (later.cov(0, 0) + q);
     const auto& both = forward.steps[k].smoothed;
     EXPECT_NEAR(both.cov(0, 0), 1.0 / (weight + other), 1e-12);
@@ -163,7 +163,7 @@ TEST(ErrataChapter4, AFilterRunBackwardIsHalfOfTheSmoother) {
   }
 }
 
-// 6.1, 6.2: what smoothing gains, and the smoothed output as a feedback to the motor.
+// 6.1, 6.2: improvement by smoothing, and use of the smoothed output as feedback to the motor.
 TEST(ErrataChapter6, AtTheLastInstantTheSmootherIsTheFilter) {
   const auto run = smoothed_by_the_library(0.9, readings);
   EXPECT_EQ(run.steps.back().smoothed.mean, run.steps.back().filtered.mean);

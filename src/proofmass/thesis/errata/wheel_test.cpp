@@ -9,7 +9,7 @@
 #include "proofmass/simulate/wheel_motion.hpp"
 #include "proofmass/thesis/errata/errata_test_support.hpp"
 
-// docs/errata.md, sections 4.4, 5.4 to 5.6 and A.2: the turning wheel.
+// docs/errata.md, sections 4.4, 5.4 to 5.6 and A.2: the rotating wheel.
 namespace proofmass::thesis::errata_wheel_test {
 namespace {
 
@@ -19,7 +19,7 @@ constexpr double half_turn = std::numbers::pi;
 
 // 4.4: "θ represents angle between radius R and earth gravity component".
 TEST(ErrataChapter4, AlongTheRimGravityGoesWithTheCosineOfTheAngleFromTheHorizontal) {
-  // Spoke level, square to gravity: all of gravity is along the rim, where cos 90° has none.
+  // With the spoke horizontal, gravity is entirely along the rim, where cos 90° would give none.
   EXPECT_NEAR(errata::first(errata::wheel(0.0, 0.0), "acc1_y"), g, 1e-12);
   EXPECT_NEAR(errata::first(errata::wheel(0.0, half_turn / 2.0), "acc1_y"), 0.0, 1e-12);
 }
@@ -32,8 +32,9 @@ TEST(ErrataChapter4, AlongTheRadiusTheCentripetalAccelerationIsRead) {
   EXPECT_NEAR(errata::first(rig, "acc2_x"), g * std::sin(start) + radius_m * w * w, 1e-12);
 }
 
-// (4.59): a1 = Rα + g cos θ, a2 = Rα − g cos θ needs the second sensor turned half round (against
-// 4.57 and 4.58, where g cos θ has the other signs); then a bias that both have is not cancelled.
+// (4.59): a1 = Rα + g cos θ, a2 = Rα − g cos θ require the second sensor to be rotated by half a
+// turn (in contrast to 4.57 and 4.58, where g cos θ has the other signs); a bias common to both is
+// then not cancelled.
 TEST(ErrataChapter4, OfSensorsTurnedHalfRoundACommonBiasStaysInTheAngularAcceleration) {
   const double bias = 20.0 * mg, start = 0.4;
   simulate::RigOptions rig = errata::wheel(rpm_11, start);
@@ -42,7 +43,7 @@ TEST(ErrataChapter4, OfSensorsTurnedHalfRoundACommonBiasStaysInTheAngularAcceler
   const double a1 = errata::first(rig, "acc1_y"), a2 = errata::first(rig, "acc2_y");
   EXPECT_NEAR(a1, g * std::cos(start) + bias, 1e-12);
   EXPECT_NEAR(a2, -g * std::cos(start) + bias, 1e-12);
-  EXPECT_NEAR((a1 + a2) / (2.0 * radius_m), 1.96, 0.01);  // rad/s², where there is none
+  EXPECT_NEAR((a1 + a2) / (2.0 * radius_m), 1.96, 0.01);  // rad/s², true value 0
 
   rig.sensors[1].mounting_rad = 0.0;
   const Uncertain parallel = estimate::angular_accel({.first_mps2 = errata::first(rig, "acc1_y"),
@@ -85,7 +86,7 @@ TEST(ErrataChapter5, OneTurnTakesFiveAndAHalfSecondsAndEndsWhereItBegan) {
   EXPECT_NEAR(radius_m * std::hypot(std::cos(end) - 1.0, std::sin(end)), 0.0, 1e-12);
 }
 
-/// The farthest that the mean of two channels gets in one turn, integrated twice from rest.
+/// Largest distance of the mean of two channels in one turn, integrated twice from rest.
 double farthest_m(const simulate::RigOptions& rig, std::string_view one, std::string_view other) {
   const Recording recording = simulate::simulate_rig(rig).value().recording;
   const std::vector<double> a = errata::column(recording, one),
@@ -105,10 +106,10 @@ double farthest_m(const simulate::RigOptions& rig, std::string_view one, std::st
 // 5.4: position "by fusing raw acceleration data", y1 + y2 and x1 + x2, errors of 6.88 m and 9 m.
 TEST(ErrataChapter5, TheSumOfOppositeSensorsIntegratedTwiceIsGravityAndNoPath) {
   simulate::RigOptions rig = errata::wheel(rpm_11);
-  // ∬ g cos ωt = g/ω² (1 − cos ωt): metres, from a path of 0.63 m.
+  // ∬ g cos ωt = g/ω² (1 − cos ωt): metres, for a path of 0.63 m.
   EXPECT_NEAR(farthest_m(rig, "acc1_y", "acc2_y"), 2.0 * g / (rpm_11 * rpm_11), 0.01);
   EXPECT_GT(farthest_m(rig, "acc1_y", "acc2_y"), 14.7);
-  // And with the second sensor turned half round, so that gravity cancels, nothing is left.
+  // With the second sensor rotated by half a turn gravity cancels and nothing remains.
   rig.sensors[1].mounting_rad = half_turn;
   EXPECT_LT(farthest_m(rig, "acc1_y", "acc2_y"), 1e-9);
 }
@@ -131,7 +132,7 @@ TEST(ErrataAppendixA, RevolutionsTimesPerimeterIsTheSpeedOfTheRim) {
   const double speed = turning().at(1.0).speed_radps;
   EXPECT_NEAR(speed, 1.152, 5e-4);
   EXPECT_NEAR(0.15 * speed, 0.1728, 5e-5);
-  EXPECT_NEAR(radius_m * speed, 0.1152, 5e-5);  // of the sensor
+  EXPECT_NEAR(radius_m * speed, 0.1152, 5e-5);  // speed of the sensor
 }
 
 // A.2: "P_out = 0.32*0.066 = 0.0211 watts".
@@ -154,12 +155,12 @@ TEST(ErrataAppendixA, TheTorqueOfAMotorFallsAlongALine) {
 }
 
 // Table A.1: "DC controller Current settings(A)", 2 to 7.
-TEST(ErrataAppendixA, TheSettingsOfTheControllerAreNoAmperes) {
+TEST(ErrataAppendixA, TheSettingsOfTheControllerAreNotAmperes) {
   constexpr double hp_w = 745.7, full_load_a = 1.27, supply_v = 90.0;  // A.2.1
   EXPECT_GT(2.0, 1.5 * full_load_a);
   EXPECT_GT(7.0 * supply_v, 5.0 * full_load_a * supply_v);
-  EXPECT_GT(full_load_a * supply_v, hp_w / 8.0);  // these two of A.2.1 do agree
-  // 220 in lb at 31 rpm, 81 W, are within the 1/8 hp.
+  EXPECT_GT(full_load_a * supply_v, hp_w / 8.0);  // these two figures of A.2.1 agree
+  // 220 in lb at 31 rpm, 81 W, are below 1/8 hp.
   EXPECT_LT(220.0 * 0.112985 * 31.0 * radps_per_rpm, hp_w / 8.0);
 }
 

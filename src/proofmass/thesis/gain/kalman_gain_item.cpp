@@ -36,7 +36,7 @@ report::Figure gain_figure(const FirstTurn& turn,
       .x = {.label = "Time (s)", .scale = report::AxisScale::log, .min = step_s},
       .y = {.label = "Gain", .min = 0.0, .max = 1.05}};
   figure.curves = {
-      curve(turn, "mended filter, R of the sensor", gain, report::Ink::orange),
+      curve(turn, "corrected filter, R of the sensor", gain, report::Ink::orange),
       {.label = fmt::format("√R = {} mg", report::compact(noise_mps2 / kind::milli_g.to_si, 2)),
        .x = t_s,
        .y = k,

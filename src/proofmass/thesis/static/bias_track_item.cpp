@@ -59,11 +59,11 @@ report::Figure filters_of(const StaticTest& test, std::size_t at) {
       .title = test.record.axes[at].name + ": the thesis's filter and ours",
       .description =
           "The thesis's filter follows the readings' noise, because its Q is the square "
-          "of their scatter; ours moves as far as the bias was found to wander.",
+          "of their scatter; ours uses the estimated random walk of the bias.",
       .x = {.label = "Time since switching on (s)"},
       .y = {.label = "Bias (mg)"}};
   if (!tracks.thesis.t_s.empty()) {
-    figure.curves.push_back(curve_of(tracks.thesis, "the thesis's filter, mended", Ink::grey));
+    figure.curves.push_back(curve_of(tracks.thesis, "the thesis's filter, corrected", Ink::grey));
     figure.curves.back().mark = Mark::thin;
   }
   figure.bands.push_back(band_of(tracks.filtered, "95 % band of our filter", Ink::blue));
@@ -95,7 +95,7 @@ report::Table errors_table(const StaticTest& test) {
   const bool truth = test.record.simulated;
   report::Table table{
       truth ? "Error of the bias in µg, root mean square over the record"
-            : "Standard deviation of the bias in µg at the end, as each filter believes it: there "
+            : "Standard deviation of the bias in µg at the end, as stated by each filter: there "
               "is no truth to compare with",
       {"Axis", "Readings", "The thesis's filter", "Our filter", "Our smoother",
        "Truth in its 95 %"},
@@ -155,7 +155,8 @@ std::string found_words(const StaticTest& test, std::size_t at) {
   const auto& filtered = tracks.filtered.rms_error_mps2;
   if (thesis && filtered)
     return fmt::format(
-        "{} ({}): the thesis's filter, its mistakes mended, is off by {} µg rms where single means "
+        "{} ({}): the thesis's filter, with its errors corrected, is off by {} µg rms where single "
+        "means "
         "are by {}; ours by {}, its smoother by {}, with the truth inside the 95 % band in {} % of "
         "the record.",
         name, source_words(test), significant(*thesis / ug, 3),
@@ -182,7 +183,7 @@ Item bias_track_item(const StaticTest& test) {
       .note =
           "With W = 1 the thesis's Q is the variance of the readings themselves (4.62), as "
           "is its R. The gain then is 0.62 whatever the sensor, and two thirds of the "
-          "noise pass. Ours has for Q what the bias was found to wander, K² Δt, and for R the "
+          "noise pass. Ours uses for Q the estimated random walk of the bias, K² Δt, and for R the "
           "white noise: two figures of the same recording. As printed the filter would "
           "not read the bias at all (4.56). To know the bias of a sensor at rest, take "
           "our smoother; live, our filter."};

@@ -135,7 +135,7 @@ BiasTrack track_by_thesis(const Readings& readings, const PlainFit& fit) {
 }
 
 /// Two-sided density of the white noise that drives all drift, over short times.
-double wander_psd_m2ps5(const characterise::DriftNoise& noise, double duration_s) {
+double bias_walk_psd_m2ps5(const characterise::DriftNoise& noise, double duration_s) {
   double psd = noise.random_walk * noise.random_walk + noise.markov * noise.markov;
   if (noise.flicker > 0.0) {
     // The Markov process that approximates flicker at times a tenth of the record.
@@ -152,7 +152,7 @@ Result<LinearRun<1, 1>> run_beside(const Readings& readings, const DriftAnalysis
   model.F.setOnes();
   model.H.setOnes();
   model.B.setOnes();
-  model.Q(0, 0) = wander_psd_m2ps5(drift.fit.noise, drift.duration_s) * readings.dt_s;
+  model.Q(0, 0) = bias_walk_psd_m2ps5(drift.fit.noise, drift.duration_s) * readings.dt_s;
   model.R(0) = white > 0.0 ? white * white / readings.dt_s
                            : drift.residual_rms * drift.residual_rms;  // white noise was not seen
   const auto moved = [&](std::size_t k) {

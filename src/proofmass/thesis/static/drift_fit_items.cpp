@@ -170,7 +170,7 @@ Item bias_data_item(const StaticTest& test) {
             .note =
                 "The curve is the thesis's, and its example is right. What is new is the "
                 "verdict whether a recording shows such a curve at all: most real ones move by "
-                "steps or wander, and least squares give an a1 and a T for those too. Take the "
+                "steps or slow noise, and least squares give an a1 and a T for those too. Take the "
                 "curve where it is identified, and the band beside it, not the readings' "
                 "scatter."};
   Finding duration = seconds("duration", "Length of the record");
@@ -218,7 +218,7 @@ Item fit_item(const StaticTest& test) {
       "1.75 s, would fit that.";
   item.note += plain_error_words(test) + without_warm_up_words(test, at);
   item.note +=
-      " Take the intervals, which allow for the wander of the bias: 93 to 98 % of them "
+      " Use the intervals, which allow for slow noise of the bias: 93 to 98 % of them "
       "hold the truth in hundreds of simulated records (methods/drift.md).";
   item.findings = parameters_of(test, at);
   item.tables.push_back(axes_table(test));

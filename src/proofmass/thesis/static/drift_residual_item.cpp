@@ -133,7 +133,8 @@ Item residuals_item(const StaticTest& test) {
             .note = ""};
   item.note =
       "The bounds are ±1.96/√n, so what they see depends on n, which the thesis does not give: the "
-      "same wander lies outside with every sample and hides in a few of them. White residuals have "
+      "same slow noise is outside with every sample and inside with a few of them. White residuals "
+      "have "
       "95 % inside, so 97 % of some lags is no proof, and a curve that passes may have a T that is "
       "off by many times its standard deviation (table 4.1). A variance of one says nothing either "
       "where the residuals were divided by their own scatter; that of a filter's innovations does. "

@@ -72,7 +72,7 @@ report::Figure deviations_of(const DecimationNoise& noise, const std::string& na
                         .description =
                             "Allan deviation about the fitted curve: how far two "
                             "neighbouring means of so long differ. Single samples stay "
-                            "above means until the bias wanders.",
+                            "above means until the bias drifts.",
                         .x = {.label = "Averaging time (s)", .scale = report::AxisScale::log},
                         .y = {.label = "Allan deviation (µg)", .scale = report::AxisScale::log}};
   if (noise.picked)

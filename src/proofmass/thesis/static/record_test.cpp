@@ -25,8 +25,9 @@ TEST(StaticRecord, OfAKilohertzIsMeansOverTwentyFiveAndOneSampleOfEach) {
   const StaticRecord record = record_of(1000.0, ramp(1010));
   EXPECT_EQ(record.decimation, 25U);
   EXPECT_EQ(record.rate_hz, 40.0);
-  EXPECT_DOUBLE_EQ(record.since_switch_on_s, 3.012);  // the middle of the first 25
-  ASSERT_EQ(record.axes[0].accel_mps2.size(), 40U);   // the last ten samples fill none
+  EXPECT_DOUBLE_EQ(record.since_switch_on_s, 3.012);  // centre of the first 25
+  ASSERT_EQ(record.axes[0].accel_mps2.size(), 40U);   // the last ten samples are an incomplete
+                                                      // block
   EXPECT_EQ(record.axes[0].accel_mps2[39], 987.0);
   EXPECT_EQ(record.axes[0].picked_mps2[39], 975.0);
   EXPECT_FALSE(record.simulated);
@@ -54,10 +55,10 @@ TEST(StaticRecord, TakesTheMeanOfWhatIsThereAndNoneWhereHalfIsMissing) {
   samples[3] = 4.0;
   const StaticRecord record = record_of(160.0, samples);
   ASSERT_EQ(record.decimation, 4U);
-  EXPECT_TRUE(std::isnan(record.axes[0].accel_mps2[0]));  // 2 of 4
+  EXPECT_TRUE(std::isnan(record.axes[0].accel_mps2[0]));  // 2 of 4 samples are missing
   EXPECT_TRUE(std::isnan(record.axes[0].accel_mps2[1]));
   samples[1] = 1.0;
-  EXPECT_EQ(record_of(160.0, samples).axes[0].accel_mps2[0], 2.0);  // of 1, 1 and 4
+  EXPECT_EQ(record_of(160.0, samples).axes[0].accel_mps2[0], 2.0);  // mean of 1, 1 and 4
 }
 
 }  // namespace
