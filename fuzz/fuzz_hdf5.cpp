@@ -84,8 +84,8 @@ void take_figures(std::string_view bytes) {
 
 // The library that decodes the file is not under test, and it runs in a process of its own, which
 // would limit the fuzzer to a few inputs per second. The input is therefore used as that process's
-// messages (contents, values) and as a list of contents. io/hdf5/hdf5_test.cpp checks that arbitrary
-// files are read or refused whatever the library does.
+// messages (contents, values) and as a list of contents. io/hdf5/hdf5_test.cpp checks that
+// arbitrary files are read or refused whatever the library does.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   listen_to(bytes);
