@@ -17,8 +17,8 @@
 
 #include "measure.hpp"
 #include "proofmass/io/bytes/byte_source.hpp"
+#include "proofmass/io/tdms/group_reader.hpp"
 #include "proofmass/io/tdms/specimens.hpp"
-#include "proofmass/io/tdms/table.hpp"
 
 namespace {
 

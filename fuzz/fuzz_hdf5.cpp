@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "proofmass/io/bytes/watched_child.hpp"
+#include "proofmass/io/bytes/subprocess.hpp"
 #include "proofmass/io/hdf5/catalogue.hpp"
 #include "proofmass/io/hdf5/choice.hpp"
 #include "proofmass/io/hdf5/labels.hpp"
@@ -20,7 +20,7 @@ void require(bool kept) {
 }
 
 /// Feeds bytes as from a pipe.
-io::ByteFeed feed_of(std::string_view& bytes) {
+io::BytePump feed_of(std::string_view& bytes) {
   return [&bytes](std::span<char> into) -> Result<std::size_t> {
     const std::size_t count = std::min(into.size(), bytes.size());
     std::copy_n(bytes.begin(), count, into.begin());

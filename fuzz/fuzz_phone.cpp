@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "proofmass/acquire/phone/phone_stream_merge.hpp"
 #include "proofmass/acquire/phone/phyphox_cursor.hpp"
 #include "proofmass/acquire/phone/phyphox_messages.hpp"
 #include "proofmass/acquire/phone/phyphox_plan.hpp"
-#include "proofmass/acquire/phone/sensor_merge.hpp"
 #include "proofmass/acquire/phone/sensor_server_messages.hpp"
 
 // Messages of phones, which come from an untrusted peer.
@@ -49,7 +49,7 @@ void check_replies(std::string_view first, std::string_view second) {
 
 /// Messages of two sensors in alternation, one per line.
 void check_messages(std::string_view lines) {
-  SensorMerge merge({1, 2});
+  PhoneStreamMerge merge({1, 2});
   SensorMessage message;
   Arrival arrival;
   arrival.clear(3);

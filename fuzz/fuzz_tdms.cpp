@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "check_reading.hpp"
-#include "proofmass/io/tdms/table.hpp"
+#include "proofmass/io/tdms/group_reader.hpp"
 
 namespace {
 

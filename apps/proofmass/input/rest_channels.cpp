@@ -8,9 +8,9 @@
 
 #include "cli/console.hpp"
 #include "cli/exit_status.hpp"
+#include "input/block_reader.hpp"
+#include "input/channel_selection.hpp"
 #include "input/input.hpp"
-#include "input/piece_source.hpp"
-#include "input/rest_choice.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/signal/audit.hpp"
 #include "proofmass/signal/even_grid.hpp"

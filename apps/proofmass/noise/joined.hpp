@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "noise/command.hpp"
-#include "noise/pieces.hpp"
+#include "noise/streaming.hpp"
 
 // Noise of a recording that is split into several files.
 namespace proofmass::app {

@@ -13,7 +13,7 @@
 #include "noise/command.hpp"
 #include "noise/joined.hpp"
 #include "noise/options.hpp"
-#include "noise/pieces.hpp"
+#include "noise/streaming.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/core/in_parallel.hpp"
 #include "proofmass/report/noise/report.hpp"

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "cli/exit_status.hpp"
-#include "input/accel_figures.hpp"
 #include "input/gyroscope.hpp"
 #include "input/input.hpp"
+#include "input/sensor_options.hpp"
 #include "proofmass/estimate/live_tilt.hpp"
 #include "proofmass/estimate/live_track.hpp"
 #include "proofmass/estimate/live_wheel.hpp"

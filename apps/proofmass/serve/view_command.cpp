@@ -4,7 +4,7 @@
 
 #include "cli/console.hpp"
 #include "cli/exit_status.hpp"
-#include "input/piece_source.hpp"
+#include "input/block_reader.hpp"
 #include "proofmass/io/write_recording.hpp"
 #include "proofmass/serve/view_file.hpp"
 

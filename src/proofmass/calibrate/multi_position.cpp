@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "proofmass/calibrate/multi_position/ellipsoid_start.hpp"
-#include "proofmass/calibrate/multi_position/given_directions.hpp"
+#include "proofmass/calibrate/multi_position/fixture_fit.hpp"
 #include "proofmass/calibrate/multi_position/norm_fit.hpp"
 #include "proofmass/calibrate/multi_position/parts.hpp"
 #include "proofmass/calibrate/multi_position/pose_design.hpp"

@@ -9,7 +9,7 @@
 #include "proofmass/calibrate/pose.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
-#include "proofmass/signal/audit/dyadic_ladder.hpp"
+#include "proofmass/signal/audit/dyadic_allan.hpp"
 
 namespace proofmass::calibrate {
 

@@ -209,7 +209,7 @@ class KnownNoise {
  private:
   const DriftEvidence& evidence_;
   VectorXd z_;
-  DriftTrial trial_;
+  DriftFitAtShape trial_;
 };
 
 bool holds(const Interval95& interval, double truth) {
@@ -256,7 +256,7 @@ double share_of_flicker_held(std::size_t ahead) {
     Series samples = test::white(white, 1.0 / h, n, 2 * record + 1);
     for (std::size_t k = 0; k < n; ++k) samples[k] += flicker[k];
     const DriftEvidence evidence = test::evidence_of(samples, {1.0 / h, 1});
-    DriftTrial trial;
+    DriftFitAtShape trial;
     trial.noise = NoiseChoice(evidence).white();
     const Index rows = evidence.blocks() - 1;
     trial.noise.P.conservativeResize(rows, 2);

@@ -4,7 +4,7 @@
 
 #include "proofmass/characterise/allan/deviation_curve.hpp"
 #include "proofmass/characterise/allan/difference_variance.hpp"
-#include "proofmass/characterise/noise/low_band.hpp"
+#include "proofmass/characterise/noise/cosine_ordinates.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/signal/spectrum.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "proofmass/characterise/noise/low_band.hpp"
+#include "proofmass/characterise/noise/cosine_ordinates.hpp"
 #include "proofmass/characterise/noise_model.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/signal/spectral_lines.hpp"

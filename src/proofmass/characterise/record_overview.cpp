@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "proofmass/core/number_words.hpp"
-#include "proofmass/signal/audit/chunk_figures.hpp"
+#include "proofmass/signal/audit/chunk_statistics.hpp"
 
 namespace proofmass::characterise {
 namespace {
@@ -60,7 +60,7 @@ void RecordOverview::close_block() {
 
 void RecordOverview::look_at_extremes(View<double> finite) {
   if (finite.empty()) return;
-  const signal::ChunkFigures figures = signal::chunk_figures(finite);
+  const signal::ChunkStatistics figures = signal::chunk_statistics(finite);
   const auto take = [&](double value, bool is_new, Extreme& extreme) {
     if (is_new) extreme = {.value = value};
     if (value == extreme.value)
@@ -116,7 +116,7 @@ Status RecordOverview::check_rails(std::optional<double> lsb) const {
   constexpr std::size_t fewest = 10;
   const double width =
       std::max(beside_share * (high_.value - low_.value), 1.01 * lsb.value_or(0.0));
-  const auto is_rail = [&](const Extreme& extreme, const signal::ValueTail& tail) {
+  const auto is_rail = [&](const Extreme& extreme, const signal::ClippingTail& tail) {
     if (extreme.count < fewest) return false;
     const double beside = tail.beside(std::nextafter(width, 0.0), sample_);
     return static_cast<double>(extreme.count) > times * beside;

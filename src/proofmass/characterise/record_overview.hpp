@@ -7,8 +7,8 @@
 
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
-#include "proofmass/signal/audit/thinned_sample.hpp"
-#include "proofmass/signal/value_tail.hpp"
+#include "proofmass/signal/audit/subsample.hpp"
+#include "proofmass/signal/clipping_tail.hpp"
 
 namespace proofmass::characterise {
 
@@ -27,7 +27,7 @@ class RecordOverview {
   /// Errors: not_finite (no sample is a number), not_observable (the samples are constant, vary
   /// beyond the numerical range, or vary by less than half a quantisation step).
   [[nodiscard]] Status check_spread(std::optional<double> lsb) const;
-  /// Errors: not_observable (clipped). A ValueTail counts the samples next to a rail.
+  /// Errors: not_observable (clipped). A ClippingTail counts the samples next to a rail.
   [[nodiscard]] Status check_rails(std::optional<double> lsb) const;
 
  private:
@@ -48,9 +48,9 @@ class RecordOverview {
   Sums block_;  ///< current block
   Extreme low_{.value = std::numeric_limits<double>::infinity()};
   Extreme high_{.value = -std::numeric_limits<double>::infinity()};
-  signal::ThinnedSample sample_;
-  signal::ValueTail lowest_{signal::ValueTail::Side::lowest};
-  signal::ValueTail highest_{signal::ValueTail::Side::highest};
+  signal::Subsample sample_;
+  signal::ClippingTail lowest_{signal::ClippingTail::Side::lowest};
+  signal::ClippingTail highest_{signal::ClippingTail::Side::highest};
   std::vector<double> finite_;  ///< finite values of the inspected samples
 };
 

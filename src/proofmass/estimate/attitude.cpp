@@ -81,11 +81,12 @@ class Pass {
   /// change a lot without effect on anything else.
   template <class Forward, class Backward>
   double run(Forward&& forward, Backward&& backward) {
-    smooth(*model_, FilterState<N>{model_->prior()}, gate, std::forward<Forward>(forward),
-           [&](std::size_t k, const StepOf<AttitudeModel>& step, const Hindsight<N>& later) {
-             errors_[k] = later.mean(step.filtered);
-             backward(k, step, later);
-           });
+    smooth(
+        *model_, FilterState<N>{model_->prior()}, gate, std::forward<Forward>(forward),
+        [&](std::size_t k, const StepOf<AttitudeModel>& step, const BackwardInformation<N>& later) {
+          errors_[k] = later.mean(step.filtered);
+          backward(k, step, later);
+        });
     double largest = 0.0;
     for (std::size_t k = 0; k < errors_.size(); ++k) {
       largest = std::max(largest, errors_[k].segment<2>(inertial::attitude).norm());
@@ -223,10 +224,11 @@ Result<Attitude> estimate_attitude(const InertialSeries& series,
     ++out.iterations;
   }
   tell(0.7);
-  pass.run([&](std::size_t k, const StepOf<AttitudeModel>& step) { take_nis(model, k, step, out); },
-           [&](std::size_t k, const StepOf<AttitudeModel>& step, const Hindsight<N>& later) {
-             take_covariances(later.cov<N>(step.filtered), model.series().samples[k].row, out);
-           });
+  pass.run(
+      [&](std::size_t k, const StepOf<AttitudeModel>& step) { take_nis(model, k, step, out); },
+      [&](std::size_t k, const StepOf<AttitudeModel>& step, const BackwardInformation<N>& later) {
+        take_covariances(later.cov<N>(step.filtered), model.series().samples[k].row, out);
+      });
   ++out.iterations;
   out.converged = has_settled(model, pass, out);
   take_motion(model, out);

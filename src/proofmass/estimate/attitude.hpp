@@ -11,7 +11,7 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/estimate/filter/gaussian.hpp"
-#include "proofmass/estimate/rotation.hpp"
+#include "proofmass/estimate/so3.hpp"
 #include "proofmass/sensor/gravity.hpp"
 #include "proofmass/signal/rests.hpp"
 

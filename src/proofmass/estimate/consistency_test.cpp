@@ -7,7 +7,7 @@
 
 #include "proofmass/core/random.hpp"
 #include "proofmass/estimate/consistency_verdict.hpp"
-#include "proofmass/estimate/filter/counted_new.hpp"
+#include "proofmass/estimate/filter/allocation_counter.hpp"
 #include "proofmass/estimate/smoother_consistency.hpp"
 
 namespace proofmass::estimate::consistency_test {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "proofmass/estimate/filter/counted_new.hpp"
+#include "proofmass/estimate/filter/allocation_counter.hpp"
 #include "proofmass/estimate/live_track_test_support.hpp"
 #include "proofmass/estimate/track/live_scale.hpp"
 

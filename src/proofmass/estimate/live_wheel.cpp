@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "proofmass/estimate/live_columns.hpp"
-#include "proofmass/estimate/wheel/joint.hpp"
+#include "proofmass/estimate/wheel/joint_fit.hpp"
 #include "proofmass/estimate/wheel/live_filter.hpp"
 #include "proofmass/estimate/wheel/live_instants.hpp"
 #include "proofmass/estimate/wheel/live_start.hpp"

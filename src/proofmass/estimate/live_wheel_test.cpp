@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "proofmass/estimate/filter/counted_new.hpp"
+#include "proofmass/estimate/filter/allocation_counter.hpp"
 #include "proofmass/estimate/live_test_support.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 

@@ -11,7 +11,7 @@
 // noise.
 //
 //   measurement   e = z − h x̂[k|N],         var e = R − h P[k|N] hᵀ
-//   motion        u_i = λ_i / √Λ_ii          of estimate::Hindsight, state i, before the
+//   motion        u_i = λ_i / √Λ_ii          of estimate::BackwardInformation, state i, before the
 //                                            transition to k is taken back: ŵ = −Q λ, and
 //                                            var ŵ = Q Λ Q
 //

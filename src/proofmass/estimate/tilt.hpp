@@ -113,8 +113,8 @@ struct TiltSolution {
 /// correlated noise, plus the sensor file's flicker and random walk over that time, the covariance
 /// of the calibration at that force, and the alignment of the case (tilt/rest.hpp).
 ///
-/// On a moving base: an extended Kalman filter and the fixed-interval smoother (filter/kalman.hpp)
-/// over
+/// On a moving base: an extended Kalman filter and the fixed-interval smoother
+/// (filter/smoother.hpp) over
 ///
 ///     g' = exp(−[(ω − b) Δ]×) g,   a' = e^(−Δ/τ) R a + w,   b' = b + w_b,   f = g + a + n,
 ///

@@ -7,7 +7,7 @@
 
 #include "proofmass/core/random.hpp"
 #include "proofmass/core/units.hpp"
-#include "proofmass/estimate/rotation.hpp"
+#include "proofmass/estimate/so3.hpp"
 #include "proofmass/estimate/tilt.hpp"
 
 namespace proofmass::estimate {

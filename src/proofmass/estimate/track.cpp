@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/track/carried.hpp"
+#include "proofmass/estimate/track/aided.hpp"
 #include "proofmass/estimate/track/findings.hpp"
 #include "proofmass/estimate/track/hypotheses.hpp"
 #include "proofmass/estimate/track/pva.hpp"
@@ -223,7 +223,7 @@ Result<TrackSolution> track_with_gyro(const TrackSensor& sensor,
                                       const TrackOptions& options) {
   TrackSolution solution = described(signal, options);
   const TrackReadings readings = readings_of(signal, options);
-  if (const auto done = track_carried(sensor, signal, readings, options, solution); !done)
+  if (const auto done = track_aided(sensor, signal, readings, options, solution); !done)
     return done.error();
   const AxisRun quiet = prepare_axis(signal, solution.series.accel_mps2, readings, {});
   solution.budget = budget_of(signal, quiet);

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel/baseline_methods.hpp"
 #include "proofmass/estimate/wheel/findings.hpp"
-#include "proofmass/estimate/wheel/joint.hpp"
-#include "proofmass/estimate/wheel/plain.hpp"
+#include "proofmass/estimate/wheel/joint_fit.hpp"
 #include "proofmass/estimate/wheel/plane.hpp"
 
 namespace proofmass::estimate {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "proofmass/signal/audit/thinned_sample.hpp"
+#include "proofmass/signal/audit/subsample.hpp"
 
 namespace proofmass::signal {
 namespace {
@@ -81,7 +81,7 @@ std::optional<double> find_lsb_of_plausible(std::vector<double> values) {
 }
 
 std::optional<double> find_lsb(View<double> series) {
-  ThinnedSample sample;
+  Subsample sample;
   std::vector<double> plausible;
   constexpr std::size_t piece = 4096;
   for (std::size_t from = 0; from < series.size(); from += piece) {

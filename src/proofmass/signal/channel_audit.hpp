@@ -29,7 +29,7 @@ inline constexpr double least_normal = 0x1p-126;
 }
 
 /// The quantisation step of a series, or nullopt if it looks continuous; determined from a
-/// ThinnedSample of 2^18 of its plausible values.
+/// Subsample of 2^18 of its plausible values.
 [[nodiscard]] std::optional<double> find_lsb(View<double> series);
 
 /// The same from a sample of plausible values.

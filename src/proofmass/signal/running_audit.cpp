@@ -20,9 +20,9 @@ constexpr std::size_t chunk = ValueExcerpts::piece;
 
 std::size_t sample_capacity(std::size_t channels) {
   constexpr std::size_t channels_in_full = 32, least = std::size_t{1} << 13;
-  const std::size_t all = ThinnedSample::usual_capacity * channels_in_full;
+  const std::size_t all = Subsample::usual_capacity * channels_in_full;
   return std::clamp(std::bit_floor(all / std::max<std::size_t>(channels, 1)), least,
-                    ThinnedSample::usual_capacity);
+                    Subsample::usual_capacity);
 }
 
 bool is_inertial(const Channel& channel) {

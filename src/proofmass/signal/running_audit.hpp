@@ -12,9 +12,9 @@ namespace proofmass::signal {
 /// block boundaries, to the last digit.
 ///
 /// - All counts of RecordingAudit are exact.
-/// - The LSB is determined from a ThinnedSample of 2^18 plausible values per channel (fewer beyond
+/// - The LSB is determined from a Subsample of 2^18 plausible values per channel (fewer beyond
 ///   32 channels), which holds all values of shorter recordings. So is the number of values near a
-///   rail, if it exceeds the 2^13 values of a ValueTail.
+///   rail, if it exceeds the 2^13 values of a ClippingTail.
 /// - Limits with noise added afterwards and soft limits are determined from ValueExcerpts of 2^17
 ///   values.
 ///

@@ -143,7 +143,7 @@ std::vector<AllanLevel> RunningRests::levels(std::size_t axis) const {
   const RestBlocks& blocks = s.recent.blocks();
   PM_EXPECTS(axis < s.axis_count);
   double steps = 0.0, count = 0.0;
-  DyadicLadder ladder;
+  DyadicAllan ladder;
   for (std::size_t k = s.rest.first; k < s.rest.end; ++k) {
     const RestBlock& block = blocks.at[k];
     if (blocks.missing(k) || block.count < 2.0) continue;

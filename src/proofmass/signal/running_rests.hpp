@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "proofmass/core/view.hpp"
-#include "proofmass/signal/audit/dyadic_ladder.hpp"
+#include "proofmass/signal/audit/dyadic_allan.hpp"
 #include "proofmass/signal/rests.hpp"
 
 // Online detection of static intervals.

@@ -269,10 +269,10 @@ TEST(RunningRests, KnowTheMeanAndTheNoiseOfEachOctave) {
   EXPECT_NEAR(squares / count, 1.0, 4.0 * std::sqrt(2.0 / count));
 }
 
-TEST(DyadicLadder, IsTheAllanVarianceOfEachOctave) {
+TEST(DyadicAllan, IsTheAllanVarianceOfEachOctave) {
   Noise noise(22);
   std::vector<double> values;
-  DyadicLadder ladder;
+  DyadicAllan ladder;
   for (int k = 0; k < 100; ++k) {
     values.push_back(noise.normal());
     ladder.add(values.back());
@@ -293,8 +293,8 @@ TEST(DyadicLadder, IsTheAllanVarianceOfEachOctave) {
   }
 }
 
-TEST(DyadicLadder, ComparesNothingAcrossABreak) {
-  DyadicLadder ladder;
+TEST(DyadicAllan, ComparesNothingAcrossABreak) {
+  DyadicAllan ladder;
   for (const double value : {1.0, 1.0, 1.0}) ladder.add(value);
   ladder.break_off();
   for (const double value : {9.0, 9.0, 9.0, 9.0}) ladder.add(value);

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "proofmass/core/random.hpp"
-#include "proofmass/simulate/procedure/bench_sensor.hpp"
 #include "proofmass/simulate/procedure/pose_motion.hpp"
 #include "proofmass/simulate/procedure/pose_plan.hpp"
+#include "proofmass/simulate/procedure/sensor_error_model.hpp"
 #include "proofmass/simulate/procedure/slide_series.hpp"
 
 namespace proofmass::simulate {
@@ -119,7 +119,7 @@ class Series {
   }
 
   const ProcedureOptions& options_;
-  BenchSensor sensor_;
+  SensorErrorModel sensor_;
   PoseMotion motion_;
   std::array<BenchDrift, 3> drifts_;
   std::array<Random, 3> white_;

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "proofmass/simulate/rig/converter.hpp"
+#include "proofmass/simulate/rig/rig_state.hpp"
 #include "proofmass/simulate/rig/sensor_twin.hpp"
-#include "proofmass/simulate/rig/surroundings.hpp"
 
 namespace proofmass::simulate {
 namespace {
@@ -187,7 +187,7 @@ class RunningRig::Scans {
       told[3 + c][row] = channels_[c].bias_mps2(now);
   }
 
-  Surroundings surroundings_;
+  RigState surroundings_;
   std::vector<SensorNow> sensors_;
   std::vector<ChannelTwin> channels_;
   bool filters_ = false;

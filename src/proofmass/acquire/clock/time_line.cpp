@@ -26,7 +26,7 @@ void TimeLine::reopen(const SourceHead& head) {
   rate_hz_ = head.recording.time.rate_hz;
   const Clock without = rate_hz_ > 0.0 ? Clock::count : Clock::host;
   clock_ = head.has_device_clock ? Clock::device : without;
-  step_ = UsualStep(rate_hz_ > 0.0 ? 1.0 / rate_hz_ : 0.0);
+  step_ = SamplePeriod(rate_hz_ > 0.0 ? 1.0 / rate_hz_ : 0.0);
   is_new_ = true;
   is_gap_ = has_rows_;
   still_rows_ = 0;
@@ -52,7 +52,7 @@ double TimeLine::bridged(const Arrival& arrival, std::size_t row) const {
   return told_s > next_s + tolerance_s ? told_s : next_s;
 }
 
-void TimeLine::stamp(const Incoming& item,
+void TimeLine::stamp(const QueueItem& item,
                      std::vector<double>& stamps_s,
                      std::vector<RecordEvent>& events) {
   const Arrival& arrival = item.arrival;
@@ -76,7 +76,7 @@ void TimeLine::stamp(const Incoming& item,
   floor_.add(host_s(arrival.host_ns), host_s(arrival.host_ns) - last_s_);
 }
 
-void TimeLine::tell_known(const Incoming& item, double hole_s) {
+void TimeLine::tell_known(const QueueItem& item, double hole_s) {
   const std::uint64_t lost = item.arrival.lost_before;
   if (lost > 0)
     tell(EventKind::lost, hole_s, lost,
@@ -101,7 +101,7 @@ std::uint64_t TimeLine::tell_gap(double hole_s, double open_s) {
 }
 
 /// Reports the rows missing before and between the current ones; advances the last stamp.
-void TimeLine::tell_missing(const Incoming& item, View<double> stamps_s) {
+void TimeLine::tell_missing(const QueueItem& item, View<double> stamps_s) {
   std::uint64_t missing = item.arrival.lost_before + item.overrun;
   for (std::size_t i = 0; i < stamps_s.size(); ++i) {
     const bool is_first = i == 0 && !has_rows_;
@@ -151,7 +151,7 @@ double TimeLine::device_stamp(const Arrival& arrival, std::size_t row) {
   return bridged_s;
 }
 
-void TimeLine::stamp_by_device(const Incoming& item, std::vector<double>& stamps_s) {
+void TimeLine::stamp_by_device(const QueueItem& item, std::vector<double>& stamps_s) {
   const Arrival& arrival = item.arrival;
   const double before_s = last_s_;
   if (is_new_) {
@@ -167,7 +167,7 @@ void TimeLine::stamp_by_device(const Incoming& item, std::vector<double>& stamps
   tell_missing(item, stamps_s);
 }
 
-void TimeLine::stamp_by_count(const Incoming& item, std::vector<double>& stamps_s) {
+void TimeLine::stamp_by_count(const QueueItem& item, std::vector<double>& stamps_s) {
   const Arrival& arrival = item.arrival;
   const std::uint64_t known = arrival.lost_before + item.overrun;
   is_gap_ = is_gap_ || item.gap_s > 0.0;
@@ -183,7 +183,7 @@ void TimeLine::stamp_by_count(const Incoming& item, std::vector<double>& stamps_
   tell_missing(item, stamps_s);
 }
 
-void TimeLine::stamp_by_host(const Incoming& item, std::vector<double>& stamps_s) {
+void TimeLine::stamp_by_host(const QueueItem& item, std::vector<double>& stamps_s) {
   const Arrival& arrival = item.arrival;
   const double now_s = host_s(arrival.host_ns);
   const auto rows = static_cast<double>(arrival.rows());

@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "proofmass/acquire/clock/running_line.hpp"
-#include "proofmass/acquire/clock/usual_step.hpp"
+#include "proofmass/acquire/clock/clock_tracker.hpp"
+#include "proofmass/acquire/clock/sample_period.hpp"
 #include "proofmass/acquire/source.hpp"
-#include "proofmass/acquire/stream/incoming.hpp"
+#include "proofmass/acquire/stream/queue_item.hpp"
 #include "proofmass/core/recording_log.hpp"
 
 namespace proofmass::acquire {
@@ -33,7 +33,9 @@ class TimeLine {
   /// The source was reopened: its clock may have any origin; the host's clock bridges the gap.
   void reopen(const SourceHead& head);
   /// Replaces `stamps_s` by the stamps of an item's rows; appends events to `events`.
-  void stamp(const Incoming& item, std::vector<double>& stamps_s, std::vector<RecordEvent>& events);
+  void stamp(const QueueItem& item,
+             std::vector<double>& stamps_s,
+             std::vector<RecordEvent>& events);
 
   [[nodiscard]] double last_s() const { return last_s_; }
   /// Rows up to the last stamp, including missing ones.
@@ -45,23 +47,23 @@ class TimeLine {
 
  private:
   enum class Clock { device, count, host };
-  void stamp_by_device(const Incoming& item, std::vector<double>& stamps_s);
-  void stamp_by_count(const Incoming& item, std::vector<double>& stamps_s);
-  void stamp_by_host(const Incoming& item, std::vector<double>& stamps_s);
+  void stamp_by_device(const QueueItem& item, std::vector<double>& stamps_s);
+  void stamp_by_count(const QueueItem& item, std::vector<double>& stamps_s);
+  void stamp_by_host(const QueueItem& item, std::vector<double>& stamps_s);
   [[nodiscard]] bool is_dead(const Arrival& arrival);
   [[nodiscard]] double device_stamp(const Arrival& arrival, std::size_t row);
   [[nodiscard]] double bridged(const Arrival& arrival, std::size_t row) const;
-  void tell_missing(const Incoming& item, View<double> stamps_s);
-  void tell_known(const Incoming& item, double hole_s);
+  void tell_missing(const QueueItem& item, View<double> stamps_s);
+  void tell_known(const QueueItem& item, double hole_s);
   [[nodiscard]] std::uint64_t tell_gap(double hole_s, double open_s);
   void tell(EventKind kind, double duration_s, std::uint64_t rows, std::string text);
 
   Clock clock_ = Clock::host;
   bool is_paced_ = true;
   double rate_hz_ = 0.0;
-  UsualStep step_{0.0};
+  SamplePeriod step_{0.0};
   DelayFloor floor_;
-  RunningLine line_;
+  ClockTracker line_;
 
   bool has_rows_ = false;
   bool is_new_ = true;   ///< the clock has given no stamp yet

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "proofmass/acquire/clock/clock_fit.hpp"
-#include "proofmass/acquire/clock/silence_hold.hpp"
+#include "proofmass/acquire/clock/gap_detector.hpp"
 #include "proofmass/acquire/recorder/latency_histogram.hpp"
 
 namespace proofmass::acquire::time_line_test {
@@ -25,11 +25,11 @@ SourceHead head_of(bool has_device_clock, double rate_hz, bool is_paced = true) 
 }
 
 /// Rows that arrive at `host_ms`, with these device times if any.
-Incoming rows_at(std::int64_t host_ms,
-                 std::size_t rows,
-                 const std::vector<std::int64_t>& device_ms = {},
-                 std::uint64_t lost = 0) {
-  Incoming item;
+QueueItem rows_at(std::int64_t host_ms,
+                  std::size_t rows,
+                  const std::vector<std::int64_t>& device_ms = {},
+                  std::uint64_t lost = 0) {
+  QueueItem item;
   item.arrival.channels = {std::vector<double>(rows, 0.0)};
   for (const std::int64_t at : device_ms) item.arrival.device_ns.push_back(at * ms);
   item.arrival.lost_before = lost;
@@ -41,7 +41,7 @@ Incoming rows_at(std::int64_t host_ms,
 class Folded {
  public:
   explicit Folded(const SourceHead& head) : line_(head) {}
-  void add(const Incoming& item) {
+  void add(const QueueItem& item) {
     std::vector<double> stamps_s;
     line_.stamp(item, stamps_s, events);
     stamps.insert(stamps.end(), stamps_s.begin(), stamps_s.end());
@@ -116,7 +116,7 @@ TEST(TimeLine, SurvivesAnyTimeOfADevice) {
     Folded line(head_of(true, 0.0, is_paced));
     std::int64_t host_ms = 0;
     for (const std::int64_t odd : {most, least, std::int64_t{0}, most, least, std::int64_t{-1}}) {
-      Incoming item = rows_at(host_ms += 100, 3);
+      QueueItem item = rows_at(host_ms += 100, 3);
       item.arrival.device_ns = {odd, odd, odd / 2};
       line.add(item);
     }
@@ -149,16 +149,16 @@ TEST(TimeLine, CountsByTheGrantedRateAndOverWhatIsLost) {
 }
 
 /// Passes items through a hold and adds its output in order.
-void fold_through(SilenceHold& hold, Folded& line, Incoming item) {
+void fold_through(GapDetector& hold, Folded& line, QueueItem item) {
   hold.put(std::move(item));
-  Incoming settled;
+  QueueItem settled;
   while (hold.take(settled, false)) line.add(settled);
 }
 
-TEST(SilenceHold, TellsADelayFromAGap) {
+TEST(GapDetector, TellsADelayFromAGap) {
   for (const bool is_gap : {true, false}) {
     Folded line(head_of(false, 100.0));
-    SilenceHold hold(false, true, 100.0, 2.0);
+    GapDetector hold(false, true, 100.0, 2.0);
     for (int i = 1; i <= 20; ++i) fold_through(hold, line, rows_at(100 * i, 10));
     // Five seconds of silence; then the delayed rows arrive at once, or they do not.
     const int burst = is_gap ? 0 : 49;
@@ -170,10 +170,10 @@ TEST(SilenceHold, TellsADelayFromAGap) {
   }
 }
 
-TEST(SilenceHold, LetsNothingWaitAtTheEnd) {
-  SilenceHold hold(false, true, 0.0, 2.0);
+TEST(GapDetector, LetsNothingWaitAtTheEnd) {
+  GapDetector hold(false, true, 0.0, 2.0);
   hold.put(rows_at(100, 10));
-  Incoming item;
+  QueueItem item;
   EXPECT_FALSE(hold.take(item, false));
   EXPECT_TRUE(hold.take(item, true));
   EXPECT_EQ(item.arrival.rows(), 10u);
@@ -183,7 +183,7 @@ TEST(TimeLine, TakesTheHostsTimeAndItsJitterAwayWhereThereIsNoClock) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> jitter_ms(0.0, 30.0);
   Folded line(head_of(false, 0.0));
-  SilenceHold hold(false, true, 0.0, 2.0);
+  GapDetector hold(false, true, 0.0, 2.0);
   for (int i = 1; i <= 600; ++i)
     fold_through(hold, line, rows_at(100 * i + static_cast<int>(jitter_ms(random)), 10));
   ASSERT_EQ(line.stamps.size(), 6000u);

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "proofmass/acquire/iio/line.hpp"
+#include "proofmass/acquire/iio/worker.hpp"
 #include "proofmass/acquire/source_list.hpp"
 
 namespace proofmass::acquire {
@@ -18,8 +18,8 @@ constexpr milliseconds farewell{1000};  // a thread that has not ended by then h
 class IioSource : public Source {
  public:
   explicit IioSource(const IioRequest& request)
-      : line_(std::make_shared<IioLine>()),
-        thread_([line = line_, request] { run_iio_line(line, request); }) {}
+      : line_(std::make_shared<IioWorker>()),
+        thread_([line = line_, request] { run_iio_worker(line, request); }) {}
 
   // A thread that hangs inside libiio is abandoned on purpose: it cannot be ended, and it uses only
   // the line, which it owns a share of.
@@ -65,7 +65,7 @@ class IioSource : public Source {
   }
 
  private:
-  std::shared_ptr<IioLine> line_;
+  std::shared_ptr<IioWorker> line_;
   std::thread thread_;
   SourceHead head_;
 };

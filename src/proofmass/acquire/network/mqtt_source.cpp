@@ -6,7 +6,7 @@
 #include <string>
 
 #include "proofmass/acquire/source_list.hpp"
-#include "proofmass/acquire/stream/byte_feed.hpp"
+#include "proofmass/acquire/stream/byte_pump.hpp"
 
 namespace proofmass::acquire {
 namespace {
@@ -45,7 +45,7 @@ std::string refusal_of(int code) {
 }
 
 /// A connection with one topic.
-class MqttFeed final : public ByteFeed {
+class MqttFeed final : public BytePump {
  public:
   explicit MqttFeed(MqttPlace place) : place_(std::move(place)) {}
   ~MqttFeed() override {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "proofmass/acquire/source_list.hpp"
-#include "proofmass/acquire/stream/byte_feed.hpp"
+#include "proofmass/acquire/stream/byte_pump.hpp"
 
 namespace proofmass::acquire {
 namespace {
@@ -27,7 +27,7 @@ Error cannot_listen(const HostPort& at, const char* why) {
 }
 
 /// Datagrams of a bound socket.
-class UdpFeed final : public ByteFeed {
+class UdpFeed final : public BytePump {
  public:
   explicit UdpFeed(int socket) : socket_(socket) {}
   ~UdpFeed() override { ::close(socket_); }

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "proofmass/acquire/phone/sensor_merge.hpp"
+#include "proofmass/acquire/phone/phone_stream_merge.hpp"
 #include "proofmass/io/json_leaves.hpp"
 
 namespace proofmass::acquire {
@@ -129,7 +129,7 @@ Status parse_phyphox_reply(std::string_view text,
 }
 
 std::size_t level_buffers(std::span<std::vector<double>> buffers) {
-  constexpr double latest_s = static_cast<double>(SensorMerge::largest_ns) * 1e-9;
+  constexpr double latest_s = static_cast<double>(PhoneStreamMerge::largest_ns) * 1e-9;
   std::size_t rows = buffers.front().size(), kept = 0;
   for (const auto& buffer : buffers) rows = std::min(rows, buffer.size());
   for (std::size_t k = 0; k < rows; ++k) {

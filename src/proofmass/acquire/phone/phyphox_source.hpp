@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "proofmass/acquire/network/http_client.hpp"
+#include "proofmass/acquire/phone/phone_stream_merge.hpp"
 #include "proofmass/acquire/phone/phyphox_cursor.hpp"
 #include "proofmass/acquire/phone/phyphox_plan.hpp"
-#include "proofmass/acquire/phone/sensor_merge.hpp"
 #include "proofmass/acquire/source.hpp"
 
 namespace proofmass::acquire {
@@ -43,7 +43,7 @@ class PhyphoxSource : public Source {
   std::unique_ptr<HttpClient> client_;
   PhyphoxStart start_;
   SourceHead head_;
-  SensorMerge merge_;
+  PhoneStreamMerge merge_;
   std::vector<std::string> names_, times_;  ///< all buffers; buffers that contain times
   std::string ends_target_;                 ///< requests the ends of the times
   PhyphoxReply reply_{};

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "proofmass/acquire/phone/sensor_merge.hpp"
+#include "proofmass/acquire/phone/phone_stream_merge.hpp"
 #include "proofmass/io/json_leaves.hpp"
 
 namespace proofmass::acquire {
@@ -29,8 +29,8 @@ Status parse_sensor_message(std::string_view text, SensorMessage& out) {
       out.type = *leaf.text;
   });
   if (!read) return read.error();
-  if (!timestamp_ns || *timestamp_ns > SensorMerge::largest_ns ||
-      *timestamp_ns < -SensorMerge::largest_ns)
+  if (!timestamp_ns || *timestamp_ns > PhoneStreamMerge::largest_ns ||
+      *timestamp_ns < -PhoneStreamMerge::largest_ns)
     return Error{Errc::corrupt, "has no timestamp in nanoseconds"};
   if (out.values.empty()) return Error{Errc::corrupt, "has no values"};
   out.timestamp_ns = *timestamp_ns;

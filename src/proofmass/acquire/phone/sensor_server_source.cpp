@@ -6,7 +6,7 @@
 #include "proofmass/acquire/framing/words.hpp"
 #include "proofmass/acquire/network/web_socket.hpp"
 #include "proofmass/acquire/phone/advice.hpp"
-#include "proofmass/acquire/phone/sensor_merge.hpp"
+#include "proofmass/acquire/phone/phone_stream_merge.hpp"
 #include "proofmass/acquire/phone/sensor_server_messages.hpp"
 #include "proofmass/acquire/phone/sensors.hpp"
 #include "proofmass/acquire/source_list.hpp"
@@ -171,7 +171,7 @@ class SensorServerSource : public Source {
   std::vector<int> accuracy_;
   WebSocket socket_;
   SourceHead head_{};
-  std::optional<SensorMerge> merge_{};
+  std::optional<PhoneStreamMerge> merge_{};
   SensorMessage message_{};
   std::vector<std::string> early_{};  ///< messages that arrived during opening
   std::vector<Note> notes_{};

@@ -6,30 +6,30 @@ namespace proofmass::acquire {
 namespace {
 
 /// Approximate size of an item; never 0.
-std::size_t bytes_of(const Incoming& item) {
+std::size_t bytes_of(const QueueItem& item) {
   const Arrival& arrival = item.arrival;
-  std::size_t bytes = sizeof(Incoming) + 8 * arrival.rows() * arrival.channels.size() +
+  std::size_t bytes = sizeof(QueueItem) + 8 * arrival.rows() * arrival.channels.size() +
                       8 * arrival.device_ns.size();
   for (const Note& note : arrival.notes) bytes += sizeof(Note) + note.text.size();
   return bytes;
 }
 
-bool is_bounded(const Incoming& item) {
-  return item.kind == Incoming::Kind::rows || item.kind == Incoming::Kind::notes;
+bool is_bounded(const QueueItem& item) {
+  return item.kind == QueueItem::Kind::rows || item.kind == QueueItem::Kind::notes;
 }
 
 constexpr std::size_t most_spare_arrivals = 8;
 
 }  // namespace
 
-bool ArrivalQueue::put(Incoming& item, std::chrono::milliseconds patience) {
+bool ArrivalQueue::put(QueueItem& item, std::chrono::milliseconds patience) {
   const std::size_t bytes = bytes_of(item);
   std::unique_lock lock(mutex_);
   if (is_bounded(item) && !changed_.wait_for(lock, patience, [&] { return has_room(bytes); }))
     return false;
   bytes_ += bytes;
   items_.push_back(std::move(item));
-  item = Incoming{};
+  item = QueueItem{};
   if (!spare_.empty()) {
     item.arrival = std::move(spare_.back());
     spare_.pop_back();
@@ -38,7 +38,7 @@ bool ArrivalQueue::put(Incoming& item, std::chrono::milliseconds patience) {
   return true;
 }
 
-bool ArrivalQueue::take(Incoming& item, std::chrono::milliseconds patience) {
+bool ArrivalQueue::take(QueueItem& item, std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, patience, [&] { return !items_.empty() || is_woken_; });
   is_woken_ = false;

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-#include "proofmass/acquire/stream/incoming.hpp"
+#include "proofmass/acquire/stream/queue_item.hpp"
 
 namespace proofmass::acquire {
 
@@ -19,9 +19,9 @@ class ArrivalQueue {
 
   /// Adds an item and returns an old one in its place, to be reused. False: no room within the
   /// patience; the item is unchanged. Items other than rows and notes always have room.
-  [[nodiscard]] bool put(Incoming& item, std::chrono::milliseconds patience);
+  [[nodiscard]] bool put(QueueItem& item, std::chrono::milliseconds patience);
   /// Swaps in the next item; the old one is kept for reuse.
-  [[nodiscard]] bool take(Incoming& item, std::chrono::milliseconds patience);
+  [[nodiscard]] bool take(QueueItem& item, std::chrono::milliseconds patience);
   /// Wakes a waiting take().
   void wake();
 
@@ -33,7 +33,7 @@ class ArrivalQueue {
   const std::size_t most_bytes_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Incoming> items_;
+  std::deque<QueueItem> items_;
   std::size_t bytes_ = 0;
   bool is_woken_ = false;
   std::vector<Arrival> spare_;

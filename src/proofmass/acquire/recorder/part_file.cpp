@@ -12,7 +12,7 @@
 #include <unistd.h>
 #include <utility>
 
-#include "proofmass/io/nameless_file.hpp"
+#include "proofmass/io/unnamed_file.hpp"
 
 namespace proofmass::acquire {
 namespace {
@@ -112,7 +112,7 @@ int room_kept_in(const std::string& folder) {
   if (::statvfs(folder.c_str(), &disk) != 0) return -1;
   const std::uint64_t free_bytes = std::uint64_t{disk.f_bavail} * disk.f_frsize;
   const std::uint64_t bytes = std::min(wanted, free_bytes / 8);
-  const int file = bytes > 0 ? io::nameless_file(folder) : -1;
+  const int file = bytes > 0 ? io::unnamed_file(folder) : -1;
   if (file < 0) return -1;
   if (::posix_fallocate(file, 0, static_cast<off_t>(bytes)) == 0) return file;
   ::close(file);

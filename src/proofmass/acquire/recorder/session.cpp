@@ -129,7 +129,7 @@ void RecordSession::begin_watching() {
 }
 
 void RecordSession::loop() {
-  Incoming item;
+  QueueItem item;
   while (!end_) {
     ask_stopped();
     if (disk_.failure()) end(RecordEnd::disk_failed);
@@ -146,7 +146,7 @@ void RecordSession::loop() {
 }
 
 /// Data read before the end are kept; after a disk failure they are counted.
-void RecordSession::take_what_is_left(Incoming& item) {
+void RecordSession::take_what_is_left(QueueItem& item) {
   do {
     while (hold_->take(item, true)) {
       if (end_ == RecordEnd::stopped) work(item);
@@ -183,35 +183,35 @@ void RecordSession::look_at_clocks() {
                      jump_ns > 0 ? "on" : "back"));
 }
 
-void RecordSession::work(Incoming& item) {
+void RecordSession::work(QueueItem& item) {
   tell_notes(item.arrival.notes);
   switch (item.kind) {
-    case Incoming::Kind::rows:
+    case QueueItem::Kind::rows:
       work_on_rows(item);
       break;
-    case Incoming::Kind::notes:
+    case QueueItem::Kind::notes:
       break;
-    case Incoming::Kind::stalled:
+    case QueueItem::Kind::stalled:
       tell(EventKind::stalled, Severity::warning,
            fmt::format("nothing has come for {:.1f} s", item.silence_s));
       break;
-    case Incoming::Kind::gone:
+    case QueueItem::Kind::gone:
       gone_ = item.reason;
       tell(EventKind::disconnected, Severity::bad, "the source is gone: " + gone_);
       break;
-    case Incoming::Kind::reopened:
+    case QueueItem::Kind::reopened:
       reopened(*item.head);
       break;
-    case Incoming::Kind::gave_up:
+    case QueueItem::Kind::gave_up:
       end(RecordEnd::source_gone, item.reason.empty() ? gone_ : item.reason);
       break;
-    case Incoming::Kind::ended:
+    case QueueItem::Kind::ended:
       end(RecordEnd::source_end);
       break;
   }
 }
 
-void RecordSession::work_on_rows(Incoming& item) {
+void RecordSession::work_on_rows(QueueItem& item) {
   const bool is_first = rows_ == 0;
   events_.clear();
   line_->stamp(item, stamps_s_, events_);

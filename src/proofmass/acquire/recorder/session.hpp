@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "proofmass/acquire/clock/gap_detector.hpp"
 #include "proofmass/acquire/clock/rate_watch.hpp"
-#include "proofmass/acquire/clock/silence_hold.hpp"
 #include "proofmass/acquire/clock/time_line.hpp"
 #include "proofmass/acquire/recorder.hpp"
 #include "proofmass/acquire/recorder/analysis_thread.hpp"
@@ -41,11 +41,11 @@ class RecordSession {
   [[nodiscard]] Status use(const SourceHead& head);
   void begin_watching();
   void loop();
-  void take_what_is_left(Incoming& item);
+  void take_what_is_left(QueueItem& item);
   void ask_stopped();
   void look_at_clocks();
-  void work(Incoming& item);
-  void work_on_rows(Incoming& item);
+  void work(QueueItem& item);
+  void work_on_rows(QueueItem& item);
   void watch_rate(std::int64_t host_ns);
   void pair_clocks(std::int64_t host_ns);
   void reopened(const SourceHead& head);
@@ -95,7 +95,7 @@ class RecordSession {
   DiskWriter disk_;
   std::unique_ptr<SourceReader> reader_;
   std::optional<TimeLine> line_;
-  std::optional<SilenceHold> hold_;
+  std::optional<GapDetector> hold_;
   RateWatch rate_watch_;
   std::optional<LevelGate> gate_;
   std::size_t trigger_channel_ = 0;

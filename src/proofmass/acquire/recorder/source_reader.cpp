@@ -33,7 +33,7 @@ void SourceReader::run() {
     if (read_to_the_end()) return;
     source_.reset();
     if (options_.reconnect && reopen()) continue;
-    hand_on(Incoming::Kind::gave_up, end_);
+    hand_on(QueueItem::Kind::gave_up, end_);
     return;
   }
 }
@@ -47,18 +47,18 @@ bool SourceReader::read_to_the_end() {
   while (!stops_) {
     const auto arrived = source_->read(item_.arrival, patience);
     if (!arrived) {
-      hand_on(Incoming::Kind::gone, arrived.error().message);
+      hand_on(QueueItem::Kind::gone, arrived.error().message);
       return false;
     }
     if (*arrived == Arrived::rows) hand_on_rows(channels);
-    if (*arrived != Arrived::rows && !item_.arrival.notes.empty()) hand_on(Incoming::Kind::notes);
+    if (*arrived != Arrived::rows && !item_.arrival.notes.empty()) hand_on(QueueItem::Kind::notes);
     if (*arrived == Arrived::ended) {
-      hand_on(Incoming::Kind::ended);
+      hand_on(QueueItem::Kind::ended);
       return true;
     }
     if (*arrived == Arrived::nothing) watch_silence();
     if (end_.empty()) continue;
-    hand_on(Incoming::Kind::gone, end_);
+    hand_on(QueueItem::Kind::gone, end_);
     return false;
   }
   return true;
@@ -72,7 +72,7 @@ void SourceReader::hand_on_rows(std::size_t channels) {
   count_on(arrival);
   const std::uint64_t rows = arrival.rows();
   const std::uint64_t lost = arrival.lost_before;
-  item_.kind = Incoming::Kind::rows;
+  item_.kind = QueueItem::Kind::rows;
   item_.overrun = dropped_;
   const bool is_paced = source_->head().is_paced;
   while (!queue_.put(item_, is_paced ? std::chrono::milliseconds(0) : patience)) {
@@ -86,7 +86,7 @@ void SourceReader::hand_on_rows(std::size_t channels) {
   if (dropped_notes_.empty()) return;
   item_.arrival.clear(channels);
   item_.arrival.notes = std::exchange(dropped_notes_, {});
-  hand_on(Incoming::Kind::notes);
+  hand_on(QueueItem::Kind::notes);
 }
 
 /// A reopened source does not know its previous count.
@@ -102,7 +102,7 @@ void SourceReader::count_on(Arrival& arrival) {
   last_count_ = arrival.last_count;
 }
 
-void SourceReader::hand_on(Incoming::Kind kind, std::string reason) {
+void SourceReader::hand_on(QueueItem::Kind kind, std::string reason) {
   item_.kind = kind;
   item_.reason = std::move(reason);
   if (item_.arrival.host_ns == 0) item_.arrival.host_ns = host_now_ns();
@@ -129,7 +129,7 @@ void SourceReader::watch_silence() {
   if (!is_stalled_ && silent_s > stall_s()) {
     is_stalled_ = true;
     item_.silence_s = silent_s;
-    hand_on(Incoming::Kind::stalled);
+    hand_on(QueueItem::Kind::stalled);
   }
   if (silent_s > std::max(options_.stall_end_s, stall_s()))
     end_ = fmt::format("nothing came for {:.1f} s", silent_s);
@@ -146,9 +146,9 @@ bool SourceReader::reopen() {
     auto opened = open_();
     if (opened) {
       source_ = std::move(opened).value();
-      item_ = Incoming{};
+      item_ = QueueItem{};
       is_reopened_ = true;
-      hand_on(Incoming::Kind::reopened);
+      hand_on(QueueItem::Kind::reopened);
       return true;
     }
     const double tried_s = static_cast<double>(host_now_ns() - since_ns) * 1e-9;

@@ -37,7 +37,7 @@ class SourceReader {
   [[nodiscard]] bool reopen();
   void hand_on_rows(std::size_t channels);
   void count_on(Arrival& arrival);
-  void hand_on(Incoming::Kind kind, std::string reason = {});
+  void hand_on(QueueItem::Kind kind, std::string reason = {});
   void keep_notes();
   void watch_silence();
   [[nodiscard]] double stall_s() const;
@@ -48,7 +48,7 @@ class SourceReader {
   const RecordOptions& options_;
   ArrivalQueue& queue_;
   std::atomic<bool> stops_ = false;
-  Incoming item_;
+  QueueItem item_;
   std::uint64_t dropped_ = 0;  ///< rows since the last that found room
   std::vector<Note> dropped_notes_;
   std::int64_t rows_ns_ = 0;  ///< arrival of the last rows

@@ -36,7 +36,7 @@ struct LineTrouble {
   int overrun = 0, buffer_overrun = 0, framing = 0, parity = 0;
 };
 
-class SerialFeed final : public ByteFeed {
+class SerialFeed final : public BytePump {
  public:
   SerialFeed(Descriptor descriptor, std::string device)
       : descriptor_(std::move(descriptor)), device_(std::move(device)) {

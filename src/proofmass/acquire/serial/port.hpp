@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "proofmass/acquire/stream/byte_feed.hpp"
+#include "proofmass/acquire/stream/byte_pump.hpp"
 #include "proofmass/core/result.hpp"
 
 namespace proofmass::acquire {
@@ -17,7 +17,7 @@ struct SerialSettings {
 
 /// A serial device at 8N1, opened exclusively; earlier input is discarded.
 struct SerialPort {
-  std::unique_ptr<ByteFeed> feed;
+  std::unique_ptr<BytePump> feed;
   unsigned baud = 0;  ///< as granted
 };
 

@@ -3,7 +3,7 @@
 
 #include "proofmass/acquire/serial/port.hpp"
 #include "proofmass/acquire/source_list.hpp"
-#include "proofmass/acquire/stream/byte_feed.hpp"
+#include "proofmass/acquire/stream/byte_pump.hpp"
 
 namespace proofmass::acquire {
 namespace {

@@ -4,13 +4,13 @@
 #include <unistd.h>
 
 #include "proofmass/acquire/source_list.hpp"
-#include "proofmass/acquire/stream/byte_feed.hpp"
+#include "proofmass/acquire/stream/byte_pump.hpp"
 
 namespace proofmass::acquire {
 namespace {
 
 /// A pipe, a file or a terminal opened and closed by another process.
-class InputFeed final : public ByteFeed {
+class InputFeed final : public BytePump {
  public:
   explicit InputFeed(int descriptor) : descriptor_(descriptor) {}
   Result<Fed> read(std::span<char> into, std::chrono::milliseconds patience) override {

@@ -5,7 +5,7 @@
 
 #include "proofmass/calibrate/guide/plan.hpp"
 #include "proofmass/calibrate/multi_position/dwell_noise.hpp"
-#include "proofmass/signal/audit/dyadic_ladder.hpp"
+#include "proofmass/signal/audit/dyadic_allan.hpp"
 
 namespace proofmass::calibrate {
 namespace {
@@ -35,7 +35,7 @@ class StillPlan final : public GuidePlan {
     return {{GuideKind::enough, fmt::format("{} of rest.", minutes_words(length_s))}};
   }
   std::string lost_words(double seconds) override {
-    for (signal::DyadicLadder& ladder : ladders_) ladder.break_off();
+    for (signal::DyadicAllan& ladder : ladders_) ladder.break_off();
     return fmt::format(
         "It was moved after {}: the time restarts. Earlier samples remain in the file.",
         minutes_words(seconds));
@@ -49,7 +49,7 @@ class StillPlan final : public GuidePlan {
   [[nodiscard]] double wanted_s(const signal::RestState& now) const;
 
   std::optional<double> fixed_s_;
-  std::vector<signal::DyadicLadder> ladders_;  ///< of means of blocks at rest
+  std::vector<signal::DyadicAllan> ladders_;  ///< of means of blocks at rest
   std::size_t blocks_ = 0;
   double block_s_ = 0.0, last_s_ = 0.0, wanted_s_ = least_s;
   bool done_ = false;
@@ -75,7 +75,7 @@ double StillPlan::wanted_s(const signal::RestState& now) const {
   if (fixed_s_) return *fixed_s_;
   if (now.until_s - now.since_s < 0.5 * least_s) return least_s;
   double blocks = 0.0;
-  for (const signal::DyadicLadder& ladder : ladders_) {
+  for (const signal::DyadicAllan& ladder : ladders_) {
     const DwellNoise noise = fit_dwell_noise(ladder.levels(1.0), static_cast<double>(blocks_), 0.0);
     if (!(noise.flicker > 0.0)) return most_s;
     blocks = std::max(blocks, 10.0 * noise.white / noise.flicker);

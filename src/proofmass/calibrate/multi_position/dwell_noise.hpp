@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "proofmass/core/view.hpp"
-#include "proofmass/signal/audit/dyadic_ladder.hpp"
+#include "proofmass/signal/audit/dyadic_allan.hpp"
 
 namespace proofmass::calibrate {
 

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <vector>
 
-#include "proofmass/characterise/allan/whole_record.hpp"
+#include "proofmass/characterise/allan/phase_record.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/vector_clones.hpp"
 

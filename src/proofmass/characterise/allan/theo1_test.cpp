@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "proofmass/characterise/allan/whole_record.hpp"
+#include "proofmass/characterise/allan/phase_record.hpp"
 #include "proofmass/characterise/test_support.hpp"
 
 namespace proofmass::characterise::theo1_test {

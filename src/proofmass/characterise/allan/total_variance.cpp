@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "proofmass/characterise/allan/difference_kernels.hpp"
-#include "proofmass/characterise/allan/whole_record.hpp"
+#include "proofmass/characterise/allan/phase_record.hpp"
 #include "proofmass/core/contract.hpp"
 
 namespace proofmass::characterise {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "proofmass/characterise/allan/whole_record.hpp"
+#include "proofmass/characterise/allan/phase_record.hpp"
 #include "proofmass/characterise/test_support.hpp"
 
 namespace proofmass::characterise::total_variance_test {

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "proofmass/characterise/drift/profile.hpp"
+#include "proofmass/characterise/drift/selection.hpp"
 #include "proofmass/characterise/drift/shapes.hpp"
 #include "proofmass/characterise/drift/state.hpp"
-#include "proofmass/characterise/drift/trials.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/signal/whiteness.hpp"
@@ -33,7 +33,7 @@ Interval95 log_interval(double value, double std_of_log, double dof) {
   return {value, value * std_of_log, std::exp(*of_log.lower_95), std::exp(*of_log.upper_95)};
 }
 
-double undetected_below(const DriftEvidence& evidence, const DriftTrial& constant) {
+double undetected_below(const DriftEvidence& evidence, const DriftFitAtShape& constant) {
   constexpr double share = 0.2, two_sided = 1.959963984540054;
   OrdinateMeans means{linear_columns(evidence, constant.at), {}};
   means.fitted.conservativeResize(Eigen::NoChange, means.fitted.cols() + 1);
@@ -128,7 +128,7 @@ std::string reason_for(const DriftFit& fit,
 
 class DriftVerdict {
  public:
-  DriftVerdict(const DriftEvidence& evidence, const DriftTrials& trials)
+  DriftVerdict(const DriftEvidence& evidence, const DriftSelection& trials)
       : evidence_(evidence),
         trials_(trials),
         exponential_(trials.best(true)),
@@ -149,7 +149,7 @@ class DriftVerdict {
     fit.undetected_below = undetected_below(evidence_, trials_.of(DriftShape::constant));
     fit.why = why(T);
     if (fit.why == DriftReason::shorter_than_resolved) fit.time_constant_below_s = T.upper_95;
-    const std::vector<const DriftTrial*> as_good = trials_.as_good();
+    const std::vector<const DriftFitAtShape*> as_good = trials_.as_good();
     const bool open =
         fit.why == DriftReason::shape_undetermined || fit.why == DriftReason::oscillation;
     if ((fit.why == DriftReason::identified && !explained(exponential_)) ||
@@ -157,7 +157,9 @@ class DriftVerdict {
       fit.why = DriftReason::unexplained;
     fit.identified = fit.why == DriftReason::identified;
     const bool none = !fit.identified && !(open && fit.why != DriftReason::unexplained);
-    const DriftTrial& chosen = none ? other_ : fit.identified ? exponential_ : *as_good.front();
+    const DriftFitAtShape& chosen = none             ? other_
+                                    : fit.identified ? exponential_
+                                                     : *as_good.front();
     const PlacedCurve placed = fit.identified ? warm : place(evidence_, chosen);
     fit.curve = placed.curve;
     fit.end = placed.end;
@@ -179,7 +181,7 @@ class DriftVerdict {
  private:
   void test() {
     DriftFit& fit = out_.fit;
-    const DriftTrial& plain = trials_.of(DriftShape::exponential);
+    const DriftFitAtShape& plain = trials_.of(DriftShape::exponential);
     const GainTest constant = trials_.test(plain, DriftShape::constant);
     const GainTest line = trials_.test(plain, DriftShape::line);
     fit.constant_deviance = constant.deviance;
@@ -189,11 +191,11 @@ class DriftVerdict {
   }
 
   // All shapes that fit as well, and the level at power-on for each.
-  void allow(const std::vector<const DriftTrial*>& as_good, double dof) {
+  void allow(const std::vector<const DriftFitAtShape*>& as_good, double dof) {
     DriftFit& fit = out_.fit;
     std::vector<Interval95> levels;
     double sum = 0.0;
-    for (const DriftTrial* trial : as_good) {
+    for (const DriftFitAtShape* trial : as_good) {
       const PlacedCurve placed = place(evidence_, *trial);
       const double weight = std::exp(0.5 * (as_good.front()->akaike() - trial->akaike()));
       sum += weight;
@@ -205,27 +207,28 @@ class DriftVerdict {
   }
 
   // Clearly better by both criteria.
-  [[nodiscard]] static bool beats(const DriftTrial& a, const DriftTrial& b) {
+  [[nodiscard]] static bool beats(const DriftFitAtShape& a, const DriftFitAtShape& b) {
     return std::min(b.akaike() - a.akaike(),
                     b.candidate.information_criterion - a.candidate.information_criterion) >=
-           DriftTrials::clear_margin;
+           DriftSelection::clear_margin;
   }
 
   // Whether a non-exponential shape is clearly better.
   [[nodiscard]] bool outdone() const {
-    return std::ranges::any_of(
-        trials_.rivals(), [&](const DriftTrial* rival) { return beats(*rival, exponential_); });
+    return std::ranges::any_of(trials_.rivals(), [&](const DriftFitAtShape* rival) {
+      return beats(*rival, exponential_);
+    });
   }
 
   // Verdict on an otherwise identified exponential by comparison with other shapes. It must be
   // clearly better than each by both criteria: by Schwarz's too, where it has more parameters,
   // which adapt to a random walk.
   [[nodiscard]] DriftReason by_shape() const {
-    const std::vector<const DriftTrial*> rivals = trials_.rivals();
-    const auto beaten = [&](const DriftTrial* rival) { return beats(exponential_, *rival); };
+    const std::vector<const DriftFitAtShape*> rivals = trials_.rivals();
+    const auto beaten = [&](const DriftFitAtShape* rival) { return beats(exponential_, *rival); };
     if (std::ranges::all_of(rivals, beaten)) return DriftReason::identified;
     // A sine alone is not a warm-up.
-    const std::vector<const DriftTrial*> as_good = trials_.as_good();
+    const std::vector<const DriftFitAtShape*> as_good = trials_.as_good();
     return as_good.size() == 1 && as_good.front()->at.shape == DriftShape::sine
                ? DriftReason::oscillation
                : DriftReason::shape_undetermined;
@@ -234,20 +237,20 @@ class DriftVerdict {
   // The exponential in addition to a line must be significant.
   [[nodiscard]] bool significant() const {
     if (exponential_.at.shape == DriftShape::exponential_and_line)
-      return trials_.test(exponential_, DriftShape::line).p < DriftTrials::level;
-    return out_.fit.constant_p < DriftTrials::level;
+      return trials_.test(exponential_, DriftShape::line).p < DriftSelection::level;
+    return out_.fit.constant_p < DriftSelection::level;
   }
 
   [[nodiscard]] DriftReason why(const Interval95& T) const {
     const DriftFit& fit = out_.fit;
     double least = exponential_.candidate.information_criterion;
-    for (const DriftTrial* trial : trials_.rivals())
+    for (const DriftFitAtShape* trial : trials_.rivals())
       least = std::min(least, trial->candidate.information_criterion);
     const bool best = least < other_.candidate.information_criterion;
     if (!best && other_.at.shape == DriftShape::steps) return DriftReason::steps;
     if (!best && other_.at.shape == DriftShape::line) return DriftReason::line;
     if (!significant())
-      return trials_.plain_test(trials_.of(DriftShape::exponential)).p < DriftTrials::level
+      return trials_.plain_test(trials_.of(DriftShape::exponential)).p < DriftSelection::level
                  ? DriftReason::hidden_by_noise
                  : DriftReason::no_warm_up;
     // A shorter one is a few odd blocks at the beginning; in a short table it is not odd.
@@ -277,7 +280,7 @@ class DriftVerdict {
   }
 
   // Whether the noise is consistent with the fitted model.
-  [[nodiscard]] bool explained(const DriftTrial& trial) {
+  [[nodiscard]] bool explained(const DriftFitAtShape& trial) {
     constexpr double impossible = 1e-6;
     filter(trial);
     const double block_s = evidence_.block_s();
@@ -288,7 +291,7 @@ class DriftVerdict {
   }
 
   // The Wiener filter keeps all of the residual but its white share.
-  void filter(const DriftTrial& trial) {
+  void filter(const DriftFitAtShape& trial) {
     const MatrixXd columns = whole_columns(evidence_, trial.at);
     const Index rest = columns.rows() - 1, own = columns.cols() - evidence_.dummies().cols();
     const VectorXd residual = evidence_.ordinates() - columns * trial.fit.coefficients;
@@ -306,9 +309,9 @@ class DriftVerdict {
   }
 
   const DriftEvidence& evidence_;
-  const DriftTrials& trials_;
-  const DriftTrial& exponential_;
-  const DriftTrial& other_;
+  const DriftSelection& trials_;
+  const DriftFitAtShape& exponential_;
+  const DriftFitAtShape& other_;
   DriftProfile profile_;
   FittedDrift out_;
 };
@@ -316,7 +319,7 @@ class DriftVerdict {
 }  // namespace
 
 FittedDrift fit_drift(const DriftEvidence& evidence) {
-  const DriftTrials trials(evidence);
+  const DriftSelection trials(evidence);
   return DriftVerdict(evidence, trials).run();
 }
 

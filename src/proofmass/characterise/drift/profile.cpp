@@ -23,7 +23,7 @@ double bound_95(double dof) {
 
 // For the variance C_ii of a parameter: u = X̃ C e_i gives ∂C_ii/∂θ_j = Σ u² P_j/S², and the
 // strengths have the information ½ Σ P_i P_j/S².
-double satterthwaite(const DriftTrial& trial, const MatrixXd& X, const MatrixXd& C, Index i) {
+double satterthwaite(const DriftFitAtShape& trial, const MatrixXd& X, const MatrixXd& C, Index i) {
   constexpr double least = 2.0, most = 1e6;
   const VectorXd inverse_square = trial.fit.density.cwiseAbs2().cwiseInverse();
   const MatrixXd& P = trial.noise.P;
@@ -76,7 +76,7 @@ std::optional<double> crossing(const Way& way, const std::function<double(double
 
 }  // namespace
 
-DriftProfile::DriftProfile(const DriftEvidence& evidence, const DriftTrial& trial)
+DriftProfile::DriftProfile(const DriftEvidence& evidence, const DriftFitAtShape& trial)
     : evidence_(evidence), trial_(trial), adjusting_(tangent_columns(evidence, trial.at)) {
   top_ = trial.fit.log_likelihood;
   const MatrixXd information =

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "proofmass/characterise/drift/evidence.hpp"
-#include "proofmass/characterise/drift/trial.hpp"
+#include "proofmass/characterise/drift/fit_at_shape.hpp"
 #include "proofmass/characterise/drift_model.hpp"
 
 namespace proofmass::characterise {
@@ -21,7 +21,7 @@ namespace proofmass::characterise {
 /// Bull. 2 (1946) 110.
 class DriftProfile {
  public:
-  DriftProfile(const DriftEvidence& evidence, const DriftTrial& trial);
+  DriftProfile(const DriftEvidence& evidence, const DriftFitAtShape& trial);
 
   /// Loss with the first time constant held.
   [[nodiscard]] double of_log_time(double log_time) const;
@@ -48,7 +48,7 @@ class DriftProfile {
                                   std::size_t first_free) const;
 
   const DriftEvidence& evidence_;
-  const DriftTrial& trial_;
+  const DriftFitAtShape& trial_;
   Eigen::MatrixXd adjusting_;
   double top_ = 0.0;
   std::vector<double> reach_;  ///< how far each ln T is looked for from its best value

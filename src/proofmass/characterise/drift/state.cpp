@@ -21,7 +21,7 @@ constexpr Index terms = 3;
 // Density of each drift term at each ordinate, k = 0 first. There a random walk has none, as it is
 // counted from its own mean over the record until pinned; the others' are those of half the lowest
 // frequency.
-MatrixXd slow_noise_densities(const DriftEvidence& evidence, const DriftTrial& trial) {
+MatrixXd slow_noise_densities(const DriftEvidence& evidence, const DriftFitAtShape& trial) {
   MatrixXd S = MatrixXd::Zero(evidence.blocks(), terms);
   for (std::size_t k = 0; k < trial.noise.terms.size(); ++k) {
     const auto column = static_cast<Index>(k);
@@ -38,7 +38,7 @@ MatrixXd slow_noise_densities(const DriftEvidence& evidence, const DriftTrial& t
 
 // As curve_jacobian: [amplitudes; ln τ], then the missing blocks.
 MatrixXd rival_jacobian(const DriftEvidence& evidence,
-                        const DriftTrial& trial,
+                        const DriftFitAtShape& trial,
                         const MatrixXd& columns) {
   if (trial.at.log_times.empty()) return columns;
   const auto own = static_cast<Index>(amplitudes_of(trial.at.shape));
@@ -51,7 +51,7 @@ MatrixXd rival_jacobian(const DriftEvidence& evidence,
 
 // Derivatives of the mean's ordinates, k = 0 first, by the parameters of the curve's covariance,
 // without the level, and then by the missing blocks.
-MatrixXd curve_jacobian(const DriftEvidence& evidence, const DriftTrial& trial) {
+MatrixXd curve_jacobian(const DriftEvidence& evidence, const DriftFitAtShape& trial) {
   const MatrixXd columns = whole_columns(evidence, trial.at);
   if (is_rival(trial.at.shape)) return rival_jacobian(evidence, trial, columns);
   const auto exponentials = static_cast<Index>(trial.at.log_times.size());
@@ -79,7 +79,7 @@ struct Functionals {
 };
 
 Functionals functionals(const DriftEvidence& evidence,
-                        const DriftTrial& trial,
+                        const DriftFitAtShape& trial,
                         const MatrixXd& J,
                         const VectorXd& residual) {
   const Index rest = evidence.blocks() - 1;
@@ -117,7 +117,7 @@ Functionals functionals(const DriftEvidence& evidence,
 // The random walk before the recording, and the change of each term between the last block's mean
 // and its end: ∫∫ of the increments is K² h/3 for a random walk, as for a Markov process slower
 // than a block.
-void add_unseen(const DriftEvidence& evidence, const DriftTrial& trial, MatrixXd& of_values) {
+void add_unseen(const DriftEvidence& evidence, const DriftFitAtShape& trial, MatrixXd& of_values) {
   const DriftNoise noise = noise_of(trial);
   const double third = evidence.block_s() / 3.0, K = noise.random_walk;
   const double start = K * K * std::max(0.0, evidence.start_s() + third);
@@ -131,7 +131,7 @@ void add_unseen(const DriftEvidence& evidence, const DriftTrial& trial, MatrixXd
 }
 
 void fill_curve(const DriftEvidence& evidence,
-                const DriftTrial& trial,
+                const DriftFitAtShape& trial,
                 const MatrixXd& covariance,
                 DriftCurve& curve) {
   const VectorXd& b = trial.fit.coefficients;
@@ -154,14 +154,14 @@ void fill_curve(const DriftEvidence& evidence,
 
 }  // namespace
 
-DriftNoise noise_of(const DriftTrial& trial) {
+DriftNoise noise_of(const DriftFitAtShape& trial) {
   return {trial.noise.strength(trial.fit, Term::white),
           trial.noise.strength(trial.fit, Term::flicker),
           trial.noise.strength(trial.fit, Term::random_walk),
           trial.noise.strength(trial.fit, Term::markov), trial.noise.markov_time_constant_s};
 }
 
-PlacedCurve place(const DriftEvidence& evidence, const DriftTrial& trial) {
+PlacedCurve place(const DriftEvidence& evidence, const DriftFitAtShape& trial) {
   const Index n = evidence.blocks();
   MatrixXd J = curve_jacobian(evidence, trial);
   const Index own = curve_parameters(evidence, J);

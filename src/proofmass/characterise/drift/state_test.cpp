@@ -19,8 +19,8 @@ constexpr std::size_t n = 128;
 constexpr double rate_hz = 0.5, h = 2.0, N = 1.0, K = 0.03, T = 40.0;
 
 /// A shape fitted with given noise and fixed time constants, as by try_shape.
-DriftTrial trial_of(const DriftEvidence& evidence, const ShapeAt& at) {
-  DriftTrial trial;
+DriftFitAtShape trial_of(const DriftEvidence& evidence, const ShapeAt& at) {
+  DriftFitAtShape trial;
   trial.at = at;
   trial.noise = NoiseChoice(evidence).base();
   trial.fit = evaluate_ordinates(evidence.ordinates().tail(evidence.blocks() - 1), trial.noise.P,
@@ -170,7 +170,7 @@ TEST(DriftState, GoesAcrossMissingBlocksAsTheDenseModelDoes) {
 TEST(DriftState, OfAConstantInWhiteNoiseIsTheMean) {
   const Series samples = test::white(N, rate_hz, n, 7);
   const DriftEvidence evidence = test::evidence_of(samples, {rate_hz, 1});
-  DriftTrial trial = trial_of(evidence, {DriftShape::constant, {}, {}});
+  DriftFitAtShape trial = trial_of(evidence, {DriftShape::constant, {}, {}});
   trial.noise = NoiseChoice(evidence).white();
   trial.fit = fit_ordinates(evidence.ordinates().tail(evidence.blocks() - 1), trial.noise.P, {});
   const PlacedCurve placed = place(evidence, trial);
@@ -187,7 +187,7 @@ TEST(DriftState, OfStepsHasTheirTimesSizesAndErrors) {
   const Series samples =
       test::sum_of({record(9), test::step_at(50, 6.0, n), test::step_at(90, -4.0, n)});
   const DriftEvidence evidence = test::evidence_of(samples, {rate_hz, 1}, 50.0);
-  const DriftTrial trial = trial_of(evidence, {DriftShape::steps, {}, {50, 90}});
+  const DriftFitAtShape trial = trial_of(evidence, {DriftShape::steps, {}, {50, 90}});
   const PlacedCurve placed = place(evidence, trial);
   ASSERT_EQ(placed.curve.steps.size(), 2U);
   EXPECT_DOUBLE_EQ(placed.curve.steps[0].t_s, 50.0 + 50.0 * h);
@@ -201,8 +201,8 @@ TEST(DriftState, OfStepsHasTheirTimesSizesAndErrors) {
 }
 
 /// The exponential with white noise and a Markov term of given strength.
-DriftTrial markov_trial(const DriftEvidence& evidence, double q, double relaxation_s) {
-  DriftTrial trial;
+DriftFitAtShape markov_trial(const DriftEvidence& evidence, double q, double relaxation_s) {
+  DriftFitAtShape trial;
   trial.at = exponential;
   trial.noise = NoiseChoice(evidence).white();
   const Index rows = evidence.blocks() - 1;

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "proofmass/characterise/drift/drift_test_support.hpp"
+#include "proofmass/characterise/drift/fit_at_shape.hpp"
 #include "proofmass/characterise/drift/noise.hpp"
-#include "proofmass/characterise/drift/trial.hpp"
 
 namespace proofmass::characterise::step_search_test {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "proofmass/characterise/drift/drift_test_support.hpp"
+#include "proofmass/characterise/drift/fit_at_shape.hpp"
 #include "proofmass/characterise/drift/noise.hpp"
-#include "proofmass/characterise/drift/trial.hpp"
 
 namespace proofmass::characterise::ordinate_likelihood_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "proofmass/characterise/noise/low_band.hpp"
+#include "proofmass/characterise/noise/cosine_ordinates.hpp"
 
 namespace proofmass::characterise {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "proofmass/estimate/attitude/series.hpp"
-#include "proofmass/estimate/filter/kalman.hpp"
+#include "proofmass/estimate/filter/smoother.hpp"
 
 // The error-state model used by estimate_attitude().
 namespace proofmass::estimate {
@@ -28,7 +28,7 @@ struct NominalState {
   [[nodiscard]] InertialError less(const NominalState& from) const;
 };
 
-/// Errors about a nominal motion, one epoch a sample, as a linear model of filter/kalman.hpp.
+/// Errors about a nominal motion, one epoch a sample, as a linear model of filter/smoother.hpp.
 class AttitudeModel {
  public:
   static constexpr int states = inertial::states, moving = states, channels = 10;

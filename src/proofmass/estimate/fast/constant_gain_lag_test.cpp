@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "proofmass/core/linalg.hpp"
-#include "proofmass/estimate/filter/counted_new.hpp"
+#include "proofmass/estimate/filter/allocation_counter.hpp"
 #include "proofmass/estimate/filter/fixed_lag.hpp"
 #include "proofmass/estimate/filter/lag_test_support.hpp"
 #include "proofmass/estimate/lag_advice.hpp"

@@ -24,7 +24,7 @@ LinearModel<N, 1> model_of(const MatrixSeries& series) {
 
 /// Each epoch's covariance, whole, from those that are kept where they change.
 template <int N>
-void spread(const CovarianceRuns<N>& covariances, std::span<double> out) {
+void spread(const RunLengthCovariances<N>& covariances, std::span<double> out) {
   constexpr std::size_t entries = static_cast<std::size_t>(N) * N;
   const Symmetric<N>* last = nullptr;
   Mat<N, N> whole;

@@ -2,7 +2,7 @@
 
 #include "proofmass/estimate/fast/packed_model.hpp"
 
-// The equations of filter/kalman.hpp on packed covariances, for a time-invariant model with one
+// The equations of filter/smoother.hpp on packed covariances, for a time-invariant model with one
 // channel. Each is written once, on plain numbers, and runs either on one epoch after another
 // (fast/packed_filter.cpp) or side by side on many (fast/uniform_lanes.cpp). Zeros and ones of the
 // model are exploited at compile time (Pattern).

@@ -80,7 +80,7 @@ struct Row {
   double y_S, per_S;
 };
 
-/// Information on a state from later measurements: λ and Λ of filter/hindsight.hpp, and the
+/// Information on a state from later measurements: λ and Λ of filter/bryson_frazier.hpp, and the
 /// covariance of the next epoch given all measurements. `wide`: after a wide P, Λ has lost digits
 /// that the covariances of earlier epochs still need.
 template <int N>

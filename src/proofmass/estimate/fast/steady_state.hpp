@@ -25,7 +25,7 @@ struct SteadyState {
   std::array<bool, static_cast<std::size_t>(N)>
       has_limit{};                             ///< whether a state's variance has one
   Symmetric<N> predicted, filtered, smoothed;  ///< P⁻, P⁺, P[k|N] far from both ends
-  Symmetric<N> Lambda;                         ///< Λ of filter/hindsight.hpp, after an epoch
+  Symmetric<N> Lambda;                         ///< Λ of filter/bryson_frazier.hpp, after an epoch
   /// P⁺ Π, where Π projects on the observable subspace: x̂[k|N] = x̂[k|k] − P⁺ Π λ. All entries have
   /// a limit.
   Mat<N, N> seen = Mat<N, N>::Zero();

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "proofmass/estimate/fast/constant_gain_lanes.hpp"
-#include "proofmass/estimate/fast/filter_leap.hpp"
+#include "proofmass/estimate/fast/filter_composition.hpp"
 #include "proofmass/estimate/fast/lane_pair.hpp"
 #include "proofmass/estimate/fast/packed_filter.hpp"
 #include "proofmass/estimate/fast/steady_state.hpp"
@@ -63,11 +63,11 @@ struct Work {
   const PlainKernels<N>* plain = nullptr;
   const LaneKernels<N>* side_by_side = nullptr;
   const ConstantGainKernels<N>* constant_gain = nullptr;
-  FilterLeap<N> lane_leap{};
+  ComposedFilter<N> lane_leap{};
   std::optional<Steady<N>> steady;
 
   Score score;
-  CovarianceRuns<N> covariances;
+  RunLengthCovariances<N> covariances;
 
   std::vector<Row<N>> rows;             // of a chunk, one by one
   std::vector<LaneRow<N>> lane_rows;    // of a chunk, side by side

@@ -6,7 +6,7 @@ namespace proofmass::estimate::packed {
 namespace {
 
 template <int N>
-using Leaps = std::vector<LeapFrom<N>>;
+using Leaps = std::vector<CompositionStart<N>>;
 
 /// The composition of each lane, each from the end of the previous one; P of each lane's beginning
 /// to `state`.
@@ -167,7 +167,7 @@ void smooth_side_by_side(Work<N>& work, const Chunk<N>& chunk, Later<N>& later) 
     set_lane<N>(l, at, lane_later.l);
     for (int i = 0; i < N; ++i)
       for (int j = 0; j <= i; ++j) lane_later.L[Symmetric<N>::index(i, j)][at] = L(i, j);
-    const LeapFrom<N>& leap = leaps[static_cast<std::size_t>(at)];
+    const CompositionStart<N>& leap = leaps[static_cast<std::size_t>(at)];
     const Mat<N> own = lane_of<N>(begin, at);
     l = at == lanes - 1 ? own : Mat<N>(own + leap.Phi.transpose() * l);
     L = (leap.Lambda + leap.Phi.transpose() * L * leap.Phi).eval();

@@ -144,7 +144,7 @@ Result<UniformSummary<N>> run(const LinearModel<N, 1>& model,
   if (z.size() > chunk_length) {
     work.side_by_side = &lane_kernels(work.model);
     work.constant_gain = &constant_gain_kernels(work.model);
-    work.lane_leap = filter_leap(model, lane_length);
+    work.lane_leap = composed_filter(model, lane_length);
     work.steady = settle(model);
   }
   State<N> state{};

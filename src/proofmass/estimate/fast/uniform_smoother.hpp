@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "proofmass/core/result.hpp"
-#include "proofmass/estimate/fast/covariance_runs.hpp"
+#include "proofmass/estimate/fast/run_length_covariances.hpp"
 #include "proofmass/estimate/filter/linear_series.hpp"
 
 // Filter and smoother of long recordings with a constant step and one channel: the results of
@@ -53,9 +53,9 @@ struct UniformOutput {
 /// Summary of a run.
 template <int N>
 struct UniformSummary {
-  CovarianceRuns<N> covariances;  ///< for Covariances::where_they_change
-  double log_likelihood = 0.0;    ///< of the measurements, as in LinearRun
-  double nis = 0.0;               ///< Σ y² / S: χ² with `readings` degrees of freedom
+  RunLengthCovariances<N> covariances;  ///< for Covariances::where_they_change
+  double log_likelihood = 0.0;          ///< of the measurements, as in LinearRun
+  double nis = 0.0;                     ///< Σ y² / S: χ² with `readings` degrees of freedom
   std::size_t readings = 0;
   // Epochs processed by each pass, in the smoother. While the requested covariances still change,
   // it processes a stretch side by side that the filter processed at constant gain.
@@ -72,7 +72,7 @@ struct UniformSummary {
 /// requested everywhere. Additional memory: O(1), plus O(N²) for each 4000 epochs, plus the stored
 /// covariances. Errors: not_finite (an infinite measurement or a model with a NaN or infinity),
 /// not_positive_definite (R not positive). Source: Särkkä (2013), theorem 4.2, and Bierman (1973)
-/// as in filter/kalman.hpp; S. Särkkä, Á. F. García-Fernández, IEEE Trans. Automatic Control 66
+/// as in filter/smoother.hpp; S. Särkkä, Á. F. García-Fernández, IEEE Trans. Automatic Control 66
 /// (2021) 299, for the composition. Cost: O(N³) an epoch.
 template <int N, int U>
 [[nodiscard]] Result<UniformSummary<N>> run_uniform(const LinearModel<N, 1, U>& model,

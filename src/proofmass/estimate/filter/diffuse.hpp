@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "proofmass/estimate/filter/kalman.hpp"
 #include "proofmass/estimate/filter/linear_series.hpp"
+#include "proofmass/estimate/filter/smoother.hpp"
 #include "proofmass/estimate/filter/start.hpp"
 
 // Filter from a start x[0] = proper + A δ with δ entirely unknown. Three parts run together:

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "proofmass/estimate/filter/counted_new.hpp"
+#include "proofmass/estimate/filter/allocation_counter.hpp"
 #include "proofmass/estimate/filter/lag_test_support.hpp"
 #include "proofmass/estimate/filter/linear_gaussian.hpp"
 
@@ -18,7 +18,7 @@ std::vector<Gaussian<3>> whole_interval(std::size_t count, const Gate& gate) {
   std::vector<Gaussian<3>> out(count);
   smooth(
       series, FilterState<3>{test::oscillator_prior()}, gate, [](std::size_t, const auto&) {},
-      [&](std::size_t k, const auto& step, const Hindsight<3>& later) {
+      [&](std::size_t k, const auto& step, const BackwardInformation<3>& later) {
         out[k] = {later.mean(step.filtered), later.cov<3>(step.filtered)};
       });
   return out;
@@ -136,7 +136,7 @@ TEST(FixedPoint, IsTheExtendedSmootherOfAModelThatIsNotLinear) {
   const auto smoothed = smooth_points(Gauge{}, prior, {}, points);
   smooth(
       Gauge{}, prior, {}, [](std::size_t, const auto&) {},
-      [&](std::size_t k, const auto& step, const Hindsight<4>& later) {
+      [&](std::size_t k, const auto& step, const BackwardInformation<4>& later) {
         const Gaussian<4> expected{later.mean(step.filtered), later.cov<4>(step.filtered)};
         EXPECT_LT(distance<4>(smoothed[k].mean, expected), 1e-12) << "k = " << k;
         EXPECT_LT(distance<4>(smoothed[k].cov, expected.cov), 1e-12) << "k = " << k;

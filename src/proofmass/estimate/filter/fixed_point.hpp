@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/estimate/filter/kalman.hpp"
+#include "proofmass/estimate/filter/smoother.hpp"
 
 // Fixed-point smoother: the state at one past epoch, refined by every new measurement.
 namespace proofmass::estimate {

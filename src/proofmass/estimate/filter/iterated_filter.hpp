@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "proofmass/estimate/filter/relinearised.hpp"
+#include "proofmass/estimate/filter/iteration.hpp"
 
 // Iterated extended filter, for measurements that are nonlinear within the state's uncertainty.
 namespace proofmass::estimate {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "proofmass/estimate/filter/relinearised.hpp"
+#include "proofmass/estimate/filter/iteration.hpp"
 
 // Iterated extended smoother: the most probable trajectory of a nonlinear model.
 namespace proofmass::estimate {
@@ -54,7 +54,7 @@ void smooth_into(const Model& model,
                  std::vector<Gaussian<Model::states>>& out) {
   smooth(
       model, prior, gate, [](std::size_t, const auto&) {},
-      [&](std::size_t k, const auto& step, const Hindsight<Model::states>& later) {
+      [&](std::size_t k, const auto& step, const BackwardInformation<Model::states>& later) {
         out[k] = {later.mean(step.filtered), later.template cov<Model::states>(step.filtered)};
       });
 }

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "proofmass/core/random.hpp"
-#include "proofmass/estimate/filter/counted_new.hpp"
+#include "proofmass/estimate/filter/allocation_counter.hpp"
 #include "proofmass/estimate/filter/iterated_filter.hpp"
 #include "proofmass/estimate/filter/iterated_smoother.hpp"
 #include "proofmass/estimate/filter/lag_test_support.hpp"
@@ -138,7 +138,7 @@ TEST(IteratedSmoother, OfOneIterationIsThePlainExtendedOne) {
   EXPECT_EQ(run.how.iterations, 1);
   smooth(
       pendulum, pendulum_start(), {}, [](std::size_t, const auto&) {},
-      [&](std::size_t k, const auto& step, const Hindsight<2>& later) {
+      [&](std::size_t k, const auto& step, const BackwardInformation<2>& later) {
         EXPECT_EQ(run.states[k].mean, later.mean(step.filtered));
         EXPECT_EQ(run.states[k].cov, later.cov<2>(step.filtered));
       });
@@ -152,7 +152,7 @@ TEST(IteratedSmoother, OfALinearModelIsTheLinearSmootherInTwo) {
   EXPECT_EQ(run.how.iterations, 2);
   smooth(
       series, prior, {}, [](std::size_t, const auto&) {},
-      [&](std::size_t k, const auto& step, const Hindsight<3>& later) {
+      [&](std::size_t k, const auto& step, const BackwardInformation<3>& later) {
         const Gaussian<3> expected{later.mean(step.filtered), later.cov<3>(step.filtered)};
         EXPECT_LT(test::distance<3>(run.states[k].mean, expected), 1e-11) << "k = " << k;
       });

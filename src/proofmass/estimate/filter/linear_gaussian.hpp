@@ -8,20 +8,20 @@
 #include "proofmass/core/contract.hpp"
 #include "proofmass/estimate/filter/diffuse.hpp"
 #include "proofmass/estimate/filter/diffuse_moments.hpp"
-#include "proofmass/estimate/filter/kalman.hpp"
 #include "proofmass/estimate/filter/linear_run.hpp"
 #include "proofmass/estimate/filter/linear_series.hpp"
 #include "proofmass/estimate/filter/rauch_tung_striebel.hpp"
+#include "proofmass/estimate/filter/smoother.hpp"
 #include "proofmass/estimate/filter/start.hpp"
 
 // Linear Gaussian filter and smoother with known input, irregular time steps, missing measurements
 // and an optionally diffuse start (filter/linear_series.hpp defines the model, filter/start.hpp the
 // start).
 //
-// This is the filter and smoother of filter/kalman.hpp with all N states dynamic. Nonlinear models
-// use the same code: any type that satisfies StateSpaceModel (filter/kalman.hpp), with Jacobians as
-// F of its Transition and h of its Readings, gives the extended filter and smoother. WheelModel is
-// one.
+// This is the filter and smoother of filter/smoother.hpp with all N states dynamic. Nonlinear
+// models use the same code: any type that satisfies StateSpaceModel (filter/smoother.hpp), with
+// Jacobians as F of its Transition and h of its Readings, gives the extended filter and smoother.
+// WheelModel is one.
 namespace proofmass::estimate {
 
 /// Backward pass of smooth_linear(). Both give the same result but for rounding.
@@ -76,13 +76,13 @@ void smooth_proper(const LinearSeries<N, M, U>& series,
   smooth(
       series, FilterState<N>{prior}, gate,
       [&](std::size_t k, const Step<N, N, M>& step) { note(series, k, step, run); },
-      [&](std::size_t k, const Step<N, N, M>& step, const Hindsight<N>& later) {
+      [&](std::size_t k, const Step<N, N, M>& step, const BackwardInformation<N>& later) {
         run.steps[k].smoothed = PackedGaussian<N>::of(
             {later.mean(step.filtered), later.template cov<N>(step.filtered)});
         if (run.lag_one.empty()) return;
         if (k < run.lag_one.size())
           run.lag_one[k] = lag_one<N, M, U>(series.model(k + 1), step.filtered.cov, from_next);
-        Hindsight<N> before = later;
+        BackwardInformation<N> before = later;
         look_back_readings(before, step);
         from_next = before.Lambda;
       });
@@ -95,7 +95,7 @@ void smooth_diffuse(const LinearSeries<N, M, U>& series,
                     const Start<N>& start,
                     const Gate& gate,
                     LinearRun<N, M>& run) {
-  Hindsight<N> later;
+  BackwardInformation<N> later;
   Mat<N, N> from_next;
   DiffusePart<N> next;
   DiffuseKnowledge<N> known;
@@ -119,7 +119,7 @@ void smooth_diffuse(const LinearSeries<N, M, U>& series,
               limit<N>(given_zero + next.root * part.root.transpose(), next.open, part.open);
         }
         next = part;
-        Hindsight<N> before = later;
+        BackwardInformation<N> before = later;
         look_back_readings(before, step.step);
         from_next = before.Lambda;
         look_back(later, step.step);
@@ -168,7 +168,7 @@ template <int N, int M, int U>
 ///     x̂[k|N] = x̂ − P λ,   P[k|N] = P − P Λ P,   cov(x[k+1], x[k]|N) = (I − P⁻[k+1] Λ⁻[k+1]) F P
 ///
 /// with λ⁻, Λ⁻ the adjoint from epoch k + 1 and later, before the step back to k. Source: Bierman
-/// (1973), see filter/kalman.hpp; or, when requested, Rauch, Tung & Striebel (1965), see
+/// (1973), see filter/smoother.hpp; or, when requested, Rauch, Tung & Striebel (1965), see
 /// filter/rauch_tung_striebel.hpp, which applies from the epoch at which the start is determined.
 template <int N, int M, int U>
 [[nodiscard]] LinearRun<N, M> smooth_linear(LinearSeries<N, M, U> series,

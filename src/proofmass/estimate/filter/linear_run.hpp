@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "proofmass/estimate/filter/diffuse_moments.hpp"
-#include "proofmass/estimate/filter/kalman.hpp"
 #include "proofmass/estimate/filter/linear_series.hpp"
+#include "proofmass/estimate/filter/smoother.hpp"
 #include "proofmass/estimate/filter/symmetric.hpp"
 
 // Results of a run of a linear model.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "proofmass/core/result.hpp"
-#include "proofmass/estimate/filter/kalman.hpp"
+#include "proofmass/estimate/filter/smoother.hpp"
 
 // A linear Gaussian model and the data it is run over.
 //
@@ -84,7 +84,7 @@ class LinearSeries {
   /// prior's.
   void set_reopened(const Mat<N, N>& cov) { reopened_ = cov; }
 
-  // Interface of StateSpaceModel (filter/kalman.hpp).
+  // Interface of StateSpaceModel (filter/smoother.hpp).
 
   [[nodiscard]] Transition<N, N> transition(const Mat<N>& x, std::size_t k) const {
     const Model& m = model(k);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "proofmass/estimate/filter/counted_new.hpp"
+#include "proofmass/estimate/filter/allocation_counter.hpp"
 #include "proofmass/estimate/filter/lag_test_support.hpp"
 #include "proofmass/estimate/filter/linear_gaussian.hpp"
 

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "proofmass/estimate/filter/givens.hpp"
 #include "proofmass/estimate/filter/linear_run.hpp"
 #include "proofmass/estimate/filter/linear_series.hpp"
 #include "proofmass/estimate/filter/positive_root.hpp"
-#include "proofmass/estimate/filter/rotations.hpp"
 #include "proofmass/estimate/filter/square_root_evidence.hpp"
 
 // Linear filter and smoother with a root of the covariance, P = S Sᵀ with S lower triangular. For

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <limits>
 
+#include "proofmass/estimate/filter/givens.hpp"
 #include "proofmass/estimate/filter/linear_series.hpp"
 #include "proofmass/estimate/filter/positive_root.hpp"
-#include "proofmass/estimate/filter/rotations.hpp"
 
 // Backward pass of the square-root smoother: information from later measurements, as least squares.
 namespace proofmass::estimate::detail {

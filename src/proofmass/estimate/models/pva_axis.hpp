@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "proofmass/core/view.hpp"
-#include "proofmass/estimate/filter/kalman.hpp"
+#include "proofmass/estimate/filter/smoother.hpp"
 #include "proofmass/estimate/models/bias_models.hpp"
 #include "proofmass/estimate/motion_models.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/rotation.hpp"
+#include "proofmass/estimate/so3.hpp"
 
 namespace proofmass::estimate {
 namespace {

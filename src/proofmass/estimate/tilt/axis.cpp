@@ -105,7 +105,7 @@ Result<AxisTiltSolution> estimate_axis_tilt(const AxisTiltRecord& record,
         s.weight[k] = static_cast<float>(u.expected / u.variance);
         if (u.expected < 0.5 * u.variance) ++solution.down_weighted;
       },
-      [&](std::size_t k, const StepOf<AxisTiltModel>& step, const Hindsight<3>& later) {
+      [&](std::size_t k, const StepOf<AxisTiltModel>& step, const BackwardInformation<3>& later) {
         const Mat<3> mean = later.mean(step.filtered);
         const Mat<2, 2> cov = later.cov<2>(step.filtered);
         s.angle_rad[k] = mean(0);

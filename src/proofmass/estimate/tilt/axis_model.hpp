@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "proofmass/estimate/filter/kalman.hpp"
+#include "proofmass/estimate/filter/smoother.hpp"
 #include "proofmass/estimate/tilt/axis.hpp"
 
-// One axis as filter/kalman.hpp's StateSpaceModel.
+// One axis as filter/smoother.hpp's StateSpaceModel.
 namespace proofmass::estimate {
 
 struct AxisInstants {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/rotation.hpp"
+#include "proofmass/estimate/so3.hpp"
 #include "proofmass/estimate/tilt/gyroscope.hpp"
 
 namespace proofmass::estimate {

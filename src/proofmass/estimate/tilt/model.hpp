@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "proofmass/estimate/filter/kalman.hpp"
+#include "proofmass/estimate/filter/smoother.hpp"
 #include "proofmass/estimate/tilt.hpp"
 
-// The moving base as filter/kalman.hpp's StateSpaceModel.
+// The moving base as filter/smoother.hpp's StateSpaceModel.
 namespace proofmass::estimate {
 
 /// Filter input for a stretch of a recording: what does not depend on the noise parameters.

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/filter/relinearised.hpp"
+#include "proofmass/estimate/filter/iteration.hpp"
 #include "proofmass/estimate/tilt/rest.hpp"
 #include "proofmass/estimate/tilt/still.hpp"
 
@@ -102,7 +102,7 @@ Mat<3> rate_bias_of(const TiltInstants& instants,
   Mat<3> bias = Mat<3>::Zero();
   smooth(
       model, model.start(), tilt_gate, [](std::size_t, const auto&) {},
-      [&](std::size_t k, const auto& step, const Hindsight<9>& later) {
+      [&](std::size_t k, const auto& step, const BackwardInformation<9>& later) {
         if (k == model.size() / 2) bias = later.mean(step.filtered).template tail<3>();
       });
   return bias;
@@ -196,7 +196,7 @@ void run_tilt(const TiltInstants& instants,
   };
   progress(0);
   const auto keep = [&](int pass) {
-    return [&, pass](std::size_t k, const auto& step, const Hindsight<9>& later) {
+    return [&, pass](std::size_t k, const auto& step, const BackwardInformation<9>& later) {
       next[k] = later.mean(step.filtered);
       if (pass + 1 < passes) return;
       const Mat<3, 3> cov = later.template cov<3>(step.filtered);

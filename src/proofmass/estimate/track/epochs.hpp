@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "proofmass/core/view.hpp"
-#include "proofmass/estimate/models/inertial_axis.hpp"
+#include "proofmass/estimate/models/inertial_1d.hpp"
 #include "proofmass/estimate/track.hpp"
 
-// From samples and stops to the epochs of models/inertial_axis.hpp.
+// From samples and stops to the epochs of models/inertial_1d.hpp.
 namespace proofmass::estimate {
 
 /// Error of the mean of a block of measurements at rest, for any correlation: from the scatter of

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "proofmass/estimate/track/walk.hpp"
+#include "proofmass/estimate/track/motion_noise.hpp"
 
 namespace proofmass::estimate {
 namespace {

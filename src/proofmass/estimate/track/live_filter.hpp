@@ -6,7 +6,7 @@
 
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/estimate/filter/fixed_lag.hpp"
-#include "proofmass/estimate/models/inertial_axis.hpp"
+#include "proofmass/estimate/models/inertial_1d.hpp"
 #include "proofmass/estimate/track/live_scale.hpp"
 
 // The inertial filter along one axis, one epoch at a time.

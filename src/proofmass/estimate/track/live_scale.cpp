@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proofmass/estimate/track/walk.hpp"
+#include "proofmass/estimate/track/motion_noise.hpp"
 
 namespace proofmass::estimate {
 

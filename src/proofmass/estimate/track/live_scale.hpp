@@ -3,13 +3,13 @@
 #include <array>
 #include <cstddef>
 
-#include "proofmass/estimate/models/inertial_axis.hpp"
+#include "proofmass/estimate/models/inertial_1d.hpp"
 
 // Online estimate of the errors in motion, from stop to stop.
 namespace proofmass::estimate {
 
-/// L, J and q of models/inertial_axis.hpp at scale 1. The median of track/walk.hpp's prior is 1e-5
-/// for each of them; here L has the largest share, since it leaves the position least certain.
+/// L, J and q of models/inertial_1d.hpp at scale 1. The median of track/motion_noise.hpp's prior is
+/// 1e-5 for each of them; here L has the largest share, since it leaves the position least certain.
 inline constexpr double usual_lean_m2ps3 = 1e-5;
 inline constexpr double usual_jump_m2ps4 = 3e-6;
 inline constexpr double usual_walk_m2ps5 = 1e-6;
@@ -21,8 +21,8 @@ inline constexpr double usual_walk_m2ps5 = 1e-6;
 }
 
 /// The common scale of L, J and q. Its logarithm is normal about 0, with twice the standard
-/// deviation that track/walk.hpp has for a root; a closure weights each value of a grid by its
-/// likelihood. track.hpp estimates the three separately, which needs all closures repeatedly.
+/// deviation that track/motion_noise.hpp has for a root; a closure weights each value of a grid by
+/// its likelihood. track.hpp estimates the three separately, which needs all closures repeatedly.
 class MotionScale {
  public:
   MotionScale();

@@ -81,7 +81,7 @@ AxisPass pass_over(const AxisRun& run) {
   smooth(
       model, inertial_start(run.start), Gate{},
       [&](std::size_t k, const StepOf<InertialAxis>& step) { pass.filtered[k] = step.filtered; },
-      [&](std::size_t k, const StepOf<InertialAxis>& step, const Hindsight<3>& later) {
+      [&](std::size_t k, const StepOf<InertialAxis>& step, const BackwardInformation<3>& later) {
         pass.smoothed[k] = {later.mean(step.filtered), later.template cov<3>(step.filtered)};
       });
   return pass;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "proofmass/estimate/models/inertial_axis.hpp"
+#include "proofmass/estimate/models/inertial_1d.hpp"
 #include "proofmass/estimate/track.hpp"
 #include "proofmass/estimate/track/epochs.hpp"
 #include "proofmass/estimate/track/signal.hpp"

@@ -5,10 +5,10 @@
 #include <limits>
 #include <utility>
 
-#include "proofmass/estimate/track/along.hpp"
+#include "proofmass/estimate/track/axis_inputs.hpp"
 #include "proofmass/estimate/track/jerk.hpp"
+#include "proofmass/estimate/track/motion_noise.hpp"
 #include "proofmass/estimate/track/pva_pass.hpp"
-#include "proofmass/estimate/track/walk.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -24,12 +24,11 @@ PvaNoise noise_of(const PvaTask& task, double jerk_psd) {
 
 template <int S>
 PvaAxis<S> axis_of(const PvaTask& task,
-                   const std::vector<const SensorAlong*>& sensors,
+                   const std::vector<const AxisInput*>& sensors,
                    const std::vector<PvaSample>& samples,
                    double jerk_psd) {
   std::vector<PvaSensor> readings;
-  for (const SensorAlong* sensor : sensors)
-    readings.push_back(sensor->reading(task.signal.rate_hz));
+  for (const AxisInput* sensor : sensors) readings.push_back(sensor->reading(task.signal.rate_hz));
   PvaAxis<S> axis(task.signal.time_s, std::move(readings), samples);
   axis.noise = noise_of(task, jerk_psd);
   axis.longest_step_s = task.run.longest_step_s;
@@ -57,7 +56,7 @@ void take(PvaPass pass, TrackSolution& solution) {
   solution.consistency = std::move(pass.consistency);
 }
 
-FusedSensor fused_sensor(const SensorAlong& sensor,
+FusedSensor fused_sensor(const AxisInput& sensor,
                          const PvaPass& alone,
                          const Uncertain& bias,
                          double scale_std) {
@@ -75,11 +74,11 @@ struct CommonError {
 };
 
 CommonError common_error(const PvaTask& task,
-                         const std::vector<SensorAlong>& sensors,
+                         const std::vector<AxisInput>& sensors,
                          double jerk_psd) {
   CommonError found;
   double sum = 0.0, squares = 0.0;
-  for (const SensorAlong& one : sensors) {
+  for (const AxisInput& one : sensors) {
     sum += 1.0 / one.white_m2ps3;
     squares += 1.0 / (one.white_m2ps3 * one.white_m2ps3);
   }
@@ -87,7 +86,7 @@ CommonError common_error(const PvaTask& task,
   std::vector<double> mean(task.signal.time_s.size(), 0.0);
   for (std::size_t k = 0; k < mean.size(); ++k) {
     double weights = 0.0;
-    for (const SensorAlong& one : sensors) {
+    for (const AxisInput& one : sensors) {
       if (std::isnan(one.accel_mps2[k])) continue;
       mean[k] += one.accel_mps2[k] / one.white_m2ps3;
       weights += 1.0 / one.white_m2ps3;
@@ -104,12 +103,12 @@ CommonError common_error(const PvaTask& task,
 }
 
 void fuse(const PvaTask& task,
-          const SensorsAlong& sensors,
+          const AxisInputs& sensors,
           double jerk_psd,
           TrackSolution& solution) {
-  std::vector<const SensorAlong*> all;
+  std::vector<const AxisInput*> all;
   std::vector<std::string> names;
-  for (const SensorAlong& one : sensors.all) {
+  for (const AxisInput& one : sensors.all) {
     all.push_back(&one);
     names.push_back(one.name);
   }
@@ -145,9 +144,9 @@ Status apply_track_model(const PvaTask& task,
   if (options.model == TrackModel::inertial) return Done{};
   if (options.jerk_psd_m2ps5 && !(*options.jerk_psd_m2ps5 > 0.0))
     return Error{Errc::invalid_argument, "the density of the jerk must be positive"};
-  auto made = sensors_along(task, options, solution);
+  auto made = axis_inputs(task, options, solution);
   if (!made) return made.error();
-  const SensorsAlong sensors = std::move(made).value();
+  const AxisInputs sensors = std::move(made).value();
   PvaAxis<1> first = axis_of<1>(task, {&sensors.all.front()}, sensors.samples, 1.0);
   const double speed_std = task.run.start.speed_std_mps;
   const JerkDensity jerk = options.jerk_psd_m2ps5 ? JerkDensity{*options.jerk_psd_m2ps5, 0.0, true}

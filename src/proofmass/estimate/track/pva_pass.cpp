@@ -109,7 +109,7 @@ PvaPass pass(const PvaAxis<S>& axis, const PvaPassOptions& options) {
         judge.take(k, step);
         last = step.filtered;
       },
-      [&](std::size_t k, const StepOf<PvaAxis<S>>& step, const Hindsight<N>& later) {
+      [&](std::size_t k, const StepOf<PvaAxis<S>>& step, const BackwardInformation<N>& later) {
         const Mat<N> mean = later.mean(step.filtered);
         push(mean.template head<2>(), later.template cov<2>(step.filtered).diagonal(), k,
              out.smoothed);

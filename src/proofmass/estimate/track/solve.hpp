@@ -4,7 +4,7 @@
 
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/track/motion.hpp"
-#include "proofmass/estimate/track/walk.hpp"
+#include "proofmass/estimate/track/motion_noise.hpp"
 
 // The track along one axis, for given rests.
 namespace proofmass::estimate {

@@ -11,7 +11,7 @@ namespace {
 struct KeptEpoch {
   Gaussian<3> filtered;
   Mat<3, 3> from_last = Mat<3, 3>::Identity();  // Φ since the previous stored one
-  Hindsight<3> later;
+  BackwardInformation<3> later;
 };
 
 Mat<3, 3> error_transition(const StepOf<InertialAxis>& step) {
@@ -38,7 +38,8 @@ PositionCovariance smoothed_positions(const InertialAxis& model,
     kept[next++].from_last = Phi;
     Phi.setIdentity();
   };
-  const auto backward = [&](std::size_t k, const StepOf<InertialAxis>&, const Hindsight<3>& later) {
+  const auto backward = [&](std::size_t k, const StepOf<InertialAxis>&,
+                            const BackwardInformation<3>& later) {
     if (next == 0 || at[next - 1] != k) return;
     kept[--next].later = later;
   };

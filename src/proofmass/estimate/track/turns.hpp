@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "proofmass/core/view.hpp"
-#include "proofmass/estimate/models/inertial_axis.hpp"
+#include "proofmass/estimate/models/inertial_1d.hpp"
 #include "proofmass/estimate/track.hpp"
 
 // Strokes from the smoothed position.

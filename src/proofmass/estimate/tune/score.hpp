@@ -29,11 +29,11 @@ struct TuneScore {
 ///     ∂L/∂Q = ½ Σ (λ λᵀ − Λ),   ∂L/∂R = ½ Σ (u² − D),   ∂L/∂F = Σ (λ x̂ₛᵀ − Λ F P),
 ///     u = y/S − Kᵀλ,   D = 1/S + KᵀΛK,
 ///
-/// with λ, Λ the adjoint of the predicted state (filter/kalman.hpp's Hindsight with the opposite
-/// sign). They stay finite as Q goes to 0. In the diffuse start S is infinite. Source: S. J.
-/// Koopman, N. Shephard, Biometrika 79 (1992) 823; for the diffuse start J. Durbin, S. J. Koopman,
-/// Time Series Analysis by State Space Methods (2012), sections 5.3 and 7.3.3. Cost: O(N); stores
-/// six to nine doubles a sample during the call.
+/// with λ, Λ the adjoint of the predicted state (filter/smoother.hpp's BackwardInformation with the
+/// opposite sign). They stay finite as Q goes to 0. In the diffuse start S is infinite. Source: S.
+/// J. Koopman, N. Shephard, Biometrika 79 (1992) 823; for the diffuse start J. Durbin, S. J.
+/// Koopman, Time Series Analysis by State Space Methods (2012), sections 5.3 and 7.3.3. Cost: O(N);
+/// stores six to nine doubles a sample during the call.
 [[nodiscard]] TuneScore likelihood_score(const TuneSystem& system, View<double> series);
 
 /// Innovations and their variances, NaN where the measurement is missing or the start is diffuse.

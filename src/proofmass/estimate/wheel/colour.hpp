@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "proofmass/estimate/wheel/passes.hpp"
+#include "proofmass/estimate/wheel/likelihood.hpp"
 
 // Effect of coloured innovations on the bands.
 //

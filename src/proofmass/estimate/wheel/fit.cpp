@@ -56,7 +56,7 @@ template <int S>
 void note_backward(const WheelModel<S>& model,
                    std::size_t k,
                    const StepOf<WheelModel<S>>& step,
-                   const Hindsight<wheel::states(S)>& later,
+                   const BackwardInformation<wheel::states(S)>& later,
                    WheelFit& fit) {
   WheelSeries& series = fit.series;
   const Mat<wheel::states(S)> mean = later.mean(step.filtered);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/wheel/joint.hpp"
+#include "proofmass/estimate/wheel/joint_fit.hpp"
 
 namespace proofmass::estimate {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/live_wheel.hpp"
+#include "proofmass/estimate/wheel/likelihood.hpp"
 #include "proofmass/estimate/wheel/live_instants.hpp"
-#include "proofmass/estimate/wheel/passes.hpp"
 #include "proofmass/estimate/wheel/plane.hpp"
 
 // Initialisation of a wheel from the first seconds.

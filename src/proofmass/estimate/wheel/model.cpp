@@ -12,7 +12,7 @@ template void advance(const WheelModel<2>&,
                       const Gate&,
                       FilterState<wheel::states(2)>&,
                       StepOf<WheelModel<2>>&);
-template void look_back(Hindsight<wheel::states(1)>&, const StepOf<WheelModel<1>>&);
-template void look_back(Hindsight<wheel::states(2)>&, const StepOf<WheelModel<2>>&);
+template void look_back(BackwardInformation<wheel::states(1)>&, const StepOf<WheelModel<1>>&);
+template void look_back(BackwardInformation<wheel::states(2)>&, const StepOf<WheelModel<2>>&);
 
 }  // namespace proofmass::estimate

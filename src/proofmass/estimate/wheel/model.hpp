@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/filter/kalman.hpp"
+#include "proofmass/estimate/filter/smoother.hpp"
 
 // State-space model of accelerometers on a wheel that turns about a level axle.
 //
@@ -419,7 +419,9 @@ extern template void advance(const WheelModel<2>&,
                              const Gate&,
                              FilterState<wheel::states(2)>&,
                              StepOf<WheelModel<2>>&);
-extern template void look_back(Hindsight<wheel::states(1)>&, const StepOf<WheelModel<1>>&);
-extern template void look_back(Hindsight<wheel::states(2)>&, const StepOf<WheelModel<2>>&);
+extern template void look_back(BackwardInformation<wheel::states(1)>&,
+                               const StepOf<WheelModel<1>>&);
+extern template void look_back(BackwardInformation<wheel::states(2)>&,
+                               const StepOf<WheelModel<2>>&);
 
 }  // namespace proofmass::estimate

@@ -1,5 +1,5 @@
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/wheel/passes.hpp"
+#include "proofmass/estimate/wheel/likelihood.hpp"
 
 namespace proofmass::estimate {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "proofmass/estimate/wheel/passes.hpp"
+#include "proofmass/estimate/wheel/likelihood.hpp"
 
 // Alternating estimation of noise, ripple, lever arms and path of a wheel.
 namespace proofmass::estimate {

@@ -2,7 +2,7 @@
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/wheel/passes.hpp"
+#include "proofmass/estimate/wheel/likelihood.hpp"
 
 namespace proofmass::estimate {
 namespace {

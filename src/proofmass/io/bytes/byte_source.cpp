@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "proofmass/io/nameless_file.hpp"
+#include "proofmass/io/unnamed_file.hpp"
 
 namespace proofmass::io {
 namespace {

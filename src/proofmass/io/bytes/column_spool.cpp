@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/io/nameless_file.hpp"
+#include "proofmass/io/unnamed_file.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -47,7 +47,7 @@ Status ColumnSpool::spill() {
   if (!file_) {
     std::filesystem::path folder = std::filesystem::path(beside_).parent_path();
     if (beside_ == "-") folder = P_tmpdir;
-    const int descriptor = nameless_file(folder.empty() ? "." : folder.string());
+    const int descriptor = unnamed_file(folder.empty() ? "." : folder.string());
     if (descriptor >= 0) file_.reset(::fdopen(descriptor, "w+b"));
     if (!file_) return failed();
   }

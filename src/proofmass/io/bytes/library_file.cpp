@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include <vector>
 
-#include "proofmass/io/nameless_file.hpp"
+#include "proofmass/io/unnamed_file.hpp"
 
 namespace proofmass::io {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "proofmass/io/nameless_file.hpp"
+#include "proofmass/io/unnamed_file.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -87,7 +87,7 @@ Result<std::unique_ptr<RandomBytes>> random_bytes_of(std::unique_ptr<PeekSource>
     return Opened(
         std::make_unique<FileBytes>(own, source->size().value_or(0), std::vector<Note>{}));
   }
-  const int file = nameless_file(P_tmpdir);
+  const int file = unnamed_file(P_tmpdir);
   if (file < 0) return system_failure("no room to unpack it to");
   const auto size = unpack(*source, file, progress);
   auto bytes = std::make_unique<FileBytes>(file, size ? *size : 0, source->notes());

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "proofmass/io/bytes/child_words.hpp"
+#include "proofmass/io/bytes/subprocess_words.hpp"
 
 namespace proofmass::io {
 namespace {

@@ -9,7 +9,7 @@
 #include "proofmass/io/csv/header.hpp"
 #include "proofmass/io/hdf5/path.hpp"
 #include "proofmass/io/names.hpp"
-#include "proofmass/io/text/told_unit.hpp"
+#include "proofmass/io/text/unit_in_text.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -105,7 +105,7 @@ class Labeller {
     }
     if (!unread.empty())
       notes.push_back({Severity::info, fmt::format("{}: unit \"{}\" is not known", path, unread)});
-    if (given.empty() && name_unit.symbol.empty()) use_told_unit(path, units, notes);
+    if (given.empty() && name_unit.symbol.empty()) use_unit_in_text(path, units, notes);
     if (has_time) units[0] = std::string("s");
     std::vector<std::string> headings;
     headings.reserve(table.width);
@@ -156,14 +156,14 @@ class Labeller {
   }
 
   /// From the texts of the dataset and of its enclosing groups.
-  void use_told_unit(std::string_view path,
-                     std::vector<std::string>& units,
-                     std::vector<Note>& notes) const {
+  void use_unit_in_text(std::string_view path,
+                        std::vector<std::string>& units,
+                        std::vector<Note>& notes) const {
     for (std::string_view owner = path;; owner = group_of(owner)) {
       for (const Hdf5Attribute& attribute : catalogue_.attributes) {
         if (attribute.owner != owner) continue;
         for (const std::string& text : attribute.texts) {
-          const std::string symbol = unit_told(text, leaf_of(path));
+          const std::string symbol = unit_in_text(text, leaf_of(path));
           if (symbol.empty()) continue;
           std::ranges::fill(units, symbol);
           notes.push_back(

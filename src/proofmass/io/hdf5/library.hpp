@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "proofmass/core/result.hpp"
-#include "proofmass/io/bytes/watched_child.hpp"
+#include "proofmass/io/bytes/subprocess.hpp"
 #include "proofmass/io/hdf5/catalogue.hpp"
 
 // Calls of the HDF5 library. It has global state and can crash on damaged files: these functions

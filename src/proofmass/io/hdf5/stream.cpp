@@ -70,13 +70,13 @@ Result<Hdf5Catalogue> list_in_child(const LibraryFile& file, bool is_matlab) {
   return decode(bytes);
 }
 
-FigureStream::FigureStream(std::vector<Hdf5Request> requests, ByteFeed said)
+FigureStream::FigureStream(std::vector<Hdf5Request> requests, BytePump said)
     : requests_(std::move(requests)),
       message_(std::in_place, std::move(said)),
       block_(requests_.size()),
       origins_(requests_.size(), 0) {}
 
-FigureStream::FigureStream(std::vector<Hdf5Request> requests, WatchedChild child)
+FigureStream::FigureStream(std::vector<Hdf5Request> requests, Subprocess child)
     : requests_(std::move(requests)),
       child_(std::move(child)),
       block_(requests_.size()),
@@ -90,7 +90,7 @@ Result<FigureStream> FigureStream::start(const LibraryFile& file,
   const auto work = [&](const ByteSink& sink) {
     return read_hdf5(source_of(file), requests, sink);
   };
-  auto child = WatchedChild::start(work, limits_for(file, bytes));
+  auto child = Subprocess::start(work, limits_for(file, bytes));
   if (!child) return child.error();
   return FigureStream(std::move(requests), std::move(child).value());
 }

@@ -8,7 +8,7 @@
 
 #include "proofmass/core/result.hpp"
 #include "proofmass/io/bytes/library_file.hpp"
-#include "proofmass/io/bytes/watched_child.hpp"
+#include "proofmass/io/bytes/subprocess.hpp"
 #include "proofmass/io/hdf5/catalogue.hpp"
 #include "proofmass/io/hdf5/library.hpp"
 #include "proofmass/io/stamp_reader.hpp"
@@ -25,7 +25,7 @@ class FigureStream {
   [[nodiscard]] static Result<FigureStream> start(const LibraryFile& file,
                                                   std::vector<Hdf5Request> requests);
   /// For tests: a stream of bytes instead of a child process.
-  FigureStream(std::vector<Hdf5Request> requests, ByteFeed said);
+  FigureStream(std::vector<Hdf5Request> requests, BytePump said);
 
   [[nodiscard]] std::span<const Hdf5Request> requests() const { return requests_; }
   /// Replaces the current block by the next: number of rows, 0 at the end.
@@ -39,13 +39,13 @@ class FigureStream {
   [[nodiscard]] double fraction_read() const;
 
  private:
-  FigureStream(std::vector<Hdf5Request> requests, WatchedChild child);
+  FigureStream(std::vector<Hdf5Request> requests, Subprocess child);
 
   [[nodiscard]] Result<std::span<const char>> hear();
   Status take(std::size_t request, std::uint64_t rows);
 
   std::vector<Hdf5Request> requests_;
-  std::optional<WatchedChild> child_;
+  std::optional<Subprocess> child_;
   std::optional<MessageReader> message_;
   std::vector<std::vector<std::uint64_t>> block_;  ///< bits of the values, one vector per request
   std::vector<Int128> origins_;

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "proofmass/io/bytes/watched_frames.hpp"
+#include "proofmass/io/bytes/subprocess_frames.hpp"
 
 namespace proofmass::io::hdf5_stream_test {
 namespace {

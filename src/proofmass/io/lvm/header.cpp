@@ -14,7 +14,7 @@
 #include "proofmass/io/decimal.hpp"
 #include "proofmass/io/names.hpp"
 #include "proofmass/io/shown_text.hpp"
-#include "proofmass/io/text/told_unit.hpp"
+#include "proofmass/io/text/unit_in_text.hpp"
 
 namespace proofmass::io {
 namespace {

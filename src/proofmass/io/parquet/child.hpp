@@ -10,7 +10,7 @@
 
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
-#include "proofmass/io/bytes/watched_child.hpp"
+#include "proofmass/io/bytes/subprocess.hpp"
 #include "proofmass/io/read_recording.hpp"
 
 namespace proofmass::io {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "proofmass/io/bytes/child_words.hpp"
+#include "proofmass/io/bytes/subprocess_words.hpp"
 #include "proofmass/io/parquet/child.hpp"
 #include "proofmass/io/parquet/facts.hpp"
 

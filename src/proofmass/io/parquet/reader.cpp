@@ -8,9 +8,9 @@
 #include <iterator>
 #include <utility>
 
-#include "proofmass/io/bytes/child_words.hpp"
 #include "proofmass/io/bytes/library_file.hpp"
-#include "proofmass/io/bytes/watched_child.hpp"
+#include "proofmass/io/bytes/subprocess.hpp"
+#include "proofmass/io/bytes/subprocess_words.hpp"
 #include "proofmass/io/parquet/child.hpp"
 #include "proofmass/io/parquet/facts.hpp"
 #include "proofmass/io/reading/labelled_reader.hpp"
@@ -30,7 +30,7 @@ std::optional<T> figure(std::string_view text) {
 /// Rows as sent by the child: frames of doubles, column by column.
 class ParquetTableReader final : public TableReader {
  public:
-  ParquetTableReader(WatchedChild child, TableHead head)
+  ParquetTableReader(Subprocess child, TableHead head)
       : child_(std::move(child)), head_(std::move(head)) {}
 
   [[nodiscard]] const TableHead& head() const override { return head_; }
@@ -74,7 +74,7 @@ class ParquetTableReader final : public TableReader {
     return Done{};
   }
 
-  WatchedChild child_;
+  Subprocess child_;
   TableHead head_;
   std::vector<double> block_;
   std::size_t rows_ = 0;  ///< in the block
@@ -83,7 +83,7 @@ class ParquetTableReader final : public TableReader {
 };
 
 /// Information of the child on the file, before the first row.
-Result<ParquetHead> hear_head(WatchedChild& child) {
+Result<ParquetHead> hear_head(Subprocess& child) {
   std::string bytes;
   constexpr std::size_t most_bytes = std::size_t{64} << 20;
   for (;;) {
@@ -171,9 +171,9 @@ Result<OpenTable> open_table(const OpenParquet& file, const ReadOptions& options
   const auto work = [&](const ByteSink& sink) {
     return read_parquet(file.file.path(), options, sink);
   };
-  auto started = WatchedChild::start(work, limits_for(file.file));
+  auto started = Subprocess::start(work, limits_for(file.file));
   if (!started) return started.error();
-  WatchedChild child = std::move(started).value();
+  Subprocess child = std::move(started).value();
   auto heard = hear_head(child);
   if (!heard) return heard.error();
   OpenTable table{nullptr, std::move(heard).value()};

@@ -1,6 +1,6 @@
 #include <span>
 
-#include "proofmass/io/bytes/watched_child.hpp"
+#include "proofmass/io/bytes/subprocess.hpp"
 #include "proofmass/io/parquet/duckdb_library.hpp"
 #include "proofmass/io/parquet/table.hpp"
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "proofmass/io/reading/labelled_reader.hpp"
-#include "proofmass/io/tdms/table.hpp"
+#include "proofmass/io/tdms/group_reader.hpp"
 
 namespace proofmass::io {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "proofmass/io/bytes/byte_source.hpp"
 #include "proofmass/io/bytes/random_bytes.hpp"
+#include "proofmass/io/tdms/group_reader.hpp"
 #include "proofmass/io/tdms/specimens.hpp"
-#include "proofmass/io/tdms/table.hpp"
 
 namespace proofmass::io {
 

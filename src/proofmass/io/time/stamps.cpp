@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "proofmass/io/text/wording.hpp"
-#include "proofmass/io/time/onlooker.hpp"
+#include "proofmass/io/time/stamp_lookahead.hpp"
 
 namespace proofmass::io {
 namespace {
@@ -30,7 +30,7 @@ std::optional<std::size_t> StampMender::first_good(View<double> stamps, const St
   const WrapFinder wraps(rules.unit_s);
   for (std::size_t k = 0; k < stamps.size(); ++k) {
     if (!is_stamp(stamps[k])) continue;
-    Onlooker next(stamps, k, 0.0);
+    StampLookahead next(stamps, k, 0.0);
     next.unroll(stamps[k], wraps, rules.origin, rules.usual);
     const auto is_near = [&](double stamp) {
       return stamp >= stamps[k] && stamp - stamps[k] < 1e4 * rules.usual;
@@ -53,7 +53,7 @@ bool StampMender::counts_on(const Rows& rows, std::size_t k) const {
 StampMender::Judgement StampMender::judge_fall(const Rows& rows, std::size_t k) const {
   const double reading = rows.stamps[k];
   const double stamp = reading + shift_;
-  const Onlooker next(rows.stamps, k, shift_);
+  const StampLookahead next(rows.stamps, k, shift_);
   const auto is_back = [&](double other) { return other >= last_->stamp; };
   if (next.count() > 0 && next.most_are(is_back)) return {Event::bad};
   const double usual = rules_.usual * rows_since_last(k);
@@ -74,7 +74,7 @@ StampMender::Judgement StampMender::judge_fall(const Rows& rows, std::size_t k) 
 StampMender::Judgement StampMender::judge_leap(const Rows& rows, std::size_t k) const {
   const double reading = rows.stamps[k];
   const double stamp = reading + shift_;
-  Onlooker next(rows.stamps, k, shift_);
+  StampLookahead next(rows.stamps, k, shift_);
   next.unroll(stamp, wraps_, rules_.origin - shift_, rules_.usual);
   if (next.leave_behind(stamp, last_->stamp, rules_.usual)) return {Event::bad};
   const double rise = stamp - last_->stamp;

@@ -103,12 +103,12 @@ void judge_crests(ChannelAudit& audit, const ValueExcerpts& excerpts) {
 
 RunningChannel::RunningChannel(std::size_t sample_capacity)
     : sample_(sample_capacity),
-      lowest_(ValueTail::Side::lowest, sample_capacity / 32),
-      highest_(ValueTail::Side::highest, sample_capacity / 32),
+      lowest_(ClippingTail::Side::lowest, sample_capacity / 32),
+      highest_(ClippingTail::Side::highest, sample_capacity / 32),
       excerpts_(sample_capacity / 2) {}
 
 void RunningChannel::add(View<double> values, const SampleTimes& times) {
-  last_ = chunk_figures(values);
+  last_ = chunk_statistics(values);
   if (!last_.plausible) return add_odd(values, times);
   add_plausible(values);
   excerpts_.add(values);
@@ -132,7 +132,7 @@ void RunningChannel::add_odd(View<double> values, const SampleTimes& times) {
     count += is_plausible(value) ? 1 : 0;
   }
   plausible_.resize(count);
-  last_ = plausible_.empty() ? ChunkFigures{.min = 1.0} : chunk_figures(plausible_);
+  last_ = plausible_.empty() ? ChunkStatistics{.min = 1.0} : chunk_statistics(plausible_);
   if (!plausible_.empty()) add_plausible(plausible_);
   plausible_.resize(values.size());
   std::ranges::transform(values, plausible_.begin(), plausible_or_nan);

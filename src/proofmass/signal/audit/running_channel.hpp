@@ -6,12 +6,12 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/audit.hpp"
-#include "proofmass/signal/audit/chunk_figures.hpp"
-#include "proofmass/signal/audit/thinned_sample.hpp"
+#include "proofmass/signal/audit/chunk_statistics.hpp"
+#include "proofmass/signal/audit/stuck_values.hpp"
+#include "proofmass/signal/audit/subsample.hpp"
 #include "proofmass/signal/audit/value_excerpts.hpp"
-#include "proofmass/signal/audit/value_runs.hpp"
+#include "proofmass/signal/clipping_tail.hpp"
 #include "proofmass/signal/resample/sample_times.hpp"
-#include "proofmass/signal/value_tail.hpp"
 
 namespace proofmass::signal {
 
@@ -53,10 +53,10 @@ class RunningChannel {
   void judge_rails(ChannelAudit& audit) const;
 
   Moments moments_;
-  ChunkFigures last_;
-  ValueRuns runs_;
-  ThinnedSample sample_;
-  ValueTail lowest_, highest_;
+  ChunkStatistics last_;
+  StuckValues runs_;
+  Subsample sample_;
+  ClippingTail lowest_, highest_;
   ValueExcerpts excerpts_;
   OddValues nan_, infinite_, absurd_, denormal_;
   std::vector<double> plausible_;  ///< the plausible values of a chunk that contains others

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/signal/audit/chunk_figures.hpp"
+#include "proofmass/signal/audit/chunk_statistics.hpp"
 
 namespace proofmass::signal {
 
@@ -12,7 +12,7 @@ void RunningTiming::add(View<double> stamps_s) {
   if (stamps_s.empty()) return;
   if (rate_hz_ > 0.0) {
     if (stamps_ > 0) add_step(last_s_, stamps_s[0] - last_s_);
-    const StepFigures steps = step_figures(stamps_s, 1.0 / rate_hz_);
+    const StepStatistics steps = step_statistics(stamps_s, 1.0 / rate_hz_);
     const double noticed = square(1e-3 / rate_hz_) * static_cast<double>(stamps_s.size());
     if (steps.regular) {
       in_whole_steps_ = in_whole_steps_ && steps.squares <= noticed;

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/signal/audit/quantum_seeker.hpp"
+#include "proofmass/signal/audit/lsb_detector.hpp"
 #include "proofmass/signal/channel_audit.hpp"
 
 namespace proofmass::signal {
@@ -41,7 +41,7 @@ RestBlock block_of(Axes axes, const RestBlocks& blocks, std::size_t k, std::size
 
 void look_at_resolution(Axes axes, std::size_t window, RestBlocks& blocks) {
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    QuantumSeeker seeker(window);
+    LsbDetector seeker(window);
     double largest = 0.0;
     for (std::size_t k = 0; k < blocks.samples; ++k) {
       if (!blocks.there[k]) continue;

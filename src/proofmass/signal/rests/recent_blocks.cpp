@@ -47,7 +47,7 @@ void RecentBlocks::begin() {
   shortest_ = lengths.shortest;
   const double rate_hz = options_.rate_hz > 0.0 ? options_.rate_hz : 100.0;
   window_s_ = static_cast<double>(blocks_.window * blocks_.block) / rate_hz;
-  seekers_.fill(QuantumSeeker(lengths.window));
+  seekers_.fill(LsbDetector(lengths.window));
   begun_ = true;
 }
 

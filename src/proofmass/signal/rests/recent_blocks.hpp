@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "proofmass/core/view.hpp"
-#include "proofmass/signal/audit/quantum_seeker.hpp"
+#include "proofmass/signal/audit/lsb_detector.hpp"
 #include "proofmass/signal/rests.hpp"
 #include "proofmass/signal/rests/blocks.hpp"
 #include "proofmass/signal/rests/noise.hpp"
@@ -54,8 +54,7 @@ class RecentBlocks {
   std::vector<Span> spans_;
   std::array<std::vector<double>, most_axes> open_;  ///< the incomplete block
   Span open_span_{};
-  std::array<QuantumSeeker, most_axes> seekers_{QuantumSeeker(0), QuantumSeeker(0),
-                                                QuantumSeeker(0)};
+  std::array<LsbDetector, most_axes> seekers_{LsbDetector(0), LsbDetector(0), LsbDetector(0)};
   PerAxis largest_{};
   std::size_t samples_ = 0;
   double last_s_ = 0.0;

@@ -4,8 +4,8 @@
 
 #include "proofmass/core/random.hpp"
 #include "proofmass/simulate/procedure.hpp"
-#include "proofmass/simulate/procedure/bench_sensor.hpp"
 #include "proofmass/simulate/procedure/pose_plan.hpp"
+#include "proofmass/simulate/procedure/sensor_error_model.hpp"
 
 namespace proofmass::simulate {
 namespace {
@@ -20,7 +20,7 @@ std::size_t samples_within(const TruePose& pose, double rate_hz) {
 
 Result<PoseMeans> draw_pose_means(const ProcedureOptions& options, std::size_t trial) {
   if (const Status checked = check(options); !checked) return checked.error();
-  const BenchSensor sensor(options);
+  const SensorErrorModel sensor(options);
   PoseMeans drawn;
   drawn.truth.poses = true_poses(plan_poses(options));
   drawn.truth.equations = sensor.recorded_equations();

@@ -7,8 +7,8 @@
 
 #include "proofmass/core/random.hpp"
 #include "proofmass/simulate/band_limited_noise.hpp"
-#include "proofmass/simulate/procedure/bench_sensor.hpp"
 #include "proofmass/simulate/procedure/pose_plan.hpp"
+#include "proofmass/simulate/procedure/sensor_error_model.hpp"
 
 namespace proofmass::simulate {
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "proofmass/simulate/procedure.hpp"
-#include "proofmass/simulate/procedure/bench_sensor.hpp"
 #include "proofmass/simulate/procedure/pose_motion.hpp"
 #include "proofmass/simulate/procedure/pose_plan.hpp"
+#include "proofmass/simulate/procedure/sensor_error_model.hpp"
 
 namespace proofmass::simulate {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "proofmass/core/random.hpp"
-#include "proofmass/simulate/procedure/bench_sensor.hpp"
 #include "proofmass/simulate/procedure/pose_plan.hpp"
+#include "proofmass/simulate/procedure/sensor_error_model.hpp"
 #include "proofmass/simulate/procedure/slide_motion.hpp"
 
 namespace proofmass::simulate {
@@ -83,7 +83,7 @@ class Accelerometer {
  private:
   ProcedureOptions options_;
   Eigen::Vector3d place_m_;
-  BenchSensor sensor_;
+  SensorErrorModel sensor_;
   std::array<BenchDrift, 3> drifts_;
   std::array<Random, 3> white_;
   Axes rest_drift_{};

@@ -170,14 +170,14 @@ void add_speed_findings(const WheelStudy& study, Findings& findings) {
                  rms_over(at.*method.runs, method.end));
   }
   findings.why(why_absent(at.turn));
-  const auto four = [&](PathError FourAxes::* which) -> std::optional<Uncertain> {
-    if (!study.four_axes) return std::nullopt;
-    return Uncertain{std::abs(((*study.four_axes).*which).end), 0.0};
+  const auto four = [&](PathError FourteenStateFilter::* which) -> std::optional<Uncertain> {
+    if (!study.fourteen_state_filter) return std::nullopt;
+    return Uncertain{std::abs(((*study.fourteen_state_filter).*which).end), 0.0};
   };
   findings.add("fourteen_roll", "Fourteen states, y1 and y2 of them, smoothed; one run",
-               kind::metres, {}, four(&FourAxes::roll_smoothed));
+               kind::metres, {}, four(&FourteenStateFilter::roll_smoothed));
   findings.add("fourteen_all", "Fourteen states, mean of all four positions, smoothed; one run",
-               kind::metres, {}, four(&FourAxes::all_smoothed));
+               kind::metres, {}, four(&FourteenStateFilter::all_smoothed));
   findings.why("Without a truth no share of runs can be counted.");
   findings.add("inside", "Runs that end inside the smoothed wheel model's 95 % band", kind::percent,
                {}, inside(study, &SpeedStudy::runs, &RunErrors::wheel_smoothed));

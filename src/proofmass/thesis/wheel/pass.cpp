@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "proofmass/estimate/filter/kalman.hpp"
+#include "proofmass/estimate/filter/smoother.hpp"
 #include "proofmass/estimate/wheel/model.hpp"
 
 namespace proofmass::thesis {
@@ -104,7 +104,7 @@ void run_over(const Model& model, const Prior& prior, WheelPass& pass, estimate:
         path.standing = step.filtered.mean.tail<wheel::standing(2)>();
       },
       [&](std::size_t k, const estimate::StepOf<Model>& step,
-          const estimate::Hindsight<Model::states>& later) {
+          const estimate::BackwardInformation<Model::states>& later) {
         path.moving[k] = later.mean(step.filtered).head<wheel::moving>();
         pass.smoothed_accel_radps2[k] = path.moving[k](wheel::accel);
         pass.smoothed.angle_rad[k] = path.moving[k](wheel::angle);

@@ -97,9 +97,9 @@ Result<WheelStudy> study_wheel(const std::vector<WheelRecord>& records,
   };
   const auto nearest = std::ranges::min_element(study.speeds, {}, from_11rpm);
   study.shown = static_cast<std::size_t>(nearest - study.speeds.begin());
-  const auto fused = four_axes(study.at_11rpm().turn);
+  const auto fused = fourteen_state_filter(study.at_11rpm().turn);
   if (!fused) return fused.error();
-  study.four_axes = *fused;
+  study.fourteen_state_filter = *fused;
   return study;
 }
 

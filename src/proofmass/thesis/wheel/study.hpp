@@ -6,7 +6,7 @@
 
 #include "proofmass/core/result.hpp"
 #include "proofmass/thesis/wheel/first_turn.hpp"
-#include "proofmass/thesis/wheel/four_axes.hpp"
+#include "proofmass/thesis/wheel/fourteen_state_filter.hpp"
 #include "proofmass/thesis/wheel/run_errors.hpp"
 #include "proofmass/thesis/wheel_runs.hpp"
 
@@ -24,9 +24,9 @@ struct SpeedStudy {
 struct WheelStudy {
   bool simulated = false;
   std::size_t seeds = 0;
-  std::vector<SpeedStudy> speeds = {};     ///< rising
-  std::size_t shown = 0;                   ///< the speed of figures 5.12 to 5.19: nearest to 11 rpm
-  std::optional<FourAxes> four_axes = {};  ///< of its `turn`
+  std::vector<SpeedStudy> speeds = {};  ///< rising
+  std::size_t shown = 0;                ///< the speed of figures 5.12 to 5.19: nearest to 11 rpm
+  std::optional<FourteenStateFilter> fourteen_state_filter = {};  ///< of its `turn`
 
   [[nodiscard]] const SpeedStudy& at_11rpm() const { return speeds[shown]; }
 };

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "proofmass/estimate/filter/bryson_frazier.hpp"
+#include "proofmass/estimate/filter/kalman_filter.hpp"
+
+// The fixed-interval smoother under every model of this module, linear or extended: the filter of
+// filter/kalman_filter.hpp forwards, filter/bryson_frazier.hpp backwards.
+namespace proofmass::estimate {
+
+/// Forward and backward pass over `size` epochs: advance(state, k, step) and forward(k, step) for
+/// each, then backward(k, step) in falling k. The forward pass stores the state at every `chunk`-th
+/// epoch; the backward pass reruns each chunk, so that memory is O(size / chunk + chunk) states and
+/// steps instead of one step for each epoch.
+template <class Step, std::size_t chunk, class State, class Advance, class Forward, class Backward>
+void there_and_back(
+    std::size_t size, State state, Advance&& advance, Forward&& forward, Backward&& backward) {
+  std::vector<State> starts;
+  starts.reserve(size / chunk + 1);
+  Step now;
+  for (std::size_t k = 0; k < size; ++k) {
+    if (k % chunk == 0) starts.push_back(state);
+    advance(state, k, now);
+    forward(k, std::as_const(now));
+  }
+  std::vector<Step> steps(std::min(chunk, size));
+  for (std::size_t c = starts.size(); c-- > 0;) {
+    const std::size_t first = c * chunk, last = std::min(first + chunk, size);
+    for (std::size_t k = first; k < last; ++k) advance(starts[c], k, steps[k - first]);
+    for (std::size_t k = last; k-- > first;) backward(k, std::as_const(steps[k - first]));
+  }
+}
+
+/// Filter and fixed-interval smoother over all epochs of a model, in the memory of
+/// there_and_back().
+///
+/// forward(k, step) is called in rising k, backward(k, step, information) in falling k; information
+/// is the adjoint of the epochs after k. Cost: two forward passes and one backward, O(epochs · M ·
+/// N²).
+template <StateSpaceModel Model, class Forward, class Backward>
+void smooth(const Model& model,
+            const FilterState<Model::states>& prior,
+            const Gate& gate,
+            Forward&& forward,
+            Backward&& backward) {
+  constexpr int N = Model::states;
+  constexpr std::size_t chunk = N > 12 ? 64 : 128;
+  BackwardInformation<N> later;
+  later.active = active_states(model);
+  there_and_back<StepOf<Model>, chunk>(
+      model.size(), prior,
+      [&](FilterState<N>& state, std::size_t k, StepOf<Model>& step) {
+        advance(model, k, gate, state, step);
+      },
+      forward,
+      [&](std::size_t k, const StepOf<Model>& step) {
+        backward(k, step, std::as_const(later));
+        look_back(later, step);
+      });
+}
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,285 @@
+#include "proofmass/estimate/wheel/joint_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "proofmass/core/linalg.hpp"
+#include "proofmass/estimate/wheel/rests.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+/// Above this share of unexplained measurements no wheel rotating in gravity is visible.
+constexpr double not_a_wheel = 0.5;
+/// Rows of two sensors this close share one epoch: 50 rad/s move the phase by 0.25 mrad meanwhile.
+constexpr double same_instant_s = 5e-6;
+
+/// A given pole is accurate to a tenth, as resistors and capacitors are. Otherwise it is
+/// log-uniform between two corners.
+Uncertain delay_of(const WheelOptions& options, double rate_hz) {
+  const auto delay_s = [](double corner_hz) { return 1.0 / (rad_per_turn * corner_hz); };
+  if (options.bandwidth_hz) {
+    const double delay = delay_s(*options.bandwidth_hz);
+    return {delay, 0.1 * delay};
+  }
+  const double longest = delay_s(std::min(6.0, 0.06 * rate_hz)), shortest = delay_s(2.5 * rate_hz);
+  const double octaves = std::log(longest / shortest);
+  const double mean = (longest - shortest) / octaves;
+  const double square = 0.5 * (longest * longest - shortest * shortest) / octaves;
+  return {mean, std::sqrt(square - mean * mean)};
+}
+
+/// The time line of one or two sensors; the second's stamps are late by offset_s.
+WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
+                    const std::vector<const Prepared*>& prepared,
+                    double offset_s,
+                    const WheelOptions& options) {
+  WheelReadings readings;
+  const Uncertain gravity =
+      gravity_in_plane(prepared.front()->plane, !sensors.front()->accel_mps2[2].empty(),
+                       options.gravity_mps2, options.axle_tilt_std_rad);
+  readings.gravity_mps2 = gravity.value;
+  readings.gravity_std_mps2 = gravity.std;
+  readings.given_rolling_radius_m = options.rolling_radius_m;
+  for (std::size_t s = 0; s < sensors.size(); ++s)
+    readings.sensors.push_back(project(*sensors[s], prepared[s]->screened, prepared[s]->plane));
+  std::array<std::size_t, 2> next{};
+  const auto skip_unusable = [&](std::size_t s) {
+    while (next[s] < sensors[s]->time_s.size() && !prepared[s]->screened.usable[next[s]]) ++next[s];
+    return next[s] < sensors[s]->time_s.size();
+  };
+  const auto time_of = [&](std::size_t s) {
+    return sensors[s]->time_s[next[s]] - (s == 0 ? 0.0 : offset_s);
+  };
+  for (;;) {
+    std::array<bool, 2> has{};
+    for (std::size_t s = 0; s < sensors.size(); ++s) has[s] = skip_unusable(s);
+    if (!has[0] && !has[1]) break;
+    const double t = has[0] && has[1] ? std::min(time_of(0), time_of(1)) : time_of(has[0] ? 0 : 1);
+    WheelInstant instant;
+    instant.dt_s = readings.time_s.empty() ? 0.0 : t - readings.time_s.back();
+    for (std::size_t s = 0; s < sensors.size(); ++s)
+      if (has[s] && time_of(s) - t < same_instant_s)
+        instant.row[s] = static_cast<std::int64_t>(next[s]++);
+    readings.time_s.push_back(t);
+    readings.instants.push_back(instant);
+  }
+  if (!readings.instants.empty()) mark_standing(readings);
+  return readings;
+}
+
+/// A prior of the lever arms with only their size.
+PlacesPrior anywhere(std::size_t sensors, double std_m) {
+  const auto count = static_cast<Eigen::Index>(2 * sensors);
+  return {Eigen::VectorXd::Zero(count), Eigen::MatrixXd::Identity(count, count) * (std_m * std_m)};
+}
+
+/// Whether the recording determines the direction of the lever arm in the sensor's axes.
+bool shows_direction(const WheelFit& fit, Eigen::Index at) {
+  const double trace = fit.constants_cov.block<2, 2>(at, at).trace();
+  return fit.constants.segment<2>(at).squaredNorm() > 25.0 * trace;
+}
+
+/// With the radius given, each sensor is on its circle; its direction comes from the recording,
+/// since at one speed a rotation of that direction is equivalent to a bias. If the recording does
+/// not determine it, the sensor may be anywhere within, with the variance along each axis of the
+/// points on a circle.
+PlacesPrior on_circles(const WheelFit& free, std::size_t sensors, const Uncertain& radius_m) {
+  PlacesPrior prior =
+      anywhere(sensors, std::max(radius_m.value / std::numbers::sqrt2, radius_m.std));
+  const Eigen::Index count = prior.mean.size(), first = free.constants.size() - count;
+  for (Eigen::Index at = 0; at < count; at += 2) {
+    if (!shows_direction(free, first + at)) continue;
+    const Eigen::Vector2d outward = free.constants.segment<2>(first + at).normalized();
+    const double across2 = prior.cov(at, at);
+    prior.mean.segment<2>(at) = radius_m.value * outward;
+    prior.cov.block<2, 2>(at, at) +=
+        (radius_m.std * radius_m.std - across2) * outward * outward.transpose();
+  }
+  return prior;
+}
+
+Uncertain radius_in(const WheelFit& fit, std::size_t sensors, std::size_t sensor) {
+  const auto at = fit.constants.size() - static_cast<Eigen::Index>(2 * (sensors - sensor));
+  const Eigen::Vector2d place = fit.constants.segment<2>(at);
+  const Eigen::Matrix2d cov = fit.constants_cov.block<2, 2>(at, at);
+  // A sensor estimated at the axle has no defined direction, and the uncertainty of its worst one.
+  const double widest = std::sqrt(symmetric_eigen(cov).values.maxCoeff());
+  if (place.norm() < widest) return {place.norm(), widest};
+  const Eigen::Vector2d outward = place.normalized();
+  return {place.norm(), std::sqrt(outward.dot(cov * outward))};
+}
+
+/// Fits once without the radius and, where one is given, again with it.
+WheelFit fit_with_radius(WheelReadings& readings,
+                         const WheelTrack& track,
+                         FitDepth depth,
+                         const WheelOptions& options) {
+  const std::size_t sensors = readings.sensors.size();
+  WheelFit free = fit_wheel(readings, track, anywhere(sensors, ConstantsPrior{}.place_m), depth,
+                            options.progress);
+  if (!options.radius_m || depth == FitDepth::track) return free;
+  const Uncertain radius_m{*options.radius_m, radius_std_m(options)};
+  WheelFit held =
+      fit_wheel(readings, free.track, on_circles(free, sensors, radius_m), depth, options.progress);
+  held.given_radius_m = radius_m;
+  for (std::size_t s = 0; s < sensors; ++s)
+    held.free_radius_m.push_back(radius_in(free, sensors, s));
+  return held;
+}
+
+double top_speed_radps(const WheelFit& fit) {
+  double top = 0.0;
+  for (const double speed : fit.series.speed_radps) top = std::max(top, std::abs(speed));
+  return top;
+}
+
+/// Whether the final fit explains much less than its initial track: a variance that grows with the
+/// misfit can decouple a filter from the wheel.
+bool has_lost(const WheelFit& fit, const WheelTrack& begun) {
+  return fit.track.lost > 0.1 + 1.5 * begun.lost;
+}
+
+Result<Single> fit_single(const WheelSensor& sensor,
+                          Prepared prepared,
+                          FitDepth depth,
+                          const WheelOptions& options) {
+  Single single{std::move(prepared), {}, {}};
+  single.readings = merge({&sensor}, {&single.prepared}, 0.0, options);
+  if (single.readings.instants.size() < 10)
+    return Error{Errc::too_few_samples, sensor.name + ": fewer than 10 usable rows"};
+  single.readings.delay_s = delay_of(options, single.readings.rate_hz());
+  if (options.progress) options.progress("looking for the wheel's phase", 0.0);
+  const double fastest = fastest_radps(single.readings.rate_hz());
+  bool followed = false;
+  std::optional<Single> unsure;
+  for (std::size_t seek = 0; seek < wheel_seeks; ++seek) {
+    const WheelTrack track = find_track(single.readings, seek);
+    if (track.lost > not_a_wheel) break;
+    followed = true;
+    single.fit = fit_with_radius(single.readings, track, depth, options);
+    if (top_speed_radps(single.fit) > fastest || has_lost(single.fit, track)) continue;
+    // A fit that explains more but whose turns are uncertain outweighs a certain one.
+    const bool explains_less = unsure && unsure->fit.track.lost < single.fit.track.lost;
+    if (single.fit.doubts.empty() &&
+        !(explains_less && std::abs(unsure->fit.turns.value - single.fit.turns.value) > 0.5))
+      return single;
+    if (!explains_less) unsure = single;
+  }
+  if (unsure) return *std::move(unsure);
+  if (followed)
+    return Error{Errc::not_observable, sensor.name +
+                                           ": the angle was lost: the wheel turns by more than an "
+                                           "eighth of a turn between samples; record at a higher "
+                                           "rate, or cut the recording by --from and --to"};
+  return Error{Errc::not_observable,
+               sensor.name +
+                   ": no rotation of gravity in the plane of the wheel (axle vertical, "
+                   "data not in m/s^2, or not a wheel); check --unit and --spin-axis"};
+}
+
+Result<Single> fit_single(const WheelSensor& sensor, FitDepth depth, const WheelOptions& options) {
+  Prepared prepared{screen_rows(sensor), {}};
+  const auto plane = find_plane(sensor, prepared.screened, options.spin_axis);
+  if (!plane) return plane.error();
+  prepared.plane = *plane;
+  return fit_single(sensor, std::move(prepared), depth, options);
+}
+
+WheelMotion motion_of(const WheelFit& fit) {
+  return {&fit.series.time_s, &fit.series.angle_rad, &fit.series.speed_radps};
+}
+
+}  // namespace
+
+Status check_wheel(std::size_t sensors, const WheelOptions& options) {
+  if (sensors == 0 || sensors > 2)
+    return Error{Errc::invalid_argument,
+                 "a wheel takes one or two sensors, not " + std::to_string(sensors)};
+  const bool positive =
+      options.gravity_mps2 > 0.0 && options.radius_m.value_or(0.0) >= 0.0 &&
+      options.rim_radius_m.value_or(1.0) > 0.0 && options.rolling_radius_m.value_or(0.0) >= 0.0 &&
+      options.alignment_std_rad >= 0.0 && options.radius_std_m.value_or(0.0) >= 0.0 &&
+      options.bandwidth_hz.value_or(1.0) > 0.0 && options.axle_tilt_std_rad >= 0.0;
+  if (!positive)
+    return Error{Errc::invalid_argument,
+                 "gravity, radii and bandwidth must be positive (the sensor's radius may be 0), "
+                 "standard deviations not negative"};
+  return Done{};
+}
+
+double radius_std_m(const WheelOptions& options) {
+  return options.radius_std_m.value_or(std::max(0.02 * options.radius_m.value_or(0.0), 2e-4));
+}
+
+Eigen::VectorXd places_in(const WheelFit& fit, std::size_t sensors) {
+  return fit.constants.tail(static_cast<Eigen::Index>(2 * sensors));
+}
+
+Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOptions& options) {
+  Pair pair;
+  const FitDepth depth = sensors.size() == 1 ? FitDepth::whole : FitDepth::track;
+  for (const WheelSensor& sensor : sensors) {
+    auto single = fit_single(sensor, depth, options);
+    if (!single) return single.error();
+    pair.singles.push_back(std::move(single).value());
+  }
+  if (pair.singles.size() == 1) return pair;
+  // Less than a hundredth of a turn does not determine the direction.
+  const double way = pair.singles[0].fit.turns.value * pair.singles[1].fit.turns.value;
+  if (way < -1e-4 && !options.spin_axis) {
+    Prepared other = pair.singles[1].prepared;
+    other.plane = turned_over(other.plane);
+    auto again = fit_single(sensors[1], std::move(other), depth, options);
+    if (!again) return again.error();
+    pair.singles[1] = std::move(again).value();
+  }
+  const auto clocks = fit_clocks(motion_of(pair.singles[0].fit), motion_of(pair.singles[1].fit),
+                                 options.clocks_shared);
+  if (!clocks) return clocks.error().at("two sensors");
+  pair.clocks = *clocks;
+  // With a shared clock an offset must be clearly significant before the stamps are declared wrong,
+  // which it is not if an angle was lost.
+  const bool lost = !pair.singles[0].fit.doubts.empty() || !pair.singles[1].fit.doubts.empty();
+  if (options.clocks_shared && (lost || std::abs(pair.clocks.offset_s.value) <
+                                            std::max(5.0 * pair.clocks.offset_s.std, 2e-4)))
+    pair.clocks.offset_s.value = 0.0;
+  return pair;
+}
+
+Joint fit_jointly(const std::vector<WheelSensor>& sensors,
+                  const Pair& pair,
+                  const WheelOptions& options) {
+  const Single &one = pair.singles[0], &two = pair.singles[1];
+  Joint joint;
+  joint.readings = merge({&sensors[0], &sensors[1]}, {&one.prepared, &two.prepared},
+                         pair.clocks.offset_s.value, options);
+  joint.readings.phase_rad = pair.clocks.phase_rad;
+  joint.readings.orders = one.readings.orders;
+  joint.readings.delay_s = one.readings.delay_s;
+  for (std::size_t s = 0; s < 2; ++s)
+    joint.readings.sensors[s].variance_m2ps4 = pair.singles[s].readings.sensors[0].variance_m2ps4;
+  WheelTrack track = one.fit.track;
+  track.path.moving.clear();
+  const auto& times = one.fit.series.time_s;
+  std::size_t at = 0;
+  for (const double t : joint.readings.time_s) {
+    while (at + 1 < times.size() && times[at + 1] <= t) ++at;
+    Mat<wheel::moving> moving = one.fit.track.path.moving[at];
+    const double dt = t - times[at];
+    moving(wheel::angle) += dt * moving(wheel::speed);
+    track.path.moving.push_back(moving);
+  }
+  const Eigen::VectorXd &first = one.fit.track.path.standing, &second = two.fit.track.path.standing;
+  track.path.standing.resize(wheel::standing(2));
+  constexpr int between = wheel::gyro(1) - wheel::ripple(1);
+  constexpr int ripple = wheel::ripple(1) - wheel::first_of(0), gyro = ripple + between;
+  track.path.standing << first.head<5>(), second.head<5>(), 0.0, first.segment<between>(ripple),
+      first.segment<2>(gyro), second.segment<2>(gyro), first.tail<2>(), second.tail<2>();
+  track.beginning.angle_rad = track.path.moving.front()(wheel::angle);
+  joint.fit = fit_with_radius(joint.readings, track, FitDepth::whole, options);
+  return joint;
+}
+
+}  // namespace proofmass::estimate

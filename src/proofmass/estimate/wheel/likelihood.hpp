@@ -1,0 +1,233 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "proofmass/estimate/wheel/fit.hpp"
+
+// Filter passes over a wheel's measurements, shared by all steps of the fit.
+namespace proofmass::estimate {
+
+inline constexpr Gate wheel_gate{.huber = 3.0, .limit = 12.0, .patience = 40};
+
+/// Lever arms of the sensors, (u, v) of each, m.
+using Places = Eigen::VectorXd;
+
+/// Prior, before the data.
+struct WheelPrior {
+  Beginning beginning;
+  ConstantsPrior spread;
+  std::optional<Places> places{};       ///< held there
+  std::optional<PlacesPrior> belief{};  ///< of lever arms that are estimated; else spread.place_m
+};
+
+template <int S>
+WheelModel<S> wheel_model(const WheelReadings& readings, const WheelNoise& noise) {
+  WheelModel<S> model;
+  model.gravity_mps2 = readings.gravity_mps2;
+  model.rolling_radius_m = readings.rolling_radius_m.value;
+  model.phase_rad = readings.phase_rad;
+  model.delay_s = readings.delay_s.value;
+  model.orders = readings.orders;
+  model.noise = noise;
+  model.instants = &readings.instants;
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
+    model.readings[s] = &readings.sensors[s];
+    model.with_gyro = model.with_gyro || !readings.sensors[s].speed_radps.empty();
+  }
+  return model;
+}
+
+/// Resets the sensors' constants to their prior.
+template <int S>
+void reset_constants(const WheelPrior& prior, Gaussian<wheel::states(S)>& x) {
+  constexpr int count = wheel::standing(S), places = wheel::places(S);
+  x.mean.template tail<count>().setZero();
+  x.cov.template bottomRows<count>().setZero();
+  x.cov.template rightCols<count>().setZero();
+  auto variance = x.cov.diagonal();
+  const ConstantsPrior& spread = prior.spread;
+  for (int s = 0; s < S; ++s) {
+    const int at = wheel::first_of(s);
+    variance.template segment<2>(at + wheel::bias).setConstant(spread.bias_mps2 * spread.bias_mps2);
+    variance.template segment<2>(at + wheel::scale).setConstant(spread.scale * spread.scale);
+    variance(at + wheel::skew) = spread.skew_rad * spread.skew_rad;
+  }
+  if (S == 2) variance(wheel::phase) = spread.phase_rad * spread.phase_rad;
+  variance.template segment<2 * wheel::ripple_orders>(wheel::ripple(S))
+      .setConstant(spread.ripple * spread.ripple);
+  for (int s = 0; s < S; ++s) {
+    const int at = wheel::gyro(S) + 2 * s;
+    variance(at) = spread.gyro_bias_radps * spread.gyro_bias_radps;
+    variance(at + 1) = spread.gyro_scale * spread.gyro_scale;
+  }
+  if (prior.places)
+    x.mean.template segment<2 * S>(places) = *prior.places;
+  else if (prior.belief) {
+    x.mean.template segment<2 * S>(places) = prior.belief->mean;
+    x.cov.template bottomRightCorner<2 * S, 2 * S>() = prior.belief->cov;
+  } else
+    variance.template segment<2 * S>(places).setConstant(spread.place_m * spread.place_m);
+}
+
+/// The state before the first measurement. The start angle is in it twice, with one variance.
+template <int S>
+FilterState<wheel::states(S)> prior_state(const WheelPrior& prior) {
+  FilterState<wheel::states(S)> state;
+  auto& [x, P] = state.x;
+  reset_constants<S>(prior, state.x);
+  x(wheel::angle) = x(wheel::start) = prior.beginning.angle_rad;
+  x(wheel::speed) = prior.beginning.speed_radps;
+  for (const int i : {wheel::angle, wheel::start})
+    for (const int j : {wheel::angle, wheel::start})
+      P(i, j) = std::pow(prior.beginning.angle_std_rad, 2);
+  P(wheel::speed, wheel::speed) = std::pow(prior.beginning.speed_std_radps, 2);
+  P(wheel::accel, wheel::accel) = 25.0;
+  P(wheel::jerk, wheel::jerk) = 25.0;
+  return state;
+}
+
+/// Prediction quality of a forward run. `lost`, from LostShare, compares runs with different noise
+/// parameters: a run with the correct phase scores near 0, a run that has lost it above a half.
+struct WheelScore {
+  double lost = 0.0;
+  double log_likelihood = 0.0;
+};
+
+/// Mean of min(y²/c², 1) over the innovations y, c = 0.3 g.
+class LostShare {
+ public:
+  explicit LostShare(double gravity_mps2) : c2_(std::pow(0.3 * gravity_mps2, 2)) {}
+
+  template <class Step>
+  void add(const Step& step) {
+    for (int i = 0; i < step.count; ++i) {
+      const double y = step.updates[static_cast<std::size_t>(i)].innovation;
+      sum_ += y * y < c2_ ? y * y / c2_ : 1.0;
+      ++readings_;
+    }
+  }
+  /// 1 without measurements.
+  [[nodiscard]] double share() const {
+    return readings_ > 0 ? sum_ / static_cast<double>(readings_) : 1.0;
+  }
+
+ private:
+  double c2_, sum_ = 0.0;
+  std::size_t readings_ = 0;
+};
+
+/// Huber's ρ of ν standard deviations, at most that of the gate's limit.
+[[nodiscard]] inline double surprise(double off) {
+  constexpr double huber = wheel_gate.huber;
+  if (off <= huber) return off * off;
+  return 2.0 * huber * std::min(off, wheel_gate.limit) - huber * huber;
+}
+
+template <int S>
+WheelScore score_run(const WheelModel<S>& model,
+                     FilterState<wheel::states(S)> state,
+                     std::size_t first,
+                     std::size_t last) {
+  LostShare lost(model.gravity_mps2);
+  WheelScore score;
+  filter(model, first, last, wheel_gate, state, [&](std::size_t, const auto& step) {
+    lost.add(step);
+    for (int i = 0; i < step.count; ++i) {
+      const auto& u = step.updates[static_cast<std::size_t>(i)];
+      score.log_likelihood -=
+          0.5 * (std::log(2.0 * std::numbers::pi * u.expected) + surprise(std::sqrt(u.nis())));
+    }
+  });
+  score.lost = lost.share();
+  if (std::isfinite(score.log_likelihood)) return score;
+  return {1.0, -std::numeric_limits<double>::infinity()};
+}
+
+/// Smooths and stores the trajectory; returns the state after the last epoch.
+template <int S>
+Gaussian<wheel::states(S)> trace_path(const WheelModel<S>& model,
+                                      const FilterState<wheel::states(S)>& prior,
+                                      WheelPath& path) {
+  using Model = WheelModel<S>;
+  Gaussian<Model::states> end = prior.x;
+  std::vector<Mat<wheel::moving>> moving(model.size());
+  smooth(
+      model, prior, wheel_gate,
+      [&](std::size_t, const StepOf<Model>& step) { end = step.filtered; },
+      [&](std::size_t k, const StepOf<Model>& step,
+          const BackwardInformation<Model::states>& later) {
+        moving[k] = later.mean(step.filtered).template head<wheel::moving>();
+      });
+  path.moving = std::move(moving);
+  path.standing = end.mean.template tail<wheel::standing(S)>();
+  return end;
+}
+
+/// Sets each measurement's variance from the neighbouring innovations.
+template <int S>
+void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings);
+
+/// A part of the recording to tune on: all of it or, if it is long, the interval of 20 000 epochs
+/// with the largest speed change, with the filter's state at its beginning.
+template <int S>
+struct Excerpt {
+  std::size_t first = 0, last = 0;
+  FilterState<wheel::states(S)> state;
+};
+
+template <int S>
+[[nodiscard]] Excerpt<S> liveliest(const WheelModel<S>& model, const WheelPrior& prior);
+
+struct TunedNoise {
+  WheelNoise noise;
+  double log_likelihood = 0.0;
+};
+
+/// Maximum-likelihood motion noise on the excerpt: each parameter in turn by steps of a shrinking
+/// factor, from `first_factor` down.
+template <int S>
+[[nodiscard]] TunedNoise tune_noise(WheelModel<S> model,
+                                    const Excerpt<S>& excerpt,
+                                    double first_factor);
+
+/// The levers of a path on the measurements' time line.
+[[nodiscard]] WheelLevers levers_of(const WheelPath& path, const WheelReadings& readings);
+
+struct FoundPlaces {
+  Places mean;
+  Eigen::MatrixXd cov;
+  double log_likelihood = 0.0;
+};
+
+/// Maximum-likelihood lever arms, with all else integrated out by the filter. Ripple within a turn
+/// informs a lever arm only as far as the white jerk and snap model holds, so this is an initial
+/// value, not a measure of certainty.
+template <int S>
+[[nodiscard]] FoundPlaces likeliest_places(const WheelModel<S>& model,
+                                           const Excerpt<S>& excerpt,
+                                           WheelPrior prior,
+                                           const PlacesPrior& belief);
+
+/// Lever arms as additional states, about a path: as far as the change of the mean force with speed
+/// shows them.
+template <int S>
+[[nodiscard]] FoundPlaces places_by_levers(WheelModel<S> model,
+                                           const WheelLevers& levers,
+                                           WheelPrior prior,
+                                           const PlacesPrior& belief);
+
+/// Inflation factor of the standard deviations of all static states if the innovations are
+/// coloured: P⁻¹-weighted scores in blocks of a fortieth, a twentieth and a tenth of the recording,
+/// the shortest of a second at least; the maximum of these. At least 1.
+template <int S>
+[[nodiscard]] Eigen::VectorXd widening(WheelModel<S> model,
+                                       const WheelLevers& levers,
+                                       const std::vector<double>& time_s,
+                                       WheelPrior prior,
+                                       const PlacesPrior& belief);
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,47 @@
+#include "proofmass/signal/clipping_tail.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proofmass/signal/audit/chunk_statistics.hpp"
+
+namespace proofmass::signal {
+namespace {
+
+std::size_t count_beside(View<double> values, double extreme, double width) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      values, [&](double x) { return x != extreme && std::abs(x - extreme) <= width; }));
+}
+
+}  // namespace
+
+void ClippingTail::add(View<double> values, double extreme) {
+  // Most values of a long series lie beyond the tail: only a few parts need a check of each value.
+  constexpr std::size_t part = 64;
+  for (std::size_t from = 0; from < values.size() && sign_ * extreme < below_; from += part) {
+    const View<double> some = values.subspan(from, std::min(part, values.size() - from));
+    if (count_below(some, sign_, below_) > 0)
+      std::ranges::for_each(some, [this](double value) { keep(sign_ * value); });
+  }
+}
+
+void ClippingTail::keep(double value) {
+  if (!(value < below_)) return;
+  kept_.push_back(value);
+  if (kept_.size() < 2 * capacity_) return;
+  const auto last = kept_.begin() + static_cast<std::ptrdiff_t>(capacity_ - 1);
+  std::ranges::nth_element(kept_, last);
+  below_ = *last;
+  kept_.resize(capacity_);
+}
+
+double ClippingTail::beside(double width, const Subsample& sample) const {
+  if (kept_.empty()) return 0.0;
+  const double extreme = *std::ranges::min_element(kept_);
+  const double exact = static_cast<double>(count_beside(kept_, extreme, width));
+  if (extreme + width < below_) return exact;
+  const auto of_sample = static_cast<double>(count_beside(sample.values(), sign_ * extreme, width));
+  return std::max(exact, of_sample * sample.share());
+}
+
+}  // namespace proofmass::signal
