@@ -23,6 +23,7 @@ struct RestOptions {
   std::string temperature;        ///< name of the channel that holds it; empty: none is named
   bool find_temperature = false;  ///< where none is named, the only channel with a temperature
   bool for_sensor_file = false;   ///< refuse what a sensor file cannot take (--update-sensor)
+  bool rates_for_sensor_file = false;  ///< which may also be a gyroscope's axes
   bool is_phase = false;          ///< the channels hold the integral of the quantity over time
   bool may_drift = false;  ///< rest is looked for beside the drift, once that is known: not here
 };
@@ -37,7 +38,7 @@ struct RestChannel {
   std::vector<double> series;  ///< NaN where a sample is missing; empty if refused
   double rate_hz = 0.0;
   std::optional<double> lsb;        ///< step of the converter, in the series' unit
-  std::optional<std::size_t> axis;  ///< 0, 1, 2 for x, y, z of the only accelerometer
+  std::optional<std::size_t> axis;  ///< 0, 1, 2 for x, y, z of the only accelerometer or gyroscope
   /// How much of the recording is at rest; absent where its quantity says nothing of motion.
   std::optional<report::RestShare> rest;
 };
@@ -75,7 +76,7 @@ void find_share_at_rest(double start_s, std::vector<RestChannel>& channels);
 [[nodiscard]] std::string file_prefix(const std::string& file, const RestOptions& options);
 
 /// Throws Failure unless a sensor file can take the channel's figures.
-void expect_axis(const RestChannel& channel);
+void expect_axis(const RestChannel& channel, const RestOptions& options);
 
 /// All files, each with its channels to analyse: without --channel all accelerations, else the
 /// voltages or counts that look like axes, else all but a counter. Notes of reading and preparing

@@ -12,6 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t least_motions = 3;  // two residuals each, for nine elements of the matrix
+constexpr double unchanged = 1e-9;        // relative change of the matrix between passes
 constexpr int most_passes = 3;            // G moves the matrix by less than its own uncertainty
 
 // What the vertical component of Earth's rotation adds to each mean at rest, in readings.
@@ -70,7 +71,11 @@ Result<GyroscopeCalibration> calibrate_gyroscope(View<GyroscopeSession> sessions
   for (int pass = 0; pass < most_passes; ++pass) {
     fit.rests = regress_rests(*data, earth_at_rest(*data, fit.matrix.A, options.latitude_rad),
                               earth_variance(fit.matrix.A));
-    fit.matrix = fit_matrix(*data, fit.rests, fit.matrix.A);
+    const Eigen::Matrix3d before = fit.matrix.A;
+    const int iterations = fit.matrix.iterations;
+    fit.matrix = fit_matrix(*data, fit.rests, before);
+    fit.matrix.iterations += iterations;
+    if ((fit.matrix.A - before).norm() < unchanged * before.norm()) break;
   }
   return gyroscope_results(*data, fit, accelerometer);
 }

@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t most_motions = 16;  // enough to choose among coarse candidates
+constexpr std::size_t most_motions = 8;  // enough to choose among coarse candidates
 constexpr double explained_rad = 0.35;    // median angle from which the fit converges
 
 // Every n-th motion.
@@ -33,7 +33,8 @@ double median_angle(const GyroscopeData& data,
     Vector3d up = data.rests[motion->from].up;
     for (std::size_t n = 0; n < motion->samples.step_s.size(); ++n) {
       const Vector3d y = 0.5 * (motion->samples.reading[n] + motion->samples.reading[n + 1]);
-      up = rotation_by(motion->samples.step_s[n] * (A * y)).transpose() * up;
+      const Vector3d back = up.cross(motion->samples.step_s[n] * (A * y));
+      up = (up + back + 0.5 * back.cross(motion->samples.step_s[n] * (A * y))).normalized();
     }
     const Vector3d& measured = data.rests[motion->to].up;
     angles.push_back(std::atan2(up.cross(measured).norm(), up.dot(measured)));
@@ -41,7 +42,7 @@ double median_angle(const GyroscopeData& data,
   return median(angles).value_or(0.0);
 }
 
-// Scales at which the median motion turns by 0.2 to 20 rad, 5 % apart.
+// Scales at which the median motion turns by 0.2 to 15 rad, 8 % apart.
 std::vector<double> scales(const std::vector<const GyroscopeMotion*>& motions, bool in_radps) {
   if (in_radps) return {1.0};
   std::vector<double> turned;
@@ -53,7 +54,7 @@ std::vector<double> scales(const std::vector<const GyroscopeMotion*>& motions, b
   }
   const double usual = std::max(median(turned).value_or(1.0), 1e-300);
   std::vector<double> out;
-  for (double angle = 0.2; angle < 20.0; angle *= 1.05) out.push_back(angle / usual);
+  for (double angle = 0.2; angle < 15.0; angle *= 1.08) out.push_back(angle / usual);
   return out;
 }
 

@@ -66,8 +66,8 @@ TEST(MotionIntegral, HasTheDerivativesOfDifferences) {
     const auto slope = [&](const MotionRotation& next, double step) -> Vector3d {
       return rotation_vector(at.R.transpose() * next.R) / step;
     };
-    EXPECT_LT((slope(integrate(motion, moved, G, {}), h) - at.by_matrix.col(k)).norm(), 2e-4);
-    EXPECT_LT((slope(integrate(motion, A, moved_g, {}), 0.1 * h) - at.by_g.col(k)).norm(), 2e-3);
+    EXPECT_LT((slope(integrate(motion, moved, G, Vector3d::Zero()), h) - at.by_matrix.col(k)).norm(), 2e-4);
+    EXPECT_LT((slope(integrate(motion, A, moved_g, Vector3d::Zero()), 0.1 * h) - at.by_g.col(k)).norm(), 2e-3);
   }
 }
 
@@ -76,7 +76,7 @@ TEST(GyroscopeCalibration, FindsTheParametersOfASensorWithoutNoise) {
   test::GyroscopeTruth truth = test::drawn_gyroscope(random);
   truth.sample_std = 1e-9;
   test::SimulatedRecording recording =
-      test::simulate(truth, {.rate_hz = 400.0, .accel_std_mps2 = 1e-8}, random);
+      test::simulate(truth, {.rate_hz = 200.0, .accel_std_mps2 = 1e-8}, random);
   const GyroscopeCalibration fit = calibrated(recording);
   EXPECT_TRUE(fit.converged);
   EXPECT_LT((fit.estimate - truth.p).head<3>().norm(), 1e-8);
@@ -197,7 +197,7 @@ TEST(GyroscopeCalibration, TakesTheRatesOfATurntable) {
     ASSERT_TRUE(with.parameter(k));
     const auto at = static_cast<Eigen::Index>(k);
     EXPECT_NEAR(with.parameter(k)->value, truth.p(at), 4.0 * with.parameter(k)->std);
-    EXPECT_LT(with.parameter(k)->std, 0.5 * without.parameter(k)->std);
+    EXPECT_LT(with.parameter(k)->std, 0.7 * without.parameter(k)->std);
   }
 }
 

@@ -51,6 +51,7 @@ struct Turning {
 struct SimulatedRecording {
   GyroscopeSession session;
   Parameters accel = Parameters::Zero();
+  Eigen::Vector3d mean_drift = Eigen::Vector3d::Zero();  ///< of the bias, over the rests
 };
 
 /// A sensor near rad/s: bias of 0.5 °/s, scale errors of 1 %, angles of 10 mrad, G of 0.1 °/s/g.
@@ -103,7 +104,7 @@ class HandTurner {
     for (std::size_t k = 0; k < turning_.rests; ++k) {
       if (k > 0) turn(k);
       const std::size_t first = out_.session.time_s.size();
-      for (std::size_t n = 0; n < at_rest; ++n) sample({}, {});
+      for (std::size_t n = 0; n < at_rest; ++n) sample(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), true);
       out_.session.rests.push_back({first, out_.session.time_s.size() - 1});
     }
     return out_;
@@ -147,11 +148,12 @@ class HandTurner {
     attitude_.coeffs() = (q + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)).normalized();
   }
 
-  void sample(const Eigen::Vector3d& omega, const Eigen::Vector3d& alpha) {
+  void sample(const Eigen::Vector3d& omega, const Eigen::Vector3d& alpha, bool at_rest = false) {
     const Eigen::Vector3d lever(turning_.lever_m, -turning_.lever_m, 0.5 * turning_.lever_m);
     const Eigen::Vector3d force = attitude_.inverse() * Eigen::Vector3d(0.0, 0.0, g) +
                                   omega.cross(omega.cross(lever)) + alpha.cross(lever);
     drift_ += truth_.walk / std::sqrt(turning_.rate_hz) * drawn_vector(random_);
+    if (at_rest) out_.mean_drift += drift_ / rest_samples();
     const Eigen::Vector3d earth = attitude_.inverse() * truth_.earth_radps;
     const Eigen::Vector3d rate =
         truth_.reading(omega + earth, force) + drift_ + truth_.sample_std * drawn_vector(random_);
@@ -163,6 +165,10 @@ class HandTurner {
       session.rate[axis].push_back(rate(static_cast<Eigen::Index>(axis)));
       session.accel[axis].push_back(accel(static_cast<Eigen::Index>(axis)));
     }
+  }
+
+  [[nodiscard]] double rest_samples() const {
+    return static_cast<double>(turning_.rests) * std::floor(turning_.rest_s * turning_.rate_hz);
   }
 
   GyroscopeTruth truth_;

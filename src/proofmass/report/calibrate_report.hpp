@@ -17,6 +17,7 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/report/certificate.hpp"
 #include "proofmass/report/document.hpp"
+#include "proofmass/report/gyroscope_report.hpp"
 
 namespace proofmass::report {
 
@@ -67,6 +68,7 @@ struct CalibrateReport {
   std::vector<std::string> validation_files;
   std::vector<SuppliedFit> supplies;  ///< one for each file where they were at different supplies
   std::optional<calibrate::SupplyDependence> supply;
+  std::optional<GyroscopeReport> gyroscope;  ///< with --gyro
   CertificateData certificate;  ///< names, conditions and limits; budgets are those above
   std::vector<Note> notes;      ///< of reading and preparing; those of the fit are added
 };

@@ -19,7 +19,8 @@ struct PrintedUnit {
   double factor;
 };
 constexpr PrintedUnit printed_units[] = {
-    {"rad", "mrad", 1e3}, {"V", "mV", 1e3}, {"V/(m/s^2)", "mV/(m/s^2)", 1e3}};
+    {"rad", "mrad", 1e3}, {"V", "mV", 1e3}, {"V/(m/s^2)", "mV/(m/s^2)", 1e3},
+    {"rad/s", "mrad/s", 1e3}, {"rad/s/(m/s^2)", "mrad/s/(m/s^2)", 1e3}};
 
 PrintedUnit printed(std::string_view si) {
   for (const PrintedUnit& unit : printed_units)
