@@ -20,7 +20,7 @@ struct CalibrateCommand {
   double orthogonality_std_deg = 0.57, placement_std_deg = 1.0;
   std::vector<double> supplies_v;
   std::vector<std::string> type_b, validate;
-  std::size_t monte_carlo = 200;  ///< draws; 0: no check
+  std::size_t monte_carlo = 200;       ///< draws; 0: no check
   bool gyro = false;                   ///< calibrate the gyroscope too
   std::string gyro_file;               ///< its recording, if it has one of its own
   std::string rate_unit = "rad/s";     ///< where the gyroscope's headings have none

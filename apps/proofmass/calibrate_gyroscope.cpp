@@ -52,11 +52,12 @@ void expect_one_clock(const Recording& gyroscope, const Recording& accelerometer
   if (gyroscope.samples() == n &&
       std::abs(gyroscope.duration_s() - accelerometer.duration_s()) < half_step_s)
     return;
-  throw Failure(bad_input,
-                fmt::format("{} has {} samples in {:g} s, {} has {} in {:g} s: both sensors must be "
-                            "sampled together",
-                            gyroscope.source, gyroscope.samples(), gyroscope.duration_s(),
-                            accelerometer.source, n, accelerometer.duration_s()));
+  throw Failure(
+      bad_input,
+      fmt::format("{} has {} samples in {:g} s, {} has {} in {:g} s: both sensors must be "
+                  "sampled together",
+                  gyroscope.source, gyroscope.samples(), gyroscope.duration_s(),
+                  accelerometer.source, n, accelerometer.duration_s()));
 }
 
 std::vector<double> in_unit(const Channel& channel, const Unit& unit) {
@@ -148,8 +149,8 @@ void calibrate_gyroscope(const CalibrateCommand& command,
                          report::CalibrateReport& report) {
   if (set.rates.empty())
     throw Failure(usage, "--gyro: needs a recording of both sensors, not a table of means");
-  calibrate::GyroscopeOptions options{
-      .in_radps = set.rates.front().unit.quantity == Quantity::angular_rate};
+  calibrate::GyroscopeOptions options{.in_radps = set.rates.front().unit.quantity ==
+                                                  Quantity::angular_rate};
   if (command.input.latitude_deg) options.latitude_rad = *command.input.latitude_deg * rad_per_deg;
   for (const std::string& text : command.turntable) options.table.push_back(parse_rate(text));
   if (!options.table.empty() && set.rates.size() > 1)
@@ -167,13 +168,13 @@ void calibrate_gyroscope(const CalibrateCommand& command,
 
 void update_gyroscope(const CalibrateCommand& command, const report::CalibrateReport& report) {
   const report::GyroscopeReport& found = *report.gyroscope;
-  sensor::MeasuredGyroscope measured{.figures = {},
-                                     .reading_unit = found.unit.symbol,
-                                     .covariance = {},
-                                     .origin = fmt::format(
-                                         "proofmass calibrate {} --gyro, {} motions",
-                                         report::file_name(report.files.front().file),
-                                         found.fit.motions.size())};
+  sensor::MeasuredGyroscope measured{
+      .figures = {},
+      .reading_unit = found.unit.symbol,
+      .covariance = {},
+      .origin =
+          fmt::format("proofmass calibrate {} --gyro, {} motions",
+                      report::file_name(report.files.front().file), found.fit.motions.size())};
   auto& covariance = measured.covariance.emplace();
   for (std::size_t i = 0; i < calibrate::gyroscope_parameters; ++i) {
     measured.figures[i] = found.fit.parameter(i);

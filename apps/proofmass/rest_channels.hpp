@@ -20,11 +20,11 @@ struct RestOptions {
   std::vector<std::string> files;
   InputFlags input;
   OutputFlags output;
-  std::string temperature;        ///< name of the channel that holds it; empty: none is named
-  bool find_temperature = false;  ///< where none is named, the only channel with a temperature
-  bool for_sensor_file = false;   ///< refuse what a sensor file cannot take (--update-sensor)
+  std::string temperature;             ///< name of the channel that holds it; empty: none is named
+  bool find_temperature = false;       ///< where none is named, the only channel with a temperature
+  bool for_sensor_file = false;        ///< refuse what a sensor file cannot take (--update-sensor)
   bool rates_for_sensor_file = false;  ///< which may also be a gyroscope's axes
-  bool is_phase = false;          ///< the channels hold the integral of the quantity over time
+  bool is_phase = false;               ///< the channels hold the integral of the quantity over time
   bool may_drift = false;  ///< rest is looked for beside the drift, once that is known: not here
 };
 

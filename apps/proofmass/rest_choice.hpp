@@ -15,8 +15,9 @@
 namespace proofmass::app {
 
 struct RestChoice {
-  std::vector<std::size_t> channels;             ///< as places in the recording's
-  std::vector<std::optional<std::size_t>> axes;  ///< of each: 0, 1, 2 of the only sensor of its kind
+  std::vector<std::size_t> channels;  ///< as places in the recording's
+  std::vector<std::optional<std::size_t>>
+      axes;  ///< of each: 0, 1, 2 of the only sensor of its kind
 };
 
 /// All accelerations; else the voltages or counts that look like axes; else all that is no counter.

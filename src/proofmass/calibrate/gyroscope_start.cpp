@@ -14,7 +14,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr std::size_t most_motions = 8;  // enough to choose among coarse candidates
-constexpr double explained_rad = 0.35;    // median angle from which the fit converges
+constexpr double explained_rad = 0.35;   // median angle from which the fit converges
 
 // Every n-th motion.
 std::vector<const GyroscopeMotion*> chosen_motions(const GyroscopeData& data) {

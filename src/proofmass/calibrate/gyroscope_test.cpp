@@ -66,8 +66,12 @@ TEST(MotionIntegral, HasTheDerivativesOfDifferences) {
     const auto slope = [&](const MotionRotation& next, double step) -> Vector3d {
       return rotation_vector(at.R.transpose() * next.R) / step;
     };
-    EXPECT_LT((slope(integrate(motion, moved, G, Vector3d::Zero()), h) - at.by_matrix.col(k)).norm(), 2e-4);
-    EXPECT_LT((slope(integrate(motion, A, moved_g, Vector3d::Zero()), 0.1 * h) - at.by_g.col(k)).norm(), 2e-3);
+    EXPECT_LT(
+        (slope(integrate(motion, moved, G, Vector3d::Zero()), h) - at.by_matrix.col(k)).norm(),
+        2e-4);
+    EXPECT_LT(
+        (slope(integrate(motion, A, moved_g, Vector3d::Zero()), 0.1 * h) - at.by_g.col(k)).norm(),
+        2e-3);
   }
 }
 

@@ -104,7 +104,8 @@ class HandTurner {
     for (std::size_t k = 0; k < turning_.rests; ++k) {
       if (k > 0) turn(k);
       const std::size_t first = out_.session.time_s.size();
-      for (std::size_t n = 0; n < at_rest; ++n) sample(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), true);
+      for (std::size_t n = 0; n < at_rest; ++n)
+        sample(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), true);
       out_.session.rests.push_back({first, out_.session.time_s.size() - 1});
     }
     return out_;

@@ -17,8 +17,8 @@ struct RecordingPosesOptions {
 };
 
 struct RecordingPoses {
-  Triad triad;      ///< the accelerometer
-  Unit unit;        ///< of the poses
+  Triad triad;                ///< the accelerometer
+  Unit unit;                  ///< of the poses
   std::vector<Dwell> dwells;  ///< the static intervals of the poses
   PoseMeans means;            ///< its poses have the times of the recording
 };

@@ -26,8 +26,9 @@ struct ParameterGroup {
 constexpr std::array<ParameterGroup, 4> parameter_groups{
     {{"bias", "reading of x, y and z at rest and 0 g"},
      {"scale", "reading per angular rate of x, y and z"},
-     {"misalignment_rad", "alpha_yz, alpha_zy, alpha_zx in omega = R T diag(1/scale) (reading - "
-                          "bias - G f), T = [1 -a_yz a_zy; 0 1 -a_zx; 0 0 1]"},
+     {"misalignment_rad",
+      "alpha_yz, alpha_zy, alpha_zx in omega = R T diag(1/scale) (reading - "
+      "bias - G f), T = [1 -a_yz a_zy; 0 1 -a_zx; 0 0 1]"},
      {"alignment_rad", "rotation vector from the gyroscope's frame to the accelerometer's: R"}}};
 
 const UncertaintyBudget* budget_of(const GyroscopeReport& report, std::size_t k) {
@@ -59,15 +60,15 @@ Fields grouped_parameters(const GyroscopeReport& report, bool described, FieldOf
   };
   Fields out;
   for (std::size_t group = 0; group < parameter_groups.size(); ++group)
-    out.push_back(field::fixed_list(
-        parameter_groups[group].key, three(3 * group),
-        {.meaning = described ? parameter_groups[group].meaning : ""}));
+    out.push_back(field::fixed_list(parameter_groups[group].key, three(3 * group),
+                                    {.meaning = described ? parameter_groups[group].meaning : ""}));
   Fields rows;
   for (std::size_t row = 0; row < 3; ++row)
     rows.push_back(field::fixed_list({}, three(12 + 3 * row)));
   out.push_back(field::fixed_list(
       "g_sensitivity", std::move(rows),
-      {.meaning = described ? "G: reading of x, y and z per specific force along x, y and z" : ""}));
+      {.meaning =
+           described ? "G: reading of x, y and z per specific force along x, y and z" : ""}));
   return out;
 }
 
@@ -77,9 +78,8 @@ Field covariance_field(const GyroscopeCalibration& fit) {
     const calibrate::GyroscopeVector row = fit.covariance.row(i);
     rows.push_back(field::numbers({}, row));
   }
-  return field::fixed_list(
-      "covariance", std::move(rows),
-      {.meaning = "of bias, scale, misalignment, alignment and G row by row"});
+  return field::fixed_list("covariance", std::move(rows),
+                           {.meaning = "of bias, scale, misalignment, alignment and G row by row"});
 }
 
 Field test_field(const char* key,
@@ -87,12 +87,12 @@ Field test_field(const char* key,
                  const char* meaning) {
   std::optional<Fields> fields;
   if (test)
-    fields = Fields{field::magnitude("statistic", test->statistic,
-                                     {.meaning = "F: mean square of the residuals over that of the "
-                                                 "noise"}),
-                    field::probability("p", test->p,
-                                       {.meaning = "probability of this or more by chance"}),
-                    field::magnitude("dof", test->dof)};
+    fields = Fields{
+        field::magnitude("statistic", test->statistic,
+                         {.meaning = "F: mean square of the residuals over that of the "
+                                     "noise"}),
+        field::probability("p", test->p, {.meaning = "probability of this or more by chance"}),
+        field::magnitude("dof", test->dof)};
   return field::object_or_null(
       key, std::move(fields),
       {.meaning = meaning, .why_null = "the noise is not known, or there is no redundancy"});
@@ -110,12 +110,11 @@ Fields motion_fields(const MotionResidual& motion) {
           field::number("end_s", motion.end_s),
           field::magnitude("turned_rad", in_fit(motion.turned_rad),
                            {.meaning = "integral of the magnitude of the rate", .why_null = why}),
-          field::magnitude("residual_rad", in_fit(motion.residual_rad),
-                           {.meaning = "angle from the predicted to the measured gravity",
-                            .why_null = why}),
+          field::magnitude(
+              "residual_rad", in_fit(motion.residual_rad),
+              {.meaning = "angle from the predicted to the measured gravity", .why_null = why}),
           field::magnitude("predicted_std_rad", in_fit(motion.predicted_std_rad),
-                           {.meaning = "of each of its two components, by noise",
-                            .why_null = why}),
+                           {.meaning = "of each of its two components, by noise", .why_null = why}),
           field::magnitude("leave_one_out_rad", motion.leave_one_out_rad,
                            {.meaning = "by a fit to the other motions", .why_null = why}),
           field::magnitude("studentised", motion.studentised, {.why_null = why}),
@@ -132,8 +131,7 @@ struct Shown {
 Shown shown_of(const GyroscopeReport& report, std::size_t k) {
   const bool rate = report.unit.quantity == Quantity::angular_rate;
   if (k < 3) return rate ? Shown{deg_per_rad, "°/s"} : Shown{1.0, report.unit.symbol};
-  if (k < 6)
-    return rate ? Shown{1.0, ""} : Shown{1.0, print_unit(report.unit.symbol + "/(rad/s)")};
+  if (k < 6) return rate ? Shown{1.0, ""} : Shown{1.0, print_unit(report.unit.symbol + "/(rad/s)")};
   if (k < 12) return {1e3, "mrad"};
   return rate ? Shown{deg_per_rad * standard_gravity_mps2, "°/s/g"}
               : Shown{standard_gravity_mps2, report.unit.symbol + "/g"};
@@ -167,18 +165,18 @@ Section figures_section_of(const GyroscopeReport& report) {
   const GyroscopeCalibration& fit = report.fit;
   std::size_t used = 0;
   for (const MotionResidual& motion : fit.motions) used += motion.used ? 1 : 0;
-  std::vector<std::string> points{fmt::format(
-      "{} of {} motions; gravity after a motion is predicted to {} mrad rms", used,
-      fit.motions.size(), significant(1e3 * fit.residual_rms_rad, 2))};
+  std::vector<std::string> points{
+      fmt::format("{} of {} motions; gravity after a motion is predicted to {} mrad rms", used,
+                  fit.motions.size(), significant(1e3 * fit.residual_rms_rad, 2))};
   if (fit.lack_of_fit)
-    points.back() += fmt::format(", {} times the noise", significant(std::sqrt(fit.lack_of_fit->statistic), 2));
+    points.back() +=
+        fmt::format(", {} times the noise", significant(std::sqrt(fit.lack_of_fit->statistic), 2));
   points.back() += ".";
   if (fit.angle_random_walk[0] > 0.0)
-    points.push_back(fmt::format(
-        "Angle random walk at rest: {}, {}, {} °/√h.",
-        significant(60.0 * deg_per_rad * fit.angle_random_walk[0], 2),
-        significant(60.0 * deg_per_rad * fit.angle_random_walk[1], 2),
-        significant(60.0 * deg_per_rad * fit.angle_random_walk[2], 2)));
+    points.push_back(fmt::format("Angle random walk at rest: {}, {}, {} °/√h.",
+                                 significant(60.0 * deg_per_rad * fit.angle_random_walk[0], 2),
+                                 significant(60.0 * deg_per_rad * fit.angle_random_walk[1], 2),
+                                 significant(60.0 * deg_per_rad * fit.angle_random_walk[2], 2)));
   return {.heading = "Gyroscope",
           .points = std::move(points),
           .tables = {std::move(table)},
@@ -208,32 +206,33 @@ Section motions_section(const GyroscopeReport& report) {
 
 Field gyroscope_field(const GyroscopeReport& report) {
   const GyroscopeCalibration& fit = report.fit;
-  Fields out{field::text("unit", report.unit.symbol,
-                         {.meaning = "of the readings: rad/s, V or counts"})};
+  Fields out{
+      field::text("unit", report.unit.symbol, {.meaning = "of the readings: rad/s, V or counts"})};
   append(out, grouped_parameters(report, true, parameter));
-  append(out,
-         {field::object("interval_95", grouped_parameters(report, false, parameter_interval),
-                        {.meaning = "by Student's t with the effective degrees of freedom of each "
-                                    "budget"}),
-          covariance_field(fit),
-          field::numbers("angle_random_walk", fit.angle_random_walk,
-                         {.meaning = "N of x, y and z at rest, rad/sqrt(s); 0: no noise is visible"}),
-          field::magnitude("residual_rms_rad", fit.residual_rms_rad),
-          field::magnitude("leave_one_out_rms_rad", fit.leave_one_out_rms_rad,
-                           {.why_null = "no motion is redundant"}),
-          test_field("lack_of_fit", fit.lack_of_fit, "of the motions and turntable rates"),
-          test_field("rests_lack_of_fit", fit.rests_lack_of_fit,
-                     "of the means at rest: the bias drifts between them"),
-          field::records("motions", fit.motions, motion_fields),
-          field::records("turntable", fit.rates,
-                         [](const calibrate::RateResidual& rate) {
-                           return Fields{
-                               field::magnitude("rate_radps", rate.rate_radps),
-                               field::number("residual_radps", rate.residual_radps),
-                               field::magnitude("predicted_std_radps", rate.predicted_std_radps)};
-                         },
-                         {.meaning = "steady rates, with --table-rates"}),
-          budgets_field(report.budgets), field::flag("converged", fit.converged)});
+  append(
+      out,
+      {field::object("interval_95", grouped_parameters(report, false, parameter_interval),
+                     {.meaning = "by Student's t with the effective degrees of freedom of each "
+                                 "budget"}),
+       covariance_field(fit),
+       field::numbers("angle_random_walk", fit.angle_random_walk,
+                      {.meaning = "N of x, y and z at rest, rad/sqrt(s); 0: no noise is visible"}),
+       field::magnitude("residual_rms_rad", fit.residual_rms_rad),
+       field::magnitude("leave_one_out_rms_rad", fit.leave_one_out_rms_rad,
+                        {.why_null = "no motion is redundant"}),
+       test_field("lack_of_fit", fit.lack_of_fit, "of the motions and turntable rates"),
+       test_field("rests_lack_of_fit", fit.rests_lack_of_fit,
+                  "of the means at rest: the bias drifts between them"),
+       field::records("motions", fit.motions, motion_fields),
+       field::records("turntable", fit.rates,
+                      [](const calibrate::RateResidual& rate) {
+                        return Fields{
+                            field::magnitude("rate_radps", rate.rate_radps),
+                            field::number("residual_radps", rate.residual_radps),
+                            field::magnitude("predicted_std_radps", rate.predicted_std_radps)};
+                      },
+                      {.meaning = "steady rates, with --table-rates"}),
+       budgets_field(report.budgets), field::flag("converged", fit.converged)});
   return field::object("gyroscope", std::move(out), {.meaning = "with --gyro"});
 }
 
@@ -246,15 +245,15 @@ std::vector<Note> gyroscope_notes(const GyroscopeReport& report) {
   std::vector<Note> out;
   for (const MotionResidual& motion : fit.motions)
     if (!motion.used)
-      out.push_back({Severity::warning,
-                     fmt::format("gyroscope: the motion {}–{} s is not used: {}",
-                                 fixed(motion.start_s, 2), fixed(motion.end_s, 2),
-                                 motion.why_unused)});
+      out.push_back({Severity::warning, fmt::format("gyroscope: the motion {}–{} s is not used: {}",
+                                                    fixed(motion.start_s, 2),
+                                                    fixed(motion.end_s, 2), motion.why_unused)});
   if (fit.lack_of_fit && fit.lack_of_fit->p < gyroscope_some_p)
-    out.push_back({Severity::warning,
-                   fmt::format("gyroscope: the residuals of the motions are {} times the noise: the "
-                               "uncertainties are by the residuals",
-                               significant(std::sqrt(fit.lack_of_fit->statistic), 2))});
+    out.push_back(
+        {Severity::warning,
+         fmt::format("gyroscope: the residuals of the motions are {} times the noise: the "
+                     "uncertainties are by the residuals",
+                     significant(std::sqrt(fit.lack_of_fit->statistic), 2))});
   if (fit.rests_lack_of_fit && fit.rests_lack_of_fit->p < gyroscope_some_p)
     out.push_back({Severity::info,
                    "gyroscope: the bias drifts between the rests by more than its noise; its "

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "proofmass/report/budget_report.hpp"
 #include "proofmass/calibrate/gyroscope_budget.hpp"
+#include "proofmass/report/budget_report.hpp"
 #include "proofmass/report/calibrate_fake.hpp"
 #include "proofmass/report/convert_report.hpp"
 #include "proofmass/report/drift_fake.hpp"

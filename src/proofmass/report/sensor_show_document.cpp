@@ -84,7 +84,7 @@ std::string contents(const SensorShow& report) {
     if (count > 0)
       known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", section,
                            count_words(count, "figure"));
-    else
+    else if (section != "gyroscope")  // which many sensors do not have
       unknown += fmt::format("{}{}", unknown.empty() ? "" : ", ", section);
   }
   if (known.empty()) return "The file has no figures.";

@@ -63,16 +63,16 @@ inline constexpr AnalogAccelerometer adxl335{
 
 /// A three-axis gyroscope with digital output.
 struct DigitalGyroscope {
-  double noise_density_radps_rthz;  ///< one-sided, typical
-  double zero_rate_radps;           ///< ± initial offset
-  double scale_tolerance;           ///< ± fraction
-  double cross_axis;                ///< ± fraction, typical
+  double noise_density_radps_rthz;      ///< one-sided, typical
+  double zero_rate_radps;               ///< ± initial offset
+  double scale_tolerance;               ///< ± fraction
+  double cross_axis;                    ///< ± fraction, typical
   double g_sensitivity_radps_per_mps2;  ///< static, typical
 };
 
 /// InvenSense MPU-6050 at 25 °C.
-/// Source: InvenSense, MPU-6000/MPU-6050 Product Specification, PS-MPU-6000A-00 revision 3.4 (2013),
-/// section 6.1.
+/// Source: InvenSense, MPU-6000/MPU-6050 Product Specification, PS-MPU-6000A-00 revision 3.4
+/// (2013), section 6.1.
 inline constexpr DigitalGyroscope mpu6050{
     .noise_density_radps_rthz = 0.005 * rad_per_deg,
     .zero_rate_radps = 20.0 * rad_per_deg,

@@ -12,8 +12,8 @@ namespace {
 /// The figures in the order of the covariance, three by three.
 std::array<AxisFigures*, 7> groups_of(Gyroscope& gyroscope) {
   auto& [x, y, z] = gyroscope.g_sensitivity;
-  return {&gyroscope.bias, &gyroscope.scale, &gyroscope.misalignment, &gyroscope.alignment,
-          &x,              &y,               &z};
+  return {
+      &gyroscope.bias, &gyroscope.scale, &gyroscope.misalignment, &gyroscope.alignment, &x, &y, &z};
 }
 
 std::string unit_of_group(std::size_t group, const std::string& reading) {

@@ -19,10 +19,9 @@ struct MeasuredGyroscope {
   std::string origin;  ///< "proofmass calibrate turned.csv, 37 motions"
 };
 
-/// Replaces the gyroscope's calibration in the model; its noise stays. The covariance is kept only if
-/// all figures were determined.
-/// Errors: not_finite, invalid_argument (a scale of 0, a negative std, another unit). The model is
-/// then unchanged.
+/// Replaces the gyroscope's calibration in the model; its noise stays. The covariance is kept only
+/// if all figures were determined. Errors: not_finite, invalid_argument (a scale of 0, a negative
+/// std, another unit). The model is then unchanged.
 [[nodiscard]] Status update_gyroscope(SensorModel& model, const MeasuredGyroscope& measured);
 
 /// The same in a sensor file; see update_calibration(path, …).

@@ -62,9 +62,10 @@ std::string yaml_gyroscope(const Gyroscope& gyroscope) {
     return out + fmt::format("# {}:  # {}\n", key, why);
   };
   return "\n" +
-         entry(gyroscope.white, "Gyroscope: white noise, N, in rad/s/sqrt(Hz)",
-               "gyroscope_noise_density",
-               "rad/s/sqrt(Hz); measure it at rest, proofmass noise FILE --update-sensor FILE.toml") +
+         entry(
+             gyroscope.white, "Gyroscope: white noise, N, in rad/s/sqrt(Hz)",
+             "gyroscope_noise_density",
+             "rad/s/sqrt(Hz); measure it at rest, proofmass noise FILE --update-sensor FILE.toml") +
          entry(gyroscope.random_walk,
                "Gyroscope: random walk of the bias, K, in rad/s^2/sqrt(Hz), which is rad/s/sqrt(s)",
                "gyroscope_random_walk",

@@ -9,7 +9,7 @@
 namespace proofmass::sensor {
 
 inline constexpr std::array<std::string_view, 6> sections{"sensor", "electrical", "calibration",
-                                                          "noise", "drift", "gyroscope"};
+                                                          "noise",  "drift",      "gyroscope"};
 
 /// Rows of Gyroscope::covariance.
 inline constexpr std::string_view gyroscope_order =

@@ -71,8 +71,7 @@ template <class Covariance>
 std::string covariance_text(const Covariance& covariance, std::string_view order) {
   if (!covariance) return {};
   std::string out = fmt::format("# of {}; SI\ncovariance = [\n", order);
-  for (const auto& row : *covariance)
-    out += fmt::format("  [{}],\n", fmt::join(row, ", "));
+  for (const auto& row : *covariance) out += fmt::format("  [{}],\n", fmt::join(row, ", "));
   return out + "]\n";
 }
 
@@ -96,8 +95,7 @@ std::string section_text(const SensorModel& model, std::string_view section) {
   if (section == "calibration")
     body += covariance_text(model.calibration.covariance,
                             "bias x y z, scale x y z, misalignment yz zy zx");
-  if (section == "gyroscope")
-    body += covariance_text(model.gyroscope.covariance, gyroscope_order);
+  if (section == "gyroscope") body += covariance_text(model.gyroscope.covariance, gyroscope_order);
   return body + unknown_text(model, section);
 }
 

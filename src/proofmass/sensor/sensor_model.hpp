@@ -84,10 +84,10 @@ inline constexpr std::size_t gyroscope_figures = 21;
 /// the form of Calibration, R is the rotation by the vector ρ from the gyroscope's frame to the
 /// accelerometer's. The reading is in rad/s if scale has no unit, else in volts or counts.
 struct Gyroscope {
-  AxisFigures bias;           ///< rad/s, V or counts
-  AxisFigures scale;          ///< 1, V/(rad/s) or counts/(rad/s)
-  AxisFigures misalignment;   ///< α_yz, α_zy, α_zx in rad
-  AxisFigures alignment;      ///< ρ in rad
+  AxisFigures bias;                          ///< rad/s, V or counts
+  AxisFigures scale;                         ///< 1, V/(rad/s) or counts/(rad/s)
+  AxisFigures misalignment;                  ///< α_yz, α_zy, α_zx in rad
+  AxisFigures alignment;                     ///< ρ in rad
   std::array<AxisFigures, 3> g_sensitivity;  ///< G, row by row: (rad/s)/(m/s^2), V or counts per it
   /// Covariance of the figures in this order, in SI.
   std::optional<std::array<std::array<double, gyroscope_figures>, gyroscope_figures>> covariance;
