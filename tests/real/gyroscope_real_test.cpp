@@ -26,14 +26,15 @@ Axes axes_of(const Recording& recording) {
 
 calibrate::GyroscopeCalibration imu_tk_fit(const std::filesystem::path& folder) {
   const io::ReadOptions counts{.unit = parse_unit("counts").value()};
-  const Recording accel = io::read_recording((folder / "xsens_acc.mat.xz").string(), counts).value();
-  const Recording gyro = io::read_recording((folder / "xsens_gyro.mat.xz").string(), counts).value();
+  const Recording accel =
+      io::read_recording((folder / "xsens_acc.mat.xz").string(), counts).value();
+  const Recording gyro =
+      io::read_recording((folder / "xsens_gyro.mat.xz").string(), counts).value();
   calibrate::GyroscopeSession session{
       .time_s = {}, .rate = axes_of(gyro), .accel = axes_of(accel), .rests = {}, .poses = {}};
   for (std::size_t n = 0; n < accel.samples(); ++n) session.time_s.push_back(accel.time.at(n));
   const std::array<View<double>, 3> views{session.accel[0], session.accel[1], session.accel[2]};
-  for (const signal::Rest& rest :
-       signal::find_rests(views, {.rate_hz = accel.time.rate_hz}).rests)
+  for (const signal::Rest& rest : signal::find_rests(views, {.rate_hz = accel.time.rate_hz}).rests)
     session.rests.push_back({rest.first, rest.last});
   session.rate_lsb = {1.0, 1.0, 1.0};
   const calibrate::PoseMeans means =

@@ -200,11 +200,16 @@ Status add_rate(const GyroscopeSession& session,
 }
 
 void add_rests(const GyroscopeSession& session,
+               std::size_t index,
                const MultiPosition& accelerometer,
                const SessionNoiseOfRate& noise,
                GyroscopeData& data) {
-  for (std::size_t k = 0; k < session.rests.size(); ++k)
-    data.rests.push_back(rest_of(session.poses[k], noise.means.poses[k], accelerometer));
+  for (std::size_t k = 0; k < session.rests.size(); ++k) {
+    GyroscopeRest& rest =
+        data.rests.emplace_back(rest_of(session.poses[k], noise.means.poses[k], accelerometer));
+    rest.session = index;
+    rest.span_s = {session.time_s[session.rests[k].first], session.time_s[session.rests[k].last]};
+  }
   const double step_s = usual_step_s(session.time_s);
   for (Index axis = 0; axis < 3; ++axis)
     data.white(axis) =
@@ -226,7 +231,7 @@ Result<GyroscopeData> gyroscope_data(View<GyroscopeSession> sessions,
     // The accelerometer's noise and the gyroscope's: the worse known decides.
     const double dof = std::min(session.pose_noise_dof, noise->means.noise_dof);
     data.noise_dof = s == 0 ? dof : std::min(data.noise_dof, dof);
-    add_rests(session, accelerometer, *noise, data);
+    add_rests(session, s, accelerometer, *noise, data);
     add_motions(session, s, accelerometer, *noise, data);
     for (const TurntableRate& row : table) {
       if (row.session != s) continue;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "proofmass/calibrate/bias_wander.hpp"
 #include "proofmass/calibrate/gyroscope.hpp"
 #include "proofmass/calibrate/gyroscope_motion.hpp"
 
@@ -21,6 +22,8 @@ struct GyroscopeRest {
   /// That rotation vector per parameter of the accelerometer's calibration.
   Eigen::Matrix<double, 3, 9> tilt_by_accel;
   Eigen::Vector3d mean, variance;  ///< of the gyroscope
+  std::size_t session = 0;
+  Span span_s{};  ///< in the session's time
 };
 
 struct GyroscopeMotion {

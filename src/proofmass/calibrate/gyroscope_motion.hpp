@@ -17,14 +17,14 @@ struct MotionSamples {
 };
 
 /// R takes vectors from the frame at the end to that at the start. An error δω(t) of the rate, in
-/// the sensor's frame, rotates the frame at the end by the vector Σ Rₙᵀ δωₙ dt: the sums are those
-/// of δω = δA y, A = d(rate)/d(reading).
+/// the sensor's frame, rotates the frame at the end by the vector δφ = Σ Pₙ δωₙ dt, Pₙ the rotation
+/// from sample n to the end.
 struct MotionRotation {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Matrix<double, 3, 9> by_matrix;  ///< δφ per δA, row by row
   Eigen::Matrix<double, 3, 9> by_g;       ///< δφ per δG, row by row
   Eigen::Matrix3d by_rate;                ///< δφ per constant δω
-  Eigen::Matrix3d noise;  ///< Σ Pₙ A diag(N²) Aᵀ Pₙᵀ dt, with N = 1 on each axis of `noise_axes`
+  Eigen::Matrix3d noise;  ///< covariance of δφ by white noise, Σ Pₙ A diag(N²) Aᵀ Pₙᵀ dt
   double turned_rad = 0.0;
 };
 

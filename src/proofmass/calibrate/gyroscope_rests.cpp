@@ -41,8 +41,6 @@ RestRegression regress_rests(const GyroscopeData& data,
   const Index count = out.why_no_g.empty() ? 4 : 1;
   double total = 0.0, total_dof = 0.0;
   for (Index axis = 0; axis < 3; ++axis) {
-    Eigen::MatrixXd N = Eigen::MatrixXd::Zero(count, count);
-    Eigen::VectorXd h = Eigen::VectorXd::Zero(count);
     const auto n = static_cast<Index>(data.rests.size());
     Eigen::MatrixXd X(n, count);
     Eigen::VectorXd y(n), weight(n);
@@ -54,10 +52,8 @@ RestRegression regress_rests(const GyroscopeData& data,
       y(k) = rest.mean(axis) - earth[static_cast<std::size_t>(k)](axis);
       weight(k) = 1.0 / std::max(rest.variance(axis) + earth_variance(axis), 1e-300);
     }
-    N = X.transpose() * weight.asDiagonal() * X;
-    h = X.transpose() * weight.cwiseProduct(y);
-    const Eigen::MatrixXd inverse = positive_inverse(N);
-    const Eigen::VectorXd p = inverse * h;
+    const Eigen::MatrixXd inverse = positive_inverse(X.transpose() * weight.asDiagonal() * X);
+    const Eigen::VectorXd p = inverse * (X.transpose() * weight.cwiseProduct(y));
     const double rss = (y - X * p).cwiseAbs2().dot(weight), dof = static_cast<double>(n - count);
     const Scatter scatter = scatter_of(rss, dof, data.noise_dof);
     const auto place = static_cast<std::size_t>(axis);
