@@ -6,6 +6,7 @@
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/sensor/datasheet.hpp"
 
 namespace proofmass::calibrate {
 namespace {
@@ -67,6 +68,7 @@ class Equations {
     }
     for (const GyroscopeRate& rate : data_.rates) add(rate, row++);
     add_rest_noise();
+    if (!rests_.why_no_g.empty()) add_unknown_g();
     return std::move(out_);
   }
 
@@ -74,6 +76,7 @@ class Equations {
   void add(const GyroscopeMotion& motion, Index row);
   void add(const GyroscopeRate& rate, Index row);
   void add_rest_noise();
+  void add_unknown_g();
 
   const GyroscopeData& data_;
   const RestRegression& rests_;
@@ -138,6 +141,13 @@ void Equations::add_rest_noise() {
   // A sensor without visible noise: rounding of the arithmetic.
   constexpr double least_rad = 1e-9;
   out_.covariance.diagonal().array() += least_rad * least_rad;
+}
+
+// A g-sensitivity that the rests do not determine acts on every motion alike.
+void Equations::add_unknown_g() {
+  const double std = sensor::mpu6050.g_sensitivity_radps_per_mps2 / out_.size;
+  const auto by_g = out_.by_offset.rightCols<9>();
+  out_.covariance += std * std * (by_g * by_g.transpose());
 }
 
 // N = Jᵀ W J divided into what is determined and what is not.

@@ -21,9 +21,16 @@ struct RestRegression {
   std::optional<LackOfFit> lack_of_fit;
 };
 
-/// Weighted least squares. `earth` holds what Earth's rotation is known to add to each mean;
-/// `earth_variance` is the variance of what it adds beyond. The variance of an axis is the larger
-/// of its noise and its scatter, which contains the drift of the bias between rests.
+/// Generalised least squares. `earth` holds what Earth's rotation is known to add to each mean;
+/// `earth_variance` is the variance of what it adds beyond.
+///
+/// The bias drifts between the rests as a random walk, whose strength is that of the means: the
+/// covariance is the average over a grid of strengths, the first of them 0 with half of the prior
+/// probability, by the restricted likelihood. The variance is then multiplied by the scatter if the
+/// residuals are significant at 5 %.
+///
+/// Source: D. A. Harville, J. Amer. Statist. Assoc. 72 (1977) 320. Cost: O(rests³) for each
+/// strength.
 [[nodiscard]] RestRegression regress_rests(const GyroscopeData& data,
                                            const std::vector<Eigen::Vector3d>& earth,
                                            const Eigen::Vector3d& earth_variance);

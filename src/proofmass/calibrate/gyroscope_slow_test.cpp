@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
@@ -35,7 +34,6 @@ constexpr std::array<const char*, 5> groups{"bias", "scale", "misalignment", "al
 void expect_coverage(const Coverage& coverage, const std::string& what) {
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const double percent = 100.0 * coverage.inside[k] / coverage.count[k];
-    std::printf("%s, %s: %.1f %% of %d\n", what.c_str(), groups[k], percent, coverage.count[k]);
     EXPECT_GE(percent, 93.0) << what << ", " << groups[k];
     EXPECT_LE(percent, 99.0) << what << ", " << groups[k];
   }
