@@ -224,8 +224,11 @@ GyroscopeReport full_gyroscope() {
   fit.covariance.setIdentity();
   fit.why_absent[4] = "not turned";
   fit.shares = {{.source = "motions", .covariance = fit.covariance, .dof = 10.0}};
-  fit.motions = {{.leave_one_out_rad = 0.1, .studentised = 1.0},
-                 {.used = false, .why_unused = "samples are missing"}};
+  fit.motions.resize(2);
+  fit.motions[0].leave_one_out_rad = 0.1;
+  fit.motions[0].studentised = 1.0;
+  fit.motions[1].used = false;
+  fit.motions[1].why_unused = "samples are missing";
   fit.rates = {{1.0, 1e-4, 1e-4}};
   fit.lack_of_fit = fit.rests_lack_of_fit = calibrate::LackOfFit{1.0, 0.5, 10.0};
   fit.leave_one_out_rms_rad = 0.1;
