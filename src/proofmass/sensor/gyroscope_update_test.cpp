@@ -9,7 +9,9 @@ namespace proofmass::sensor::gyroscope_update_test {
 namespace {
 
 MeasuredGyroscope in_counts() {
-  MeasuredGyroscope out{.reading_unit = "counts", .origin = "proofmass calibrate turned.csv"};
+  MeasuredGyroscope out;
+  out.reading_unit = "counts";
+  out.origin = "proofmass calibrate turned.csv";
   auto& covariance = out.covariance.emplace();
   for (std::size_t k = 0; k < gyroscope_figures; ++k) {
     out.figures[k] = Uncertain{1.0 + static_cast<double>(k), 0.5};
