@@ -214,6 +214,10 @@ def calibrate(
     type_b: Union[str, Sequence[str], None] = None,
     monte_carlo: Optional[int] = None,
     supplies: Optional[Sequence[float]] = None,
+    gyro: bool = False,
+    gyro_file: Optional[Path] = None,
+    rate_unit: Optional[str] = None,
+    turntable: Union[str, Sequence[str], None] = None,
     name: Optional[str] = None,
     serial: Optional[str] = None,
     date: Optional[str] = None,
@@ -272,6 +276,14 @@ def calibrate(
         as JCGM 101's adaptive procedure needs).
     supplies : list of float, optional
         Supply voltage of each file, to estimate its effect.
+    gyro : bool
+        Calibrate the gyroscope too, by the rotations between the positions.
+    gyro_file : path, optional
+        Recording of the gyroscope, sampled together with x.
+    rate_unit : str, optional
+        Unit of the gyroscope where its headings have none: "rad/s" (default), "deg/s", "counts", "V".
+    turntable : str or list of str, optional
+        A steady rotation, "START,END,DEG_PER_S[,STD]"; may be repeated.
     name : str, optional
         Name of the sensor, for certificate and sensor file.
     serial : str, optional

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "calibrate/command.hpp"
+#include "calibrate/gyroscope.hpp"
 #include "calibrate/poses.hpp"
 #include "cli/console.hpp"
 #include "cli/exit_status.hpp"
@@ -46,6 +47,25 @@ void add_pose_flags(CLI::App& verb, CalibrateCommand& command) {
                 "keep positions that contradict the others in the fit");
   add("--validate", command.validate, "FILE",
       "independent positions to validate the calibration with")
+      ->allow_extra_args(false);
+}
+
+// Flags of `calibrate` that concern the gyroscope.
+void add_gyroscope_flags(CLI::App& verb, CalibrateCommand& command) {
+  verb.add_flag("--gyro", command.gyro,
+                "calibrate the gyroscope too, by the rotations between the positions");
+  verb.add_option("--gyro-file", command.gyro_file,
+                  "recording of the gyroscope, sampled together with FILE (implies --gyro)")
+      ->type_name("FILE");
+  verb.add_option("--rate-unit", command.rate_unit,
+                  "unit of the gyroscope's channels if their headings have none: rad/s (default), "
+                  "deg/s, or counts, whose scale is then searched for")
+      ->type_name("UNIT")
+      ->check(CLI::IsMember({"rad/s", "deg/s", "counts", "V"}));
+  verb.add_option("--turntable", command.turntable,
+                  "a steady rotation of a turntable about any axis, in s and deg/s, optionally "
+                  "with the standard deviation of the rate; may be repeated")
+      ->type_name("START,END,DEG_PER_S[,STD]")
       ->allow_extra_args(false);
 }
 
@@ -91,6 +111,7 @@ void add_calibrate_flags(CLI::App& verb, CalibrateCommand& command) {
       ->required();
   add_pose_flags(verb, command);
   add_uncertainty_flags(verb, command);
+  add_gyroscope_flags(verb, command);
   verb.add_option("--name", command.name, "name of the sensor, for certificate and sensor file")
       ->type_name("TEXT");
   verb.add_option("--serial", command.serial, "its serial number")->type_name("TEXT");
@@ -128,6 +149,12 @@ void expect_sense(const CalibrateCommand& command) {
     throw Failure(usage, fmt::format("--supplies: {} values for {} files: give one for each",
                                      command.supplies_v.size(), command.files.size()));
   }
+  if (command.gyro && !command.supplies_v.empty())
+    throw Failure(usage, "--gyro: leave out --supplies, or calibrate the gyroscope apart");
+  if (!command.gyro_file.empty() && command.files.size() > 1)
+    throw Failure(usage, "--gyro-file: one file goes with one recording");
+  if (!command.turntable.empty() && !command.gyro)
+    throw Failure(usage, "--turntable goes with --gyro");
   if (!command.rests.empty() && command.files.size() > 1)
     throw Failure(usage, "--rests: one list goes with one file");
 }
@@ -365,7 +392,9 @@ void check_by_draws(const CalibrateCommand& command,
 
 }  // namespace
 
-void run_calibrate(const CalibrateCommand& command) {
+void run_calibrate(const CalibrateCommand& given) {
+  CalibrateCommand command = given;
+  command.gyro |= !command.gyro_file.empty();
   expect_sense(command);
   const std::vector<TypeB> lines = type_b_of(command);
   report::CalibrateReport report;
@@ -411,11 +440,15 @@ void run_calibrate(const CalibrateCommand& command) {
   check_by_draws(command, lines, options, set, report);
   const Status added = calibrate::add_type_b(report.fit, lines, report.unit.symbol);
   if (!added) throw Failure(usage, added.error().at("--type-b").message);
+  if (command.gyro) calibrate_gyroscope(command, set, report);
   report.poses = std::move(set.poses);
   report.cross_axis = calibrate::cross_axis_of(report.fit);
   if (!command.validate.empty()) validate(command, report);
   if (!command.update_sensor.empty())
-    without_interruption([&] { update_sensor(command, set.reference_supply_v, report); });
+    without_interruption([&] {
+      update_sensor(command, set.reference_supply_v, report);
+      if (report.gyroscope) update_gyroscope(command, report);
+    });
   finish(
       report::describe(report), [&] { return report::calibrate_series(report); }, command.output);
 }

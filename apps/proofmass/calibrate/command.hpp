@@ -21,6 +21,10 @@ struct CalibrateCommand {
   std::vector<double> supplies_v;
   std::vector<std::string> type_b, validate;
   std::optional<std::size_t> monte_carlo;  ///< draws; 0: no check
+  bool gyro = false;                       ///< calibrate the gyroscope too
+  std::string gyro_file;                   ///< its recording, if it has one of its own
+  std::string rate_unit = "rad/s";         ///< where the gyroscope's headings have none
+  std::vector<std::string> turntable;      ///< START,END,DEG_PER_S[,STD]
   std::string name, serial, date;
   std::string update_sensor;
   InputFlags input;

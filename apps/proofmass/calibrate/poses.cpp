@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 
+#include "calibrate/gyroscope.hpp"
 #include "cli/console.hpp"
 #include "cli/exit_status.hpp"
 #include "input/input.hpp"
@@ -33,6 +34,7 @@ struct FilePoses {
   double noise_dof = 0.0;
   std::array<double, 3> sample_std{};
   std::optional<calibrate::RestSession> session;
+  std::optional<RateSession> rates;
 };
 
 std::optional<Eigen::Vector3d> vector_of(const std::optional<std::array<double, 3>>& up) {
@@ -173,6 +175,7 @@ FilePoses recording_poses(Recording recording,
       need_of_file(calibrate::recording_poses(
                        read, {.dwells = rests.dwells, .shortest_s = command.shortest_rest_s}),
                    read.source);
+  if (command.gyro) out.rates = rate_session(read, found, command, notes);
   calibrate::PoseMeans& means = found.means;
   out.unit = found.unit;
   out.poses = std::move(means.poses);
@@ -226,6 +229,12 @@ PoseSet read_poses(const std::vector<std::string>& files,
       out.sample_std[k] = std::max(out.sample_std[k], one.sample_std[k]);
     out.pose_file.insert(out.pose_file.end(), one.poses.size(), out.files.size());
     out.poses.insert(out.poses.end(), one.poses.begin(), one.poses.end());
+    if (one.rates) {
+      one.rates->file = out.files.size();
+      if (!out.rates.empty() && out.rates.front().unit.symbol != one.rates->unit.symbol)
+        throw Failure(usage, "--gyro: the gyroscopes of the files are in different units");
+      out.rates.push_back(std::move(*one.rates));
+    }
     out.files.push_back(std::move(one.file));
     if (one.session) out.sessions.push_back(std::move(*one.session));
   }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "calibrate/command.hpp"
+#include "proofmass/calibrate/gyroscope.hpp"
 #include "proofmass/calibrate/pose_means.hpp"
 #include "proofmass/calibrate/session_noise.hpp"
 #include "proofmass/core/recording.hpp"
@@ -11,6 +12,13 @@
 
 // Poses at rest from files.
 namespace proofmass::app {
+
+/// The gyroscope's readings during one recording.
+struct RateSession {
+  calibrate::GyroscopeSession session;  ///< without poses
+  Unit unit;                            ///< rad/s, V or counts
+  std::size_t file = 0;                 ///< index into PoseSet::files
+};
 
 /// The poses of one or more files.
 struct PoseSet {
@@ -26,6 +34,7 @@ struct PoseSet {
   std::array<Eigen::MatrixXd, 3> between;             ///< MultiPositionOptions::between
   std::optional<calibrate::SessionNoise> slow_noise;  ///< present if the recordings determine it
   std::array<double, 3> sample_std{};
+  std::vector<RateSession> rates;  ///< with --gyro, one for each recording
 };
 
 /// Reads tables of means, and from recordings the rests: those listed by --rests, those that the

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "input/gyroscope.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/signal/resample/counter.hpp"
 
@@ -50,14 +51,18 @@ std::vector<std::size_t> choose(const Recording& recording,
 std::vector<std::optional<std::size_t>> axes_of(const Recording& recording,
                                                 const std::vector<std::size_t>& chosen) {
   std::vector<std::optional<std::size_t>> axes(chosen.size());
+  const auto mark = [&](std::size_t axis, const std::optional<std::size_t>& place) {
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      if (place == chosen[k]) axes[k] = axis;
+  };
   const std::vector<Triad> triads = accelerometer_triads(recording);
-  if (triads.size() != 1) return axes;
-  const std::array places{triads[0].x, triads[0].y, triads[0].z};
-  for (std::size_t k = 0; k < axes.size(); ++k) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (places[axis] == chosen[k]) axes[k] = axis;
-    }
+  if (triads.size() == 1) {
+    mark(0, triads[0].x);
+    mark(1, triads[0].y);
+    mark(2, triads[0].z);
   }
+  const auto gyroscope = find_gyroscope(recording, triads.size() == 1 ? triads[0] : Triad{});
+  for (std::size_t axis = 0; gyroscope && axis < 3; ++axis) mark(axis, (*gyroscope)[axis]);
   return axes;
 }
 

@@ -16,7 +16,7 @@ namespace proofmass::app {
 struct RestChoice {
   std::vector<std::size_t> channels;             ///< indices in the recording
   std::vector<std::optional<std::size_t>> axes;  ///< of each channel: 0, 1, 2 of the only
-                                                 ///< accelerometer
+                                                 ///< sensor of its kind
 };
 
 /// All accelerations; else the voltages or counts that look like axes; else everything but

@@ -196,8 +196,9 @@ void find_share_at_rest(double start_s, std::vector<RestChannel>& channels) {
   }
 }
 
-void expect_axis(const RestChannel& channel) {
+void expect_axis(const RestChannel& channel, const RestOptions& options) {
   if (channel.axis && channel.unit.symbol == "m/s^2") return;
+  if (channel.axis && channel.unit.symbol == "rad/s" && options.rates_for_sensor_file) return;
   throw Failure(usage, fmt::format("--update-sensor: {} is not an x, y or z axis of one "
                                    "accelerometer, in m/s^2: choose with --channel, give --unit",
                                    channel.title));
@@ -244,7 +245,7 @@ RestRecording rest_recording(Recording recording,
     RestChannel channel = prepared(source, k, options.is_phase);
     channel.title = prefix + channel.name;
     channel.file = file;
-    if (options.for_sensor_file) expect_axis(channel);
+    if (options.for_sensor_file) expect_axis(channel, options);
     out.channels.push_back(std::move(channel));
   }
   if (!options.is_phase && !options.may_drift)

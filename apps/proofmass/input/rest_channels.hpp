@@ -20,12 +20,13 @@ struct RestOptions {
   std::vector<std::string> files;
   InputFlags input;
   OutputFlags output;
-  std::string temperature;        ///< name of the temperature channel; empty: not given
-  bool find_temperature = false;  ///< if not given, use the only temperature channel
-  bool for_sensor_file = false;   ///< refuse what cannot be stored in a sensor file
-                                  ///< (--update-sensor)
-  bool is_phase = false;          ///< the channels are integrals of the quantity over time
-  bool may_drift = false;         ///< rest is determined after the drift is known, by the caller
+  std::string temperature;             ///< name of the temperature channel; empty: not given
+  bool find_temperature = false;       ///< if not given, use the only temperature channel
+  bool for_sensor_file = false;        ///< refuse what cannot be stored in a sensor file
+                                       ///< (--update-sensor)
+  bool rates_for_sensor_file = false;  ///< which may also be a gyroscope's axes
+  bool is_phase = false;               ///< the channels are integrals of the quantity over time
+  bool may_drift = false;  ///< rest is determined after the drift is known, by the caller
 };
 
 /// One channel, in SI if its unit is known, or the reason for refusal.
@@ -38,7 +39,7 @@ struct RestChannel {
   std::vector<double> series;  ///< NaN for missing samples; empty if refused
   double rate_hz = 0.0;
   std::optional<double> lsb;        ///< quantisation step, in the series' unit
-  std::optional<std::size_t> axis;  ///< 0, 1, 2 for x, y, z of the only accelerometer
+  std::optional<std::size_t> axis;  ///< 0, 1, 2 for x, y, z of the only accelerometer or gyroscope
   /// Fraction of the recording at rest; absent if the quantity does not respond to motion.
   std::optional<report::RestShare> rest;
 };
@@ -76,7 +77,7 @@ void find_share_at_rest(double start_s, std::vector<RestChannel>& channels);
 [[nodiscard]] std::string file_prefix(const std::string& file, const RestOptions& options);
 
 /// Throws Failure if the channel's figures cannot be stored in a sensor file.
-void expect_axis(const RestChannel& channel);
+void expect_axis(const RestChannel& channel, const RestOptions& options);
 
 /// All files, each with its channels to be analysed: without --channel all accelerations, else the
 /// voltages or counts that look like axes, else all but a counter. Notes of reading and preparation

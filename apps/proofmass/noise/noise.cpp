@@ -172,6 +172,7 @@ std::vector<NoiseChannel> noise_channels(const NoiseCommand& command,
                          .output = command.output,
                          .temperature = command.temperature,
                          .for_sensor_file = !command.update_sensor.empty(),
+                         .rates_for_sensor_file = true,
                          .is_phase = command.data == "phase"};
   std::vector<NoiseChannel> all;
   for (const std::string& file : command.files) {
@@ -214,6 +215,7 @@ sensor::MeasuredNoise measured(const NoiseChannel& channel) {
   const NoiseAnalysis& analysis = *channel.shown.analysis;
   sensor::MeasuredNoise noise;
   noise.axis = *channel.rest.axis;
+  noise.gyroscope = channel.rest.unit.quantity == Quantity::angular_rate;
   noise.white = measured(analysis.model.white);
   noise.quantisation = measured(analysis.model.quantisation);
   noise.flicker = measured(analysis.model.flicker);
@@ -223,7 +225,8 @@ sensor::MeasuredNoise measured(const NoiseChannel& channel) {
   const std::string origin = fmt::format(
       "proofmass noise {}, {} at {} Hz", report::file_name(channel.rest.file),
       report::duration_words(analysis.duration_s), report::compact(analysis.rate_hz, 6));
-  if (channel.rest.lsb) noise.lsb = sensor::make_figure(*channel.rest.lsb, "m/s^2", origin);
+  if (channel.rest.lsb && !noise.gyroscope)
+    noise.lsb = sensor::make_figure(*channel.rest.lsb, "m/s^2", origin);
   noise.origin = origin;
   return noise;
 }

@@ -138,7 +138,7 @@ std::vector<NoiseChannel> analyse_pieces(io::RecordingStream stream,
     rest.title = prefix + rest.name;
     rest.file = file;
     channels.back().shown.name = rest.title;
-    if (options.for_sensor_file) expect_axis(rest);
+    if (options.for_sensor_file) expect_axis(rest, options);
   }
   return channels;
 }

@@ -103,7 +103,7 @@ Result<RecordingPoses> recording_poses(const Recording& recording,
   }
   Result<PoseMeans> means = pose_means(views, dwells, axes->lsb);
   if (!means) return means.error();
-  RecordingPoses out{*triad, axes->unit, std::move(means).value()};
+  RecordingPoses out{*triad, axes->unit, dwells, std::move(means).value()};
   set_times(recording, dwells, out.means.poses);
   return out;
 }

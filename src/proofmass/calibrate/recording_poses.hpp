@@ -17,9 +17,10 @@ struct RecordingPosesOptions {
 };
 
 struct RecordingPoses {
-  Triad triad;      ///< the accelerometer
-  Unit unit;        ///< of the poses
-  PoseMeans means;  ///< its poses have the times of the recording
+  Triad triad;                ///< the accelerometer
+  Unit unit;                  ///< of the poses
+  std::vector<Dwell> dwells;  ///< the static intervals of the poses
+  PoseMeans means;            ///< its poses have the times of the recording
 };
 
 /// The only accelerometer of a recording, which has three axes.

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "proofmass/calibrate/gyroscope_budget.hpp"
 #include "proofmass/report/budget_report.hpp"
 #include "proofmass/report/calibrate/fake.hpp"
 #include "proofmass/report/convert_report.hpp"
@@ -215,11 +216,34 @@ CalibrateReport full_calibration() {
   return report;
 }
 
+// One motion and one rate of each kind, and figures that the motions do not determine.
+GyroscopeReport full_gyroscope() {
+  GyroscopeReport report{.unit = *parse_unit("rad/s"), .fit = {}, .budgets = {}};
+  calibrate::GyroscopeCalibration& fit = report.fit;
+  fit.estimate.setOnes();
+  fit.covariance.setIdentity();
+  fit.why_absent[4] = "not turned";
+  fit.shares = {{.source = "motions", .covariance = fit.covariance, .dof = 10.0}};
+  fit.motions.resize(2);
+  fit.motions[0].leave_one_out_rad = 0.1;
+  fit.motions[0].studentised = 1.0;
+  fit.motions[1].used = false;
+  fit.motions[1].why_unused = "samples are missing";
+  fit.rates = {{1.0, 1e-4, 1e-4}};
+  fit.lack_of_fit = fit.rests_lack_of_fit = calibrate::LackOfFit{1.0, 0.5, 10.0};
+  fit.leave_one_out_rms_rad = 0.1;
+  report.budgets = calibrate::budget_of(fit, "rad/s");
+  return report;
+}
+
 TEST(Schemas, Calibrate) {
-  const CalibrateReport full = full_calibration();
+  CalibrateReport full = full_calibration();
+  full.gyroscope = full_gyroscope();
   CalibrateReport counts = full, untimed = fake_calibrate_report();
   counts.check->stable = true;
   counts.unit = {Quantity::counts, 1.0, 0.0, "counts"};
+  counts.gyroscope->fit.lack_of_fit = counts.gyroscope->fit.rests_lack_of_fit = {};
+  counts.gyroscope->fit.leave_one_out_rms_rad = {};
   untimed.files.front().times_known = false;
   expect_schema(
       "Multi-position calibration of a three-axis accelerometer. SI unless a key or a unit beside "

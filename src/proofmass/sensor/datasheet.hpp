@@ -61,6 +61,30 @@ inline constexpr AnalogAccelerometer adxl335{
     .filter_resistance_ohm = 32e3,
 };
 
+/// A three-axis gyroscope with digital output.
+struct DigitalGyroscope {
+  double noise_density_radps_rthz;      ///< one-sided, typical
+  double zero_rate_radps;               ///< ± initial offset
+  double scale_tolerance;               ///< ± fraction
+  double cross_axis;                    ///< ± fraction, typical
+  double g_sensitivity_radps_per_mps2;  ///< static, typical
+};
+
+/// InvenSense MPU-6050 at 25 °C.
+/// Source: InvenSense, MPU-6000/MPU-6050 Product Specification, PS-MPU-6000A-00 revision 3.4
+/// (2013), section 6.1.
+inline constexpr DigitalGyroscope mpu6050{
+    .noise_density_radps_rthz = 0.005 * rad_per_deg,
+    .zero_rate_radps = 20.0 * rad_per_deg,
+    .scale_tolerance = 0.03,
+    .cross_axis = 0.02,
+    .g_sensitivity_radps_per_mps2 = 0.1 * rad_per_deg / standard_gravity_mps2,
+};
+
+/// Angle random walk N, which is two-sided, of a one-sided density of the rate: density / √2, in
+/// rad/√s. Source: IEEE Std 952-1997, annex C.1.
+[[nodiscard]] double angle_random_walk(double density_radps_rthz);
+
 /// −3 dB frequency of the output with a capacitor to ground, f = 1 / (2π R C): 0.1 µF gives 50 Hz.
 /// The resistance of an individual device is within ±15 %.
 [[nodiscard]] constexpr double filter_bandwidth_hz(const AnalogAccelerometer& sensor,

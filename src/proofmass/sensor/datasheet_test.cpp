@@ -42,5 +42,11 @@ TEST(Grades, AreThoseOfTheThesis) {
   EXPECT_DOUBLE_EQ(grades[3].bias_mps2, 0.125 * g);
 }
 
+// 0.005 °/s/√Hz is 0.3 °/√h if it is taken as two-sided, which is √2 too much.
+TEST(AngleRandomWalk, OfAOneSidedDensityIsSmallerByRootTwo) {
+  const double deg_rth = angle_random_walk(mpu6050.noise_density_radps_rthz) * deg_per_rad * 60.0;
+  EXPECT_NEAR(deg_rth, 0.2121320343559643, 1e-12);
+}
+
 }  // namespace
 }  // namespace proofmass::sensor::datasheet_test

@@ -24,6 +24,8 @@ std::string_view si_symbol_of(Quantity quantity) {
       return "K";
     case Quantity::speed:
       return "m/s";
+    case Quantity::angular_rate:
+      return "rad/s";
     default:
       return {};
   }
@@ -53,6 +55,50 @@ std::optional<FigureUnit> plain_unit(std::string_view text) {
   if (!unit || si_symbol_of(unit->quantity).empty()) return std::nullopt;
   return FigureUnit{std::string(text), std::string(si_symbol_of(unit->quantity)), unit->to_si,
                     unit->offset_si};
+}
+
+constexpr double s_per_h = 3600.0, root_s_per_root_h = 60.0;
+
+/// An angular rate as makers of gyroscopes write its noise: per square root of hertz or second, or
+/// of an hour: "deg/sqrt(h)" (angle random walk), "deg/h" (bias instability), "deg/h/sqrt(h)".
+std::optional<FigureUnit> gyroscope_unit(std::string_view text) {
+  const std::string symbol(text);
+  if (text == "deg/h" || text == "°/h") return FigureUnit{symbol, "rad/s", rad_per_deg / s_per_h};
+  if (text == "deg/sqrt(h)" || text == "°/√h")
+    return FigureUnit{symbol, "rad/s/sqrt(Hz)", rad_per_deg / root_s_per_root_h};
+  if (text == "deg/h/sqrt(h)" || text == "°/h/√h")
+    return FigureUnit{symbol, "rad/s/sqrt(s)", rad_per_deg / (s_per_h * root_s_per_root_h)};
+  if (const auto rate = before(text, {"/sqrt(Hz)", "/rtHz", "/√Hz"})) {
+    if (*rate == "rad/s^2") return FigureUnit{symbol, "rad/s/sqrt(s)", 1.0};
+    if (const auto to_si = factor(*rate, Quantity::angular_rate))
+      return FigureUnit{symbol, "rad/s/sqrt(Hz)", *to_si};
+  }
+  if (const auto rate = before(text, {"/sqrt(s)", "/rts", "/√s"}))
+    if (const auto to_si = factor(*rate, Quantity::angular_rate))
+      return FigureUnit{symbol, "rad/s/sqrt(s)", *to_si};
+  return std::nullopt;
+}
+
+/// "counts/(rad/s)", "mV/(deg/s)", and an angular rate per acceleration: "deg/s/g".
+std::optional<FigureUnit> gyroscope_sensitivity(std::string_view text) {
+  const std::string symbol(text);
+  for (const std::string_view per : {"/(rad/s)", "/(deg/s)", "/rad/s", "/deg/s"}) {
+    const auto output = before(text, {per});
+    if (!output) continue;
+    const double to_si = per.find("deg") == std::string_view::npos ? 1.0 : deg_per_rad;
+    if (const auto volts = factor(*output, Quantity::voltage))
+      return FigureUnit{symbol, "V/(rad/s)", *volts * to_si};
+    if (const auto counts = factor(*output, Quantity::counts))
+      return FigureUnit{symbol, "counts/(rad/s)", *counts * to_si};
+  }
+  for (const std::string_view per : {"/(m/s^2)", "/g"}) {
+    const auto rate = before(text, {per});
+    if (!rate) continue;
+    if (const auto to_si = factor(*rate, Quantity::angular_rate))
+      return FigureUnit{symbol, "rad/s/(m/s^2)",
+                        per == "/g" ? *to_si / standard_gravity_mps2 : *to_si};
+  }
+  return std::nullopt;
 }
 
 /// An acceleration per square root of hertz, per square root of a second, or per time.
@@ -96,6 +142,8 @@ std::optional<FigureUnit> parse_figure_unit(std::string_view text) {
   while (text.ends_with(' ')) text.remove_suffix(1);
   if (auto unit = plain_unit(text)) return unit;
   if (auto unit = noise_unit(text)) return unit;
+  if (auto unit = gyroscope_unit(text)) return unit;
+  if (auto unit = gyroscope_sensitivity(text)) return unit;
   return sensitivity_unit(text);
 }
 

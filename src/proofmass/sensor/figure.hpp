@@ -19,7 +19,9 @@ struct FigureUnit {
 /// Parses all units of core's parse_unit and, in addition: "1", "%", "ppm", "Hz", "kHz"; an
 /// acceleration per "sqrt(Hz)", "rtHz" or "√Hz", per "sqrt(s)" and per a time; "m/s^3",
 /// "m/s^3/sqrt(Hz)" (which is m/s^2/sqrt(s)); volts or counts per acceleration, "V/g" or
-/// "mV/(m/s^2)". nullopt if unknown.
+/// "mV/(m/s^2)". For gyroscopes an angular rate, "deg/h", "deg/sqrt(h)", "deg/h/sqrt(h)", an
+/// angular rate per "sqrt(Hz)", per "sqrt(s)" and per acceleration ("deg/s/g"), volts or counts per
+/// angular rate ("mV/(deg/s)"). nullopt if unknown.
 [[nodiscard]] std::optional<FigureUnit> parse_figure_unit(std::string_view text);
 
 /// One figure of a sensor, as its author wrote it.

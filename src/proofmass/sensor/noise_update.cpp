@@ -30,6 +30,19 @@ constexpr std::array<Term, 5> terms{{
     {"ramp", "m/s^3", &MeasuredNoise::ramp, &NoiseModel::ramp},
 }};
 
+/// The same for a gyroscope.
+struct GyroscopeTerm {
+  std::string_view name, unit;
+  MeasuredCoefficient MeasuredNoise::* measured;
+  AxisFigures Gyroscope::* figures;
+};
+
+constexpr std::array<GyroscopeTerm, 3> gyroscope_terms{{
+    {"white", "rad/s/sqrt(Hz)", &MeasuredNoise::white, &Gyroscope::white},
+    {"flicker", "rad/s", &MeasuredNoise::flicker, &Gyroscope::flicker},
+    {"random_walk", "rad/s/sqrt(s)", &MeasuredNoise::random_walk, &Gyroscope::random_walk},
+}};
+
 std::string joined(std::string_view origin, const std::string& text) {
   return origin.empty() ? text : fmt::format("{}: {}", origin, text);
 }
@@ -50,20 +63,22 @@ std::optional<Uncertain> known(const MeasuredCoefficient& coefficient) {
 }
 
 std::string origin_of(const MeasuredCoefficient& coefficient,
-                      const Term& term,
+                      std::string_view unit,
                       std::string_view origin) {
   if (coefficient.identified) return std::string(origin);
-  return joined(origin, fmt::format("below {:.3g} {} (95 %)", *coefficient.upper_95, term.unit));
+  return joined(origin, fmt::format("below {:.3g} {} (95 %)", *coefficient.upper_95, unit));
 }
 
-Status put(const MeasuredNoise& measured, const Term& term, NoiseModel& noise) {
+/// Model is the struct whose member the term names.
+template <class AnyTerm, class Model>
+Status put(const MeasuredNoise& measured, const AnyTerm& term, Model& noise) {
   const MeasuredCoefficient& coefficient = measured.*term.measured;
   const auto figure = known(coefficient);
   if (!figure) return Done{};
   if (const Status fits = check(*figure); !fits)
     return fits.error().at(fmt::format("noise.{} of axis {}", term.name, "xyz"[measured.axis]));
   Figure entry =
-      make_figure(figure->value, term.unit, origin_of(coefficient, term, measured.origin));
+      make_figure(figure->value, term.unit, origin_of(coefficient, term.unit, measured.origin));
   entry.std = figure->std;
   (noise.*term.figures)[measured.axis] = std::move(entry);
   return Done{};
@@ -92,6 +107,11 @@ Status put_lsb(const MeasuredNoise& measured, Electrical& electrical) {
 }
 
 Status put(const MeasuredNoise& measured, SensorModel& model) {
+  if (measured.gyroscope) {
+    for (const GyroscopeTerm& term : gyroscope_terms)
+      if (const Status done = put(measured, term, model.gyroscope); !done) return done;
+    return Done{};
+  }
   for (const Term& term : terms)
     if (const Status done = put(measured, term, model.noise); !done) return done;
   if (const Status done = put_bandwidth(measured, model.electrical); !done) return done;
@@ -102,10 +122,10 @@ Status put(const MeasuredNoise& measured, SensorModel& model) {
 
 Status update_noise(SensorModel& model, View<MeasuredNoise> measured) {
   SensorModel updated = model;
-  std::array<bool, 3> seen{};
+  std::array<bool, 6> seen{};  // of the accelerometer, then of the gyroscope
   for (const MeasuredNoise& axis : measured) {
     PM_EXPECTS(axis.axis < 3);
-    if (std::exchange(seen[axis.axis], true))
+    if (std::exchange(seen[axis.axis + (axis.gyroscope ? 3 : 0)], true))
       return Error{Errc::invalid_argument,
                    fmt::format("axis {} is there twice, but a sensor file is of one sensor: choose "
                                "its channels",

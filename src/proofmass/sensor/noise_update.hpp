@@ -24,14 +24,17 @@ struct MeasuredNoise {
   std::optional<Uncertain> bandwidth_hz;
   std::optional<Figure> lsb;  ///< V or m/s^2
   std::string origin;         ///< "proofmass noise static.csv, 2 h at 100 Hz"
+  /// The axis is the gyroscope's: white, flicker and random_walk are stored in
+  /// SensorModel::gyroscope, in rad/s/sqrt(Hz), rad/s and rad/s/sqrt(s); the others are not.
+  bool gyroscope = false;
 };
 
 /// Stores the figures in the model. A coefficient with only an upper bound is set to 0, with std =
 /// upper_95 / 1.645 and an origin that ends "below … (95 %)"; one with neither is unchanged.
 /// Bandwidth and LSB are set only if the model has none.
 ///
-/// Errors: invalid_argument (an axis twice, an LSB neither in V nor in m/s^2, a negative figure),
-/// not_finite. The model is then unchanged.
+/// Errors: invalid_argument (an axis of one sensor twice, an LSB neither in V nor in m/s^2, a
+/// negative figure), not_finite. The model is then unchanged.
 [[nodiscard]] Status update_noise(SensorModel& model, View<MeasuredNoise> measured);
 
 /// The same in a sensor file. Everything else in it is kept, except comments; a missing file is

@@ -15,8 +15,8 @@ struct ImuYamlOptions {
 };
 
 /// The IMU description of visual-inertial calibration tools, YAML. It has one number for all axes:
-/// the largest, with the three values in comments. Entries that are not in an accelerometer's
-/// sensor file, or were not identified, are commented out with the reason.
+/// the largest, with the three values in comments. Entries that the sensor file lacks, or
+/// that were not identified, are commented out with the reason.
 /// Source: Kalibr's wiki, "IMU Noise Model" (densities are two-sided, those of the Allan curve).
 ///
 /// Errors: invalid_argument (noise.white is missing on an axis, or the rate is not positive),

@@ -55,10 +55,24 @@ TEST(ImuYaml, LeavesTheGyroscopeAndWhatIsNotKnownToFillIn) {
   SensorModel model = measured();
   model.noise.random_walk = {};
   const std::string yaml = imu_yaml(model, {}).value();
-  EXPECT_TRUE(has(yaml, "# gyroscope_noise_density:  # rad/s/sqrt(Hz)")) << yaml;
+  EXPECT_TRUE(has(yaml,
+                  "# gyroscope_noise_density:  # rad/s/sqrt(Hz); measure it at rest, proofmass "
+                  "noise FILE --update-sensor FILE.toml"))
+      << yaml;
   EXPECT_TRUE(has(yaml, "# accelerometer_random_walk:")) << yaml;
   EXPECT_TRUE(has(yaml, "#   y: not in the sensor file")) << yaml;
   EXPECT_TRUE(has(yaml, "# update_rate:  # Hz; fill in")) << yaml;
+}
+
+TEST(ImuYaml, IsCompleteWithAGyroscope) {
+  SensorModel model = measured();
+  model.gyroscope.white = make_axis_figures({0.3, 0.2, 0.1}, "deg/sqrt(h)", "");
+  model.gyroscope.random_walk = make_axis_figures({1e-5, 2e-5, 1e-5}, "rad/s/sqrt(s)", "");
+  const std::string yaml = imu_yaml(model, {.rate_hz = 100.0}).value();
+  // 0.3 °/√h is 0.3/60 °/√s.
+  EXPECT_NE(yaml.find("\ngyroscope_noise_density: 8.72664625997164"), std::string::npos) << yaml;
+  EXPECT_TRUE(has(yaml, "gyroscope_random_walk: 2.0e-05")) << yaml;
+  EXPECT_FALSE(has(yaml, "fill in")) << yaml;
 }
 
 TEST(ImuYaml, WritesNumbersThatYamlDoesNotTakeForText) {

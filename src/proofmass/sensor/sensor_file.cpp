@@ -127,19 +127,21 @@ void read_figure(const toml::node& node, const Place& place, std::optional<Figur
   figure = table_figures(node, place)[0];
 }
 
-std::array<std::array<double, 9>, 9> covariance(const toml::node& node) {
-  constexpr std::string_view path = "calibration.covariance";
-  constexpr std::string_view shape =
-      "must be 9 rows of 9 numbers: bias x y z, scale x y z, misalignment yz zy zx";
-  std::array<std::array<double, 9>, 9> matrix{};
+/// `order`: what the rows are of.
+template <std::size_t count>
+std::array<std::array<double, count>, count> covariance(const toml::node& node,
+                                                        std::string_view path,
+                                                        std::string_view order) {
+  const std::string shape = fmt::format("must be {0} rows of {0} numbers: {1}", count, order);
+  std::array<std::array<double, count>, count> matrix{};
   const toml::array* rows = node.as_array();
-  if (rows == nullptr || rows->size() != 9) fail(node, path, shape);
-  for (std::size_t i = 0; i < 9; ++i) {
+  if (rows == nullptr || rows->size() != count) fail(node, path, shape);
+  for (std::size_t i = 0; i < count; ++i) {
     const toml::array* row = (*rows)[i].as_array();
-    if (row == nullptr || row->size() != 9) fail((*rows)[i], path, shape);
-    for (std::size_t j = 0; j < 9; ++j) matrix[i][j] = number((*row)[j], path);
+    if (row == nullptr || row->size() != count) fail((*rows)[i], path, shape);
+    for (std::size_t j = 0; j < count; ++j) matrix[i][j] = number((*row)[j], path);
   }
-  for (std::size_t i = 0; i < 9; ++i)
+  for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (matrix[i][j] != matrix[j][i]) fail(node, path, "must be symmetric");
   return matrix;
@@ -184,8 +186,12 @@ class Reader {
             read_figure(node, {path, units}, member);
           });
         });
-    take("calibration", "covariance", [&](const toml::node& node, const std::string&) {
-      model.calibration.covariance = covariance(node);
+    take("calibration", "covariance", [&](const toml::node& node, const std::string& path) {
+      model.calibration.covariance =
+          covariance<9>(node, path, "bias x y z, scale x y z, misalignment yz zy zx");
+    });
+    take("gyroscope", "covariance", [&](const toml::node& node, const std::string& path) {
+      model.gyroscope.covariance = covariance<gyroscope_figures>(node, path, gyroscope_order);
     });
     for (auto&& [key, node] : root_) {
       if (std::ranges::find(sections, key.str()) == sections.end()) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,6 +73,30 @@ struct NoiseModel {
   friend bool operator==(const NoiseModel&, const NoiseModel&) = default;
 };
 
+/// Number of figures of a gyroscope's calibration.
+inline constexpr std::size_t gyroscope_figures = 21;
+
+/// The gyroscope beside the accelerometer,
+///
+///     ω = R(ρ) T diag(1/scale) (reading − bias − G f),
+///
+/// with the calibrated specific force f in m/s^2; ω and f are in the accelerometer's frame. T has
+/// the form of Calibration, R is the rotation by the vector ρ from the gyroscope's frame to the
+/// accelerometer's. The reading is in rad/s if scale has no unit, else in volts or counts.
+struct Gyroscope {
+  AxisFigures bias;                          ///< rad/s, V or counts
+  AxisFigures scale;                         ///< 1, V/(rad/s) or counts/(rad/s)
+  AxisFigures misalignment;                  ///< α_yz, α_zy, α_zx in rad
+  AxisFigures alignment;                     ///< ρ in rad
+  std::array<AxisFigures, 3> g_sensitivity;  ///< G, row by row: (rad/s)/(m/s^2), V or counts per it
+  /// Covariance of the figures in this order, in SI.
+  std::optional<std::array<std::array<double, gyroscope_figures>, gyroscope_figures>> covariance;
+  AxisFigures white;        ///< N in rad/s/sqrt(Hz), the angle random walk
+  AxisFigures flicker;      ///< B in rad/s, the bias instability
+  AxisFigures random_walk;  ///< K in rad/s/sqrt(s), the rate random walk
+  friend bool operator==(const Gyroscope&, const Gyroscope&) = default;
+};
+
 /// Warm-up of the bias after power-on: a1 (1 − e^(−t/T)) + a2.
 struct DriftModel {
   AxisFigures a1, a2;         ///< m/s^2
@@ -94,6 +119,7 @@ struct SensorModel {
   Calibration calibration;
   NoiseModel noise;
   DriftModel drift;
+  Gyroscope gyroscope;
   std::vector<UnknownEntry> unknown;
   friend bool operator==(const SensorModel&, const SensorModel&) = default;
 };

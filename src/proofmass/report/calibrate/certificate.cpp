@@ -19,8 +19,11 @@ struct PrintedUnit {
   std::string_view si, printed;
   double factor;
 };
-constexpr PrintedUnit printed_units[] = {
-    {"rad", "mrad", 1e3}, {"V", "mV", 1e3}, {"V/(m/s^2)", "mV/(m/s^2)", 1e3}};
+constexpr PrintedUnit printed_units[] = {{"rad", "mrad", 1e3},
+                                         {"V", "mV", 1e3},
+                                         {"V/(m/s^2)", "mV/(m/s^2)", 1e3},
+                                         {"rad/s", "mrad/s", 1e3},
+                                         {"rad/s/(m/s^2)", "mrad/s/(m/s^2)", 1e3}};
 
 PrintedUnit printed(std::string_view si) {
   for (const PrintedUnit& unit : printed_units)

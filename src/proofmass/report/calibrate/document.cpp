@@ -147,6 +147,7 @@ CertificateData certificate_of(const CalibrateReport& report) {
         "interval.");
   if (report.check && stds_known(report)) data.monte_carlo = report.check->verdict;
   for (std::string& text : suspect_sentences(report)) data.limits.push_back(std::move(text));
+  if (report.gyroscope) add_to_certificate(*report.gyroscope, data);
   return data;
 }
 
@@ -177,6 +178,8 @@ std::vector<Note> calibrate_notes(const CalibrateReport& report) {
     if (!is_reason_of_null(text)) add(Severity::warning, text);
   if (report.supply)
     for (const std::string& text : report.supply->notes) add(Severity::warning, text);
+  if (report.gyroscope)
+    for (Note& note : gyroscope_notes(*report.gyroscope)) notes.push_back(std::move(note));
   return notes;
 }
 
@@ -191,6 +194,9 @@ Document describe(const CalibrateReport& report) {
   std::vector<Section>& sections = document.page.sections;
   sections = {figures_section(report), plots_section(report), positions_section(report)};
   if (report.supply) sections.push_back(supply_section(report));
+  if (report.gyroscope)
+    for (Section& section : gyroscope_sections(*report.gyroscope))
+      sections.push_back(std::move(section));
   if (report.check && stds_known(report)) sections.push_back(check_section(report));
   for (Section& section : certificate_sections(certificate_of(report)))
     sections.push_back(std::move(section));

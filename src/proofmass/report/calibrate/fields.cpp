@@ -251,11 +251,12 @@ Fields calibrate_fields(const CalibrateReport& report) {
                             {.meaning = "numbers of the positions of which one is bad, where the "
                                         "others do not show which"}));
   out.push_back(positions_field(report));
-  out.push_back(budgets_field(report));
+  out.push_back(budgets_field(report.budgets));
   out.push_back(stability_field(report));
   out.push_back(monte_carlo_field(report));
   if (report.validation) out.push_back(validation_field(report));
   if (report.supply) out.push_back(supply_field(report));
+  if (report.gyroscope) out.push_back(gyroscope_field(*report.gyroscope));
   out.push_back(field::text("conclusion", calibrate_conclusion(report)));
   out.push_back(field::notes(calibrate_notes(report)));
   return out;

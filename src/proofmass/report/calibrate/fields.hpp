@@ -13,7 +13,7 @@ inline constexpr const char* noise_of_means_unknown = "the noise of the means is
 [[nodiscard]] Field positions_field(const CalibrateReport& report);
 
 /// Budget of each figure, its Monte Carlo check, bias stability, residuals of new positions.
-[[nodiscard]] Field budgets_field(const CalibrateReport& report);
+[[nodiscard]] Field budgets_field(const std::vector<calibrate::UncertaintyBudget>& budgets);
 [[nodiscard]] Field monte_carlo_field(const CalibrateReport& report);
 [[nodiscard]] Field stability_field(const CalibrateReport& report);
 /// Precondition: the report has a validation.

@@ -16,6 +16,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/report/calibrate/certificate.hpp"
+#include "proofmass/report/calibrate/gyroscope_report.hpp"
 #include "proofmass/report/document.hpp"
 
 namespace proofmass::report {
@@ -67,6 +68,7 @@ struct CalibrateReport {
   std::vector<std::string> validation_files;
   std::vector<SuppliedFit> supplies;  ///< one for each file if they differ in supply
   std::optional<calibrate::SupplyDependence> supply;
+  std::optional<GyroscopeReport> gyroscope;  ///< with --gyro
   CertificateData certificate;  ///< names, conditions and limits; budgets are those above
   std::vector<Note> notes;      ///< notes of reading and preparation; those of the fit are added
 };

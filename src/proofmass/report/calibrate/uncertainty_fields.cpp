@@ -104,8 +104,8 @@ Field supply_axis(const std::optional<SupplyAxis>& axis, const std::string& unit
 
 }  // namespace
 
-Field budgets_field(const CalibrateReport& report) {
-  return field::records("budgets", report.budgets, budget_fields);
+Field budgets_field(const std::vector<UncertaintyBudget>& budgets) {
+  return field::records("budgets", budgets, budget_fields);
 }
 
 Field stability_field(const CalibrateReport& report) {

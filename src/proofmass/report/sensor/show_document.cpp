@@ -15,13 +15,14 @@ namespace {
 
 using sensor::FigureSlot;
 
-constexpr std::array<std::string_view, 4> figure_sections{"calibration", "noise", "drift",
-                                                          "electrical"};
+constexpr std::array<std::string_view, 5> figure_sections{"calibration", "noise", "drift",
+                                                          "electrical", "gyroscope"};
 
 std::string section_words(std::string_view section) {
   if (section == "calibration") return "Calibration";
   if (section == "noise") return "Noise";
   if (section == "drift") return "Warm-up";
+  if (section == "gyroscope") return "Gyroscope";
   return "Electrical";
 }
 
@@ -84,7 +85,7 @@ std::string contents(const SensorShow& report) {
     if (count > 0)
       known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", section,
                            count_words(count, "figure"));
-    else
+    else if (section != "gyroscope")  // which many sensors do not have
       unknown += fmt::format("{}{}", unknown.empty() ? "" : ", ", section);
   }
   if (known.empty()) return "The file has no figures.";

@@ -51,6 +51,28 @@ double worst(const AxisFigures& figures) {
   return largest;
 }
 
+/// The gyroscope's two entries; commented out where the file does not have them.
+std::string yaml_gyroscope(const Gyroscope& gyroscope) {
+  const auto entry = [](const AxisFigures& figures, std::string_view head, std::string_view key,
+                        std::string_view why) {
+    std::string out = fmt::format("# {}:\n{}", head, yaml_axes(figures));
+    const double largest = worst(figures);
+    if (largest > 0.0 && missing_axes(figures).empty())
+      return out + fmt::format("{}: {}\n", key, yaml_number(largest));
+    return out + fmt::format("# {}:  # {}\n", key, why);
+  };
+  return "\n" +
+         entry(
+             gyroscope.white, "Gyroscope: white noise, N, in rad/s/sqrt(Hz)",
+             "gyroscope_noise_density",
+             "rad/s/sqrt(Hz); measure it at rest, proofmass noise FILE --update-sensor FILE.toml") +
+         entry(gyroscope.random_walk,
+               "Gyroscope: random walk of the bias, K, in rad/s^2/sqrt(Hz), which is rad/s/sqrt(s)",
+               "gyroscope_random_walk",
+               "rad/s^2/sqrt(Hz); record at rest for longer, or fill in what may be assumed") +
+         "\n";
+}
+
 Status check_white(const AxisFigures& white) {
   constexpr std::string_view remedy =
       "measure it at rest, proofmass noise FILE --update-sensor FILE.toml, or write it there from "
@@ -99,10 +121,7 @@ Result<std::string> imu_yaml(const SensorModel& model, const ImuYamlOptions& opt
   out += yaml_axes(model.noise.white);
   out += fmt::format("accelerometer_noise_density: {}\n", yaml_number(worst(model.noise.white)));
   out += yaml_random_walk(model.noise.random_walk);
-  out +=
-      "\n# This sensor file is an accelerometer's: the gyroscope's figures must be filled in.\n"
-      "# gyroscope_noise_density:  # rad/s/sqrt(Hz)\n"
-      "# gyroscope_random_walk:  # rad/s^2/sqrt(Hz)\n\n";
+  out += yaml_gyroscope(model.gyroscope);
   out += fmt::format("rostopic: {}\n", yaml_string(options.rostopic));
   return out + yaml_rate(options.rate_hz);
 }

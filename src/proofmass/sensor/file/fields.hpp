@@ -8,8 +8,12 @@
 
 namespace proofmass::sensor {
 
-inline constexpr std::array<std::string_view, 5> sections{"sensor", "electrical", "calibration",
-                                                          "noise", "drift"};
+inline constexpr std::array<std::string_view, 6> sections{"sensor", "electrical", "calibration",
+                                                          "noise",  "drift",      "gyroscope"};
+
+/// Rows of Gyroscope::covariance.
+inline constexpr std::string_view gyroscope_order =
+    "bias x y z, scale x y z, misalignment yz zy zx, alignment x y z, g_sensitivity_x, _y, _z";
 
 /// Every figure of a sensor file, once: section, key, permitted SI units, member. To add a figure,
 /// add a line here. Model is SensorModel or const SensorModel.
@@ -42,6 +46,18 @@ void visit_figures(Model& model, Visit&& visit) {
   visit("drift", "a1", Units{"m/s^2"}, d.a1);
   visit("drift", "a2", Units{"m/s^2"}, d.a2);
   visit("drift", "T", Units{"s"}, d.time_constant);
+  auto& g = model.gyroscope;
+  const Units g_units{"rad/s/(m/s^2)", "V/(m/s^2)", "counts/(m/s^2)"};
+  visit("gyroscope", "bias", Units{"rad/s", "V", "counts"}, g.bias);
+  visit("gyroscope", "scale", Units{"1", "V/(rad/s)", "counts/(rad/s)"}, g.scale);
+  visit("gyroscope", "misalignment", Units{"rad"}, g.misalignment);
+  visit("gyroscope", "alignment", Units{"rad"}, g.alignment);
+  visit("gyroscope", "g_sensitivity_x", g_units, g.g_sensitivity[0]);
+  visit("gyroscope", "g_sensitivity_y", g_units, g.g_sensitivity[1]);
+  visit("gyroscope", "g_sensitivity_z", g_units, g.g_sensitivity[2]);
+  visit("gyroscope", "white", Units{"rad/s/sqrt(Hz)"}, g.white);
+  visit("gyroscope", "flicker", Units{"rad/s"}, g.flicker);
+  visit("gyroscope", "random_walk", Units{"rad/s/sqrt(s)"}, g.random_walk);
 }
 
 /// The nine figures of a calibration in the order of its covariance, as pointers to

@@ -67,11 +67,11 @@ bool is_empty(const AxisFigures& figures) {
   return !figures[0] && !figures[1] && !figures[2];
 }
 
-std::string covariance_text(const Calibration& calibration) {
-  if (!calibration.covariance) return {};
-  std::string out = "# of bias x y z, scale x y z, misalignment yz zy zx; SI\ncovariance = [\n";
-  for (const auto& row : *calibration.covariance)
-    out += fmt::format("  [{}],\n", fmt::join(row, ", "));
+template <class Covariance>
+std::string covariance_text(const Covariance& covariance, std::string_view order) {
+  if (!covariance) return {};
+  std::string out = fmt::format("# of {}; SI\ncovariance = [\n", order);
+  for (const auto& row : *covariance) out += fmt::format("  [{}],\n", fmt::join(row, ", "));
   return out + "]\n";
 }
 
@@ -92,7 +92,10 @@ std::string section_text(const SensorModel& model, std::string_view section) {
                   if (in == section && !is_empty(figure))
                     body += fmt::format("{} = {}\n", key, figure_text(figure));
                 });
-  if (section == "calibration") body += covariance_text(model.calibration);
+  if (section == "calibration")
+    body += covariance_text(model.calibration.covariance,
+                            "bias x y z, scale x y z, misalignment yz zy zx");
+  if (section == "gyroscope") body += covariance_text(model.gyroscope.covariance, gyroscope_order);
   return body + unknown_text(model, section);
 }
 
