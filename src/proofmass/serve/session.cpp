@@ -6,6 +6,7 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/http/file_body.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <cctype>
 #include <exception>
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 
 #include "proofmass/core/version.hpp"
 #include "proofmass/serve/request_head.hpp"
+#include "proofmass/serve/socket_session.hpp"
 #include "proofmass/serve/temporary.hpp"
 
 namespace proofmass::serve {
@@ -104,12 +106,24 @@ class Session : public std::enable_shared_from_this<Session> {
       return shared_.refusals.take(now) ? refuse(shell_or(*response, head)) : close();
     if (!shared_.requests.take(now))
       return refuse(error_response(429, "too many requests: wait a second"));
-    request_ = {.method = head.method, .target = parse_target(head.target).value(), .body = {}};
+    auto target = parse_target(head.target).value();
+    if (beast::websocket::is_upgrade(parser_->get())) return upgrade(target);
+    request_ = {.method = head.method, .target = std::move(target), .body = {}};
     if (request_.method == "PUT") return read_upload();
     // The parser has checked the length that the head names against the limit of uploads.
     if (parser_->content_length().value_or(0) > shared_.options.limits.body_bytes)
       return refuse(error_response(413, "the body of the request is too long"));
     read_body();
+  }
+
+  void upgrade(const Target& target) {
+    if (!shared_.options.live || target.path != live_path)
+      return refuse(error_response(404, "there is no WebSocket here"));
+    std::erase_if(shared_.sockets, [](const auto& one) { return one.expired(); });
+    if (shared_.sockets.size() >= shared_.options.limits.sockets)
+      return refuse(error_response(503, "too many browsers: close one"));
+    shared_.sockets.push_back(
+        SocketSession::begin(std::move(stream_), parser_->release(), shared_));
   }
 
   /// Who comes to the page without a token sees it all the same, without anything of the folder: a
@@ -242,6 +256,9 @@ void SessionsShared::close_all() {
   for (const auto& one : sessions)
     if (const auto session = one.lock()) session->close();
   sessions.clear();
+  for (const auto& one : sockets)
+    if (const auto socket = one.lock()) socket->close();
+  sockets.clear();
 }
 
 }  // namespace proofmass::serve

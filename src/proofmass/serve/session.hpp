@@ -12,6 +12,7 @@
 namespace proofmass::serve {
 
 class Session;
+class SocketSession;
 
 /// What the connections of a server have in common. Of the network's thread, but for `handler`,
 /// which runs on `workers`.
@@ -30,6 +31,7 @@ struct SessionsShared {
   Handler handler;
   Gate gate{};
   TokenBucket requests, refusals;
+  std::list<std::weak_ptr<SocketSession>> sockets{};
   std::list<std::weak_ptr<Session>> sessions{};  ///< the one that began to wait last at the end
   boost::asio::thread_pool workers{4};
 };
