@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "proofmass/serve/temporary.hpp"
-#include "proofmass/serve/view_file.hpp"
+#include "proofmass/serve/view/file.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "proofmass/serve/folder.hpp"
-#include "proofmass/serve/gate.hpp"
-#include "proofmass/serve/request_head.hpp"
+#include "proofmass/serve/http/gate.hpp"
+#include "proofmass/serve/http/request_head.hpp"
 
 // A request as sent by a peer: parser, access check and target, and the folder that a name in the
 // request must not leave.

@@ -1,30 +1,11 @@
 // Drives the page in Chromium, as a person would: every view, in light and dark, on a desk and on a
 // phone. Skipped, with a word, where Chromium or the packages of package.json are missing.
-import { spawn, spawnSync } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { spawnSync } from "node:child_process";
+import { readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import assert from "node:assert/strict";
-
-const chromiumPath = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
-let chromium, axe;
-try {
-  ({ chromium } = await import("playwright-core"));
-  axe = readFileSync(new URL("node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
-} catch {
-  chromium = undefined;
-}
-if (!chromium || !chromiumPath) {
-  console.log(`SKIPPED, ${chromium ? "there is no Chromium" : "npm install in tests/page has not been run"}`);
-  process.exit(0);
-}
-
-const program = process.env.PROOFMASS;
-const patience = 180_000; // ms; other builds may run on this machine
-const shots = process.env.PROOFMASS_SCREENSHOTS; // a folder, to look at what was seen
-const folder = mkdtempSync(join(tmpdir(), "proofmass-page-"));
-let server, browser, link;
+import { audit, base, folder, newContext, open, patience, program, shot, start, stop } from "./browser.mjs";
 
 // Deterministic noise: sum of twelve uniform numbers of a small generator.
 function noise(seed) {
@@ -41,41 +22,9 @@ before(async () => {
     const rows = Array.from({ length: 20000 }, (_, k) => `${k / 100},${(size * next()).toFixed(7)}`);
     writeFileSync(join(folder, `${name}.csv`), `t (s),x (g)\n${rows.join("\n")}\n`);
   }
-  server = spawn(program, ["serve", "--no-browser"], { cwd: folder });
-  link = await new Promise((found) => server.stdout.once("data", (data) => found(String(data).trim())));
-  browser = await chromium.launch({ executablePath: chromiumPath, args: ["--no-sandbox"] });
+  await start();
 });
-after(async () => {
-  await browser?.close();
-  const ended = new Promise((done) => server.once("exit", done));
-  server.kill("SIGINT");
-  assert.equal(await ended, 130);
-  rmSync(folder, { recursive: true });
-});
-
-const base = () => link.split("/?")[0];
-async function open(query = "", { width = 1280, height = 900, scheme = "light" } = {}) {
-  const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, acceptDownloads: true });
-  const page = await context.newPage();
-  page.setDefaultTimeout(patience);
-  const problems = [];
-  page.on("pageerror", (error) => problems.push(String(error)));
-  page.on("console", (said) => said.type() === "error" && !/403/.test(said.text()) && problems.push(said.text()));
-  page.on("request", (request) => !request.url().startsWith(base()) && !/^(blob|data):/.test(request.url()) && problems.push(`asks ${request.url()}`));
-  await page.goto(link);
-  await page.waitForSelector("nav a", { state: "attached" });
-  if (query) await page.goto(`${base()}/?${query}`);
-  return { page, problems, close: async () => { assert.deepEqual(problems, []); await context.close(); } };
-}
-const shot = async (page, name) => void (shots && (await page.screenshot({ path: join(shots, `${name}.png`) })));
-
-// Outside the page's own policy, which lets no other script in.
-async function audit(page, name) {
-  const cdp = await page.context().newCDPSession(page);
-  await cdp.send("Runtime.evaluate", { expression: axe });
-  const found = await cdp.send("Runtime.evaluate", { expression: "axe.run(document, {resultTypes: ['violations']}).then((r) => JSON.stringify(r.violations.filter((v) => v.impact === 'serious' || v.impact === 'critical').map((v) => [v.id, v.nodes.slice(0, 3).map((n) => n.html)])))", awaitPromise: true, returnByValue: true });
-  assert.equal(found.result.value, "[]", name);
-}
+after(stop);
 
 async function run(page, verb, file, options = "") {
   await page.goto(`${base()}/?v=analysis&verb=${verb}&file=${file}${options}`);
@@ -85,7 +34,7 @@ async function run(page, verb, file, options = "") {
 }
 
 test("without a token the page shows nothing of the folder", async () => {
-  const context = await browser.newContext();
+  const context = await newContext();
   const page = await context.newPage();
   await page.goto(base() + "/");
   await page.waitForSelector("text=needs the link");

@@ -208,8 +208,10 @@ export function onConnection(hears: Listener): void {
   listener = hears;
 }
 
+export const token = (): string => sessionStorage.getItem(key) ?? "";
+
 async function ask(method: string, path: string, body?: BodyInit, signal?: AbortSignal): Promise<globalThis.Response> {
-  const headers = { Authorization: `Bearer ${sessionStorage.getItem(key) ?? ""}` };
+  const headers = { Authorization: `Bearer ${token()}` };
   let answer: globalThis.Response;
   try {
     answer = await fetch(path, { method, headers, body: body ?? null, signal: signal ?? null, cache: "no-store" });
@@ -241,6 +243,11 @@ export async function begin(asked: Asked): Promise<number> {
   const answer = await ask("POST", "/api/analyses", JSON.stringify(asked));
   return ((await answer.json()) as { id: number }).id;
 }
+
+export async function post<T>(path: string, body: unknown): Promise<T> {
+  return (await (await ask("POST", path, JSON.stringify(body))).json()) as T;
+}
+export const remove = async (path: string): Promise<void> => void (await ask("DELETE", path));
 
 export const cancel = async (id: number): Promise<void> => void (await ask("DELETE", `/api/analyses/${id}`));
 

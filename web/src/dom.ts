@@ -52,7 +52,7 @@ export function save(name: string, blob: Blob): void {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-export type Light = "good" | "warning" | "bad" | "unreadable" | "none";
+export type Light = "good" | "warning" | "bad" | "unreadable" | "none" | "harmless";
 
 /// Shape, colour and word, so that no one of them has to be seen.
 export function light(kind: Light, word: string, hidden = false): HTMLElement {
@@ -62,6 +62,7 @@ export function light(kind: Light, word: string, hidden = false): HTMLElement {
     bad: svg("rect", { x: 1, y: 1, width: 8, height: 8 }),
     unreadable: svg("path", { d: "M2 2l6 6M8 2l-6 6", class: "stroke" }),
     none: svg("circle", { cx: 5, cy: 5, r: 3.5, class: "hollow" }),
+    harmless: svg("circle", { cx: 5, cy: 5, r: 3.5, class: "hollow" }),
   };
   const mark = svg("svg", { viewBox: "0 0 10 10", class: "light-mark " + kind, "aria-hidden": "true" }, shapes[kind]);
   return h("span", { class: "light" }, mark, h("span", { class: hidden ? "only-heard" : "" }, word));

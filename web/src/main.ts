@@ -3,8 +3,10 @@
 import { ApiError, get, onConnection, pause, takeToken, type Info } from "./api";
 import { go, link, onMove, params, type Params } from "./address";
 import { analysisView } from "./analysis";
+import { calibrationView } from "./calibration";
 import { compareView } from "./compare";
 import { h, light, replace } from "./dom";
+import { liveView } from "./live";
 import { recordingView } from "./recording";
 import { recordingsView } from "./recordings";
 import type { View } from "./view";
@@ -20,6 +22,8 @@ let info: Info | undefined;
 const places: [string, string, Params][] = [
   ["recordings", "Recordings", { v: "recordings" }],
   ["analysis", "Analyses", { v: "analysis" }],
+  ["live", "Live", { v: "live" }],
+  ["calibration", "Calibration", { v: "calibration" }],
 ];
 
 function isOn(name: string): boolean {
@@ -49,7 +53,7 @@ function theme(): HTMLElement {
 }
 
 const keys: [string, string][] = [
-  ["g r, g a", "recordings, analyses"],
+  ["g r, g a, g l, g c", "recordings, analyses, live, calibration"],
   ["/", "filter the list"],
   ["↑ ↓ Enter", "choose a recording, open it"],
   ["n, k", "noise, calibrate"],
@@ -63,6 +67,9 @@ const keys: [string, string][] = [
   ["Ctrl Enter", "run an analysis"],
   ["c", "compare a run"],
   ["← → Home End", "readout of the plot in focus"],
+  ["space, w", "live: hold the picture, window"],
+  ["a, r", "live: add a source, record"],
+  ["n, e", "calibration: leave a position out, end"],
   ["Esc", "cancel, close"],
 ];
 const help = h("dialog", { "aria-label": "Keys" }, h("h2", {}, "Keys"), h("table", {}, h("tbody", {}, ...keys.map(([key, what]) => h("tr", {}, h("th", { scope: "row" }, key), h("td", {}, what))))), h("form", { method: "dialog" }, h("button", { class: "btn" }, "Close")));
@@ -81,6 +88,8 @@ function draw(): void {
   const name = now["v"] ?? "recordings";
   if (name === "recording" && now["file"]) view = recordingView(main, now["file"]);
   else if (name === "analysis") view = analysisView(main);
+  else if (name === "live") view = liveView(main);
+  else if (name === "calibration") view = calibrationView(main);
   else if (name === "compare") view = compareView(main);
   else view = recordingsView(main, info?.folder ?? "");
   document.title = `${now["file"] ? now["file"].split("\n")[0] + " – " : ""}Proofmass`;

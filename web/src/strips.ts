@@ -19,19 +19,19 @@ export interface Scene {
   pointer: number | undefined;
 }
 
-const left = 44; // px of the value axis within each canvas
+export const left = 44; // px of the value axis within each canvas
 
 export const plotWidth = (canvas: HTMLCanvasElement): number => Math.max(1, canvas.clientWidth - left - 6);
 const px = (t: number, span: Span, width: number): number => left + ((t - span[0]) / (span[1] - span[0])) * width;
 export const timeAt = (x: number, span: Span, width: number): number => span[0] + ((x - left) / width) * (span[1] - span[0]);
 
-interface Surface {
+export interface Surface {
   ctx: CanvasRenderingContext2D;
   width: number; ///< of the plot
   height: number;
 }
 
-function surface(canvas: HTMLCanvasElement): Surface | undefined {
+export function surface(canvas: HTMLCanvasElement): Surface | undefined {
   const { clientWidth, clientHeight: height } = canvas;
   const ctx = canvas.getContext("2d");
   if (!ctx || clientWidth === 0) return undefined;

@@ -21,6 +21,8 @@ struct GuideFlags {
 struct RecordCommand {
   std::string source;
   bool list = false;
+  bool stream = false;   ///< lines of JSON on standard output
+  bool no_file = false;  ///< nothing is recorded
   std::optional<double> duration_s, rotate_s, rotate_mb;
   std::string trigger;  ///< "acc_x > 2"
   double trigger_before_s = 1.0, trigger_after_s = 1.0;

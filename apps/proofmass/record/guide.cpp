@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <fmt/format.h>
+#include <limits>
 #include <poll.h>
 #include <string_view>
 #include <unistd.h>
@@ -13,6 +14,7 @@
 #include "cli/output.hpp"
 #include "cli/provenance.hpp"
 #include "noise/command.hpp"
+#include "record/guide_line.hpp"
 #include "tumble/command.hpp"
 
 namespace proofmass::app {
@@ -119,16 +121,22 @@ void RecordGuide::opened(const Recording& head) {
 std::vector<std::string> RecordGuide::samples(const Block& block) {
   if (!guide_) return {};
   std::vector<std::string> lines = keys();
-  for (const calibrate::GuideStep& step : guide_->add(block))
+  for (const calibrate::GuideStep& step : guide_->add(block)) {
     lines.push_back((step.kind == GuideKind::prompt ? "→ " : "  ") + step.text);
+    if (step.kind != GuideKind::prompt) said_ = step.text;
+  }
+  while (errors_g_.size() < guide_->poses().size())
+    errors_g_.push_back(
+        guide_->picture().error_g.value_or(std::numeric_limits<double>::quiet_NaN()));
   return lines;
 }
 
-// Enter: skip this position; q: end the procedure.
+// Enter: skip this position; q: end the procedure. With --stream the words "skip" and "quit".
 std::vector<std::string> RecordGuide::keys() {
   std::vector<std::string> lines;
   pollfd input{STDIN_FILENO, POLLIN, 0};
-  if (command_.source == "-" || isatty(STDIN_FILENO) != 1 || poll(&input, 1, 0) <= 0) return lines;
+  const bool is_asked = command_.stream || isatty(STDIN_FILENO) == 1;
+  if (command_.source == "-" || !is_asked || poll(&input, 1, 0) <= 0) return lines;
   std::array<char, 64> typed{};
   const ssize_t count = read(STDIN_FILENO, typed.data(), typed.size());
   const std::string_view text(typed.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
@@ -140,6 +148,16 @@ std::vector<std::string> RecordGuide::keys() {
 
 std::string RecordGuide::live() const {
   return guide_ ? guide_->live().words + "   (Enter: leave it out, q Enter: that will do)" : "";
+}
+
+std::string RecordGuide::picture() const {
+  if (!guide_) return "null";
+  constexpr double default_target_mg = 1.0;
+  return guide_line(*guide_, {.procedure = command_.guide.procedure,
+                              .said = said_,
+                              .target_mg = command_.guide.target_std_mg.value_or(default_target_mg),
+                              .errors_g = errors_g_,
+                              .is_done = done()});
 }
 
 bool RecordGuide::done() const {

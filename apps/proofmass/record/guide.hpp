@@ -23,6 +23,8 @@ class RecordGuide {
   [[nodiscard]] std::vector<std::string> samples(const Block& block);
   /// Current state, for a line that is redrawn.
   [[nodiscard]] std::string live() const;
+  /// The state of the procedure as JSON, for `record --stream`.
+  [[nodiscard]] std::string picture() const;
   /// True if the recording can end.
   [[nodiscard]] bool done() const;
   /// Writes the list of rests beside the recording, "run.rests.csv" beside "run.mcap". Returns the
@@ -32,13 +34,13 @@ class RecordGuide {
   void run_verb(const std::string& file) const;
 
  private:
-  void begin(const Recording& head);
   [[nodiscard]] std::vector<std::string> keys();
 
   RecordCommand command_;
   std::optional<calibrate::PoseGuide> guide_;
-  std::string why_not_;
-  bool ended_ = false;  ///< by the user
+  std::string why_not_, said_;
+  std::vector<double> errors_g_;  ///< after each pose; NaN where unknown
+  bool ended_ = false;            ///< by the user
 };
 
 }  // namespace proofmass::app

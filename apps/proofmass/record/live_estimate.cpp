@@ -105,15 +105,15 @@ Made make_analysis(const RecordCommand& command,
 }  // namespace
 
 acquire::MakeAnalysis make_estimate(const RecordCommand& command,
-                                    LiveView& view,
+                                    std::function<void(const std::vector<Channel>&)> columns,
                                     std::vector<Note>& notes) {
   if (command.estimate.empty()) return {};
-  return [&](const acquire::SourceHead& head) -> Made {
+  return [&, columns = std::move(columns)](const acquire::SourceHead& head) -> Made {
     try {
       CalibratedBlocks samples = calibrated_blocks(command.input, head.recording, notes);
       auto analysis = make_analysis(command, samples, notes);
       if (!analysis) return analysis;
-      view.estimating((*analysis)->columns());
+      columns((*analysis)->columns());
       return std::unique_ptr<LiveAnalysis>(
           std::make_unique<Calibrated>(std::move(samples), std::move(analysis).value()));
     } catch (const Failure& failure) {

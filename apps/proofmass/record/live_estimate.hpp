@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "proofmass/acquire/recorder.hpp"
@@ -8,10 +9,11 @@
 
 namespace proofmass::app {
 
-/// The analysis requested by --estimate, on calibrated live samples; announces its columns to the
-/// view. Empty if none was requested. Throws Failure.
-[[nodiscard]] acquire::MakeAnalysis make_estimate(const RecordCommand& command,
-                                                  LiveView& view,
-                                                  std::vector<Note>& notes);
+/// The analysis requested by --estimate, on calibrated live samples; `columns` is called with its
+/// columns. Empty if none was requested. Throws Failure.
+[[nodiscard]] acquire::MakeAnalysis make_estimate(
+    const RecordCommand& command,
+    std::function<void(const std::vector<Channel>&)> columns,
+    std::vector<Note>& notes);
 
 }  // namespace proofmass::app

@@ -18,6 +18,7 @@
 #include "record/live_estimate.hpp"
 #include "record/live_source.hpp"
 #include "record/live_view.hpp"
+#include "record/stream.hpp"
 #include "verb.hpp"
 
 namespace proofmass::app {
@@ -49,6 +50,16 @@ void add_file_flags(CLI::App& verb, RecordCommand& command) {
   verb.add_flag("--reconnect", command.reconnect,
                 "wait for a source that is missing or lost, and continue after a marked gap")
       ->group("Recording");
+  CLI::Option* no_file =
+      verb.add_flag("--no-file", command.no_file, "record nothing: only show the samples")
+          ->group("Recording")
+          ->excludes(verb.get_option("--output"));
+  verb.add_flag("--stream", command.stream,
+                "write samples, estimates and events as lines of JSON on standard output; the "
+                "recording ends when nobody reads them")
+      ->group("Recording");
+  for (const char* one : {"--rotate", "--rotate-mb", "--trigger"})
+    no_file->excludes(verb.get_option(one));
   add("--stall", command.stall_s, "S", "report a stall after S seconds without data (default 2)")
       ->check(positive());
   add("--stall-end", command.stall_end_s, "S",
@@ -84,7 +95,7 @@ void add_estimate_flags(CLI::App& verb, RecordCommand& command) {
       ->excludes(estimate);
 }
 
-void add_guide_flags(CLI::App& verb, GuideFlags& flags) {
+void add_guide_flags(CLI::App& verb, GuideFlags& flags, std::string& report) {
   CLI::Option* procedure = verb.get_option("--procedure");
   const auto add = [&](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->group("Procedure")->needs(procedure);
@@ -100,6 +111,9 @@ void add_guide_flags(CLI::App& verb, GuideFlags& flags) {
       ->check(positive());
   add("--update-sensor", flags.update_sensor, "FILE.toml",
       "write the results into this sensor file");
+  add("--report", report, "FILE.html", "write the analysis as one self-contained page")
+      ->excludes(verb.get_option("--no-file"));
+  procedure->excludes(verb.get_option("--no-file"));
 }
 
 // Input flags that apply to live samples.
@@ -130,7 +144,7 @@ void add_record_flags(CLI::App& verb, RecordCommand& command) {
       ->excludes(source);
   add_file_flags(verb, command);
   add_estimate_flags(verb, command);
-  add_guide_flags(verb, command.guide);
+  add_guide_flags(verb, command.guide, command.output.report);
   add_live_input_flags(verb, command.input);
   add_output_flags(verb, command.output);
   verb.footer(
@@ -207,6 +221,7 @@ acquire::RecordOptions options_of(const RecordCommand& command) {
   constexpr double bytes_per_mb = 1e6;
   acquire::RecordOptions options;
   options.path = command.output.output;
+  options.keeps_file = !command.no_file;
   options.duration_s = command.duration_s;
   options.rotate_s = command.rotate_s;
   if (command.rotate_mb)
@@ -221,26 +236,47 @@ acquire::RecordOptions options_of(const RecordCommand& command) {
   return options;
 }
 
-// `guide` may be null.
-acquire::RecordWatch watch_by(LiveView& view, RecordGuide* guide, report::RecordReport& report) {
+// What follows a recording besides the file; guide and stream may be null.
+struct Followers {
+  LiveView& view;
+  RecordGuide* guide;
+  RecordStream* stream;
+};
+
+void follow_samples(const Followers& to, const Block& block) {
+  to.view.samples(block);
+  if (to.stream != nullptr) to.stream->samples(block);
+  if (to.guide == nullptr) return;
+  for (const std::string& line : to.guide->samples(block)) to.view.say(line);
+  to.view.guide(to.guide->live());
+  if (to.stream != nullptr) to.stream->guide([&to] { return to.guide->picture(); });
+}
+
+acquire::RecordWatch watch_by(const Followers& to,
+                              const std::string& file,
+                              report::RecordReport& report) {
   acquire::RecordWatch watch;
-  watch.stopped = [&view, guide] {
-    view.refresh();
-    return interruption_waits() || (guide != nullptr && guide->done());
+  watch.stopped = [to] {
+    to.view.refresh();
+    if (to.stream != nullptr) to.stream->refresh();
+    return interruption_waits() || (to.guide != nullptr && to.guide->done()) ||
+           (to.stream != nullptr && to.stream->is_broken());
   };
-  watch.opened = [&, guide](const acquire::SourceHead& head) {
+  watch.opened = [to, file, &report](const acquire::SourceHead& head) {
     report.settings = head.settings;
-    view.opened(head.recording.channels);
-    if (guide != nullptr) guide->opened(head.recording);
+    to.view.opened(head.recording.channels);
+    if (to.stream != nullptr) to.stream->opened(head.recording, file);
+    if (to.guide != nullptr) to.guide->opened(head.recording);
   };
-  watch.samples = [&view, guide](const Block& block) {
-    view.samples(block);
-    if (guide == nullptr) return;
-    for (const std::string& line : guide->samples(block)) view.say(line);
-    view.guide(guide->live());
+  watch.samples = [to](const Block& block) { follow_samples(to, block); };
+  watch.estimates = [to](const Block& rows) {
+    to.view.estimates(rows);
+    if (to.stream != nullptr) to.stream->estimates(rows);
   };
-  watch.estimates = [&view](const Block& rows) { view.estimates(rows); };
-  watch.event = [&view](const RecordEvent& event) { view.event(event); };
+  watch.event = [to](const RecordEvent& event) {
+    to.view.event(event);
+    if (to.stream != nullptr) to.stream->event(event);
+  };
   return watch;
 }
 
@@ -251,21 +287,31 @@ ExitStatus status_of(const Error& error, bool was_open) {
   return app::status_of(error, was_open ? Stage::writing : Stage::reading);
 }
 
-report::RecordReport record(const RecordCommand& command, RecordGuide* guide) {
+report::RecordReport record(const RecordCommand& command,
+                            RecordGuide* guide,
+                            RecordStream* stream) {
   report::RecordReport report;
   report.source = acquire::shown_uri(command.source);
   const acquire::RecordOptions options = options_of(command);
-  LiveView view(report.source, options.path, command.output);
-  const acquire::RecordWatch watch = watch_by(view, guide, report);
+  LiveView view(report.source, command.no_file ? "no file" : options.path, command.output);
+  const acquire::RecordWatch watch =
+      watch_by({view, guide, stream}, command.no_file ? "" : options.path, report);
   bool was_open = false;
   const acquire::OpenSource open = [&was_open, opener = source_opener(command)] {
     auto source = opener();
     was_open = was_open || source.has_value();
     return source;
   };
-  auto summary = acquire::record(open, options, watch, make_estimate(command, view, report.notes));
+  const auto columns = [&](const std::vector<Channel>& made) {
+    view.estimating(made);
+    if (stream != nullptr) stream->estimating(made);
+  };
+  auto summary =
+      acquire::record(open, options, watch, make_estimate(command, columns, report.notes));
   if (!summary) throw Failure(status_of(summary.error(), was_open), summary.error().message);
   report.summary = std::move(summary).value();
+  if (stream != nullptr && guide != nullptr) stream->guide([&] { return guide->picture(); }, true);
+  if (stream != nullptr) stream->ended(report.summary);
   return report;
 }
 
@@ -289,13 +335,17 @@ void run_record(const RecordCommand& given) {
   if (command.output.output.empty()) command.output.output = default_name(command.source);
   std::optional<RecordGuide> guide;
   if (!command.guide.procedure.empty()) guide.emplace(command);
+  std::optional<RecordStream> stream;
+  if (command.stream) stream.emplace();
   without_interruption([&] {
-    const report::RecordReport report = record(command, guide ? &*guide : nullptr);
+    const report::RecordReport report =
+        record(command, guide ? &*guide : nullptr, stream ? &*stream : nullptr);
     const report::Document document = report::describe(report);
     show_notes(report.notes, "", command.output);
     // With a procedure, the document is that of its verb.
     OutputFlags own = command.output;
     if (guide) own.json.clear();
+    if (guide) own.report.clear();
     if (!guide || command.output.json != "-") publish(document, own);
     if (guide && !report.summary.files.empty())
       finish(*guide, report.summary.files.front(), command.output);

@@ -112,21 +112,26 @@ void serve_folder(const ServeCommand& command) {
                       .work_folder = work.path(),
                       .verbs_json = flag_table()});
   const std::string page(serve::page_html());
-  const auto server = need(
-      serve::Server::listen({.address = command.listen,
-                             .port = static_cast<std::uint16_t>(command.port),
-                             .token = token,
-                             .upload_folder = folder.path(),
-                             .page = page,
-                             .content_security_policy = serve::content_security_policy(page)},
-                            [&](const serve::Request& request) { return bench.answer(request); }),
-      Stage::reading);
+  const auto server =
+      need(serve::Server::listen(
+               {.address = command.listen,
+                .port = static_cast<std::uint16_t>(command.port),
+                .token = token,
+                .upload_folder = folder.path(),
+                .page = page,
+                .content_security_policy = serve::content_security_policy(page),
+                .live = [&](const std::shared_ptr<serve::LiveListener>& from,
+                            std::string_view message) { return bench.take(from, message); }},
+               [&](const serve::Request& request) { return bench.answer(request); }),
+           Stage::reading);
   const std::string link =
       fmt::format("http://{}:{}/?token={}", serve::in_link(command.listen), server->port(), token);
   warn_of_others(command);
   print_out(link + "\n");
   if (!command.no_browser && has_screen()) open_browser(link, work.path());
   server->run(interruption_waits);
+  // While the server is still there for those who listen.
+  bench.end_live();
 }
 
 void run_serve(const ServeCommand& command) {

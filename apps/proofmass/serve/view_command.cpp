@@ -6,7 +6,7 @@
 #include "cli/exit_status.hpp"
 #include "input/block_reader.hpp"
 #include "proofmass/io/write_recording.hpp"
-#include "proofmass/serve/view_file.hpp"
+#include "proofmass/serve/view/file.hpp"
 
 namespace proofmass::app {
 namespace {

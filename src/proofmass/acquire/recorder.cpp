@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 #include "proofmass/acquire/recorder/session.hpp"
 #include "proofmass/acquire/source_uri.hpp"
@@ -10,7 +11,7 @@ namespace proofmass::acquire {
 namespace {
 
 Status check(const RecordOptions& options) {
-  if (options.path.empty() || options.path == "-")
+  if (options.keeps_file && (options.path.empty() || options.path == "-"))
     return invalid("a recording is written to a file: expected a name such as run.mcap");
   for (const auto& [name, value] :
        {std::pair{"duration", options.duration_s}, std::pair{"time of a file", options.rotate_s}})
@@ -29,8 +30,13 @@ Result<RecordSummary> record(const OpenSource& open,
                              const RecordWatch& watch,
                              const MakeAnalysis& analysis) {
   if (const Status checked = check(options); !checked) return checked.error();
-  RecordSession session(open, options, watch, analysis, create_part_file);
-  return session.run();
+  RecordSession session(open, options, watch, analysis,
+                        options.keeps_file ? create_part_file : create_no_file);
+  auto summary = session.run();
+  if (!summary || options.keeps_file) return summary;
+  RecordSummary watched = std::move(summary).value();
+  watched.files.clear();
+  return watched;
 }
 
 }  // namespace proofmass::acquire

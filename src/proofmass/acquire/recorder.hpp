@@ -30,6 +30,7 @@ struct LevelTrigger {
 
 struct RecordOptions {
   std::string path;                             ///< "run.mcap"; with rotation "run.0001.mcap" …
+  bool keeps_file = true;                       ///< false: samples go to watch and analysis alone
   std::optional<double> duration_s{};           ///< on the recording's clock
   std::optional<double> rotate_s{};             ///< new file after this time
   std::optional<std::uint64_t> rotate_bytes{};  ///< new file after this size

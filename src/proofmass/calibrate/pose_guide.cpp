@@ -1,5 +1,6 @@
 #include "proofmass/calibrate/pose_guide.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -193,6 +194,19 @@ GuideLive PoseGuide::live() const {
       live.words = fmt::format("hold still: {} more", seconds_words(s.verdict.seconds_left));
   }
   return live;
+}
+
+GuidePicture PoseGuide::picture() const {
+  const State& s = *state_;
+  const RestState& now = s.rests.state();
+  GuidePicture picture;
+  picture.prompt = s.plan->done() ? "" : s.plan->prompt();
+  if (now.newest_there) picture.now = vector_of(now.newest_mean);
+  s.plan->draw(picture);
+  if (!s.open || now.phase != RestPhase::resting) return picture;
+  const double over_s = now.until_s - now.since_s, left_s = s.verdict.seconds_left;
+  picture.held = over_s > 0.0 ? over_s / (over_s + std::max(0.0, left_s)) : 0.0;
+  return picture;
 }
 
 bool PoseGuide::done() const {

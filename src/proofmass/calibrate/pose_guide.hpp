@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -58,6 +59,25 @@ struct GuideLive {
   std::string words;                   ///< "hold still: 3 s more", "34° to go"
 };
 
+/// An accepted position. Directions are unit vectors upwards, in the sensor's axes.
+struct PlacedPose {
+  std::string words;                    ///< "+z up, 12° to +x"; empty if unknown
+  std::optional<Eigen::Vector3d> up{};  ///< absent until bias and scale are roughly known
+  /// |f| − 1 g by a fit to the other poses, and its standard deviation due to noise, in g; absent
+  /// until those determine bias, scale and angles.
+  std::optional<double> residual_g{}, residual_std_g{};
+  bool suspect = false;  ///< contradicts the others, and is left out
+};
+
+/// What a picture of the procedure shows.
+struct GuidePicture {
+  std::string prompt;                        ///< the current instruction
+  std::optional<double> held;                ///< part of the current rest that is over, 0 … 1
+  std::optional<Eigen::Vector3d> now, next;  ///< orientation now, and the one wanted
+  std::optional<double> error_g;             ///< largest error at 1 g of the figures so far, 1 std
+  std::vector<PlacedPose> poses;             ///< multi_position only
+};
+
 /// A rest is accepted once its mean is known to half of the target, or does not improve by waiting,
 /// in two to twenty seconds. Choice of the next position:
 ///
@@ -84,6 +104,7 @@ class PoseGuide {
   /// Skips the requested position.
   [[nodiscard]] std::vector<GuideStep> skip();
   [[nodiscard]] GuideLive live() const;
+  [[nodiscard]] GuidePicture picture() const;
   [[nodiscard]] bool done() const;
 
   /// The accepted rests, in their order, with their times and means; labels as "pose 3".

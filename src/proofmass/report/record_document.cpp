@@ -125,7 +125,7 @@ Fields record_fields(const RecordReport& report) {
   const RecordSummary& summary = report.summary;
   Fields fields{
       field::text_or_null("file", summary.files.empty() ? "" : summary.files.front(),
-                          {.why_null = "no sample came, so none was kept"}),
+                          {.why_null = "no sample came, so none was kept; or --no-file"}),
       field::texts("files", summary.files, {.meaning = "all of them: several with --rotate"})};
   append(fields, count_fields(summary));
   append(fields, {field::choice("end", name_of(summary.end),

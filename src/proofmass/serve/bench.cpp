@@ -4,10 +4,13 @@
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
+#include <iterator>
 #include <sys/stat.h>
 
 #include "proofmass/core/version.hpp"
 #include "proofmass/serve/bench_parts.hpp"
+#include "proofmass/serve/live/bench.hpp"
 
 namespace proofmass::serve {
 
@@ -56,7 +59,11 @@ Result<std::string> BenchShared::make_folder(const std::string& name) const {
 
 struct Bench::State {
   explicit State(BenchOptions options)
-      : shared(std::move(options)), recordings(shared), views(shared), analyses(shared) {}
+      : shared(std::move(options)),
+        recordings(shared),
+        views(shared),
+        analyses(shared),
+        live(shared) {}
 
   [[nodiscard]] Response get(const Request& request) {
     const std::string& path = request.target.path;
@@ -70,7 +77,26 @@ struct Bench::State {
     if (path == "/api/view/figures") return views.figures(file, request.target);
     if (path == "/api/view/noise") return views.noise(file, request.target);
     if (path == "/api/analyses") return analyses.list();
+    if (path == "/api/live") return live.list();
+    if (path == "/api/live/found") return live.find();
+    constexpr std::string_view files = "/api/files/";
+    if (path.starts_with(files)) return whole_file(path.substr(files.size()));
     return error_response(404, "no such thing");
+  }
+
+  /// For the browser to save, never to show.
+  [[nodiscard]] Response whole_file(const std::string& asked) const {
+    constexpr std::uintmax_t most_bytes = std::uintmax_t{64} << 20;
+    const Folder& folder = shared.options.folder;
+    const auto name = folder.existing(asked);
+    if (!name) return error_response(404, name.error().message);
+    const std::filesystem::path path = std::filesystem::path(folder.path()) / *name;
+    std::error_code failed;
+    if (std::filesystem::file_size(path, failed) > most_bytes || failed)
+      return error_response(413, *name + ": too large to be handed out here");
+    std::ifstream in(path, std::ios::binary);
+    return {200, std::string(std::istreambuf_iterator<char>(in), {}), "application/octet-stream",
+            path.filename().string()};
   }
 
   [[nodiscard]] Response info() const {
@@ -92,20 +118,32 @@ struct Bench::State {
   RecordingList recordings;
   OpenViews views;
   Analyses analyses;
+  LiveBench live;
 };
 
 Bench::Bench(BenchOptions options) : state_(std::make_unique<State>(std::move(options))) {}
 Bench::~Bench() = default;
 
 Response Bench::answer(const Request& request) {
-  constexpr std::string_view analyses = "/api/analyses", files = "/api/files/";
+  constexpr std::string_view analyses = "/api/analyses", files = "/api/files/", live = "/api/live";
   const std::string& path = request.target.path;
   if (path.starts_with(fmt::format("{}/", analyses)))
     return state_->analyses.one(request.method, path.substr(analyses.size() + 1));
+  if (path.starts_with(fmt::format("{}/", live)) && path != "/api/live/found")
+    return state_->live.one(request.method, path.substr(live.size() + 1));
   if (request.method == "GET") return state_->get(request);
+  if (request.method == "POST" && path == live) return state_->live.begin(request.body);
   if (request.method == "POST" && path == analyses) return state_->analyses.begin(request.body);
   if (request.method == "PUT" && path.starts_with(files)) return state_->add_file(request, files);
   return error_response(404, "no such thing");
+}
+
+Status Bench::take(const std::shared_ptr<LiveListener>& from, std::string_view message) {
+  return state_->live.take(from, message);
+}
+
+void Bench::end_live() {
+  state_->live.end_all();
 }
 
 }  // namespace proofmass::serve

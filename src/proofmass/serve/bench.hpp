@@ -2,10 +2,12 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "proofmass/serve/folder.hpp"
-#include "proofmass/serve/request.hpp"
+#include "proofmass/serve/http/request.hpp"
+#include "proofmass/serve/live/frame.hpp"
 
 namespace proofmass::serve {
 
@@ -26,6 +28,7 @@ struct BenchOptions {
 ///     GET    /api/recordings                 {recordings: [...], sensor_files: [...], left}
 ///     GET    /api/recording?file=            {json, page}: what `inspect` says
 ///     PUT    /api/files/NAME                 {name}: adds a file, never over another
+///     GET    /api/files/NAME                 a file of up to 64 MiB
 ///     GET    /api/view?file=                 {state, fraction, stage, head}; opens it
 ///     GET    /api/view/window?file=&from=&to=&pixels=
 ///     GET    /api/view/figures?file=&from=&to=
@@ -35,6 +38,13 @@ struct BenchOptions {
 ///     GET    /api/analyses/ID                its state
 ///     DELETE /api/analyses/ID                cancels it
 ///     GET    /api/analyses/ID/result.json, page.json, report.html, series.csv, sensor.toml
+///
+///     GET    /api/live                       {sources: [...], free_bytes}
+///     GET    /api/live/found                 what `record --list` finds
+///     POST   /api/live                       {source, file, options} → {id}: starts a recorder
+///     GET    /api/live/ID                    its state
+///     DELETE /api/live/ID                    ends it; one that has ended is forgotten
+///     POST   /api/live/ID/skip, quit         answers to a procedure
 ///
 /// Everything else is 404. Errors are {"error": text}.
 class Bench {
@@ -46,6 +56,10 @@ class Bench {
 
   /// May be called from several threads at once.
   [[nodiscard]] Response answer(const Request& request);
+  /// A message of a WebSocket: which source it wants to see. Errors: invalid_argument.
+  [[nodiscard]] Status take(const std::shared_ptr<LiveListener>& from, std::string_view message);
+  /// Ends all recorders and waits until their files are closed; no listener is called afterwards.
+  void end_live();
 
  private:
   struct State;

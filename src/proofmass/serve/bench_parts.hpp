@@ -11,7 +11,7 @@
 #include "proofmass/io/pyramid.hpp"
 #include "proofmass/serve/bench.hpp"
 #include "proofmass/serve/job_queue.hpp"
-#include "proofmass/serve/view_file.hpp"
+#include "proofmass/serve/view/file.hpp"
 
 // The parts of a Bench: each guards what it holds by a lock of its own.
 namespace proofmass::serve {

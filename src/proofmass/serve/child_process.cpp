@@ -38,6 +38,13 @@ void set_attributes(posix_spawnattr_t& attributes) {
                            POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
 }
 
+void connect(posix_spawn_file_actions_t& actions, int given, int standard, int mode) {
+  if (given >= 0)
+    posix_spawn_file_actions_adddup2(&actions, given, standard);
+  else
+    posix_spawn_file_actions_addopen(&actions, standard, "/dev/null", mode, 0);
+}
+
 int spawn(const ChildCommand& command, int errors, pid_t& pid) {
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
@@ -45,8 +52,8 @@ int spawn(const ChildCommand& command, int errors, pid_t& pid) {
   posix_spawnattr_init(&attributes);
   set_attributes(attributes);
   posix_spawn_file_actions_addchdir_np(&actions, command.folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  connect(actions, command.input, STDIN_FILENO, O_RDONLY);
+  connect(actions, command.output, STDOUT_FILENO, O_WRONLY);
   posix_spawn_file_actions_adddup2(&actions, errors, STDERR_FILENO);
   // Sockets among them, which would stay open as long as the program runs.
   posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
@@ -100,11 +107,13 @@ Result<ChildProcess> ChildProcess::start(const ChildCommand& command) {
     return Error{Errc::unreadable, fmt::format("{}: cannot be started: {}",
                                                command.arguments.front(), std::strerror(failed))};
   }
-  return ChildProcess(pid, ends[0]);
+  return ChildProcess(pid, ends[0], command.patience);
 }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)), errors_(std::exchange(other.errors_, -1)) {}
+    : pid_(std::exchange(other.pid_, -1)),
+      errors_(std::exchange(other.errors_, -1)),
+      patience_(other.patience_) {}
 
 ChildProcess::~ChildProcess() {
   if (errors_ >= 0) ::close(errors_);
@@ -116,7 +125,6 @@ ChildProcess::~ChildProcess() {
 ChildEnd ChildProcess::follow(const std::function<void(std::string_view line)>& take,
                               const std::function<bool()>& cancelled) {
   constexpr int period_ms = 100;
-  constexpr std::chrono::seconds patience{2};
   std::optional<Clock::time_point> asked;
   bool killed = false;
   LineCutter lines(take);
@@ -141,7 +149,7 @@ ChildEnd ChildProcess::follow(const std::function<void(std::string_view line)>& 
       asked = Clock::now();
       ::kill(-pid_, SIGTERM);
     }
-    if (asked && !killed && Clock::now() - *asked > patience) {
+    if (asked && !killed && Clock::now() - *asked > patience_) {
       killed = true;
       ::kill(-pid_, SIGKILL);
     }

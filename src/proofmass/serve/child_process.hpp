@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,8 @@ struct ChildCommand {
   std::vector<std::string> arguments;    ///< the program's path first
   std::string folder;                    ///< it works in
   std::vector<std::string> environment;  ///< "NAME=VALUE", in place of this process's own
+  int input = -1, output = -1;           ///< descriptors of its standard input and output; -1: none
+  std::chrono::milliseconds patience{2000};  ///< for its end, once it is asked to end
 };
 
 /// How a program ended.
@@ -22,9 +25,8 @@ struct ChildEnd {
   int signal = 0;
 };
 
-/// A program that runs in a process group of its own, without standard input; its standard output
-/// goes to a file of the folder or nowhere, its standard error is read line by line. Killed with
-/// its group when this goes.
+/// A program that runs in a process group of its own; its standard error is read line by line.
+/// Killed with its group when this goes.
 class ChildProcess {
  public:
   /// Errors: unreadable (no such program, no process can be started).
@@ -35,14 +37,16 @@ class ChildProcess {
 
   [[nodiscard]] int pid() const { return pid_; }
   /// Hands each line of standard error to `take` until the program has ended. Asks `cancelled` ten
-  /// times a second; once it says so the program is asked to end, and killed after two seconds.
+  /// times a second; once it says so the program is asked to end, and killed after its patience.
   [[nodiscard]] ChildEnd follow(const std::function<void(std::string_view line)>& take,
                                 const std::function<bool()>& cancelled);
 
  private:
-  ChildProcess(int pid, int errors) : pid_(pid), errors_(errors) {}
+  ChildProcess(int pid, int errors, std::chrono::milliseconds patience)
+      : pid_(pid), errors_(errors), patience_(patience) {}
   int pid_ = -1;
   int errors_ = -1;  ///< the end of the pipe that its standard error goes to
+  std::chrono::milliseconds patience_;
 };
 
 }  // namespace proofmass::serve

@@ -11,7 +11,8 @@
 
 #include "proofmass/serve/analysis_arguments.hpp"
 #include "proofmass/serve/bench_parts.hpp"
-#include "proofmass/serve/stretch_noise.hpp"
+#include "proofmass/serve/live/json_numbers.hpp"
+#include "proofmass/serve/view/stretch_noise.hpp"
 
 namespace proofmass::serve {
 namespace {
@@ -31,37 +32,14 @@ std::optional<Stretch> stretch_in(const Target& target) {
   return Stretch{*from, *to};
 }
 
-// Numbers as JSON, with as many digits as a picture needs; NaN is null.
-void write_list(std::string& text, const std::vector<double>& values, int digits) {
-  text += '[';
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (k > 0) text += ',';
-    if (std::isfinite(values[k]))
-      fmt::format_to(std::back_inserter(text), "{:.{}g}", values[k], digits);
-    else
-      text += "null";
-  }
-  text += ']';
-}
-
-void write_lists(std::string& text, const std::vector<std::vector<double>>& lists) {
-  constexpr int digits = 8;
-  text += '[';
-  for (std::size_t k = 0; k < lists.size(); ++k) {
-    if (k > 0) text += ',';
-    write_list(text, lists[k], digits);
-  }
-  text += ']';
-}
-
 Response window_response(const ViewWindow& window) {
-  constexpr int time_digits = 12;
+  constexpr int time_digits = 12, value_digits = 8;
   std::string text = window.are_samples ? "{\"samples\":true,\"t\":" : "{\"samples\":false,\"t\":";
-  write_list(text, window.time_s, time_digits);
+  append_numbers(text, window.time_s, time_digits);
   text += ",\"min\":";
-  write_lists(text, window.min);
+  append_lists(text, window.min, value_digits);
   text += ",\"max\":";
-  write_lists(text, window.max);
+  append_lists(text, window.max, value_digits);
   return {200, text + "}"};
 }
 

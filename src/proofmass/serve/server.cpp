@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-#include "proofmass/serve/session.hpp"
+#include "proofmass/serve/http/session.hpp"
 
 namespace proofmass::serve {
 

@@ -6,10 +6,12 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "proofmass/core/result.hpp"
-#include "proofmass/serve/gate.hpp"
-#include "proofmass/serve/request.hpp"
+#include "proofmass/serve/http/gate.hpp"
+#include "proofmass/serve/http/request.hpp"
+#include "proofmass/serve/live/frame.hpp"
 
 namespace proofmass::serve {
 
@@ -22,7 +24,17 @@ struct ServerLimits {
   std::uint64_t body_bytes = std::uint64_t{1} << 20;
   std::uint64_t upload_bytes = std::uint64_t{16} << 30;  ///< limit of a PUT
   double requests_per_s = 400.0;  ///< all peers together, after a burst of as many
+  std::size_t sockets = 32;       ///< WebSockets, besides the connections
+  std::size_t socket_message_bytes = 4096;
+  /// Of each WebSocket: the oldest frames are left out beyond these.
+  std::size_t socket_queue_bytes = std::size_t{16} << 20, socket_queue_frames = 64;
 };
+
+/// Takes a message of a WebSocket, on the network's thread; an error closes it.
+using LiveHandler =
+    std::function<Status(const std::shared_ptr<LiveListener>& from, std::string_view message)>;
+
+inline constexpr std::string_view live_path = "/api/live/socket";
 
 struct ServerOptions {
   std::string address = "127.0.0.1";
@@ -31,6 +43,7 @@ struct ServerOptions {
   std::string upload_folder{};  ///< for the temporary file of a PUT
   std::string page{};  ///< what GET / answers, also without a token: it shows nothing by itself
   std::string content_security_policy{};
+  LiveHandler live{};  ///< of the WebSockets at live_path; empty: there are none
   ServerLimits limits{};
 };
 
@@ -39,7 +52,7 @@ using Handler = std::function<Response(const Request&)>;
 
 /// An HTTP server of one address, for few users. Every request passes refusal() before its body is
 /// read. Where all connections are taken, a new one takes the place of the one that has waited
-/// longest for a request. Answers carry no CORS headers.
+/// longest for a request. Answers carry no CORS headers. At live_path it serves WebSockets.
 class Server {
  public:
   /// Errors: device (the address cannot be listened on: no such address, the port is taken).

@@ -105,6 +105,15 @@ class DiskPart final : public PartFile {
   PartNames names_;
 };
 
+class NoPart final : public PartFile {
+ public:
+  [[nodiscard]] Status append(std::string_view /*bytes*/) override { return Done{}; }
+  [[nodiscard]] Status sync() override { return Done{}; }
+  [[nodiscard]] Status truncate(std::uint64_t /*bytes*/) override { return Done{}; }
+  [[nodiscard]] Status keep() override { return Done{}; }
+  void discard() override {}
+};
+
 /// Space that is released when the descriptor is closed; -1 if none can be reserved.
 int room_kept_in(const std::string& folder) {
   constexpr std::uint64_t wanted = std::uint64_t{1} << 20;
@@ -139,6 +148,10 @@ Result<std::unique_ptr<PartFile>> create_part_file(const PartNames& names) {
   if (file < 0) return cannot(names.part, "cannot be created");
   const int reserve = room_kept_in(folder_of(names.path));
   return std::unique_ptr<PartFile>(std::make_unique<DiskPart>(file, reserve, names));
+}
+
+Result<std::unique_ptr<PartFile>> create_no_file(const PartNames& /*names*/) {
+  return std::unique_ptr<PartFile>(std::make_unique<NoPart>());
 }
 
 }  // namespace proofmass::acquire

@@ -47,4 +47,7 @@ using CreatePartFile = std::function<Result<std::unique_ptr<PartFile>>(const Par
 /// (it cannot be created: why).
 [[nodiscard]] Result<std::unique_ptr<PartFile>> create_part_file(const PartNames& names);
 
+/// A part that keeps nothing and never fails: for samples that are only looked at.
+[[nodiscard]] Result<std::unique_ptr<PartFile>> create_no_file(const PartNames& names);
+
 }  // namespace proofmass::acquire

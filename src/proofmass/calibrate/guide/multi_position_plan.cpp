@@ -56,6 +56,7 @@ class MultiPositionPlan final : public GuidePlan {
     return reader_ ? direction_words(reader_->force(mean)) : "";
   }
   std::string off_words(const Eigen::Vector3d& mean) const override;
+  void draw(GuidePicture& picture) const override;
 
  private:
   void choose_next();
@@ -187,6 +188,29 @@ std::string MultiPositionPlan::off_words(const Eigen::Vector3d& mean) const {
   const Eigen::Vector3d up = reader_->force(mean).normalized();
   const double off = std::atan2(up.cross(next_up_).norm(), up.dot(next_up_));
   return fmt::format("{}; {:.0f}° from the next position", direction_words(up), off / rad_per_deg);
+}
+
+void MultiPositionPlan::draw(GuidePicture& picture) const {
+  const auto up_of = [&](const Eigen::Vector3d& mean) -> std::optional<Eigen::Vector3d> {
+    if (!reader_) return std::nullopt;
+    return reader_->force(mean).normalized();
+  };
+  if (picture.now) picture.now = up_of(*picture.now);
+  if (!done_ && !next_words_.empty()) picture.next = next_up_;
+  const bool nine = fit_ && fit_->has_nine();
+  if (nine) picture.error_g = fit_->error_g();
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    PlacedPose pose{.words = place_words(poses_[k].mean), .up = up_of(poses_[k].mean)};
+    if (nine) {
+      // The fit's unit of force is g.
+      const PoseResidual& residual = fit_->poses()[k];
+      pose.suspect = residual.suspect;
+      pose.residual_g = residual.leave_one_out_mps2;
+      if (residual.leave_one_out_mps2 && residual.studentised && *residual.studentised != 0.0)
+        pose.residual_std_g = std::abs(*residual.leave_one_out_mps2 / *residual.studentised);
+    }
+    picture.poses.push_back(std::move(pose));
+  }
 }
 
 std::vector<GuideStep> MultiPositionPlan::suspects() {

@@ -39,6 +39,9 @@ class GuidePlan {
   /// Distance of a measurement from the requested position: "34° to go"; empty if unknown.
   [[nodiscard]] virtual std::string off_words(const Eigen::Vector3d& mean) const = 0;
   [[nodiscard]] virtual std::vector<double> angles_deg() const { return {}; }
+  /// Fills in what is specific to the plan; `now` comes as the mean of the sensor's output, and
+  /// becomes a direction, or absent.
+  virtual void draw(GuidePicture& picture) const { picture.now.reset(); }
 };
 
 [[nodiscard]] std::unique_ptr<GuidePlan> multi_position_plan(const GuideOptions& options);
