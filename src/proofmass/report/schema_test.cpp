@@ -250,7 +250,8 @@ TEST(Schemas, Calibrate) {
   expect_schema(
       "Multi-position calibration of a three-axis accelerometer. SI unless a key or a unit beside "
       "the figure names another.",
-      {describe(full), describe(counts), describe(volts), describe(untimed), describe(fake_bare_report())});
+      {describe(full), describe(counts), describe(volts), describe(untimed),
+       describe(fake_bare_report())});
 }
 
 // One output with all coefficients, in this unit.
