@@ -242,13 +242,17 @@ TEST(Schemas, Calibrate) {
   CalibrateReport counts = full, untimed = fake_calibrate_report();
   counts.check->stable = true;
   counts.unit = {Quantity::counts, 1.0, 0.0, "counts"};
+  counts.gyroscope->unit = counts.unit;
+  CalibrateReport volts = full;
+  volts.gyroscope->unit = *parse_unit("V");
   counts.gyroscope->fit.lack_of_fit = counts.gyroscope->fit.rests_lack_of_fit = {};
   counts.gyroscope->fit.leave_one_out_rms_rad = {};
   untimed.files.front().times_known = false;
   expect_schema(
       "Multi-position calibration of a three-axis accelerometer. SI unless a key or a unit beside "
       "the figure names another.",
-      {describe(full), describe(counts), describe(untimed), describe(fake_bare_report())});
+      {describe(full), describe(counts), describe(volts), describe(untimed),
+       describe(fake_bare_report())});
 }
 
 // One output with all coefficients, in this unit.
