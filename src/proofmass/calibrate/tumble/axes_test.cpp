@@ -45,7 +45,7 @@ TEST(TumbleAxes, LetsTheUserOverrule) {
 TEST(TumbleAxes, ReportsTheDeviationOfAnAxis) {
   const auto plan = table_turn(8);
   const std::vector<std::vector<double>> outputs{follow(plan, 0.4)};
-  EXPECT_NE(tumble_axes(plan, outputs)[0].words.find("24° off"), std::string::npos);
+  EXPECT_NE(tumble_axes(plan, outputs)[0].words.find("deviation of 24°"), std::string::npos);
 }
 
 TEST(TumbleAxes, FindsTheInputAxisInASecondPlaneOfTwoPositions) {

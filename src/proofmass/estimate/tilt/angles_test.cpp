@@ -46,7 +46,7 @@ TEST(TiltAngles, HaveAPitchButNoRollIfTheXAxisIsVertical) {
   for (const double x : {g, -g}) {
     const TiltAngles angles = angles_of({x, 0.0, 0.0}, small);
     EXPECT_FALSE(angles.roll_rad);
-    EXPECT_NE(angles.why_no_roll.find("upright"), std::string::npos);
+    EXPECT_NE(angles.why_no_roll.find("vertical"), std::string::npos);
     ASSERT_TRUE(angles.pitch_rad);
     EXPECT_NEAR(angles.pitch_rad->value, x > 0.0 ? -std::numbers::pi / 2 : std::numbers::pi / 2,
                 1e-12);
@@ -81,7 +81,7 @@ TEST(TiltAngles, OfTwoAxesAreThoseThatTheyDetermine) {
 TEST(TiltAngles, OfAnAxisThatReadsMoreThanGravityAreAbsentWithAReason) {
   const TiltAngles angles = angles_of_some({9.9, none, none}, small, {g, 0.0});
   EXPECT_FALSE(angles.pitch_rad);
-  EXPECT_NE(angles.why_no_pitch.find("upright"), std::string::npos);
+  EXPECT_NE(angles.why_no_pitch.find("vertical"), std::string::npos);
 }
 
 TEST(CalibrationSpread, IsThatOfTheForceByDifferencesOfEachParameter) {

@@ -115,7 +115,7 @@ void tell_faults(const RowFaults& faults,
     if (++told > most_columns_told) break;
     notes.push_back(
         {Severity::warning,
-         fmt::format("{}: {} no number, the first \"{}\" on line {}: NaN",
+         fmt::format("{}: {} not a number, the first \"{}\" on line {}: NaN",
                      header.labels[column].name,
                      seen.count == 1 ? "1 field is" : fmt::format("{} fields are", seen.count),
                      faults.first_word.at(column), seen.first_line)});
