@@ -123,7 +123,7 @@ void tell_faults(const RowFaults& faults,
   if (told > most_columns_told)
     notes.push_back(
         {Severity::warning,
-         fmt::format("{} columns in all have fields that are no number", faults.words.size())});
+         fmt::format("{} columns in all have fields that are not numbers", faults.words.size())});
 }
 
 }  // namespace proofmass::io
