@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "proofmass/calibrate/bias_wander.hpp"
 #include "proofmass/calibrate/pose.hpp"
+#include "proofmass/calibrate/slow_noise.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/audit/dyadic_allan.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "proofmass/calibrate/bias_wander.hpp"
 #include "proofmass/calibrate/multi_position/norm_model.hpp"
+#include "proofmass/calibrate/slow_noise.hpp"
 #include "proofmass/core/linalg.hpp"
 
 namespace proofmass::calibrate {

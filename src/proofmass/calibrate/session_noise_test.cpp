@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "proofmass/calibrate/bias_wander.hpp"
 #include "proofmass/calibrate/session_noise_test_support.hpp"
+#include "proofmass/calibrate/slow_noise.hpp"
 
 namespace proofmass::calibrate::session_noise_test {
 namespace {

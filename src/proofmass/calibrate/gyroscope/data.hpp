@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "proofmass/calibrate/bias_wander.hpp"
 #include "proofmass/calibrate/gyroscope.hpp"
 #include "proofmass/calibrate/gyroscope/motion.hpp"
+#include "proofmass/calibrate/slow_noise.hpp"
 
 // The rests, motions and turntable rates of all sessions, as the fit needs them.
 namespace proofmass::calibrate {

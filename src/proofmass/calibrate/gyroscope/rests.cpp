@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "proofmass/calibrate/bias_wander.hpp"
 #include "proofmass/calibrate/multi_position/pose_selection.hpp"
+#include "proofmass/calibrate/slow_noise.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/units.hpp"
 
@@ -45,8 +45,8 @@ MatrixXd walk_between(const std::vector<GyroscopeRest>& rests) {
       spans.push_back(rests[end++].span_s);
     const auto at = static_cast<Index>(first), count = static_cast<Index>(spans.size());
     if (count > 1)
-      out.block(at, at, count, count) =
-          wander_covariance(spans, {spans.front().start, spans.back().end}, Wander::random_walk);
+      out.block(at, at, count, count) = slow_noise_covariance(
+          spans, {spans.front().start, spans.back().end}, SlowNoise::random_walk);
   }
   return out;
 }

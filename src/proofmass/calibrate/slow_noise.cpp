@@ -1,4 +1,4 @@
-#include "proofmass/calibrate/bias_wander.hpp"
+#include "proofmass/calibrate/slow_noise.hpp"
 
 #include <cmath>
 #include <numbers>
