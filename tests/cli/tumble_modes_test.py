@@ -74,7 +74,7 @@ class Coefficients(ModesTest):
         output = document["outputs"][0]
         self.assertTrue(output["std_stated"])
         self.assertLess(output["residual_test"]["p"], 1e-6)
-        self.assertTrue(any("widened" in text for text in document["warnings"]))
+        self.assertTrue(any("increased" in text for text in document["warnings"]))
 
     def test_several_outputs_and_the_unit_by_a_flag(self):
         rows = [(*row, 2 * row[3]) for row in self.centrifuge()]

@@ -147,7 +147,7 @@ class Tumble(CommandTest):
         self.assertAlmostEqual(found["K2_minus_Kpp"]["value"], K2 - KPP, delta=1e-7)
         self.write("one.csv", table([r[:2] for r in rows[:12]]))
         alone = self.document("tumble", "one.csv")
-        self.assertIn("once a turn", alone["indexing"]["words"][0])
+        self.assertIn("once per turn", alone["indexing"]["words"][0])
 
     def test_two_files_are_two_planes(self):
         for name in ("a.csv", "b.csv"):
