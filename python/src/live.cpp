@@ -11,7 +11,6 @@
 #include "module.hpp"
 #include "proofmass/core/live_analysis.hpp"
 #include "record/live_estimate.hpp"
-#include "record/live_view.hpp"
 #include "recording.hpp"
 #include "words.hpp"
 
@@ -39,8 +38,8 @@ class Live {
       if (!known) refuse(name + ": no unit \"" + unit + "\" is known");
       head.recording.channels.push_back({name, *known, {}});
     }
-    app::LiveView view("live", "", command.output);
-    analysis_ = need(app::make_estimate(command, view, notes_)(head));
+    const auto ignored = [](const std::vector<Channel>&) {};
+    analysis_ = need(app::make_estimate(command, ignored, notes_)(head));
     rows_.channels.resize(analysis_->columns().size());
   }
 
