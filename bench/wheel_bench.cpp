@@ -101,7 +101,7 @@ std::vector<double> textbook_smoother(const WheelModel<S>& model) {
       x.cov = (kept.F * x.cov * kept.F.transpose() + Q).eval();
     }
     kept.predicted = x;
-    Readings<N, M> readings;
+    Readings<N, WheelModel<S>::channels> readings;  // M rows: no gyroscope, nothing static
     model.measure(x.mean, k, readings);
     Mat<M, N> H;
     Mat<M> y;
