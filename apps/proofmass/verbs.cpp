@@ -7,6 +7,7 @@ Verb budget_verb();
 Verb calibrate_verb();
 Verb convert_verb();
 Verb drift_verb();
+Verb drive_verb();
 Verb fleet_verb();
 Verb inspect_verb();
 Verb noise_verb();
