@@ -52,8 +52,7 @@ template <class C>
   files.add_written("--json", command.output.json);
   files.add_written("--report", command.output.report);
   files.add_written("--page", command.output.page);
-  if constexpr (requires { command.geojson; })
-    files.add_written("--geojson", command.geojson);
+  if constexpr (requires { command.geojson; }) files.add_written("--geojson", command.geojson);
   if constexpr (requires { command.update_sensor; })
     files.add_written("--update-sensor", command.update_sensor);
   return files;

@@ -31,8 +31,9 @@ void add_vehicle_flags(CLI::App& verb, DriveCommand& command) {
       ->type_name("FILE...");
   verb.add_option("--left", command.named.left, "recordings of the wheels on the left")
       ->type_name("FILE...");
-  verb.add_option("--front", command.named.front,
-                  "which of these wheels are on the steered axle (default: determined by the motion)")
+  verb.add_option(
+          "--front", command.named.front,
+          "which of these wheels are on the steered axle (default: determined by the motion)")
       ->type_name("FILE...");
   verb.add_option("--frame", command.named.frame,
                   "recording of an inertial sensor on the vehicle's frame")
@@ -41,9 +42,10 @@ void add_vehicle_flags(CLI::App& verb, DriveCommand& command) {
                   "position fixes: NMEA, or a table with latitude and longitude in degrees")
       ->type_name("FILE");
   CLI::Option* circumference =
-      verb.add_option("--circumference", command.circumference_m,
-                      "rolling circumference: one for all wheels, or one for each, those of --right "
-                      "first")
+      verb.add_option(
+              "--circumference", command.circumference_m,
+              "rolling circumference: one for all wheels, or one for each, those of --right "
+              "first")
           ->type_name("M...")
           ->check(positive());
   verb.add_option("--circumference-std", command.circumference_std_m,
@@ -108,9 +110,10 @@ void set_circumferences(const DriveCommand& command, std::vector<estimate::Drive
   const std::vector<double>& given_m = command.circumference_m;
   if (given_m.empty()) return;
   if (given_m.size() != 1 && given_m.size() != wheels.size())
-    throw Failure(usage, fmt::format("--circumference: {} values for {} wheels, expected one, or one "
-                                     "for each",
-                                     given_m.size(), wheels.size()));
+    throw Failure(usage,
+                  fmt::format("--circumference: {} values for {} wheels, expected one, or one "
+                              "for each",
+                              given_m.size(), wheels.size()));
   for (std::size_t i = 0; i < wheels.size(); ++i)
     wheels[i].circumference_m =
         given(given_m[given_m.size() == 1 ? 0 : i], command.circumference_std_m, 0.003);
@@ -146,8 +149,8 @@ void run_drive(const DriveCommand& command) {
   options.track_m = given(command.track_m, command.track_std_m, 0.02);
   options.wheelbase_m = given(command.wheelbase_m, command.wheelbase_std_m, 0.02);
   options.progress = progress_bar(command.output);
-  report.solution = need(
-      estimate::estimate_drive(input.wheels, input.frame, input.fixes, options), Stage::computing);
+  report.solution = need(estimate::estimate_drive(input.wheels, input.frame, input.fixes, options),
+                         Stage::computing);
   options.progress = {};
   count_from_first_samples(input.begin_s, report.solution);
   if (!command.geojson.empty())

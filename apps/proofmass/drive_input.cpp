@@ -43,8 +43,7 @@ class ClockGroups {
       Group& group = groups_[g];
       if (!group.shared || *start > group.last_ns || end < group.first_ns) continue;
       group.last_ns = std::max(group.last_ns, end);
-      return {static_cast<int>(g),
-              static_cast<double>(*start - group.origin_ns) * seconds_per_ns};
+      return {static_cast<int>(g), static_cast<double>(*start - group.origin_ns) * seconds_per_ns};
     }
     groups_.push_back({true, *start, *start, end});
     return {next, 0.0};
@@ -113,7 +112,9 @@ estimate::WheelSensor inertial_sensor(std::vector<Recording>& one,
 // Reads one recording of the vehicle after the other.
 class Reader {
  public:
-  Reader(const InputFlags& flags, const GyroscopeUse& gyroscope, const OutputFlags& output,
+  Reader(const InputFlags& flags,
+         const GyroscopeUse& gyroscope,
+         const OutputFlags& output,
          DriveInput& input)
       : flags_(flags),
         gyroscope_(gyroscope),
@@ -166,7 +167,8 @@ class Reader {
 const Channel* channel_of(const Recording& recording, std::string_view begins) {
   for (const Channel& channel : recording.channels) {
     const std::string name = small_letters(channel.name);
-    for (std::size_t at = name.find(begins); at != std::string::npos; at = name.find(begins, at + 1)) {
+    for (std::size_t at = name.find(begins); at != std::string::npos;
+         at = name.find(begins, at + 1)) {
       const bool starts = at == 0 || std::isalpha(static_cast<unsigned char>(name[at - 1])) == 0;
       if (starts && !name.substr(at).starts_with("lateral")) return &channel;
     }
@@ -189,10 +191,10 @@ const Channel* accuracy_of(const Recording& recording) {
 }
 
 // Fixes of valid rows; a fix that repeats the previous row's is the same fix.
-estimate::PositionFixes position_fixes(const std::string& file,
-                                       const InputFlags& flags,
-                                       const OutputFlags& output,
-                                       std::vector<Note>& notes) {
+estimate::GnssFixes position_fixes(const std::string& file,
+                                   const InputFlags& flags,
+                                   const OutputFlags& output,
+                                   std::vector<Note>& notes) {
   InputFlags own;
   own.host = flags.host;
   const Recording recording = with_time(file, own, output);
@@ -201,12 +203,12 @@ estimate::PositionFixes position_fixes(const std::string& file,
     throw Failure(usage, file + ": no channels of latitude and longitude (lat…, lon…)");
   const Channel* accuracy = accuracy_of(recording);
   const Channel* quality = recording.find("quality");
-  estimate::PositionFixes fixes{.name = file, .fixes = {}};
+  estimate::GnssFixes fixes{.name = file, .fixes = {}};
   std::size_t invalid = 0, repeated = 0;
   for (std::size_t k = 0; k < recording.samples(); ++k) {
-    estimate::PositionFix fix{.time_s = recording.time.at(k),
-                              .latitude_rad = radians(*lat, k),
-                              .longitude_rad = radians(*lon, k)};
+    estimate::GnssFix fix{.time_s = recording.time.at(k),
+                          .latitude_rad = radians(*lat, k),
+                          .longitude_rad = radians(*lon, k)};
     const bool valid = std::abs(fix.latitude_rad) <= rad_per_turn / 4.0 &&
                        std::abs(fix.longitude_rad) <= rad_per_turn &&
                        (fix.latitude_rad != 0.0 || fix.longitude_rad != 0.0) &&
@@ -248,7 +250,8 @@ DriveInput drive_input(const DriveFiles& files,
   for (const std::string& file : files.front)
     if (std::ranges::find(files.right, file) == files.right.end() &&
         std::ranges::find(files.left, file) == files.left.end())
-      throw Failure(usage, fmt::format("--front {}: is none of the wheels of --right and --left", file));
+      throw Failure(usage,
+                    fmt::format("--front {}: is none of the wheels of --right and --left", file));
   DriveInput input;
   Reader reader(flags, gyroscope, output, input);
   for (const std::string& file : files.right)

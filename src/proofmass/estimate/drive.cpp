@@ -172,10 +172,7 @@ Status add_frame(const DriveFrame& frame, Clocks& clocks, Gathered& all, DriveSo
   return Done{};
 }
 
-Status add_fixes(const PositionFixes& fixes,
-                 Clocks& clocks,
-                 Gathered& all,
-                 DriveSolution& solution) {
+Status add_fixes(const GnssFixes& fixes, Clocks& clocks, Gathered& all, DriveSolution& solution) {
   LocalFixes local = local_fixes(fixes);
   const ScaledAlignment found = align_fixes(speed_signal(all.recorded.wheels.front()), local);
   if (found.alignment.correlation < least_correlation) {
@@ -243,7 +240,7 @@ void set_radii(const std::vector<DriveWheel>& wheels, Gathered& all) {
 
 Result<Gathered> gather(const std::vector<DriveWheel>& wheels,
                         const std::optional<DriveFrame>& frame,
-                        const std::optional<PositionFixes>& fixes,
+                        const std::optional<GnssFixes>& fixes,
                         const DriveOptions& options,
                         DriveSolution& solution) {
   Gathered all;
@@ -377,7 +374,7 @@ Known known_of(const std::vector<DriveWheel>& wheels,
 
 Result<DriveSolution> estimate_drive(const std::vector<DriveWheel>& wheels,
                                      const std::optional<DriveFrame>& frame,
-                                     const std::optional<PositionFixes>& fixes,
+                                     const std::optional<GnssFixes>& fixes,
                                      const DriveOptions& options) {
   if (Status status = check(wheels); !status) return status.error();
   DriveSolution solution;

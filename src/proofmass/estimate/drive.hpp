@@ -40,16 +40,16 @@ struct DriveFrame {
 };
 
 /// One position fix. A receiver's repeated fix is one fix, at the time of its first row.
-struct PositionFix {
+struct GnssFix {
   double time_s = 0.0;
   double latitude_rad = 0.0, longitude_rad = 0.0;
   double std_m = std::numeric_limits<double>::quiet_NaN();  ///< horizontal, per axis; NaN: unstated
 };
 
 /// Position fixes of one receiver, by ascending time.
-struct PositionFixes {
+struct GnssFixes {
   std::string name;
-  std::vector<PositionFix> fixes;
+  std::vector<GnssFix> fixes;
 };
 
 struct DriveOptions {
@@ -123,7 +123,7 @@ struct DriveSolution {
 /// not_observable (no wheel's angle could be determined, the recordings have no common motion).
 [[nodiscard]] Result<DriveSolution> estimate_drive(const std::vector<DriveWheel>& wheels,
                                                    const std::optional<DriveFrame>& frame,
-                                                   const std::optional<PositionFixes>& fixes,
+                                                   const std::optional<GnssFixes>& fixes,
                                                    const DriveOptions& options);
 
 }  // namespace proofmass::estimate

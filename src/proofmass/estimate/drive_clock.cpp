@@ -83,7 +83,7 @@ Alignment align(const Signal& first, const Signal& second, std::optional<double>
   return found;
 }
 
-LocalFixes local_fixes(const PositionFixes& fixes) {
+LocalFixes local_fixes(const GnssFixes& fixes) {
   LocalFixes local;
   if (fixes.fixes.empty()) return local;
   const double lat = local.latitude_rad = fixes.fixes.front().latitude_rad;
@@ -93,7 +93,7 @@ LocalFixes local_fixes(const PositionFixes& fixes) {
   const double w2 = 1.0 - e2 * square(std::sin(lat));
   const double meridian_m = a_m * (1.0 - e2) / (w2 * std::sqrt(w2));
   const double parallel_m = a_m / std::sqrt(w2) * std::cos(lat);
-  for (const PositionFix& fix : fixes.fixes) {
+  for (const GnssFix& fix : fixes.fixes) {
     local.time_s.push_back(fix.time_s);
     local.east_m.push_back(std::remainder(fix.longitude_rad - local.longitude_rad, rad_per_turn) *
                            parallel_m);

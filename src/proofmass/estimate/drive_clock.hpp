@@ -35,7 +35,7 @@ struct LocalFixes {
   double latitude_rad = 0.0, longitude_rad = 0.0;  ///< of the origin
 };
 
-[[nodiscard]] LocalFixes local_fixes(const PositionFixes& fixes);
+[[nodiscard]] LocalFixes local_fixes(const GnssFixes& fixes);
 
 /// Speed from differences of fixes that are at least a second apart.
 [[nodiscard]] Signal speed_of(const LocalFixes& fixes);

@@ -9,6 +9,7 @@
 #include "proofmass/io/lvm_reader.hpp"
 #include "proofmass/io/mat_reader.hpp"
 #include "proofmass/io/mcap_reader.hpp"
+#include "proofmass/io/nmea_reader.hpp"
 #include "proofmass/io/npy_reader.hpp"
 #include "proofmass/io/parquet_reader.hpp"
 #include "proofmass/io/tdms_reader.hpp"
@@ -32,6 +33,7 @@ constexpr std::array all_formats = std::to_array<Format>({
     {"MCAP", claims_mcap, open_mcap},
     {"WAV", claims_wav, open_wav},
     {"x-IMU", claims_ximu, open_ximu},
+    {"NMEA", claims_nmea, open_nmea},
     {"zip", claims_zip, open_zip_tables, true},
     {"Parquet", claims_parquet, open_parquet},
     {"foreign", claims_foreign, refuse_foreign},
