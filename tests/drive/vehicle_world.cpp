@@ -218,11 +218,15 @@ void add_wheels(const Scenario& scenario,
     const WheelMotion rolled = roll(course, mount, radius_m, front, scenario.slip_m_per_rtm, draw);
     estimate::DriveWheel wheel;
     wheel.side = left ? estimate::VehicleSide::left : estimate::VehicleSide::right;
-    wheel.sensor = measure(rolled.motion, draw_sensor(seed, i, true), scenario.gyroscopes, seed, i);
     if (scenario.encoders) {
       constexpr double count_rad = 2.0 * pi / 256.0;
-      for (std::size_t k = 1; k + 1 < rolled.angle_rad.size(); k += rows_per_sample)
+      for (std::size_t k = 1; k + 1 < rolled.angle_rad.size(); k += rows_per_sample) {
+        wheel.sensor.time_s.push_back(static_cast<double>(k) * step_s);
         wheel.encoder_rad.push_back(count_rad * std::floor(rolled.angle_rad[k] / count_rad));
+      }
+    } else {
+      wheel.sensor =
+          measure(rolled.motion, draw_sensor(seed, i, true), scenario.gyroscopes, seed, i);
     }
     wheel.sensor.name = std::string(front ? "front " : "rear ") + (left ? "left" : "right");
     if (scenario.steered_known) wheel.steered = front;
@@ -285,32 +289,46 @@ World make_world(const Scenario& scenario, std::uint64_t seed) {
 
 const std::vector<Scenario>& scenarios() {
   static const std::vector<Scenario> all{
-      {.name = "gyro"},
-      {.name = "gyro-clocks", .own_clocks = true},
-      {.name = "gyro-straight", .steering = 0.1},
-      {.name = "accel", .gyroscopes = false},
       {.name = "encoder", .gyroscopes = false, .encoders = true},
-      {.name = "frame", .gyroscopes = false, .frame = true},
-      {.name = "right-only", .left = false},
-      {.name = "ackermann", .front_axle = true},
-      {.name = "gnss", .fixes = true, .circumference_known = false, .track_known = false},
-      {.name = "gnss-clocks",
-       .fixes = true,
-       .circumference_known = false,
-       .track_known = false,
+      {.name = "encoder-frame", .gyroscopes = false, .frame = true, .encoders = true},
+      {.name = "encoder-clocks",
+       .gyroscopes = false,
+       .frame = true,
+       .encoders = true,
        .own_clocks = true},
-      {.name = "gnss-accel",
+      {.name = "encoder-steered",
+       .gyroscopes = false,
+       .frame = true,
+       .encoders = true,
+       .front_axle = true},
+      {.name = "encoder-gnss",
        .gyroscopes = false,
        .fixes = true,
+       .encoders = true,
        .circumference_known = false,
        .track_known = false},
-      {.name = "gnss-wander",
+      {.name = "encoder-frame-gnss",
+       .gyroscopes = false,
        .fixes = true,
+       .frame = true,
+       .encoders = true,
+       .circumference_known = false,
+       .track_known = false},
+      {.name = "encoder-gnss-wander",
+       .gyroscopes = false,
+       .fixes = true,
+       .frame = true,
+       .encoders = true,
        .circumference_known = false,
        .track_known = false,
        .wander_m = 3.0,
        .wander_s = 8.0,
-       .fix_noise_m = 0.3}};
+       .fix_noise_m = 0.3},
+      {.name = "gyro"},
+      {.name = "gyro-clocks", .own_clocks = true},
+      {.name = "accel", .gyroscopes = false},
+      {.name = "right-only", .left = false},
+      {.name = "gnss", .fixes = true, .circumference_known = false, .track_known = false}};
   return all;
 }
 

@@ -10,6 +10,8 @@ namespace {
 
 // Beyond this an interval is no longer that of a heading, which is an angle.
 constexpr double lost_heading_rad = 0.7;
+// Beyond this the uncertainty of the position is an arc, which an ellipse does not describe.
+constexpr double bent_position_rad = 0.3;
 
 Uncertain state(const Gaussian<at::states>& x, int index) {
   return {x.mean(index), std::sqrt(std::max(0.0, x.cov(index, index)))};
@@ -19,8 +21,7 @@ std::optional<Uncertain> clock_offset(const Gaussian<at::states>& end, int clock
   return clock == 0 ? Uncertain{} : state(end, at::clock + clock);
 }
 
-void add_series(const Recorded&,
-                const Fitted& fitted,
+void add_series(const Fitted& fitted,
                 const std::vector<Epoch>& epochs,
                 DriveSeries& out) {
   for (std::size_t k = 0; k < fitted.pass.path.size(); ++k) {
@@ -151,9 +152,14 @@ void report_findings(const Recorded& recorded,
         "absolute position and heading: without position fixes the path is relative to the start");
   if (fixes) add_fixes(recorded, fitted, solution);
   if (!heading_known || !known.scale) return;
+  if (heading.std > bent_position_rad) {
+    solution.not_observable.emplace_back(
+        "end position: the uncertainty of the heading exceeds 17 degrees; a gyroscope, more precise "
+        "circumferences or position fixes determine it");
+    return;
+  }
   add_position(fitted, solution);
-  Vehicle at_end = vehicle;
-  add_series(recorded, fitted, epochs_of(recorded, at_end), solution.series);
+  add_series(fitted, epochs_of(recorded, vehicle), solution.series);
 }
 
 }  // namespace proofmass::estimate::drive

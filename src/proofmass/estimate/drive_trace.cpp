@@ -22,6 +22,11 @@ Three row(const std::array<std::vector<double>, 3>& axes, std::size_t k) {
   return {axes[0][k], axes[1][k], axes[2][k]};
 }
 
+// Eigen's own is in its Geometry, which this module does not include.
+Three cross(const Three& a, const Three& b) {
+  return {a(1) * b(2) - a(2) * b(1), a(2) * b(0) - a(0) * b(2), a(0) * b(1) - a(1) * b(0)};
+}
+
 // Least squares of three-vectors on regressors, with a second pass without outliers.
 class VectorFit {
  public:
@@ -173,7 +178,7 @@ void add_yaw(const WheelSensor& sensor, Trace& trace) {
     const double rate = stands ? 0.0 : left.dot(level_up);
     const double step_s = k > 0 ? rows.time_s[k] - rows.time_s[k - 1] : 0.0;
     if (k > 0) yaw[k] = yaw[k - 1] + 0.5 * (before + rate) * step_s;
-    if (!stands && step_s > 0.0 && step_s < 0.2) walk.add(left.dot(axis.cross(level_up)), step_s);
+    if (!stands && step_s > 0.0 && step_s < 0.2) walk.add(left.dot(cross(axis, level_up)), step_s);
     before = rate;
   }
   for (const double t : trace.time_s) trace.yaw_rad.push_back(at_time(rows.time_s, yaw, t));
