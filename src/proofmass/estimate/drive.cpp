@@ -238,6 +238,12 @@ void set_radii(const std::vector<DriveWheel>& wheels, Gathered& all) {
   }
 }
 
+bool has_yaw(const Recorded& recorded) {
+  return recorded.frame.has_value() ||
+         std::ranges::any_of(recorded.wheels,
+                             [](const Trace& trace) { return !trace.yaw_rad.empty(); });
+}
+
 Result<Gathered> gather(const std::vector<DriveWheel>& wheels,
                         const std::optional<DriveFrame>& frame,
                         const std::optional<GnssFixes>& fixes,
@@ -271,8 +277,15 @@ Result<Gathered> gather(const std::vector<DriveWheel>& wheels,
     return Error{Errc::not_observable, "the wheels' recordings have no three seconds in common"};
   if (frame)
     if (Status status = add_frame(*frame, clocks, all, solution); !status) return status.error();
-  if (fixes)
+  // Without a yaw rate the first path is not good enough to be brought onto the fixes.
+  if (fixes && has_yaw(recorded)) {
     if (Status status = add_fixes(*fixes, clocks, all, solution); !status) return status.error();
+  } else if (fixes) {
+    solution.notes.push_back({Severity::warning,
+                              fixes->name +
+                                  ": fixes are used only together with a gyroscope on a wheel or "
+                                  "the frame: not used"});
+  }
   set_radii(wheels, all);
   return all;
 }
@@ -353,9 +366,7 @@ Known known_of(const std::vector<DriveWheel>& wheels,
   known.scale = fixes || std::ranges::any_of(wheels, [](const DriveWheel& wheel) {
                   return wheel.circumference_m.has_value();
                 });
-  known.yaw = all.recorded.frame.has_value() ||
-              std::ranges::any_of(all.recorded.wheels,
-                                  [](const Trace& trace) { return !trace.yaw_rad.empty(); });
+  known.yaw = has_yaw(all.recorded);
   known.both_sides = std::ranges::any_of(
       wheels, [&](const DriveWheel& wheel) { return wheel.side != wheels.front().side; });
   known.track = options.track_m.has_value() || fixes || known.yaw;
