@@ -15,7 +15,7 @@ constexpr std::size_t least_motions = 3;  // two residuals each, for nine elemen
 constexpr double unchanged = 1e-9;        // relative change of the matrix between passes
 constexpr int most_passes = 3;            // G moves the matrix by less than its own uncertainty
 
-// What the vertical component of Earth's rotation adds to each mean at rest, in readings.
+// Contribution of the vertical component of Earth's rotation to each mean at rest, in readings.
 std::vector<Vector3d> earth_at_rest(const GyroscopeData& data,
                                     const Eigen::Matrix3d& A,
                                     const std::optional<double>& latitude_rad) {

@@ -69,7 +69,7 @@ Eigen::Matrix<double, 3, 9> tilt_by_parameters(const MultiPosition& fit, const V
   return out;
 }
 
-// What the noise of the means of all rests of one session is.
+// Noise of the means of all rests of one session.
 struct SessionNoiseOfRate {
   PoseMeans means;
   std::array<DwellNoise, 3> axis;

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 
 using NineVector = Eigen::Matrix<double, 9, 1>;
 using OffsetMatrix = Eigen::Matrix<double, 12, 12>;
-// Of relative A and of bias and G, which the fit estimates.
+// Positions in the covariance of the fit: relative A, then bias and G.
 constexpr Index matrix_at = 0, offset_at = 9;
 using FitMatrix = Eigen::Matrix<double, 21, 21>;
 

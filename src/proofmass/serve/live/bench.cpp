@@ -111,7 +111,7 @@ Response LiveBench::begin(const std::string& body) {
   return json_response({{"id", last_}}, 201);
 }
 
-/// Of the sources that have ended, the oldest.
+/// The oldest of the sources that have ended.
 void LiveBench::forget_ended() {
   while (entries_.size() >= most_listed_sources) {
     const auto oldest = std::ranges::find_if(
