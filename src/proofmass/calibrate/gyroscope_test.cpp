@@ -6,6 +6,7 @@
 #include "proofmass/calibrate/gyroscope/motion.hpp"
 #include "proofmass/calibrate/gyroscope_budget.hpp"
 #include "proofmass/calibrate/gyroscope_test_support.hpp"
+#include "proofmass/core/so3.hpp"
 
 namespace proofmass::calibrate::gyroscope_test {
 namespace {

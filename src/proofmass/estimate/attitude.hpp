@@ -9,9 +9,9 @@
 #include "proofmass/core/progress.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
+#include "proofmass/core/so3.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/estimate/filter/gaussian.hpp"
-#include "proofmass/estimate/so3.hpp"
 #include "proofmass/sensor/gravity.hpp"
 #include "proofmass/signal/rests.hpp"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "proofmass/core/random.hpp"
+#include "proofmass/core/so3.hpp"
 #include "proofmass/core/units.hpp"
-#include "proofmass/estimate/so3.hpp"
 #include "proofmass/estimate/tilt.hpp"
 
 namespace proofmass::estimate {

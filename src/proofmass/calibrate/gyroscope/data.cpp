@@ -7,6 +7,7 @@
 
 #include "proofmass/calibrate/multi_position/dwell_noise.hpp"
 #include "proofmass/calibrate/multi_position/norm_model.hpp"
+#include "proofmass/core/so3.hpp"
 #include "proofmass/core/statistics.hpp"
 
 namespace proofmass::calibrate {

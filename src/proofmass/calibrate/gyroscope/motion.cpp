@@ -1,9 +1,9 @@
 #include "proofmass/calibrate/gyroscope/motion.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
 #include <numeric>
+
+#include "proofmass/core/so3.hpp"
 
 namespace proofmass::calibrate {
 
@@ -12,34 +12,6 @@ using Eigen::Vector3d;
 
 double MotionSamples::duration_s() const {
   return std::accumulate(step_s.begin(), step_s.end(), 0.0);
-}
-
-Matrix3d cross_matrix(const Vector3d& v) {
-  Matrix3d out;
-  out << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return out;
-}
-
-Matrix3d rotation_by(const Vector3d& phi) {
-  const double square = phi.squaredNorm(), angle = std::sqrt(square);
-  const bool small = angle < 1e-4;
-  const double first = small ? 1.0 - square / 6.0 : std::sin(angle) / angle;
-  const double second = small ? 0.5 - square / 24.0 : (1.0 - std::cos(angle)) / square;
-  const Matrix3d K = cross_matrix(phi);
-  return Matrix3d::Identity() + first * K + second * K * K;
-}
-
-Vector3d rotation_vector(const Matrix3d& R) {
-  const Vector3d twice_sine(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
-  const double sine = 0.5 * twice_sine.norm(), cosine = 0.5 * (R.trace() - 1.0);
-  const double angle = std::atan2(sine, cosine);
-  if (sine > 1e-6) return 0.5 * angle / sine * twice_sine;
-  if (cosine > 0.0) return 0.5 * twice_sine;
-  // Half a turn: R = 2 n nᵀ − 1.
-  Eigen::Index largest = 0;
-  R.diagonal().maxCoeff(&largest);
-  Vector3d n = 0.5 * (R.col(largest) + Vector3d::Unit(largest));
-  return angle * n.normalized();
 }
 
 MotionRotation integrate(const MotionSamples& motion,

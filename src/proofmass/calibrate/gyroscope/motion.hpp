@@ -42,13 +42,4 @@ struct MotionRotation {
                                        const Eigen::Matrix3d& G,
                                        const Eigen::Vector3d& noise_axes);
 
-/// The rotation matrix of a rotation vector.
-[[nodiscard]] Eigen::Matrix3d rotation_by(const Eigen::Vector3d& phi);
-
-/// The rotation vector of a rotation matrix, of at most half a turn.
-[[nodiscard]] Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& R);
-
-/// [v]× w = v × w.
-[[nodiscard]] Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);
-
 }  // namespace proofmass::calibrate

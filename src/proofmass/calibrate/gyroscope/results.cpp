@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/core/so3.hpp"
 
 namespace proofmass::calibrate {
 namespace {

@@ -11,6 +11,7 @@
 #include "proofmass/calibrate/multi_position/pose_selection.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/core/so3.hpp"
 
 namespace proofmass::calibrate {
 namespace {
@@ -44,12 +45,6 @@ struct GivenTerm {
   Eigen::Matrix3d covariance;
   double along_variance, across_variance;  // of e by noise alone, along up and across (both axes)
 };
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d out;
-  out << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return out;
-}
 
 GivenTerm given_term(const State& state, const GivenPose& given) {
   const Parameters& p = state.p;

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/so3.hpp"
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/so3.hpp"
 
 namespace proofmass::estimate {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "proofmass/core/random.hpp"
-#include "proofmass/estimate/so3.hpp"
+#include "proofmass/core/so3.hpp"
 #include "proofmass/estimate/tilt/calibration.hpp"
 #include "proofmass/estimate/tilt_test_support.hpp"
 

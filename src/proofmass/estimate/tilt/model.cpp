@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proofmass/core/so3.hpp"
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/so3.hpp"
 #include "proofmass/estimate/tilt/gyroscope.hpp"
 
 namespace proofmass::estimate {

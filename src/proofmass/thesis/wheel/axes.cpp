@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "proofmass/core/so3.hpp"
 #include "proofmass/core/units.hpp"
 
 namespace proofmass::thesis {
@@ -16,10 +17,6 @@ constexpr double well_known_rad = 0.05;
 
 double wrapped(double angle_rad) {
   return std::remainder(angle_rad, rad_per_turn);
-}
-
-Eigen::Vector3d cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return {a(1) * b(2) - a(2) * b(1), a(2) * b(0) - a(0) * b(2), a(0) * b(1) - a(1) * b(0)};
 }
 
 // As estimate/wheel.hpp counts: the next sensor axis in the order x, y, z, x, made square to it.

@@ -1,28 +1,28 @@
-#include "proofmass/estimate/so3.hpp"
+#include "proofmass/core/so3.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace proofmass::estimate::rotation_test {
+namespace proofmass::so3_test {
 namespace {
 
-const Mat<3> some(0.3, -1.1, 0.7);
+const Eigen::Vector3d some(0.3, -1.1, 0.7);
 
 TEST(Rotation, CrossMatrixIsTheCrossProduct) {
-  const Mat<3> a(1.0, 2.0, 3.0), b(-0.5, 0.25, 4.0);
-  EXPECT_EQ(Mat<3>(cross_matrix(a) * b), cross(a, b));
+  const Eigen::Vector3d a(1.0, 2.0, 3.0), b(-0.5, 0.25, 4.0);
+  EXPECT_EQ(Eigen::Vector3d(cross_matrix(a) * b), cross(a, b));
   EXPECT_EQ(cross(a, b).dot(a), 0.0);
 }
 
 TEST(Rotation, AboutAnAxisTurnsTheOthers) {
-  const Mat<3, 3> R = rotation_by({0.0, 0.0, std::numbers::pi / 2.0});
-  EXPECT_TRUE((R * Mat<3>(1.0, 0.0, 0.0)).isApprox(Mat<3>(0.0, 1.0, 0.0), 1e-15));
+  const Eigen::Matrix3d R = rotation_by({0.0, 0.0, std::numbers::pi / 2.0});
+  EXPECT_TRUE((R * Eigen::Vector3d(1.0, 0.0, 0.0)).isApprox(Eigen::Vector3d(0.0, 1.0, 0.0), 1e-15));
 }
 
 TEST(Rotation, TwoHalvesMakeTheWhole) {
   for (const double size : {1e-12, 1e-5, 0.9e-4, 1.1e-4, 1.0, 3.0}) {
-    const Mat<3, 3> half = rotation_by(0.5 * size * some);
+    const Eigen::Matrix3d half = rotation_by(0.5 * size * some);
     EXPECT_LT((half * half - rotation_by(size * some)).norm(), 1e-15) << size;
   }
 }
@@ -30,16 +30,17 @@ TEST(Rotation, TwoHalvesMakeTheWhole) {
 TEST(Rotation, VectorAndMatrixAreEachOthersInverse) {
   for (const double size : {0.0, 1e-12, 1e-6, 0.1, 1.0, 2.3})
     EXPECT_LT((rotation_vector(rotation_by(size * some)) - size * some).norm(), 4e-15) << size;
-  const Mat<3> half_turn = std::numbers::pi * some.normalized();
-  const Mat<3> found = rotation_vector(rotation_by(half_turn));
+  const Eigen::Vector3d half_turn = std::numbers::pi * some.normalized();
+  const Eigen::Vector3d found = rotation_vector(rotation_by(half_turn));
   EXPECT_NEAR(found.norm(), std::numbers::pi, 1e-14);
   EXPECT_NEAR(std::abs(found.dot(half_turn)), std::numbers::pi * std::numbers::pi, 1e-13);
 }
 
 TEST(Rotation, QuaternionAndMatrixAreEachOthersInverse) {
-  for (const Mat<3>& turn : {Mat<3>(0.1, 0.2, 0.3), Mat<3>(3.1, 0.0, 0.1), Mat<3>(0.0, 3.0, 0.4),
-                             Mat<3>(0.2, 0.1, -3.1)}) {
-    const Mat<3, 3> R = rotation_by(turn);
+  for (const Eigen::Vector3d& turn :
+       {Eigen::Vector3d(0.1, 0.2, 0.3), Eigen::Vector3d(3.1, 0.0, 0.1),
+        Eigen::Vector3d(0.0, 3.0, 0.4), Eigen::Vector3d(0.2, 0.1, -3.1)}) {
+    const Eigen::Matrix3d R = rotation_by(turn);
     EXPECT_LT((rotation_of(quaternion_of(R, {1.0, 0.0, 0.0, 0.0})) - R).norm(), 2e-15);
   }
 }
@@ -54,12 +55,12 @@ TEST(Rotation, QuaternionsOfATurnFollowEachOtherOnOneSide) {
 }
 
 TEST(Rotation, OrthonormalMendsWhatRoundingHasSpoilt) {
-  const Mat<3, 3> R = rotation_by(some);
-  const Mat<3, 3> spoilt = R + 1e-8 * Mat<3, 3>::Constant(0.7);
-  const Mat<3, 3> mended = orthonormal(spoilt);
-  EXPECT_LT((mended * mended.transpose() - Mat<3, 3>::Identity()).norm(), 1e-15);
+  const Eigen::Matrix3d R = rotation_by(some);
+  const Eigen::Matrix3d spoilt = R + 1e-8 * Eigen::Matrix3d::Constant(0.7);
+  const Eigen::Matrix3d mended = orthonormal(spoilt);
+  EXPECT_LT((mended * mended.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-15);
   EXPECT_LT((mended - R).norm(), 3e-8);
 }
 
 }  // namespace
-}  // namespace proofmass::estimate::rotation_test
+}  // namespace proofmass::so3_test
