@@ -48,7 +48,7 @@ void choose_from(std::string_view bytes) {
   const auto headings = io::hdf5_headings(*catalogue, choice->tables, values, is_timed, notes);
   require(headings.size() == width);
   (void)io::hdf5_start_ns(*catalogue, choice->tables.front().array->path);
-  io::tell_texts(*catalogue, choice->tables, notes);
+  io::note_texts(*catalogue, choice->tables, notes);
 }
 
 // Input as the list of contents from a compromised child process.

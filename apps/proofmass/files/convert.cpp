@@ -58,7 +58,7 @@ io::WriteOptions write_options(const ConvertCommand& command) {
 }
 
 // Labels that the new format cannot store.
-void tell_lost_labels(const std::string& output, bool in_pieces, Converted& converted) {
+void note_lost_labels(const std::string& output, bool in_pieces, Converted& converted) {
   const Recording& head = converted.head;
   if (head.labels.empty() || io::keeps_labels(output, in_pieces)) return;
   converted.notes.push_back(
@@ -79,7 +79,7 @@ Converted convert(Recording recording,
   const std::size_t samples = calibrated.samples();
   std::vector<Note> notes = calibrated.notes;
   Converted out{std::move(calibrated), samples, std::move(notes)};
-  tell_lost_labels(command.output.output, false, out);
+  note_lost_labels(command.output.output, false, out);
   return out;
 }
 
@@ -107,7 +107,7 @@ Converted convert(io::RecordingStream stream,
   command.output.output == "-" ? write() : without_interruption(write);
   out.head = source.head();
   out.notes = source.head().notes;
-  tell_lost_labels(command.output.output, true, out);
+  note_lost_labels(command.output.output, true, out);
   return out;
 }
 

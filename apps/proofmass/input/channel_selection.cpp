@@ -121,7 +121,7 @@ std::string clipping(const signal::ChannelAudit& audit, std::size_t samples) {
       limit(audit.limit_low), between, limit(audit.limit_high), audit.unit.symbol);
 }
 
-void tell_grid(const signal::EvenGrid& grid,
+void note_grid(const signal::EvenGrid& grid,
                std::size_t places,
                const std::string& prefix,
                std::vector<Note>& notes) {

@@ -37,7 +37,7 @@ struct RestChoice {
 [[nodiscard]] std::string clipping(const signal::ChannelAudit& audit, std::size_t samples);
 
 /// Notes missing grid points, their number of gaps, and irregular stamps.
-void tell_grid(const signal::EvenGrid& grid,
+void note_grid(const signal::EvenGrid& grid,
                std::size_t places,
                const std::string& prefix,
                std::vector<Note>& notes);

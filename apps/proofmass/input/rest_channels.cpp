@@ -98,7 +98,7 @@ void lay_out(Source& source, const std::string& prefix, std::vector<Note>& notes
     throw Failure(status_of(error, Stage::reading), error.message);
   }
   source.grid = std::move(grid).value();
-  tell_grid(source.grid, source.grid.holes.size(), prefix, notes);
+  note_grid(source.grid, source.grid.holes.size(), prefix, notes);
 }
 
 void to_si(Channel& channel) {

@@ -129,7 +129,7 @@ std::vector<NoiseChannel> analyse_pieces(io::RecordingStream stream,
   head.time = source.head().time;
   const signal::RecordingAudit found = audit.finish(head);
   for (const Note& note : found.notes) notes.push_back({note.severity, prefix + note.text});
-  tell_grid(*laid, grid.hole_count(), prefix, notes);
+  note_grid(*laid, grid.hole_count(), prefix, notes);
   std::vector<NoiseChannel> channels;
   for (std::size_t k = 0; k < streams.size(); ++k) {
     channels.push_back(finished(streams[k], found.channels[k], *laid, found.samples));

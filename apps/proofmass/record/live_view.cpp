@@ -93,9 +93,9 @@ void LiveView::event(const RecordEvent& event) {
     lost_ += event.rows;
     ++gaps_;
   }
-  constexpr std::uint64_t gaps_told = 20;  // later gaps are only counted: a steady loss would
-                                           // fill the terminal
-  if (is_gap && gaps_ > gaps_told) return;
+  constexpr std::uint64_t gaps_shown = 20;  // later gaps are only counted: a steady loss would
+                                            // fill the terminal
+  if (is_gap && gaps_ > gaps_shown) return;
   panel_.wipe();
   show_notes({{event.severity, report::event_words(event)}}, "", flags_);
 }

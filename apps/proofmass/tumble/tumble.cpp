@@ -200,9 +200,9 @@ void update_sensor(const TumbleCommand& command,
                    report::TumbleReport& report) {
   const sensor::MeasuredCalibration found = measured(report, readings, report.notes);
   if (std::none_of(found.scale.begin(), found.scale.end(), [](const auto& s) { return s; })) return;
-  Result<std::vector<Note>> told = sensor::update_calibration(command.update_sensor, found);
-  if (!told) throw Failure(status_of(told.error(), Stage::writing), told.error().message);
-  for (Note& note : std::move(told).value()) report.notes.push_back(std::move(note));
+  Result<std::vector<Note>> changes = sensor::update_calibration(command.update_sensor, found);
+  if (!changes) throw Failure(status_of(changes.error(), Stage::writing), changes.error().message);
+  for (Note& note : std::move(changes).value()) report.notes.push_back(std::move(note));
 }
 
 void check(const TumbleCommand& command) {

@@ -48,30 +48,30 @@ TEST(Recorder, WaitsForASourceThatGoesWhileItIsOpenedWhereReconnectionIsAskedFor
       if (++tries < 3) return Error{Errc::device, "went"};
       return script();
     };
-    std::vector<RecordEvent> told;
-    const RecordWatch watch{.event = [&](const RecordEvent& event) { told.push_back(event); }};
+    std::vector<RecordEvent> reported;
+    const RecordWatch watch{.event = [&](const RecordEvent& event) { reported.push_back(event); }};
     const auto summary =
         record(open, {.path = folder.file("run.mcap"), .reconnect = reconnect}, watch);
     ASSERT_EQ(summary.has_value(), reconnect);
     EXPECT_EQ(tries, reconnect ? 3 : 1);
     if (!reconnect) continue;
     EXPECT_EQ(summary->samples, 30u);
-    ASSERT_EQ(told.size(), 1u);
-    EXPECT_EQ(told[0].kind, EventKind::disconnected);
+    ASSERT_EQ(reported.size(), 1u);
+    EXPECT_EQ(reported[0].kind, EventKind::disconnected);
   }
 }
 
 TEST(Recorder, KeepsTheOrderOfWhatASourceSays) {
   const TestFolder folder;
-  std::vector<RecordEvent> told;
-  const RecordWatch watch{.event = [&](const RecordEvent& event) { told.push_back(event); }};
+  std::vector<RecordEvent> reported;
+  const RecordWatch watch{.event = [&](const RecordEvent& event) { reported.push_back(event); }};
   Script script{.acts = arrivals(5)};
   script.acts.push_back({.rows = 10, .lost_before = 3, .notes = {{Severity::info, "a hiccup"}}});
   const auto summary = record(open_scripts({script}), {.path = folder.file("run.mcap")}, watch);
   ASSERT_TRUE(summary);
-  ASSERT_EQ(told.size(), 2u);
-  EXPECT_EQ(told[0].text, "a hiccup");
-  EXPECT_EQ(told[1].kind, EventKind::lost);
+  ASSERT_EQ(reported.size(), 2u);
+  EXPECT_EQ(reported[0].text, "a hiccup");
+  EXPECT_EQ(reported[1].kind, EventKind::lost);
   EXPECT_EQ(summary->lost, 3u);
   EXPECT_EQ(summary->gap_count, 1u);
   EXPECT_EQ(summary->gaps.at(0).rows, 3u);

@@ -101,7 +101,7 @@ Linear linear_problem(View<ModelRow> rows, const ModelFitOptions& options) {
 }
 
 // The columns that remain without those that the rows do not determine.
-std::vector<Index> told_columns(const Identifiability& found) {
+std::vector<Index> determined_columns(const Identifiability& found) {
   std::vector<Index> columns;
   for (std::size_t c = 0; c < found.excited.size(); ++c) {
     const bool left_out = std::ranges::any_of(found.tied, [&](const TiedTerms& group) {
@@ -122,19 +122,19 @@ struct Solution {
 };
 
 Solution solve(const Linear& problem, const std::vector<Index>& columns) {
-  const Index p = problem.X.cols(), told = std::ssize(columns);
-  Eigen::MatrixXd X(problem.X.rows(), told);
-  for (Index k = 0; k < told; ++k) X.col(k) = problem.X.col(columns[size_of(k)]);
+  const Index p = problem.X.cols(), rank = std::ssize(columns);
+  Eigen::MatrixXd X(problem.X.rows(), rank);
+  for (Index k = 0; k < rank; ++k) X.col(k) = problem.X.col(columns[size_of(k)]);
   const auto factored = fit::factor_columns(X);
   const Eigen::VectorXd beta = factored->R_inverse * (factored->Q.transpose() * problem.y);
   Solution solution{Eigen::VectorXd::Zero(p), Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p),
                     problem.y - X * beta, factored->Q.rowwise().squaredNorm()};
-  for (Index a = 0; a < told; ++a) {
+  for (Index a = 0; a < rank; ++a) {
     const Index at = columns[size_of(a)];
     solution.beta(at) = beta(a);
     solution.inflation(at) =
         factored->inverse_product(a, a) * factored->length(a) * factored->length(a);
-    for (Index b = 0; b < told; ++b) {
+    for (Index b = 0; b < rank; ++b) {
       solution.covariance(at, columns[size_of(b)]) = factored->inverse_product(a, b);
     }
   }
@@ -234,10 +234,10 @@ void note_near_confounding(const std::vector<Index>& columns,
   }
 }
 
-Status k1_is_told(const Linear& problem,
-                  const Identifiability& found,
-                  const Solution& solution,
-                  const ModelFit& fit) {
+Status k1_is_determined(const Linear& problem,
+                        const Identifiability& found,
+                        const Solution& solution,
+                        const ModelFit& fit) {
   if (!problem.k1) return Done{};
   const Index at = *problem.k1;
   if (!found.excited[size_of(at)]) {
@@ -297,21 +297,21 @@ void fill_coefficients(const Linear& problem,
   }
 }
 
-Status enough_rows(const Linear& problem, std::size_t told, bool std_stated) {
-  if (told == 0 && problem.X.rows() > 0) {
+Status enough_rows(const Linear& problem, std::size_t rank, bool std_stated) {
+  if (rank == 0 && problem.X.rows() > 0) {
     return Error{Errc::not_observable,
                  "no row has a motion that any of these coefficients would answer to"};
   }
   const auto rows = size_of(problem.X.rows());
-  if (rows < told || rows < 2) {
+  if (rows < rank || rows < 2) {
     return Error{Errc::too_few_samples,
                  fmt::format("{} rows for {} coefficients", rows, problem.X.cols())};
   }
-  if (rows > told || std_stated) return Done{};
+  if (rows > rank || std_stated) return Done{};
   return Error{Errc::too_few_samples,
                fmt::format("{} rows for {} coefficients leave no redundancy: state the "
                            "standard deviation of the outputs, add rows or omit a coefficient",
-                           rows, told)};
+                           rows, rank)};
 }
 
 }  // namespace
@@ -332,7 +332,7 @@ Result<ModelFit> fit_model_equation(View<ModelRow> rows, const ModelFitOptions& 
   }
   const double unit_length = problem.sigma.cwiseInverse().norm();
   const Identifiability found = identifiability(problem.X, options.fitted, unit_length);
-  const std::vector<Index> columns = told_columns(found);
+  const std::vector<Index> columns = determined_columns(found);
   ModelFit fit;
   fit.equation = options.held;
   fit.std_stated = !rows.empty() && rows.front().output_std > 0.0;
@@ -346,7 +346,7 @@ Result<ModelFit> fit_model_equation(View<ModelRow> rows, const ModelFitOptions& 
   judge_residuals(problem, solution, fit);
   name_wrong_rows(solution, fit);
   solution.covariance *= fit.scatter * fit.scatter;
-  if (const Status status = k1_is_told(problem, found, solution, fit); !status)
+  if (const Status status = k1_is_determined(problem, found, solution, fit); !status)
     return status.error();
   note_near_confounding(columns, solution, fit);
   divide_by_k1(problem, solution);

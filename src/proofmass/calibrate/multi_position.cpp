@@ -138,7 +138,7 @@ std::vector<UncertaintyShare> shares_of(const NormCalibration& norm,
                                         const Weighable& weighed,
                                         const ReadingScale& scale,
                                         const MultiPositionOptions& options) {
-  constexpr double told = 1e-4;  // of the variance: less is not worth a line
+  constexpr double negligible = 1e-4;  // of the variance: less is not worth a line
   const PoseSelection& selection = norm.selection;
   const ParameterMatrix slope = scale.slope().asDiagonal();
   ParameterMatrix noise = ParameterMatrix::Zero();
@@ -148,7 +148,7 @@ std::vector<UncertaintyShare> shares_of(const NormCalibration& norm,
   if (weighed.noise_dof > 0.0)
     steps.topLeftCorner(count, count) = by_resolution(norm, weighed.poses, scale);
   std::vector<UncertaintyShare> shares;
-  const bool resolved = steps.trace() < told * noise.trace();
+  const bool resolved = steps.trace() < negligible * noise.trace();
   if (!resolved) noise -= steps;
   if (selection.scatter.dof > 0.0)
     shares.push_back({"noise of the means", true, slope * noise * slope, selection.scatter.dof});

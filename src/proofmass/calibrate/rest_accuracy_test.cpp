@@ -21,7 +21,7 @@ MultiPosition calibrated(const test::PoseDraw& draw, double gravity_std_mps2, in
 }
 
 TEST(RestAccuracy, IsTheErrorOnNewDirections) {
-  double told = 0.0, found = 0.0;
+  double stated = 0.0, found = 0.0;
   for (int seed = 1; seed <= 60; ++seed) {
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const Parameters truth = test::drawn_sensor(random);
@@ -31,10 +31,10 @@ TEST(RestAccuracy, IsTheErrorOnNewDirections) {
                                   .value();
     const RestAccuracy accuracy = rest_accuracy(fit).value();
     const double scatter = accuracy.scatter_mps2;
-    told += accuracy.overall_mps2 * accuracy.overall_mps2 - scatter * scatter;
+    stated += accuracy.overall_mps2 * accuracy.overall_mps2 - scatter * scatter;
     found += std::pow(test::error_on_new_directions(fit, truth, random), 2);
   }
-  EXPECT_NEAR(std::sqrt(found / told), 1.0, 0.15);
+  EXPECT_NEAR(std::sqrt(found / stated), 1.0, 0.15);
 }
 
 TEST(RestAccuracy, HoldsGravityInAllDirectionsAlike) {

@@ -105,7 +105,8 @@ void judge_speed(RotationState& state, RotationFit& fit) {
   });
   state.mean_square_speed = sum / count;
   const double variance = squares / count - state.mean_square_speed * state.mean_square_speed;
-  state.speed_told = std::sqrt(std::max(variance, 0.0)) > least_spread * state.mean_square_speed;
+  state.speed_determined =
+      std::sqrt(std::max(variance, 0.0)) > least_spread * state.mean_square_speed;
   fit.sections.clear();
   fit.turns = 0.0;
   for (std::size_t s = 0; s < state.sections.size(); ++s) {
@@ -181,7 +182,7 @@ void refer_to_fitted_speed(RotationState& state, RotationFit& fit) {
   if (state.angle_given) return;
   const int before = fit.iterations;
   judge_speed(state, fit);
-  if (!state.speed_told) {
+  if (!state.speed_determined) {
     for (Harmonics& h : state.harmonics) h(square_speed_column) = 0.0;
   }
   fit.converged = false;

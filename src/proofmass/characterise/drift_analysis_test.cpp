@@ -272,16 +272,16 @@ TEST(DriftAnalysis, SaysWhereTheNoiseIsNotWhatItWasTakenFor) {
 }
 
 TEST(DriftAnalysis, ReportsProgressUntilTheEnd) {
-  std::vector<double> told;
+  std::vector<double> fractions;
   ASSERT_TRUE(analyse_drift(
       record(12), {.rate_hz = 1.0, .progress = [&](std::string_view stage, double fraction) {
                      EXPECT_EQ(stage, "drift");
-                     told.push_back(fraction);
+                     fractions.push_back(fraction);
                    }}));
-  ASSERT_GE(told.size(), 3U);
-  EXPECT_TRUE(std::ranges::is_sorted(told));
-  EXPECT_EQ(told.front(), 0.0);
-  EXPECT_EQ(told.back(), 1.0);
+  ASSERT_GE(fractions.size(), 3U);
+  EXPECT_TRUE(std::ranges::is_sorted(fractions));
+  EXPECT_EQ(fractions.front(), 0.0);
+  EXPECT_EQ(fractions.back(), 1.0);
 }
 
 TEST(DriftAnalysis, RefusesBlocksThatDoNotVaryThoughTheirSamplesDo) {

@@ -207,7 +207,7 @@ Result<Attitude> estimate_attitude(const InertialSeries& series,
   if (!prepared) return prepared.error();
   AttitudeModel model(*prepared, options);
   model.rest_used.resize(rests.size(), 0);
-  const auto tell = [&](double fraction) {
+  const auto report = [&](double fraction) {
     if (options.progress) options.progress("attitude", fraction);
   };
   Attitude out = without_estimates(series.time_s.size());
@@ -219,11 +219,11 @@ Result<Attitude> estimate_attitude(const InertialSeries& series,
   constexpr int most_passes = 10;
   double tilt_rad = 1.0;
   while (tilt_rad > nearly_rad && out.iterations < most_passes) {
-    tell(0.2 + 0.1 * std::min(out.iterations, 4));
+    report(0.2 + 0.1 * std::min(out.iterations, 4));
     tilt_rad = pass.run(nothing, nothing);
     ++out.iterations;
   }
-  tell(0.7);
+  report(0.7);
   pass.run(
       [&](std::size_t k, const StepOf<AttitudeModel>& step) { take_nis(model, k, step, out); },
       [&](std::size_t k, const StepOf<AttitudeModel>& step, const BackwardInformation<N>& later) {
@@ -238,7 +238,7 @@ Result<Attitude> estimate_attitude(const InertialSeries& series,
   out.accel_noise_mps2_rthz = prepared->accel_noise;
   out.gravity_mps2 = options.gravity_mps2;
   say(model, rests, out);
-  tell(1.0);
+  report(1.0);
   return out;
 }
 

@@ -24,7 +24,7 @@ constexpr double longest_gathered_s = 60.0;  ///< of the motion that the axis is
 constexpr double longest_gap_s = 60.0;       ///< over which a position is carried
 constexpr double longest_cruise_s = 10.0;
 constexpr double gap_steps = 2.5;
-constexpr double telling_turn_rad = 0.5 * rad_per_deg;
+constexpr double significant_turn_rad = 0.5 * rad_per_deg;
 /// Drift of a level at rest without a sensor file, m/s²/√s.
 constexpr double usual_rest_walk = 3e-4;
 
@@ -240,7 +240,7 @@ class LiveTrack final : public LiveAnalysis {
   /// constant speed, but not for ever: an erroneous velocity would persist.
   [[nodiscard]] bool is_doubtful(double time_s) {
     if (filter_->at_rest() || !filter_->is_cruising() ||
-        turned_rad(moved_m2ps4()) > telling_turn_rad) {
+        turned_rad(moved_m2ps4()) > significant_turn_rad) {
       doubted_since_s_.reset();
       return false;
     }
@@ -267,7 +267,7 @@ class LiveTrack final : public LiveAnalysis {
     const LiveLevel level{axis_->dot(rest.level_mps2), axis_->cwiseAbs2().dot(variance),
                           moved_m2ps4()};
     const double turned = turned_rad(level.moved_m2ps4);
-    if (turned > telling_turn_rad && turned > 1.5 * said_turn_rad_) {
+    if (turned > significant_turn_rad && turned > 1.5 * said_turn_rad_) {
       said_turn_rad_ = turned;
       say("the level at rest moved by " + at_second(turned / rad_per_deg) +
           "° of gravity before the rest at " + at_second(rest.since_s) +

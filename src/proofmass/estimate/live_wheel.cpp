@@ -20,7 +20,7 @@ namespace {
 /// The longest interval used for the initialisation.
 constexpr double longest_start_s = 20.0;
 /// A speed change by this share determines the lever arms, if observed for this long.
-constexpr double telling_change = 0.25, watch_change_s = 2.0;
+constexpr double significant_change = 0.25, watch_change_s = 2.0;
 /// Repeated at once if the lever arms leave more than this uncertainty of the angle.
 constexpr double open_angle_rad = 0.1, least_pause_s = 0.5;
 /// Time from the beginning of a search to the use of its result.
@@ -148,7 +148,8 @@ class LiveWheel final : public LiveAnalysis {
     slowest_radps_ = std::min(slowest_radps_, speed);
     fastest_radps_ = std::max(fastest_radps_, speed);
     const double most = std::max(std::abs(slowest_radps_), std::abs(fastest_radps_));
-    if (fastest_radps_ - slowest_radps_ < std::max(telling_change * most, 0.2)) changed_s_ = now_s;
+    if (fastest_radps_ - slowest_radps_ < std::max(significant_change * most, 0.2))
+      changed_s_ = now_s;
     return now_s - changed_s_ >= watch_change_s;
   }
 

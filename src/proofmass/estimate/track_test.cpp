@@ -141,9 +141,9 @@ TEST(Track, AGivenTurnIsAVelocityOfZero) {
   options.still = {{0.0, 1.98}, {12.01, 13.98}};
   const TrackSolution open = track(made, options);
   options.turns_s = {7.0};
-  const TrackSolution told = track(made, options);
-  EXPECT_LT(told.smoother->peak_m.std, open.smoother->peak_m.std);
-  EXPECT_NEAR(told.smoother->peak_m.value, 0.5, 4.0 * told.smoother->peak_m.std);
+  const TrackSolution given = track(made, options);
+  EXPECT_LT(given.smoother->peak_m.std, open.smoother->peak_m.std);
+  EXPECT_NEAR(given.smoother->peak_m.value, 0.5, 4.0 * given.smoother->peak_m.std);
 }
 
 TEST(Track, RefusesReadingsInGThatAreSaidToBeInMetres) {

@@ -141,9 +141,9 @@ struct Nees {
   double sum = 0.0, largest = 0.0;
   std::size_t count = 0;
 
-  void add(const std::optional<Uncertain>& told, double truth) {
-    if (!told) return;
-    const double nees = std::pow((told->value - truth) / told->std, 2);
+  void add(const std::optional<Uncertain>& stated, double truth) {
+    if (!stated) return;
+    const double nees = std::pow((stated->value - truth) / stated->std, 2);
     sum += nees;
     largest = std::max(largest, nees);
     ++count;

@@ -89,26 +89,27 @@ StampUnit guess(const StampColumn& stamps, double step) {
 }
 
 /// Fractional seconds since 1904: a count of ticks of that size has steps of at least one.
-std::optional<StampUnit> as_labview(const StampColumn& stamps, double step, bool is_told) {
+std::optional<StampUnit> as_labview(const StampColumn& stamps, double step, bool is_stated) {
   const double first = stamps.origin.value();
   if (step > 0.5 || !is_of_this_age(first - static_cast<double>(from_1904_to_1970_s)))
     return std::nullopt;
   return StampUnit{
       1.0, less(stamps.origin, from_1904_to_1970_s), true,
       Note{Severity::info, fmt::format("{}: seconds since 1904, as LabVIEW counts{}", stamps.name,
-                                       is_told ? "" : ", by their size")}};
+                                       is_stated ? "" : ", by their size")}};
 }
 
 }  // namespace
 
 StampUnit unit_of(const StampColumn& stamps, double step) {
-  const bool is_told = stamps.unit.quantity == Quantity::time;
-  const double told_s = stamps.unit.to_si;
-  if (stamps.clock != StampClock::figures) return {told_s, stamps.origin, true, std::nullopt};
-  if (!is_told || told_s == 1.0)
-    if (const auto unit = as_labview(stamps, step, is_told)) return *unit;
-  if (is_told)
-    return {told_s, stamps.origin, is_of_this_age(stamps.origin.value() * told_s), std::nullopt};
+  const bool is_stated = stamps.unit.quantity == Quantity::time;
+  const double stated_s = stamps.unit.to_si;
+  if (stamps.clock != StampClock::figures) return {stated_s, stamps.origin, true, std::nullopt};
+  if (!is_stated || stated_s == 1.0)
+    if (const auto unit = as_labview(stamps, step, is_stated)) return *unit;
+  if (is_stated)
+    return {stated_s, stamps.origin, is_of_this_age(stamps.origin.value() * stated_s),
+            std::nullopt};
   if (const auto unit = as_xsens(stamps, step)) return *unit;
   if (const auto unit = as_days(stamps, step)) return *unit;
   return guess(stamps, step);

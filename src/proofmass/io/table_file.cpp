@@ -121,21 +121,21 @@ std::size_t likeliest(std::span<const TableSummary> tables) {
   return best;
 }
 
-void tell_the_others(std::span<const TableSummary> tables,
+void note_the_others(std::span<const TableSummary> tables,
                      std::size_t chosen,
                      std::vector<Note>& notes) {
   if (tables.size() < 2) return;
-  constexpr std::size_t most_told = 8;
+  constexpr std::size_t most_listed = 8;
   std::string others;
   std::string example;
-  std::size_t told = 0;
-  for (std::size_t t = 0; t < tables.size() && told < most_told; ++t) {
+  std::size_t listed = 0;
+  for (std::size_t t = 0; t < tables.size() && listed < most_listed; ++t) {
     if (t == chosen) continue;
-    if (told++ == 0) example = tables[t].name;
+    if (listed++ == 0) example = tables[t].name;
     others += (others.empty() ? "" : ", ") + described(tables[t]);
   }
-  if (tables.size() > most_told + 1)
-    others += fmt::format(" and {} more", tables.size() - most_told - 1);
+  if (tables.size() > most_listed + 1)
+    others += fmt::format(" and {} more", tables.size() - most_listed - 1);
   const int likeness = likeness_to_accelerations(tables[chosen]);
   // The user may have meant another table with accelerations.
   bool is_open = false;
@@ -160,7 +160,7 @@ Result<std::vector<std::size_t>> choose_table(std::span<const TableSummary> tabl
   if (tables.empty()) return Error{Errc::too_few_samples, "holds no table of figures"};
   if (options.variables.empty()) {
     const std::size_t chosen = likeliest(tables);
-    tell_the_others(tables, chosen, notes);
+    note_the_others(tables, chosen, notes);
     return std::vector{chosen};
   }
   std::vector<std::size_t> chosen;

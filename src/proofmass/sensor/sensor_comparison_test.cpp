@@ -201,7 +201,7 @@ TEST(SensorComparison, ConvertsUnits) {
   EXPECT_EQ(at(other, "calibration.bias x").reason, "OLD is in V, NEW in counts");
 }
 
-TEST(SensorComparison, SaysWhatCannotBeTold) {
+TEST(SensorComparison, SaysWhatIsNotDetermined) {
   const auto reason = [](std::optional<double> a, std::optional<double> b) {
     const auto comparison = compare(with_bias(0.0, a), with_bias(1.0, b), quick);
     EXPECT_EQ(comparison.all, Verdict::cannot_tell);

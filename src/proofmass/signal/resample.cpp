@@ -132,7 +132,7 @@ void name_apart(std::vector<Channel>& channels, const std::vector<std::string>& 
   }
 }
 
-void tell_unknown_start(const Recording& part, std::vector<Note>& notes) {
+void note_unknown_start(const Recording& part, std::vector<Note>& notes) {
   notes.push_back({Severity::warning,
                    fmt::format("{}: does not say when it began: taken to begin with the earliest",
                                part.source)});
@@ -188,7 +188,7 @@ Result<Recording> join(std::span<const Recording> recordings, const ResampleOpti
                                               ? note.text
                                               : recordings[i].source + ": " + note.text});
     if (!recordings[i].time.start_ns && recordings.size() > 1)
-      tell_unknown_start(recordings[i], out.notes);
+      note_unknown_start(recordings[i], out.notes);
     if (!out.labels.empty()) continue;
     out.labels = std::move(moved.labels);
     out.label_channel = std::move(moved.label_channel);

@@ -158,7 +158,7 @@ RecordingAudit RunningAudit::finish(const Recording& head) {
   const auto counter = std::ranges::find_if(
       s.counters, [](const CounterColumn& column) { return column.counter.counts_rows(); });
   if (counter != s.counters.end()) out.timing.lost = counter->counter.lost_rows();
-  tell_timing(out.timing, out.notes);
+  note_timing(out.timing, out.notes);
   const PlaceWords words{head.first_line, s.rate_hz > 0.0 || s.has_stamps};
   std::size_t c = 0;
   for (const Channel& channel : head.channels) {
@@ -167,13 +167,13 @@ RecordingAudit RunningAudit::finish(const Recording& head) {
       while (c < s.names.size() && s.names[c] != channel.name) ++c;
     PM_EXPECTS(c < s.channels.size());
     out.channels.push_back(s.channels[c].finish(channel));
-    tell_values(channel.name, s.channels[c], words, out.notes);
-    tell_channel(out.channels.back(), head.time.rate_hz, out.notes);
+    note_values(channel.name, s.channels[c], words, out.notes);
+    note_channel(out.channels.back(), head.time.rate_hz, out.notes);
     ++c;
   }
   out.zero_rows = std::move(s.zero_rows);
   out.zero_row_count = s.zeros.count;
-  tell_zero_rows(s.zeros, words, out.notes);
+  note_zero_rows(s.zeros, words, out.notes);
   return out;
 }
 

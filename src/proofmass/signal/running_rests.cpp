@@ -38,7 +38,7 @@ struct RunningRests::State {
   std::size_t closed = 0, since_rest = 0;  ///< in blocks
   std::optional<RestNoise> noise;
   RestRun rest{0, 0};  ///< index into the recent blocks
-  RestState told;
+  RestState state;
 };
 
 void RunningRests::State::learn_noise() {
@@ -55,16 +55,16 @@ void RunningRests::State::learn_noise() {
 void RunningRests::State::look() {
   const RestBlocks& blocks = recent.blocks();
   const RestBlock& newest = blocks.at.back();
-  told.newest_s = recent.spans().back().end_s;
-  told.newest_there = !blocks.missing(blocks.at.size() - 1);
-  told.newest_mean = newest.mean;
+  state.newest_s = recent.spans().back().end_s;
+  state.newest_there = !blocks.missing(blocks.at.size() - 1);
+  state.newest_mean = newest.mean;
   if (!noise || closed % blocks.window == 0) learn_noise();
   if (noise) {
     RestBlocks looked_at = blocks;
     drop_stuck(looked_at, *noise);
     look_at(looked_at, *noise, quiet_runs(looked_at, *noise));
   }
-  since_rest = told.phase == RestPhase::resting ? 0 : since_rest + 1;
+  since_rest = state.phase == RestPhase::resting ? 0 : since_rest + 1;
 }
 
 void RunningRests::State::look_at(const RestBlocks& looked_at,
@@ -72,12 +72,12 @@ void RunningRests::State::look_at(const RestBlocks& looked_at,
                                   const std::vector<RestRun>& quiet) {
   const std::size_t end = looked_at.at.size();
   const std::vector<RestRun> runs = still_runs(looked_at, known, quiet);
-  const bool was_resting = told.phase == RestPhase::resting;
-  told.phase = RestPhase::moving;
+  const bool was_resting = state.phase == RestPhase::resting;
+  state.phase = RestPhase::moving;
   rest = {0, 0};
-  if (looked_at.missing(end - 1) && told.newest_there) told.phase = RestPhase::stuck;
+  if (looked_at.missing(end - 1) && state.newest_there) state.phase = RestPhase::stuck;
   if (runs.empty() || runs.back().end != end) return;
-  told.phase = RestPhase::settling;
+  state.phase = RestPhase::settling;
   RestRun run = runs.back();
   trim_ends(looked_at, known, run);
   run.end = std::min(run.end, end - std::min(end, unseen_blocks));
@@ -87,7 +87,7 @@ void RunningRests::State::look_at(const RestBlocks& looked_at,
   for (std::size_t k = run.first; k < run.end; ++k) count += looked_at.at[k].count;
   if (count < static_cast<double>(recent.shortest())) return;
   const bool goes_on =
-      was_resting && runs.back().first == 0 && told.since_s < recent.spans().front().start_s;
+      was_resting && runs.back().first == 0 && state.since_s < recent.spans().front().start_s;
   rest_over(looked_at, run, goes_on);
 }
 
@@ -102,14 +102,14 @@ void RunningRests::State::rest_over(const RestBlocks& looked_at, const RestRun& 
     free += block.count - 1.0;
   }
   rest = run;
-  told.phase = RestPhase::resting;
-  if (!goes_on) told.since_s = recent.spans()[run.first].start_s;
-  told.until_s = recent.spans()[run.end - 1].end_s;
-  told.samples = static_cast<std::size_t>(all.count);
-  told.mean = all.mean;
-  told.step = looked_at.quantum;
+  state.phase = RestPhase::resting;
+  if (!goes_on) state.since_s = recent.spans()[run.first].start_s;
+  state.until_s = recent.spans()[run.end - 1].end_s;
+  state.samples = static_cast<std::size_t>(all.count);
+  state.mean = all.mean;
+  state.step = looked_at.quantum;
   for (std::size_t a = 0; a < axis_count; ++a)
-    told.noise_std[a] = std::sqrt(squares[a] / std::max(1.0, free));
+    state.noise_std[a] = std::sqrt(squares[a] / std::max(1.0, free));
 }
 
 RunningRests::RunningRests(std::size_t axes, const RestOptions& options) {
@@ -131,7 +131,7 @@ bool RunningRests::add(double time_s, View<double> values) {
 }
 
 const RestState& RunningRests::state() const {
-  return state_->told;
+  return state_->state;
 }
 
 std::size_t RunningRests::samples_a_block() const {

@@ -14,7 +14,7 @@ using namespace rests_test;
 constexpr double window_s = 0.5;
 
 /// A rest as last reported, and the state at its end.
-struct Told {
+struct Found {
   RestState state;
   std::vector<AllanLevel> levels;
 };
@@ -27,8 +27,8 @@ struct Follower {
     const RestState& now = rests.state();
     phases.push_back(now.phase);
     if (now.phase != RestPhase::resting) return;
-    if (told.empty() || told.back().state.since_s + 1.0 < now.since_s) told.emplace_back();
-    told.back() = {now, rests.levels(0)};
+    if (found.empty() || found.back().state.since_s + 1.0 < now.since_s) found.emplace_back();
+    found.back() = {now, rests.levels(0)};
   }
   void follow(const Session& made) {
     for (std::size_t k = 0; k < made.size(); ++k)
@@ -40,7 +40,7 @@ struct Follower {
   }
 
   RunningRests rests;
-  std::vector<Told> told;
+  std::vector<Found> found;
   std::vector<RestPhase> phases;
 };
 
@@ -50,12 +50,12 @@ Follower followed(const Session& made) {
   return out;
 }
 
-void expect_near(const std::vector<Told>& told, const Session& made, double margin_s) {
-  ASSERT_EQ(told.size(), made.rests.size());
-  for (std::size_t k = 0; k < told.size(); ++k) {
+void expect_near(const std::vector<Found>& found, const Session& made, double margin_s) {
+  ASSERT_EQ(found.size(), made.rests.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
     const double first_s = static_cast<double>(made.rests[k].first) / made.rate_hz;
     const double last_s = static_cast<double>(made.rests[k].last) / made.rate_hz;
-    const RestState& rest = told[k].state;
+    const RestState& rest = found[k].state;
     EXPECT_GE(rest.since_s, first_s) << k;
     EXPECT_LE(rest.since_s, first_s + margin_s + (first_s > 0.0 ? window_s : 0.0)) << k;
     EXPECT_LE(rest.until_s, last_s) << k;
@@ -70,8 +70,8 @@ TEST_P(RunningRestsAtRate, AreThoseOfTheWholeRecording) {
   Session made = session(GetParam(), {8.0, 2.0, 3.0, 2.5, 6.0, 2.0, 3.5}, noise);
   made.add_noise(noise_std, noise);
   const Follower live = followed(made);
-  expect_near(live.told, made, std::max(20.0 / GetParam(), 0.3));
-  EXPECT_EQ(live.told.size(), made.search().rests.size());
+  expect_near(live.found, made, std::max(20.0 / GetParam(), 0.3));
+  EXPECT_EQ(live.found.size(), made.search().rests.size());
 }
 
 INSTANTIATE_TEST_SUITE_P(Rates,
@@ -87,10 +87,10 @@ TEST(RunningRests, AreTheSameInAnyUnitFromAnyOffset) {
     for (double& value : values) value = 2048.0 * value + 2097152.0;
   const Follower one = followed(made), other = followed(counts);
   EXPECT_EQ(one.phases, other.phases);
-  ASSERT_EQ(one.told.size(), other.told.size());
-  for (std::size_t k = 0; k < one.told.size(); ++k) {
-    EXPECT_EQ(one.told[k].state.since_s, other.told[k].state.since_s);
-    EXPECT_NEAR(2048.0 * one.told[k].state.noise_std[1], other.told[k].state.noise_std[1], 1e-6);
+  ASSERT_EQ(one.found.size(), other.found.size());
+  for (std::size_t k = 0; k < one.found.size(); ++k) {
+    EXPECT_EQ(one.found[k].state.since_s, other.found[k].state.since_s);
+    EXPECT_NEAR(2048.0 * one.found[k].state.noise_std[1], other.found[k].state.noise_std[1], 1e-6);
   }
 }
 
@@ -103,8 +103,8 @@ TEST(RunningRests, ListenForThreeSecondsBeforeTheyTell) {
   const auto blocks_a_second = 100.0 / static_cast<double>(live.rests.samples_a_block());
   for (std::size_t k = 0; static_cast<double>(k) < 2.8 * blocks_a_second; ++k)
     EXPECT_EQ(live.phases[k], RestPhase::listening);
-  ASSERT_EQ(live.told.size(), 1U);
-  EXPECT_EQ(live.told[0].state.since_s, 0.0);
+  ASSERT_EQ(live.found.size(), 1U);
+  EXPECT_EQ(live.found[0].state.since_s, 0.0);
 }
 
 TEST(RunningRests, OutliveTheirOwnMemory) {
@@ -115,8 +115,8 @@ TEST(RunningRests, OutliveTheirOwnMemory) {
   made.rest(5.0);
   made.add_noise(noise_std, noise);
   const Follower live = followed(made);
-  expect_near(live.told, made, 0.3);
-  EXPECT_LE(live.told[0].state.samples, 512U * live.rests.samples_a_block());
+  expect_near(live.found, made, 0.3);
+  EXPECT_LE(live.found[0].state.samples, 512U * live.rests.samples_a_block());
 }
 
 TEST(RunningRests, AreNoneInAHandNorOnAWheel) {
@@ -134,8 +134,8 @@ TEST(RunningRests, AreNoneInAHandNorOnAWheel) {
   }
   hand.add_noise(noise_std, noise);
   wheel.add_noise(0.05, noise);
-  EXPECT_TRUE(followed(hand).told.empty());
-  EXPECT_TRUE(followed(wheel).told.empty());
+  EXPECT_TRUE(followed(hand).found.empty());
+  EXPECT_TRUE(followed(wheel).found.empty());
 }
 
 TEST(RunningRests, AreFoundAfterAHandThatCameFirst) {
@@ -149,7 +149,7 @@ TEST(RunningRests, AreFoundAfterAHandThatCameFirst) {
   made.turn(1.0, noise);
   made.rest(4.0);
   made.add_noise(noise_std, noise);
-  expect_near(followed(made).told, made, 0.3);
+  expect_near(followed(made).found, made, 0.3);
 }
 
 TEST(RunningRests, EndWithAnOutlierAndBeginAnew) {
@@ -160,9 +160,9 @@ TEST(RunningRests, EndWithAnOutlierAndBeginAnew) {
   for (std::size_t k = 0; k < 15; ++k)
     made.axis[2][900 + k] += 0.5 * std::sin(pi * static_cast<double>(k) / 2.5);
   const Follower live = followed(made);
-  ASSERT_EQ(live.told.size(), 2U);
-  EXPECT_LT(live.told[0].state.until_s, 9.0);
-  EXPECT_GT(live.told[1].state.since_s, 9.15);
+  ASSERT_EQ(live.found.size(), 2U);
+  EXPECT_LT(live.found[0].state.until_s, 9.0);
+  EXPECT_GT(live.found[1].state.since_s, 9.15);
 }
 
 TEST(RunningRests, OutliveBadSamplesAndSingleOutliers) {
@@ -175,7 +175,7 @@ TEST(RunningRests, OutliveBadSamplesAndSingleOutliers) {
   made.axis[2][rests[1].first + 100] = -infinity;
   made.axis[2][rests[2].first + 250] += 20.0 * noise_std;
   for (std::size_t k = 0; k < 30; ++k) made.axis[0][rests[2].first + 200 + k] = nan;
-  expect_near(followed(made).told, made, 0.3);
+  expect_near(followed(made).found, made, 0.3);
 }
 
 TEST(RunningRests, EndWhereTheStampsStepByMoreThanAWindow) {
@@ -207,7 +207,7 @@ TEST(RunningRests, AreNoneWhereOneReadingIsRepeated) {
   EXPECT_TRUE(live.ever(RestPhase::stuck));
   EXPECT_FALSE(followed(session(100.0, {8.0, 4.0}, noise)).ever(RestPhase::stuck));
   made.rests.erase(made.rests.begin() + 1);
-  expect_near(live.told, made, 0.3);
+  expect_near(live.found, made, 0.3);
 }
 
 TEST(RunningRests, FollowANoiseThatIsAnother) {
@@ -235,7 +235,7 @@ TEST(RunningRests, MeasureTheRateWhereNobodySaysIt) {
   made.add_noise(noise_std, noise);
   Follower live(0.0);
   live.follow(made);
-  expect_near(live.told, made, 0.4);
+  expect_near(live.found, made, 0.4);
   EXPECT_EQ(live.rests.samples_a_block(), 4U);
   // A clock that does not advance must not cause an endless wait.
   Follower dead(0.0, 1);
@@ -251,14 +251,14 @@ TEST(RunningRests, KnowTheMeanAndTheNoiseOfEachOctave) {
     made.rest(12.0);
     made.add_noise(noise_std, noise);
     const Follower live = followed(made);
-    ASSERT_EQ(live.told.size(), 1U);
-    const RestState& rest = live.told[0].state;
+    ASSERT_EQ(live.found.size(), 1U);
+    const RestState& rest = live.found[0].state;
     const double std = noise_std / std::sqrt(static_cast<double>(rest.samples));
     const double error = (rest.mean[0] - 9.81 * made.up[0]) / std;
     squares += error * error;
     count += 1.0;
     EXPECT_NEAR(rest.noise_std[2] / noise_std, 1.0, 0.1);
-    for (const AllanLevel& level : live.told[0].levels) {
+    for (const AllanLevel& level : live.found[0].levels) {
       constexpr double enough = 8.0;  // for chi-square to be approximately normal
       if (level.pairs < enough) continue;
       EXPECT_NEAR(level.variance * level.samples / (noise_std * noise_std), 1.0,

@@ -135,13 +135,13 @@ class RunningRig::Scans {
     return static_cast<std::uint64_t>(std::llround(surroundings_.duration_s() * options.rate_hz));
   }
 
-  void run(std::size_t scans, Columns& recorded, Columns* told) {
+  void run(std::size_t scans, Columns& recorded, Columns* truths) {
     lengthen(recorded, recording.channels.size(), scans);
-    if (told != nullptr) lengthen(*told, truth.channels.size(), scans);
+    if (truths != nullptr) lengthen(*truths, truth.channels.size(), scans);
     for (std::size_t left = scans; left > 0; --left, ++next) {
       if (next > 0)
         for (ChannelTwin& channel : channels_) channel.step_walk();
-      if (told != nullptr) tell(*told, told->front().size() - left);
+      if (truths != nullptr) report(*truths, truths->front().size() - left);
       if (filters_) filter();
       record(recorded, recorded.front().size() - left);
     }
@@ -178,13 +178,13 @@ class RunningRig::Scans {
   }
 
   /// The wheel's angle (from the first sensor's x axis), speed and acceleration, and the biases.
-  void tell(Columns& told, std::size_t row) {
+  void report(Columns& truths, std::size_t row) {
     const Instant& now = surroundings_.at(static_cast<double>(next) / options.rate_hz);
-    told[0][row] = now.wheel.angle_rad + options.sensors.front().mounting_rad;
-    told[1][row] = now.wheel.speed_radps;
-    told[2][row] = now.wheel.accel_radps2;
+    truths[0][row] = now.wheel.angle_rad + options.sensors.front().mounting_rad;
+    truths[1][row] = now.wheel.speed_radps;
+    truths[2][row] = now.wheel.accel_radps2;
     for (std::size_t c = 0; c < channels_.size(); ++c)
-      told[3 + c][row] = channels_[c].bias_mps2(now);
+      truths[3 + c][row] = channels_[c].bias_mps2(now);
   }
 
   RigState surroundings_;

@@ -28,12 +28,14 @@ std::size_t place_of(const Item& item) {
 
 using Items = Result<std::vector<Item>>;
 
-Items still_items(const OwnRecordings& own, const ProgrammeOptions& options, const Progress& told) {
+Items still_items(const OwnRecordings& own,
+                  const ProgrammeOptions& options,
+                  const Progress& report_progress) {
   Result<StaticRecord> record =
       own.still ? Result<StaticRecord>(*own.still)
-                : simulate_static(options.seed, told, options.static_duration_s);
+                : simulate_static(options.seed, report_progress, options.static_duration_s);
   if (!record) return record.error();
-  Result<StaticTest> test = analyse_static(std::move(record).value(), told);
+  Result<StaticTest> test = analyse_static(std::move(record).value(), report_progress);
   if (!test) return test.error();
   return static_items(*test);
 }
@@ -50,20 +52,21 @@ Items turned_items(const OwnRecordings& own, const ProgrammeOptions& options) {
 Result<Programme> run_programme(const OwnRecordings& own, const ProgrammeOptions& options) {
   // The longest first, so that the others fill what is left of the processors.
   const std::vector<std::function<Items(const Progress&)>> work{
-      [&](const Progress& told) {
+      [&](const Progress& report_progress) {
         return wheel_items(own.wheel, {.seed = options.seed,
                                        .seeds = options.seeds,
                                        .gravity_mps2 = options.gravity_mps2,
-                                       .progress = told});
+                                       .progress = report_progress});
       },
-      [&](const Progress& told) { return still_items(own, options, told); },
+      [&](const Progress& report_progress) { return still_items(own, options, report_progress); },
       [&](const Progress&) { return Items(gain_items(options.seed)); },
       [&](const Progress&) { return turned_items(own, options); },
       [&](const Progress&) { return Items(budget_items()); },
       [&](const Progress&) { return Items(motor_items()); }};
   std::vector<Items> parts(work.size(), std::vector<Item>{});
-  in_parallel(work.size(), options.progress,
-              [&](std::size_t k, const Progress& told) { parts[k] = work[k](told); });
+  in_parallel(work.size(), options.progress, [&](std::size_t k, const Progress& report_progress) {
+    parts[k] = work[k](report_progress);
+  });
   Programme programme;
   if (!own.still) programme.simulated.emplace_back("static");
   if (!own.tumble) programme.simulated.emplace_back("tumble");

@@ -38,7 +38,7 @@ std::vector<estimate::Epoch<1, 1>> epochs_of(const FusedReading& reading) {
   return epochs;
 }
 
-void tell(const Run& run, double variance_m2ps4, ThesisPaths& paths) {
+void report(const Run& run, double variance_m2ps4, ThesisPaths& paths) {
   for (const auto& step : run.steps) {
     const auto& filtered = step.filtered;
     const auto& smoothed = step.smoothed;
@@ -71,7 +71,7 @@ Result<ThesisPaths> thesis_paths(const FusedReading& reading) {
   ThesisPaths paths;
   paths.integrated_m =
       integrated_twice(reading.time_s, reading.accel_mps2, reading.start_speed_mps.value);
-  tell(run, reading.variance_m2ps4, paths);
+  report(run, reading.variance_m2ps4, paths);
   return paths;
 }
 

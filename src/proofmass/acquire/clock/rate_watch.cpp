@@ -11,7 +11,7 @@ double RateWatch::rate_hz(const Mark& from, const Mark& to) {
 std::optional<OtherRate> RateWatch::add(std::uint64_t rows, double host_s) {
   constexpr double least_s = 5.0, least_rows = 40.0, most_off = 0.05;
   constexpr int enough = 3;
-  if (is_told_ || !(granted_hz_ > 0.0)) return std::nullopt;
+  if (is_reported_ || !(granted_hz_ > 0.0)) return std::nullopt;
   const Mark now{static_cast<double>(rows), host_s};
   if (!since_) since_ = now;
   if (now.host_s - since_->host_s < least_s || now.rows - since_->rows < least_rows)
@@ -25,7 +25,7 @@ std::optional<OtherRate> RateWatch::add(std::uint64_t rows, double host_s) {
   if (std::abs(times_) == 1) differs_ = since_;
   since_ = now;
   if (std::abs(times_) < enough) return std::nullopt;
-  is_told_ = true;
+  is_reported_ = true;
   return OtherRate{rate_hz(*differs_, now), now.host_s - differs_->host_s};
 }
 

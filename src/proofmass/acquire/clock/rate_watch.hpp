@@ -29,7 +29,7 @@ class RateWatch {
   [[nodiscard]] static double rate_hz(const Mark& from, const Mark& to);
 
   double granted_hz_;
-  bool is_told_ = false;
+  bool is_reported_ = false;
   std::optional<Mark> since_;    ///< start of the current comparison
   std::optional<Mark> differs_;  ///< start of the difference
   int times_ = 0;                ///< number of consecutive differences: negative if slower

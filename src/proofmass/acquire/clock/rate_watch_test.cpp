@@ -12,16 +12,16 @@ namespace proofmass::acquire::rate_watch_test {
 namespace {
 
 /// Output of a watch for rows at `rate_hz` in tenths of a second, each `late_s` late.
-std::vector<OtherRate> told_of(double granted_hz,
-                               double rate_hz,
-                               const std::function<double(double time_s)>& late_s) {
+std::vector<OtherRate> reported_of(double granted_hz,
+                                   double rate_hz,
+                                   const std::function<double(double time_s)>& late_s) {
   RateWatch watch(granted_hz);
-  std::vector<OtherRate> told;
+  std::vector<OtherRate> reported;
   for (double time_s = 0.1; time_s < 120.0; time_s += 0.1)
     if (const auto other =
             watch.add(static_cast<std::uint64_t>(time_s * rate_hz), time_s + late_s(time_s)))
-      told.push_back(*other);
-  return told;
+      reported.push_back(*other);
+  return reported;
 }
 
 double in_time(double) {
@@ -30,10 +30,10 @@ double in_time(double) {
 
 TEST(RateWatch, TellsOnceAtWhichRateRowsCome) {
   for (const double rate_hz : {50.0, 94.0, 106.0, 400.0}) {
-    const auto told = told_of(100.0, rate_hz, in_time);
-    ASSERT_EQ(told.size(), 1u) << rate_hz;
-    EXPECT_NEAR(told[0].rate_hz, rate_hz, 0.01 * rate_hz);
-    EXPECT_NEAR(told[0].for_s, 15.0, 0.5);
+    const auto reported = reported_of(100.0, rate_hz, in_time);
+    ASSERT_EQ(reported.size(), 1u) << rate_hz;
+    EXPECT_NEAR(reported[0].rate_hz, rate_hz, 0.01 * rate_hz);
+    EXPECT_NEAR(reported[0].for_s, 15.0, 0.5);
   }
 }
 
@@ -41,8 +41,8 @@ TEST(RateWatch, TakesTheGrantedRateForWhatItIs) {
   std::mt19937_64 random(4);
   std::exponential_distribution<double> delay(20.0);
   for (const double rate_hz : {96.0, 100.0, 104.0})
-    EXPECT_TRUE(told_of(100.0, rate_hz, [&](double) { return delay(random); }).empty());
-  EXPECT_TRUE(told_of(0.0, 50.0, in_time).empty()) << "none was granted";
+    EXPECT_TRUE(reported_of(100.0, rate_hz, [&](double) { return delay(random); }).empty());
+  EXPECT_TRUE(reported_of(0.0, 50.0, in_time).empty()) << "none was granted";
 }
 
 TEST(RateWatch, IsNotMisledByADelayAndWhatMakesUpForIt) {
@@ -50,15 +50,16 @@ TEST(RateWatch, IsNotMisledByADelayAndWhatMakesUpForIt) {
   const auto held_up = [](double time_s) {
     return time_s > 20.0 && time_s < 29.0 ? 29.0 - time_s : 0.0;
   };
-  EXPECT_TRUE(told_of(100.0, 100.0, held_up).empty());
+  EXPECT_TRUE(reported_of(100.0, 100.0, held_up).empty());
 }
 
 TEST(RateWatch, WaitsForEnoughOfSlowRows) {
   RateWatch watch(0.1);
   for (int k = 1; k < 100; ++k) EXPECT_FALSE(watch.add(static_cast<std::uint64_t>(k), 9.0 * k));
-  int told = 0;
-  for (int k = 100; k < 200; ++k) told += watch.add(static_cast<std::uint64_t>(k), 9.0 * k) ? 1 : 0;
-  EXPECT_EQ(told, 1);
+  int reported = 0;
+  for (int k = 100; k < 200; ++k)
+    reported += watch.add(static_cast<std::uint64_t>(k), 9.0 * k) ? 1 : 0;
+  EXPECT_EQ(reported, 1);
 }
 
 TEST(Recorder, TellsThatRowsComeAtAnotherRateThanTheGranted) {

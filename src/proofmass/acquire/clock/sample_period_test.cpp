@@ -34,10 +34,10 @@ class SkippingClock {
 };
 
 /// Output of a time line for rows that arrive one by one, with these device times.
-struct Told {
+struct Reported {
   std::uint64_t gaps = 0, rows = 0;
 };
-Told told_of(const std::vector<double>& times_s, double granted_hz) {
+Reported reported_of(const std::vector<double>& times_s, double granted_hz) {
   SourceHead head;
   head.recording.channels.push_back({"x", {}, {}});
   head.recording.time.rate_hz = granted_hz;
@@ -52,13 +52,13 @@ Told told_of(const std::vector<double>& times_s, double granted_hz) {
     item.arrival.host_ns = 77'000'000'000 + std::llround(time_s * 1e9);
     line.stamp(item, stamps_s, events);
   }
-  Told told;
+  Reported reported;
   for (const RecordEvent& event : events) {
     EXPECT_EQ(event.kind, EventKind::gap) << event.text;
-    ++told.gaps;
-    told.rows += event.rows;
+    ++reported.gaps;
+    reported.rows += event.rows;
   }
-  return told;
+  return reported;
 }
 
 std::size_t gaps_by_audit(const std::vector<double>& times_s) {
@@ -80,9 +80,10 @@ TEST(SamplePeriod, CountsTheRowsThatAClockSkipsOftenAsTheAuditDoes) {
         for (int k = -19; k <= 0; ++k) times_s.push_back(tick_s * k);
         const std::size_t rows = times_s.size() + 5000;
         while (times_s.size() < rows) times_s.push_back(clock.next_s());
-        const Told told = told_of(times_s, granted_hz);
-        EXPECT_EQ(told.gaps, gaps_by_audit(times_s)) << granted_hz << ' ' << skips << ' ' << jitter;
-        EXPECT_EQ(told.rows, clock.ticks() + 20 - rows) << granted_hz << ' ' << skips;
+        const Reported reported = reported_of(times_s, granted_hz);
+        EXPECT_EQ(reported.gaps, gaps_by_audit(times_s))
+            << granted_hz << ' ' << skips << ' ' << jitter;
+        EXPECT_EQ(reported.rows, clock.ticks() + 20 - rows) << granted_hz << ' ' << skips;
       }
 }
 
@@ -90,9 +91,9 @@ TEST(SamplePeriod, CountsFrequentSkipsOfAClockThatJittersToo) {
   SkippingClock clock(0.16, 0.05, 8);
   std::vector<double> times_s;
   while (times_s.size() < 5000) times_s.push_back(clock.next_s());
-  const Told told = told_of(times_s, 0.0);
+  const Reported reported = reported_of(times_s, 0.0);
   const double gaps = static_cast<double>(gaps_by_audit(times_s));
-  EXPECT_NEAR(static_cast<double>(told.gaps), gaps, 0.01 * gaps);
+  EXPECT_NEAR(static_cast<double>(reported.gaps), gaps, 0.01 * gaps);
 }
 
 TEST(SamplePeriod, TakesJitterForNoSkip) {

@@ -28,13 +28,13 @@ void StampWatch::look(const std::vector<std::int64_t>& stamps_ns, std::vector<No
     notes.push_back({Severity::warning,
                      fmt::format("the device stamped {} rows with the time of the row before",
                                  repeated_.seen)});
-    repeated_.told = repeated_.seen;
+    repeated_.reported = repeated_.seen;
   }
   if (backwards_.is_due()) {
     notes.push_back({Severity::warning,
                      fmt::format("the device's stamps stepped back {} times, by {:.6g} s here",
                                  backwards_.seen, worst_s)});
-    backwards_.told = backwards_.seen;
+    backwards_.reported = backwards_.seen;
   }
 }
 

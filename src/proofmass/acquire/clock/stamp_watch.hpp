@@ -21,8 +21,8 @@ class StampWatch {
 
  private:
   struct Count {
-    std::size_t seen = 0, told = 0;
-    [[nodiscard]] bool is_due() const { return seen > 0 && seen >= 10 * told; }
+    std::size_t seen = 0, reported = 0;
+    [[nodiscard]] bool is_due() const { return seen > 0 && seen >= 10 * reported; }
   };
   std::optional<std::int64_t> last_ns_;
   Count repeated_, backwards_;

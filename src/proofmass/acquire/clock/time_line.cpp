@@ -36,7 +36,7 @@ double TimeLine::host_s(std::int64_t host_ns) const {
   return static_cast<double>(host_ns - first_host_ns_) * 1e-9;
 }
 
-void TimeLine::tell(EventKind kind, double duration_s, std::uint64_t rows, std::string text) {
+void TimeLine::report(EventKind kind, double duration_s, std::uint64_t rows, std::string text) {
   events_->push_back({kind, Severity::warning, last_s_, duration_s, rows, std::move(text)});
 }
 
@@ -47,9 +47,9 @@ double TimeLine::bridged(const Arrival& arrival, std::size_t row) const {
   if (!has_rows_) return 0.0;
   if (!is_paced_) return next_s;
   const double behind_s = static_cast<double>(arrival.rows() - 1 - row) * step_s;
-  const double told_s = host_s(arrival.host_ns) - floor_.value() - behind_s;
+  const double arrived_s = host_s(arrival.host_ns) - floor_.value() - behind_s;
   const double tolerance_s = std::max(0.05, 5.0 * step_s);
-  return told_s > next_s + tolerance_s ? told_s : next_s;
+  return arrived_s > next_s + tolerance_s ? arrived_s : next_s;
 }
 
 void TimeLine::stamp(const QueueItem& item,
@@ -62,10 +62,10 @@ void TimeLine::stamp(const QueueItem& item,
   if (clock_ == Clock::device && is_dead(arrival)) {
     clock_ = rate_hz_ > 0.0 ? Clock::count : Clock::host;
     is_new_ = true;
-    tell(EventKind::clock_dead, 0.0, 0,
-         fmt::format("the device's clock does not move: {}",
-                     rate_hz_ > 0.0 ? fmt::format("rows are counted at {} Hz", rate_hz_)
-                                    : "the time is the host's when rows arrive"));
+    report(EventKind::clock_dead, 0.0, 0,
+           fmt::format("the device's clock does not move: {}",
+                       rate_hz_ > 0.0 ? fmt::format("rows are counted at {} Hz", rate_hz_)
+                                      : "the time is the host's when rows arrive"));
   }
   if (clock_ == Clock::device) stamp_by_device(item, stamps_s);
   if (clock_ == Clock::count) stamp_by_count(item, stamps_s);
@@ -76,43 +76,43 @@ void TimeLine::stamp(const QueueItem& item,
   floor_.add(host_s(arrival.host_ns), host_s(arrival.host_ns) - last_s_);
 }
 
-void TimeLine::tell_known(const QueueItem& item, double hole_s) {
+void TimeLine::report_known(const QueueItem& item, double hole_s) {
   const std::uint64_t lost = item.arrival.lost_before;
   if (lost > 0)
-    tell(EventKind::lost, hole_s, lost,
-         fmt::format("{} rows are lost, by the device's own count", lost));
+    report(EventKind::lost, hole_s, lost,
+           fmt::format("{} rows are lost, by the device's own count", lost));
   if (item.overrun > 0)
-    tell(EventKind::overrun, hole_s, item.overrun,
-         fmt::format("{} rows were dropped, as the queue was full", item.overrun));
+    report(EventKind::overrun, hole_s, item.overrun,
+           fmt::format("{} rows were dropped, as the queue was full", item.overrun));
 }
 
 /// Reports the number of rows in a hole, of which `open_s` is not explained.
-std::uint64_t TimeLine::tell_gap(double hole_s, double open_s) {
+std::uint64_t TimeLine::report_gap(double hole_s, double open_s) {
   const double usual_s = step_.step_s();
   const double rows = usual_s > 0.0 ? std::round(open_s / usual_s) - 1.0 : 0.0;
   constexpr double most_rows = 1e15;
   const auto count = static_cast<std::uint64_t>(std::clamp(rows, 0.0, most_rows));
   const std::string missing =
       count > 0 ? fmt::format(": about {} rows are missing", count) : std::string();
-  tell(EventKind::gap, hole_s, count,
-       fmt::format("nothing for {:.6g} s by the {} clock{}", hole_s,
-                   clock_ == Clock::device ? "device's" : "host's", missing));
+  report(EventKind::gap, hole_s, count,
+         fmt::format("nothing for {:.6g} s by the {} clock{}", hole_s,
+                     clock_ == Clock::device ? "device's" : "host's", missing));
   return count;
 }
 
 /// Reports the rows missing before and between the current ones; advances the last stamp.
-void TimeLine::tell_missing(const QueueItem& item, View<double> stamps_s) {
+void TimeLine::report_missing(const QueueItem& item, View<double> stamps_s) {
   std::uint64_t missing = item.arrival.lost_before + item.overrun;
   for (std::size_t i = 0; i < stamps_s.size(); ++i) {
     const bool is_first = i == 0 && !has_rows_;
     const double hole_s = is_first ? 0.0 : stamps_s[i] - last_s_;
-    if (i == 0) tell_known(item, hole_s);
+    if (i == 0) report_known(item, hole_s);
     const double open_s = hole_s - static_cast<double>(missing) * step_.step_s();
     const bool is_hole = clock_ == Clock::device && step_.is_hole(open_s);
     const bool breaks_off = i == 0 && is_gap_;
     if (missing == 0 && !is_first && !breaks_off) step_.add(hole_s);
     if (is_hole || breaks_off)
-      missing += tell_gap(hole_s, item.is_counted && breaks_off ? 0.0 : open_s);
+      missing += report_gap(hole_s, item.is_counted && breaks_off ? 0.0 : open_s);
     rows_ += std::exchange(missing, 0);
     last_s_ = stamps_s[i];
   }
@@ -143,9 +143,9 @@ double TimeLine::device_stamp(const Arrival& arrival, std::size_t row) {
   // Stamps out of order by less than an interval are not a step of the clock.
   if (is_sane && stamp_s < last_s_ && last_s_ - stamp_s < step_s) return last_s_;
   const double bridged_s = bridged(arrival, row);
-  tell(EventKind::clock_jump, 0.0, 0,
-       fmt::format("the device's clock steps {} by {:.6g} s: the host's bridges it",
-                   is_ahead || !is_sane ? "ahead" : "back", std::abs(stamp_s - bridged_s)));
+  report(EventKind::clock_jump, 0.0, 0,
+         fmt::format("the device's clock steps {} by {:.6g} s: the host's bridges it",
+                     is_ahead || !is_sane ? "ahead" : "back", std::abs(stamp_s - bridged_s)));
   device_ns_ = at_ns;
   device_s_ = bridged_s;
   return bridged_s;
@@ -164,7 +164,7 @@ void TimeLine::stamp_by_device(const QueueItem& item, std::vector<double>& stamp
     last_s_ = stamps_s.back();
   }
   last_s_ = before_s;
-  tell_missing(item, stamps_s);
+  report_missing(item, stamps_s);
 }
 
 void TimeLine::stamp_by_count(const QueueItem& item, std::vector<double>& stamps_s) {
@@ -180,7 +180,7 @@ void TimeLine::stamp_by_count(const QueueItem& item, std::vector<double>& stamps
   }
   for (std::size_t i = 0; i < arrival.rows(); ++i)
     stamps_s.push_back(count_s_ + static_cast<double>(counted_++) / rate_hz_);
-  tell_missing(item, stamps_s);
+  report_missing(item, stamps_s);
 }
 
 void TimeLine::stamp_by_host(const QueueItem& item, std::vector<double>& stamps_s) {
@@ -195,7 +195,7 @@ void TimeLine::stamp_by_host(const QueueItem& item, std::vector<double>& stamps_
     // The last of them is the one that arrived now.
     first_host_ns_ -= static_cast<std::int64_t>(1e9 * (rows - 1.0) * step_s);
     line_.restart(stamps_s.back(), step_s);
-    tell_missing(item, stamps_s);
+    report_missing(item, stamps_s);
     return;
   }
   const double expected_s = line_.step_s() * (rows + known);
@@ -210,7 +210,7 @@ void TimeLine::stamp_by_host(const QueueItem& item, std::vector<double>& stamps_
   const double step_s = is_gap_ ? std::min(line_.step_s(), spread_s) : spread_s;
   for (std::size_t i = 0; i < arrival.rows(); ++i)
     stamps_s.push_back(end_s - static_cast<double>(arrival.rows() - 1 - i) * step_s);
-  tell_missing(item, stamps_s);
+  report_missing(item, stamps_s);
 }
 
 }  // namespace proofmass::acquire

@@ -53,10 +53,10 @@ class TimeLine {
   [[nodiscard]] bool is_dead(const Arrival& arrival);
   [[nodiscard]] double device_stamp(const Arrival& arrival, std::size_t row);
   [[nodiscard]] double bridged(const Arrival& arrival, std::size_t row) const;
-  void tell_missing(const QueueItem& item, View<double> stamps_s);
-  void tell_known(const QueueItem& item, double hole_s);
-  [[nodiscard]] std::uint64_t tell_gap(double hole_s, double open_s);
-  void tell(EventKind kind, double duration_s, std::uint64_t rows, std::string text);
+  void report_missing(const QueueItem& item, View<double> stamps_s);
+  void report_known(const QueueItem& item, double hole_s);
+  [[nodiscard]] std::uint64_t report_gap(double hole_s, double open_s);
+  void report(EventKind kind, double duration_s, std::uint64_t rows, std::string text);
 
   Clock clock_ = Clock::host;
   bool is_paced_ = true;

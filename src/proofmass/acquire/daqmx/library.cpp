@@ -98,9 +98,10 @@ std::vector<std::string> parts_of(const std::string& list) {
 
 std::string DaqmxCalls::words(std::int32_t status) const {
   std::array<char, 2048> text{};
-  const std::int32_t told =
+  const std::int32_t written =
       get_extended_error_info(text.data(), static_cast<std::uint32_t>(text.size() - 1));
-  std::string line = told < 0 || text.front() == '\0' ? "the driver gives no reason" : text.data();
+  std::string line =
+      written < 0 || text.front() == '\0' ? "the driver gives no reason" : text.data();
   std::ranges::replace_if(line, [](unsigned char c) { return c < ' '; }, ' ');
   line.erase(std::ranges::unique(line, [](char a, char b) { return a == ' ' && b == ' '; }).begin(),
              line.end());

@@ -41,7 +41,7 @@ class Listener {
         if (const Status again = start_anew(reading.words); !again)
           return queue_.end(again.error());
       } else if (!reading.words.empty()) {
-        tell({Severity::warning, reading.words});
+        report({Severity::warning, reading.words});
       }
     }
   }
@@ -67,7 +67,7 @@ class Listener {
     queue_.put(std::move(arrival));
   }
 
-  void tell(Note note) {
+  void report(Note note) {
     Arrival arrival = queue_.spare();
     arrival.notes.push_back(std::move(note));
     queue_.put(std::move(arrival));
@@ -87,9 +87,9 @@ class Listener {
     lost_ = std::max(static_cast<std::uint64_t>(missing), lost.value_or(0));
     const std::string count = lost ? fmt::format("{} rows that the card took", *lost)
                                    : "rows whose number the driver does not report";
-    tell({Severity::bad, fmt::format("{}: {} are lost; the task was restarted, and by the "
-                                     "host's clock {:.0f} rows are missing",
-                                     words, count, missing)});
+    report({Severity::bad, fmt::format("{}: {} are lost; the task was restarted, and by the "
+                                       "host's clock {:.0f} rows are missing",
+                                       words, count, missing)});
     return Done{};
   }
 

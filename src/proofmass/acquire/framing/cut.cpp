@@ -70,8 +70,8 @@ class MarkCutter final : public FrameCutter {
     }
     skipped_ += stuffed_.size() + bytes.size();
     stuffed_.clear();
-    constexpr std::size_t worth_telling = 65'536;
-    if (skipped_ < worth_telling) return;
+    constexpr std::size_t worth_reporting = 65'536;
+    if (skipped_ < worth_reporting) return;
     sink.passed_over(skipped_ - 1, lost_in(skipped_), false);
     skipped_ = 1;
   }
@@ -121,7 +121,7 @@ class SyncCutter final : public FrameCutter {
     }
     passed_ += buffer_.size();
     buffer_.clear();
-    tell(sink);
+    report(sink);
   }
 
  private:
@@ -144,7 +144,7 @@ class SyncCutter final : public FrameCutter {
       pass(rest, 1, sink);
       return true;
     }
-    tell(sink);
+    report(sink);
     sink.frame(frame);
     has_begun_ = true;
     rest.remove_prefix(whole());
@@ -153,10 +153,10 @@ class SyncCutter final : public FrameCutter {
   void pass(std::string_view& rest, std::size_t bytes, FrameSink& sink) {
     rest.remove_prefix(bytes);
     passed_ += bytes;
-    constexpr std::size_t worth_telling = 65'536;
-    if (passed_ >= worth_telling) tell(sink);
+    constexpr std::size_t worth_reporting = 65'536;
+    if (passed_ >= worth_reporting) report(sink);
   }
-  void tell(FrameSink& sink) {
+  void report(FrameSink& sink) {
     const std::size_t bytes = std::exchange(passed_, 0);
     const bool by_checksum = std::exchange(by_checksum_, false);
     // The frame before the first sync word began before the stream was opened.

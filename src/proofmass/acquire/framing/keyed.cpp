@@ -42,7 +42,7 @@ class Keyed final : public LineDialect {
           if (field == clock) tick = exact;
         });
     if (!is_whole) return found > 0 ? LineFit::broken : LineFit::words;
-    if (found < wanted_count_ && found > 0) tell_lack();
+    if (found < wanted_count_ && found > 0) note_lack();
     return found > 0 ? LineFit::row : LineFit::blank;
   }
 
@@ -61,8 +61,8 @@ class Keyed final : public LineDialect {
     next_ = field + 1;
     return field;
   }
-  void tell_lack() {
-    if (std::exchange(told_lack_, true)) return;
+  void note_lack() {
+    if (std::exchange(noted_lack_, true)) return;
     notes_.push_back({Severity::info,
                       "not all lines have all columns: NaN where one is missing; columns= keeps "
                       "those that belong together"});
@@ -73,7 +73,7 @@ class Keyed final : public LineDialect {
   std::size_t wanted_count_;
   std::size_t next_ = 0;
   RepeatedNote new_keys_{"figures with a name that the first lines do not have"};
-  bool told_lack_ = false;
+  bool noted_lack_ = false;
 };
 
 /// A key in the first lines.

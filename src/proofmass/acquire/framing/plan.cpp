@@ -85,7 +85,7 @@ Status apply_settings(const RowEvidence& rows, const FramingOptions& options, Ro
   return Done{};
 }
 
-void tell_what_is_left(const RowEvidence& rows, DecidedPlan& decided) {
+void note_what_is_left(const RowEvidence& rows, DecidedPlan& decided) {
   std::vector<std::string> words;
   for (std::size_t f = 0; f < rows.fields.size(); ++f)
     if (!rows.fields[f].is_figures && f != decided.clock_field)
@@ -127,7 +127,7 @@ Result<DecidedPlan> decide_plan(const RowEvidence& rows, const FramingOptions& o
   }
   if (const Status applied = apply_settings(rows, options, decided.plan); !applied)
     return applied.error();
-  tell_what_is_left(rows, decided);
+  note_what_is_left(rows, decided);
   return decided;
 }
 

@@ -38,9 +38,9 @@ class PeerProcess {
     close(in[0]);
     close(out[1]);
     stdin_ = in[1];
-    if (std::FILE* const told = fdopen(out[0], "r")) {
-      if (pid_ > 0 && std::fscanf(told, "%*s %hu", &port_) != 1) port_ = 0;
-      std::fclose(told);
+    if (std::FILE* const output = fdopen(out[0], "r")) {
+      if (pid_ > 0 && std::fscanf(output, "%*s %hu", &port_) != 1) port_ = 0;
+      std::fclose(output);
     }
   }
   PeerProcess(const PeerProcess&) = delete;
@@ -135,11 +135,11 @@ inline ::testing::AssertionResult says(std::string_view text, std::string_view p
 
 /// Increments of the row numbers in channel 0 that are not 1; empty if all are 1.
 inline std::string broken_steps(const std::vector<double>& counter) {
-  std::string told;
+  std::string output;
   for (std::size_t k = 1; k < counter.size(); ++k)
     if (counter[k] != counter[k - 1] + 1.0)
-      told += std::to_string(counter[k - 1]) + " to " + std::to_string(counter[k]) + "\n";
-  return told;
+      output += std::to_string(counter[k - 1]) + " to " + std::to_string(counter[k]) + "\n";
+  return output;
 }
 
 }  // namespace proofmass::acquire

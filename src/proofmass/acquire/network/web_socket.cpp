@@ -82,7 +82,7 @@ struct WebSocket::Connection {
   boost::beast::flat_buffer buffer;
   bool is_open = false;
   bool has_message = false;  ///< the buffer holds a complete one
-  bool was_told = false;     ///< it was returned
+  bool is_returned = false;  ///< it was returned
   std::optional<Error> problem;
 };
 
@@ -99,8 +99,8 @@ bool WebSocket::is_open() const {
 
 Result<std::optional<std::string_view>> WebSocket::read(std::chrono::milliseconds patience) {
   Connection& now = *connection_;
-  if (now.was_told) {
-    now.was_told = false;
+  if (now.is_returned) {
+    now.is_returned = false;
     now.listen();
   }
   const auto until = Clock::now() + patience;
@@ -114,7 +114,7 @@ Result<std::optional<std::string_view>> WebSocket::read(std::chrono::millisecond
   if (is_waiting() && !now.is_open && Clock::now() >= now.deadline)
     now.problem = Error{Errc::device, "connecting: no answer"};
   if (now.has_message) {
-    now.was_told = true;
+    now.is_returned = true;
     const auto bytes = now.buffer.cdata();
     return std::optional(std::string_view(static_cast<const char*>(bytes.data()), bytes.size()));
   }

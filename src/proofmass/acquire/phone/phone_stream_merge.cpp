@@ -103,11 +103,11 @@ std::vector<Note> PhoneStreamMerge::take_notes() {
     notes.push_back(
         {Severity::info, fmt::format("passed over {} samples from before all sensors had begun",
                                      std::exchange(passed_over_, 0))});
-  if (incomplete_ < told_at_) return notes;
+  if (incomplete_ < noted_at_) return notes;
   notes.push_back(
       {Severity::warning,
        fmt::format("{} rows so far lack a sensor's values, which are NaN there", incomplete_)});
-  while (told_at_ <= incomplete_) told_at_ *= 10;
+  while (noted_at_ <= incomplete_) noted_at_ *= 10;
   return notes;
 }
 

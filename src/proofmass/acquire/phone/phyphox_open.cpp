@@ -74,9 +74,9 @@ Result<PhyphoxStart> begin(Opening& phone, std::vector<PhyphoxGroup> groups) {
     if (!end.empty() && std::isfinite(end.back())) start.cursors.back().start_behind(end.back());
   }
   if (reply.measuring) return start;
-  const auto told = phone.ask("/control?cmd=start");
-  if (!told) return told.error();
-  const auto done = placed(parse_phyphox_result(*told), "/control");
+  const auto started = phone.ask("/control?cmd=start");
+  if (!started) return started.error();
+  const auto done = placed(parse_phyphox_result(*started), "/control");
   if (!done) return done.error();
   if (!*done)
     return Error{

@@ -101,7 +101,7 @@ Status PhyphoxSource::take_bad(std::string why) {
   if (++bad_answers_ >= most_bad_answers)
     return phyphox_gone({Errc::device, fmt::format("{} consecutive invalid responses, the last: {}",
                                                    bad_answers_, why)});
-  tell(Severity::warning, fmt::format("phyphox: invalid response, retrying: {}", why));
+  report(Severity::warning, fmt::format("phyphox: invalid response, retrying: {}", why));
   return Done{};
 }
 
@@ -116,13 +116,13 @@ Status PhyphoxSource::take_session(const PhyphoxReply& reply) {
                         : names_)[static_cast<std::size_t>(missing - reply.is_there.begin())])};
   if (reply.session != start_.session) {
     start_.session = reply.session;
-    tell(Severity::warning,
-         "phyphox: the experiment was reopened on the phone, its clock restarts");
+    report(Severity::warning,
+           "phyphox: the experiment was reopened on the phone, its clock restarts");
     for (PhyphoxCursor& cursor : start_.cursors) cursor.start_anew();
   }
   if (reply.measuring != was_measuring_)
-    tell(Severity::warning, reply.measuring ? "phyphox: the measurement goes on"
-                                            : "phyphox: the measurement was paused on the phone");
+    report(Severity::warning, reply.measuring ? "phyphox: the measurement goes on"
+                                              : "phyphox: the measurement was paused on the phone");
   was_measuring_ = reply.measuring;
   return Done{};
 }
@@ -145,10 +145,10 @@ void PhyphoxSource::take_rows(PhyphoxReply& reply) {
 
 void PhyphoxSource::take_group(std::size_t group, std::vector<double>* columns) {
   const std::size_t width = start_.groups[group].buffers.size();
-  if (level_buffers({columns, 1 + width}) > 0 && !std::exchange(told_timeless_, true))
-    tell(Severity::warning,
-         fmt::format("phyphox: {} has rows without a time, which are passed over",
-                     start_.groups[group].time));
+  if (level_buffers({columns, 1 + width}) > 0 && !std::exchange(noted_timeless_, true))
+    report(Severity::warning,
+           fmt::format("phyphox: {} has rows without a time, which are passed over",
+                       start_.groups[group].time));
   const std::vector<double>& times_s = columns[0];
   const auto [first, end] = start_.cursors[group].take({columns, 1 + width});
   row_.resize(width);

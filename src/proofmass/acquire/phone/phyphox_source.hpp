@@ -38,7 +38,9 @@ class PhyphoxSource : public Source {
   void take_ends(const PhyphoxReply& reply);
   void take_rows(PhyphoxReply& reply);
   void take_group(std::size_t group, std::vector<double>* columns);
-  void tell(Severity severity, std::string text) { notes_.push_back({severity, std::move(text)}); }
+  void report(Severity severity, std::string text) {
+    notes_.push_back({severity, std::move(text)});
+  }
 
   std::unique_ptr<HttpClient> client_;
   PhyphoxStart start_;
@@ -55,7 +57,7 @@ class PhyphoxSource : public Source {
   bool is_behind_ = false;     ///< rows wait for the next response
   bool was_measuring_ = true;
   int bad_answers_ = 0;  ///< consecutive
-  bool told_timeless_ = false;
+  bool noted_timeless_ = false;
 };
 
 }  // namespace proofmass::acquire

@@ -113,8 +113,8 @@ class SensorServerSource : public Source {
   }
   std::nullopt_t pass_over(const std::string& why) {
     ++passed_over_;
-    if (passed_over_ == told_at_) {
-      told_at_ *= 10;
+    if (passed_over_ == noted_at_) {
+      noted_at_ *= 10;
       notes_.push_back(
           {Severity::warning,
            fmt::format("SensorServer: message {} that is passed over: it {}", passed_over_, why)});
@@ -175,7 +175,7 @@ class SensorServerSource : public Source {
   SensorMessage message_{};
   std::vector<std::string> early_{};  ///< messages that arrived during opening
   std::vector<Note> notes_{};
-  std::uint64_t passed_over_ = 0, told_at_ = 1;
+  std::uint64_t passed_over_ = 0, noted_at_ = 1;
 };
 
 }  // namespace

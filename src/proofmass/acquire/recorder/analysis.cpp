@@ -21,7 +21,7 @@ void RecordSession::begin_analysis(std::unique_ptr<LiveAnalysis> analysis) {
 /// A source that waits for its reader waits for the analysis too.
 void RecordSession::analyse(const Block& block, std::int64_t host_ns) {
   if (analysis_->put(block, host_ns))
-    tell_left_out();
+    report_left_out();
   else
     leave_out(block);
   while (!head_.is_paced && analysis_ && !analysis_->is_idle()) {
@@ -33,17 +33,17 @@ void RecordSession::analyse(const Block& block, std::int64_t host_ns) {
 
 void RecordSession::leave_out(const Block& block) {
   if (left_out_ == 0)
-    tell(EventKind::note, Severity::warning,
-         "the analysis is too slow and what waits for it too much: rows are left out of the "
-         "estimates from here on, not of the recording");
+    report(EventKind::note, Severity::warning,
+           "the analysis is too slow and what waits for it too much: rows are left out of the "
+           "estimates from here on, not of the recording");
   left_out_ += block.rows();
 }
 
-void RecordSession::tell_left_out() {
+void RecordSession::report_left_out() {
   if (left_out_ == 0) return;
-  tell(EventKind::note, Severity::warning,
-       fmt::format("{} rows were left out of the estimates, as their analysis was too slow",
-                   std::exchange(left_out_, 0)));
+  report(EventKind::note, Severity::warning,
+         fmt::format("{} rows were left out of the estimates, as their analysis was too slow",
+                     std::exchange(left_out_, 0)));
 }
 
 /// Waits for the first one only.
@@ -52,10 +52,10 @@ void RecordSession::take_estimates(std::chrono::milliseconds wait) {
     wait = std::chrono::milliseconds(0);
     keep_estimates();
     for (const Note& note : analysed_.notes)
-      tell({EventKind::note, note.severity, analysed_.time_s, 0.0, 0, note.text});
+      report({EventKind::note, note.severity, analysed_.time_s, 0.0, 0, note.text});
     if (!analysed_.failure) continue;
-    tell({EventKind::note, Severity::bad, analysed_.time_s, 0.0, 0,
-          "the estimates end here: " + analysed_.failure->message});
+    report({EventKind::note, Severity::bad, analysed_.time_s, 0.0, 0,
+            "the estimates end here: " + analysed_.failure->message});
     analysis_.reset();
     columns_.clear();
   }
@@ -75,7 +75,7 @@ void RecordSession::keep_estimates() {
   if (watch_.estimates) watch_.estimates(rows);
 }
 
-bool RecordSession::is_told_to_stop() const {
+bool RecordSession::is_stop_requested() const {
   return end_ == RecordEnd::stopped || end_ == RecordEnd::disk_failed ||
          (watch_.stopped && watch_.stopped());
 }
@@ -84,16 +84,16 @@ bool RecordSession::is_told_to_stop() const {
 void RecordSession::finish_analysis() {
   if (!analysis_) return;
   analysis_->finish();
-  std::optional<std::int64_t> told_ns;
+  std::optional<std::int64_t> requested_ns;
   while (analysis_ && !analysis_->is_done()) {
     take_estimates(analysis_patience);
     if (file_) file_->tick(host_now_ns());
     const std::int64_t now_ns = host_now_ns();
-    if (!told_ns && is_told_to_stop()) told_ns = now_ns;
-    if (told_ns && static_cast<double>(now_ns - *told_ns) * 1e-9 > options_.catch_up_s)
+    if (!requested_ns && is_stop_requested()) requested_ns = now_ns;
+    if (requested_ns && static_cast<double>(now_ns - *requested_ns) * 1e-9 > options_.catch_up_s)
       left_out_ += analysis_->forget_waiting();
   }
-  tell_left_out();
+  report_left_out();
   analysis_.reset();
   columns_.clear();
 }

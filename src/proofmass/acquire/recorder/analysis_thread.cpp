@@ -27,8 +27,8 @@ void copy(const Block& block, Rows& out) {
 
 AnalysisThread::AnalysisThread(std::unique_ptr<LiveAnalysis> analysis,
                                std::size_t most_bytes,
-                               std::function<void()> tell)
-    : analysis_(std::move(analysis)), most_bytes_(most_bytes), tell_(std::move(tell)) {
+                               std::function<void()> report)
+    : analysis_(std::move(analysis)), most_bytes_(most_bytes), report_(std::move(report)) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -167,7 +167,7 @@ void AnalysisThread::hand_back(Analysed& out, std::unique_lock<std::mutex>& lock
   changed_.notify_all();
   if (!says_something && !is_over_) return;
   lock.unlock();
-  tell_();
+  report_();
   lock.lock();
 }
 

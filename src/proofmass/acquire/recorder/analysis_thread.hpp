@@ -32,10 +32,10 @@ struct Analysed {
 /// one thread.
 class AnalysisThread {
  public:
-  /// tell: called on the analysis's thread whenever a result is available.
+  /// report: called on the analysis's thread whenever a result is available.
   AnalysisThread(std::unique_ptr<LiveAnalysis> analysis,
                  std::size_t most_bytes,
-                 std::function<void()> tell);
+                 std::function<void()> report);
   AnalysisThread(const AnalysisThread&) = delete;
   AnalysisThread& operator=(const AnalysisThread&) = delete;
   /// Waits for the block in progress; the others are discarded.
@@ -69,7 +69,7 @@ class AnalysisThread {
 
   const std::unique_ptr<LiveAnalysis> analysis_;
   const std::size_t most_bytes_;
-  const std::function<void()> tell_;
+  const std::function<void()> report_;
   double time_s_ = 0.0;  ///< time of the last sample; used by the thread alone
 
   mutable std::mutex mutex_;

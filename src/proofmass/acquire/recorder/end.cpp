@@ -9,10 +9,10 @@ namespace proofmass::acquire {
 void RecordSession::close() {
   RecordSummary& summary = tally_.summary;
   if (const std::uint64_t dropped = reader_->dropped(); dropped > 0)
-    tell({EventKind::overrun, Severity::warning, line_->last_s(), 0.0, dropped,
-          fmt::format("{} rows were dropped at the end, as the queue was full", dropped)});
+    report({EventKind::overrun, Severity::warning, line_->last_s(), 0.0, dropped,
+            fmt::format("{} rows were dropped at the end, as the queue was full", dropped)});
   finish_analysis();
-  tally_.tell_clock();
+  tally_.report_clock();
   if (gate_) summary.not_kept = gate_->not_kept();
   summary.latency = latency_.latency();
   summary.head = head_.recording;

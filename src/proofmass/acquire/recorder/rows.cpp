@@ -7,18 +7,18 @@
 
 namespace proofmass::acquire {
 
-void RecordSession::tell(EventKind kind, Severity severity, std::string text) {
-  tell({kind, severity, line_->last_s(), 0.0, 0, std::move(text)});
+void RecordSession::report(EventKind kind, Severity severity, std::string text) {
+  report({kind, severity, line_->last_s(), 0.0, 0, std::move(text)});
 }
 
-void RecordSession::tell(const RecordEvent& event) {
+void RecordSession::report(const RecordEvent& event) {
   const bool is_listed = tally_.add(event);
   if (is_listed && file_) file_->add_event(event, host_times_now());
   if (watch_.event) watch_.event(event);
 }
 
-void RecordSession::tell_notes(const std::vector<Note>& notes) {
-  for (const Note& note : notes) tell(EventKind::note, note.severity, note.text);
+void RecordSession::report_notes(const std::vector<Note>& notes) {
+  for (const Note& note : notes) report(EventKind::note, note.severity, note.text);
 }
 
 void RecordSession::keep(const Block& block, std::int64_t host_ns) {
@@ -41,9 +41,9 @@ LevelGate::Keep RecordSession::keepers() {
               [this](double time_s) {
                 const Channel& channel = head_.recording.channels[trigger_channel_];
                 const bool is_rising = options_.trigger->edge == LevelTrigger::Edge::rising;
-                tell({EventKind::triggered, Severity::info, time_s, 0.0, 0,
-                      fmt::format("{} {} {} {}", channel.name, is_rising ? "rose to" : "fell to",
-                                  options_.trigger->level, channel.unit.symbol)});
+                report({EventKind::triggered, Severity::info, time_s, 0.0, 0,
+                        fmt::format("{} {} {} {}", channel.name, is_rising ? "rose to" : "fell to",
+                                    options_.trigger->level, channel.unit.symbol)});
               },
           .samples = [this](const Block& rows) { keep_samples(rows); },
           .estimates = [this](const Block& rows) { write_estimates(rows); }};
@@ -95,7 +95,7 @@ Status RecordSession::new_file(bool is_numbered) {
 }
 
 void RecordSession::rotate() {
-  tally_.tell_clock();
+  tally_.report_clock();
   file_->close(tally_.words());
   const std::string before = file_path_;
   add_closed();
@@ -104,7 +104,7 @@ void RecordSession::rotate() {
     end(RecordEnd::disk_failed, created.error().message);
     return;
   }
-  tell(EventKind::rotated, Severity::info, "goes on from " + before);
+  report(EventKind::rotated, Severity::info, "goes on from " + before);
 }
 
 void RecordSession::add_closed() {

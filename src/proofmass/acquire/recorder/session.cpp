@@ -177,14 +177,14 @@ void RecordSession::look_at_clocks() {
   const std::int64_t ahead_ns = now.realtime_ns - now.steady_ns;
   const std::int64_t jump_ns = ahead_ns - std::exchange(realtime_ahead_ns_, ahead_ns);
   if (std::abs(jump_ns) > step_ns)
-    tell(EventKind::host_jump, Severity::warning,
-         fmt::format("the host's time of day was set {} s {}; the recording's time continues",
-                     fixed(std::abs(static_cast<double>(jump_ns)) * 1e-9, 3),
-                     jump_ns > 0 ? "on" : "back"));
+    report(EventKind::host_jump, Severity::warning,
+           fmt::format("the host's time of day was set {} s {}; the recording's time continues",
+                       fixed(std::abs(static_cast<double>(jump_ns)) * 1e-9, 3),
+                       jump_ns > 0 ? "on" : "back"));
 }
 
 void RecordSession::work(QueueItem& item) {
-  tell_notes(item.arrival.notes);
+  report_notes(item.arrival.notes);
   switch (item.kind) {
     case QueueItem::Kind::rows:
       work_on_rows(item);
@@ -192,12 +192,12 @@ void RecordSession::work(QueueItem& item) {
     case QueueItem::Kind::notes:
       break;
     case QueueItem::Kind::stalled:
-      tell(EventKind::stalled, Severity::warning,
-           fmt::format("nothing has come for {:.1f} s", item.silence_s));
+      report(EventKind::stalled, Severity::warning,
+             fmt::format("nothing has come for {:.1f} s", item.silence_s));
       break;
     case QueueItem::Kind::gone:
       gone_ = item.reason;
-      tell(EventKind::disconnected, Severity::bad, "the source is gone: " + gone_);
+      report(EventKind::disconnected, Severity::bad, "the source is gone: " + gone_);
       break;
     case QueueItem::Kind::reopened:
       reopened(*item.head);
@@ -221,7 +221,7 @@ void RecordSession::work_on_rows(QueueItem& item) {
                                                        static_cast<std::int64_t>(ago_s * 1e9));
     tally_.summary.clock.start_realtime_ns = start_ns_;
   }
-  for (const RecordEvent& event : events_) tell(event);
+  for (const RecordEvent& event : events_) report(event);
   tally_.add_arrival(*line_, head_, item.arrival.host_ns);
   watch_rate(item.arrival.host_ns);
   std::size_t rows = item.arrival.rows();
@@ -244,10 +244,10 @@ void RecordSession::watch_rate(std::int64_t host_ns) {
   if (!head_.is_paced) return;
   const auto other = rate_watch_.add(line_->rows(), line_->host_s(host_ns));
   if (!other) return;
-  tell(EventKind::note, Severity::warning,
-       fmt::format("rows have come at {:.4g} Hz for {:.0f} s, not at the granted {:.4g} Hz{}",
-                   other->rate_hz, other->for_s, head_.recording.time.rate_hz,
-                   head_.has_device_clock ? "" : ", by which their times are counted"));
+  report(EventKind::note, Severity::warning,
+         fmt::format("rows have come at {:.4g} Hz for {:.0f} s, not at the granted {:.4g} Hz{}",
+                     other->rate_hz, other->for_s, head_.recording.time.rate_hz,
+                     head_.has_device_clock ? "" : ", by which their times are counted"));
 }
 
 /// Once a second, the time of day at the arrival of the last row.
@@ -264,11 +264,11 @@ void RecordSession::reopened(const SourceHead& head) {
     head_ = head;
     line_->reopen(head_);
     begin_watching();
-    tell(EventKind::reconnected, Severity::info, "the source is there again");
+    report(EventKind::reconnected, Severity::info, "the source is there again");
     return;
   }
-  tell(EventKind::reconnected, Severity::warning,
-       "the source is there again with other channels: a new file begins");
+  report(EventKind::reconnected, Severity::warning,
+         "the source is there again with other channels: a new file begins");
   finish_analysis();
   if (const Status used = use(head); !used) {
     end(RecordEnd::source_gone, used.error().message);

@@ -64,9 +64,9 @@ class RecordSession {
   void rotate();
   void add_closed();
   [[nodiscard]] Status new_file(bool is_numbered);
-  void tell(EventKind kind, Severity severity, std::string text);
-  void tell(const RecordEvent& event);
-  void tell_notes(const std::vector<Note>& notes);
+  void report(EventKind kind, Severity severity, std::string text);
+  void report(const RecordEvent& event);
+  void report_notes(const std::vector<Note>& notes);
 
   // recorder/analysis.cpp: exchange with the analysis.
   void begin_analysis(std::unique_ptr<LiveAnalysis> analysis);
@@ -74,9 +74,9 @@ class RecordSession {
   void take_estimates(std::chrono::milliseconds patience);
   void keep_estimates();
   void leave_out(const Block& block);
-  void tell_left_out();
+  void report_left_out();
   void finish_analysis();
-  [[nodiscard]] bool is_told_to_stop() const;
+  [[nodiscard]] bool is_stop_requested() const;
 
   const OpenSource& open_;
   const RecordOptions& options_;

@@ -38,7 +38,7 @@ void RecordTally::add_arrival(const TimeLine& line, const SourceHead& head, std:
   if (nominal_hz_ > 0.0) rows_fit_.add(static_cast<double>(line.rows()) / nominal_hz_, host_s);
 }
 
-void RecordTally::tell_clock() {
+void RecordTally::report_clock() {
   summary.clock.rate_error = time_fit_.rate_error();
   summary.clock.rate_hz.reset();
   const auto rows_error = rows_fit_.rate_error();

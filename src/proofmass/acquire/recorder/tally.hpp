@@ -20,7 +20,7 @@ class RecordTally {
   /// Rows arrived; the last of them is at the current time of the line.
   void add_arrival(const TimeLine& line, const SourceHead& head, std::int64_t host_ns);
   /// Updates the clock estimate from all arrivals so far.
-  void tell_clock();
+  void report_clock();
   /// Metadata for the end of a file.
   [[nodiscard]] RecordWords words() const;
 

@@ -100,7 +100,7 @@ class ReplaySource final : public Source {
 
   /// Information known only at the end of the file comes first.
   Arrived end(Arrival& arrival) {
-    if (std::exchange(is_end_told_, true)) return Arrived::ended;
+    if (std::exchange(is_end_reported_, true)) return Arrived::ended;
     const Recording& file = recording_of(file_);
     for (const Note& note : file.notes) {
       const auto is_same = [&](const Note& known) { return known.text == note.text; };
@@ -120,7 +120,7 @@ class ReplaySource final : public Source {
   Block block_;
   std::size_t taken_ = 0;  ///< rows of the block that were passed on
   bool is_given_ = false;
-  bool is_end_told_ = false;
+  bool is_end_reported_ = false;
 };
 
 /// nullopt: as fast as it is read.

@@ -72,7 +72,7 @@ class MultiPositionPlan final : public GuidePlan {
   std::optional<ForceReader> reader_;
   std::optional<GuideFit> fit_;
   std::vector<Eigen::Vector3d> skipped_;
-  std::vector<std::size_t> told_suspects_;
+  std::vector<std::size_t> named_suspects_;
   Eigen::Vector3d next_up_ = Eigen::Vector3d::Zero();
   std::string next_words_;
   bool done_ = false;
@@ -217,9 +217,9 @@ std::vector<GuideStep> MultiPositionPlan::suspects() {
   std::vector<GuideStep> steps;
   if (!fit_ || !fit_->has_nine()) return steps;
   for (std::size_t k = 0; k < fit_->poses().size(); ++k) {
-    const bool told = std::ranges::find(told_suspects_, k) != told_suspects_.end();
-    if (!fit_->poses()[k].suspect || told) continue;
-    told_suspects_.push_back(k);
+    const bool named = std::ranges::find(named_suspects_, k) != named_suspects_.end();
+    if (!fit_->poses()[k].suspect || named) continue;
+    named_suspects_.push_back(k);
     steps.push_back(
         {GuideKind::redo, fmt::format("Pose {} contradicts the others and is left out; it was {}.",
                                       k + 1, place_words(poses_[k].mean))});

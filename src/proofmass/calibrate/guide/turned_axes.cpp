@@ -16,8 +16,8 @@ void TurnedAxes::add(double angle_rad, const Eigen::Vector3d& mean) {
 }
 
 void TurnedAxes::fit() {
-  // Over less than a quarter of a turn the constant is not told from the cosine: where the unit is
-  // known it is taken for zero till then.
+  // Over less than a quarter of a turn the constant is not separable from the cosine: where the
+  // unit is known it is taken for zero till then.
   constexpr double quarter = 89.0 * rad_per_deg;
   const double span =
       *std::ranges::max_element(angles_rad_) - *std::ranges::min_element(angles_rad_);

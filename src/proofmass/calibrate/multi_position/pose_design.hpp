@@ -13,7 +13,7 @@
 namespace proofmass::calibrate {
 
 /// What these poses do not determine, from the weakest direction of the weighted Jacobian: "do not
-/// tell bias z and scale z apart", "do not determine scale z". `information` is JᵀWJ of the free
+/// separate bias z and scale z", "do not determine scale z". `information` is JᵀWJ of the free
 /// parameters.
 [[nodiscard]] std::string unresolved(const Eigen::MatrixXd& information);
 

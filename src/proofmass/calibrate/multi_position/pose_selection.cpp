@@ -11,7 +11,7 @@ namespace proofmass::calibrate {
 namespace {
 
 constexpr double suspect_p = 0.01;     // after Bonferroni's correction
-constexpr double tell_apart = 9.0;     // three standard deviations
+constexpr double clearly_worse = 9.0;  // three standard deviations
 constexpr double rounding_g = 1e-9;    // smaller residuals do not count as contradictions
 constexpr double noticed_stds = 4.13;  // see the header
 constexpr double largest_F = 1e12;     // beyond which there is no probability left
@@ -151,7 +151,7 @@ std::vector<PoseSet> Choice::in_question() {
   const NormFit& best = *hypotheses_.without(sets.front());
   const Scatter left = scatter_without(sets.front());
   std::vector<PoseSet> out =
-      hypotheses_.alike(sets.front(), best.rss + tell_apart * std::max(left.factor, 1e-20));
+      hypotheses_.alike(sets.front(), best.rss + clearly_worse * std::max(left.factor, 1e-20));
   out.emplace_back();
   return out;
 }
@@ -257,7 +257,7 @@ Result<PoseSelection> select_poses(const NormData& data,
   Choice choice(hypotheses, n, options);
   const PoseSet out = choice.fewest();
   const Scatter unexplained = choice.scatter_without(out);
-  const double room = tell_apart * std::max(unexplained.factor, 1e-20);
+  const double room = clearly_worse * std::max(unexplained.factor, 1e-20);
   const std::vector<PoseSet> alike = hypotheses.alike(out, hypotheses.without(out)->rss + room);
   auto [bad, doubtful] = in_all_and_some(alike);
   now.alike = std::move(doubtful);

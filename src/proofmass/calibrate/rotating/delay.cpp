@@ -37,7 +37,7 @@ void correct(double phase_rad, Index from, RotationEstimate& estimate) {
 void judge_delay(RotationState& state) {
   if (!state.angle_given) return;
   constexpr double least_spread = 0.2;
-  state.delay_told = speed_moments(state).variance > least_spread * least_spread;
+  state.delay_determined = speed_moments(state).variance > least_spread * least_spread;
 }
 
 void allow_for_delay(const RotationState& state,
@@ -52,7 +52,7 @@ void allow_for_delay(const RotationState& state,
   for (std::size_t axis = 0; axis < state.axes; ++axis) {
     const Index from = harmonic_count * static_cast<Index>(axis), delay = from + delay_column;
     const double amplitude = estimate.harmonics(from + 1);
-    if (state.delay_told) {
+    if (state.delay_determined) {
       Eigen::VectorXd gradient = Eigen::VectorXd::Zero(state.size());
       gradient(delay) = -1.0 / (amplitude * speed);
       const double tau = gradient.dot(estimate.harmonics);
@@ -72,7 +72,7 @@ void allow_for_delay(const RotationState& state,
       estimate.bounds.push_back(weaker);
     }
   }
-  if (state.delay_told || stated) return;
+  if (state.delay_determined || stated) return;
   fit.notes.push_back(
       fmt::format("at one speed a delay of the sensor's filter cannot be distinguished from a "
                   "misalignment: {:.2g} mrad for each millisecond; {:.0f} ms are allowed for "

@@ -81,7 +81,7 @@ void place(const RotationState& state, const RotationRecording& recording, Rotat
 }
 
 double tangential_distance(const RotationState& state, std::size_t axis) {
-  if (!state.speed_told || state.axes < 2) return 0.0;
+  if (!state.speed_determined || state.axes < 2) return 0.0;
   const Harmonics &own = state.harmonics[axis], &other = state.harmonics[1 - axis];
   if (own(1) == 0.0 || other(1) == 0.0) return 0.0;
   const double distance = own(1) * other(square_speed_column) / other(1);

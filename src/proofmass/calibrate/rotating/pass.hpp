@@ -18,9 +18,9 @@ struct RotationState {
   View<RotationRecording> recordings;
   std::vector<SteadyTurns> sections;
   bool angle_given = false;
-  bool phase_defined = false;  ///< by the first axis, whose C1 is zero then
-  bool speed_told = false;     ///< ω² varies enough for its column
-  bool delay_told = false;     ///< with an encoder: ω varies enough for the delay's column
+  bool phase_defined = false;     ///< by the first axis, whose C1 is zero then
+  bool speed_determined = false;  ///< ω² varies enough for its column
+  bool delay_determined = false;  ///< with an encoder: ω varies enough for the delay's column
   std::size_t axes = 1;
 
   std::vector<PhaseSpline> splines;  ///< of each section, counted in radians
@@ -38,8 +38,8 @@ struct RotationState {
   /// Whether a harmonic is fitted: not the first axis's C1 if it defines the phase.
   [[nodiscard]] bool fitted(Eigen::Index column) const {
     const Eigen::Index k = column % harmonic_count;
-    if (k == square_speed_column) return speed_told;
-    if (k == delay_column) return delay_told;
+    if (k == square_speed_column) return speed_determined;
+    if (k == delay_column) return delay_determined;
     if (k > square_speed_column) return !angle_given;
     return !phase_defined || column != 2;
   }

@@ -96,7 +96,7 @@ std::string why_not(const RotationState& state,
   switch (quantity) {
     case Q::K0:
     case Q::radius:
-      return state.speed_told ? "" : std::string(one_speed);
+      return state.speed_determined ? "" : std::string(one_speed);
     case Q::misalignment:
       return state.angle_given || axis > 0
                  ? ""
@@ -142,7 +142,7 @@ void fill_radius(const RotationState& state,
                  const RotationOptions& options,
                  RotationFit& fit) {
   RotationCoefficient& radius = fit.radius;
-  if (!state.speed_told) {
+  if (!state.speed_determined) {
     radius.reason = one_speed;
     return;
   }

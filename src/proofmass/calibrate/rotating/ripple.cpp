@@ -403,17 +403,17 @@ void separate_ripples(const RotationState& state,
     }
   }
   add_second_order(left_square, state, estimate);
-  if (state.speed_told && state.axes == 2) return;
+  if (state.speed_determined && state.axes == 2) return;
   const Eigen::MatrixXd by_radius = ripple_by_radius(state, ripple.rms, options.gravity_mps2);
   const Eigen::MatrixXd felt = by_radius - M * (split.ripple_rows * by_radius);
   // Two speeds determine the distance along the axis, not the one across it.
-  add_radius_bounds(state.speed_told ? felt.rightCols(1) : felt, estimate);
+  add_radius_bounds(state.speed_determined ? felt.rightCols(1) : felt, estimate);
 }
 
 void allow_for_radius(const RotationState& state,
                       const RotationOptions& options,
                       RotationEstimate& estimate) {
-  if (state.speed_told) return;
+  if (state.speed_determined) return;
   add_radius_bounds(ripple_by_radius(state, ripple_moments(state).mean, options.gravity_mps2),
                     estimate);
 }

@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int most_rounds = 12;
-constexpr double settled = 1e-3;  // in ln T: a tenth of what any recording can tell
+constexpr double settled = 1e-3;  // in ln T: a tenth of what any recording determines
 constexpr std::size_t most_steps = 32;
 
 // Range of a scale: a logarithm with a τ below a block is ln t, and a sine with more than two

@@ -112,23 +112,23 @@ void filter(const StepModel<N>& m,
       predict_cov<N, S>(m, P);
     }
     double K[N] = {};
-    std::pair<double, double> told;
-    if (!std::isnan(z[k])) told = read<N, S>(m, z[k], P, x, K);
+    std::pair<double, double> update;
+    if (!std::isnan(z[k])) update = read<N, S>(m, z[k], P, x, K);
     if (rows == nullptr) continue;
     Row<N>& row = rows[k];
     copy(P, row.P);
     copy(x, row.x);
     copy(K, row.K);
-    row.y_S = told.first;
-    row.per_S = told.second;
+    row.y_S = update.first;
+    row.per_S = update.second;
   }
   copy(P, state.P);
   copy(x, state.x);
 }
 
 template <int N, Pattern S>
-void smooth(const StepModel<N>& m, Row<N>* rows, std::size_t count, Later<N>& told) {
-  Later<N> later = told;
+void smooth(const StepModel<N>& m, Row<N>* rows, std::size_t count, Later<N>& from_later) {
+  Later<N> later = from_later;
   for (std::size_t k = count; k-- > 0;) {
     Row<N>& row = rows[k];
     smooth_mean<N, S>(row.P, later.l, row.x);
@@ -142,18 +142,18 @@ void smooth(const StepModel<N>& m, Row<N>* rows, std::size_t count, Later<N>& to
     uncorrect_Lambda<N, S>(m, row.K, row.per_S, later.L);
     unpredict_Lambda<N, S>(m, later.L);
   }
-  told = later;
+  from_later = later;
 }
 
 template <int N, Pattern S>
-void smooth_means(const StepModel<N>& m, Row<N>* rows, std::size_t count, Later<N>& told) {
+void smooth_means(const StepModel<N>& m, Row<N>* rows, std::size_t count, Later<N>& from_later) {
   double l[N];
-  copy(told.l, l);
+  copy(from_later.l, l);
   for (std::size_t k = count; k-- > 0;) {
     smooth_mean<N, S>(rows[k].P, l, rows[k].x);
     mean_back<N, S>(m, rows[k].K, rows[k].y_S, l);
   }
-  copy(l, told.l);
+  copy(l, from_later.l);
 }
 
 template <int N, std::size_t... I>

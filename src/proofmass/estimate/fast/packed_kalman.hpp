@@ -87,11 +87,11 @@ template <int N, Pattern S>
   each<N>([&](auto j) __attribute__((always_inline)) {
     add_product<claimed(nothing, j()), false>(Kl, K[j()], l[j()]);
   });
-  const double told = Kl.value + y_S;
+  const double total = Kl.value + y_S;
   double kept[N];
   each<N>([&](auto j) __attribute__((always_inline)) {
     Sum sum{l[j()], false};
-    add_h<N, S, j()>(sum, m, -told);
+    add_h<N, S, j()>(sum, m, -total);
     kept[j()] = sum.value;
   });
   each<N>([&](auto j) __attribute__((always_inline)) {

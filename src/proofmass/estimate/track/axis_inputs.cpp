@@ -116,8 +116,8 @@ Status check_parallel(const AxisInput& first,
                       const std::array<double, 3>& axis,
                       const std::vector<PvaSample>& samples) {
   const Slope along = slope_of(first.accel_mps2, other.accel_mps2, samples);
-  constexpr double told = 0.05, clear = 4.0, largest_rad = 0.175;  // 10°: 1.5 % of the length
-  if (!(along.std < told)) return Done{};
+  constexpr double determined = 0.05, clear = 4.0, largest_rad = 0.175;  // 10°: 1.5 % of the length
+  if (!(along.std < determined)) return Done{};
   if (!(along.value > 0.7 && along.value < 1.4))
     return Error{Errc::invalid_argument,
                  formatted("along the axis of the motion it reads %.2f times what the first does: "

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double degree = 0.017453292519943295;
 
-void tell_of_rests(const TrackOptions& options, TrackSolution& solution) {
+void note_rests(const TrackOptions& options, TrackSolution& solution) {
   auto& notes = solution.notes;
   if (solution.rests_by_quietness)
     notes.push_back(
@@ -53,9 +53,7 @@ void tell_of_rests(const TrackOptions& options, TrackSolution& solution) {
                      "typical errors; keep the sensor still for 2 s at the end as well"});
 }
 
-void tell_of_scale(const TrackSignal& signal,
-                   const TrackOptions& options,
-                   TrackSolution& solution) {
+void note_scale(const TrackSignal& signal, const TrackOptions& options, TrackSolution& solution) {
   if (options.scale_std) return;
   if (signal.resting_norm_mps2 && signal.gravity == GravityContent::present)
     solution.notes.push_back(
@@ -70,7 +68,7 @@ void tell_of_scale(const TrackSignal& signal,
                               100.0 * solution.scale_std)});
 }
 
-void tell_of_turning(TrackSolution& solution) {
+void note_turning(TrackSolution& solution) {
   constexpr double noticed_rad = 1.0 * degree;
   if (solution.turned_rad && *solution.turned_rad > noticed_rad && !solution.axis_in_world)
     solution.notes.push_back(
@@ -81,7 +79,7 @@ void tell_of_turning(TrackSolution& solution) {
                                  *solution.turned_rad / degree)});
 }
 
-void tell_of_alternatives(TrackSolution& solution) {
+void note_alternatives(TrackSolution& solution) {
   if (solution.too_many_in_doubt)
     solution.notes.push_back(
         {Severity::bad,
@@ -105,7 +103,7 @@ void tell_of_alternatives(TrackSolution& solution) {
 }
 
 // Errors in motion that are absent at rest are mostly gravity, as the sensor tilts.
-void tell_of_leaning(const TrackOptions& options, TrackSolution& solution) {
+void note_leaning(const TrackOptions& options, TrackSolution& solution) {
   constexpr double noticed_rad = 1.0 * degree;
   const MotionErrorFigures& error = solution.motion_error;
   const double t = std::max(solution.budget.longest_motion_s, 1e-3);
@@ -120,7 +118,7 @@ void tell_of_leaning(const TrackOptions& options, TrackSolution& solution) {
             accel, lean_rad / degree)});
 }
 
-void tell_of_jerk(TrackSolution& solution) {
+void note_jerk(TrackSolution& solution) {
   if (!solution.suspected_jerk) return;
   solution.notes.push_back(
       {Severity::bad,
@@ -171,12 +169,12 @@ double scale_std(const TrackSignal& signal,
 }
 
 void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackSolution& solution) {
-  tell_of_jerk(solution);
-  tell_of_alternatives(solution);
-  tell_of_rests(options, solution);
-  tell_of_turning(solution);
-  if (!solution.suspected_jerk) tell_of_leaning(options, solution);
-  tell_of_scale(signal, options, solution);
+  note_jerk(solution);
+  note_alternatives(solution);
+  note_rests(options, solution);
+  note_turning(solution);
+  if (!solution.suspected_jerk) note_leaning(options, solution);
+  note_scale(signal, options, solution);
   if (solution.missing > 0)
     solution.notes.push_back(
         {Severity::warning,

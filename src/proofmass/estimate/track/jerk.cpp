@@ -61,8 +61,8 @@ JerkDensity likeliest_jerk(PvaAxis<1> axis, double speed_std_mps) {
   const double slope = (high - low) / (2.0 * step), bend = (high - 2.0 * mid + low) / (step * step);
   const bool peak = bend < 0.0 && std::abs(slope / bend) < 2.0 * step;
   found.psd_m2ps5 = std::pow(10.0, peak ? x - slope / bend : x);
-  found.told = peak && best > lowest && best < highest;
-  if (found.told) found.std_m2ps5 = found.psd_m2ps5 * std::numbers::ln10 / std::sqrt(-bend);
+  found.determined = peak && best > lowest && best < highest;
+  if (found.determined) found.std_m2ps5 = found.psd_m2ps5 * std::numbers::ln10 / std::sqrt(-bend);
   return found;
 }
 

@@ -8,7 +8,7 @@ namespace proofmass::estimate {
 struct JerkDensity {
   double psd_m2ps5 = 1.0;  ///< value to use
   double std_m2ps5 = 0.0;
-  bool told = false;  ///< the likelihood has a maximum
+  bool determined = false;  ///< the likelihood has a maximum
 };
 
 /// The white-jerk density that maximises the likelihood of the measurements, with all other noise

@@ -152,7 +152,7 @@ Status apply_track_model(const PvaTask& task,
   const JerkDensity jerk = options.jerk_psd_m2ps5 ? JerkDensity{*options.jerk_psd_m2ps5, 0.0, true}
                                                   : likeliest_jerk(first, speed_std);
   solution.model = options.model;
-  if (jerk.told) solution.jerk_psd_m2ps5 = Uncertain{jerk.psd_m2ps5, jerk.std_m2ps5};
+  if (jerk.determined) solution.jerk_psd_m2ps5 = Uncertain{jerk.psd_m2ps5, jerk.std_m2ps5};
   if (options.model == TrackModel::fused) {
     fuse(task, sensors, jerk.psd_m2ps5, solution);
     return Done{};

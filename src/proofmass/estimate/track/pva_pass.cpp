@@ -53,7 +53,7 @@ class Judge {
     }
   }
 
-  void tell(PvaPass& out) {
+  void report(PvaPass& out) {
     out.closures = std::move(closures_);
     out.consistency = check_.judge();
   }
@@ -114,7 +114,7 @@ PvaPass pass(const PvaAxis<S>& axis, const PvaPassOptions& options) {
         push(mean.template head<2>(), later.template cov<2>(step.filtered).diagonal(), k,
              out.smoothed);
       });
-  judge.tell(out);
+  judge.report(out);
   out.bias_mps2 = biases<S>(axis, last);
   return out;
 }

@@ -65,7 +65,7 @@ TEST(TrackPva, FindsTheJerkThatDroveTheMotion) {
   for (std::size_t k = 0; k < samples.size(); ++k) samples[k].resting = k < 500 || k >= 5500;
   const PvaAxis<1> axis(time_s, {{accel, 0.01, 0.0}}, samples);
   const JerkDensity found = likeliest_jerk(axis, 10.0);
-  ASSERT_TRUE(found.told);
+  ASSERT_TRUE(found.determined);
   EXPECT_NEAR(found.psd_m2ps5, psd, 3.0 * found.std_m2ps5);
   EXPECT_LT(found.std_m2ps5, 0.1 * psd);
 }
@@ -74,7 +74,7 @@ TEST(TrackPva, DoesNotEstimateTheJerkWithoutMotion) {
   std::vector<double> time_s, accel;
   for (int k = 0; k < 100; ++k) time_s.push_back(0.01 * k), accel.push_back(0.0);
   const std::vector<PvaSample> samples(100, {.resting = true});
-  EXPECT_FALSE(likeliest_jerk(PvaAxis<1>(time_s, {{accel, 0.01, 0.0}}, samples), 10.0).told);
+  EXPECT_FALSE(likeliest_jerk(PvaAxis<1>(time_s, {{accel, 0.01, 0.0}}, samples), 10.0).determined);
 }
 
 TEST(TrackPva, TakesTheJerkThatIsGiven) {

@@ -305,14 +305,14 @@ Stops find_stops(View<View<double>> axes,
                  View<double> time_s,
                  double rate_hz,
                  const TrackOptions& options) {
-  Stops told;
+  Stops given;
   for (const TimeSpan& span : options.still) {
     const signal::Rest rest = span_to_rest(span, time_s);
-    if (rest.first < rest.last && rest.last < time_s.size()) told.rests.push_back(rest);
+    if (rest.first < rest.last && rest.last < time_s.size()) given.rests.push_back(rest);
   }
-  if (!told.rests.empty()) {
-    told.rests = united(std::move(told.rests));
-    return told;
+  if (!given.rests.empty()) {
+    given.rests = united(std::move(given.rests));
+    return given;
   }
   signal::RestSearch search =
       signal::find_rests(axes, {.rate_hz = rate_hz, .shortest_s = options.shortest_rest_s});

@@ -10,11 +10,11 @@ namespace {
 
 /// Ratio of posterior to prior standard deviation above which the recording does not determine a
 /// value.
-constexpr double untold = 0.5;
+constexpr double undetermined = 0.5;
 
-std::optional<Uncertain> told(const WheelFit& fit, int at, double offset = 0.0) {
+std::optional<Uncertain> determined(const WheelFit& fit, int at, double offset = 0.0) {
   const double std = std::sqrt(fit.constants_cov(at, at));
-  if (!(std < untold * std::sqrt(fit.constants_prior_cov(at, at)))) return std::nullopt;
+  if (!(std < undetermined * std::sqrt(fit.constants_prior_cov(at, at)))) return std::nullopt;
   return Uncertain{fit.constants(at) + offset, std};
 }
 
@@ -33,7 +33,7 @@ void describe_place(const WheelFit& fit, int at, WheelSensorFit& sensor) {
   // so an uncertain one looks large.
   const double most = fit.given_radius_m
                           ? fit.given_radius_m->std
-                          : 0.5 * untold * std::sqrt(fit.constants_prior_cov(at, at));
+                          : 0.5 * undetermined * std::sqrt(fit.constants_prior_cov(at, at));
   if (std < most) sensor.radius_m = Uncertain{radius, std};
 }
 
@@ -130,16 +130,16 @@ void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSe
     WheelSensorFit& sensor = sensors[s];
     for (int axis = 0; axis < 2; ++axis) {
       const auto at = static_cast<std::size_t>(axis);
-      sensor.bias_mps2[at] = told(fit, first + wheel::bias + axis);
-      sensor.scale[at] = told(fit, first + wheel::scale + axis, 1.0);
+      sensor.bias_mps2[at] = determined(fit, first + wheel::bias + axis);
+      sensor.scale[at] = determined(fit, first + wheel::scale + axis, 1.0);
     }
-    sensor.skew_rad = told(fit, first + wheel::skew);
-    if (s > 0) sensor.phase_rad = told(fit, wheel::phase - wheel::first_of(0), phase_rad);
+    sensor.skew_rad = determined(fit, first + wheel::skew);
+    if (s > 0) sensor.phase_rad = determined(fit, wheel::phase - wheel::first_of(0), phase_rad);
     const auto count = static_cast<int>(sensors.size());
     if (sensor.has_gyro) {
       const int gyro = wheel::gyro(count) - wheel::first_of(0) + 2 * static_cast<int>(s);
-      sensor.gyro_bias_radps = told(fit, gyro);
-      sensor.gyro_scale = told(fit, gyro + 1, 1.0);
+      sensor.gyro_bias_radps = determined(fit, gyro);
+      sensor.gyro_scale = determined(fit, gyro + 1, 1.0);
     }
     describe_place(fit, wheel::places(count) - wheel::first_of(0) + 2 * static_cast<int>(s),
                    sensor);
@@ -163,7 +163,8 @@ std::vector<std::string> say_not_observable(const WheelFit& fit,
   const SymmetricEigen axes = symmetric_eigen(scale.asDiagonal() * cov * scale.asDiagonal());
   const std::vector<Constant> constants = constants_of(sensors.size());
   std::vector<std::string> sentences;
-  for (Eigen::Index i = axes.values.size(); i-- > 0 && axes.values(i) > untold * untold;) {
+  for (Eigen::Index i = axes.values.size();
+       i-- > 0 && axes.values(i) > undetermined * undetermined;) {
     const std::string text =
         sentence(axes.vectors.col(i), constants, sensors, fit.given_radius_m.has_value());
     if (std::ranges::find(sentences, text) == sentences.end()) sentences.push_back(text);

@@ -145,7 +145,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
                           .gate = wheel_gate.limit});
   AngleColour<S> colour;
   LostShare lost(readings.gravity_mps2);
-  const auto tell = [&](std::string_view stage, std::size_t done) {
+  const auto report = [&](std::string_view stage, std::size_t done) {
     if (progress && done % 65536 == 0)
       progress(stage, static_cast<double>(done) / static_cast<double>(size));
   };
@@ -164,12 +164,12 @@ WheelFit smooth_at_places(const WheelReadings& readings,
         colour.add(step);
         lost.add(step);
         note_forward(model, k, step, check, fit);
-        tell("filter", k);
+        report("filter", k);
       },
       [&](std::size_t k, const auto& step, const auto& later) {
         note_backward(model, k, step, later, fit);
         if (k == 0) first_mean = later.mean(step.filtered);
-        tell("smoother", size - k);
+        report("smoother", size - k);
       });
   filter_calibrated(model, settled.prior, {first_mean, end.cov}, fit.series);
   fit.track.lost = lost.share();

@@ -25,7 +25,7 @@ Status fill(const BytePump& feed, std::span<char> into) {
   return Done{};
 }
 
-Error told_error(std::span<const char> bytes) {
+Error sent_error(std::span<const char> bytes) {
   constexpr std::array codes{Errc::corrupt, Errc::unsupported, Errc::too_few_samples,
                              Errc::unreadable, Errc::invalid_argument};
   const auto code = std::ranges::find_if(
@@ -48,7 +48,7 @@ Result<std::span<const char>> MessageReader::next() {
     if (header.bytes > most_frame_bytes) return broken_off();
     bytes_.resize(header.bytes);
     if (const Status filled = fill(feed_, bytes_); !filled) return filled.error();
-    if (header.kind == FrameKind::error) return told_error(bytes_);
+    if (header.kind == FrameKind::error) return sent_error(bytes_);
     if (header.kind != FrameKind::end && header.kind != FrameKind::data) return broken_off();
     is_at_end_ = header.kind == FrameKind::end;
     if (!is_at_end_ && !bytes_.empty()) return std::span<const char>(bytes_);

@@ -185,10 +185,10 @@ TEST(Message, BelievesNoLengthAndNoKind) {
   std::string text;
   EXPECT_FALSE(take_text("data\xFF\xFF\xFF\xFF"s + std::string(5000, 'x'), text));
   EXPECT_FALSE(take_text("what\1\0\0\0x"s, text));
-  const Status told = take_text("erro\2\0\0\0\x7Fx"s, text);
-  ASSERT_FALSE(told);
-  EXPECT_EQ(told.error().code, Errc::corrupt);  // an invalid error number
-  EXPECT_EQ(told.error().message, "x");
+  const Status steps = take_text("erro\2\0\0\0\x7Fx"s, text);
+  ASSERT_FALSE(steps);
+  EXPECT_EQ(steps.error().code, Errc::corrupt);  // an invalid error number
+  EXPECT_EQ(steps.error().message, "x");
   EXPECT_EQ(text, "");
 }
 

@@ -34,7 +34,7 @@ std::string rows_from(const Seen& seen, std::string_view fault) {
 
 /// A channel whose numbers cannot be read is not a text column: it is lost. It is recognised by its
 /// unit, its name or the appearance of its fields.
-void tell_lost_channels(const CsvLayout& layout,
+void note_lost_channels(const CsvLayout& layout,
                         const CsvHeader& header,
                         const CsvColumns& columns,
                         std::vector<Note>& notes) {
@@ -53,7 +53,7 @@ void tell_lost_channels(const CsvLayout& layout,
 }
 
 /// Notes on the use of the text columns.
-void tell_words(const CsvHeader& header, const CsvColumns& columns, std::vector<Note>& notes) {
+void note_words(const CsvHeader& header, const CsvColumns& columns, std::vector<Note>& notes) {
   if (columns.labels)
     notes.push_back({Severity::info, fmt::format("{}: words, kept as labels",
                                                  header.labels[*columns.labels].name)});
@@ -71,7 +71,7 @@ void tell_words(const CsvHeader& header, const CsvColumns& columns, std::vector<
 
 }  // namespace
 
-void tell_layout(const CsvLayout& layout,
+void note_layout(const CsvLayout& layout,
                  const CsvHeader& header,
                  const CsvColumns& columns,
                  std::vector<Note>& notes) {
@@ -83,24 +83,24 @@ void tell_layout(const CsvLayout& layout,
                    name_of_separator(layout.separator), layout.point == '.' ? "point" : "comma",
                    head, layout.columns.size(), layout.first_line)});
   notes.insert(notes.end(), header.notes.begin(), header.notes.end());
-  tell_words(header, columns, notes);
-  tell_lost_channels(layout, header, columns, notes);
+  note_words(header, columns, notes);
+  note_lost_channels(layout, header, columns, notes);
 }
 
-void tell_faults(const RowFaults& faults,
+void note_faults(const RowFaults& faults,
                  const CsvHeader& header,
                  const CsvColumns& columns,
                  char point,
                  std::vector<Note>& notes) {
-  const auto tell = [&](Severity severity, const Seen& seen, std::string_view fault) {
+  const auto report = [&](Severity severity, const Seen& seen, std::string_view fault) {
     if (seen.count > 0) notes.push_back({severity, rows_from(seen, fault)});
   };
-  tell(Severity::warning, faults.narrow, "too short: the missing fields are NaN");
-  tell(Severity::warning, faults.wide, "too long: fields beyond the last column are passed over");
-  tell(Severity::warning, faults.unreadable, "without a number: passed over");
-  tell(Severity::warning, faults.cut, "breaks off: its last field is not used");
-  tell(Severity::warning, faults.nul, "holding bytes of zero, as a power cut leaves them");
-  tell(Severity::info, faults.remarks, "a remark between the rows: passed over");
+  report(Severity::warning, faults.narrow, "too short: the missing fields are NaN");
+  report(Severity::warning, faults.wide, "too long: fields beyond the last column are passed over");
+  report(Severity::warning, faults.unreadable, "without a number: passed over");
+  report(Severity::warning, faults.cut, "breaks off: its last field is not used");
+  report(Severity::warning, faults.nul, "holding bytes of zero, as a power cut leaves them");
+  report(Severity::info, faults.remarks, "a remark between the rows: passed over");
   for (const auto& [column, seen] : faults.grouped) {
     const std::string& first = faults.first_grouped.at(column);
     notes.push_back({Severity::warning,
@@ -108,11 +108,11 @@ void tell_faults(const RowFaults& faults,
                                  header.labels[column].name, first, seen.first_line,
                                  without_grouping(first, point))});
   }
-  constexpr std::size_t most_columns_told = 16;
-  std::size_t told = 0;
+  constexpr std::size_t most_columns_listed = 16;
+  std::size_t listed = 0;
   for (const auto& [column, seen] : faults.words) {
     if (columns.labels == column) continue;
-    if (++told > most_columns_told) break;
+    if (++listed > most_columns_listed) break;
     notes.push_back(
         {Severity::warning,
          fmt::format("{}: {} not a number, the first \"{}\" on line {}: NaN",
@@ -120,7 +120,7 @@ void tell_faults(const RowFaults& faults,
                      seen.count == 1 ? "1 field is" : fmt::format("{} fields are", seen.count),
                      faults.first_word.at(column), seen.first_line)});
   }
-  if (told > most_columns_told)
+  if (listed > most_columns_listed)
     notes.push_back(
         {Severity::warning,
          fmt::format("{} columns in all have fields that are not numbers", faults.words.size())});

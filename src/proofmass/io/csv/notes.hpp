@@ -11,13 +11,13 @@
 namespace proofmass::io {
 
 /// Notes on the detected dialect and the interpretation of the columns.
-void tell_layout(const CsvLayout& layout,
+void note_layout(const CsvLayout& layout,
                  const CsvHeader& header,
                  const CsvColumns& columns,
                  std::vector<Note>& notes);
 
 /// Notes on faults of the rows, each with its count and first line; `point` is the decimal mark.
-void tell_faults(const RowFaults& faults,
+void note_faults(const RowFaults& faults,
                  const CsvHeader& header,
                  const CsvColumns& columns,
                  char point,

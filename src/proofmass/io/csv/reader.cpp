@@ -173,8 +173,8 @@ class CsvReader final : public RecordingReader {
     if (!rows_->faults().out_of_step) recording.first_line = layout_.first_line;
     if (const auto labels = label_column(columns_, *rows_, has_figures_))
       take_labels(*labels, recording);
-    tell_layout(layout_, header_, columns_, recording.notes);
-    tell_faults(rows_->faults(), header_, columns_, layout_.point, recording.notes);
+    note_layout(layout_, header_, columns_, recording.notes);
+    note_faults(rows_->faults(), header_, columns_, layout_.point, recording.notes);
     std::ranges::move(source_->notes(), std::back_inserter(recording.notes));
     if (rows_->stamps() && rows_->stamps()->zone_missing())
       recording.notes.push_back({Severity::info, header_.labels[*columns_.stamps].name +

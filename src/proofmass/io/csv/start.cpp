@@ -30,7 +30,7 @@ class StartFinder {
       const std::string tag = lower(trimmed(fields_.front()));
       if (tag == "title") title(line.text);
       if (tag == "start_time") start(std::string(field(1)) + " " + std::string(field(2)));
-      if (tag == "gain" && is_logger_) told_ += ", gain " + std::string(field(1));
+      if (tag == "gain" && is_logger_) stated_ += ", gain " + std::string(field(1));
       if (tag == "deadband" && is_logger_) dead_band(field(1));
       constexpr std::string_view started = "recording started at:";
       if (lower(line.text).starts_with(started)) start(line.text.substr(started.size()));
@@ -39,7 +39,7 @@ class StartFinder {
       found_.notes.insert(
           found_.notes.begin(),
           {Severity::info,
-           fmt::format("{}{}; the file names no scale of its counts", logger, told_)});
+           fmt::format("{}{}; the file names no scale of its counts", logger, stated_)});
     return std::move(found_);
   }
 
@@ -50,8 +50,8 @@ class StartFinder {
   void title(const std::string& text) {
     is_logger_ = text.find("gcdataconcepts") != std::string::npos;
     if (!is_logger_) return;
-    told_ = " " + std::string(field(2));
-    if (!field(3).empty()) told_ += " (" + std::string(field(3)) + ")";
+    stated_ = " " + std::string(field(2));
+    if (!field(3).empty()) stated_ += " (" + std::string(field(3)) + ")";
   }
   void start(const std::string& text) {
     found_.zero_ns = ns_of(trimmed(text));
@@ -72,7 +72,7 @@ class StartFinder {
   CsvStart found_;
   std::vector<std::string_view> fields_;
   bool is_logger_ = false;
-  std::string told_;
+  std::string stated_;
 };
 
 }  // namespace

@@ -47,7 +47,7 @@ class Chooser {
     Result<std::vector<MatTable>> tables = chosen_tables(tables_, chosen_);
     if (!tables) return tables.error();
     choice.tables = std::move(tables).value();
-    tell(choice);
+    report(choice);
     return choice;
   }
 
@@ -219,7 +219,7 @@ class Chooser {
     return text;
   }
 
-  void tell(Hdf5Choice& choice) const {
+  void report(Hdf5Choice& choice) const {
     constexpr std::size_t most = 12;
     const auto add = [&](Severity severity, std::string text) {
       choice.notes.push_back({severity, std::move(text)});

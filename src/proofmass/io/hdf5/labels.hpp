@@ -46,7 +46,7 @@ namespace proofmass::io {
 
 /// Notes on further metadata for the user: texts about the whole file, scale factors that were not
 /// applied.
-void tell_texts(const Hdf5Catalogue& catalogue,
+void note_texts(const Hdf5Catalogue& catalogue,
                 const std::vector<MatTable>& tables,
                 std::vector<Note>& notes);
 

@@ -70,7 +70,7 @@ std::optional<double> hdf5_rate_hz(const Hdf5Catalogue& catalogue,
   return can_be ? std::optional(said->rate_hz) : std::nullopt;
 }
 
-void tell_texts(const Hdf5Catalogue& catalogue,
+void note_texts(const Hdf5Catalogue& catalogue,
                 const std::vector<MatTable>& tables,
                 std::vector<Note>& notes) {
   constexpr std::size_t most_texts = 4;

@@ -152,7 +152,7 @@ void put_headings(const OpenHdf5& file,
   const bool is_timed = plan.head.rate_hz || time_among(vectors, options);
   plan.head.headings =
       hdf5_headings(file.catalogue, plan.tables, beginnings(stream), is_timed, plan.head.notes);
-  tell_texts(file.catalogue, plan.tables, plan.head.notes);
+  note_texts(file.catalogue, plan.tables, plan.head.notes);
 }
 
 /// Integer stamps keep all digits, and stamps with a start in an attribute get that as their

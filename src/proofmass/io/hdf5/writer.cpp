@@ -35,10 +35,10 @@ std::string link_name(std::string name, hid_t group) {
 /// The system's reason if the library passes one on, else the library's.
 std::string reason() {
   constexpr std::string_view before = "error message = '";
-  const std::string told = hdf5_reason();
-  const std::size_t begin = told.find(before);
-  if (begin == std::string::npos) return fmt::format("the HDF5 library says \"{}\"", told);
-  const std::string words = told.substr(begin + before.size());
+  const std::string message = hdf5_reason();
+  const std::size_t begin = message.find(before);
+  if (begin == std::string::npos) return fmt::format("the HDF5 library says \"{}\"", message);
+  const std::string words = message.substr(begin + before.size());
   return words.substr(0, words.find('\''));
 }
 

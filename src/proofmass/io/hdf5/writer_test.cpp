@@ -156,7 +156,7 @@ TEST_F(Hdf5Written, LeavesNothingBehindWhereItIsNotFinished) {
 
 TEST_F(Hdf5Written, SaysWhenThereIsNoRoom) {
   const Recording recording = troubled(100);
-  const auto is_told = [&] {
+  const auto has_note = [&] {
     // The same error as for a full disk, except for the wording.
     constexpr rlimit most{4096, 4096};
     std::signal(SIGXFSZ, SIG_IGN);
@@ -166,7 +166,7 @@ TEST_F(Hdf5Written, SaysWhenThereIsNoRoom) {
            written.error().message.find('\n') == std::string::npos;
   };
   // In a child process: the library does not release the memory of a file it cannot write.
-  EXPECT_EXIT(std::_Exit(is_told() ? 0 : 1), ::testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(std::_Exit(has_note() ? 0 : 1), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

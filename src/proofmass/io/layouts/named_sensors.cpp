@@ -50,30 +50,30 @@ const LoggedSensor* sensor_logged(const std::string& bare) {
 std::string device_logged(std::string_view text) {
   const auto lines = lines_of(text);
   if (lines.size() < 2) return {};
-  std::string told;
+  std::string stated;
   for (std::size_t c = 0; c < 16; ++c) {
     const std::string name = field_of(lines[0], ',', c);
     const std::string value = plain_name(field_of(lines[1], ',', c)).substr(0, 60);
     if (value.empty()) continue;
     if (name == "device name" || name == "platform" || name == "appVersion")
-      told += (told.empty() ? "" : ", ") + name + " " + value;
+      stated += (stated.empty() ? "" : ", ") + name + " " + value;
   }
-  return told;
+  return stated;
 }
 
 /// "Manufacturer = LGE", "Model = Nexus 5"
 std::string phone_in(std::string_view text) {
-  std::string told;
+  std::string stated;
   for (const std::string_view line : lines_of(text)) {
     const std::string name = lower(field_of(line, '=', 0));
     if (name == "manufacturer" || name == "model")
-      told += (told.empty() ? "" : " ") + plain_name(field_of(line, '=', 1)).substr(0, 60);
+      stated += (stated.empty() ? "" : " ") + plain_name(field_of(line, '=', 1)).substr(0, 60);
   }
-  return told;
+  return stated;
 }
 
 /// Adds `text` as a note to all files in the folder of `one`, which is not a recording.
-void tell_beside(const Archive& archive,
+void note_beside(const Archive& archive,
                  std::size_t one,
                  const std::string& text,
                  ArchiveLayout& layout) {
@@ -108,7 +108,7 @@ void read_sensor_logger_layout(Archive& archive, ArchiveLayout& layout) {
     if (without_endings(file_part(entries[e].name)) != "Metadata") continue;
     const std::string device = device_logged(text_of(archive, e));
     if (!device.empty())
-      tell_beside(archive, e, "recorded by Sensor Logger (" + device + ")", layout);
+      note_beside(archive, e, "recorded by Sensor Logger (" + device + ")", layout);
   }
 }
 
@@ -120,7 +120,7 @@ void read_named_sensors(Archive& archive, ArchiveLayout& layout) {
     if (is_one_of(stem, sensors)) layout[e].sensor = stem;
     if (file != "record.properties") continue;
     if (const std::string phone = phone_in(text_of(archive, e)); !phone.empty())
-      tell_beside(archive, e, "recorded by " + phone + ", as record.properties says", layout);
+      note_beside(archive, e, "recorded by " + phone + ", as record.properties says", layout);
   }
 }
 

@@ -59,15 +59,15 @@ std::vector<Event> events_of(std::string_view text) {
 }
 
 /// Information from the wall clock: the start, and pauses of the experiment.
-void tell_clock(const std::vector<Event>& events, MemberHint& hint) {
+void note_clock(const std::vector<Event>& events, MemberHint& hint) {
   if (events.empty() || !events.front().is_start) return;
   std::int64_t zero = 0;
   if (__builtin_sub_overflow(events.front().system_ns, events.front().experiment_ns, &zero)) return;
   hint.zero_ns = zero;
   hint.notes.push_back(
       {Severity::info, "the stamps begin where meta/time.csv has the START on the wall clock"});
-  constexpr std::size_t most_told = 20;
-  for (std::size_t i = 1; i < events.size() && hint.notes.size() < most_told; ++i) {
+  constexpr std::size_t most_noted = 20;
+  for (std::size_t i = 1; i < events.size() && hint.notes.size() < most_noted; ++i) {
     const bool resumes = events[i].is_start && !events[i - 1].is_start;
     const double away_s = 1e-9 * (static_cast<double>(events[i].system_ns) -
                                   static_cast<double>(events[i - 1].system_ns)) -
@@ -89,14 +89,14 @@ std::string device_in(std::string_view text) {
       if (const std::string value = field_of(line, separator, 1); !value.empty())
         properties.try_emplace(field_of(line, separator, 0), plain_name(value).substr(0, 60));
   if (!properties.contains("deviceModel")) return {};
-  std::string told = "phyphox";
-  if (properties.contains("version")) told += " " + properties["version"];
-  told += " on";
-  if (properties.contains("deviceBrand")) told += " " + properties["deviceBrand"];
-  told += " " + properties["deviceModel"];
+  std::string description = "phyphox";
+  if (properties.contains("version")) description += " " + properties["version"];
+  description += " on";
+  if (properties.contains("deviceBrand")) description += " " + properties["deviceBrand"];
+  description += " " + properties["deviceModel"];
   if (properties.contains("deviceRelease"))
-    told += " (release " + properties["deviceRelease"] + ")";
-  return told;
+    description += " (release " + properties["deviceRelease"] + ")";
+  return description;
 }
 
 /// The folder whose recordings a metadata file describes: the one above "meta/".
@@ -118,7 +118,7 @@ void read_phyphox_layout(Archive& archive, ArchiveLayout& layout) {
     if (!is_time && !is_device) continue;
     const std::string text = text_of(archive, e);
     MemberHint found;
-    if (is_time) tell_clock(events_of(text), found);
+    if (is_time) note_clock(events_of(text), found);
     if (const std::string device = is_device ? device_in(text) : ""; !device.empty())
       found.notes.push_back({Severity::info, "recorded by " + device});
     if (found.notes.empty()) continue;

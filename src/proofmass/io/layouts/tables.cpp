@@ -49,16 +49,16 @@ struct PassedOver {
     const bool is_damaged = (error.code == Errc::corrupt || error.code == Errc::unreadable) &&
                             without_endings(name) != name;
     if (!first || (is_damaged && notes.empty())) first = error.at(name);
-    constexpr std::size_t most_told = 8;
+    constexpr std::size_t most_listed = 8;
     if (is_damaged) {
-      if (notes.size() < most_told)
+      if (notes.size() < most_listed)
         notes.push_back({Severity::warning, name + " is not read: " + error.message});
       return;
     }
-    if (++count <= most_told) names += (names.empty() ? "" : ", ") + name;
+    if (++count <= most_listed) names += (names.empty() ? "" : ", ") + name;
   }
   /// Summary of the notes.
-  [[nodiscard]] std::vector<Note> told() const {
+  [[nodiscard]] std::vector<Note> notes_of() const {
     std::vector<Note> all = notes;
     if (count > 0)
       all.push_back({Severity::info, fmt::format("passed over, being no recordings: {}{}", names,
@@ -107,7 +107,7 @@ class ArchiveTables final : public TableFile {
       if (++looked_at > most_looked_at) continue;
       look_at(e, plain);
     }
-    notes_ = passed_over_.told();
+    notes_ = passed_over_.notes_of();
     if (looked_at > most_looked_at)
       notes_.push_back({Severity::warning, fmt::format("holds {} files: the first {} are looked at",
                                                        looked_at, most_looked_at)});

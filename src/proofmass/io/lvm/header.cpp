@@ -102,10 +102,10 @@ std::optional<std::int64_t> start_of(std::string_view date, std::string_view tim
 }
 
 void take_file_tag(std::string_view tag, std::string_view value, LvmFile& file) {
-  constexpr std::array<std::string_view, 3> told{"Operator", "Description", "Project"};
+  constexpr std::array<std::string_view, 3> stated{"Operator", "Description", "Project"};
   if (tag == "Decimal_Separator" && !value.empty()) {
     file.point = value.front() == ',' ? ',' : '.';
-    file.point_is_told = true;
+    file.point_is_stated = true;
   } else if (tag == "X_Columns") {
     const std::string which = lower(value);
     file.x = which.starts_with("no")      ? LvmX::no
@@ -113,7 +113,7 @@ void take_file_tag(std::string_view tag, std::string_view value, LvmFile& file) 
                                           : LvmX::one;
   } else if (tag == "Time_Pref") {
     file.is_absolute = lower(value).starts_with("absolute");
-  } else if (std::ranges::find(told, tag) != told.end()) {
+  } else if (std::ranges::find(stated, tag) != stated.end()) {
     add_text(file.texts, tag, value);
   }
 }
@@ -173,9 +173,9 @@ Fields LvmSegmentHeader::fields_of(std::string_view line) const {
 void LvmSegmentHeader::add(std::string_view line) {
   const std::string_view tag = tag_of(line);
   if (tag.empty()) return;
-  constexpr std::array<std::string_view, 7> told{
+  constexpr std::array<std::string_view, 7> stated{
       "Notes", "Test_Name", "Test_Numbers", "Test_Series", "UUT_Name", "UUT_M/N", "UUT_S/N"};
-  if (std::ranges::find(told, tag) != told.end())
+  if (std::ranges::find(stated, tag) != stated.end())
     add_text(texts_, tag, line.substr(tag.size()));
   else if (tag == "Channels")
     // The only number here that cannot have decimals.
@@ -228,13 +228,13 @@ LvmChannel LvmSegmentHeader::channel(std::size_t index, Fields& unknown_units) c
 
 /// Only columns that occur in the lines present.
 std::size_t LvmSegmentHeader::count_channels() const {
-  std::size_t told = std::max({names_.size(), samples_.size(), delta_x_.size()});
-  while (told > 0 && field(names_, told - 1).empty() && field(samples_, told - 1).empty() &&
-         field(delta_x_, told - 1).empty())
-    --told;
-  if (told > 1 && lower(field(names_, told - 1)) == "comment") --told;
-  if (told == 0) return 0;
-  const std::size_t count = file_.x == LvmX::multi ? told / 2 : told - 1;
+  std::size_t stated = std::max({names_.size(), samples_.size(), delta_x_.size()});
+  while (stated > 0 && field(names_, stated - 1).empty() && field(samples_, stated - 1).empty() &&
+         field(delta_x_, stated - 1).empty())
+    --stated;
+  if (stated > 1 && lower(field(names_, stated - 1)) == "comment") --stated;
+  if (stated == 0) return 0;
+  const std::size_t count = file_.x == LvmX::multi ? stated / 2 : stated - 1;
   return channels_ > 0 ? std::min(count, channels_) : count;
 }
 

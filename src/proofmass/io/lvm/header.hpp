@@ -20,7 +20,7 @@ enum class LvmX { no, one, multi };
 struct LvmFile {
   char separator = '\t';
   char point = '.';
-  bool point_is_told = false;
+  bool point_is_stated = false;
   LvmX x = LvmX::one;
   bool is_absolute = false;  ///< X values count from 1904, if they are that large
   std::string texts;         ///< "Operator JS, Project …"

@@ -54,11 +54,11 @@ TEST(Lvm, ReadsLinesThatEndInEitherWay) {
 
 TEST(Lvm, ReadsDecimalCommasWhateverTheSeparator) {
   const std::string rows = "\t0,914018\t-1,5\n\t0,537321\t1,25E-2\n";
-  for (const char* told : {",", ""}) {
+  for (const char* stated : {",", ""}) {
     LvmSegmentText segment;
     segment.delta_x = {"3,906250E-5", "3,906250E-5"};
     segment.samples = "2";
-    const auto read = read_lvm(lvm_segment(segment, rows), {.decimal_separator = told});
+    const auto read = read_lvm(lvm_segment(segment, rows), {.decimal_separator = stated});
     ASSERT_TRUE(read.has_value()) << read.error().message;
     EXPECT_EQ(read->channels[0].values, (Values{0.914018, 0.537321}));
     EXPECT_EQ(read->channels[1].values, (Values{-1.5, 0.0125}));

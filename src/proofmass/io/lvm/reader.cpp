@@ -46,7 +46,7 @@ class LvmReader final : public TableReader {
     place_time();
     for (const LvmChannel& channel : table_.channels) head_.headings.push_back(channel.heading);
     head_.columns = head_.headings.size();
-    tell();
+    report();
     rewind();
     return Done{};
   }
@@ -157,7 +157,7 @@ class LvmReader final : public TableReader {
         0, *parse_unit("s"), {static_cast<Int128>(first_ns) + static_cast<Int128>(zero_ns), -9}};
   }
 
-  void tell() {
+  void report() {
     const int decimals = rows_.decimals();
     if (decimals > 0)
       head_.notes.push_back(

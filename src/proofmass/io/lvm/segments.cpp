@@ -29,7 +29,7 @@ class Lister {
                                "one (Channels, Samples, …) and rows",
                                lines_.number())};
     name_tables();
-    tell();
+    report();
     return std::move(contents_);
   }
 
@@ -174,12 +174,12 @@ class Lister {
   /// If the header does not state it, the decimal mark is that of the first row.
   bool is_row(std::string_view line) {
     LvmFile& file = contents_.file;
-    if (file.point_is_told) return is_lvm_row(line, file);
+    if (file.point_is_stated) return is_lvm_row(line, file);
     const bool may_be_comma = file.separator != ',' && line.find(',') != std::string_view::npos &&
                               line.find('.') == std::string_view::npos;
     file.point = may_be_comma ? ',' : '.';
-    file.point_is_told = is_lvm_row(line, file);
-    return file.point_is_told;
+    file.point_is_stated = is_lvm_row(line, file);
+    return file.point_is_stated;
   }
 
   /// Gives the tables distinct names, if there are several.
@@ -192,7 +192,7 @@ class Lister {
     }
   }
 
-  void tell() {
+  void report() {
     std::vector<Note>& notes = contents_.notes;
     if (!contents_.file.texts.empty())
       notes.insert(notes.begin(), {Severity::info, "the file says: " + contents_.file.texts});

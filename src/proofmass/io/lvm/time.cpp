@@ -48,10 +48,10 @@ std::vector<double> starts_of(const LvmTable& table, LvmTiming& timing) {
 /// The period of a segment from the start of the next one, if it equals Delta_X before rounding.
 double step_of(const LvmTable& table, const std::vector<double>& starts_s, std::size_t i) {
   const LvmRows& segment = table.segments[i];
-  const double told_s = segment.clock.delta_x;
-  if (i + 1 == starts_s.size() || segment.count == 0) return told_s;
+  const double stated_s = segment.clock.delta_x;
+  if (i + 1 == starts_s.size() || segment.count == 0) return stated_s;
   const double step_s = (starts_s[i + 1] - starts_s[i]) / static_cast<double>(segment.count);
-  return std::abs(step_s - told_s) <= 1.01 * segment.clock.delta_half_unit ? step_s : told_s;
+  return std::abs(step_s - stated_s) <= 1.01 * segment.clock.delta_half_unit ? step_s : stated_s;
 }
 
 /// One period for all rows, if the segments are consecutive without gaps.
@@ -66,22 +66,22 @@ std::optional<double> common_step(const LvmTable& table, const std::vector<doubl
     if (!(std::abs(mean_s - step_s) <= slack_s)) return std::nullopt;
     // They differ only by the rounding of Delta_X, or match exactly.
     double row = 0.0;
-    bool fits_told = true;
+    bool fits_stated = true;
     bool fits_mean = true;
     for (std::size_t i = 0; i < starts_s.size(); ++i) {
       if (table.segments[i].clock.delta_x != step_s) return std::nullopt;
       const double at_s = starts_s[i] - starts_s[0];
-      fits_told = fits_told && std::abs(at_s - row * step_s) <= 0.01 * step_s;
+      fits_stated = fits_stated && std::abs(at_s - row * step_s) <= 0.01 * step_s;
       fits_mean = fits_mean && std::abs(at_s - row * mean_s) <= 0.25 * step_s;
       row += static_cast<double>(table.segments[i].count);
     }
-    if (!fits_told && !fits_mean) return std::nullopt;
-    if (!fits_told) step_s = mean_s;
+    if (!fits_stated && !fits_mean) return std::nullopt;
+    if (!fits_stated) step_s = mean_s;
   }
   return step_s;
 }
 
-void tell_step(const LvmTable& table, LvmTiming& timing) {
+void note_step(const LvmTable& table, LvmTiming& timing) {
   const LvmClock& clock = table.segments.front().clock;
   if (!(clock.delta_x > 0.0)) {
     timing.notes.push_back({Severity::warning, "no Delta_X above 0: the rate is not known"});
@@ -110,7 +110,7 @@ LvmTiming time_lvm(const LvmTable& table) {
   if (const auto step_s = common_step(table, timing.starts_s)) timing.rate_hz = 1.0 / *step_s;
   for (std::size_t i = 0; i < table.segments.size(); ++i)
     timing.steps_s.push_back(step_of(table, timing.starts_s, i));
-  tell_step(table, timing);
+  note_step(table, timing);
   if (table.segments.size() > 1)
     timing.notes.push_back(
         {Severity::info, fmt::format("{} segments are one table{}", table.segments.size(),

@@ -84,7 +84,7 @@ class Chooser {
     choice.tables = std::move(tables).value();
     choice.rate = rate_beside(choice.tables.front());
     choice.start = start_beside(choice.tables.front());
-    tell(choice);
+    report(choice);
     return choice;
   }
 
@@ -186,7 +186,7 @@ class Chooser {
     return nullptr;
   }
 
-  void tell(MatChoice& choice) const {
+  void report(MatChoice& choice) const {
     std::string read;
     for (const MatTable& table : choice.tables) {
       const MatArray& array = *table.array;

@@ -54,19 +54,19 @@ std::vector<std::string> headings_of(const std::vector<MatTable>& tables,
     }
     const bool has_time = !is_timed && ascends(values[i][0]);
     is_timed = is_timed || has_time;
-    const bool is_told = matrices > 1 || is_named(tables[i]);
-    std::ranges::move(headings_of(is_told ? name : "", tables[i].width, has_time),
+    const bool is_shown = matrices > 1 || is_named(tables[i]);
+    std::ranges::move(headings_of(is_shown ? name : "", tables[i].width, has_time),
                       std::back_inserter(headings));
   }
   return headings;
 }
 
-void tell_headings(const MatCatalogue& catalogue,
+void note_headings(const MatCatalogue& catalogue,
                    const std::vector<MatTable>& tables,
                    std::vector<std::string>& headings) {
   std::map<std::string_view, std::string_view> texts;
   for (const MatText& text : catalogue.texts) texts.emplace(text.path, text.text);
-  const auto told = [&](std::string_view about, const std::string& path) {
+  const auto sibling = [&](std::string_view about, const std::string& path) {
     const auto found = texts.find(fmt::format("{}.{}", about, path));
     return found == texts.end() ? std::string{} : shown(found->second);
   };
@@ -75,8 +75,8 @@ void tell_headings(const MatCatalogue& catalogue,
     const std::size_t at = column;
     column += table.width;
     if (table.width > 1 || at >= headings.size()) continue;
-    const std::string name = told("names", table.array->path);
-    const std::string unit = told("units", table.array->path);
+    const std::string name = sibling("names", table.array->path);
+    const std::string unit = sibling("units", table.array->path);
     if (!name.empty()) headings[at] = name;
     if (!unit.empty()) headings[at] += fmt::format(" ({})", unit);
   }

@@ -17,7 +17,7 @@ namespace proofmass::io {
     const ReadOptions& options);
 
 /// Applies the structs "names" and "units" of the file to the headings of vectors.
-void tell_headings(const MatCatalogue& catalogue,
+void note_headings(const MatCatalogue& catalogue,
                    const std::vector<MatTable>& tables,
                    std::vector<std::string>& headings);
 

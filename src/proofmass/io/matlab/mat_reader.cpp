@@ -129,7 +129,7 @@ Result<std::unique_ptr<TableFile>> open_mat(std::unique_ptr<PeekSource> source,
   }
   ArrayColumns columns;
   columns.headings = headings_of(choice->tables, values, options);
-  tell_headings(*catalogue, choice->tables, columns.headings);
+  note_headings(*catalogue, choice->tables, columns.headings);
   for (Columns& some : values) std::ranges::move(some, std::back_inserter(columns.values));
   if (choice->rate != nullptr) {
     const auto rate_hz = rate_of(*choice->rate, reader, recording.notes);

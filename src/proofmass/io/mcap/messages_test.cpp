@@ -70,18 +70,18 @@ TEST(McapRos, TellsHowTheHostsClockGoesAgainstTheDevices) {
                                 imu_message(k, start_ns + std::llround(device_ns)));
   }
   const Recording read = expect_read(file + mcap_end());
-  std::string told;
+  std::string stated;
   for (const Note& note : read.notes)
-    if (note.text.find("ppm") != std::string::npos) told = note.text;
+    if (note.text.find("ppm") != std::string::npos) stated = note.text;
   double ahead_s = 0.0;
   double ppm = 0.0;
   double std_ppm = 0.0;
-  ASSERT_EQ(std::sscanf(told.c_str(),
+  ASSERT_EQ(std::sscanf(stated.c_str(),
                         "the clock of the host (log_time) is ahead of the device's (header_stamp) "
                         "by %lf s on average and gains %lf ± %lf ppm",
                         &ahead_s, &ppm, &std_ppm),
             3)
-      << told;
+      << stated;
   EXPECT_NEAR(ahead_s, 2.00025, 1e-4);
   // σ √(12 / N³) / step = 0.2 ms · √(12 / 2000³) / 5 ms
   EXPECT_NEAR(std_ppm, 1.55, 0.1);

@@ -92,8 +92,8 @@ Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
     McapTableSpec& spec = out.read[i];
     const auto decoder = mcap_decoder(spec.topic);
     if (!decoder) {
-      constexpr std::size_t most_told = 8;
-      if (out.others.size() < most_told)
+      constexpr std::size_t most_listed = 8;
+      if (out.others.size() < most_listed)
         out.others.push_back(
             {Severity::info,
              fmt::format("{} messages of topic {} are not read: they are {}", messages[i],

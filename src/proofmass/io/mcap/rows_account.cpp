@@ -23,7 +23,7 @@ void McapRowsAccount::add(const McapChannel& channel, const McapMessage& message
   if (!head || head->rows == 0) return;
   const std::string_view figures = message.data.substr(mcap_samples_head);
   const double first_s = head->has_stamps ? double_at(figures, 0) : 0.0;
-  if (head->first > expected_) tell_missing(head->first, first_s);
+  if (head->first > expected_) note_missing(head->first, first_s);
   if (!has_rows_) first_s_ = first_s;
   has_rows_ = true;
   has_stamps_ = head->has_stamps;
@@ -33,18 +33,18 @@ void McapRowsAccount::add(const McapChannel& channel, const McapMessage& message
     expected_ = ~std::uint64_t{0};
 }
 
-void McapRowsAccount::tell_missing(std::uint64_t first, double first_s) {
+void McapRowsAccount::note_missing(std::uint64_t first, double first_s) {
   const std::uint64_t missing = first - expected_;
   if (__builtin_add_overflow(missing_, missing, &missing_)) missing_ = ~std::uint64_t{0};
-  constexpr std::size_t most_told = 16;
-  if (notes_.size() == most_told) return;
+  constexpr std::size_t most_listed = 16;
+  if (notes_.size() == most_listed) return;
   std::string text = fmt::format("{} rows are missing from row {} on", missing, expected_);
   if (has_rows_ && has_stamps_)
     text += fmt::format(", between {:.6g} s and {:.6g} s", last_s_, first_s);
   notes_.push_back({Severity::bad, std::move(text)});
 }
 
-void McapRowsAccount::tell(Recovery& out) const {
+void McapRowsAccount::report(Recovery& out) const {
   out.samples = samples_;
   out.first_s = first_s_;
   out.last_s = last_s_;

@@ -13,10 +13,10 @@ namespace proofmass::io {
 class McapRowsAccount {
  public:
   void add(const McapChannel& channel, const McapMessage& message);
-  void tell(Recovery& out) const;
+  void report(Recovery& out) const;
 
  private:
-  void tell_missing(std::uint64_t first, double first_s);
+  void note_missing(std::uint64_t first, double first_s);
 
   bool has_rows_ = false;
   bool has_stamps_ = false;

@@ -59,9 +59,9 @@ class Salvager {
   }
   [[nodiscard]] bool has_anything() const { return builder_ != nullptr; }
 
-  void tell(Recovery& out) const {
+  void report(Recovery& out) const {
     out.messages = messages_;
-    rows_.tell(out);
+    rows_.report(out);
     if (undefined_ > 0)
       out.notes.push_back(
           {Severity::bad, fmt::format("{} messages are left out, as the records that say what they "
@@ -133,8 +133,8 @@ class Salvager {
       builder().add_attachment(*head, *data);
       return;
     }
-    constexpr std::size_t most_told = 8;
-    if (notes_.size() < most_told)
+    constexpr std::size_t most_listed = 8;
+    if (notes_.size() < most_listed)
       notes_.push_back(
           {Severity::bad, fmt::format("the attachment {} at byte {} is left out: it is "
                                       "damaged, or larger than 16 MiB",
@@ -191,7 +191,7 @@ Result<Recovery> salvage(const std::shared_ptr<const RandomBytes>& bytes,
   out.bytes_lost = counts.passed_over;
   std::ranges::move(walk.notes(), std::back_inserter(out.notes));
   std::ranges::move(bytes->notes(), std::back_inserter(out.notes));
-  salvager.tell(out);
+  salvager.report(out);
   if (counts.is_closed && !*summary)
     out.notes.push_back({Severity::warning,
                          "the index at its end is missing or breaks off, which "

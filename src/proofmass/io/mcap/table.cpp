@@ -97,7 +97,7 @@ class McapTable final : public TableReader {
       if (!found) return found.error();
       if (!*found) return false;
       if (record.op != McapOp::message) {
-        tell(record);
+        report(record);
         continue;
       }
       const auto message = mcap_message(record.content);
@@ -124,10 +124,10 @@ class McapTable final : public TableReader {
   }
 
   /// Notes on other records.
-  void tell(const McapRecord& record) {
-    constexpr std::size_t most_told = 8;
+  void report(const McapRecord& record) {
+    constexpr std::size_t most_listed = 8;
     if (record.op == McapOp::attachment) take_attachment(record.content);
-    if (record.op != McapOp::metadata || beside_.size() >= most_told) return;
+    if (record.op != McapOp::metadata || beside_.size() >= most_listed) return;
     const auto metadata = mcap_metadata(record.content);
     if (metadata && !metadata->values.empty())
       beside_.push_back({Severity::info, words_of(*metadata)});
@@ -136,7 +136,7 @@ class McapTable final : public TableReader {
   void take_attachment(std::string_view content) {
     const auto head = mcap_attachment_head(content);
     if (!head) return;
-    constexpr std::size_t most_told = 8;
+    constexpr std::size_t most_listed = 8;
     const auto data = mcap_attachment_data(content, *head);
     // A record larger than the limit is held only in part.
     const bool is_cut = content.size() < head->head_bytes + head->bytes;
@@ -144,7 +144,7 @@ class McapTable final : public TableReader {
     const bool are_labels = head->name == mcap_labels_name && labels_ && labels_->empty();
     if (are_labels && data) {
       *labels_ = *data;
-    } else if (beside_.size() < most_told) {
+    } else if (beside_.size() < most_listed) {
       beside_.push_back({is_damaged ? Severity::warning : Severity::info,
                          fmt::format("attached: \"{}\", {} bytes{}", shown(head->name), head->bytes,
                                      is_damaged ? ", damaged (its checksum is wrong)" : "")});

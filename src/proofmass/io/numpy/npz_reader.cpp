@@ -167,11 +167,11 @@ class NpzOpener {
     const auto figure = first_rows({MatTable{&array, 1, 1, false}});
     if (!figure) return figure.error();
     const std::vector<double>& values = (*figure)[0][0];
-    const bool is_told = !values.empty() && is_rate(values[0]);
-    if (is_told) head.rate_hz = values[0];
+    const bool is_valid = !values.empty() && is_rate(values[0]);
+    if (is_valid) head.rate_hz = values[0];
     head.notes.push_back(
-        {Severity::info,
-         fmt::format("{}: {}", array.path, is_told ? "the rate in Hz" : "is not a possible rate")});
+        {Severity::info, fmt::format("{}: {}", array.path,
+                                     is_valid ? "the rate in Hz" : "is not a possible rate")});
     return Done{};
   }
 

@@ -86,8 +86,8 @@ class ParquetReading {
       const bool is_read =
           (is_number(type) || is_instant(type)) && names_.size() < most_parquet_columns;
       if (!is_read) {
-        constexpr std::size_t most_told = 300;
-        if (head_.skipped.size() < most_told)
+        constexpr std::size_t most_listed = 300;
+        if (head_.skipped.size() < most_listed)
           head_.skipped += fmt::format("{}{} ({})", head_.skipped.empty() ? "" : ", ", name, type);
       } else if (!is_even_time(name)) {
         take(name, type);

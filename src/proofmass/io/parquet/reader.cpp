@@ -108,18 +108,18 @@ struct OpenTable {
 };
 
 /// Notes on short texts in the metadata, except those that describe the columns.
-void tell_texts(const ParquetHead& parquet, std::vector<Note>& notes) {
+void note_texts(const ParquetHead& parquet, std::vector<Note>& notes) {
   constexpr std::size_t most_texts = 4;
   constexpr std::size_t longest = 160;
   using namespace parquet;
   constexpr std::array own{rate_key, start_key, time_key, labels_key, label_channel_key};
-  std::size_t told = 0;
+  std::size_t noted = 0;
   for (const auto& [key, text] : parquet.facts) {
     const bool is_of_columns = std::ranges::find(own, key) != own.end() ||
                                key.starts_with(unit_prefix) || key.starts_with(name_prefix);
-    if (is_of_columns || text.empty() || text.size() > longest || told == most_texts) continue;
+    if (is_of_columns || text.empty() || text.size() > longest || noted == most_texts) continue;
     notes.push_back({Severity::info, printable(key + ": " + text)});
-    ++told;
+    ++noted;
   }
 }
 
@@ -143,7 +143,7 @@ TableHead table_head(const ParquetHead& parquet, const OpenParquet& file) {
   head.notes.push_back({Severity::info, fmt::format("Parquet: {} read", read)});
   if (!parquet.skipped.empty())
     head.notes.push_back({Severity::info, "also in the file: " + parquet.skipped});
-  tell_texts(parquet, head.notes);
+  note_texts(parquet, head.notes);
   const auto start_ns = figure<std::int64_t>(parquet.fact(parquet::start_key));
   if (parquet.stamps) {
     Unit unit = parse_unit(parquet.columns[*parquet.stamps].unit).value_or(Unit{});

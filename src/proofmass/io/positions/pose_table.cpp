@@ -107,8 +107,8 @@ class TableReader {
 
   Result<PoseTable> read(const std::optional<Unit>& given) {
     const Unit unit = given.value_or(file_unit_);
-    tell(Severity::info, fmt::format("means of positions: {}{}", names_of(recording_, means_),
-                                     unit.symbol.empty() ? "" : " in " + unit.symbol));
+    report(Severity::info, fmt::format("means of positions: {}{}", names_of(recording_, means_),
+                                       unit.symbol.empty() ? "" : " in " + unit.symbol));
     const auto means = axes_in(recording_, means_, file_unit_);
     if (!means) return means.error();
     if (const Status found = find_deviations(); !found) return found.error();
@@ -123,7 +123,7 @@ class TableReader {
         if (const Status read = complete(row); !read) return read.error();
         table_.rows.push_back(std::move(row));
       } else {
-        tell(Severity::warning, place(k) + ": a mean is not a number: left out");
+        report(Severity::warning, place(k) + ": a mean is not a number: left out");
       }
     }
     if (table_.rows.empty()) return Error{Errc::too_few_samples, "has no row of three means"};
@@ -131,7 +131,7 @@ class TableReader {
   }
 
  private:
-  void tell(Severity severity, std::string text) {
+  void report(Severity severity, std::string text) {
     table_.notes.push_back({severity, std::move(text)});
   }
 
@@ -146,21 +146,21 @@ class TableReader {
     if (!of_mean && !of_samples) return Done{};
     const PoseTriple& triple = of_mean ? *of_mean : *of_samples;
     if (!of_mean && !samples_) {
-      tell(Severity::warning,
-           names_of(recording_, triple) +
-               ": standard deviations of the samples, and no column samples says how many: "
-               "not used");
+      report(Severity::warning,
+             names_of(recording_, triple) +
+                 ": standard deviations of the samples, and no column samples says how many: "
+                 "not used");
       return Done{};
     }
     const auto axes = axes_in(recording_, triple, file_unit_);
     if (!axes) return axes.error();
     deviations_ = *axes;
     over_root_n_ = !of_mean;
-    tell(Severity::info,
-         names_of(recording_, triple) +
-             (of_mean ? ": standard deviations of the means"
-                      : ": standard deviations of the samples, over the root of their number as "
-                        "for white noise"));
+    report(Severity::info,
+           names_of(recording_, triple) +
+               (of_mean ? ": standard deviations of the means"
+                        : ": standard deviations of the samples, over the root of their number as "
+                          "for white noise"));
     return Done{};
   }
 

@@ -128,8 +128,8 @@ void apply_instrument(Recording& recording, const Instrument& instrument) {
   if (any)
     recording.notes.push_back(
         {Severity::info,
-         fmt::format("units as {} writes them, told by its columns {} and {}", instrument.name,
-                     instrument.signature[0], instrument.signature[1])});
+         fmt::format("units as {} writes them, recognised by its columns {} and {}",
+                     instrument.name, instrument.signature[0], instrument.signature[1])});
 }
 
 void recognise_instrument(Recording& recording) {

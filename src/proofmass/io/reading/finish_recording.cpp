@@ -110,7 +110,7 @@ Result<Recording> finish_recording(RecordingReader& reader,
     return Error{Errc::too_few_samples, "has no column of numbers beside the time"};
   clean_texts(recording);
   if (const Status settled = settle_units(recording, options); !settled) return settled.error();
-  tell_other_clocks(recording);
+  note_other_clocks(recording);
   return apply_channel_options(std::move(recording), options);
 }
 

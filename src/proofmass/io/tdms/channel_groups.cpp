@@ -55,8 +55,9 @@ Waveform waveform_of(const TdmsProperties& properties) {
   if (!is_step || !is_time_axis(properties)) return waveform;
   waveform.increment_s = increment_s;
   // Our own files also contain the rate, whose inverse is the increment.
-  const auto told_hz = number_of(properties, "rate_hz");
-  waveform.rate_hz = told_hz && 1.0 / *told_hz == increment_s ? *told_hz : rate_of(increment_s);
+  const auto stated_hz = number_of(properties, "rate_hz");
+  waveform.rate_hz =
+      stated_hz && 1.0 / *stated_hz == increment_s ? *stated_hz : rate_of(increment_s);
   return waveform;
 }
 

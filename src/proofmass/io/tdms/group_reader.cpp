@@ -32,7 +32,7 @@ class TdmsTable final : public TableReader {
   Status prepare() {
     for (std::size_t c = 0; c < group_.channels.size(); ++c)
       if (const Status added = add_column(c); !added) return added;
-    tell_scalings();
+    note_scalings();
     return Done{};
   }
 
@@ -96,23 +96,23 @@ class TdmsTable final : public TableReader {
     return Done{};
   }
 
-  void tell_scalings() {
-    std::vector<std::pair<std::string, std::string>> told;  // how, who
+  void note_scalings() {
+    std::vector<std::pair<std::string, std::string>> noted;  // how, who
     for (std::size_t c = 0; c < readings_.size(); ++c) {
       if (!readings_[c].scaling) continue;
       const std::string words = readings_[c].scaling->words();
       const std::string& name = contents_->map.objects[group_.channels[c]].name;
-      auto same = std::ranges::find(told, words, &std::pair<std::string, std::string>::first);
+      auto same = std::ranges::find(noted, words, &std::pair<std::string, std::string>::first);
       constexpr std::size_t longest = 200;
-      if (same == told.end())
-        told.emplace_back(words, name);
+      if (same == noted.end())
+        noted.emplace_back(words, name);
       else if (same->second.size() < longest)
         same->second += ", " + name;
     }
-    constexpr std::size_t most_told = 16;
-    for (std::size_t i = 0; i < std::min(told.size(), most_told); ++i)
+    constexpr std::size_t most_listed = 16;
+    for (std::size_t i = 0; i < std::min(noted.size(), most_listed); ++i)
       head_.notes.push_back({Severity::info, fmt::format("{}: scaled as the file says: {}",
-                                                         told[i].second, told[i].first)});
+                                                         noted[i].second, noted[i].first)});
   }
 
   [[nodiscard]] std::size_t comfortable_rows() const {

@@ -12,7 +12,7 @@ constexpr std::uint32_t format_changing_scaler = 0x1269;
 constexpr std::uint32_t digital_line_scaler = 0x126A;
 /// The digital line scaler according to NI's description of the format, with four bytes for the
 /// sample format instead of the one found in files.
-constexpr std::uint32_t digital_line_scaler_as_told = 0x1369;
+constexpr std::uint32_t digital_line_scaler_as_documented = 0x1369;
 
 bool is_small_integer(TdmsKind kind) {
   return kind != TdmsKind::i64 && kind != TdmsKind::u64 && kind <= TdmsKind::u32;
@@ -58,7 +58,7 @@ Status read_daqmx(TdmsCursor& cursor, std::uint32_t header, TdmsIndex& index) {
 
 bool is_daqmx(std::uint32_t header) {
   return header == format_changing_scaler || header == digital_line_scaler ||
-         header == digital_line_scaler_as_told;
+         header == digital_line_scaler_as_documented;
 }
 
 }  // namespace

@@ -51,8 +51,8 @@ class TdmsWalk {
   Result<std::uint64_t> take_segment(std::uint64_t at) {
     const auto lead = take_tdms_lead_in(cursor_, at, size_);
     if (!lead) return lead.error();
-    if (lead->version != 4712 && lead->version != 4713 && !told_version_) {
-      told_version_ = true;
+    if (lead->version != 4712 && lead->version != 4713 && !noted_version_) {
+      noted_version_ = true;
       map_.notes.push_back({Severity::warning, fmt::format("byte {}: version {} of TDMS: 4712 and "
                                                            "4713 are known",
                                                            at + 8, lead->version)});
@@ -60,10 +60,10 @@ class TdmsWalk {
     if (lead->has(TdmsLeadIn::metadata))
       if (const Status read = take_metadata(*lead); !read) return read.error();
     ++map_.segments;
-    const std::size_t told = map_.notes.size();
+    const std::size_t notes_before = map_.notes.size();
     if (lead->has(TdmsLeadIn::raw_data) && lead->end > lead->raw_at)
       if (const Status added = add_data(*lead); !added) return added.error();
-    if (!lead->is_complete && map_.notes.size() == told) note_end(*lead);
+    if (!lead->is_complete && map_.notes.size() == notes_before) note_end(*lead);
     return lead->end;
   }
 
@@ -245,7 +245,7 @@ class TdmsWalk {
   std::optional<std::uint32_t> layout_;  ///< layout of the current list, if it is known
   std::uint32_t layout_bits_ = 0;
   std::size_t layout_entries_ = 0;
-  bool told_version_ = false;
+  bool noted_version_ = false;
 };
 
 }  // namespace

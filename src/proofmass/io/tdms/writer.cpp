@@ -161,7 +161,7 @@ class TdmsWriter final : public RecordingWriter {
   /// Metadata only if they are new: in the first segment, and where the number of rows differs,
   /// which is in the last.
   Status end_segment() {
-    const bool says_more = is_first_ || rows_ != told_rows_;
+    const bool says_more = is_first_ || rows_ != declared_rows_;
     const std::string metadata = says_more ? metadata_of(rows_) : std::string{};
     const std::size_t data_bytes = values_.size() * sizeof(double);
     std::uint32_t contents = is_interleaved | (rows_ > 0 ? has_raw_data : 0U);
@@ -174,7 +174,7 @@ class TdmsWriter final : public RecordingWriter {
         value = std::bit_cast<double>(__builtin_bswap64(std::bit_cast<std::uint64_t>(value)));
     if (data_bytes > 0) std::memcpy(out.data() + at, values_.data(), data_bytes);
     values_.clear();
-    told_rows_ = rows_;
+    declared_rows_ = rows_;
     rows_ = 0;
     is_first_ = false;
     return file_->append(out);
@@ -223,7 +223,7 @@ class TdmsWriter final : public RecordingWriter {
   std::vector<Column> columns_;
   std::vector<double> values_;  ///< rows of the segment, each with all its columns
   std::size_t rows_ = 0;
-  std::size_t told_rows_ = 0;
+  std::size_t declared_rows_ = 0;
   bool is_first_ = true;
 };
 

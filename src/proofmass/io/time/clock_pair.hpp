@@ -38,6 +38,6 @@ struct ClockPair {
 /// increase, with its time base, and reports offset, drift and jitter of each in a note. If the
 /// recording's own clock is not a calendar time and another is, the first sample's time is taken
 /// from that one; if another has far less jitter, the note explains how to select it.
-void tell_other_clocks(Recording& recording);
+void note_other_clocks(Recording& recording);
 
 }  // namespace proofmass::io

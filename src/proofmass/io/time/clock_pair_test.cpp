@@ -87,7 +87,7 @@ TEST(ClockPair, OfARecordingIsToldAndDatesIt) {
   recording.channels = {{"host_time", {}, {}}, {"a", {}, std::vector<double>(2000, 1.0)}};
   for (const double t : both.host_s)
     recording.channels[0].values.push_back(std::round(1.705479286e12 + 1e3 * t));
-  tell_other_clocks(recording);
+  note_other_clocks(recording);
   ASSERT_EQ(recording.notes.size(), 1u);
   EXPECT_TRUE(is_noted(recording, "host_time against tick: ")) << notes_of(recording);
   EXPECT_TRUE(is_noted(recording, "the date of the first sample is taken from it"));
@@ -105,7 +105,7 @@ TEST(ClockPair, IsNotLookedForAmongReadings) {
     recording.channels[1].values.push_back(k);
     recording.channels[2].values.push_back(k % 7);
   }
-  tell_other_clocks(recording);
+  note_other_clocks(recording);
   EXPECT_TRUE(recording.notes.empty()) << notes_of(recording);
 }
 

@@ -30,8 +30,8 @@ struct OtherClock {
 };
 
 std::optional<OtherClock> as_clock(const Channel& channel) {
-  const bool is_told = channel.unit.quantity == Quantity::time;
-  if (!is_told && !(channel.unit.quantity == Quantity::unknown && is_clock_name(channel.name)))
+  const bool is_stated = channel.unit.quantity == Quantity::time;
+  if (!is_stated && !(channel.unit.quantity == Quantity::unknown && is_clock_name(channel.name)))
     return std::nullopt;
   if (signal::is_counter_name(channel.name)) return std::nullopt;
   const StampSteps steps = measure_steps(channel.values);
@@ -65,7 +65,7 @@ std::string words_on(const std::string& base, const std::string& other, const Cl
 
 }  // namespace
 
-void tell_other_clocks(Recording& recording) {
+void note_other_clocks(Recording& recording) {
   if (recording.time.source != TimeSource::stamps || recording.samples() < 64) return;
   std::vector<double> base_s;
   for (std::size_t k = 0; k < recording.samples(); ++k) base_s.push_back(recording.time.at(k));

@@ -102,7 +102,7 @@ StampMender::Judgement StampMender::judge(const Rows& rows, std::size_t k) const
   return rise < 0.0 ? judge_fall(rows, k) : judge_leap(rows, k);
 }
 
-void StampMender::tell(const Judgement& as, double reading, std::size_t row) {
+void StampMender::report(const Judgement& as, double reading, std::size_t row) {
   switch (as.event) {
     case Event::wrap: {
       if (done_.wraps.count == 0) done_.wrapped = wraps_[*as.wrap].words;
@@ -134,7 +134,7 @@ void StampMender::tell(const Judgement& as, double reading, std::size_t row) {
 
 void StampMender::accept(const Rows& rows, std::size_t k, const Judgement& as) {
   const double reading = rows.stamps[k];
-  tell(as, reading, row_ + k);
+  report(as, reading, row_ + k);
   shift_ = as.shift;
   rows.stamps[k] = reading + shift_;
   last_ = {row_ + k, reading, rows.stamps[k], rows.counter.empty() ? 0.0 : rows.counter[k]};

@@ -115,7 +115,7 @@ class StampMender {
   [[nodiscard]] bool counts_on(const Rows& rows, std::size_t k) const;
   [[nodiscard]] Stretch stretch_from(const Rows& rows, std::size_t k) const;
   void accept(const Rows& rows, std::size_t k, const Judgement& as);
-  void tell(const Judgement& as, double reading, std::size_t row);
+  void report(const Judgement& as, double reading, std::size_t row);
   void place(const Rows& rows, const Stretch& stretch);
   [[nodiscard]] std::size_t place_before_first(const Rows& rows);
   [[nodiscard]] bool pass_regular(const Rows& rows, std::size_t k, std::size_t count);

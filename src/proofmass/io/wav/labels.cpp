@@ -49,9 +49,9 @@ std::optional<double> scale_of(const WavHeader& header,
                                const std::string& number) {
   if (header.figure.kind == 'u' || !bare_name(name).starts_with("accel")) return std::nullopt;
   const Cell scale = read_cell(find(fields, "scale-" + number), '.');
-  const bool is_told =
+  const bool is_stated =
       scale.kind == CellKind::number && scale.value > 0.0 && std::isfinite(scale.value);
-  return is_told ? std::optional(scale.value) : std::nullopt;
+  return is_stated ? std::optional(scale.value) : std::nullopt;
 }
 
 /// True if a channel marks which samples are present: only 16-bit samples have this layout.
@@ -82,7 +82,7 @@ void label_channels(const WavHeader& header, const Fields& fields, WavLabels& la
                                                         fmt::join(scaled, ", "))});
 }
 
-void tell_scale(const WavHeader& header, WavLabels& labels) {
+void note_scale(const WavHeader& header, WavLabels& labels) {
   const std::size_t bits = 8 * header.figure.bytes;
   if (header.figure.kind == 'f') {
     labels.notes.push_back(
@@ -105,15 +105,15 @@ void tell_scale(const WavHeader& header, WavLabels& labels) {
 WavLabels label_wav(const WavHeader& header) {
   WavLabels labels;
   const Fields fields = fields_of(find(header.texts, "ICMT"));
-  tell_scale(header, labels);
+  note_scale(header, labels);
   label_channels(header, fields, labels);
   labels.start_ns = instant_of(find(header.texts, "ICRD"));
   if (!labels.start_ns) labels.start_ns = instant_of(find(fields, "time"));
-  std::string told;
+  std::string list;
   for (const auto& [name, text] : header.texts)
-    if (const std::string words = shown(text); !words.empty() && told.size() < 400)
-      told += fmt::format("{}{} \"{}\"", told.empty() ? "" : ", ", name, words);
-  if (!told.empty()) labels.notes.push_back({Severity::info, "texts of the file: " + told});
+    if (const std::string words = shown(text); !words.empty() && list.size() < 400)
+      list += fmt::format("{}{} \"{}\"", list.empty() ? "" : ", ", name, words);
+  if (!list.empty()) labels.notes.push_back({Severity::info, "texts of the file: " + list});
   return labels;
 }
 

@@ -81,10 +81,11 @@ Status check_white(const AxisFigures& white) {
     return Error{Errc::invalid_argument,
                  fmt::format("noise.white is missing on axis {}: {}", axes, remedy)};
   if (worst(white) <= 0.0)
-    return Error{Errc::not_observable,
-                 fmt::format("noise.white is 0 on all axes, as where a recording could not tell "
-                             "it: {}",
-                             remedy)};
+    return Error{
+        Errc::not_observable,
+        fmt::format("noise.white is 0 on all axes, as where a recording could not determine "
+                    "it: {}",
+                    remedy)};
   return Done{};
 }
 

@@ -63,22 +63,22 @@ Note note_on_clipping(const ChannelAudit& channel) {
 
 }  // namespace
 
-void tell_values(const std::string& name,
+void note_values(const std::string& name,
                  const RunningChannel& channel,
                  const PlaceWords& words,
                  std::vector<Note>& notes) {
-  const auto tell = [&](const OddValues& seen, Severity severity, std::string_view what) {
+  const auto report = [&](const OddValues& seen, Severity severity, std::string_view what) {
     if (seen.count == 0) return;
     notes.push_back({severity, fmt::format("{}: {} {} at {}", name, counted(seen.count, "value"),
                                            what, span_of(seen, words))});
   };
-  tell(channel.nan(), Severity::warning, "missing or no number (NaN)");
-  tell(channel.infinite(), Severity::bad, "infinite");
-  tell(channel.absurd(), Severity::bad, "of a size no measurement has (3e34 and the like)");
-  tell(channel.denormal(), Severity::bad, "denormal (as bytes read wrongly are)");
+  report(channel.nan(), Severity::warning, "missing or no number (NaN)");
+  report(channel.infinite(), Severity::bad, "infinite");
+  report(channel.absurd(), Severity::bad, "of a size no measurement has (3e34 and the like)");
+  report(channel.denormal(), Severity::bad, "denormal (as bytes read wrongly are)");
 }
 
-void tell_channel(const ChannelAudit& channel, double rate_hz, std::vector<Note>& notes) {
+void note_channel(const ChannelAudit& channel, double rate_hz, std::vector<Note>& notes) {
   const std::size_t set_aside = channel.nonfinite + channel.absurd + channel.denormal;
   if (channel.absurd + channel.denormal > 0)
     notes.push_back({Severity::info, fmt::format("{}: mean, std, min and max leave {} out",
@@ -96,7 +96,7 @@ void tell_channel(const ChannelAudit& channel, double rate_hz, std::vector<Note>
                      counted(channel.longest_stuck, "sample"), channel.longest_stuck_start_s)});
 }
 
-void tell_zero_rows(const OddValues& rows, const PlaceWords& words, std::vector<Note>& notes) {
+void note_zero_rows(const OddValues& rows, const PlaceWords& words, std::vector<Note>& notes) {
   if (rows.count == 0) return;
   notes.push_back({Severity::warning,
                    fmt::format("{} in which every inertial channel is exactly zero, at {}: the "
@@ -104,7 +104,7 @@ void tell_zero_rows(const OddValues& rows, const PlaceWords& words, std::vector<
                                counted(rows.count, "row"), span_of(rows, words))});
 }
 
-void tell_timing(const TimingAudit& timing, std::vector<Note>& notes) {
+void note_timing(const TimingAudit& timing, std::vector<Note>& notes) {
   if (timing.gap_count > 0)
     notes.push_back({Severity::warning,
                      fmt::format("{} in the stamps, the longest {:.4g} s from {:.6g} s on",

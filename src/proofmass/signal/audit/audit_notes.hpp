@@ -17,17 +17,17 @@ struct PlaceWords {
   bool is_timed = false;
 };
 
-void tell_timing(const TimingAudit& timing, std::vector<Note>& notes);
+void note_timing(const TimingAudit& timing, std::vector<Note>& notes);
 
 /// Notes odd values with their positions.
-void tell_values(const std::string& name,
+void note_values(const std::string& name,
                  const RunningChannel& channel,
                  const PlaceWords& words,
                  std::vector<Note>& notes);
 
 /// Notes excluded values, clipping, and a stuck channel. rate_hz: 0 if unknown.
-void tell_channel(const ChannelAudit& channel, double rate_hz, std::vector<Note>& notes);
+void note_channel(const ChannelAudit& channel, double rate_hz, std::vector<Note>& notes);
 
-void tell_zero_rows(const OddValues& rows, const PlaceWords& words, std::vector<Note>& notes);
+void note_zero_rows(const OddValues& rows, const PlaceWords& words, std::vector<Note>& notes);
 
 }  // namespace proofmass::signal

@@ -258,7 +258,7 @@ std::vector<Kind> kinds() {
   };
 }
 
-Clipping told(Random& random, const Kind& kind) {
+Clipping clipping_of(Random& random, const Kind& kind) {
   Series values = kind.draw(random, random.whole(5000, 20'000));
   const double scale = random.log_uniform(0.1, 100.0), offset = random.uniform(-0.5, 0.5);
   if (kind.name.find("coarse") == std::string::npos)
@@ -277,7 +277,7 @@ TEST_P(ClippingOf, IsToldAndNeverInvented) {
   int as_it_is = 0, claimed = 0, undetermined = 0;
   for (int k = 0; k < recordings; ++k) {
     Random random{std::mt19937_64(4000U + static_cast<unsigned>(k))};
-    const Clipping clipping = told(random, kind);
+    const Clipping clipping = clipping_of(random, kind);
     if (clipping == kind.as) ++as_it_is;
     if (clipping == Clipping::undetermined) ++undetermined;
     if (clipping != Clipping::none && clipping != Clipping::undetermined) ++claimed;

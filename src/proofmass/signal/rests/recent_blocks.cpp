@@ -11,7 +11,7 @@
 namespace proofmass::signal {
 namespace {
 
-bool tell_rate(View<double> times_s) {
+bool find_rate(View<double> times_s) {
   constexpr std::size_t fewest = 16, most = 4096;
   return times_s.size() >= most ||
          (times_s.size() >= fewest && times_s.back() - times_s.front() >= 2.0);
@@ -26,7 +26,7 @@ std::size_t RecentBlocks::add(double time_s,
   if (!begun_ && options_.rate_hz == 0.0) {
     waiting_s_.push_back(time_s);
     waiting_.insert(waiting_.end(), values.begin(), values.end());
-    if (!tell_rate(waiting_s_)) return 0;
+    if (!find_rate(waiting_s_)) return 0;
     const double elapsed_s = waiting_s_.back() - waiting_s_.front();
     if (elapsed_s > 0.0) options_.rate_hz = static_cast<double>(waiting_s_.size() - 1) / elapsed_s;
     begin();

@@ -14,7 +14,7 @@ namespace angular = estimate::angular;
 
 constexpr double jerk_psd_rad2ps5 = 1.0;  // W, "one rad per second"
 
-void tell(const estimate::LinearRun<4, 3>& run, AngularRun& out) {
+void report(const estimate::LinearRun<4, 3>& run, AngularRun& out) {
   for (const auto& step : run.steps) {
     out.filtered_accel.push_back(step.filtered.mean(angular::accel_radps2));
     out.smoothed_accel.push_back(step.smoothed.mean(angular::accel_radps2));
@@ -59,9 +59,9 @@ Result<std::optional<AngularRun>> angular_run(const FirstTurn& turn) {
   start.mean << 0.0, turn.speed_radps.front(), 0.0, fused->bias_mps2.value / radius_m;
   start.cov.diagonal() << 1e-12, std::pow(turn.start_speed_std_radps, 2), 100.0,
       std::pow(fused->bias_mps2.std / radius_m, 2);
-  tell(estimate::smooth_linear(std::move(series).value(), start,
-                               {.smoother = estimate::Smoother::rauch_tung_striebel}),
-       out);
+  report(estimate::smooth_linear(std::move(series).value(), start,
+                                 {.smoother = estimate::Smoother::rauch_tung_striebel}),
+         out);
   return std::optional<AngularRun>(std::move(out));
 }
 

@@ -52,9 +52,9 @@ TEST(ErrataChapter4, AGainWithTheTransitionInItIsNotThatOfLeastSquares) {
   const OneReading one(0.5);
   const Mat<3, 3> before = one.predicted.cov.inverse();
   const Mat<3, 3> after = before + one.model.H.transpose() * one.model.H / one.variance_m2ps4;
-  const Mat<3> told =
+  const Mat<3> stated =
       before * one.predicted.mean + one.model.H.transpose() * one.reading_mps2 / one.variance_m2ps4;
-  const Mat<3> least_squares = after.inverse() * told;
+  const Mat<3> least_squares = after.inverse() * stated;
   EXPECT_LT((one.filtered.mean - least_squares).norm(), 1e-12);
 
   const double innovation = one.reading_mps2 - one.predicted.mean(2);

@@ -107,11 +107,14 @@ std::optional<PlainFit> plain_fit(const Picked& picked, const DriftAnalysis& dri
       .few_residuals = whiteness_of(thinned, picked.rate_hz / static_cast<double>(stride))};
 }
 
-AxisTest analyse_axis(const StaticRecord& record, const StaticAxis& axis, const Progress& told) {
+AxisTest analyse_axis(const StaticRecord& record,
+                      const StaticAxis& axis,
+                      const Progress& report_progress) {
   AxisTest test;
-  auto drift = characterise::analyse_drift(
-      axis.accel_mps2,
-      {.rate_hz = record.rate_hz, .since_switch_on_s = record.since_switch_on_s, .progress = told});
+  auto drift =
+      characterise::analyse_drift(axis.accel_mps2, {.rate_hz = record.rate_hz,
+                                                    .since_switch_on_s = record.since_switch_on_s,
+                                                    .progress = report_progress});
   if (!drift) {
     test.refused = drift.error();
     return test;
@@ -159,8 +162,8 @@ Result<StaticTest> analyse_static(StaticRecord record, const Progress& progress)
   StaticTest test{.record = std::move(record), .axes = {}, .noise = {}};
   const std::vector<StaticAxis>& axes = test.record.axes;
   test.axes.resize(axes.size());
-  in_parallel(axes.size(), progress, [&](std::size_t k, const Progress& told) {
-    test.axes[k] = analyse_axis(test.record, axes[k], told);
+  in_parallel(axes.size(), progress, [&](std::size_t k, const Progress& report_progress) {
+    test.axes[k] = analyse_axis(test.record, axes[k], report_progress);
   });
   const auto known =
       std::ranges::find_if(test.axes, [](const AxisTest& axis) { return axis.drift.has_value(); });

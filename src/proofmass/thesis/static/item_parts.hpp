@@ -27,7 +27,7 @@ namespace proofmass::thesis {
 /// As expected by the figures of `drift`. The axis must have been analysed.
 [[nodiscard]] report::ChannelDrift channel_of(const StaticTest& test, std::size_t axis);
 
-/// The verdict on the warm-up, as a sentence: "No warm-up can be told: steps …."
+/// The verdict on the warm-up, as a sentence: "No warm-up can be determined: steps …."
 [[nodiscard]] std::string verdict_sentence(const StaticTest& test, std::size_t axis);
 
 /// "one sample in 25", "every sample".

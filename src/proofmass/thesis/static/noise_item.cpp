@@ -204,7 +204,7 @@ Item static_noise_item(const StaticTest& test) {
             .ours = "",
             .note =
                 "The standard deviation is mostly white noise and depends on the bandwidth and "
-                "the averaging: it is no property of the bias. What the bias does is told by "
+                "the averaging: it is no property of the bias. What the bias does is shown by "
                 "its random walk and by the curve. To keep every 25th sample folds all the "
                 "noise up to the sensor's 50 Hz into 20 Hz: √(x coth x) with x = π 50/40 makes "
                 "the density 1.98 times as large. Means over 25 keep it, and that is what is "

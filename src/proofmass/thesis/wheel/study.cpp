@@ -24,7 +24,9 @@ Result<RunErrors> errors_of(const RigRun& run) {
 }
 
 /// The seeds' runs at one speed; half of the parts have the datasheet's errors.
-Status run_seeds(const WheelRunsOptions& options, const Progress& told, SpeedStudy& speed) {
+Status run_seeds(const WheelRunsOptions& options,
+                 const Progress& report_progress,
+                 SpeedStudy& speed) {
   for (std::size_t k = 0; k < 2 * options.seeds; ++k) {
     const bool datasheet = k % 2 == 1;
     const auto errors = errors_of({.seed = options.seed + k / 2,
@@ -34,9 +36,9 @@ Status run_seeds(const WheelRunsOptions& options, const Progress& told, SpeedStu
                                    .gravity_mps2 = options.gravity_mps2});
     if (!errors) return errors.error();
     (datasheet ? speed.datasheet : speed.runs).push_back(*errors);
-    if (told)
-      told("turning the wheel",
-           static_cast<double>(k) / (2.0 * static_cast<double>(options.seeds)));
+    if (report_progress)
+      report_progress("turning the wheel",
+                      static_cast<double>(k) / (2.0 * static_cast<double>(options.seeds)));
   }
   return Done{};
 }
@@ -48,7 +50,7 @@ bool is_studied(double rpm) {
 
 Status simulate_speed(double rpm,
                       const WheelRunsOptions& options,
-                      const Progress& told,
+                      const Progress& report_progress,
                       SpeedStudy& speed) {
   speed.speed_radps = rpm * radps_per_rpm;
   const Result<WheelRecord> record = simulate_wheel({.seed = options.seed,
@@ -59,7 +61,7 @@ Status simulate_speed(double rpm,
   Result<FirstTurn> turn = first_turn(*record, options.gravity_mps2);
   if (!turn) return turn.error();
   speed.turn = std::move(turn).value();
-  return is_studied(rpm) ? run_seeds(options, told, speed) : Status(Done{});
+  return is_studied(rpm) ? run_seeds(options, report_progress, speed) : Status(Done{});
 }
 
 Status study_record(const WheelRecord& record, double gravity_mps2, SpeedStudy& speed) {
@@ -84,10 +86,11 @@ Result<WheelStudy> study_wheel(const std::vector<WheelRecord>& records,
   const std::size_t parts = records.empty() ? setting_speeds_rpm.size() : records.size();
   study.speeds.resize(parts);
   std::vector<Status> done(parts, Done{});
-  in_parallel(parts, options.progress, [&](std::size_t k, const Progress& told) {
+  in_parallel(parts, options.progress, [&](std::size_t k, const Progress& report_progress) {
     SpeedStudy& speed = study.speeds[k];
-    done[k] = records.empty() ? simulate_speed(setting_speeds_rpm[k], options, told, speed)
-                              : study_record(records[k], options.gravity_mps2, speed);
+    done[k] = records.empty()
+                  ? simulate_speed(setting_speeds_rpm[k], options, report_progress, speed)
+                  : study_record(records[k], options.gravity_mps2, speed);
   });
   for (const Status& status : done)
     if (!status) return status.error();
