@@ -259,7 +259,7 @@ class Calibrate(CommandTest):
         self.write("moving.csv", "time (s),ax (m/s^2),ay (m/s^2),az (m/s^2)\n" + moving + "\n")
         self.assertIn("--rests", self.expect_failure(BAD_INPUT, "calibrate", "moving.csv"))
 
-    def test_gaps_in_a_recording_are_passed_over(self):
+    def test_gaps_in_a_recording_are_skipped(self):
         lines = turned(directions(18)).splitlines()
         for k in range(50, len(lines), 97):
             lines[k] = lines[k].split(",")[0] + ",nan,nan,nan"

@@ -29,7 +29,7 @@ class Config(CommandTest):
         self.write("c.toml", "bias_mg = 2\n")
         self.assertEqual(len(self.document("budget", "--config", "c.toml")["rows"]), 1)
 
-    def test_a_flag_of_another_verb_at_the_top_is_passed_over(self):
+    def test_a_flag_of_another_verb_at_the_top_is_skipped(self):
         self.write("c.toml", "spin_axis = 'z'\n")
         self.succeed("budget", "--config", "c.toml")
 

@@ -19,7 +19,7 @@ interface Row {
 const positive = (values: (number | null)[], log: boolean): (number | null)[] =>
   log ? values.map((value) => (value !== null && value > 0 ? value : null)) : values;
 
-// One list of x for all curves; a place where a curve has no value is passed over, one where it is
+// One list of x for all curves; a place where a curve has no value is skipped, one where it is
 // broken is not.
 function aligned(figure: Figure): { data: uPlot.AlignedData; lines: Curve[]; bands: Band[] } {
   const lines = figure.curves.filter((curve) => curve.mark !== "ticks" && curve.y !== undefined);

@@ -48,7 +48,7 @@ struct Arrival {
   /// The device's own row count at the first and the last row, if it counts.
   std::optional<double> first_count{}, last_count{};
   std::int64_t host_ns = 0;  ///< host_now_ns() when the last row arrived
-  /// Notes since the last read: "passed over 17 bytes up to the next frame".
+  /// Notes since the last read: "skipped 17 bytes up to the next frame".
   std::vector<Note> notes{};
 
   [[nodiscard]] std::size_t rows() const { return channels.empty() ? 0 : channels.front().size(); }

@@ -44,7 +44,7 @@ struct Shard {
 };
 
 /// The journals of a folder of results. Of several lines for one recording the one that ended last
-/// counts. A line that a kill has left unfinished is passed over.
+/// counts. A line that a kill has left unfinished is skipped.
 class Results {
  public:
   /// To read. Errors: unreadable (no such folder, no journal).

@@ -56,7 +56,7 @@ class MarkCutter final : public FrameCutter {
   }
   void finish(FrameSink& sink) override {
     if (const std::size_t rest = std::exchange(skipped_, 0) + stuffed_.size(); rest > 0)
-      sink.passed_over(rest, 0, false);
+      sink.skipped(rest, 0, false);
     stuffed_.clear();
   }
 
@@ -72,7 +72,7 @@ class MarkCutter final : public FrameCutter {
     stuffed_.clear();
     constexpr std::size_t worth_reporting = 65'536;
     if (skipped_ < worth_reporting) return;
-    sink.passed_over(skipped_ - 1, lost_in(skipped_), false);
+    sink.skipped(skipped_ - 1, lost_in(skipped_), false);
     skipped_ = 1;
   }
   void close(FrameSink& sink) {
@@ -85,7 +85,7 @@ class MarkCutter final : public FrameCutter {
     if (is_sound) sink.frame(frame_);
     // The frame before the first delimiter began before the stream was opened.
     else
-      sink.passed_over(bytes + 1, has_begun_ ? lost_in(bytes) : 0, fits && has_begun_);
+      sink.skipped(bytes + 1, has_begun_ ? lost_in(bytes) : 0, fits && has_begun_);
     has_begun_ = true;
   }
   [[nodiscard]] std::size_t lost_in(std::size_t bytes) const {
@@ -161,9 +161,9 @@ class SyncCutter final : public FrameCutter {
     const bool by_checksum = std::exchange(by_checksum_, false);
     // The frame before the first sync word began before the stream was opened.
     if (bytes > 0)
-      sink.passed_over(bytes,
-                       has_begun_ ? std::max<std::size_t>(1, (bytes + whole() / 2) / whole()) : 0,
-                       by_checksum);
+      sink.skipped(bytes,
+                   has_begun_ ? std::max<std::size_t>(1, (bytes + whole() / 2) / whole()) : 0,
+                   by_checksum);
   }
 
   std::string word_;

@@ -18,7 +18,7 @@ class FrameSink {
   virtual void frame(std::string_view bytes) = 0;
   /// Skipped bytes outside any frame; `frames` is the number of frames they may have contained,
   /// by_checksum whether a checksum failed.
-  virtual void passed_over(std::size_t bytes, std::size_t frames, bool by_checksum) = 0;
+  virtual void skipped(std::size_t bytes, std::size_t frames, bool by_checksum) = 0;
 };
 
 /// Splits a stream into frames of fixed length, and resynchronises after garbage.

@@ -61,7 +61,7 @@ class FrameDecoder final : public Decoder, private FrameSink {
     came_ += packet.size();
     host_ns_ = host_ns;
     if (packet.empty() || packet.size() % layout_.bytes != 0) {
-      passed_over(packet.size(), 1, false);
+      skipped(packet.size(), 1, false);
       return;
     }
     for (; !packet.empty(); packet.remove_prefix(layout_.bytes)) {
@@ -69,7 +69,7 @@ class FrameDecoder final : public Decoder, private FrameSink {
       if (is_sound(bytes))
         frame(bytes);
       else
-        passed_over(bytes.size(), 1, true);
+        skipped(bytes.size(), 1, true);
     }
   }
   void finish(std::int64_t host_ns) override {
@@ -93,16 +93,16 @@ class FrameDecoder final : public Decoder, private FrameSink {
     if (clock_field_) tick = read_tick(bytes, layout_.fields[*clock_field_]);
     rows_.add(values_, tick, host_ns_);
   }
-  void passed_over(std::size_t bytes, std::size_t frames, bool by_checksum) override {
+  void skipped(std::size_t bytes, std::size_t frames, bool by_checksum) override {
     counts_.bytes += bytes;
     if (by_checksum) ++counts_.bad_checksums;
     rows_.lose(frames);
     if (frames == 0) {
       rows_.note(Severity::info,
-                 fmt::format("{} bytes that belong to no whole frame passed over", bytes));
+                 fmt::format("{} bytes that belong to no whole frame skipped", bytes));
       return;
     }
-    garbage_.add(by_checksum ? fmt::format("a wrong checksum: {} bytes passed over", bytes)
+    garbage_.add(by_checksum ? fmt::format("a wrong checksum: {} bytes skipped", bytes)
                              : fmt::format("skipped {} bytes that are not a frame of {}", bytes,
                                            layout_.bytes),
                  rows_.notes());

@@ -71,7 +71,7 @@ class LineDecoder final : public Decoder {
     if (const std::uint64_t bytes = std::exchange(skipped_, 0); bytes > 0) {
       counts_.bytes += bytes;
       rows_.lose(1);
-      garbage_.add(fmt::format("{} bytes without a line's end passed over", bytes), rows_.notes());
+      garbage_.add(fmt::format("{} bytes without a line's end skipped", bytes), rows_.notes());
       return;
     }
     line(partial_, host_ns);
@@ -99,7 +99,7 @@ class LineDecoder final : public Decoder {
     for (std::size_t l = 0; l < half; ++l) held_bytes_ -= held_[l].text.size();
     held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(half));
     counts_.lines += half;
-    misfits_.add(fmt::format("{} lines in which no columns were found passed over", half),
+    misfits_.add(fmt::format("{} lines in which no columns were found skipped", half),
                  rows_.notes());
   }
   [[nodiscard]] bool is_enough() const;
@@ -117,7 +117,7 @@ class LineDecoder final : public Decoder {
   std::unique_ptr<LineDialect> dialect_;
   std::optional<std::size_t> clock_field_;
   std::vector<double> values_;
-  RepeatedNote misfits_{"lines passed over"}, garbage_{"lines without an end"};
+  RepeatedNote misfits_{"lines skipped"}, garbage_{"lines without an end"};
   RepeatedNote restarts_{"headers"};
 };
 

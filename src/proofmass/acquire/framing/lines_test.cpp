@@ -148,7 +148,7 @@ TEST(FramingLines, TellARepeatedTroubleWithoutFlooding) {
   const Decoded out = decode(text, options_of(""), 20);
   EXPECT_EQ(out.counts.lines, 1000u);
   EXPECT_LT(out.notes.size(), 20u);
-  EXPECT_TRUE(out.is_noted("1000 lines passed over by now"));
+  EXPECT_TRUE(out.is_noted("1000 lines skipped by now"));
 }
 
 TEST(FramingLines, WithoutAnEndAreGarbageAndBounded) {

@@ -64,7 +64,7 @@ bool RowQueue::count(View<double> fields) {
   const CounterStep step = counter_->add(count);
   if (step.is_late) {
     ++late_;
-    late_notes_.add(fmt::format("the row with {} = {:.0f} came late, or again: passed over",
+    late_notes_.add(fmt::format("the row with {} = {:.0f} came late, or again: skipped",
                                 plan_.counter->name, count),
                     notes_);
     return false;

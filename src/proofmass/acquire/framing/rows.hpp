@@ -17,8 +17,7 @@ namespace proofmass::acquire {
 /// of ten.
 class RepeatedNote {
  public:
-  explicit RepeatedNote(std::string plural)
-      : plural_(std::move(plural)) {}  ///< "lines passed over"
+  explicit RepeatedNote(std::string plural) : plural_(std::move(plural)) {}  ///< "lines skipped"
   void add(const std::string& text, std::vector<Note>& notes);
 
  private:

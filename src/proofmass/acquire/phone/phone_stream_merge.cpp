@@ -63,7 +63,7 @@ void PhoneStreamMerge::take(Arrival& out) {
     if (has_begun_)
       put_row(row, out);
     else
-      ++passed_over_;
+      ++skipped_;
     leader.drop_first();
   }
 }
@@ -99,10 +99,10 @@ void PhoneStreamMerge::put_row(const Instant& row, Arrival& out) {
 
 std::vector<Note> PhoneStreamMerge::take_notes() {
   std::vector<Note> notes;
-  if (has_begun_ && passed_over_ > 0)
+  if (has_begun_ && skipped_ > 0)
     notes.push_back(
-        {Severity::info, fmt::format("passed over {} samples from before all sensors had begun",
-                                     std::exchange(passed_over_, 0))});
+        {Severity::info, fmt::format("skipped {} samples from before all sensors had begun",
+                                     std::exchange(skipped_, 0))});
   if (incomplete_ < noted_at_) return notes;
   notes.push_back(
       {Severity::warning,

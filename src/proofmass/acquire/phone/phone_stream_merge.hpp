@@ -59,7 +59,7 @@ class PhoneStreamMerge {
 
   std::vector<Track> tracks_;
   bool has_begun_ = false;
-  std::uint64_t passed_over_ = 0, incomplete_ = 0, noted_at_ = 1;
+  std::uint64_t skipped_ = 0, incomplete_ = 0, noted_at_ = 1;
 };
 
 }  // namespace proofmass::acquire

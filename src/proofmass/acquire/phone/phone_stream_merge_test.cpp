@@ -59,7 +59,7 @@ TEST_F(SensorMergeOfTwo, BeginsWhereBothHaveBegun) {
   EXPECT_EQ(out.channels[0], (std::vector{2.0, 3.0}));
   const auto notes = merge.take_notes();
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_EQ(notes[0].text, "passed over 2 samples from before all sensors had begun");
+  EXPECT_EQ(notes[0].text, "skipped 2 samples from before all sensors had begun");
 }
 
 TEST_F(SensorMergeOfTwo, GoesOnWithoutASensorThatIsSilent) {

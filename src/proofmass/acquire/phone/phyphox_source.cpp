@@ -146,9 +146,8 @@ void PhyphoxSource::take_rows(PhyphoxReply& reply) {
 void PhyphoxSource::take_group(std::size_t group, std::vector<double>* columns) {
   const std::size_t width = start_.groups[group].buffers.size();
   if (level_buffers({columns, 1 + width}) > 0 && !std::exchange(noted_timeless_, true))
-    report(Severity::warning,
-           fmt::format("phyphox: {} has rows without a time, which are passed over",
-                       start_.groups[group].time));
+    report(Severity::warning, fmt::format("phyphox: {} has rows without a time, which are skipped",
+                                          start_.groups[group].time));
   const std::vector<double>& times_s = columns[0];
   const auto [first, end] = start_.cursors[group].take({columns, 1 + width});
   row_.resize(width);

@@ -112,12 +112,11 @@ class SensorServerSource : public Source {
     return static_cast<std::size_t>(found - sensors_.begin());
   }
   std::nullopt_t pass_over(const std::string& why) {
-    ++passed_over_;
-    if (passed_over_ == noted_at_) {
+    ++skipped_;
+    if (skipped_ == noted_at_) {
       noted_at_ *= 10;
-      notes_.push_back(
-          {Severity::warning,
-           fmt::format("SensorServer: message {} that is passed over: it {}", passed_over_, why)});
+      notes_.push_back({Severity::warning,
+                        fmt::format("SensorServer: message {} is skipped: it {}", skipped_, why)});
     }
     return std::nullopt;
   }
@@ -175,7 +174,7 @@ class SensorServerSource : public Source {
   SensorMessage message_{};
   std::vector<std::string> early_{};  ///< messages that arrived during opening
   std::vector<Note> notes_{};
-  std::uint64_t passed_over_ = 0, noted_at_ = 1;
+  std::uint64_t skipped_ = 0, noted_at_ = 1;
 };
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST_F(SensorServerSource, PassesOverWhatIsNoMessageAndSaysSo) {
   OPEN(source, {"--rate", "500", "--garbage-every", "50"});
   const Taken taken = take_rows(**source, 300);
   ASSERT_GE(taken.device_ns.size(), 300U);
-  EXPECT_TRUE(says(taken.notes, "passed over"));
+  EXPECT_TRUE(says(taken.notes, "skipped"));
 }
 
 TEST_F(SensorServerSource, EndsWithTheReasonOfTheOtherSide) {

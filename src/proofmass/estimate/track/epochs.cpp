@@ -129,7 +129,7 @@ class EpochBuilder {
     const bool known = !std::isnan(signal_.accel_mps2[k]);
     const bool end = k == 0 || k + 1 == signal_.time_s.size();
     if (!known && !must && !end && !reading_due(k)) {
-      ++passed_over_;
+      ++skipped_;
       return;
     }
     InertialEpoch epoch;
@@ -137,17 +137,17 @@ class EpochBuilder {
     const double a1 = known ? signal_.accel_mps2[k] : last_accel_.value_or(0.0);
     if (k > 0) {
       const double a0 = last_accel_.value_or(a1);
-      const double h = epoch.dt_s = signal_.time_s[k] - signal_.time_s[k - 1 - passed_over_];
+      const double h = epoch.dt_s = signal_.time_s[k] - signal_.time_s[k - 1 - skipped_];
       epoch.velocity_step_mps = 0.5 * h * (a0 + a1);
       epoch.position_step_m = h * h * (a0 / 3.0 + a1 / 6.0);
-      if (passed_over_ > 0 || !known || h > signal_.longest_step_s) {
+      if (skipped_ > 0 || !known || h > signal_.longest_step_s) {
         epoch.unknown_accel_std_mps2 = signal_.missing_std_mps2;
         knot();
       }
     }
     if (known) last_accel_ = a1;
-    const std::size_t skipped = passed_over_;
-    passed_over_ = 0;
+    const std::size_t skipped = skipped_;
+    skipped_ = 0;
     push(k, epoch);
     for (std::size_t i = k - skipped; i < k; ++i) out_.of_sample[i] = out_.epochs.size() - 1;
     if (skipped > 0) out_.gaps.push_back({k - skipped, k - 1, signal_.missing_std_mps2});
@@ -223,7 +223,7 @@ class EpochBuilder {
   const LevelNoise& noise_;
   AxisEpochs out_;
   std::optional<double> last_accel_;
-  std::size_t passed_over_ = 0;
+  std::size_t skipped_ = 0;
   std::size_t fix_ = 0, turn_ = 0;
 };
 

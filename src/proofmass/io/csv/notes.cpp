@@ -96,11 +96,11 @@ void note_faults(const RowFaults& faults,
     if (seen.count > 0) notes.push_back({severity, rows_from(seen, fault)});
   };
   report(Severity::warning, faults.narrow, "too short: the missing fields are NaN");
-  report(Severity::warning, faults.wide, "too long: fields beyond the last column are passed over");
-  report(Severity::warning, faults.unreadable, "without a number: passed over");
+  report(Severity::warning, faults.wide, "too long: fields beyond the last column are skipped");
+  report(Severity::warning, faults.unreadable, "without a number: skipped");
   report(Severity::warning, faults.cut, "breaks off: its last field is not used");
   report(Severity::warning, faults.nul, "holding bytes of zero, as a power cut leaves them");
-  report(Severity::info, faults.remarks, "a remark between the rows: passed over");
+  report(Severity::info, faults.remarks, "a remark between the rows: skipped");
   for (const auto& [column, seen] : faults.grouped) {
     const std::string& first = faults.first_grouped.at(column);
     notes.push_back({Severity::warning,

@@ -39,7 +39,7 @@ struct Member {
 };
 
 /// Files that are not recordings, and those that should be and cannot be read.
-struct PassedOver {
+struct SkippedFiles {
   std::size_t count = 0;
   std::string names;
   std::vector<Note> notes;
@@ -58,10 +58,10 @@ struct PassedOver {
     if (++count <= most_listed) names += (names.empty() ? "" : ", ") + name;
   }
   /// Summary of the notes.
-  [[nodiscard]] std::vector<Note> notes_of() const {
+  [[nodiscard]] std::vector<Note> all_notes() const {
     std::vector<Note> all = notes;
     if (count > 0)
-      all.push_back({Severity::info, fmt::format("passed over, being no recordings: {}{}", names,
+      all.push_back({Severity::info, fmt::format("skipped, being no recordings: {}{}", names,
                                                  count > 8 ? ", …" : "")});
     return all;
   }
@@ -107,7 +107,7 @@ class ArchiveTables final : public TableFile {
       if (++looked_at > most_looked_at) continue;
       look_at(e, plain);
     }
-    notes_ = passed_over_.notes_of();
+    notes_ = skipped_.all_notes();
     if (looked_at > most_looked_at)
       notes_.push_back({Severity::warning, fmt::format("holds {} files: the first {} are looked at",
                                                        looked_at, most_looked_at)});
@@ -158,7 +158,7 @@ class ArchiveTables final : public TableFile {
     const std::string& name = archive_->entries()[entry].name;
     const auto file = open_file_in(entry, options);
     if (!file) {
-      passed_over_.add(name, file.error());
+      skipped_.add(name, file.error());
       return;
     }
     const auto hint = layout_.find(entry);
@@ -181,12 +181,12 @@ class ArchiveTables final : public TableFile {
   }
 
   [[nodiscard]] Status nothing_found() const {
-    if (!passed_over_.first) return Error{Errc::too_few_samples, "holds no file"};
-    const std::size_t files = passed_over_.count + passed_over_.notes.size();
-    if (files == 1) return *passed_over_.first;
-    return Error{passed_over_.first->code,
+    if (!skipped_.first) return Error{Errc::too_few_samples, "holds no file"};
+    const std::size_t files = skipped_.count + skipped_.notes.size();
+    if (files == 1) return *skipped_.first;
+    return Error{skipped_.first->code,
                  fmt::format("holds no recording: none of {} files is one; {}", files,
-                             passed_over_.first->message)};
+                             skipped_.first->message)};
   }
 
   /// The folder common to all tables, which can be omitted from their names.
@@ -242,7 +242,7 @@ class ArchiveTables final : public TableFile {
   ArchiveLayout layout_;
   std::vector<Member> members_;
   std::vector<TableSummary> summaries_;  ///< one per member
-  PassedOver passed_over_;
+  SkippedFiles skipped_;
   std::vector<Note> notes_;
 };
 

@@ -227,8 +227,7 @@ TEST_P(FolderAndZip, TablesAreCalledByTheirFiles) {
                        "a.csv is read, having accelerations; also holds a.txt (4 columns, "
                        "20 rows), sub (4 columns, 10 rows)"))
       << notes_of(*read);
-  EXPECT_TRUE(is_noted(*read, "passed over, being no recordings: run/README.md"))
-      << notes_of(*read);
+  EXPECT_TRUE(is_noted(*read, "skipped, being no recordings: run/README.md")) << notes_of(*read);
 }
 
 TEST_P(FolderAndZip, SaysWhyNothingIsARecording) {

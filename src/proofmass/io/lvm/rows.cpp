@@ -25,7 +25,7 @@ int decimals_in(std::string_view field, char point) {
 
 LvmRowParser::LvmRowParser(const RandomBytes& bytes, const LvmFile& file, const LvmTable& table)
     : bytes_(bytes), file_(file), table_(table), stamps_(StampSpelling::figures, file.point) {
-  uses_.assign(table.columns_in_file + 1, passed_over);
+  uses_.assign(table.columns_in_file + 1, skipped);
   for (std::size_t c = 0; c < table.channels.size(); ++c) {
     const std::size_t column = table.channels[c].column;
     uses_[column] = static_cast<int>(c);

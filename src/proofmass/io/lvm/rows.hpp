@@ -57,7 +57,7 @@ class LvmRowParser {
     std::size_t figures = 0;  ///< number of values up to that one
     bool has_other_x = false;
   };
-  enum : int { passed_over = -1, x_value = -2, further_x = -3, comment = -4 };
+  enum : int { skipped = -1, x_value = -2, further_x = -3, comment = -4 };
 
   void parse(std::string_view line, std::span<double> figures, double& x);
   const char* parse_figure(const char* begin, const char* end, double& figure);

@@ -83,7 +83,7 @@ class Lister {
       if (!there) return there.error();
       if (!*there) {
         contents_.notes.push_back({Severity::bad, fmt::format("line {}: a special block begins and "
-                                                              "never ends: the rest is passed over",
+                                                              "never ends: the rest is skipped",
                                                               first_line)});
         return Done{};
       }
@@ -199,11 +199,11 @@ class Lister {
     std::string kinds;
     for (const auto& [kind, count] : specials_)
       kinds += fmt::format("{}{} ({})", kinds.empty() ? "" : ", ", kind, times(count));
-    if (!kinds.empty()) notes.push_back({Severity::info, "special blocks passed over: " + kinds});
+    if (!kinds.empty()) notes.push_back({Severity::info, "special blocks skipped: " + kinds});
     if (strange_lines_ > 0)
       notes.push_back(
           {Severity::warning,
-           fmt::format("{} lines are not rows of numbers, the first is line {}: passed over",
+           fmt::format("{} lines are not rows of numbers, the first is line {}: skipped",
                        strange_lines_, first_strange_line_)});
     end_segment();
     if (empty_segments_ > 0)

@@ -169,7 +169,7 @@ class JsonDecoder final : public McapDecoder {
     std::vector<Note> notes = clock_.notes();
     if (further_ > 0)
       notes.push_back({Severity::warning,
-                       fmt::format("{} figures are passed over, as the first message has none of "
+                       fmt::format("{} figures are skipped, as the first message has none of "
                                    "their names",
                                    further_)});
     return notes;

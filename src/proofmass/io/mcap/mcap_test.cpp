@@ -80,7 +80,7 @@ TEST(Mcap, PassesOverADamagedChunkAndNamesItsTime) {
                            mcap_chunk(json_messages(20, 10)) + mcap_end(),
                        20);
     EXPECT_TRUE(is_noted(read,
-                         "(5.000 s … 6.000 s on the clock of the file) is passed over: its "
+                         "(5.000 s … 6.000 s on the clock of the file) is skipped: its "
                          "checksum is wrong"))
         << notes_of(read);
     EXPECT_EQ(bad_notes(read), 1u);
@@ -134,8 +134,7 @@ TEST(Mcap, GoesOnAtTheNextChunkThatTheSummaryKnows) {
   const std::string end = mcap_end_with_summary(file, {{1, 30}}, starts);
   file[damaged + 6] = '\x7F';  // its length
   const auto read = expect_samples(file + end, 20);
-  EXPECT_TRUE(is_noted(read, "passed over up to byte " + std::to_string(starts[2])))
-      << notes_of(read);
+  EXPECT_TRUE(is_noted(read, "skipped up to byte " + std::to_string(starts[2]))) << notes_of(read);
 }
 
 TEST(Mcap, ComparesTheChecksumOfTheDataSection) {

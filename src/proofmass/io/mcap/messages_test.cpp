@@ -95,7 +95,7 @@ TEST(McapRos, PassesOverMessagesThatBreakOff) {
         mcap_message_record(1, 0, k == 4 ? "\1\2\3" : imu_message(k, start_ns + k * 10'000'000));
   const Recording read = expect_read(file + mcap_end());
   EXPECT_EQ(read.samples(), 9u);
-  EXPECT_TRUE(is_noted(read, "a message is passed over, the first at byte")) << notes_of(read);
+  EXPECT_TRUE(is_noted(read, "a message is skipped, the first at byte")) << notes_of(read);
 }
 
 TEST(McapRos, ReadsTheFirstVersionOfRos) {
@@ -150,7 +150,7 @@ TEST(McapJson, MakesColumnsOfTheFirstMessagesFigures) {
   EXPECT_EQ(read.find("gyro_x")->unit.symbol, "rad/s");
   EXPECT_TRUE(std::isnan(read.find("gyro_x")->values[2]));
   EXPECT_EQ(read.find("ok")->values[1], 0.0);
-  EXPECT_TRUE(is_noted(read, "2 figures are passed over")) << notes_of(read);
+  EXPECT_TRUE(is_noted(read, "2 figures are skipped")) << notes_of(read);
 }
 
 TEST(McapJson, TakesStampsAsFoxgloveAndRosWriteThem) {
@@ -176,7 +176,7 @@ TEST(McapJson, RefusesWhatIsNoJson) {
   EXPECT_EQ(read_text(json_file({deep})).error().code, Errc::unsupported);
   const Recording read = expect_read(json_file({"1.5", "2.5", "{", deep, "3.5"}));
   EXPECT_EQ(read.channels.at(0).values, (std::vector{1.5, 2.5, 3.5}));
-  EXPECT_TRUE(is_noted(read, "2 messages are passed over")) << notes_of(read);
+  EXPECT_TRUE(is_noted(read, "2 messages are skipped")) << notes_of(read);
 }
 
 }  // namespace

@@ -86,9 +86,8 @@ class RosDecoder final : public McapDecoder {
              : std::string(
                    "the time is log_time, which the host set: the messages bring no stamp")});
     if (!plan_.skipped.empty())
-      head_.notes.push_back(
-          {Severity::info, fmt::format("covariances and lists are passed over: {}",
-                                       fmt::join(plan_.skipped, ", "))});
+      head_.notes.push_back({Severity::info, fmt::format("covariances and lists are skipped: {}",
+                                                         fmt::join(plan_.skipped, ", "))});
   }
 
   CdrPlan plan_;

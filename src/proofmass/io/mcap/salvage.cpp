@@ -188,7 +188,7 @@ Result<Recovery> salvage(const std::shared_ptr<const RandomBytes>& bytes,
   const McapWalkCounts& counts = walk.counts();
   out.chunks = counts.chunks;
   out.damaged_chunks = counts.damaged_chunks;
-  out.bytes_lost = counts.passed_over;
+  out.bytes_lost = counts.skipped;
   std::ranges::move(walk.notes(), std::back_inserter(out.notes));
   std::ranges::move(bytes->notes(), std::back_inserter(out.notes));
   salvager.report(out);

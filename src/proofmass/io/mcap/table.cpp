@@ -73,7 +73,7 @@ class McapTable final : public TableReader {
     std::ranges::move(decoder_->notes(), std::back_inserter(notes));
     if (refused_ > 0)
       notes.push_back(
-          {Severity::bad, fmt::format("{} passed over, the first at byte {}: it {}",
+          {Severity::bad, fmt::format("{} skipped, the first at byte {}: it {}",
                                       refused_ == 1 ? std::string("a message is")
                                                     : fmt::format("{} messages are", refused_),
                                       refused_at_, refusal_)});

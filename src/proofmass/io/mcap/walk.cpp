@@ -110,7 +110,7 @@ Result<bool> McapWalk::enter(std::uint64_t length, McapRecord& record) {
   position_ = content_at + length;
   if (!is_wanted(record.op)) return false;
   if (length > most_held(record.op) && record.op != McapOp::attachment) {
-    note(Severity::bad, fmt::format("byte {}: {} of {} bytes is more than is read: passed over",
+    note(Severity::bad, fmt::format("byte {}: {} of {} bytes is more than is read: skipped",
                                     record.offset, mcap_record_name(record.op), length));
     return false;
   }
@@ -178,7 +178,7 @@ std::vector<Note> McapWalk::notes() const {
   std::vector<Note> notes = notes_;
   if (counts_.damaged_chunks > 1)
     notes.push_back(
-        {Severity::bad, fmt::format("{} chunks are passed over in all", counts_.damaged_chunks)});
+        {Severity::bad, fmt::format("{} chunks are skipped in all", counts_.damaged_chunks)});
   return notes;
 }
 

@@ -34,8 +34,8 @@ struct McapWalkHints {
 struct McapWalkCounts {
   std::uint64_t chunks = 0;  ///< intact chunks
   std::uint64_t damaged_chunks = 0;
-  std::uint64_t passed_over = 0;  ///< bytes of the file, including those at its end
-  bool is_closed = false;         ///< the end of the data section is present
+  std::uint64_t skipped = 0;  ///< bytes of the file, including those at its end
+  bool is_closed = false;     ///< the end of the data section is present
 };
 
 /// Walks through the data section of an MCAP file, including its chunks. Chunks with a wrong

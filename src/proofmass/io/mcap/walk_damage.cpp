@@ -28,16 +28,16 @@ Result<bool> McapWalk::broken_off(const std::string& why) {
   if (next >= window_.size()) {
     note(Severity::bad,
          fmt::format("breaks off at byte {}, {}: what was read before is kept", position_, why));
-    counts_.passed_over += window_.size() - position_;
+    counts_.skipped += window_.size() - position_;
     ended_ = true;
     return false;
   }
   note(
       Severity::bad,
-      fmt::format("is damaged at byte {}, {}: passed over up to byte {}, where {}", position_, why,
+      fmt::format("is damaged at byte {}, {}: skipped up to byte {}, where {}", position_, why,
                   next, hints_.search ? "a whole chunk begins" : "the summary has the next chunk"));
   lost_bytes_ += next - position_;
-  counts_.passed_over += next - position_;
+  counts_.skipped += next - position_;
   position_ = next;
   return false;
 }
@@ -113,7 +113,7 @@ Result<std::uint64_t> McapWalk::lose_chunk(const McapChunkHead& head,
   constexpr std::uint64_t usual_ratio = 64;
   lost_bytes_ += std::min(head.unpacked_bytes, usual_ratio * head.packed_bytes);
   note(Severity::bad,
-       fmt::format("the chunk at byte {} ({} … {} on the clock of the file) is passed over: {}",
+       fmt::format("the chunk at byte {} ({} … {} on the clock of the file) is skipped: {}",
                    chunk_at_, seconds(head.start_ns), seconds(head.end_ns), why));
   if (hints_.search) {
     const auto follows = is_record_at(end);
@@ -122,7 +122,7 @@ Result<std::uint64_t> McapWalk::lose_chunk(const McapChunkHead& head,
     if (!next) return next.error();
     end = *next;
   }
-  counts_.passed_over += end - chunk_at_;
+  counts_.skipped += end - chunk_at_;
   return end;
 }
 

@@ -190,7 +190,7 @@ TEST(McapSamples, BelievesNoCountInABlock) {
         read_text(block_file({block(1, 0, 1, 2, 0, {1, 2}), wrong, block(1, 0, 1, 2, 2, {3, 4})}));
     ASSERT_TRUE(read.has_value()) << read.error().message;
     EXPECT_EQ(read->channels.at(0).values, (std::vector<double>{1, 2, 3, 4}));
-    EXPECT_TRUE(is_noted(*read, "a message is passed over")) << notes_of(*read);
+    EXPECT_TRUE(is_noted(*read, "a message is skipped")) << notes_of(*read);
   }
 }
 

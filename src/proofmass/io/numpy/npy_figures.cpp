@@ -24,10 +24,10 @@ class AscendingBytes final : public RandomBytes {
   [[nodiscard]] Result<std::size_t> read_at(std::uint64_t offset,
                                             std::span<char> into) const override {
     PM_EXPECTS(offset >= position_);
-    std::array<char, 4096> passed_over;
+    std::array<char, 4096> skipped;
     while (position_ < offset) {
-      const auto most = std::min<std::uint64_t>(passed_over.size(), offset - position_);
-      const auto count = fill(std::span(passed_over).first(static_cast<std::size_t>(most)));
+      const auto most = std::min<std::uint64_t>(skipped.size(), offset - position_);
+      const auto count = fill(std::span(skipped).first(static_cast<std::size_t>(most)));
       if (!count) return count.error();
       if (*count == 0) return std::size_t{0};
     }

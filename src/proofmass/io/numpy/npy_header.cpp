@@ -94,8 +94,8 @@ Result<FigureType> type_of(std::string_view text) {
   const auto end = std::from_chars(text.data() + 1, text.data() + text.size(), type.bytes);
   if (end.ec != std::errc{} || type.bytes > (1u << 16)) return damaged;
   if (is_figure(type.kind, type.bytes)) return type;
-  constexpr std::string_view passed_over = "USVMmc";
-  if (passed_over.find(type.kind) == std::string_view::npos)
+  constexpr std::string_view skipped = "USVMmc";
+  if (skipped.find(type.kind) == std::string_view::npos)
     return Error{Errc::unsupported, "holds figures of type " + std::string(text) +
                                         ", which are not read: save float64"};
   if (type.kind == 'U') type.bytes *= 4;

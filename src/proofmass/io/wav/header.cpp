@@ -196,7 +196,7 @@ class ChunkReader {
     if (rest != 0 && !header_.claimed_bytes)
       header_.notes.push_back(
           {Severity::warning, fmt::format("byte {}: {} bytes after the last sample are less than "
-                                          "a sample: passed over",
+                                          "a sample: skipped",
                                           header_.begin + header_.bytes - rest, rest)});
     return Done{};
   }

@@ -176,7 +176,7 @@ void LiveMonitor::add_noise(const Rows& rows) {
   }
 }
 
-/// Channels whose noise cannot be characterised yet are passed over.
+/// Channels whose noise cannot be characterised yet are skipped.
 void LiveMonitor::characterise_next() {
   for (std::size_t tried = 0; tried < noise_.size(); ++tried) {
     Noise& one = noise_[next_noise_];

@@ -98,7 +98,7 @@ Status HoleFinder::check(std::size_t samples, double spare) const {
   if (missing_ <= 3.0 * static_cast<double>(samples) + spare) return Done{};
   return Error{Errc::corrupt,
                fmt::format("the gaps in the stamps are as long as {:.3g} samples, and there "
-                           "are {}: use --from and --to, or --rate to pass over the stamps",
+                           "are {}: use --from and --to, or --rate to ignore the stamps",
                            missing_, samples)};
 }
 
