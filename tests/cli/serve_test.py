@@ -229,6 +229,23 @@ class Serve(CommandTest):
         self.assertEqual(self.ask("/api/view?file=rig.truth.csv")[0], 404)
         self.assertEqual([one["name"] for one in self.get("/api/recordings")["recordings"]], ["rig.csv"])
 
+    def test_of_a_source_watches_it_and_records_nothing(self):
+        self.start("sim:wheel?rate=200", "--estimate", "wheel")
+        number = self.get("/api/info")["source"]
+        for _ in range(1000):
+            source = self.get(f"/api/live/{number}")
+            if source["last_state"] is not None and source["last_state"]["samples"] > 0:
+                break
+            time.sleep(0.05)
+        self.assertEqual((source["state"], source["file"]), ("running", None))
+        self.assertEqual(source["options"], {"estimate": "wheel"})
+        self.assertEqual([one["name"] for one in self.get("/api/recordings")["recordings"]], ["rig.csv", "rig.truth.csv"])
+
+    def test_of_a_source_that_cannot_be(self):
+        self.assertIn("FOLDER", self.expect_failure(2, "serve", "rig.csv", "--estimate", "wheel"))
+        self.expect_failure(2, "serve", "stdin:")
+        self.expect_failure(2, "serve", "replay:../x.csv")
+
 
 if __name__ == "__main__":
     unittest.main()

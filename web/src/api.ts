@@ -179,6 +179,7 @@ export interface Info {
   version: string;
   folder: string;
   only: string;
+  source: number | null;
 }
 
 export class ApiError extends Error {

@@ -159,6 +159,7 @@ async function begin(): Promise<void> {
   }
   folder.textContent = info.folder;
   if (info.only && !params()["v"]) history.replaceState(null, "", "/?" + new URLSearchParams({ v: "recording", file: info.only }).toString());
+  if (info.source !== null && !params()["v"]) history.replaceState(null, "", "/?" + new URLSearchParams({ v: "live", source: String(info.source) }).toString());
   replace(app, h("a", { class: "only-heard", href: "#main" }, "To the content"), top, offline, main, tabs, help);
   onMove(draw);
   draw();

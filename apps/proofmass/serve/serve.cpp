@@ -22,7 +22,7 @@ namespace proofmass::app {
 namespace {
 
 struct ServeCommand {
-  std::string folder = ".", listen = "127.0.0.1";
+  std::string what = ".", listen = "127.0.0.1", estimate;
   int port = 0;
   bool no_browser = false;
   OutputFlags output;
@@ -30,8 +30,14 @@ struct ServeCommand {
 
 void add_serve_flags(CLI::App& verb, ServeCommand& command) {
   constexpr int last_port = 65535;
-  verb.add_option("FOLDER", command.folder, "a folder of recordings, or one (default: this folder)")
+  verb.add_option("FOLDER", command.what,
+                  "a folder of recordings, one recording, or a live source as record takes it, such "
+                  "as sim:wheel (default: this folder)")
       ->type_name("");
+  verb.add_option("--estimate", command.estimate,
+                  "live estimate of the source: wheel, tilt or track (default: none)")
+      ->type_name("WHAT")
+      ->check(CLI::IsMember({"wheel", "tilt", "track"}));
   verb.add_option("--port", command.port, "port to listen on (default: a free one)")
       ->type_name("N")
       ->check(CLI::Range(0, last_port));
@@ -101,9 +107,18 @@ std::string temporary_place() {
   return failed ? "/tmp" : place.string();
 }
 
+// "sim:wheel", and no file of that name.
+bool is_source(const std::string& what) {
+  std::error_code ignored;
+  return what.find(':') != std::string::npos && !std::filesystem::exists(what, ignored);
+}
+
 // Runs until a signal ends it.
 void serve_folder(const ServeCommand& command) {
-  const auto folder = need(serve::Folder::open(command.folder), Stage::reading);
+  const bool is_live = is_source(command.what);
+  if (!is_live && !command.estimate.empty())
+    throw Failure(usage, "--estimate: FOLDER must be a live source, such as sim:wheel");
+  const auto folder = need(serve::Folder::open(is_live ? "." : command.what), Stage::reading);
   const auto work = need(serve::TemporaryFolder::make(temporary_place()), Stage::writing);
   const std::string token = need(serve::random_token(), Stage::reading);
   serve::Bench bench({.folder = folder,
@@ -124,6 +139,12 @@ void serve_folder(const ServeCommand& command) {
                             std::string_view message) { return bench.take(from, message); }},
                [&](const serve::Request& request) { return bench.answer(request); }),
            Stage::reading);
+  if (is_live) {
+    const Status watched = bench.watch(command.what, command.estimate);
+    if (!watched)
+      throw Failure(status_of(watched.error(), Stage::reading),
+                    watched.error().at(command.what).message);
+  }
   const std::string link =
       fmt::format("http://{}:{}/?token={}", serve::in_link(command.listen), server->port(), token);
   warn_of_others(command);
@@ -146,7 +167,7 @@ Verb serve_verb() {
   return make_verb<ServeCommand>(
       {.name = "serve",
        .group = "Look",
-       .help = "recordings and analyses of a folder, on a page in the browser"},
+       .help = "recordings and analyses of a folder, or a live source, on a page in the browser"},
       add_serve_flags, run_serve);
 }
 

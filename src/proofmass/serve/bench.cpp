@@ -101,8 +101,10 @@ struct Bench::State {
 
   [[nodiscard]] Response info() const {
     const Folder& folder = shared.options.folder;
-    return json_response(
-        {{"version", std::string(version())}, {"folder", folder.path()}, {"only", folder.only()}});
+    return json_response({{"version", std::string(version())},
+                          {"folder", folder.path()},
+                          {"only", folder.only()},
+                          {"source", watched ? Json(*watched) : Json()}});
   }
 
   [[nodiscard]] Response add_file(const Request& request, std::string_view prefix) const {
@@ -119,10 +121,20 @@ struct Bench::State {
   OpenViews views;
   Analyses analyses;
   LiveBench live;
+  std::optional<std::uint64_t> watched{};  ///< number of the source of watch()
 };
 
 Bench::Bench(BenchOptions options) : state_(std::make_unique<State>(std::move(options))) {}
 Bench::~Bench() = default;
+
+Status Bench::watch(const std::string& source, const std::string& estimate) {
+  nlohmann::json options = nlohmann::json::object();
+  if (!estimate.empty()) options["estimate"] = estimate;
+  const auto id = state_->live.start({{"source", source}, {"file", nullptr}, {"options", options}});
+  if (!id) return id.error();
+  state_->watched = *id;
+  return Done{};
+}
 
 Response Bench::answer(const Request& request) {
   constexpr std::string_view analyses = "/api/analyses", files = "/api/files/", live = "/api/live";

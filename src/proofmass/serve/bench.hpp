@@ -23,7 +23,7 @@ struct BenchOptions {
 /// What stands behind the page: the recordings of a folder, views of them, and analyses. Everything
 /// that reads a file of unknown origin runs in a process of its own.
 ///
-///     GET    /api/info                       {version, folder, only}
+///     GET    /api/info                       {version, folder, only, source}
 ///     GET    /api/verbs                      verbs_json
 ///     GET    /api/recordings                 {recordings: [...], sensor_files: [...], left}
 ///     GET    /api/recording?file=            {json, page}: what `inspect` says
@@ -54,6 +54,9 @@ class Bench {
   Bench& operator=(const Bench&) = delete;
   ~Bench();
 
+  /// Starts a source that is watched and not recorded, and shown first on the page; `estimate` as
+  /// of `record`, or empty. Errors: those of live_arguments(), device.
+  [[nodiscard]] Status watch(const std::string& source, const std::string& estimate);
   /// May be called from several threads at once.
   [[nodiscard]] Response answer(const Request& request);
   /// A message of a WebSocket: which source it wants to see. Errors: invalid_argument.

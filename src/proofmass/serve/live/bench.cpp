@@ -90,14 +90,20 @@ Response LiveBench::find() {
 Response LiveBench::begin(const std::string& body) {
   const nlohmann::json asked = nlohmann::json::parse(body, nullptr, false);
   if (asked.is_discarded()) return error_response(400, "expected JSON");
+  const auto id = start(asked);
+  if (!id) return error_response(id.error().code == Errc::device ? 409 : 400, id.error().message);
+  return json_response({{"id", *id}}, 201);
+}
+
+Result<std::uint64_t> LiveBench::start(const nlohmann::json& asked) {
   auto checked = live_arguments(asked, shared_.options.folder);
-  if (!checked) return error_response(400, checked.error().message);
+  if (!checked) return checked.error();
   const std::lock_guard lock(mutex_);
   forget_ended();
   const auto running = std::ranges::count_if(
       entries_, [](const Entry& one) { return !one.source->status().end.has_value(); });
   if (running >= static_cast<std::ptrdiff_t>(most_running))
-    return error_response(409, fmt::format("{} sources are running: stop one", most_running));
+    return Error{Errc::device, fmt::format("{} sources are running: stop one", most_running)};
   std::vector<std::string> arguments = checked->arguments;
   arguments.emplace_back("--stream");
   ChildCommand command = shared_.command(std::move(arguments));
@@ -105,10 +111,10 @@ Response LiveBench::begin(const std::string& body) {
   constexpr std::chrono::minutes patience{5};
   command.patience = patience;
   auto source = LiveSource::start(++last_, std::move(command));
-  if (!source) return error_response(500, source.error().message);
+  if (!source) return Error{Errc::device, source.error().message};
   entries_.push_back({last_, std::move(checked).value(),
                       asked.value("options", nlohmann::json::object()), std::move(source).value()});
-  return json_response({{"id", last_}}, 201);
+  return last_;
 }
 
 /// The oldest of the sources that have ended.

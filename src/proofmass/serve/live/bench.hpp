@@ -22,6 +22,9 @@ class LiveBench {
   /// What `record --list` finds: looked for anew at each call, within some seconds.
   [[nodiscard]] Response find();
   [[nodiscard]] Response begin(const std::string& body);
+  /// Starts a recorder of the source, file and options asked for; returns its number. Errors: those
+  /// of live_arguments(), device (too many are running, or no process can be started).
+  [[nodiscard]] Result<std::uint64_t> start(const nlohmann::json& asked);
   /// `path` is what follows /api/live/: "ID" or "ID/WORD".
   [[nodiscard]] Response one(const std::string& method, const std::string& path);
   /// A browser's message. Errors: invalid_argument.
