@@ -193,6 +193,24 @@ class Serve(CommandTest):
         figures = sum(len(section["figures"]) for section in page["sections"])
         self.assertEqual(figures, report.count("<svg"))
 
+    def test_sensor_files_are_shown_compared_and_exported(self):
+        for name, seed in (("old", "1"), ("new", "2")):
+            self.succeed("simulate", "--procedure", "multi-position", "--output", name + ".csv", "--seed", seed)
+            self.succeed("calibrate", name + ".csv", "--update-sensor", name + ".toml")
+        self.start()
+        self.assertEqual(self.get("/api/recordings")["sensor_files"], ["new.toml", "old.toml"])
+        shown = self.begin(verb="sensor show", files=["old.toml"])
+        self.assertEqual(self.ended(shown)["state"], "done", self.ended(shown))
+        self.assertEqual(self.get(f"/api/analyses/{shown}/result.json")["action"], "show")
+        compared = self.begin(verb="sensor diff", files=["old.toml", "new.toml"])
+        self.assertEqual(self.ended(compared)["state"], "done", self.ended(compared))
+        self.assertIn("bias", json.dumps(self.get(f"/api/analyses/{compared}/page.json")))
+        exported = self.begin(verb="sensor export", files=["old.toml"], options={"format": "c-header"})
+        state = self.ended(exported)
+        self.assertEqual((state["state"], state["files_made"]), ("done", ["result.json"]), state)
+        self.assertIn("#define", self.get(f"/api/analyses/{exported}/result.json")["text"])
+        self.assertEqual(self.ask("/api/analyses", "POST", json.dumps({"verb": "sensor show", "files": ["old.toml"], "options": {"format": "c-header"}}).encode())[0], 400)
+
     def test_an_analysis_that_fails_says_what_the_command_says(self):
         self.start()
         state = self.ended(self.begin(verb="noise", files=["rig.csv"], options={"from": 5, "to": 4}))

@@ -22,6 +22,10 @@ before(async () => {
     const rows = Array.from({ length: 20000 }, (_, k) => `${k / 100},${(size * next()).toFixed(7)}`);
     writeFileSync(join(folder, `${name}.csv`), `t (s),x (g)\n${rows.join("\n")}\n`);
   }
+  for (const name of ["quiet", "loud"]) {
+    const written = spawnSync(program, ["noise", `${name}.csv`, "--update-sensor", `${name}.toml`], { cwd: folder });
+    assert.equal(written.status, 0, String(written.stderr));
+  }
   await start();
 });
 after(stop);
@@ -47,6 +51,29 @@ test("the token leaves the address, and a reload keeps the view", async () => {
   assert.doesNotMatch(page.url(), /token/);
   await page.reload();
   await page.waitForSelector('[role=option][aria-selected=true] >> text=quiet.csv');
+  await close();
+});
+
+test("sensor files are shown, compared and exported", async () => {
+  const { page, problems, close } = await open("v=recordings");
+  const files = page.locator("section[aria-label='Sensor files']");
+  await files.locator("tr", { hasText: "quiet.toml" }).locator("text=Show").click();
+  await page.waitForSelector(".conclusion", { timeout: patience });
+  assert.match(await page.innerText("main"), /white/i);
+  await shot(page, "sensor-show");
+  await page.goto(`${base()}/?v=recordings`);
+  await files.locator("tr", { hasText: "quiet.toml" }).locator("text=Compare…").click();
+  await page.selectOption("select[aria-label='Sensor file 2']", "loud.toml");
+  await page.click("button[type=submit]");
+  await page.waitForSelector(".conclusion", { timeout: patience });
+  await shot(page, "sensor-diff");
+  await page.goto(`${base()}/?v=recordings`);
+  await files.locator("tr", { hasText: "loud.toml" }).locator("text=Export…").click();
+  await page.selectOption("#option-format", "c-header");
+  await page.click("button[type=submit]");
+  await page.waitForSelector("pre >> text=/#define/", { timeout: patience });
+  await shot(page, "sensor-export");
+  assert.deepEqual(problems, []);
   await close();
 });
 

@@ -16,7 +16,7 @@ const quote = (word: string): string => (/^[\w./=:,+-]+$/.test(word) ? word : `'
 
 /// As a person types it.
 export function commandOf(asked: Asked): string {
-  const words = ["proofmass", asked.verb, ...asked.files];
+  const words = ["proofmass", ...asked.verb.split(" "), ...asked.files];
   for (const [name, value] of Object.entries(asked.options)) {
     if (value === true) words.push(`--${name}`);
     else for (const one of Array.isArray(value) ? value : [value]) if (one !== false && one !== "") words.push(`--${name}`, String(one));
@@ -64,6 +64,18 @@ function resultOf(page: Page, run: Analysis, plots: Drawn[]): HTMLElement[] {
     notesList(page.notes, 4),
     ...page.sections.map(section),
   ];
+}
+
+interface Exported {
+  format: string;
+  text: string;
+}
+
+/// A file that the verb writes in place of a page.
+function textOf(made: Exported, run: Analysis): HTMLElement[] {
+  const name = `${(run.files[0] ?? "sensor").split("/").at(-1)?.replace(/\.toml$/, "")}.${made.format === "c-header" ? "h" : "yaml"}`;
+  const download = h("button", { type: "button", class: "btn", onclick: () => save(name, new Blob([made.text], { type: "text/plain" })) }, `Download ${name}`);
+  return [h("p", { class: "bar" }, download), h("pre", { class: "wide", tabindex: "0" }, made.text)];
 }
 
 interface Field {
@@ -174,26 +186,27 @@ export function analysisView(main: HTMLElement): View {
     const name = files[0] ?? "";
     const downloads: (HTMLElement | false)[] = [];
     if (analysis?.state === "done") {
-      const base = `${name.split("/").at(-1) ?? "result"}-${analysis.verb}`;
+      const base = `${name.split("/").at(-1) ?? "result"}-${analysis.verb.replaceAll(" ", "-")}`;
       const labels: { [file: string]: string } = { "report.html": "Report", "result.json": "JSON", "series.csv": "CSV", "sensor.toml": "Sensor file" };
       for (const [made, label] of Object.entries(labels))
         if (analysis.files_made.includes(made))
           downloads.push(h("button", { type: "button", class: "btn", onclick: () => void blob(`/api/analyses/${analysis.id}/${made}`).then((got) => save(`${base}${made === "report.html" ? ".html" : made === "result.json" ? ".json" : made === "series.csv" ? ".csv" : ".toml"}`, got)) }, label));
-      downloads.push(h("a", { class: "btn", ...link({ v: "compare", runs: String(analysis.id) }) }, "Compare… ", h("kbd", { class: "keys" }, "c")));
+      if (verb?.page) downloads.push(h("a", { class: "btn", ...link({ v: "compare", runs: String(analysis.id) }) }, "Compare… ", h("kbd", { class: "keys" }, "c")));
     }
     replace(
       head,
-      h("a", { ...(name ? link({ v: "recording", file: name }) : link({ v: "analysis" })) }, name ? `‹ ${name}` : "‹ Analyses"),
+      h("a", { ...(name && verb?.reads === "recordings" ? link({ v: "recording", file: name }) : link({ v: "analysis" })) }, name && verb?.reads === "recordings" ? `‹ ${name}` : "‹ Analyses"),
       h("h1", {}, title(verb?.name ?? "")),
       h("span", { class: "soft" }, verb?.help ?? ""),
       h("div", { class: "acts" }, downloads.length > 0 && h("span", { class: "soft" }, "Download"), ...downloads),
     );
   }
 
-  function recordingField(): HTMLElement {
-    const names = list.recordings.map((one) => one.name);
+  const fileWord = (): string => (verb?.reads === "sensor_files" ? "Sensor file" : "Recording");
+  function filesField(): HTMLElement {
+    const names = verb?.reads === "sensor_files" ? list.sensor_files : list.recordings.map((one) => one.name);
     const select = (index: number): HTMLElement => {
-      const box = h("select", { "aria-label": index === 0 ? "Recording" : `Recording ${index + 1}` }, h("option", { value: "" }, index === 0 ? "choose…" : "no more"), ...names.map((name) => h("option", { value: name }, name)));
+      const box = h("select", { "aria-label": index === 0 ? fileWord() : `${fileWord()} ${index + 1}` }, h("option", { value: "" }, index === 0 ? "choose…" : "no more"), ...names.map((name) => h("option", { value: name }, name)));
       box.value = files[index] ?? "";
       box.addEventListener("change", () => {
         if (box.value) files[index] = box.value;
@@ -221,7 +234,7 @@ export function analysisView(main: HTMLElement): View {
     const inputIsSet = input.some((element) => element.classList.contains("changed"));
     replace(
       form,
-      h("fieldset", {}, h("legend", {}, "Recording"), recordingField(), ...made.filter((each) => first.includes(each.option.name)).sort((a, b) => first.indexOf(a.option.name) - first.indexOf(b.option.name)).map((each) => each.field.element)),
+      h("fieldset", {}, h("legend", {}, fileWord()), filesField(), ...made.filter((each) => first.includes(each.option.name)).sort((a, b) => first.indexOf(a.option.name) - first.indexOf(b.option.name)).map((each) => each.field.element)),
       ...groups.map((name) => {
         const elements = group(name);
         return elements.length > 0 && h("fieldset", {}, h("legend", {}, name === "Options" || name === "OPTIONS" ? title(one.name) : name), ...elements);
@@ -241,10 +254,10 @@ export function analysisView(main: HTMLElement): View {
       replace(result, h("div", { class: "failure", role: "alert" }, h("p", { class: "strong" }, analysis.state === "cancelled" ? "Cancelled" : `${title(analysis.verb)} failed`), h("p", {}, analysis.error ?? "It was stopped before it had a result."), h("p", { class: "bar" }, h("button", { type: "button", class: "btn", onclick: () => void start() }, "Run again"))), messages);
       return;
     }
-    const page = await get<Page>(`/api/analyses/${analysis.id}/page.json`);
+    const shown = verb?.page ? resultOf(await get<Page>(`/api/analyses/${analysis.id}/page.json`), analysis, plots) : textOf(await get<Exported>(`/api/analyses/${analysis.id}/result.json`), analysis);
     if (ended) return;
     if (matchMedia("(max-width: 700px)").matches) settings.open = false;
-    replace(result, ...resultOf(page, analysis, plots), messages);
+    replace(result, ...shown, messages);
     titleLine(analysis);
   }
 
@@ -289,6 +302,7 @@ export function analysisView(main: HTMLElement): View {
     titleLine();
     build();
     if (id > 0) await follow(id).catch(() => note({ run: "" }));
+    else if (verb.options.length === 0 && !verb.many_files) await start();
     // Channels are known once the recording has been inspected.
     while (!ended && list.recordings.find((one) => one.name === files[0])?.summary === null) {
       await pause(700);

@@ -152,7 +152,9 @@ export interface Verb {
   name: string;
   group: string;
   help: string;
+  reads: "recordings" | "sensor_files";
   many_files: boolean;
+  page: boolean;
   series: boolean;
   sensor_file: boolean;
   options: Option[];

@@ -65,6 +65,13 @@ const matches = (recording: Recording, filter: string): boolean =>
       return recording.name.toLowerCase().includes(word);
     });
 
+/// What to do with the sensor files of the folder.
+function sensorFiles(names: string[]): HTMLElement | false {
+  const to = (verb: string, word: string, files: string): HTMLElement => h("a", { class: "btn small", ...link({ v: "analysis", verb: `sensor ${verb}`, file: files }) }, word);
+  const row = (name: string): HTMLElement => h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, h("span", { class: "bar" }, to("show", "Show", name), names.length > 1 && to("diff", "Compare…", name), to("export", "Export…", name))));
+  return names.length > 0 && h("section", { class: "panel", "aria-label": "Sensor files" }, h("div", { class: "ph" }, h("h2", {}, "Sensor files")), h("div", { class: "pb" }, h("table", {}, h("tbody", {}, ...names.map(row)))));
+}
+
 export function recordingsView(main: HTMLElement, folder: string): View {
   let list: RecordingList | undefined;
   let selected = params()["file"] ?? "";
@@ -77,6 +84,7 @@ export function recordingsView(main: HTMLElement, folder: string): View {
   const said = h("div", { role: "status" });
   const rows = h("div", { class: "list", role: "listbox", tabindex: "0", "aria-label": "Recordings" });
   const side = h("div", {});
+  const sensors = h("div", {});
   const titles = h(
     "div",
     { class: "row title", role: "presentation" },
@@ -88,7 +96,7 @@ export function recordingsView(main: HTMLElement, folder: string): View {
     main,
     h("div", { class: "head" }, h("h1", {}, "Recordings"), title, h("div", { class: "acts" }, filter, chooser, add)),
     said,
-    h("div", { class: "two" }, h("div", {}, rows, h("div", { class: "drop" }, `Drop files anywhere on this page: they are copied into ${folder}, never over a file.`)), side),
+    h("div", { class: "two" }, h("div", {}, rows, h("div", { class: "drop" }, `Drop files anywhere on this page: they are copied into ${folder}, never over a file.`), sensors), side),
   );
 
   const shown = (): Recording[] => (list?.recordings ?? []).filter((one) => matches(one, filter.value.trim()));
@@ -185,6 +193,7 @@ export function recordingsView(main: HTMLElement, folder: string): View {
     replace(rows, titles, ...all.map(rowOf));
     if (list && all.length === 0)
       rows.append(h("p", { class: "empty row", role: "presentation" }, list.recordings.length === 0 ? "There is no recording in this folder." : "No recording matches the filter."));
+    replace(sensors, sensorFiles(list?.sensor_files ?? []));
     rows.setAttribute("aria-activedescendant", selected ? `row-${selected}` : "");
     inspector();
   }

@@ -66,9 +66,40 @@ Value verb_row(const Verb& verb, const CLI::App& flags) {
     if (std::ranges::find(of_the_command, name) == of_the_command.end())
       options.push_back(option_row(*option));
   }
-  return Object{{"name", verb.text.name},           {"group", verb.text.group},
-                {"help", verb.text.help},           {"many_files", many_files},
-                {"series", has(flags, "--output")}, {"sensor_file", has(flags, "--update-sensor")},
+  return Object{{"name", verb.text.name},
+                {"group", verb.text.group},
+                {"help", verb.text.help},
+                {"reads", "recordings"},
+                {"many_files", many_files},
+                {"page", true},
+                {"series", has(flags, "--output")},
+                {"sensor_file", has(flags, "--update-sensor")},
+                {"options", std::move(options)}};
+}
+
+// An action of `sensor`, as a verb of its own.
+struct SensorAction {
+  const char *name, *help;
+  bool is_export, many_files;
+};
+constexpr std::array<SensorAction, 3> sensor_actions{
+    {{"sensor show", "figures of a sensor file, with their uncertainty and origin", false, false},
+     {"sensor diff", "what has changed between two sensor files, by more than its uncertainty",
+      false, true},
+     {"sensor export", "a sensor file for visual-inertial calibration or firmware", true, false}}};
+
+Value action_row(const SensorAction& action, const CLI::App& flags) {
+  Array options;
+  for (const CLI::Option* option : flags.get_options())
+    if (action.is_export && option->get_group() == "Export") options.push_back(option_row(*option));
+  return Object{{"name", action.name},
+                {"group", "Sensor files"},
+                {"help", action.help},
+                {"reads", "sensor_files"},
+                {"many_files", action.many_files},
+                {"page", !action.is_export},
+                {"series", false},
+                {"sensor_file", false},
                 {"options", std::move(options)}};
 }
 
@@ -80,6 +111,8 @@ std::string flag_table() {
     CLI::App flags;
     verb.add_flags(flags);
     if (verb.input != nullptr && has(flags, "--page")) rows.push_back(verb_row(verb, flags));
+    if (verb.text.name == "sensor")
+      for (const SensorAction& action : sensor_actions) rows.push_back(action_row(action, flags));
   }
   return report::json_text(Object{{"verbs", std::move(rows)}});
 }

@@ -32,18 +32,22 @@ void add_sensor_flags(CLI::App& verb, SensorCommand& command) {
   verb.add_option("--format", command.format,
                   "export: imu-yaml, for visual-inertial calibration, or c-header, for firmware")
       ->type_name("NAME")
+      ->group("Export")
       ->check(CLI::IsMember({"imu-yaml", "c-header"}));
   verb.add_option("--rate", command.rate_hz, "export, imu-yaml: sample rate of the recordings")
       ->type_name("HZ")
+      ->group("Export")
       ->check(positive());
   verb.add_option("--rostopic", command.rostopic,
                   "export, imu-yaml: topic of the recordings (default /imu0)")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->group("Export");
   verb.add_option("-o,--output", command.output.output,
                   "export: the new file (default: standard output)")
       ->type_name("FILE")
       ->group("Output");
   add_report_flag(verb, command.output);
+  add_page_flag(verb, command.output);
   add_output_flags(verb, command.output);
   verb.footer(
       "Examples:\n  proofmass sensor show rim.toml\n"
@@ -62,7 +66,8 @@ void check(const SensorCommand& command) {
   if (command.files.size() != wanted)
     refuse(wanted == 2 ? "expected two sensor files, OLD and NEW" : "expected one sensor file");
   if (exports && command.format.empty()) refuse("expected --format imu-yaml or c-header");
-  if (exports && !command.output.report.empty()) refuse("an export has no --report");
+  if (exports && (!command.output.report.empty() || !command.output.page.empty()))
+    refuse("an export has no --report and no --page");
   if (exports) return;
   if (!command.format.empty()) refuse("--format is for export");
   if (command.rate_hz || !command.rostopic.empty()) refuse("--rate and --rostopic are for export");

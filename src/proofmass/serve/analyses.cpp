@@ -59,8 +59,10 @@ Response Analyses::begin(const std::string& body) {
     arguments.push_back(fmt::format("{}={}/{}", flag, analysis.folder, name));
   };
   into("--json", "result.json");
-  into("--page", "page.json");
-  into("--report", "report.html");
+  if (checked->writes_page) {
+    into("--page", "page.json");
+    into("--report", "report.html");
+  }
   if (checked->writes_series) into("--output", "series.csv");
   if (checked->writes_sensor_file) into("--update-sensor", "sensor.toml");
   analysis.job = shared_.jobs.add(shared_.command(std::move(arguments)), JobUrgency::asked);

@@ -63,9 +63,9 @@ Status add_files(const json& verb,
                  const Folder& folder,
                  std::vector<std::string>& arguments) {
   const json files = asked.value("files", json::array());
-  if (!files.is_array() || files.empty()) return refused("expected the name of a recording");
+  if (!files.is_array() || files.empty()) return refused("expected the name of a file");
   if (files.size() > 1 && !verb.value("many_files", false))
-    return refused(verb.value("name", "") + ": takes one recording");
+    return refused(verb.value("name", "") + ": takes one file");
   for (const json& file : files) {
     const auto name = folder.existing(file.is_string() ? file.get<std::string>() : "");
     if (!name) return name.error();
@@ -91,7 +91,10 @@ Result<AnalysisArguments> analysis_arguments(const json& verbs,
   AnalysisArguments out{.verb = asked["verb"].get<std::string>(), .arguments = {}};
   const json* verb = named(verbs, "verbs", out.verb);
   if (verb == nullptr) return refused("no such analysis");
-  out.arguments.push_back(out.verb);
+  // "sensor show" is a verb and its action.
+  const std::size_t space = std::min(out.verb.find(' '), out.verb.size());
+  out.arguments.push_back(out.verb.substr(0, space));
+  if (space < out.verb.size()) out.arguments.push_back(out.verb.substr(space + 1));
   if (const Status s = add_files(*verb, asked, folder, out.arguments); !s) return s.error();
   const json options = asked.value("options", json::object());
   if (!options.is_object()) return refused("options: expected an object");
@@ -100,6 +103,7 @@ Result<AnalysisArguments> analysis_arguments(const json& verbs,
     if (option == nullptr) return refused(fmt::format("{} has no option {}", out.verb, name));
     if (const Status s = add_option(*option, value, folder, out.arguments); !s) return s.error();
   }
+  out.writes_page = verb->value("page", false);
   out.writes_series = verb->value("series", false);
   const json wanted = asked.value("sensor_file", json(false));
   out.writes_sensor_file =

@@ -12,6 +12,7 @@ namespace proofmass::serve {
 struct AnalysisArguments {
   std::string verb;
   std::vector<std::string> arguments;  ///< after the program's name
+  bool writes_page = false;            ///< --page and --report
   bool writes_series = false;          ///< the verb has --output
   bool writes_sensor_file = false;     ///< --update-sensor was asked for
 };

@@ -18,9 +18,10 @@ class AnalysisArgumentsTest : public testing::Test {
   }
   [[nodiscard]] Result<AnalysisArguments> asked(const std::string& text) const {
     const json verbs = json::parse(R"({"verbs": [
-      {"name": "noise", "many_files": true, "series": true, "sensor_file": true, "options": [
+      {"name": "noise", "many_files": true, "page": true, "series": true, "sensor_file": true, "options": [
         {"name": "rate"}, {"name": "channel", "many": true}, {"name": "sensor", "file": true},
         {"name": "exclude-events", "switch": true}]},
+      {"name": "sensor diff", "many_files": true, "options": []},
       {"name": "wheel", "options": []}]})");
     return analysis_arguments(verbs, json::parse(text), Folder::open(home_.path()).value());
   }
@@ -39,8 +40,16 @@ TEST_F(AnalysisArgumentsTest, GluesValuesToTheirFlags) {
   EXPECT_EQ(found->arguments, (std::vector<std::string>{"noise", "a.csv", "./-o.csv", "--channel=x",
                                                         "--channel=--json", "--exclude-events",
                                                         "--rate=100.5", "--sensor=s.toml"}));
+  EXPECT_TRUE(found->writes_page);
   EXPECT_TRUE(found->writes_series);
   EXPECT_TRUE(found->writes_sensor_file);
+}
+
+TEST_F(AnalysisArgumentsTest, AnActionIsAWordOfItsOwn) {
+  const auto found = asked(R"({"verb": "sensor diff", "files": ["s.toml", "s.toml"]})");
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->arguments, (std::vector<std::string>{"sensor", "diff", "s.toml", "s.toml"}));
+  EXPECT_FALSE(found->writes_page);
 }
 
 TEST_F(AnalysisArgumentsTest, RefusesWhatIsNotInTheTable) {
