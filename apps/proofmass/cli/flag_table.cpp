@@ -66,14 +66,10 @@ Value verb_row(const Verb& verb, const CLI::App& flags) {
     if (std::ranges::find(of_the_command, name) == of_the_command.end())
       options.push_back(option_row(*option));
   }
-  return Object{{"name", verb.text.name},
-                {"group", verb.text.group},
-                {"help", verb.text.help},
-                {"reads", "recordings"},
-                {"many_files", many_files},
-                {"page", true},
-                {"series", has(flags, "--output")},
-                {"sensor_file", has(flags, "--update-sensor")},
+  return Object{{"name", verb.text.name},           {"group", verb.text.group},
+                {"help", verb.text.help},           {"reads", "recordings"},
+                {"many_files", many_files},         {"page", true},
+                {"series", has(flags, "--output")}, {"sensor_file", has(flags, "--update-sensor")},
                 {"options", std::move(options)}};
 }
 

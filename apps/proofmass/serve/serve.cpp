@@ -30,9 +30,10 @@ struct ServeCommand {
 
 void add_serve_flags(CLI::App& verb, ServeCommand& command) {
   constexpr int last_port = 65535;
-  verb.add_option("FOLDER", command.what,
-                  "a folder of recordings, one recording, or a live source as record takes it, such "
-                  "as sim:wheel (default: this folder)")
+  verb.add_option(
+          "FOLDER", command.what,
+          "a folder of recordings, one recording, or a live source as record takes it, such "
+          "as sim:wheel (default: this folder)")
       ->type_name("");
   verb.add_option("--estimate", command.estimate,
                   "live estimate of the source: wheel, tilt or track (default: none)")

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <new>
 #include <span>
 #include <vector>
 
@@ -22,17 +23,21 @@ LinearModel<N, 1> model_of(const MatrixSeries& series) {
   return model;
 }
 
-/// Each epoch's covariance, whole, from those that are kept where they change.
+/// The packed covariances are stored at the end of the memory of the whole ones: new memory is the
+/// larger part of the cost of a long run.
 template <int N>
-void spread(const RunLengthCovariances<N>& covariances, std::span<double> out) {
-  constexpr std::size_t entries = static_cast<std::size_t>(N) * N;
-  const Symmetric<N>* last = nullptr;
-  Mat<N, N> whole;
-  for (std::size_t k = 0; k < covariances.size(); ++k) {
-    const Symmetric<N>& now = covariances.at(k);
-    if (&now != last) whole = now.dense();
-    last = &now;
-    std::copy_n(whole.data(), entries, out.data() + k * entries);
+std::span<Symmetric<N>> packed_part(std::span<double> whole, std::size_t size) {
+  double* const first = whole.data() + whole.size() - size * Symmetric<N>::entries;
+  return {::new (static_cast<void*>(first)) Symmetric<N>[size], size};
+}
+
+/// From the first epoch on: the whole covariances up to k never reach the packed one of k + 1.
+template <int N>
+void spread(std::span<const Symmetric<N>> packed, double* whole) {
+  for (std::size_t k = 0; k < packed.size(); ++k, whole += N * N) {
+    const Symmetric<N> cov = packed[k];
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) whole[i * N + j] = cov(i, j);
   }
 }
 
@@ -47,15 +52,16 @@ Result<MatrixSummary> run(const MatrixSeries& series, MatrixPass pass, const Mat
   std::copy_n(series.prior_mean.data(), states, prior.mean.data());
   std::copy_n(series.prior_cov.data(), states * states, prior.cov.data());
   std::vector<Mat<N>> means(size);
+  const std::span<Symmetric<N>> packed = packed_part<N>(output.cov, size);
   const UniformOptions<N> options{.smooth = pass == MatrixPass::smooth,
-                                  .covariances = Covariances::where_they_change,
+                                  .covariances = Covariances::everywhere,
                                   .innovations = true};
   const auto found = run_uniform<N, 0>(model_of<N>(series), prior, series.z, options,
-                                       {means, {}, output.innovation, output.innovation_cov});
+                                       {means, packed, output.innovation, output.innovation_cov});
   if (!found) return found.error();
   for (std::size_t k = 0; k < size; ++k)
     std::copy_n(means[k].data(), states, output.mean.data() + k * states);
-  spread<N>(found->covariances, output.cov);
+  spread<N>(packed, output.cov.data());
   for (std::size_t k = 0; k < size; ++k)
     if (std::isnan(series.z[k]))
       output.innovation_cov[k] = std::numeric_limits<double>::quiet_NaN();
