@@ -1,6 +1,7 @@
 #include "proofmass/acquire/framing/checks.hpp"
 
 #include <array>
+#include <boost/crc.hpp>
 #include <utility>
 
 #include "proofmass/io/bytes/crc32.hpp"
@@ -8,36 +9,17 @@
 namespace proofmass::acquire {
 namespace {
 
-/// Most significant bit first, polynomial 0x07, initial value 0.
-std::uint32_t crc8(std::string_view bytes) {
-  unsigned sum = 0;
-  for (const char c : bytes) {
-    sum ^= static_cast<unsigned char>(c);
-    for (int bit = 0; bit < 8; ++bit) sum = (sum << 1 ^ ((sum & 0x80) != 0 ? 0x07u : 0u)) & 0xFF;
-  }
-  return sum;
+template <class Crc>
+std::uint32_t sum_of(std::string_view bytes) {
+  Crc crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  return crc.checksum();
 }
 
-/// Most significant bit first, polynomial 0x1021, initial value 0xFFFF.
-std::uint32_t crc16_ccitt_false(std::string_view bytes) {
-  unsigned sum = 0xFFFF;
-  for (const char c : bytes) {
-    sum ^= static_cast<unsigned>(static_cast<unsigned char>(c)) << 8;
-    for (int bit = 0; bit < 8; ++bit)
-      sum = (sum << 1 ^ ((sum & 0x8000) != 0 ? 0x1021u : 0u)) & 0xFFFF;
-  }
-  return sum;
-}
-
-/// Least significant bit first, polynomial 0x8005, initial value 0xFFFF.
-std::uint32_t crc16_modbus(std::string_view bytes) {
-  unsigned sum = 0xFFFF;
-  for (const char c : bytes) {
-    sum ^= static_cast<unsigned char>(c);
-    for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ ((sum & 1) != 0 ? 0xA001u : 0u);
-  }
-  return sum;
-}
+// Width, polynomial, initial value, final exclusive or, bits of each byte and of the sum reflected.
+using Crc8 = boost::crc_optimal<8, 0x07, 0, 0, false, false>;
+using Crc16CcittFalse = boost::crc_optimal<16, 0x1021, 0xFFFF, 0, false, false>;
+using Crc16Modbus = boost::crc_optimal<16, 0x8005, 0xFFFF, 0, true, true>;
 
 }  // namespace
 
@@ -59,11 +41,11 @@ std::size_t bytes_of(Check check) {
 std::uint32_t checksum(Check check, std::string_view bytes) {
   switch (check) {
     case Check::crc8:
-      return crc8(bytes);
+      return sum_of<Crc8>(bytes);
     case Check::crc16:
-      return crc16_ccitt_false(bytes);
+      return sum_of<Crc16CcittFalse>(bytes);
     case Check::crc16_modbus:
-      return crc16_modbus(bytes);
+      return sum_of<Crc16Modbus>(bytes);
     case Check::crc32:
       break;
   }
