@@ -1,22 +1,12 @@
 #include "proofmass/io/archive/stored_zip.hpp"
 
-#include <algorithm>
-#include <zlib.h>
+#include "proofmass/io/bytes/crc32.hpp"
 
 namespace proofmass::io {
 namespace {
 
 void put(std::string& out, std::uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) out += static_cast<char>((value >> (8 * i)) & 0xFF);
-}
-
-std::uint32_t checksum(std::uint32_t crc, std::string_view bytes) {
-  // zlib counts in 32 bits.
-  constexpr std::size_t most = std::size_t{1} << 30;
-  for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), most)))
-    crc = static_cast<std::uint32_t>(::crc32(crc, reinterpret_cast<const Bytef*>(bytes.data()),
-                                             static_cast<uInt>(std::min(bytes.size(), most))));
-  return crc;
 }
 
 constexpr std::uint64_t version = 20;
@@ -46,7 +36,7 @@ Status StoredZipWriter::add(const std::string& name,
   const std::uint64_t size = std::uint64_t{head.size()} + bytes.size();
   if (file_->size() + size + spare > most_bytes || entries_.size() >= 0xFFFF)
     return Error{Errc::unsupported, "would be larger than 4 GiB, which a plain zip cannot be"};
-  Entry entry{name, static_cast<std::uint32_t>(file_->size()), checksum(checksum(0, head), bytes),
+  Entry entry{name, static_cast<std::uint32_t>(file_->size()), crc32(crc32(0, head), bytes),
               static_cast<std::uint32_t>(size)};
   std::string local;
   put(local, 0x0403'4B50, 4);
