@@ -11,7 +11,8 @@ using Q = TumbleQuantity;
 
 constexpr double g = table_gravity_mps2;
 
-TumbleFit fitted(const std::vector<TumblePosition>& positions, const TumbleOptions& options) {
+TumbleFit fitted(const std::vector<TumblePosition>& positions,
+                 const TumbleOptions& options = table_options()) {
   return fit_tumble(positions, options).value();
 }
 
