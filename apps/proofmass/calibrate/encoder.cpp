@@ -39,12 +39,14 @@ void add_axes(const Recording& recording,
               double gravity,
               calibrate::EncoderRecording& out) {
   std::vector<std::vector<double>> axes;
+  const std::size_t sensor = out.sensor_of.empty() ? 0 : out.sensor_of.back() + 1;
   bool known = true;
   for (const auto& axis : {one.triad.x, one.triad.y, one.triad.z}) {
     if (!axis) continue;
     const Channel& channel = recording.channels[*axis];
     axes.push_back(channel.values);
     out.axis_names.push_back(channel.name);
+    out.sensor_of.push_back(sensor);
     known = known && channel.unit.quantity == Quantity::acceleration;
     if (known)
       for (double& value : axes.back()) value = channel.unit.si(value);
@@ -94,6 +96,7 @@ void run_calibrate_encoder(const CalibrateCommand& command) {
                                     .time_s = {},
                                     .axes = {},
                                     .axis_names = {},
+                                    .sensor_of = {},
                                     .encoder = std::move(encoder.fixes),
                                     .step_rad = encoder.step_rad,
                                     .index_slips = std::move(encoder.index_slips),

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double fewest_turns = 5.0, fewest_fixes_a_turn = 48.0;
 constexpr std::size_t most_blocks = 24;
+/// Largest |α|/ω² of a row that is used: beyond, the speed changes too much within the parabolas.
+constexpr double steepest = 0.5;
 
 Status check_recording(const EncoderRecording& recording) {
   if (recording.axes.empty())
@@ -20,8 +22,9 @@ Status check_recording(const EncoderRecording& recording) {
   for (const auto& axis : recording.axes)
     if (axis.size() != recording.time_s.size())
       return Error{Errc::invalid_argument, recording.name + ": channels of different lengths"};
-  if (recording.axis_names.size() != recording.axes.size())
-    return Error{Errc::invalid_argument, recording.name + ": axes without names"};
+  if (recording.axis_names.size() != recording.axes.size() ||
+      recording.sensor_of.size() != recording.axes.size())
+    return Error{Errc::invalid_argument, recording.name + ": axes without a name or sensor"};
   return Done{};
 }
 
@@ -55,7 +58,8 @@ std::vector<double> select_rows(const EncoderRecording& recording,
   for (std::size_t k = 0; k < recording.time_s.size(); ++k) {
     const double angle = shown.angle_rad[k], speed = shown.speed_radps[k],
                  accel = shown.accel_radps2[k];
-    if (!std::isfinite(angle + speed + accel) || std::abs(speed) <= slowest) {
+    if (!std::isfinite(angle + speed + accel) || std::abs(speed) <= slowest ||
+        std::abs(accel) > steepest * speed * speed) {
       previous.reset();
       continue;
     }
@@ -89,20 +93,20 @@ Status check_rows(const EncoderRecording& recording, double turns) {
 }
 
 /// Whether some axis follows gravity.
-bool follows_gravity(const EncoderFit& fit, std::size_t axes) {
-  for (std::size_t axis = 0; axis < axes; ++axis) {
+bool follows_gravity(const EncoderFit& fit, const encoder::Layout& layout) {
+  for (std::size_t axis = 0; axis < layout.axes; ++axis) {
     const double response =
-        fit.parameters.segment<2>(encoder::axis(axis) + encoder::sin).squaredNorm();
+        fit.parameters.segment<2>(layout.axis(axis) + encoder::sin).squaredNorm();
     if (response > fit.variance[axis]) return true;
   }
   return false;
 }
 
 /// The largest nonlinearity of an axis in the plane, as a multiple of its prior.
-double nonlinearity_shown(const EncoderFit& fit, std::size_t axes) {
+double nonlinearity_shown(const EncoderFit& fit, const encoder::Layout& layout) {
   double most = 0.0;
-  for (std::size_t axis = 0; axis < axes; ++axis) {
-    const Eigen::Index first = encoder::axis(axis);
+  for (std::size_t axis = 0; axis < layout.axes; ++axis) {
+    const Eigen::Index first = layout.axis(axis);
     if (fit.parameters.segment<2>(first + encoder::sin).norm() < 3.0) continue;
     for (Eigen::Index i = first + encoder::nonlinear; i < first + encoder::nonlinear + 4; ++i)
       most = std::max(most, std::abs(fit.parameters(i)) / fit.prior_std(i));
@@ -124,10 +128,8 @@ Result<EncoderRound> one_round(const EncoderRecording& recording,
   const std::vector<double> turned = select_rows(recording, fixes, round.rows);
   round.turns = turned.empty() ? 0.0 : turned.back();
   if (const Status enough = check_rows(recording, round.turns); !enough) return enough.error();
-  const std::size_t axes = recording.axes.size();
-  round.fit = fit_encoder(recording, round.rows, options,
-                          Eigen::VectorXd::Zero(encoder::axis(axes)));
-  if (!follows_gravity(round.fit, axes))
+  round.fit = fit_encoder(recording, round.rows, options);
+  if (!follows_gravity(round.fit, encoder::layout_of(recording)))
     return Error{Errc::not_observable,
                  recording.name +
                      ": the accelerometers do not follow gravity at the encoder's angle: check "
@@ -154,6 +156,53 @@ void add_notes(const EncoderRecording& recording,
                                     static_cast<int>(out.turns), static_cast<int>(out.dof)));
 }
 
+/// Fits, finds the missed counts, removes them from `fixes` and fits again, until there are none.
+Result<EncoderRound> without_slips(const EncoderRecording& recording,
+                                   const EncoderOptions& options,
+                                   signal::AngleFixes& fixes,
+                                   EncoderCalibration& out) {
+  // The first fit is bent by the slips; few rounds find them all.
+  constexpr int most_rounds = 6;
+  auto round = one_round(recording, fixes, options);
+  for (int n = 0; n < most_rounds && round; ++n) {
+    const auto found = signal::find_count_slips(round->offsets.time_s, round->offsets.offset_rad,
+                                                recording.step_rad);
+    if (found.empty()) break;
+    if (static_cast<double>(out.missed.size() + found.size()) > round->turns) {
+      out.notes.emplace_back(
+          "the encoder departs from gravity more often than once a turn: these are not missed "
+          "counts, or the wheel does not turn as its accelerometers do; none is removed");
+      out.missed.clear();
+      fixes = recording.encoder;
+      return one_round(recording, fixes, options);
+    }
+    signal::remove_slips(found, recording.step_rad, fixes);
+    out.missed.insert(out.missed.end(), found.begin(), found.end());
+    round = one_round(recording, fixes, options);
+  }
+  std::ranges::sort(out.missed, {}, &signal::CountSlip::time_s);
+  return round;
+}
+
+void conclude(const EncoderRecording& recording, EncoderRound round, EncoderCalibration& out) {
+  out.turns = round.turns;
+  out.samples = round.rows.row.size();
+  out.blocks = round.rows.blocks;
+  out.dof = static_cast<double>(out.blocks) - 1.0;
+  out.iterations = round.fit.iterations;
+  out.converged = round.fit.converged;
+  std::vector<double> speeds = round.rows.shown.speed_radps;
+  for (double& speed : speeds) speed = std::abs(speed);
+  out.speed_min_radps = *quantile(speeds, 0.01);
+  out.speed_max_radps = *quantile(speeds, 0.99);
+  add_encoder_results(recording, round.fit, out.dof, out);
+  out.detectable_counts = signal::detectable_counts(round.offsets.offset_rad, recording.step_rad);
+  out.offset_time_s = std::move(round.offsets.time_s);
+  out.offset_angle_rad = std::move(round.offsets.angle_rad);
+  out.offset_rad = std::move(round.offsets.offset_rad);
+  out.fitted_rad = std::move(round.offsets.fitted_rad);
+}
+
 }  // namespace
 
 Result<EncoderCalibration> calibrate_encoder(const EncoderRecording& recording,
@@ -163,46 +212,17 @@ Result<EncoderCalibration> calibrate_encoder(const EncoderRecording& recording,
   out.step_rad = recording.step_rad;
   EncoderOptions options = given;
   signal::AngleFixes fixes = recording.encoder;
-  auto round = one_round(recording, fixes, options);
+  auto round = without_slips(recording, options, fixes, out);
   if (!round) return round.error();
-  // The first fit is bent by the slips; few rounds find them all.
-  constexpr int most_rounds = 6;
-  for (int n = 0; n < most_rounds; ++n) {
-    const auto found = signal::find_count_slips(round->offsets.time_s, round->offsets.offset_rad,
-                                                recording.step_rad);
-    if (found.empty()) break;
-    signal::remove_slips(found, recording.step_rad, fixes);
-    out.missed.insert(out.missed.end(), found.begin(), found.end());
-    round = one_round(recording, fixes, options);
-    if (!round) return round.error();
-  }
-  std::ranges::sort(out.missed, {}, &signal::CountSlip::time_s);
   constexpr double beyond_prior = 3.0;
-  if (const double shown = nonlinearity_shown(round->fit, recording.axes.size());
+  if (const double shown = nonlinearity_shown(round->fit, encoder::layout_of(recording));
       shown > beyond_prior) {
     options.nonlinearity *= shown;
     round = one_round(recording, fixes, options);
     if (!round) return round.error();
   }
-  const EncoderFit& fit = round->fit;
   out.nonlinearity = options.nonlinearity;
-  out.turns = round->turns;
-  out.samples = round->rows.row.size();
-  out.blocks = round->rows.blocks;
-  out.dof = static_cast<double>(out.blocks) - 1.0;
-  out.iterations = fit.iterations;
-  out.converged = fit.converged;
-  std::vector<double> speeds = round->rows.shown.speed_radps;
-  for (double& speed : speeds) speed = std::abs(speed);
-  out.speed_min_radps = *quantile(speeds, 0.01);
-  out.speed_max_radps = *quantile(speeds, 0.99);
-  add_encoder_results(recording, fit, out.dof, out);
-  out.detectable_counts =
-      signal::detectable_counts(round->offsets.offset_rad, recording.step_rad);
-  out.offset_time_s = std::move(round->offsets.time_s);
-  out.offset_angle_rad = std::move(round->offsets.angle_rad);
-  out.offset_rad = std::move(round->offsets.offset_rad);
-  out.fitted_rad = std::move(round->offsets.fitted_rad);
+  conclude(recording, std::move(round).value(), out);
   add_notes(recording, given, out);
   return out;
 }

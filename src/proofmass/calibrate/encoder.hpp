@@ -22,6 +22,7 @@ struct EncoderRecording {
   std::vector<double> time_s;             ///< of the accelerometers, increasing
   std::vector<std::vector<double>> axes;  ///< m/s², as long as time_s; NaN where missing
   std::vector<std::string> axis_names;
+  std::vector<std::size_t> sensor_of;  ///< of each axis; axes of one sensor share a lever arm
   signal::AngleFixes encoder;  ///< angle as the encoder shows it
   double step_rad = 0.0;       ///< one count; 0: no visible steps, and no search for missed counts
   /// Slips that the index pulse shows, removed already.
@@ -90,13 +91,14 @@ struct EncoderCalibration {
 /// Fits
 ///
 ///     ψ = θ + Σ c_n cos nθ + s_n sin nθ,   n = 1 … 4,
-///     z = b(t) + p ((1 + y) sin θ' + x cos θ') + q ((1 + y) cos θ' − x sin θ') + l ω² + m α
-///         + k₂ cos 2θ + k₂' sin 2θ + k₃ cos 3θ + k₃' sin 3θ,
+///     z = b(t) + p ((1 + y) sin θ' + x cos θ' − (ω² r_x + α r_y)/g)
+///              + q ((1 + y) cos θ' − x sin θ' − (ω² r_y − α r_x)/g)
+///              + k₂ cos 2θ + k₂' sin 2θ + k₃ cos 3θ + k₃' sin 3θ,
 ///
-/// with the encoder's angle ψ, θ' = θ − τ ω, and for each accelerometer axis its own bias b (a
-/// polynomial of the time), in-plane response p, q (scale, skew and mounting), lever arm l, m and
-/// nonlinearity k. x and y are the acceleration of the axle by its run-out, ω²/g times (h₁ cos θ +
-/// h₂ sin θ) and (h₃ cos θ + h₄ sin θ).
+/// with the encoder's angle ψ, θ' = θ − τ ω, for each accelerometer its lever arm r, and for each of
+/// its axes a bias b (a cubic of the time), the response p, q to gravity in the plane (scale, skew
+/// and mounting) and nonlinearity k. x and y are the acceleration of the axle by its run-out, ω²/g
+/// times (h₁ cos θ + h₂ sin θ) and (h₃ cos θ + h₄ sin θ).
 ///
 /// - A bias displaces the circle on which gravity moves and an eccentricity does not, so that they
 ///   are separable: the eccentricity appears at twice a turn in the accelerometer's axes, the

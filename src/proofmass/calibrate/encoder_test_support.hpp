@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "proofmass/calibrate/encoder.hpp"
@@ -71,6 +72,7 @@ inline EncoderRecording simulate(const SimulatedEncoder& wheel, std::mt19937_64&
   std::vector<SimulatedAxis> sensor;
   for (std::size_t k = 0; k < axes; ++k) {
     out.axis_names.push_back("a" + std::to_string(k));
+    out.sensor_of.push_back(k / 2);
     sensor.push_back({wheel.bias_mps2 * normal(random), 1.0 + wheel.scale_std * normal(random),
                       wheel.square_std * normal(random), wheel.square_std * normal(random),
                       wheel.square_std * normal(random)});

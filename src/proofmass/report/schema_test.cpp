@@ -166,7 +166,11 @@ TEST(Schemas, Tune) {
 }
 
 TEST(Schemas, Budget) {
-  const BudgetReport report{{}, {}, {{"Tactical", {3e-3, 0.0}, {{1.0, {1.5e-3, 0.0}}}}}};
+  BudgetReport report{{}, {}, {{"Tactical", {3e-3, 0.0}, {{1.0, {1.5e-3, 0.0}}}}}};
+  std::vector<const sensor::AccelerometerPart*> parts;
+  for (const sensor::AccelerometerPart& part : sensor::accelerometer_parts())
+    parts.push_back(&part);
+  report.parts = part_rows(parts, {10.0}, 5.0);
   expect_schema("Position error by double integration from rest.", {describe(report)});
 }
 

@@ -8,15 +8,33 @@
 // The joint fit of encoder and accelerometers.
 namespace proofmass::calibrate {
 
-/// Parameters common to all axes, then those of each axis.
+/// Parameters common to all axes, then the lever arm of each sensor, then those of each axis.
 namespace encoder {
 inline constexpr Eigen::Index errors = 0;  // c1 s1 … c4 s4
 inline constexpr Eigen::Index delay = encoder_parameters, runout = delay + 1, common = runout + 4;
-inline constexpr Eigen::Index sin = 0, cos = 1, by_speed2 = 2, by_accel = 3, nonlinear = 4,
-                              drift = 8, drift_terms = 4, each = drift + drift_terms;
-[[nodiscard]] constexpr Eigen::Index axis(std::size_t at) {
-  return common + each * static_cast<Eigen::Index>(at);
-}
+/// Of an axis, relative to axis().
+inline constexpr Eigen::Index sin = 0, cos = 1, nonlinear = 2, drift = 6, drift_terms = 4,
+                              each = drift + drift_terms;
+/// The parameters on which one axis depends: the common ones, its sensor's lever arm, its own.
+inline constexpr Eigen::Index seen = common + 2 + each;
+
+struct Layout {
+  std::size_t sensors = 0, axes = 0;
+  std::vector<std::size_t> sensor_of;  ///< of each axis
+
+  [[nodiscard]] Eigen::Index lever(std::size_t sensor) const {
+    return common + 2 * static_cast<Eigen::Index>(sensor);
+  }
+  [[nodiscard]] Eigen::Index axis(std::size_t at) const {
+    return lever(sensors) + each * static_cast<Eigen::Index>(at);
+  }
+  [[nodiscard]] Eigen::Index count() const { return axis(axes); }
+};
+[[nodiscard]] Layout layout_of(const EncoderRecording& recording);
+
+using Seen = Eigen::Matrix<double, seen, 1>;
+/// The parameters that an axis sees.
+[[nodiscard]] Seen seen_by(const Eigen::VectorXd& parameters, const Layout& layout, std::size_t axis);
 }  // namespace encoder
 
 /// Rows of the recording in which the wheel turns, with the motion that the encoder shows there.
@@ -46,24 +64,21 @@ struct WheelPoint {
                                     double shown_radps,
                                     double shown_radps2);
 
-/// Output of one axis at one row, and its derivatives by the common parameters (h_common) and the
-/// axis's own (h_axis).
+/// Output of one axis at one row, and its derivatives by the wheel's angle and by the parameters
+/// that it sees.
 struct AxisPrediction {
   double value = 0.0, by_angle = 0.0;
-  Eigen::Matrix<double, encoder::common, 1> h_common;
-  Eigen::Matrix<double, encoder::each, 1> h_axis;
+  encoder::Seen h;
 };
-[[nodiscard]] AxisPrediction predict_axis(const Eigen::VectorXd& parameters,
+[[nodiscard]] AxisPrediction predict_axis(const encoder::Seen& parameters,
                                           const WheelPoint& wheel,
-                                          std::size_t axis,
                                           double phase,
                                           double gravity_mps2);
 
 /// Gauss–Newton with the priors, weights by the residuals of each axis.
 [[nodiscard]] EncoderFit fit_encoder(const EncoderRecording& recording,
                                      const EncoderRows& rows,
-                                     const EncoderOptions& options,
-                                     Eigen::VectorXd start);
+                                     const EncoderOptions& options);
 
 /// ψ less the θ that the accelerometers show, in bins of a sixteenth of a turn.
 struct EncoderOffsets {

@@ -23,10 +23,16 @@ Eigen::VectorXd prior_share(const EncoderFit& fit, const std::vector<Index>& of)
   return variance;
 }
 
-std::vector<Index> of_each_axis(std::size_t axes, Index first, Index count) {
+std::vector<Index> nonlinear_ones(const at::Layout& layout) {
   std::vector<Index> out;
-  for (std::size_t axis = 0; axis < axes; ++axis)
-    for (Index i = 0; i < count; ++i) out.push_back(at::axis(axis) + first + i);
+  for (std::size_t axis = 0; axis < layout.axes; ++axis)
+    for (Index i = 0; i < 4; ++i) out.push_back(layout.axis(axis) + at::nonlinear + i);
+  return out;
+}
+
+std::vector<Index> levers(const at::Layout& layout) {
+  std::vector<Index> out;
+  for (Index i = layout.lever(0); i < layout.lever(layout.sensors); ++i) out.push_back(i);
   return out;
 }
 
@@ -69,16 +75,16 @@ void add_encoder_results(const EncoderRecording& recording,
                          const EncoderFit& fit,
                          double dof,
                          EncoderCalibration& out) {
-  const std::size_t axes = recording.axes.size();
+  const at::Layout layout = at::layout_of(recording);
   const Eigen::VectorXd noise = fit.type_a.diagonal().head<encoder_parameters>();
   out.shares = {share("noise and quantisation", true, noise),
                 share("accelerometers' nonlinearity", false,
-                      prior_share(fit, of_each_axis(axes, at::nonlinear, 4))),
+                      prior_share(fit, nonlinear_ones(layout))),
                 share("run-out of the axle", false,
                       prior_share(fit, {at::runout, at::runout + 1, at::runout + 2,
                                         at::runout + 3})),
                 share("accelerometers' distance from the axle", false,
-                      prior_share(fit, of_each_axis(axes, at::by_speed2, 2))),
+                      prior_share(fit, levers(layout))),
                 share("accelerometers' delay", false, prior_share(fit, {at::delay}))};
   const Eigen::VectorXd precision = fit.prior_std.array().square().inverse();
   const Eigen::MatrixXd cov =
